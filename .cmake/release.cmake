@@ -1,0 +1,2 @@
+# cmake -C .cmake/release.cmake -B build/release -G Ninja : what users run.
+set(CMAKE_BUILD_TYPE Release CACHE STRING "")

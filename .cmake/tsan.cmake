@@ -1,0 +1,7 @@
+# cmake -C .cmake/tsan.cmake -B build/tsan -G Ninja : thread sanitizer.
+set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "")
+set(CMAKE_C_COMPILER clang CACHE STRING "")
+set(CMAKE_CXX_COMPILER clang++ CACHE STRING "")
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1 -UNDEBUG" CACHE STRING "")
+set(OCTOTOMY_SANITIZE "thread" CACHE STRING "")
+set(OCTOTOMY_WERROR ON CACHE BOOL "")

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/mesh.h"
+
+namespace octotomy::brep {
+
+/// A region swept along a direction: closed polygons in the plane of `right` and `up` (a point is
+/// right * u + up * v, even-odd rule, so inner polygons are holes) from depth `from_mm` to `to_mm` along
+/// right x up's normal `look`. The three are orthonormal LPS vectors with right = look x up.
+struct Prism {
+  glm::dvec3 look{0, 1, 0}, up{0, 0, 1}, right{1, 0, 0};
+  std::vector<std::vector<glm::dvec2>> polygons_mm;
+  double from_mm = 0.0;
+  double to_mm = 1.0;
+};
+
+/// The solid of a prism. Throws std::invalid_argument naming the polygon where polygons cross each other or
+/// themselves, have fewer than three points or no area.
+Mesh mesh_of(const Prism& prism);
+
+}  // namespace octotomy::brep

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brep/mesh.h"
+#include "voxel/octree.h"
+
+namespace octotomy::verify {
+
+enum class Tier { Exact, Bounded, ClosedForm };
+/// BelowResolution: the object's smallest extent is under six voxels, agreement proves nothing.
+enum class Agreement { Pass, Warn, Fail, BelowResolution };
+
+/// One kernel's answer and where it comes from.
+struct Answer {
+  std::string lineage;
+  double volume_mm3 = 0.0;
+  double area_mm2 = 0.0;
+  std::optional<glm::dvec3> centroid_mm;
+};
+
+/// One source of difference that theory allows, with its formula.
+struct ToleranceTerm {
+  std::string name;
+  std::string formula;
+  double value_mm3 = 0.0;
+};
+
+/// Both kernels' answers to one question, the difference, what theory allows, and a verdict.
+struct Certificate {
+  std::string operation;
+  Tier tier = Tier::Bounded;
+  Answer voxel;
+  Answer mesh;
+  double difference_mm3 = 0.0;  ///< voxel minus mesh
+  double tolerance_mm3 = 0.0;
+  std::vector<ToleranceTerm> terms;
+  double symmetric_difference_mm3 = 0.0;  ///< volume of the voxels that only one of them holds
+  double symmetric_difference_tolerance_mm3 = 0.0;
+  std::optional<double> centroid_distance_mm;
+  std::optional<double> centroid_tolerance_mm;
+  std::optional<double> hausdorff_mm;    ///< largest, both directions, voxel faces to triangles and back
+  std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
+  Agreement agreement = Agreement::Pass;
+  std::vector<std::string> reasons;  ///< why not PASS
+  double milliseconds = 0.0;
+};
+
+/// What the bound is made of beyond what the two objects show themselves.
+struct BoundInputs {
+  std::string operation;
+  std::string voxel_lineage;
+  std::string mesh_lineage;
+  glm::dvec3 scan_spacing_mm{1.0};  ///< of the samples that the isosurface was made from
+  /// Area of flat cuts by direction of their normal (x, y, z): only what lies along the universe's planes.
+  glm::dvec3 flat_cut_mm2{0.0};
+};
+
+/// Compares an octree with a solid that has another lineage (tier Bounded). Derivation of the terms is in the
+/// source. An empty mesh has no faces.
+Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs);
+
+std::string to_string(Tier tier);
+std::string to_string(Agreement agreement);
+
+}  // namespace octotomy::verify

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "voxel/grey_octree.h"
+#include "voxel/octree.h"
+#include "voxel/region_mask.h"
+
+namespace octotomy::voxel {
+
+/// The points p with normal . p <= offset_mm; the normal, a unit LPS vector, points outward.
+struct HalfSpace {
+  glm::dvec3 normal{0, 0, 1};
+  double offset_mm = 0.0;
+};
+struct Sphere {
+  glm::dvec3 centre_mm{0.0};
+  double radius_mm = 1.0;
+};
+/// The samples of a grey octree from low to high, both included.
+struct Window {
+  GreyOctree grey;
+  double low = 0.0;
+  double high = 32767.0;
+};
+
+/// A Boolean expression of objects under rigid motions: pure data, cheap to copy. Nothing is evaluated until
+/// combine() or a renderer walks it.
+class Expression {
+ public:
+  enum class Kind { Leaf, And, Or, Minus, Xor, Not, Moved };
+  using Leaf = std::variant<Octree, Window, RegionMask, HalfSpace, Sphere, Box>;
+  struct Term {
+    Kind kind = Kind::Leaf;
+    Leaf leaf;
+    std::shared_ptr<const Term> left, right;
+    glm::dmat4 moved_from_still{1.0};  ///< Kind::Moved: LPS to LPS, rigid
+  };
+
+  /* implicit */ Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
+  /* implicit */ Expression(Window window) : Expression(Leaf(std::move(window))) {}
+  /* implicit */ Expression(RegionMask mask) : Expression(Leaf(std::move(mask))) {}
+  /* implicit */ Expression(HalfSpace half_space) : Expression(Leaf(half_space)) {}
+  /* implicit */ Expression(Sphere sphere) : Expression(Leaf(sphere)) {}
+  /* implicit */ Expression(Box box) : Expression(Leaf(box)) {}
+
+  friend Expression operator&(const Expression& a, const Expression& b) { return {Kind::And, a, b}; }
+  friend Expression operator|(const Expression& a, const Expression& b) { return {Kind::Or, a, b}; }
+  friend Expression operator-(const Expression& a, const Expression& b) { return {Kind::Minus, a, b}; }
+  friend Expression operator^(const Expression& a, const Expression& b) { return {Kind::Xor, a, b}; }
+  friend Expression operator~(const Expression& a);
+  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument where it is not
+  /// rigid.
+  friend Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
+
+  const Term& term() const { return *term_; }
+
+ private:
+  explicit Expression(Leaf leaf);
+  Expression(Kind kind, const Expression& a, const Expression& b);
+  std::shared_ptr<const Term> term_;
+};
+
+/// Rotation by degrees about an axis through a point, then a translation; LPS millimetres, right-handed.
+struct Motion {
+  glm::dvec3 translate_mm{0.0};
+  double degrees = 0.0;
+  glm::dvec3 axis{0, 0, 1};
+  glm::dvec3 about_mm{0.0};
+};
+/// Throws std::invalid_argument where a number is not finite or a rotation has no axis.
+glm::dmat4 moved_from_still(const Motion& motion);
+
+/// What a name in an expression's text stands for.
+using Lookup = std::function<Expression(std::string_view name)>;
+
+/// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, parentheses. `~` binds strongest, then `&`, then `-` and
+/// `^`, then `|`, each from the left. Throws std::invalid_argument naming position and what was expected;
+/// what `lookup` throws on an unknown name comes through with the name's position.
+Expression parse_expression(std::string_view text, const Lookup& lookup);
+
+/// The names that occur in an expression's text, each once, in order. Throws as parse_expression.
+std::vector<std::string> names_in(std::string_view text);
+
+}  // namespace octotomy::voxel
