@@ -1,2 +1,3 @@
 # cmake -C .cmake/release.cmake -B build/release -G Ninja : what users run.
 set(CMAKE_BUILD_TYPE Release CACHE STRING "")
+set(OCTOTOMY_WERROR ON CACHE BOOL "")

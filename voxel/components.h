@@ -14,7 +14,7 @@ struct Components {
   std::vector<std::uint64_t> voxel_counts;
   Octree largest;
 };
-/// Memory: four bytes per boundary leaf and homogeneous block, not per voxel of the universe.
+/// Memory: 20 bytes per run of voxels along x, which follows the boundary, not the volume.
 Components components(const Octree& octree);
 
 }  // namespace octotomy::voxel

@@ -4,9 +4,12 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "voxel/grey_octree.h"
 #include "voxel/octree.h"
@@ -38,17 +41,19 @@ class Expression {
   using Leaf = std::variant<Octree, Window, RegionMask, HalfSpace, Sphere, Box>;
   struct Term {
     Kind kind = Kind::Leaf;
-    Leaf leaf;
-    std::shared_ptr<const Term> left, right;
-    glm::dmat4 moved_from_still{1.0};  ///< Kind::Moved: LPS to LPS, rigid
+    std::optional<Leaf> leaf;                 ///< Kind::Leaf only
+    std::shared_ptr<const Term> left, right;  ///< right: binary kinds only
+    glm::dmat4 moved_from_still{1.0};         ///< Kind::Moved only: LPS to LPS, rigid
   };
 
-  /* implicit */ Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
-  /* implicit */ Expression(Window window) : Expression(Leaf(std::move(window))) {}
-  /* implicit */ Expression(RegionMask mask) : Expression(Leaf(std::move(mask))) {}
-  /* implicit */ Expression(HalfSpace half_space) : Expression(Leaf(half_space)) {}
-  /* implicit */ Expression(Sphere sphere) : Expression(Leaf(sphere)) {}
-  /* implicit */ Expression(Box box) : Expression(Leaf(box)) {}
+  Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
+  Expression(Window window) : Expression(Leaf(std::move(window))) {}
+  /// Throws std::invalid_argument as check(RegionMask).
+  Expression(RegionMask mask);
+  /// Throws std::invalid_argument where the normal is not of unit length.
+  Expression(const HalfSpace& half_space);
+  Expression(const Sphere& sphere) : Expression(Leaf(sphere)) {}
+  Expression(const Box& box) : Expression(Leaf(box)) {}
 
   friend Expression operator&(const Expression& a, const Expression& b) { return {Kind::And, a, b}; }
   friend Expression operator|(const Expression& a, const Expression& b) { return {Kind::Or, a, b}; }
@@ -63,29 +68,36 @@ class Expression {
 
  private:
   explicit Expression(Leaf leaf);
+  explicit Expression(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
   Expression(Kind kind, const Expression& a, const Expression& b);
   std::shared_ptr<const Term> term_;
 };
+Expression operator~(const Expression& a);
+Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
 
-/// Rotation by degrees about an axis through a point, then a translation; LPS millimetres, right-handed.
+/// Rotation by degrees about an axis through a point, right-handed, then a translation; LPS millimetres.
 struct Motion {
   glm::dvec3 translate_mm{0.0};
   double degrees = 0.0;
   glm::dvec3 axis{0, 0, 1};
   glm::dvec3 about_mm{0.0};
 };
-/// Throws std::invalid_argument where a number is not finite or a rotation has no axis.
+/// Throws std::invalid_argument where a number is not finite or the axis has no length.
 glm::dmat4 moved_from_still(const Motion& motion);
 
-/// What a name in an expression's text stands for.
-using Lookup = std::function<Expression(std::string_view name)>;
+/// What names in an expression's text stand for. Each throws std::invalid_argument for a name it does not
+/// know.
+struct Names {
+  std::function<Expression(std::string_view name)> object;
+  std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then refused
+};
 
-/// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, parentheses. `~` binds strongest, then `&`, then `-` and
-/// `^`, then `|`, each from the left. Throws std::invalid_argument naming position and what was expected;
-/// what `lookup` throws on an unknown name comes through with the name's position.
-Expression parse_expression(std::string_view text, const Lookup& lookup);
+/// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds
+/// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the position
+/// of what it did not expect and what it did; a name's own refusal comes through with the name's position.
+Expression parse_expression(std::string_view text, const Names& names);
 
-/// The names that occur in an expression's text, each once, in order. Throws as parse_expression.
+/// The objects named in an expression's text, each once, in order. Throws as parse_expression.
 std::vector<std::string> names_in(std::string_view text);
 
 }  // namespace octotomy::voxel

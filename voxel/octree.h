@@ -37,12 +37,6 @@ class Octree {
   Block root_;
 };
 
-/// The octree with the scene's voxels whose sample lies in low..high, both included. The scene's lattice
-/// must be the universe's lattice or begin at its first voxel: scene voxel i is universe voxel i.
-/// Throws std::invalid_argument where the scene does not fit. Parallel; same bits on any thread count.
-/// Cost: one pass over the samples.
-Octree octree_of_window(const Universe& universe, const struct Scene& scene, double low, double high);
-
 /// Nodes of one logical level as the thesis counts them: level 0 is the root, level n holds single voxels;
 /// children of homogeneous nodes do not exist.
 struct LevelCount {

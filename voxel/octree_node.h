@@ -31,6 +31,9 @@ inline constexpr std::uint64_t all_children = ~std::uint64_t{0};
 /// The 2 x 2 x 2 children of a logical octant at (0, 0, 0); shift by child_index(2x, 2y, 2z) for the others.
 inline constexpr std::uint64_t octant_children = 0x0000000000330033ULL;
 
+/// The children of a root block that lie inside a universe of 2^depth voxels a side; the others stay Empty.
+std::uint64_t universe_children(int depth);
+
 struct Node {
   mutable std::atomic<std::uint32_t> references{1};
   std::int32_t height = 2;

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/grey_octree.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+#include "voxel/octree_node.h"
+
+namespace octotomy::voxel {
+namespace {
+
+Scene ramp_scene(const Lattice& lattice, const glm::dvec4& plane) {
+  Scene scene;
+  scene.lattice = lattice;
+  std::vector<std::int16_t> samples;
+  for (int z = 0; z < lattice.dims.z; ++z)
+    for (int y = 0; y < lattice.dims.y; ++y)
+      for (int x = 0; x < lattice.dims.x; ++x)
+        samples.push_back(static_cast<std::int16_t>(
+            std::lround(glm::dot(plane, glm::dvec4(lattice.lps_mm(glm::dvec3(x, y, z)), 1.0)))));
+  scene.samples = samples;
+  return scene;
+}
+
+TEST(GreyOctree, KeepsEverySampleOfACoincidentScan) {
+  const Universe universe{6, glm::dmat4(1.0)};
+  const Scene scene = ramp_scene({{50, 33, 64}, universe.lps_from_voxel}, {3, -7, 11, 5});
+  const GreyOctree grey = grey_octree_of(universe, scene, -1024);
+  const auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
+  for (int z = 0; z < 64; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const bool inside = x < 50 && y < 33;
+        const std::size_t i = static_cast<std::size_t>(x) +
+                              50U * (static_cast<std::size_t>(y) + 33U * static_cast<std::size_t>(z));
+        ASSERT_EQ(grey.sample({x, y, z}), inside ? samples[i] : -1024) << x << ' ' << y << ' ' << z;
+      }
+  EXPECT_EQ(grey.sample({-1, 0, 0}), -1024);
+  EXPECT_EQ(grey.sample({64, 0, 0}), -1024);
+}
+
+TEST(GreyOctree, RangesHoldTheSamplesBelowThemTightly) {
+  const Universe universe{7, glm::dmat4(1.0)};
+  const GreyOctree grey =
+      grey_octree_of(universe, ramp_scene({{100, 128, 90}, universe.lps_from_voxel}, {3, -7, 11, 5}));
+  for (int height = 2; height <= root_height(7); ++height) {
+    const int edge = std::min(1 << (2 * height), 128);
+    for (int z = 0; z < 128 / edge; ++z)
+      for (int y = 0; y < 128 / edge; ++y)
+        for (int x = 0; x < 128 / edge; ++x) {
+          std::int16_t low = 32767;
+          std::int16_t high = -32768;
+          for (int k = 0; k < edge; ++k)
+            for (int j = 0; j < edge; ++j)
+              for (int i = 0; i < edge; ++i) {
+                const std::int16_t value = grey.sample(edge * glm::ivec3(x, y, z) + glm::ivec3(i, j, k));
+                low = std::min(low, value);
+                high = std::max(high, value);
+              }
+          ASSERT_EQ(grey.range(height, {x, y, z}).low, low);
+          ASSERT_EQ(grey.range(height, {x, y, z}).high, high);
+        }
+  }
+}
+
+TEST(GreyOctree, ResamplesALinearFieldExactlyFromAnyLattice) {
+  // A linear field survives trilinear interpolation; an oblique, anisotropic, mirrored lattice shows every
+  // mistake.
+  glm::dmat4 lps_from_voxel(0.0);
+  lps_from_voxel[0] = glm::dvec4(-0.8, 0.3, 0, 0);
+  lps_from_voxel[1] = glm::dvec4(0.2, 0.9, 0.1, 0);
+  lps_from_voxel[2] = glm::dvec4(0.1, -0.2, 2.0, 0);
+  lps_from_voxel[3] = glm::dvec4(30, -20, -25, 1);
+  const Lattice lattice{{60, 50, 26}, lps_from_voxel};
+  const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
+  const Scene scene = ramp_scene(lattice, {40, 60, -30, 500});
+  const GreyOctree grey = grey_octree_of(universe, scene, -3000);
+  int compared = 0;
+  for (int z = 0; z < 32; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) {
+        const glm::dvec3 p_mm = universe.lattice().lps_mm(glm::dvec3(x, y, z));
+        const glm::dvec3 p = lattice.voxel(p_mm);
+        const bool well_inside = glm::all(glm::greaterThan(p, glm::dvec3(0.0))) &&
+                                 glm::all(glm::lessThan(p, glm::dvec3(lattice.dims - 1)));
+        const bool outside = glm::any(glm::lessThan(p, glm::dvec3(-0.5))) ||
+                             glm::any(glm::greaterThan(p, glm::dvec3(lattice.dims) - 0.5));
+        if (outside) {
+          ASSERT_EQ(grey.sample({x, y, z}), -3000);
+        }
+        if (!well_inside) continue;
+        ++compared;
+        ASSERT_NEAR(grey.sample({x, y, z}), glm::dot(glm::dvec4(40, 60, -30, 500), glm::dvec4(p_mm, 1.0)),
+                    1.001);
+      }
+  EXPECT_GT(compared, 10000);
+}
+
+TEST(GreyOctree, RefusesFloatsBeyondSixteenBits) {
+  const Universe universe{4, glm::dmat4(1.0)};
+  Scene scene;
+  scene.lattice = universe.lattice();
+  std::vector<float> samples(4096, 0.0F);
+  samples[100] = 40000.0F;
+  scene.samples = samples;
+  EXPECT_THROW(grey_octree_of(universe, scene), std::invalid_argument);
+}
+
+TEST(GreyOctree, TakesLittleMoreMemoryThanItsSamples) {
+  const Universe universe{8, glm::dmat4(1.0)};
+  const GreyOctree grey =
+      grey_octree_of(universe, ramp_scene({{256, 256, 256}, universe.lps_from_voxel}, {1, 2, 3, 4}));
+  EXPECT_LT(static_cast<double>(grey.bytes_memory()), 1.15 * 2.0 * 256 * 256 * 256);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

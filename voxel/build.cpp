@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/build.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "voxel/window_bits.h"
+
+namespace octotomy::voxel {
+namespace {
+
+// A dense grid of blocks of one height, x fastest.
+struct BlockGrid {
+  glm::ivec3 dims{0};
+  std::vector<BlockRef> blocks;
+
+  std::size_t index(const glm::ivec3& block) const {
+    return static_cast<std::size_t>(block.x) +
+           static_cast<std::size_t>(dims.x) *
+               (static_cast<std::size_t>(block.y) +
+                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(block.z));
+  }
+};
+
+void for_each_block(const glm::ivec3& dims, const std::function<void(const glm::ivec3&)>& visit) {
+  tbb::parallel_for(0, dims.y * dims.z, [&](int row) {
+    for (int x = 0; x < dims.x; ++x) visit({x, row % dims.y, row / dims.y});
+  });
+}
+
+// Joins blocks of height h, 4 x 4 x 4 at a time, to blocks of height h + 1.
+BlockGrid parents(const BlockGrid& children, int parent_height) {
+  BlockGrid grid{(children.dims + 3) / 4, {}};
+  grid.blocks.resize(static_cast<std::size_t>(grid.dims.x) * static_cast<std::size_t>(grid.dims.y) *
+                     static_cast<std::size_t>(grid.dims.z));
+  for_each_block(grid.dims, [&](const glm::ivec3& parent) {
+    std::array<BlockRef, 64> present;
+    std::size_t count = 0;
+    std::uint64_t full = 0;
+    std::uint64_t undecided = 0;
+    for (int child = 0; child < 64; ++child) {
+      const glm::ivec3 at = parent * 4 + glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
+      if (glm::any(glm::greaterThanEqual(at, children.dims))) continue;
+      const BlockRef block = children.blocks[children.index(at)];
+      if (block.is_full()) full |= std::uint64_t{1} << child;
+      if (block.node() == nullptr) continue;
+      undecided |= std::uint64_t{1} << child;
+      present[count++] = block;
+    }
+    grid.blocks[grid.index(parent)] =
+        make_block(parent_height, full, undecided, {present.data(), count}).detach();
+  });
+  return grid;
+}
+
+// Blocks of height 2 cover dims * 16 voxels from the universe's first voxel on; all others are empty.
+Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims,
+                      const std::function<Block(const glm::ivec3&)>& make) {
+  BlockGrid grid{dims, {}};
+  grid.blocks.resize(static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
+                     static_cast<std::size_t>(dims.z));
+  for_each_block(dims,
+                 [&](const glm::ivec3& block) { grid.blocks[grid.index(block)] = make(block).detach(); });
+  for (int height = 3; height <= root_height(universe.depth); ++height) grid = parents(grid, height);
+  return {universe, Block::adopt(grid.blocks.front())};
+}
+
+// Words of the 64 leaves of a block from 16 rows of 16 rows of 16 bits: row(y, z) has bit x.
+template <typename Row>
+Block leaf_block_of_rows(const Row& row) {
+  std::array<std::uint64_t, 64> words{};
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 16; ++y) {
+      const std::uint64_t bits = row(y, z);
+      if (bits == 0) continue;
+      const int shift = child_index(0, y & 3, z & 3);
+      std::uint64_t* leaf = &words[static_cast<std::size_t>(child_index(0, y >> 2, z >> 2))];
+      for (int x = 0; x < 4; ++x) leaf[x] |= ((bits >> (4 * x)) & 15) << shift;
+    }
+  return make_leaf_block(0, all_children, words.data());
+}
+
+void check_fits(const Universe& universe, const Scene& scene) {
+  check(scene);
+  if (scene.lattice.lps_from_voxel != universe.lps_from_voxel)
+    throw std::invalid_argument(scene.source +
+                                ": the scan's voxels are not the universe's: resample it first");
+  if (glm::any(glm::greaterThan(scene.lattice.dims, glm::ivec3(universe.side()))))
+    throw std::invalid_argument(scene.source + ": the scan is larger than the universe of " +
+                                std::to_string(universe.side()) + " voxels a side");
+}
+
+}  // namespace
+
+Octree octree_of_blocks(const Universe& universe, const std::function<Block(const glm::ivec3& block)>& make) {
+  return octree_of_grid(universe, glm::ivec3((universe.side() + 15) / 16), make);
+}
+
+Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high) {
+  check_fits(universe, scene);
+  const glm::ivec3 dims = scene.lattice.dims;
+  const auto row_start = [&](int y, int z) {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *
+           static_cast<std::size_t>(dims.x);
+  };
+  const auto build = [&](const auto& row_bits) {
+    return octree_of_grid(universe, (dims + 15) / 16, [&](const glm::ivec3& block) {
+      const glm::ivec3 origin = block * 16;
+      const int width = std::min(16, dims.x - origin.x);
+      return leaf_block_of_rows([&](int y, int z) -> std::uint64_t {
+        if (origin.y + y >= dims.y || origin.z + z >= dims.z) return 0;
+        return row_bits(row_start(origin.y + y, origin.z + z) + static_cast<std::size_t>(origin.x), width);
+      });
+    });
+  };
+  if (const auto* shorts = std::get_if<std::vector<std::int16_t>>(&scene.samples)) {
+    const std::optional<Window16> window = window16(low, high);
+    if (!window) return Octree::empty(universe);
+    return build([&](std::size_t start, int width) -> std::uint64_t {
+      if (width == 16) return window_bits16(shorts->data() + start, *window);
+      std::uint64_t bits = 0;
+      for (int x = 0; x < width; ++x) {
+        const std::int16_t value = (*shorts)[start + static_cast<std::size_t>(x)];
+        bits |= std::uint64_t{value >= window->low && value <= window->high} << x;
+      }
+      return bits;
+    });
+  }
+  const auto& floats = std::get<std::vector<float>>(scene.samples);
+  return build([&](std::size_t start, int width) {
+    std::uint64_t bits = 0;
+    for (int x = 0; x < width; ++x) {
+      const double value = floats[start + static_cast<std::size_t>(x)];
+      bits |= std::uint64_t{value >= low && value <= high} << x;
+    }
+    return bits;
+  });
+}
+
+}  // namespace octotomy::voxel

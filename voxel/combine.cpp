@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/combine.h"
+
+#include <array>
+#include <bit>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+#include "voxel/operand.h"
+#include "voxel/program.h"
+
+// One walk over the target's blocks, all operands at once (thesis 7.2 for three operands, here for any
+// number). At a block:
+//   1 every operand says which of the 64 children are Full, and which are not Empty;
+//   2 the expression is run over these covers in three-valued logic, 64 children at a time: most are decided;
+//   3 of an undecided child, operands that are Full or Empty there drop out of the expression. Where one
+//   octree
+//     alone is left, its node is the answer and is shared;
+//   4 otherwise the walk goes into the child, or, at the leaves, runs the expression over words of 64 voxels.
+// Children are joined in ascending order whatever thread made them, so the result does not depend on threads.
+
+namespace octotomy::voxel {
+namespace {
+
+// Blocks of this height and up, 256 voxels a side, are shared out to threads child by child: a child of 64
+// voxels a side is some ten to a hundred microseconds of work where a boundary passes, far above the cost of
+// a task.
+constexpr int parallel_height = 4;
+
+// An operand within one block.
+struct Operation {
+  enum class State : std::uint8_t { Empty, Full, Open };
+  State state = State::Empty;
+  const Node* node = nullptr;  ///< of an aligned octree while Open
+};
+
+// What an expression comes down to when some operands are known.
+struct Reduced {
+  enum class Form : std::uint8_t { Empty, Full, Operand, Complement, Complex };
+  Form form = Form::Empty;
+  std::uint32_t operand = 0;
+
+  friend Reduced operator~(Reduced a) {
+    switch (a.form) {
+      case Form::Empty:
+        return {Form::Full, 0};
+      case Form::Full:
+        return {Form::Empty, 0};
+      case Form::Operand:
+        return {Form::Complement, a.operand};
+      case Form::Complement:
+        return {Form::Operand, a.operand};
+      case Form::Complex:
+        break;
+    }
+    return a;
+  }
+  friend Reduced operator&(Reduced a, Reduced b) {
+    if (a.form == Form::Empty || b.form == Form::Full) return a;
+    if (b.form == Form::Empty || a.form == Form::Full) return b;
+    if (a.form != Form::Complex && a.form == b.form && a.operand == b.operand) return a;
+    return {Form::Complex, 0};
+  }
+  friend Reduced operator|(Reduced a, Reduced b) { return ~(~a & ~b); }
+  friend Reduced operator^(Reduced a, Reduced b) {
+    if (a.form == Form::Empty) return b;
+    if (b.form == Form::Empty) return a;
+    if (a.form == Form::Full) return ~b;
+    if (b.form == Form::Full) return ~a;
+    return {Form::Complex, 0};
+  }
+};
+
+class Combiner {
+ public:
+  Combiner(const Universe& universe, const Program& program) : program_(program) {
+    for (const Program::Operand& operand : program.operands)
+      operands_.push_back(operand_of(operand, universe));
+    universe_children_ = octotomy::voxel::universe_children(universe.depth);
+  }
+
+  Block evaluate_root(int root_height) const {
+    std::vector<Operation> operations(operands_.size());
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
+      operations[i].state = Operation::State::Open;
+      if (const auto* aligned = std::get_if<AlignedOctreeOperand>(&operands_[i]))
+        operations[i] = {state_of(aligned->root), aligned->root.node()};
+    }
+    return evaluate(root_height, glm::ivec3(0), operations.data(), universe_children_);
+  }
+
+ private:
+  static Operation::State state_of(BlockRef block) {
+    if (block.is_empty()) return Operation::State::Empty;
+    return block.is_full() ? Operation::State::Full : Operation::State::Open;
+  }
+
+  // The block of the result at `origin`; only the children of `allowed` are looked at, the others are Empty.
+  Block evaluate(int height, const glm::ivec3& origin, const Operation* operations,
+                 std::uint64_t allowed) const {
+    Scratch scratch(*this);
+    const TargetBlock block{origin, 1 << (2 * height - 2)};
+    for (std::size_t i = 0; i < operands_.size(); ++i) scratch.covers[i] = cover(i, operations[i], block);
+    Cover result =
+        program_.run<Cover>([&](std::uint32_t i) { return scratch.covers[i]; }, scratch.cover_stack.data());
+    result = result & Cover{allowed, allowed};
+    return height == 2 ? evaluate_leaves(origin, operations, scratch, result)
+                       : evaluate_children(height, origin, operations, scratch, result);
+  }
+
+  struct Scratch {
+    explicit Scratch(const Combiner& combiner)
+        : covers(combiner.operands_.size()),
+          cover_stack(combiner.program_.stack_size),
+          reduced_stack(combiner.program_.stack_size),
+          word_stack(combiner.program_.stack_size) {}
+    std::vector<Cover> covers;
+    std::vector<Cover> cover_stack;
+    std::vector<Reduced> reduced_stack;
+    std::vector<std::uint64_t> word_stack;
+  };
+
+  Cover cover(std::size_t i, const Operation& operation, const TargetBlock& block) const {
+    if (operation.state == Operation::State::Empty) return {};
+    if (operation.state == Operation::State::Full) return {all_children, all_children};
+    if (operation.node != nullptr)
+      return {operation.node->full, operation.node->full | operation.node->partial};
+    return std::visit(
+        [&](const auto& operand) -> Cover {
+          if constexpr (requires { operand.cover(block); })
+            return operand.cover(block);
+          else
+            return {};
+        },
+        operands_[i]);
+  }
+
+  Block evaluate_leaves(const glm::ivec3& origin, const Operation* operations, Scratch& scratch,
+                        Cover result) const {
+    std::array<std::uint64_t, 64> words;
+    std::size_t count = 0;
+    for (std::uint64_t rest = result.undecided(); rest != 0; rest &= rest - 1) {
+      const int child = std::countr_zero(rest);
+      const glm::ivec3 leaf_origin = origin + 4 * glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
+      const auto word = [&](std::uint32_t i) -> std::uint64_t {
+        if (((scratch.covers[i].some >> child) & 1) == 0) return 0;
+        if ((scratch.covers[i].full >> child) & 1) return all_children;
+        if (const Node* node = operations[i].node) return node->words()[node->rank(child)];
+        return leaf(i, leaf_origin);
+      };
+      words[count++] = program_.run<std::uint64_t>(word, scratch.word_stack.data());
+    }
+    return make_leaf_block(result.full, result.undecided(), words.data());
+  }
+
+  std::uint64_t leaf(std::uint32_t i, const glm::ivec3& origin) const {
+    return std::visit(
+        [&](const auto& operand) -> std::uint64_t {
+          if constexpr (requires { operand.leaf(origin); })
+            return operand.leaf(origin);
+          else
+            return 0;
+        },
+        operands_[i]);
+  }
+
+  Block evaluate_children(int height, const glm::ivec3& origin, const Operation* operations, Scratch& scratch,
+                          Cover result) const {
+    std::array<BlockRef, 64> children;
+    const std::uint64_t undecided = result.undecided();
+    const auto count = static_cast<std::size_t>(std::popcount(undecided));
+    std::array<int, 64> numbers;
+    std::size_t next = 0;
+    for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1)
+      numbers[next++] = std::countr_zero(rest);
+
+    const auto child_block = [&](std::size_t slot, std::vector<Operation>& inner,
+                                 std::vector<Reduced>& stack) {
+      const int child = numbers[slot];
+      const Reduced reduced = reduce(child, operations, scratch.covers, inner, stack);
+      if (reduced.form == Reduced::Form::Operand && inner[reduced.operand].node != nullptr) {
+        children[slot] = Block::share(BlockRef::of(inner[reduced.operand].node)).detach();
+        return;
+      }
+      const int child_side = 1 << (2 * height - 2);
+      const glm::ivec3 place(child & 3, (child >> 2) & 3, child >> 4);
+      children[slot] = evaluate(height - 1, origin + place * child_side, inner.data(), all_children).detach();
+    };
+    if (height >= parallel_height) {
+      tbb::parallel_for(std::size_t{0}, count, [&](std::size_t slot) {
+        std::vector<Operation> inner(operands_.size());
+        std::vector<Reduced> stack(program_.stack_size);
+        child_block(slot, inner, stack);
+      });
+    } else {
+      std::vector<Operation> inner(operands_.size());
+      for (std::size_t slot = 0; slot < count; ++slot) child_block(slot, inner, scratch.reduced_stack);
+    }
+    return make_block(height, result.full, undecided, {children.data(), count});
+  }
+
+  // What the expression comes down to in a child, and every operand there.
+  Reduced reduce(int child, const Operation* operations, const std::vector<Cover>& covers,
+                 std::vector<Operation>& inner, std::vector<Reduced>& stack) const {
+    for (std::size_t i = 0; i < inner.size(); ++i) {
+      inner[i] = {Operation::State::Open, nullptr};
+      if (((covers[i].some >> child) & 1) == 0)
+        inner[i].state = Operation::State::Empty;
+      else if ((covers[i].full >> child) & 1)
+        inner[i].state = Operation::State::Full;
+      else if (const Node* node = operations[i].node)
+        inner[i].node = node->nodes()[node->rank(child)];
+    }
+    return program_.run<Reduced>(
+        [&](std::uint32_t i) -> Reduced {
+          switch (inner[i].state) {
+            case Operation::State::Empty:
+              return {Reduced::Form::Empty, 0};
+            case Operation::State::Full:
+              return {Reduced::Form::Full, 0};
+            case Operation::State::Open:
+              break;
+          }
+          return {Reduced::Form::Operand, i};
+        },
+        stack.data());
+  }
+
+  const Program& program_;
+  std::uint64_t universe_children_ = all_children;
+  std::vector<Operand> operands_;
+};
+
+}  // namespace
+
+Octree combine(const Universe& universe, const Expression& expression) {
+  const Program program = program_of(expression);
+  return {universe, Combiner(universe, program).evaluate_root(root_height(universe.depth))};
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/measure.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "voxel/slice_bits.h"
+
+// Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of how
+// often lines of unit density meet it. Here 13 directions, those to a voxel's 26 neighbours, stand for all;
+// along each the lines run through the lattice's points, so that crossings are pairs of neighbours of which
+// one is inside, and the density of lines is the voxel's volume by the step's length. Source: Ohser and
+// Muecklich, Statistical Analysis of Microstructures, 2000, section 4.2; weights as in Lang, Ohser and
+// Hilfer, J. Microscopy 203, 2001. Departure: a direction's weight is the share of the sphere nearest to it,
+// found for the lattice's own spacing by counting a fine grid of directions, so that anisotropic voxels are
+// measured without bias too.
+
+namespace octotomy::voxel {
+namespace {
+
+constexpr std::array<std::array<int, 3>, 13> directions{{{1, 0, 0},
+                                                         {0, 1, 0},
+                                                         {0, 0, 1},
+                                                         {1, 1, 0},
+                                                         {-1, 1, 0},
+                                                         {1, 0, 1},
+                                                         {-1, 0, 1},
+                                                         {0, 1, 1},
+                                                         {0, -1, 1},
+                                                         {1, 1, 1},
+                                                         {-1, 1, 1},
+                                                         {1, -1, 1},
+                                                         {-1, -1, 1}}};
+
+glm::dvec3 step_mm(const Lattice& lattice, const std::array<int, 3>& direction) {
+  return glm::dmat3(lattice.lps_from_voxel) * glm::dvec3(direction[0], direction[1], direction[2]);
+}
+
+// The share of all directions that lie nearest to each of the 13, from a grid of the half sphere in equal
+// areas. With 400 x 400 directions the largest error is the boundary of a cell by the grid's fineness: below
+// 0.1 % of a weight.
+std::array<double, 13> shares(const Lattice& lattice) {
+  std::array<glm::dvec3, 13> unit;
+  for (std::size_t d = 0; d < unit.size(); ++d) unit[d] = glm::normalize(step_mm(lattice, directions[d]));
+  std::array<double, 13> share{};
+  constexpr int fineness = 400;
+  for (int i = 0; i < fineness; ++i)
+    for (int j = 0; j < fineness; ++j) {
+      const double z = (i + 0.5) / fineness;
+      const double turn = 2.0 * std::numbers::pi * (j + 0.5) / fineness;
+      const double level = std::sqrt(1.0 - z * z);
+      const glm::dvec3 way(level * std::cos(turn), level * std::sin(turn), z);
+      std::size_t nearest = 0;
+      double most = -1.0;
+      for (std::size_t d = 0; d < unit.size(); ++d)
+        if (const double along = std::abs(glm::dot(way, unit[d])); along > most) {
+          most = along;
+          nearest = d;
+        }
+      share[nearest] += 1.0 / (static_cast<double>(fineness) * fineness);
+    }
+  return share;
+}
+
+// Word `i` of a row whose voxels are shifted: bit x is voxel x + shift of the row, zero beyond its ends.
+std::uint64_t shifted_word(const std::uint64_t* row, int words, int i, int shift) {
+  if (row == nullptr) return 0;
+  if (shift == 0) return row[i];
+  if (shift > 0) return (row[i] >> 1) | (i + 1 < words ? row[i + 1] << 63 : 0);
+  return (row[i] << 1) | (i > 0 ? row[i - 1] >> 63 : 0);
+}
+
+// Sums over a walk from slice to slice: first and second moments by axis and boundary pairs by direction.
+class Accumulator {
+ public:
+  explicit Accumulator(const Octree& octree) : octree_(octree), side_(octree.universe().side()) {}
+
+  void run() {
+    SliceBits below;
+    SliceBits slice;
+    below.side = side_;
+    below.words_per_row = (side_ + 63) / 64;
+    below.words.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(below.words_per_row), 0);
+    // One slice more than there are: the last one's upper neighbours are outside.
+    for (int z = 0; z <= side_; ++z) {
+      if (z < side_)
+        read_slice(octree_, z, slice);
+      else
+        std::fill(slice.words.begin(), slice.words.end(), 0);
+      add_slice(below, slice, z);
+      std::swap(below, slice);
+    }
+  }
+
+  // Pairs of neighbours along each direction of which just one is inside, both ends of the universe included.
+  std::array<std::uint64_t, 13> crossings{};
+  glm::dvec3 first_moment{0.0};  ///< sum of voxel indices: exact below 2^53
+  glm::ivec3 low{std::numeric_limits<int>::max()};
+  glm::ivec3 high{-1};
+
+ private:
+  // Counts the pairs (v, v - direction) whose voxel v lies in slice z. Rows one beyond each end of the slice
+  // take part as outside, where their partner may be inside.
+  void add_slice(const SliceBits& below, const SliceBits& slice, int z) {
+    const auto row_of = [&](const SliceBits& bits, int y) {
+      return y < 0 || y >= side_ ? nullptr : bits.row(y);
+    };
+    for (int y = -1; y <= side_; ++y) {
+      const std::uint64_t* here = row_of(slice, y);
+      if (here != nullptr) add_moments(here, slice.words_per_row, y, z);
+      for (std::size_t d = 0; d < directions.size(); ++d) {
+        const auto [dx, dy, dz] = directions[d];
+        count_pairs(here, row_of(dz == 1 ? below : slice, y - dy), slice.words_per_row, dx, d);
+      }
+    }
+  }
+
+  // Pairs of voxel x of `here` with voxel x - dx of `there`; either row may be missing.
+  void count_pairs(const std::uint64_t* here, const std::uint64_t* there, int words, int dx, std::size_t d) {
+    if (here == nullptr && there == nullptr) return;
+    std::uint64_t pairs = 0;
+    for (int i = 0; i < words; ++i) {
+      const std::uint64_t own = here == nullptr ? 0 : here[i];
+      pairs += static_cast<std::uint64_t>(std::popcount(own ^ shifted_word(there, words, i, -dx)));
+    }
+    // A voxel at the end of the row pairs with one outside. Shifted, it stays in its word unless the row ends
+    // there.
+    if (there != nullptr && dx == 1 && side_ % 64 == 0) pairs += there[words - 1] >> 63;
+    if (there != nullptr && dx == -1) pairs += there[0] & 1;
+    crossings[d] += pairs;
+  }
+
+  void add_moments(const std::uint64_t* row, int words, int y, int z) {
+    double count = 0.0;
+    double sum_x = 0.0;
+    for (int i = 0; i < words; ++i) {
+      std::uint64_t word = row[i];
+      if (word == 0) continue;
+      low.x = std::min(low.x, 64 * i + std::countr_zero(word));
+      high.x = std::max(high.x, 64 * i + 63 - std::countl_zero(word));
+      const int bits = std::popcount(word);
+      count += bits;
+      sum_x += 64.0 * i * bits + sum_of_places(word);
+    }
+    if (count == 0.0) return;
+    low = {low.x, std::min(low.y, y), std::min(low.z, z)};
+    high = {high.x, std::max(high.y, y), std::max(high.z, z)};
+    first_moment += glm::dvec3(sum_x, count * y, count * z);
+  }
+
+  // Sum of the numbers of the bits that are set: bit k of a place counts 2^k for every set bit whose place
+  // has it.
+  static double sum_of_places(std::uint64_t word) {
+    constexpr std::array<std::uint64_t, 6> places{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
+                                                  0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
+    int sum = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) sum += std::popcount(word & places[k]) << k;
+    return sum;
+  }
+
+  const Octree& octree_;
+  int side_;
+};
+
+}  // namespace
+
+Measures measure(const Octree& octree) {
+  const Lattice lattice = octree.universe().lattice();
+  Measures measures;
+  measures.voxel_count = octree.voxel_count();
+  measures.volume_mm3 = static_cast<double>(measures.voxel_count) * lattice.voxel_mm3();
+  if (measures.voxel_count == 0) return measures;
+
+  Accumulator sums(octree);
+  sums.run();
+  measures.centroid_mm = lattice.lps_mm(sums.first_moment / static_cast<double>(measures.voxel_count));
+  Lattice part = lattice;
+  part.dims = sums.high - sums.low + 1;
+  part.lps_from_voxel[3] = glm::dvec4(lattice.lps_mm(glm::dvec3(sums.low)), 1.0);
+  measures.extents = bounds(part);
+
+  const std::array<double, 13> share = shares(lattice);
+  for (std::size_t d = 0; d < directions.size(); ++d) {
+    const double line_mm2 = lattice.voxel_mm3() / glm::length(step_mm(lattice, directions[d]));
+    // Half of the pairs are entries; by Cauchy's formula the area is four times the mean of entries times
+    // line area.
+    measures.area_crofton13_mm2 += 4.0 * share[d] * 0.5 * static_cast<double>(sums.crossings[d]) * line_mm2;
+    if (d < 3) measures.exposed_mm2[static_cast<int>(d)] = static_cast<double>(sums.crossings[d]) * line_mm2;
+  }
+  return measures;
+}
+
+}  // namespace octotomy::voxel
