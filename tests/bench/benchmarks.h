@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <benchmark/benchmark.h>
+#include <string>
+
+namespace octotomy::bench {
+
+/// Adds a benchmark. Read its wall-clock time, `real_time`: the processor time is that of one of the threads.
+template <typename Run>
+void add(const std::string& name, const Run& run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMicrosecond);
+}
+
+void register_boolean();
+void register_build();
+void register_measure();
+void register_move();
+void register_openvdb();  ///< peers; defined where OpenVDB is installed
+
+}  // namespace octotomy::bench

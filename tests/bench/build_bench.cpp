@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+#include "tests/bench/benchmarks.h"
+#include "tests/bench/subjects.h"
+#include "voxel/build.h"
+
+namespace octotomy::bench {
+namespace {
+
+// The head's samples on the universe's whole lattice, so that a pass over them is a pass over side^3 samples.
+const voxel::Scene& whole_scene(int side) {
+  static const voxel::Scene scene = [side] {
+    const voxel::GreyOctree grey = grey_skull(side);
+    voxel::Scene whole;
+    whole.lattice = universe(side).lattice();
+    std::vector<std::int16_t> samples;
+    samples.reserve(whole.lattice.sample_count());
+    for (int z = 0; z < side; ++z)
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) samples.push_back(grey.sample({x, y, z}));
+    whole.samples = std::move(samples);
+    return whole;
+  }();
+  return scene;
+}
+
+}  // namespace
+
+void register_build() {
+  add("build/binary/512", [](benchmark::State& state) {
+    const voxel::Scene& scene = whole_scene(512);
+    for (auto _ : state)
+      benchmark::DoNotOptimize(voxel::octree_of_window(universe(512), scene, 300, 32767).root());
+  });
+  add("build/grey/512", [](benchmark::State& state) {
+    const voxel::Scene& scene = whole_scene(512);
+    for (auto _ : state) benchmark::DoNotOptimize(voxel::grey_octree_of(universe(512), scene).background());
+  });
+}
+
+void register_measure() {
+  add("measure/volume/512", [](benchmark::State& state) {
+    const voxel::Octree object = skull(512);
+    for (auto _ : state) benchmark::DoNotOptimize(object.voxel_count());
+  });
+}
+
+}  // namespace octotomy::bench

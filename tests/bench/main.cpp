@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// octotomy-bench: every claim of speed is a ratio of two names of one run. `--help` is Google Benchmark's.
+#include <benchmark/benchmark.h>
+#include <cstring>
+#include <vector>
+
+#include "tests/bench/benchmarks.h"
+
+namespace {
+
+// What memory can do here and now: 256 MiB copied, counted as bytes read.
+void run_memcpy(benchmark::State& state) {
+  const std::vector<char> source(std::size_t{256} << 20, 1);
+  std::vector<char> target(source.size());
+  for (auto _ : state) {
+    std::memcpy(target.data(), source.data(), source.size());
+    benchmark::ClobberMemory();
+  }
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(source.size()));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  octotomy::bench::add("reference/memcpy", run_memcpy);
+  octotomy::bench::register_boolean();
+  octotomy::bench::register_build();
+  octotomy::bench::register_measure();
+  octotomy::bench::register_move();
+#ifdef OCTOTOMY_HAS_OPENVDB
+  octotomy::bench::register_openvdb();
+#endif
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "voxel/expression.h"
+#include "voxel/grey_octree.h"
+#include "voxel/octree.h"
+#include "voxel/scene.h"
+
+// What is measured: objects that fill a universe in the same way at every size, so that sizes can be
+// compared.
+
+namespace octotomy::bench {
+
+/// A universe of `side` voxels a side about the head phantom.
+voxel::Universe universe(int side);
+
+/// A ball of a quarter of the universe's side as radius, off its middle by a share of the side along x.
+voxel::Expression sphere(int side, double offset);
+/// The ball cut by a chequerboard of cells of an eighth of the side (thesis 3.3.3).
+voxel::Octree chequered_sphere(int side);
+
+/// The head phantom scanned on the universe's own lattice, made once a side.
+const voxel::Scene& head(int side);
+/// Its bone: the window from 300 HU.
+voxel::Octree skull(int side);
+voxel::GreyOctree grey_skull(int side);
+/// A box about the face, and an oblique cut through the skull.
+voxel::Expression face_box(int side);
+voxel::Expression oblique_half_space(int side);
+
+}  // namespace octotomy::bench
