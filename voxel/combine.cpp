@@ -113,11 +113,13 @@ class Combiner {
         : covers(combiner.operands_.size()),
           cover_stack(combiner.program_.stack_size),
           reduced_stack(combiner.program_.stack_size),
-          word_stack(combiner.program_.stack_size) {}
+          word_stack(combiner.program_.stack_size),
+          words(combiner.operands_.size()) {}
     std::vector<Cover> covers;
     std::vector<Cover> cover_stack;
     std::vector<Reduced> reduced_stack;
     std::vector<std::uint64_t> word_stack;
+    std::vector<std::array<std::uint64_t, 64>> words;  ///< of the leaves of a block of height 2
   };
 
   Cover cover(std::size_t i, const Operation& operation, const TargetBlock& block) const {
@@ -137,29 +139,41 @@ class Combiner {
 
   Block evaluate_leaves(const glm::ivec3& origin, const Operation* operations, Scratch& scratch,
                         Cover result) const {
+    const std::uint64_t undecided = result.undecided();
+    for (std::size_t i = 0; i < operands_.size(); ++i)
+      fetch_words(i, operations[i], origin, undecided, scratch);
     std::array<std::uint64_t, 64> words;
     std::size_t count = 0;
-    for (std::uint64_t rest = result.undecided(); rest != 0; rest &= rest - 1) {
-      const int child = std::countr_zero(rest);
-      const glm::ivec3 leaf_origin = origin + 4 * glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
-      const auto word = [&](std::uint32_t i) -> std::uint64_t {
-        if (((scratch.covers[i].some >> child) & 1) == 0) return 0;
-        if ((scratch.covers[i].full >> child) & 1) return all_children;
-        if (const Node* node = operations[i].node) return node->words()[node->rank(child)];
-        return leaf(i, leaf_origin);
-      };
-      words[count++] = program_.run<std::uint64_t>(word, scratch.word_stack.data());
+    for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1) {
+      const auto child = static_cast<std::size_t>(std::countr_zero(rest));
+      words[count++] = program_.run<std::uint64_t>([&](std::uint32_t i) { return scratch.words[i][child]; },
+                                                   scratch.word_stack.data());
     }
-    return make_leaf_block(result.full, result.undecided(), words.data());
+    return make_leaf_block(result.full, undecided, words.data());
   }
 
-  std::uint64_t leaf(std::uint32_t i, const glm::ivec3& origin) const {
-    return std::visit(
-        [&](const auto& operand) -> std::uint64_t {
-          if constexpr (requires { operand.leaf(origin); })
-            return operand.leaf(origin);
-          else
-            return 0;
+  // Words of an operand for the wanted leaves of a block.
+  void fetch_words(std::size_t i, const Operation& operation, const glm::ivec3& origin, std::uint64_t wanted,
+                   Scratch& scratch) const {
+    const Cover& cover = scratch.covers[i];
+    std::array<std::uint64_t, 64>& words = scratch.words[i];
+    const std::uint64_t open = wanted & cover.undecided();
+    for (std::uint64_t rest = wanted & ~open; rest != 0; rest &= rest - 1) {
+      const int child = std::countr_zero(rest);
+      words[static_cast<std::size_t>(child)] = (cover.full >> child) & 1 ? all_children : 0;
+    }
+    if (open == 0) return;
+    if (const Node* node = operation.node) {
+      for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
+        const int child = std::countr_zero(rest);
+        words[static_cast<std::size_t>(child)] = node->words()[node->rank(child)];
+      }
+      return;
+    }
+    std::visit(
+        [&](const auto& operand) {
+          if constexpr (requires { operand.words(WantedLeaves{}); })
+            operand.words(WantedLeaves{origin, open, words.data()});
         },
         operands_[i]);
   }

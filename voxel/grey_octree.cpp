@@ -2,11 +2,14 @@
 #include "voxel/grey_octree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <tbb/parallel_for.h>
+#include <type_traits>
+#include <vector>
 
 #include "voxel/octree_node.h"
 
@@ -21,53 +24,119 @@ void widen(MinMax& range, const MinMax& by) {
   range.high = std::max(range.high, by.high);
 }
 
-// Reads the scene along the universe's rows. Samples are asked for voxel by voxel in ascending x.
+std::int16_t rounded(double value, const Scene& scene) {
+  const double nearest = std::floor(value + 0.5);
+  if (!(nearest >= std::numeric_limits<std::int16_t>::min() &&
+        nearest <= std::numeric_limits<std::int16_t>::max()))
+    throw std::invalid_argument(scene.source + ": the sample " + std::to_string(value) +
+                                " does not fit into 16 bits: rescale the scan first");
+  return static_cast<std::int16_t>(nearest);
+}
+
+constexpr int row_length = 16;
+using Row = std::array<std::int16_t, row_length>;
+
+// Reads the scan along the universe's rows, 16 voxels at a time.
 template <typename Sample>
 class Resampler {
  public:
-  Resampler(const Universe& universe, const Lattice& lattice, const Sample* samples)
-      : samples_(samples),
-        dims_(lattice.dims),
-        scan_from_universe_(glm::inverse(lattice.lps_from_voxel) * universe.lps_from_voxel),
-        coincident_(lattice.lps_from_voxel == universe.lps_from_voxel) {}
+  Resampler(const Universe& universe, const Scene& scene, const Sample* samples, std::int16_t background)
+      : scene_(scene),
+        samples_(samples),
+        dims_(scene.lattice.dims),
+        background_(background),
+        scan_from_universe_(glm::inverse(scene.lattice.lps_from_voxel) * universe.lps_from_voxel),
+        coincident_(scene.lattice.lps_from_voxel == universe.lps_from_voxel) {
+    if (!coincident_ && is_diagonal()) {
+      for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < std::max(universe.side(), row_length); ++i) {
+          glm::dvec3 voxel(0.0);
+          voxel[axis] = i;
+          along_[static_cast<std::size_t>(axis)].push_back(place(axis, position(voxel)[axis]));
+        }
+    }
+  }
 
-  // The value at a universe voxel, or `background` where its centre is outside the scan.
-  double value(const glm::ivec3& voxel, double background) const {
-    if (coincident_) return inside(voxel) ? static_cast<double>(at(voxel)) : background;
-    const glm::dvec3 p = glm::dvec3(scan_from_universe_ * glm::dvec4(glm::dvec3(voxel), 1.0));
-    for (int axis = 0; axis < 3; ++axis)
-      if (!(p[axis] >= -0.5 && p[axis] <= dims_[axis] - 0.5)) return background;
-    return interpolate(p);
+  void read(const glm::ivec3& first, Row& row) const {
+    if (coincident_) return copy(first, row);
+    if (!along_[0].empty()) return read_aligned(first, row);
+    for (int i = 0; i < row_length; ++i) {
+      const glm::dvec3 p = position(glm::dvec3(first + glm::ivec3(i, 0, 0)));
+      row[static_cast<std::size_t>(i)] = value(place(0, p.x), place(1, p.y), place(2, p.z));
+    }
   }
 
  private:
-  bool inside(const glm::ivec3& voxel) const {
-    return voxel.x >= 0 && voxel.y >= 0 && voxel.z >= 0 && voxel.x < dims_.x && voxel.y < dims_.y &&
-           voxel.z < dims_.z;
+  // Where a position falls along one axis: between two samples, or outside.
+  struct Place {
+    int low = 0;
+    int high = 0;
+    double share = 0.0;  ///< of the higher one
+    bool inside = false;
+  };
+
+  glm::dvec3 position(const glm::dvec3& voxel) const {
+    return glm::dvec3(scan_from_universe_ * glm::dvec4(voxel, 1.0));
   }
-  Sample at(const glm::ivec3& i) const {
-    const auto row =
-        static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims_.y) + static_cast<std::size_t>(i.y);
-    return samples_[row * static_cast<std::size_t>(dims_.x) + static_cast<std::size_t>(i.x)];
+  bool is_diagonal() const {
+    for (int column = 0; column < 3; ++column)
+      for (int row = 0; row < 3; ++row)
+        if (column != row && scan_from_universe_[column][row] != 0.0) return false;
+    return true;
   }
-  double interpolate(const glm::dvec3& position) const {
-    const glm::dvec3 p = glm::clamp(position, glm::dvec3(0.0), glm::dvec3(dims_ - 1));
-    const glm::ivec3 low(p);
-    const glm::ivec3 high = glm::min(low + 1, dims_ - 1);
-    const glm::dvec3 t = p - glm::dvec3(low);
-    const auto along_x = [&](int y, int z) {
-      return static_cast<double>(at({low.x, y, z})) * (1.0 - t.x) +
-             static_cast<double>(at({high.x, y, z})) * t.x;
-    };
-    const double below = along_x(low.y, low.z) * (1.0 - t.y) + along_x(high.y, low.z) * t.y;
-    const double above = along_x(low.y, high.z) * (1.0 - t.y) + along_x(high.y, high.z) * t.y;
-    return below * (1.0 - t.z) + above * t.z;
+  Place place(int axis, double p) const {
+    Place result;
+    result.inside = p >= -0.5 && p <= dims_[axis] - 0.5;
+    if (!result.inside) return result;
+    const double clamped = std::clamp(p, 0.0, dims_[axis] - 1.0);
+    result.low = static_cast<int>(clamped);
+    result.high = std::min(result.low + 1, dims_[axis] - 1);
+    result.share = clamped - result.low;
+    return result;
   }
 
+  void copy(const glm::ivec3& first, Row& row) const {
+    row.fill(background_);
+    if (first.y >= dims_.y || first.z >= dims_.z) return;
+    const Sample* source = sample_row(first.y, first.z) + first.x;
+    const int count = std::min(row_length, dims_.x - first.x);
+    for (int i = 0; i < count; ++i) {
+      if constexpr (std::is_same_v<Sample, std::int16_t>)
+        row[static_cast<std::size_t>(i)] = source[i];
+      else
+        row[static_cast<std::size_t>(i)] = rounded(source[i], scene_);
+    }
+  }
+  void read_aligned(const glm::ivec3& first, Row& row) const {
+    const Place& y = along_[1][static_cast<std::size_t>(first.y)];
+    const Place& z = along_[2][static_cast<std::size_t>(first.z)];
+    for (std::size_t i = 0; i < row.size(); ++i)
+      row[i] = value(along_[0][static_cast<std::size_t>(first.x) + i], y, z);
+  }
+
+  const Sample* sample_row(int y, int z) const {
+    const auto row =
+        static_cast<std::size_t>(z) * static_cast<std::size_t>(dims_.y) + static_cast<std::size_t>(y);
+    return samples_ + row * static_cast<std::size_t>(dims_.x);
+  }
+  std::int16_t value(const Place& x, const Place& y, const Place& z) const {
+    if (!x.inside || !y.inside || !z.inside) return background_;
+    const auto along_x = [&](int j, int k) {
+      const Sample* row = sample_row(j, k);
+      return static_cast<double>(row[x.low]) * (1.0 - x.share) + static_cast<double>(row[x.high]) * x.share;
+    };
+    const double below = along_x(y.low, z.low) * (1.0 - y.share) + along_x(y.high, z.low) * y.share;
+    const double above = along_x(y.low, z.high) * (1.0 - y.share) + along_x(y.high, z.high) * y.share;
+    return rounded(below * (1.0 - z.share) + above * z.share, scene_);
+  }
+
+  const Scene& scene_;
   const Sample* samples_;
   glm::ivec3 dims_;
+  std::int16_t background_;
   glm::dmat4 scan_from_universe_;
   bool coincident_;
+  std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, where the lattices' axes are parallel
 };
 
 // First and last universe voxel, clamped to the universe, that a scan can reach.
@@ -86,29 +155,26 @@ std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice&
           glm::ivec3(glm::clamp(glm::ceil(high), glm::dvec3(0.0), last))};
 }
 
-std::int16_t rounded(double value, const Scene& scene) {
-  const double nearest = std::floor(value + 0.5);
-  if (!(nearest >= std::numeric_limits<std::int16_t>::min() &&
-        nearest <= std::numeric_limits<std::int16_t>::max()))
-    throw std::invalid_argument(scene.source + ": the sample " + std::to_string(value) +
-                                " does not fit into 16 bits: rescale the scan first");
-  return static_cast<std::int16_t>(nearest);
-}
-
 template <typename Sample>
 void fill(GreyBrick& brick, const glm::ivec3& origin, int side, const Resampler<Sample>& resampler,
-          const Scene& scene, std::int16_t background) {
-  for (int leaf = 0; leaf < 64; ++leaf) {
-    const glm::ivec3 leaf_origin = origin + 4 * glm::ivec3(leaf & 3, (leaf >> 2) & 3, leaf >> 4);
-    auto& samples = brick.samples[static_cast<std::size_t>(leaf)];
-    for (int i = 0; i < 64; ++i) {
-      const glm::ivec3 voxel = leaf_origin + glm::ivec3(i & 3, (i >> 2) & 3, i >> 4);
-      const bool beyond = voxel.x >= side || voxel.y >= side || voxel.z >= side;
-      samples[static_cast<std::size_t>(i)] =
-          beyond ? background : rounded(resampler.value(voxel, background), scene);
+          std::int16_t background) {
+  Row row;
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 16; ++y) {
+      // Only universes of less than 16 voxels a side have rows beyond them.
+      if (origin.y + y >= side || origin.z + z >= side)
+        row.fill(background);
+      else
+        resampler.read(origin + glm::ivec3(0, y, z), row);
+      for (int leaf = 0; leaf < 4; ++leaf)
+        std::copy_n(row.begin() + 4 * leaf, 4,
+                    brick.samples[static_cast<std::size_t>(child_index(leaf, y >> 2, z >> 2))].begin() +
+                        child_index(0, y & 3, z & 3));
     }
-    const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
-    brick.leaf_range[static_cast<std::size_t>(leaf)] = {*low, *high};
+  for (std::size_t leaf = 0; leaf < 64; ++leaf) {
+    MinMax range{brick.samples[leaf][0], brick.samples[leaf][0]};
+    for (const std::int16_t sample : brick.samples[leaf]) widen(range, {sample, sample});
+    brick.leaf_range[leaf] = range;
   }
 }
 
@@ -160,12 +226,12 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
   // 2. Fill them.
   std::visit(
       [&](const auto& samples) {
-        const Resampler resampler(universe, scene.lattice, samples.data());
+        const Resampler resampler(universe, scene, samples.data(), background);
         tbb::parallel_for(0, count.y * count.z, [&](int row) {
           for (int x = 0; x < count.x; ++x) {
             const glm::ivec3 block = first + glm::ivec3(x, row % count.y, row / count.y);
             GreyBrick& brick = storage->bricks[storage->brick_of_block[bottom.index(block)]];
-            fill(brick, block * 16, universe.side(), resampler, scene, background);
+            fill(brick, block * 16, universe.side(), resampler, background);
             MinMax& range = bottom.ranges[bottom.index(block)];
             range = brick.leaf_range.front();
             for (const MinMax& leaf : brick.leaf_range) widen(range, leaf);

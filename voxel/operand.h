@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -21,6 +22,13 @@ struct TargetBlock {
   int child_side = 4;
 };
 
+/// Words of the leaves named by the bits of `wanted` of a block of height 2, written at their child numbers.
+struct WantedLeaves {
+  glm::ivec3 origin{0};  ///< of the block
+  std::uint64_t wanted = 0;
+  std::uint64_t* words = nullptr;
+};
+
 /// f(v) = gradient . v + constant over the target's voxel indices.
 struct Linear {
   glm::dvec3 gradient{0.0};
@@ -34,7 +42,7 @@ class ConvexOperand {
  public:
   explicit ConvexOperand(std::vector<Linear> sides) : sides_(std::move(sides)) {}
   Cover cover(const TargetBlock& block) const;
-  std::uint64_t leaf(const glm::ivec3& origin) const;
+  void words(const WantedLeaves& leaves) const;
 
  private:
   std::vector<Linear> sides_;
@@ -45,7 +53,7 @@ class SphereOperand {
   SphereOperand(const Sphere& sphere, const glm::dmat4& still_from_target)
       : sphere_(sphere), still_from_target_(still_from_target) {}
   Cover cover(const TargetBlock& block) const;
-  std::uint64_t leaf(const glm::ivec3& origin) const;
+  void words(const WantedLeaves& leaves) const;
 
  private:
   Sphere sphere_;
@@ -57,7 +65,7 @@ class MaskOperand {
  public:
   MaskOperand(const RegionMask& mask, const glm::dmat4& still_from_target);
   Cover cover(const TargetBlock& block) const;
-  std::uint64_t leaf(const glm::ivec3& origin) const;
+  void words(const WantedLeaves& leaves) const;
 
  private:
   struct Projected {
@@ -72,24 +80,44 @@ class WindowOperand {
  public:
   WindowOperand(const GreyOctree& grey, Window16 window) : grey_(&grey), window_(window) {}
   Cover cover(const TargetBlock& block) const;
-  std::uint64_t leaf(const glm::ivec3& origin) const;
+  void words(const WantedLeaves& leaves) const;
 
  private:
   const GreyOctree* grey_;
   Window16 window_;
 };
 
-/// An octree on another lattice or under a motion.
-class SampledOctreeOperand {
+/// An octree under a translation by whole voxels: nothing is sampled, words are shifted into place.
+class ShiftedOctreeOperand {
  public:
-  SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target)
-      : octree_(&octree), source_from_target_(source_from_target) {}
+  /// Target voxel t is the octree's voxel t + source_offset.
+  ShiftedOctreeOperand(const Octree& octree, const glm::ivec3& source_offset)
+      : octree_(&octree), source_offset_(source_offset) {}
   Cover cover(const TargetBlock& block) const;
-  std::uint64_t leaf(const glm::ivec3& origin) const;
+  void words(const WantedLeaves& leaves) const;
 
  private:
   const Octree* octree_;
+  glm::ivec3 source_offset_;
+};
+
+/// An octree on another lattice or under a motion. Positions are rounded to 2^-24 of a voxel, so a centre
+/// closer than that to the face between two voxels may be given to either.
+class SampledOctreeOperand {
+ public:
+  SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  using Offsets = std::array<std::int32_t, 64>;
+  std::uint64_t leaf(const class LeafWords& region, const glm::ivec3& base) const;
+
+  const Octree* octree_;
   glm::dmat4 source_from_target_;
+  /// From a leaf's first voxel to each of its voxels, in the source, fixed point; and their bounds.
+  std::array<Offsets, 3> offsets_;
+  glm::ivec3 lowest_{0}, highest_{0};
 };
 
 /// A grey octree's window on another lattice or under a motion: samples are interpolated, then compared.
@@ -98,20 +126,20 @@ class SampledWindowOperand {
   SampledWindowOperand(const Window& window, const glm::dmat4& source_from_target)
       : window_(&window), source_from_target_(source_from_target) {}
   Cover cover(const TargetBlock& block) const;
-  std::uint64_t leaf(const glm::ivec3& origin) const;
+  void words(const WantedLeaves& leaves) const;
 
  private:
   const Window* window_;
   glm::dmat4 source_from_target_;
 };
 
-/// An octree on the target's own lattice: the walk follows its nodes.
+/// An octree on the target's own lattice: the walk follows its nodes, and asks nothing here.
 struct AlignedOctreeOperand {
   BlockRef root;
 };
 
-using Operand = std::variant<AlignedOctreeOperand, ConvexOperand, SphereOperand, MaskOperand, WindowOperand,
-                             SampledOctreeOperand, SampledWindowOperand>;
+using Operand = std::variant<AlignedOctreeOperand, ShiftedOctreeOperand, SampledOctreeOperand, WindowOperand,
+                             SampledWindowOperand, MaskOperand, ConvexOperand, SphereOperand>;
 
 /// The operand for a walk over `target`; it refers to the expression behind it.
 Operand operand_of(const Program::Operand& operand, const Universe& target);

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "voxel/leaf_words.h"
+#include "voxel/operand.h"
+#include "voxel/operand_frame.h"
+
+namespace octotomy::voxel {
+namespace {
+
+glm::ivec3 nearest_voxel(const glm::dvec3& p) {
+  return glm::ivec3(glm::floor(p + 0.5));
+}
+
+// Children of a block that voxels low..high of it touch, from 4^height voxels a side.
+std::uint64_t children_within(const VoxelBox& box, int child_log2) {
+  static constexpr std::array<std::array<std::uint64_t, 4>, 3> planes{{
+      {0x1111111111111111, 0x2222222222222222, 0x4444444444444444, 0x8888888888888888},
+      {0x000f000f000f000f, 0x00f000f000f000f0, 0x0f000f000f000f00, 0xf000f000f000f000},
+      {0x000000000000ffff, 0x00000000ffff0000, 0x0000ffff00000000, 0xffff000000000000},
+  }};
+  std::uint64_t within = all_children;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::uint64_t slab = 0;
+    for (int i = box.low[axis] >> child_log2; i <= box.high[axis] >> child_log2; ++i)
+      slab |= planes[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
+    within &= slab;
+  }
+  return within;
+}
+
+Status joined(std::uint64_t within, std::uint64_t full, std::uint64_t some) {
+  if ((full & within) == within) return Status::Full;
+  return (some & within) == 0 ? Status::Empty : Status::Mixed;
+}
+
+// Status of a box of voxels, relative to the block that holds it.
+Status status_within(BlockRef block, int height, const VoxelBox& box) {
+  const Node* node = block.node();
+  if (node == nullptr) return block.is_full() ? Status::Full : Status::Empty;
+  const int child_log2 = 2 * height - 2;
+  const std::uint64_t within = children_within(box, child_log2);
+  const std::uint64_t partial = within & node->partial;
+  const bool some_full = (within & node->full) != 0;
+  const bool some_empty = (within & ~node->full & ~node->partial) != 0;
+  if (some_full && some_empty) return Status::Mixed;
+  if (partial == 0) return some_full ? Status::Full : Status::Empty;
+  std::optional<Status> agreed;
+  if (some_full) agreed = Status::Full;
+  if (some_empty) agreed = Status::Empty;
+  for (std::uint64_t rest = partial; rest != 0; rest &= rest - 1) {
+    const int child = std::countr_zero(rest);
+    const glm::ivec3 first = child_place(child) << child_log2;
+    const VoxelBox part{glm::max(box.low - first, 0), glm::min(box.high - first, (1 << child_log2) - 1)};
+    const Status status = height > 2 ? status_within(block.child(child), height - 1, part)
+                                     : joined(children_within(part, 0), block.word(child), block.word(child));
+    if (status == Status::Mixed || (agreed && *agreed != status)) return Status::Mixed;
+    agreed = status;
+  }
+  return *agreed;
+}
+
+Status status_in_universe(const Octree& octree, VoxelBox box) {
+  const int last = octree.universe().side() - 1;
+  const VoxelBox clipped{glm::max(box.low, 0), glm::min(box.high, last)};
+  if (glm::any(glm::greaterThan(clipped.low, clipped.high))) return Status::Empty;
+  const Status status = status_within(octree.root(), octree.root_height(), clipped);
+  const bool reaches_out = clipped.low != box.low || clipped.high != box.high;
+  return reaches_out && status == Status::Full ? Status::Mixed : status;
+}
+
+// Leaf words are quicker to fetch than to ask about: within a block of height 2 every leaf is left to
+// words().
+constexpr Cover left_to_words{0, all_children};
+
+// Nibbles of x, groups of y and layers of z that stay in their own leaf when a row is shifted by s of 4.
+constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
+    {all_children, 0x7777777777777777, 0x3333333333333333, 0x1111111111111111},
+    {all_children, 0x0fff0fff0fff0fff, 0x00ff00ff00ff00ff, 0x000f000f000f000f},
+    {all_children, 0x0000ffffffffffff, 0x00000000ffffffff, 0x000000000000ffff},
+}};
+
+// The leaf that begins `shift` voxels into `low` along an axis and ends in the leaf after it.
+std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int shift) {
+  if (shift == 0) return low;
+  const std::uint64_t stay = staying[static_cast<std::size_t>(axis)][static_cast<std::size_t>(shift)];
+  const int stride = 1 << (2 * axis);
+  return ((low >> (stride * shift)) & stay) | ((high << (stride * (4 - shift))) & ~stay);
+}
+
+}  // namespace
+
+Cover ShiftedOctreeOperand::cover(const TargetBlock& block) const {
+  if (block.child_side == 4) return left_to_words;
+  return cover_of_children(block, [&](const glm::dvec3& centre) {
+    const glm::ivec3 low = glm::ivec3(centre - 0.5 * (block.child_side - 1)) + source_offset_;
+    return status_in_universe(*octree_, {low, low + block.child_side - 1});
+  });
+}
+
+// Separable: 5 x 5 x 5 leaves are joined along x to 4 x 5 x 5, then along y, then along z.
+void ShiftedOctreeOperand::words(const WantedLeaves& leaves) const {
+  const glm::ivec3 source = leaves.origin + source_offset_;
+  const glm::ivec3 shift = source & 3;
+  const glm::ivec3 first = source >> 2;
+  LeafWords region;
+  region.read(*octree_, first, first + 3 + glm::ivec3(glm::notEqual(shift, glm::ivec3(0))));
+  std::array<std::uint64_t, 4 * 5 * 5> along_x;
+  for (int z = 0; z < 5; ++z)
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < 4; ++x)
+        along_x[static_cast<std::size_t>(x + 4 * (y + 5 * z))] =
+            joined_words(region.word(x, y, z), region.word(x + 1, y, z), 0, shift.x);
+  std::array<std::uint64_t, 4 * 4 * 5> along_y;
+  for (std::size_t z = 0; z < 5; ++z)
+    for (std::size_t i = 0; i < 16; ++i)
+      along_y[i + 16 * z] = joined_words(along_x[i + 20 * z], along_x[i + 4 + 20 * z], 1, shift.y);
+  for (std::size_t i = 0; i < 64; ++i)
+    leaves.words[i] = joined_words(along_y[i], along_y[i + 16], 2, shift.z);
+}
+
+namespace {
+
+// Fixed point within a region of 32 voxels an axis: 5 bits of voxels and 24 of fraction stay clear of the
+// sign.
+constexpr int fraction_bits = 24;
+
+// A base and an offset, each rounded to half a unit, stay within this of where they are.
+const double fixed_slack = std::ldexp(1.0, 1 - fraction_bits);
+
+std::int32_t fixed(double voxels) {
+  return static_cast<std::int32_t>(std::lround(std::ldexp(voxels, fraction_bits)));
+}
+
+glm::ivec3 fixed(const glm::dvec3& p) {
+  return {fixed(p.x), fixed(p.y), fixed(p.z)};
+}
+
+}  // namespace
+
+SampledOctreeOperand::SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target)
+    : octree_(&octree), source_from_target_(source_from_target) {
+  const glm::dmat3 linear(source_from_target);
+  // A source much finer than the target leaves the fixed point's range, and words() does without.
+  const double longest = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+  if (longest > 4.0) return;
+  for (int voxel = 0; voxel < 64; ++voxel) {
+    const glm::ivec3 offset = fixed(linear * glm::dvec3(child_place(voxel)));
+    lowest_ = glm::min(lowest_, offset);
+    highest_ = glm::max(highest_, offset);
+    for (int axis = 0; axis < 3; ++axis)
+      offsets_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(voxel)] = offset[axis];
+  }
+}
+
+Cover SampledOctreeOperand::cover(const TargetBlock& block) const {
+  if (block.child_side == 4) return left_to_words;
+  const Imager image(source_from_target_, block.child_side);
+  return cover_of_children(block, [&](const glm::dvec3& centre) {
+    const ImageBox box = image(centre);
+    return status_in_universe(*octree_, {nearest_voxel(box.low), nearest_voxel(box.high)});
+  });
+}
+
+// The source leaves around the block are fetched once; each wanted leaf is then looked up voxel by voxel in
+// them, unless the leaves about it are all full or all empty.
+void SampledOctreeOperand::words(const WantedLeaves& leaves) const {
+  const ImageBox box = Imager(source_from_target_, 16)(glm::dvec3(leaves.origin) + 7.5);
+  const glm::ivec3 first = nearest_voxel(box.low - fixed_slack) >> 2;
+  const glm::ivec3 last = nearest_voxel(box.high + fixed_slack) >> 2;
+  if (glm::any(glm::greaterThanEqual(last - first, glm::ivec3(LeafWords::side))))
+    return for_each_wanted_voxel(leaves, [&](const glm::dvec3& voxel) {
+      return octree_->contains(nearest_voxel(glm::dvec3(source_from_target_ * glm::dvec4(voxel, 1.0))));
+    });
+  LeafWords region;
+  region.read(*octree_, first, last);
+  if (region.any() == 0 || region.every() == all_children)
+    return for_each_wanted(leaves, [&](const glm::ivec3&) { return region.every(); });
+  for_each_wanted(leaves, [&](const glm::ivec3& origin) {
+    const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin), 1.0));
+    // Half a voxel more, so that truncation finds the voxel.
+    return leaf(region, fixed(p - glm::dvec3(4 * first) + 0.5));
+  });
+}
+
+std::uint64_t SampledOctreeOperand::leaf(const LeafWords& region, const glm::ivec3& base) const {
+  const glm::ivec3 first = (base + lowest_) >> (fraction_bits + 2);
+  const glm::ivec3 last = (base + highest_) >> (fraction_bits + 2);
+  std::uint64_t any = 0;
+  std::uint64_t every = all_children;
+  for (int z = first.z; z <= last.z; ++z)
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) {
+        any |= region.word(x, y, z);
+        every &= region.word(x, y, z);
+      }
+  if (any == 0) return 0;
+  if (every == all_children) return all_children;
+
+  // Places first, by arithmetic that vectorises; then the look-ups.
+  std::array<std::uint32_t, 64> place;
+  for (std::size_t i = 0; i < 64; ++i) {
+    const auto x = static_cast<std::uint32_t>(base.x + offsets_[0][i]) >> fraction_bits;
+    const auto y = static_cast<std::uint32_t>(base.y + offsets_[1][i]) >> fraction_bits;
+    const auto z = static_cast<std::uint32_t>(base.z + offsets_[2][i]) >> fraction_bits;
+    const std::uint32_t leaf_number = (x >> 2) | ((y >> 2) << 3) | ((z >> 2) << 6);
+    const std::uint32_t bit = (x & 3) | ((y & 3) << 2) | ((z & 3) << 4);
+    place[i] = leaf_number << 6 | bit;
+  }
+  std::uint64_t word = 0;
+  for (std::size_t i = 0; i < 64; ++i) word |= ((region.words()[place[i] >> 6] >> (place[i] & 63)) & 1) << i;
+  return word;
+}
+
+}  // namespace octotomy::voxel
