@@ -21,10 +21,8 @@ Node* allocate(int payload_count) {
 }
 
 void free_node(const Node* node) {
-  const std::size_t bytes =
-      sizeof(Node) + sizeof(std::uint64_t) * static_cast<std::size_t>(node->payload_count());
   node->~Node();
-  ::operator delete(const_cast<Node*>(node), bytes);
+  ::operator delete(const_cast<Node*>(node));
 }
 
 }  // namespace

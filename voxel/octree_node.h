@@ -62,6 +62,7 @@ class BlockRef {
 
   bool is_empty() const { return bits_ == 0; }
   bool is_full() const { return bits_ == 1; }
+  // A child slot in one word, as node addresses are never 0 or 1. NOLINTNEXTLINE(performance-no-int-to-ptr)
   const Node* node() const { return bits_ > 1 ? reinterpret_cast<const Node*>(bits_) : nullptr; }
   /// Child of a block of height 3 and up; of a homogeneous block, the block itself.
   BlockRef child(int index) const {
