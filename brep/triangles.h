@@ -16,10 +16,15 @@ struct Triangles {
   std::vector<std::array<std::uint32_t, 3>> faces;
 };
 
-/// The mesh of these triangles. Throws std::runtime_error naming the first triangle that refers to no point,
-/// repeats a point, or cannot be joined to the others without an edge of more than two triangles or of two
-/// that run along it the same way.
+/// The mesh of these triangles: face i is triangle i, vertex i is point i, whether a triangle uses it or not.
+/// Where fans of triangles only touch at a point, the first keeps it and each further fan gets a copy behind
+/// the last point, so that the surface stays where it is and every vertex is manifold. Throws
+/// std::runtime_error naming the first triangle that refers to no point, repeats a point, is not finite, or
+/// cannot be joined to the others without an edge of more than two triangles or of two that run along it the
+/// same way. Cost: n log n, about 100 bytes a triangle beside the mesh.
 Mesh mesh_of(const Triangles& triangles);
+
+/// The faces and vertices of a mesh in its own order. Precondition: nothing is marked as deleted.
 Triangles triangles_of(const Mesh& mesh);
 
 }  // namespace octotomy::brep

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/boolean.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "brep/components.h"
+#include "brep/health.h"
+#include "brep/measure.h"
+#include "brep/move.h"
+#include "brep/prism.h"
+#include "brep/read_mesh.h"
+#include "tests/brep/shapes.h"
+#include "tests/reference_data.h"
+
+namespace octotomy::brep {
+namespace {
+
+using std::numbers::pi;
+
+Mesh box(const glm::dvec3& low, const glm::dvec3& high) {
+  return mesh_of(shapes::box(low, high));
+}
+Mesh sphere(const glm::dvec3& centre, double radius, int splits) {
+  return mesh_of(shapes::sphere(centre, radius, splits));
+}
+double volume(const Mesh& mesh) {
+  return measure(mesh).volume_mm3;
+}
+
+std::string told(const std::vector<std::string>& findings) {
+  std::string text;
+  for (const std::string& finding : findings) text += finding + "; ";
+  return text;
+}
+
+/// Closed, manifold, oriented and without intersections; degenerate slivers are judged apart.
+void expect_solid(const Mesh& mesh, const char* what) {
+  const Health h = health(mesh);
+  EXPECT_TRUE(h.solid()) << what << ": " << told(h.findings);
+}
+
+/// All four results of overlapping operands of known volumes.
+void expect_volumes(const Booleans& results, double a, double b, double common, double tolerance) {
+  ASSERT_TRUE(results.united && results.intersection && results.a_minus_b && results.b_minus_a);
+  EXPECT_NEAR(volume(*results.united), a + b - common, tolerance);
+  EXPECT_NEAR(volume(*results.intersection), common, tolerance);
+  EXPECT_NEAR(volume(*results.a_minus_b), a - common, tolerance);
+  EXPECT_NEAR(volume(*results.b_minus_a), b - common, tolerance);
+  ASSERT_TRUE(results.residual);
+  EXPECT_LT(*results.residual, 1e-12);
+}
+
+TEST(Boolean, BoxesInGeneralPositionGiveFourExactSolids) {
+  const Booleans results = booleans(box({0, 0, 0}, {2, 2, 2}), box({1, 1, 1}, {4, 3.5, 3}));
+  expect_volumes(results, 8, 3 * 2.5 * 2, 1, 1e-13);
+  expect_solid(*results.united, "union");
+  expect_solid(*results.intersection, "intersection");
+  expect_solid(*results.a_minus_b, "a - b");
+  expect_solid(*results.b_minus_a, "b - a");
+  EXPECT_TRUE(results.findings.empty()) << told(results.findings);
+}
+
+TEST(Boolean, TheOperandsAreNotChanged) {
+  const Mesh a = box({0, 0, 0}, {2, 2, 2}), b = box({1, 1, 1}, {3, 3, 3});
+  boolean(a, Operation::Difference, b);
+  EXPECT_EQ(a.n_faces(), 12u);
+  EXPECT_EQ(triangles_of(b).points_mm, shapes::box({1, 1, 1}, {3, 3, 3}).points_mm);
+}
+
+TEST(Boolean, DifferenceTakesTheSecondFromTheFirst) {
+  const Mesh a = box({0, 0, 0}, {2, 2, 2}), b = box({1, -1, -1}, {9, 9, 9});
+  EXPECT_NEAR(volume(boolean(a, Operation::Difference, b).mesh), 4, 1e-13);
+  EXPECT_NEAR(volume(boolean(b, Operation::Difference, a).mesh), 800 - 4, 1e-11);
+}
+
+TEST(Boolean, ALensConvergesToItsClosedFormAtSecondOrder) {
+  const double r = 5, d = 6;  // between the centres
+  const double lens = pi * (4 * r + d) * (2 * r - d) * (2 * r - d) / 12;
+  double last = 0;
+  for (int splits = 2; splits <= 5; ++splits) {
+    const BooleanResult result =
+        boolean(sphere({0.1, 0.2, 0.3}, r, splits), Operation::Intersection,
+                moved(sphere({0, 0, 0}, r, splits),
+                      glm::translate(glm::dmat4(1.0),
+                                     glm::dvec3(0.1, 0.2, 0.3) + d * glm::normalize(glm::dvec3(1, 2, 3)))));
+    expect_solid(result.mesh, "lens");
+    ASSERT_TRUE(result.residual);
+    EXPECT_LT(*result.residual, 1e-13);
+    const double error = lens - volume(result.mesh);
+    EXPECT_GT(error, 0.0);
+    if (splits > 2) {
+      EXPECT_NEAR(last / error, 4.0, 0.5) << splits << " splits";
+    }
+    last = error;
+  }
+  EXPECT_LT(last, 2e-3 * lens);
+}
+
+TEST(Boolean, ACubeCutByAnObliquePrismIsExact) {
+  // The prism looks along z; its side runs across the cube from (0, 1) to (4, 3) in x and y.
+  Prism prism;
+  prism.look = {0, 0, -1};
+  prism.up = {0, 1, 0};
+  prism.right = glm::cross(prism.look, prism.up);
+  prism.from_mm = -10;
+  prism.to_mm = 10;
+  prism.polygons_mm = {{{-4, -1}, {8, 5}, {8, -9}, {-4, -9}}};
+  const Mesh cube = box({0, 0, 0}, {4, 4, 4});
+  const Booleans results = booleans(cube, mesh_of(prism), {false, true, true, false});
+  ASSERT_TRUE(results.intersection && results.a_minus_b);
+  EXPECT_NEAR(volume(*results.intersection), 32, 1e-12);
+  EXPECT_NEAR(volume(*results.a_minus_b), 32, 1e-12);
+  EXPECT_NEAR(measure(*results.intersection).area_mm2, 8 + 8 + 4 * 4 + 4 * (1 + 3) + 4 * std::sqrt(20.0),
+              1e-12);
+  expect_solid(*results.intersection, "piece");
+  expect_solid(*results.a_minus_b, "rest");
+}
+
+TEST(Boolean, IsTheSameInAnyPose) {
+  const Mesh a = sphere({0, 0, 0}, 3, 3), b = box({-1, -2, -1.5}, {4, 2.1, 1.7});
+  const Booleans still = booleans(a, b);
+  for (int pose = 1; pose <= 5; ++pose) {
+    glm::dmat4 motion = glm::translate(glm::dmat4(1.0), glm::dvec3(50.0 * pose, -30.0, 7.0 * pose));
+    motion = glm::rotate(motion, 0.37 * pose, glm::normalize(glm::dvec3(pose, 1, 2)));
+    const Booleans turned = booleans(moved(a, motion), moved(b, motion));
+    EXPECT_NEAR(volume(*turned.united), volume(*still.united), 1e-10) << "pose " << pose;
+    EXPECT_NEAR(volume(*turned.intersection), volume(*still.intersection), 1e-10) << "pose " << pose;
+    EXPECT_NEAR(volume(*turned.a_minus_b), volume(*still.a_minus_b), 1e-10) << "pose " << pose;
+    expect_solid(*turned.united, "union");
+  }
+}
+
+TEST(Boolean, DisjointNestedAndEmptyOperandsNeedNoCorefinement) {
+  const Mesh a = box({0, 0, 0}, {4, 4, 4}), far = box({9, 9, 9}, {10, 10, 10}),
+             within = box({1, 1, 1}, {2, 2, 2});
+  const Booleans apart = booleans(a, far);
+  expect_volumes(apart, 64, 1, 0, 1e-12);
+  EXPECT_EQ(apart.intersection->n_faces(), 0u);
+  EXPECT_EQ(components(*apart.united).size(), 2u);
+
+  const Booleans nested = booleans(a, within);
+  expect_volumes(nested, 64, 1, 1, 1e-12);
+  EXPECT_EQ(nested.b_minus_a->n_faces(), 0u);
+  EXPECT_EQ(components(*nested.a_minus_b).at(0).cavities, 1u);
+
+  const Booleans with_nothing = booleans(a, Mesh());
+  expect_volumes(with_nothing, 64, 0, 0, 1e-12);
+  const Booleans from_nothing = booleans(Mesh(), a);
+  expect_volumes(from_nothing, 0, 64, 0, 1e-12);
+  expect_volumes(booleans(Mesh(), Mesh()), 0, 0, 0, 0);
+}
+
+TEST(Boolean, IdenticalOperandsGiveThemselvesOrNothing) {
+  const Mesh a = sphere({0, 0, 0}, 2, 2);
+  const Booleans results = booleans(a, a);
+  expect_volumes(results, volume(a), volume(a), volume(a), 1e-12);
+  EXPECT_EQ(results.a_minus_b->n_faces(), 0u);
+  EXPECT_EQ(results.intersection->n_faces(), a.n_faces());
+}
+
+TEST(Boolean, ASharedFaceVanishesInTheUnionAndIsEmptyInTheIntersection) {
+  const Mesh a = box({0, 0, 0}, {2, 2, 2});
+  for (const double slide : {0.0, 0.5, 1.0}) {
+    const Booleans results = booleans(a, box({2, slide, 0}, {4, 2 + slide, 2}));
+    expect_volumes(results, 8, 8, 0, 1e-12);
+    EXPECT_EQ(results.intersection->n_faces(), 0u);
+    EXPECT_EQ(components(*results.united).size(), 1u);
+    expect_solid(*results.united, "union");
+    EXPECT_TRUE(results.findings.empty()) << told(results.findings);
+  }
+}
+
+TEST(Boolean, ASharedEdgeTakesTheShiftAndTellsIt) {
+  const Mesh a = box({0, 0, 0}, {2, 2, 2}), b = box({2, 2, 0}, {4, 4, 2});
+  const BooleanResult united = boolean(a, Operation::Union, b);
+  const double shift_bound = std::sqrt(4 * 4 + 4 * 4 + 2 * 2) * 0x1p-18 * 24;
+  EXPECT_NEAR(volume(united.mesh), 16, shift_bound);
+  expect_solid(united.mesh, "union");
+  EXPECT_NE(told(united.findings).find("shifted: b was moved by"), std::string::npos)
+      << told(united.findings);
+  // What is manifold without it is not shifted.
+  const BooleanResult common = boolean(a, Operation::Intersection, b);
+  EXPECT_EQ(common.mesh.n_faces(), 0u);
+  EXPECT_EQ(told(common.findings).find("shifted"), std::string::npos) << told(common.findings);
+}
+
+TEST(Boolean, ASharedVertexIsKeptOnceForEachSheetAndTold) {
+  const BooleanResult united =
+      boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4}));
+  EXPECT_NEAR(volume(united.mesh), 16, 1e-12);
+  const Health h = health(united.mesh, {.self_intersections = false});
+  EXPECT_TRUE(h.solid()) << told(h.findings);
+  EXPECT_EQ(h.vertices, 16u);
+  EXPECT_NE(told(united.findings).find("touches itself at 1 point"), std::string::npos)
+      << told(united.findings);
+}
+
+TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
+  // The everyday of osteotomy: both cut faces lie in one plane again.
+  const Mesh ball = sphere({0, 0, 0}, 10, 4);
+  Prism prism;
+  prism.polygons_mm = {{{-20, -20}, {20, -20}, {20, -2.5}, {-20, -2.5}}};
+  prism.from_mm = -30;
+  prism.to_mm = 30;
+  const Booleans cut = booleans(ball, mesh_of(prism), {false, true, true, false});
+  for (const glm::dvec3& slide : {glm::dvec3(0, -6, 0), glm::dvec3(0.125, 0.25, 0), glm::dvec3(0, 0, 0)}) {
+    const Mesh piece = moved(*cut.intersection, glm::translate(glm::dmat4(1.0), slide));
+    const BooleanResult united = boolean(*cut.a_minus_b, Operation::Union, piece);
+    EXPECT_NEAR(volume(united.mesh), volume(ball), 1e-4) << told(united.findings);
+    const Health h = health(united.mesh);
+    EXPECT_TRUE(h.closed && h.manifold && h.oriented) << told(h.findings);
+  }
+}
+
+TEST(Boolean, RefusesOpenAndInsideOutOperands) {
+  const Triangles t = shapes::box({0, 0, 0}, {1, 1, 1});
+  Triangles open = t;
+  open.faces.pop_back();
+  EXPECT_THROW(boolean(mesh_of(open), Operation::Union, mesh_of(t)), std::invalid_argument);
+  EXPECT_THROW(boolean(mesh_of(t), Operation::Union, mesh_of(shapes::inside_out(t))), std::invalid_argument);
+}
+
+TEST(Boolean, TheSameBitsComeEveryTime) {
+  const Mesh a = sphere({0, 0, 0}, 3, 3), b = sphere({1, 0.5, 0.25}, 3, 3);
+  const Triangles once = triangles_of(boolean(a, Operation::Union, b).mesh);
+  const Triangles again = triangles_of(boolean(a, Operation::Union, b).mesh);
+  EXPECT_EQ(once.points_mm, again.points_mm);
+  EXPECT_EQ(once.faces, again.faces);
+}
+
+TEST(Boolean, BallsOfAnotherProjectAddUp) {
+  OCTOTOMY_NEEDS_DATA("meshes/ballA.off");
+  const Mesh a = mesh_of(read_triangles(tests::reference_data("meshes/ballA.off")));
+  const Mesh b = mesh_of(read_triangles(tests::reference_data("meshes/ballB.off")));
+  const Booleans results = booleans(a, b);
+  ASSERT_TRUE(results.residual);
+  EXPECT_LT(*results.residual, 1e-12) << told(results.findings);
+  EXPECT_GT(volume(*results.united), volume(a));
+}
+
+TEST(Boolean, AHundredSpheresAgainstABoxAddUp) {
+  Triangles many;
+  double whole = 0;
+  for (int i = 0; i < 100; ++i) {
+    many = shapes::together(many, shapes::sphere({3 * (i % 10), 3 * (i / 10), 0.01 * i}, 1.0 + 0.004 * i, 1));
+  }
+  const Mesh spheres = mesh_of(many);
+  whole = volume(spheres);
+  const Booleans cut = booleans(spheres, box({-5, -5, 0.5}, {14.2, 40, 50}));
+  EXPECT_NEAR(volume(*cut.intersection) + volume(*cut.a_minus_b), whole, 1e-10);
+  EXPECT_GT(components(*cut.intersection).size(), 40u);
+  expect_solid(*cut.intersection, "pieces");
+}
+
+}  // namespace
+}  // namespace octotomy::brep
