@@ -1,29 +1,66 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+#include <string>
+#include <tbb/parallel_for.h>
+
 #include "tests/bench/benchmarks.h"
+#include "tests/bench/dense_bits.h"
+#include "tests/bench/pairs.h"
 #include "tests/bench/subjects.h"
 #include "voxel/combine.h"
 
 namespace octotomy::bench {
 namespace {
 
-voxel::Motion translation(int side) {
-  voxel::Motion motion;
-  motion.translate_mm = universe(side).lattice().spacing_mm() * glm::dvec3(3, -11, 6);
-  return motion;
-}
-
-voxel::Motion rotation(int) {
-  voxel::Motion motion;
-  motion.degrees = 5.0;
-  motion.axis = {1, 0.2, 0.1};
-  motion.about_mm = {0, -40, -30};
-  motion.translate_mm = {0, -6, 2};
-  return motion;
-}
-
 void run(benchmark::State& state, const voxel::Expression& still, const voxel::Motion& motion, int side) {
   const voxel::Expression expression = moved(still, moved_from_still(motion));
-  for (auto _ : state) benchmark::DoNotOptimize(voxel::combine(universe(side), expression).voxel_count());
+  std::uint64_t voxels = 0;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(voxels = voxel::combine(universe(side), expression).voxel_count());
+  state.counters["voxels"] = static_cast<double>(voxels);
+}
+
+// Every voxel of the universe looked up where it was: one row of 64 voxels at a time, in fixed point, so that
+// the compiler can keep the places in vectors.
+void run_dense(benchmark::State& state, const voxel::Motion& motion, int side) {
+  const DenseBits source = dense_bits_of(skull(side));
+  const voxel::Lattice lattice = universe(side).lattice();
+  const glm::dmat4 source_from_target =
+      glm::inverse(lattice.lps_from_voxel) * glm::inverse(moved_from_still(motion)) * lattice.lps_from_voxel;
+  const int words_per_row = (side + 63) / 64;
+  std::vector<std::uint64_t> result(source.words.size());
+  const auto fixed = [](double p) { return static_cast<std::int32_t>(std::lround(std::ldexp(p, 20))); };
+  const glm::ivec3 step(fixed(source_from_target[0][0]), fixed(source_from_target[0][1]),
+                        fixed(source_from_target[0][2]));
+  for (auto _ : state) {
+    tbb::parallel_for(0, side * side, [&](int row) {
+      const glm::dvec4 first(0, row % side, row / side, 1);
+      const glm::dvec3 p = glm::dvec3(source_from_target * first) + 0.5;
+      const glm::ivec3 base(fixed(p.x), fixed(p.y), fixed(p.z));
+      for (int i = 0; i < words_per_row; ++i) {
+        std::uint32_t place[64];
+        std::uint32_t outside[64];
+        for (int x = 0; x < 64; ++x) {
+          const std::int32_t along = 64 * i + x;
+          const auto sx = static_cast<std::uint32_t>((base.x + along * step.x) >> 20);
+          const auto sy = static_cast<std::uint32_t>((base.y + along * step.y) >> 20);
+          const auto sz = static_cast<std::uint32_t>((base.z + along * step.z) >> 20);
+          const auto limit = static_cast<std::uint32_t>(side - 1);
+          outside[x] = (sx | sy | sz) & ~limit;
+          place[x] = (sx & limit) + static_cast<std::uint32_t>(side) *
+                                        ((sy & limit) + static_cast<std::uint32_t>(side) * (sz & limit));
+        }
+        std::uint64_t word = 0;
+        for (int x = 0; x < 64; ++x) {
+          const std::uint64_t bit = (source.words[place[x] / 64] >> (place[x] % 64)) & 1;
+          word |= (outside[x] == 0 ? bit : 0) << x;
+        }
+        result[static_cast<std::size_t>(row) * static_cast<std::size_t>(words_per_row) +
+               static_cast<std::size_t>(i)] = word;
+      }
+    });
+    benchmark::ClobberMemory();
+  }
 }
 
 }  // namespace
@@ -31,13 +68,15 @@ void run(benchmark::State& state, const voxel::Expression& still, const voxel::M
 void register_move() {
   for (const int side : {256, 512})
     for (const bool turned : {false, true}) {
-      const auto motion = [=] { return turned ? rotation(side) : translation(side); };
+      const auto motion = [=] { return turned ? rotation() : translation(side); };
       const std::string task = turned ? "move/rotate/" : "move/translate/";
-      add(task + "skull/" + std::to_string(side),
-          [=](benchmark::State& state) { run(state, skull(side), motion(), side); });
-      add(task + "skull_grey/" + std::to_string(side), [=](benchmark::State& state) {
+      const std::string size = std::to_string(side);
+      add(task + "skull/" + size, [=](benchmark::State& state) { run(state, skull(side), motion(), side); });
+      add(task + "skull_grey/" + size, [=](benchmark::State& state) {
         run(state, voxel::Window{grey_skull(side), 300, 32767}, motion(), side);
       });
+      add("reference/dense_bits/" + task + "skull/" + size,
+          [=](benchmark::State& state) { run_dense(state, motion(), side); });
     }
 }
 
