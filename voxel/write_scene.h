@@ -2,27 +2,31 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "voxel/scene.h"
 
 namespace octotomy::voxel {
 
-/// Writes a scene as the extension says: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. Written beside and renamed
-/// into place, so that a failure leaves what was there. Throws std::runtime_error with path and reason.
+/// Writes a scene as the extension says: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. The samples' type, their
+/// meaning and the modality come back on reading. Geometry is kept in double precision, but for NIfTI, which
+/// holds it in single precision. Written beside and renamed into place, so that a failure leaves what was
+/// there. Throws std::runtime_error with path and reason; std::invalid_argument for NIfTI and MetaImage where
+/// the lattice's axes are not perpendicular, which those formats cannot say.
 void write_scene(const Scene& scene, const std::filesystem::path& path);
 
-/// How a scene is cut into DICOM slices. Defaults write the lattice as it is.
 struct DicomOptions {
-  std::string patient_name = "Phantom^Octotomy";
-  std::string series_description = "Octotomy";
-  /// Gantry tilt in degrees about the patient's x axis: slices keep their own plane's orientation and their
-  /// positions move along y with z, as a tilted scanner's do. The scene must hold the slices as scanned.
-  double gantry_tilt_deg = 0.0;
+  std::string patient_name = "Phantom^Octotomy";  ///< DICOM's form: family^given
+  std::string series_description = "Octotomy";    ///< at most 64 characters
 };
 
 /// Writes one CT Image Storage file a slice into a folder, which is made where absent and must hold no file
-/// of the same names. Samples are written as int16 with slope 1 and intercept 0 for Hounsfield scenes.
-/// Throws std::runtime_error, and std::invalid_argument where samples do not fit int16.
+/// of the same names (slice_0001.dcm and so on). Slice k stands where the lattice has its index k: a lattice
+/// whose third axis leans on the first two is a series with gantry tilt. Samples are written as int16 with
+/// slope 1, intercept 0; a scene that is not Hounsfield says so in its rescale type. Unique identifiers come
+/// from the content: the same scene and options give the same files, byte by byte.
+/// Throws std::runtime_error with path and reason, std::invalid_argument where samples are no integers of
+/// int16's range, the first two axes are not perpendicular or a text is too long.
 void write_dicom_series(const Scene& scene, const std::filesystem::path& folder,
                         const DicomOptions& options = {});
 

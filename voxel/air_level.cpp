@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/air_level.h"
+
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+namespace octotomy::voxel {
+
+namespace {
+
+struct Counts {
+  std::uint64_t samples = 0;
+  std::uint64_t air = 0;    ///< -1100..-900
+  std::uint64_t above = 0;  ///< -900..-700, the band above air
+  std::uint64_t soft = 0;   ///< -900..-20
+
+  Counts operator+(const Counts& other) const {
+    return {samples + other.samples, air + other.air, above + other.above, soft + other.soft};
+  }
+};
+
+Counts count(const Scene& scene) {
+  return std::visit(
+      [](const auto& samples) {
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, samples.size(), 1 << 16), Counts{},
+            [&](const tbb::blocked_range<std::size_t>& part, Counts counts) {
+              for (std::size_t i = part.begin(); i < part.end(); ++i) {
+                const auto value = samples[i];
+                counts.air += value >= -1100 && value <= -900;
+                counts.above += value > -900 && value <= -700;
+                counts.soft += value > -900 && value < -20;
+              }
+              counts.samples += part.size();
+              return counts;
+            },
+            std::plus<>());
+      },
+      scene.samples);
+}
+
+bool is_seen(std::uint64_t some, const Counts& counts) {
+  return some * 1000 >= counts.samples && some > 0;
+}
+
+std::string percent(std::uint64_t some, const Counts& counts) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%",
+                100.0 * static_cast<double>(some) / static_cast<double>(counts.samples));
+  return text;
+}
+
+std::string span(const Scene& scene) {
+  const Range values = range(scene);
+  char text[64];
+  std::snprintf(text, sizeof text, "%g..%g", values.low, values.high);
+  return text;
+}
+
+}  // namespace
+
+AirLevel air_level_of_ct(const Scene& scene) {
+  const Counts counts = count(scene);
+  if (is_seen(counts.air, counts))
+    return {Meaning::Hounsfield,
+            {"air_level", Verdict::Pass,
+             percent(counts.air, counts) + " of the samples lie within 100 of -1000: Hounsfield units"}};
+  if (is_seen(counts.soft, counts))
+    return {Meaning::Hounsfield,
+            {"air_level", Verdict::Warn,
+             "no air near -1000 to confirm Hounsfield units by; values " + span(scene) +
+                 " are taken as the header declares them"}};
+  return {Meaning::Raw,
+          {"air_level", Verdict::Fail,
+           "air is not near -1000, so values " + span(scene) +
+               " are not Hounsfield: windows in HU do not apply; if air is near 0 the rescale intercept "
+               "(about -1024) is missing"}};
+}
+
+AirLevel air_level_of_unnamed(const Scene& scene) {
+  const Counts counts = count(scene);
+  if (is_seen(counts.air, counts) && counts.air >= 2 * counts.above)
+    return {Meaning::Hounsfield,
+            {"air_level", Verdict::Pass,
+             "the file names no unit; " + percent(counts.air, counts) +
+                 " of the samples peak within 100 of -1000, as air does: taken as Hounsfield units"}};
+  return {Meaning::Raw,
+          {"air_level", Verdict::Pass,
+           "the file names no unit and no peak of air lies near -1000: values " + span(scene) +
+               " are taken as raw"}};
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// GDCM aborts the program on some damaged headers (its Debian build keeps assertions) and allocates what an
+// attribute claims, so headers are read here and GDCM only decompresses pixels.
+#include "voxel/dicom_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+namespace octotomy::voxel {
+
+namespace {
+
+constexpr DicomTag item_tag = 0xfffee000;
+constexpr DicomTag item_end_tag = 0xfffee00d;
+constexpr DicomTag sequence_end_tag = 0xfffee0dd;
+constexpr DicomTag transfer_syntax_tag = 0x00020010;
+constexpr DicomTag character_set_tag = 0x00080005;
+constexpr DicomTag pixels_tag = 0x7fe00010;
+
+bool has_prefix(std::string_view bytes) {
+  return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM";
+}
+
+/// Value representations whose length has four bytes.
+bool is_wide(std::string_view vr) {
+  constexpr std::array<std::string_view, 13> wide = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
+                                                     "SV", "UC", "UN", "UR", "UT", "UV"};
+  for (const std::string_view one : wide)
+    if (vr == one) return true;
+  return false;
+}
+
+std::string trimmed(std::string_view text) {
+  constexpr std::string_view padding(" \t\r\n\0", 5);
+  const std::size_t first = text.find_first_not_of(padding);
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(padding) - first + 1));
+}
+
+}  // namespace
+
+bool DicomFile::begins(std::string_view head) {
+  if (has_prefix(head)) return true;
+  return head.size() >= 8 && (head[0] == 2 || head[0] == 8) && head[1] == 0 && head[3] == 0;
+}
+
+DicomFile::DicomFile(std::string_view bytes)
+    : bytes_(bytes), at_(has_prefix(bytes) ? 132 : 0), explicit_(at_ > 0) {
+  walk();
+}
+
+std::uint32_t DicomFile::u16(std::size_t at) const {
+  const auto u8 = [&](std::size_t i) { return std::uint32_t{static_cast<unsigned char>(bytes_[i])}; };
+  return big_endian_ ? (u8(at) << 8) | u8(at + 1) : u8(at) | (u8(at + 1) << 8);
+}
+
+std::uint32_t DicomFile::u32(std::size_t at) const {
+  return big_endian_ ? (u16(at) << 16) | u16(at + 2) : u16(at) | (u16(at + 2) << 16);
+}
+
+void DicomFile::require(std::size_t length, DicomTag tag) const {
+  if (length <= left()) return;
+  std::array<char, 112> text{};
+  std::snprintf(text.data(), text.size(),
+                "cut short or damaged: attribute (%04x,%04x) claims %zu bytes of %zu left", tag >> 16,
+                tag & 0xffffu, length, left());
+  throw std::runtime_error(text.data());
+}
+
+void DicomFile::leave_meta() {
+  transfer_syntax_ = text(transfer_syntax_tag);
+  if (transfer_syntax_ == "1.2.840.10008.1.2") explicit_ = false;
+  if (transfer_syntax_ == "1.2.840.10008.1.2.2") big_endian_ = true;
+  if (transfer_syntax_ == "1.2.840.10008.1.2.1.99")
+    throw std::runtime_error("deflated as a whole, which is not supported; convert it to explicit VR");
+}
+
+/// Steps over the head of the attribute at hand. Precondition: eight bytes are left.
+DicomFile::Head DicomFile::take_head() {
+  Head head;
+  head.tag = (u16(at_) << 16) | u16(at_ + 2);
+  const std::string_view vr = bytes_.substr(at_ + 4, 2);
+  const bool is_mark = head.tag >> 16 == 0xfffe;  // items and their ends have no value representation
+  if (!explicit_ || is_mark) {
+    head.length = u32(at_ + 4);
+    at_ += 8;
+  } else if (is_wide(vr)) {
+    require(12, head.tag);
+    head.length = u32(at_ + 8);
+    head.is_unknown = vr == "UN";
+    at_ += 12;
+  } else {
+    head.length = u16(at_ + 6);
+    at_ += 8;
+  }
+  return head;
+}
+
+void DicomFile::take_fragments() {
+  fragments_.emplace();
+  bool is_offset_table = true;
+  while (left() >= 8) {
+    const Head head = take_head();
+    if (head.tag == sequence_end_tag) return;
+    if (head.tag != item_tag)
+      throw std::runtime_error("compressed pixels are damaged: no item where one should be");
+    require(head.length, head.tag);
+    if (!is_offset_table) fragments_->push_back(bytes_.substr(at_, head.length));
+    is_offset_table = false;
+    at_ += head.length;
+  }
+  throw std::runtime_error("cut short: the compressed pixels do not end");
+}
+
+void DicomFile::walk() {
+  // Of sequences and items without a length, how each was written around them; the rest is stepped over
+  // whole.
+  std::vector<bool> explicit_outside;
+  bool in_meta = at_ > 0;
+  while (left() >= 8) {
+    if (in_meta && u16(at_) != 2) {
+      in_meta = false;
+      leave_meta();
+    }
+    const Head head = take_head();
+    const bool is_top = explicit_outside.empty();
+    if (head.tag == item_end_tag || head.tag == sequence_end_tag) {
+      if (!is_top) {
+        explicit_ = explicit_outside.back();
+        explicit_outside.pop_back();
+      }
+      continue;
+    }
+    if (head.tag == pixels_tag && is_top && head.is_open()) return take_fragments();
+    if (head.is_open()) {
+      explicit_outside.push_back(explicit_);
+      if (head.is_unknown) explicit_ = false;  // PS3.5, 6.2.2: unknown sequences are implicit inside
+      continue;
+    }
+    require(head.length, head.tag);
+    if (is_top) values_.emplace(head.tag, bytes_.substr(at_, head.length));
+    if (head.tag == pixels_tag && is_top) {
+      raw_pixels_ = bytes_.substr(at_, head.length);
+      return;
+    }
+    at_ += head.length;
+  }
+}
+
+std::string DicomFile::text(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  return found == values_.end() ? std::string() : trimmed(found->second);
+}
+
+std::string DicomFile::readable_text(DicomTag tag) const {
+  const bool is_latin1 = text(character_set_tag) == "ISO_IR 100";
+  std::string readable;
+  for (const char letter : text(tag)) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (code >= 0x80 && is_latin1) {
+      readable.push_back(static_cast<char>(0xc0 | (code >> 6)));
+      readable.push_back(static_cast<char>(0x80 | (code & 0x3f)));
+    } else {
+      readable.push_back(code < 0x20 || code >= 0x7f ? '?' : letter);
+    }
+  }
+  return readable;
+}
+
+std::optional<std::uint16_t> DicomFile::unsigned_short(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  if (found == values_.end() || found->second.size() < 2) return std::nullopt;
+  return static_cast<std::uint16_t>(u16(static_cast<std::size_t>(found->second.data() - bytes_.data())));
+}
+
+std::optional<std::vector<double>> DicomFile::decimals(DicomTag tag) const {
+  std::vector<double> numbers;
+  std::istringstream parts(text(tag));
+  for (std::string part; std::getline(parts, part, '\\');) {
+    part = trimmed(part);
+    if (part.starts_with('+')) part.erase(0, 1);
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(number))
+      return std::nullopt;
+    numbers.push_back(number);
+  }
+  if (numbers.empty()) return std::nullopt;
+  return numbers;
+}
+
+std::optional<double> DicomFile::decimal(DicomTag tag) const {
+  const std::optional<std::vector<double>> numbers = decimals(tag);
+  return numbers ? std::optional<double>(numbers->front()) : std::nullopt;
+}
+
+}  // namespace octotomy::voxel

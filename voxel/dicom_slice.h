@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+
+namespace octotomy::voxel {
+
+/// What the header of one single-frame grey DICOM image says, as far as a volume needs it. LPS, millimetres.
+struct DicomSlice {
+  std::filesystem::path path;
+  std::string instance_uid;
+  std::string series_uid;
+  std::string series_description;  ///< UTF-8
+  std::string modality;
+  std::string rescale_type;
+  int instance_number = 0;
+  glm::ivec2 size_px{0};             ///< columns, rows
+  glm::dvec2 spacing_mm{0.0};        ///< between columns, between rows
+  glm::dvec3 along_row{1, 0, 0};     ///< from column to column, as the file says it
+  glm::dvec3 along_column{0, 1, 0};  ///< from row to row
+  glm::dvec3 first_mm{0.0};          ///< centre of the first pixel
+  bool spacing_at_detector = false;  ///< PixelSpacing is absent, ImagerPixelSpacing took its place
+  bool inverted = false;             ///< MONOCHROME1
+  std::optional<double> slope;
+  std::optional<double> intercept;
+  std::optional<double> thickness_mm;
+  std::optional<double> tilt_deg;  ///< the scanner's own tag; its sign varies from vendor to vendor
+};
+
+/// Why a file is not a slice.
+struct NoSlice {
+  std::string reason;
+};
+
+/// Reads the header of a file and checks that its elements and pixels end within it. Never throws on a file's
+/// contents. Memory: the file once.
+std::variant<DicomSlice, NoSlice> read_dicom_slice(const std::filesystem::path& path);
+
+/// Decodes a slice and applies its rescale (absent: slope 1, intercept 0), row by row, x fastest. Returns
+/// false where a value is not an integer of int16's range. Precondition: `samples` has a place for every
+/// pixel. Throws std::runtime_error with path and reason where the pixels cannot be decoded.
+bool read_dicom_samples(const DicomSlice& slice, std::span<std::int16_t> samples);
+/// The same in single precision; always true.
+bool read_dicom_samples(const DicomSlice& slice, std::span<float> samples);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/image_file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <dlfcn.h>
+#include <fstream>
+#include <stdexcept>
+
+#include "voxel/image_file_oiio.h"
+#include "voxel/program_folder.h"
+#include "voxel/staging.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Encode = decltype(&octotomy_encode_image);
+
+/// Loads the library once; it stays until the program ends, since OpenImageIO's threads do.
+Encode load() {
+  const fs::path path = program_folder() / "octotomy_image_io.so";
+  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr)
+    throw std::runtime_error(path.string() + ": pictures cannot be encoded: " + dlerror() +
+                             "; the library belongs beside the program, and OpenImageIO must be installed");
+  void* symbol = dlsym(library, "octotomy_encode_image");
+  if (symbol == nullptr)
+    throw std::runtime_error(path.string() + ": is not this program's library; build both anew");
+  return reinterpret_cast<Encode>(symbol);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
+                                       const std::vector<std::uint8_t>& rgb) {
+  if (size_px.x < 1 || size_px.y < 1 ||
+      rgb.size() !=
+          std::size_t{3} * static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y))
+    throw std::invalid_argument("a picture of " + std::to_string(size_px.x) + " x " +
+                                std::to_string(size_px.y) + " pixels does not have " +
+                                std::to_string(rgb.size()) + " bytes");
+  if (format != "png" && format != "jpeg" && format != "webp")
+    throw std::runtime_error("no picture is encoded as '" + format + "'; choose png, jpeg or webp");
+  static const Encode encode = load();
+  std::vector<std::uint8_t> encoded;
+  std::string error;
+  if (!encode(format.c_str(), size_px.x, size_px.y, rgb.data(), &encoded, &error))
+    throw std::runtime_error("a picture cannot be encoded as " + format + ": " + error);
+  return encoded;
+}
+
+void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb) {
+  std::string format = path.extension().string();
+  if (!format.empty()) format.erase(0, 1);
+  std::transform(format.begin(), format.end(), format.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  if (format == "jpg") format = "jpeg";
+  std::vector<std::uint8_t> encoded;
+  try {
+    encoded = encode_image(format, size_px, rgb);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+  Staging staging(path.parent_path());
+  std::ofstream out(staging.folder() / path.filename(), std::ios::binary);
+  out.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
+  out.close();
+  if (!out) throw std::runtime_error(path.string() + ": cannot be written; check the space left");
+  staging.commit();
+}
+
+}  // namespace octotomy::voxel

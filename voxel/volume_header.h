@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace octotomy::voxel {
+
+/// Volume files that ITK reads and writes; ITK's physical space is LPS.
+enum class VolumeFormat { Nifti, Nrrd, Meta };
+
+/// By the file name's extension, whatever its case; none where it is no volume file's.
+std::optional<VolumeFormat> volume_format(const std::filesystem::path& path);
+
+/// The format's name, for people.
+const char* name_of(VolumeFormat format);
+
+/// What a volume file says before its samples.
+struct VolumeHeader {
+  /// Fields of a NRRD or MetaImage by key in lower case; empty for NIfTI.
+  std::map<std::string, std::string> fields;
+  /// Most bytes of samples that its data can hold: their size where raw, 1100 times that where packed.
+  std::uintmax_t most_bytes = 0;
+
+  std::optional<std::string> field(const std::string& key) const;
+};
+
+/// Reads a header and refuses what the libraries behind ITK never return from or write beyond their buffers
+/// on. Throws std::runtime_error with path and reason.
+VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
+
+}  // namespace octotomy::voxel
