@@ -7,12 +7,23 @@
 namespace octotomy::convert {
 
 /// The surface where the scan's own samples, interpolated linearly along the lattice's edges, enter the
-/// window low..high. What is inside the window reaches the scan's border is closed there, half a voxel beyond
-/// the outermost samples. Closed, oriented outward in LPS millimetres whatever the lattice's handedness, and
-/// manifold: each edge of a lattice cell is crossed by at most one vertex, and ambiguous faces always keep
-/// the inside corners apart. Crossings keep a small distance from samples (see the source), so no triangle is
-/// degenerate. Empty where nothing is inside. Parallel; same bits on any thread count. Source: Lorensen,
-/// Cline 1987; tables derived by following the loops of each of the 256 cases.
+/// window low..high, both included. In LPS millimetres; the bounds may be infinite.
+///
+/// Closed, manifold, and oriented outward whatever the lattice's handedness, for any samples, noise included:
+/// ambiguous faces of cells keep the inside corners apart. Vertices keep a thousandth of an edge's distance
+/// from samples, so no triangle is degenerate. Where an object reaches the scan's border it is closed half a
+/// voxel beyond the outermost samples, at the voxels' ends. Samples that are no numbers are outside. Where
+/// neighbouring samples lie below and above the window, what lies between them is not seen. Empty where
+/// nothing is inside.
+///
+/// On a sphere of r voxels of partial-volume samples the volume is 0.82 / r^2 of it low: 0.6 because
+/// triangles are chords, the rest because the mean of a voxel is not its centre's value. The area is 0.4 %
+/// high at every resolution, by ripple, less 0.3 / r^2.
+///
+/// Throws std::invalid_argument where the scene is not whole or a bound is not a number, std::length_error
+/// where 32 bits do not number the triangles. Parallel; same bits on any thread count. Cost: two passes over
+/// a bit a sample, one over the samples; memory one bit a sample beside the surface. Source: Lorensen, Cline
+/// 1987; tables derived by following the loops of each of the 256 cases.
 brep::Triangles isosurface(const voxel::Scene& scene, double low, double high);
 
 }  // namespace octotomy::convert

@@ -9,6 +9,9 @@
 #include <variant>
 #include <vector>
 
+#include "voxel/expression.h"
+#include "voxel/region_mask.h"
+
 namespace octotomy::planner {
 
 struct ScanSource {
@@ -45,9 +48,12 @@ struct MoveStep {
 struct MeasureStep {
   std::string object;
 };
+/// What an export writes: the object's surface, tetrahedra that fill it, or its voxels as a label map.
+enum class ExportKind { Mesh, Tetrahedra, Label };
 struct ExportStep {
   std::string object;
   std::filesystem::path path;  ///< within the result folder
+  ExportKind kind = ExportKind::Mesh;
 };
 
 struct Step {
@@ -58,6 +64,8 @@ struct Step {
 /// An operation as pure data: ordered steps, each of which names its result.
 struct Plan {
   std::string name;
+  std::string text;              ///< the JSON it was read from
+  std::filesystem::path file;    ///< empty where the plan was not read from a file
   std::filesystem::path folder;  ///< where the plan lies
   std::map<std::string, ScanSource> scans;
   std::optional<double>
@@ -65,9 +73,21 @@ struct Plan {
   std::vector<Step> steps;
 };
 
-/// Reads a plan. Unknown keys, unknown steps and unbound names are refused with the nearest known one; names
-/// must be known before they are used. Throws std::runtime_error saying file, step and what to try.
+/// Reads a plan. Keys, steps and names that are not known, and keys said twice, are refused with the nearest
+/// known one; names must be bound before they are used. Expressions are parsed, polygons checked to have an
+/// area, export extensions to be writable (.stl .ply .obj .off, .inp .vtu, .nrrd .nii.gz .mha), before
+/// anything is evaluated. Throws std::runtime_error saying file, step, key and what to try.
 Plan read_plan(const std::filesystem::path& path);
+/// The same of a text; `folder` is what relative paths are relative to.
 Plan parse_plan(const std::string& json, const std::filesystem::path& folder);
+
+/// The scan's path, made absolute against the plan's folder.
+std::filesystem::path scan_path(const Plan& plan, const ScanSource& scan);
+
+/// The word of a step's `do`.
+std::string verb(const Step& step);
+/// The volume of interest and the motion that a step's text describes.
+voxel::RegionMask mask_of(const MaskStep& step);
+voxel::Motion motion_of(const MoveStep& step);
 
 }  // namespace octotomy::planner

@@ -155,6 +155,60 @@ std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice&
           glm::ivec3(glm::clamp(glm::ceil(high), glm::dvec3(0.0), last))};
 }
 
+void set_leaf_ranges(GreyBrick& brick) {
+  for (std::size_t leaf = 0; leaf < 64; ++leaf) {
+    MinMax range{brick.samples[leaf][0], brick.samples[leaf][0]};
+    for (const std::int16_t sample : brick.samples[leaf]) widen(range, {sample, sample});
+    brick.leaf_range[leaf] = range;
+  }
+}
+
+MinMax range_of(const GreyBrick& brick) {
+  MinMax range = brick.leaf_range.front();
+  for (const MinMax& leaf : brick.leaf_range) widen(range, leaf);
+  return range;
+}
+
+// Adds the levels above the bottom one, up to the root's.
+template <typename Level>
+void join_ranges(std::vector<Level>& levels, int depth) {
+  for (int height = 3; height <= root_height(depth); ++height) {
+    const Level& below = levels.back();
+    Level level;
+    level.side = (below.side + 3) / 4;
+    level.ranges.resize(static_cast<std::size_t>(level.side) * static_cast<std::size_t>(level.side) *
+                        static_cast<std::size_t>(level.side));
+    for (int z = 0; z < level.side; ++z)
+      for (int y = 0; y < level.side; ++y)
+        for (int x = 0; x < level.side; ++x) {
+          const glm::ivec3 parent(x, y, z);
+          MinMax range = below.ranges[below.index(parent * 4)];
+          for (int child = 1; child < 64; ++child) {
+            const glm::ivec3 at = parent * 4 + glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
+            if (glm::all(glm::lessThan(at, glm::ivec3(below.side))))
+              widen(range, below.ranges[below.index(at)]);
+          }
+          level.ranges[level.index(parent)] = range;
+        }
+    levels.push_back(std::move(level));
+  }
+}
+
+// Bottom level and bricks of a grey octree that is all background: brick 0.
+template <typename Storage, typename Level>
+void clear(Storage& storage, Level& bottom, const Universe& universe, std::int16_t background,
+           std::size_t brick_count) {
+  storage.universe = universe;
+  storage.background = background;
+  bottom.side = (universe.side() + 15) / 16;
+  const auto side = static_cast<std::size_t>(bottom.side);
+  bottom.ranges.assign(side * side * side, {background, background});
+  storage.brick_of_block.assign(side * side * side, 0);
+  storage.bricks.resize(brick_count + 1);
+  for (auto& leaf : storage.bricks.front().samples) leaf.fill(background);
+  storage.bricks.front().leaf_range.fill({background, background});
+}
+
 template <typename Sample>
 void fill(GreyBrick& brick, const glm::ivec3& origin, int side, const Resampler<Sample>& resampler,
           std::int16_t background) {
@@ -171,11 +225,7 @@ void fill(GreyBrick& brick, const glm::ivec3& origin, int side, const Resampler<
                     brick.samples[static_cast<std::size_t>(child_index(leaf, y >> 2, z >> 2))].begin() +
                         child_index(0, y & 3, z & 3));
     }
-  for (std::size_t leaf = 0; leaf < 64; ++leaf) {
-    MinMax range{brick.samples[leaf][0], brick.samples[leaf][0]};
-    for (const std::int16_t sample : brick.samples[leaf]) widen(range, {sample, sample});
-    brick.leaf_range[leaf] = range;
-  }
+  set_leaf_ranges(brick);
 }
 
 }  // namespace
@@ -200,28 +250,20 @@ std::uint64_t GreyOctree::bytes_memory() const {
 
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background) {
   check(scene);
-  auto storage = std::make_shared<GreyOctree::Storage>();
-  storage->universe = universe;
-  storage->background = background;
-
   // 1. Number the bricks: 0 is background, then the blocks within reach, x fastest.
-  GreyOctree::Level bottom;
-  bottom.side = (universe.side() + 15) / 16;
-  const auto block_count = static_cast<std::size_t>(bottom.side) * static_cast<std::size_t>(bottom.side) *
-                           static_cast<std::size_t>(bottom.side);
-  bottom.ranges.assign(block_count, {background, background});
-  storage->brick_of_block.assign(block_count, 0);
   const auto [first_voxel, last_voxel] = reach(universe, scene.lattice);
   const glm::ivec3 first = first_voxel >> 4;
   const glm::ivec3 count = (last_voxel >> 4) - first + 1;
+  auto storage = std::make_shared<GreyOctree::Storage>();
+  GreyOctree::Level bottom;
+  clear(*storage, bottom, universe, background,
+        static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y) *
+            static_cast<std::size_t>(count.z));
   std::uint32_t next = 1;
   for (int z = 0; z < count.z; ++z)
     for (int y = 0; y < count.y; ++y)
       for (int x = 0; x < count.x; ++x)
         storage->brick_of_block[bottom.index(first + glm::ivec3(x, y, z))] = next++;
-  storage->bricks.resize(next);
-  for (auto& leaf : storage->bricks.front().samples) leaf.fill(background);
-  storage->bricks.front().leaf_range.fill({background, background});
 
   // 2. Fill them.
   std::visit(
@@ -232,9 +274,7 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
             const glm::ivec3 block = first + glm::ivec3(x, row % count.y, row / count.y);
             GreyBrick& brick = storage->bricks[storage->brick_of_block[bottom.index(block)]];
             fill(brick, block * 16, universe.side(), resampler, background);
-            MinMax& range = bottom.ranges[bottom.index(block)];
-            range = brick.leaf_range.front();
-            for (const MinMax& leaf : brick.leaf_range) widen(range, leaf);
+            bottom.ranges[bottom.index(block)] = range_of(brick);
           }
         });
       },
@@ -242,26 +282,33 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
   storage->levels.push_back(std::move(bottom));
 
   // 3. Join the ranges.
-  for (int height = 3; height <= root_height(universe.depth); ++height) {
-    const GreyOctree::Level& below = storage->levels.back();
-    GreyOctree::Level level;
-    level.side = (below.side + 3) / 4;
-    level.ranges.resize(static_cast<std::size_t>(level.side) * static_cast<std::size_t>(level.side) *
-                        static_cast<std::size_t>(level.side));
-    for (int z = 0; z < level.side; ++z)
-      for (int y = 0; y < level.side; ++y)
-        for (int x = 0; x < level.side; ++x) {
-          const glm::ivec3 parent(x, y, z);
-          MinMax range = below.ranges[below.index(parent * 4)];
-          for (int child = 1; child < 64; ++child) {
-            const glm::ivec3 at = parent * 4 + glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
-            if (glm::all(glm::lessThan(at, glm::ivec3(below.side))))
-              widen(range, below.ranges[below.index(at)]);
-          }
-          level.ranges[level.index(parent)] = range;
-        }
-    storage->levels.push_back(std::move(level));
+  join_ranges(storage->levels, universe.depth);
+  return GreyOctree(std::move(storage));
+}
+
+GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
+                                 std::span<const glm::ivec3> blocks,
+                                 const std::function<void(std::size_t number, GreyBrick& brick)>& fill) {
+  auto storage = std::make_shared<GreyOctree::Storage>();
+  GreyOctree::Level bottom;
+  clear(*storage, bottom, universe, background, blocks.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const glm::ivec3& block = blocks[i];
+    if (glm::any(glm::lessThan(block, glm::ivec3(0))) ||
+        glm::any(glm::greaterThanEqual(block, glm::ivec3(bottom.side))))
+      throw std::invalid_argument("a brick lies outside the universe");
+    std::uint32_t& brick = storage->brick_of_block[bottom.index(block)];
+    if (brick != 0) throw std::invalid_argument("two bricks have the same place");
+    brick = static_cast<std::uint32_t>(i + 1);
   }
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+    GreyBrick& brick = storage->bricks[i + 1];
+    fill(i, brick);
+    set_leaf_ranges(brick);
+    bottom.ranges[bottom.index(blocks[i])] = range_of(brick);
+  });
+  storage->levels.push_back(std::move(bottom));
+  join_ranges(storage->levels, universe.depth);
   return GreyOctree(std::move(storage));
 }
 

@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "voxel/lattice.h"
@@ -48,6 +50,8 @@ class GreyOctree {
 
  private:
   friend GreyOctree grey_octree_of(const Universe&, const Scene&, std::int16_t);
+  friend GreyOctree grey_octree_of_bricks(const Universe&, std::int16_t, std::span<const glm::ivec3>,
+                                          const std::function<void(std::size_t, GreyBrick&)>&);
   struct Level {
     int side = 1;  ///< blocks along an axis
     std::vector<MinMax> ranges;
@@ -74,5 +78,13 @@ class GreyOctree {
 /// range. Parallel; same bits on any thread count. Memory: the samples within the scan's bounds and three per
 /// cent.
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
+
+/// The grey octree whose blocks of height 2 numbered `blocks` have samples and whose others are background.
+/// `fill` sets the samples of brick `number`, that of blocks[number], and is called once each from several
+/// threads; ranges are made here. Samples beyond a universe of less than 16 voxels a side must be the
+/// background. Throws std::invalid_argument where a block is outside the universe or named twice.
+GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
+                                 std::span<const glm::ivec3> blocks,
+                                 const std::function<void(std::size_t number, GreyBrick& brick)>& fill);
 
 }  // namespace octotomy::voxel

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "voxel/operand.h"
 #include "voxel/operand_frame.h"
@@ -39,6 +41,76 @@ MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
   return range;
 }
 
+// The samples around one leaf, copied together from up to 4 leaves an axis.
+class NearSamples {
+ public:
+  static constexpr int leaves = 4;
+  static constexpr int side = 4 * leaves;
+
+  // Chooses the leaves first..last, both included, and gives the range of what is in them.
+  MinMax choose(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& last) {
+    first_ = first;
+    count_ = last - first + 1;
+    MinMax range{std::numeric_limits<std::int16_t>::max(), std::numeric_limits<std::int16_t>::min()};
+    const int limit = grey.universe().side() / 4;
+    std::size_t next = 0;
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+          const bool outside = x < 0 || y < 0 || z < 0 || x >= limit || y >= limit || z >= limit;
+          const glm::ivec3 leaf(x, y, z);
+          const auto number = static_cast<std::size_t>(child_index(x & 3, y & 3, z & 3));
+          const GreyBrick* brick = outside ? nullptr : &grey.brick(leaf >> 2);
+          chosen_[next++] = brick == nullptr ? nullptr : brick->samples[number].data();
+          const MinMax part =
+              brick == nullptr ? MinMax{grey.background(), grey.background()} : brick->leaf_range[number];
+          range.low = std::min(range.low, part.low);
+          range.high = std::max(range.high, part.high);
+        }
+    return range;
+  }
+
+  // Copies the chosen leaves' samples.
+  void fetch(std::int16_t background) {
+    std::size_t next = 0;
+    for (int z = 0; z < count_.z; ++z)
+      for (int y = 0; y < count_.y; ++y)
+        for (int x = 0; x < count_.x; ++x) {
+          const std::int16_t* source = chosen_[next++];
+          for (int row = 0; row < 16; ++row) {
+            std::int16_t* target = &samples_[index(4 * x, 4 * y + (row & 3), 4 * z + (row >> 2))];
+            if (source == nullptr)
+              std::fill_n(target, 4, background);
+            else
+              std::copy_n(source + 4 * row, 4, target);
+          }
+        }
+  }
+
+  // The trilinear value at a position of the source.
+  double interpolate(const glm::dvec3& position) const {
+    const glm::dvec3 p = position - glm::dvec3(4 * first_);
+    const glm::ivec3 low(p);
+    const glm::dvec3 t = p - glm::dvec3(low);
+    const std::int16_t* cell = &samples_[index(low.x, low.y, low.z)];
+    const auto along_x = [&](int offset) { return cell[offset] * (1.0 - t.x) + cell[offset + 1] * t.x; };
+    const double below = along_x(0) * (1.0 - t.y) + along_x(side) * t.y;
+    const double above = along_x(side * side) * (1.0 - t.y) + along_x(side * side + side) * t.y;
+    return below * (1.0 - t.z) + above * t.z;
+  }
+
+ private:
+  static std::size_t index(int x, int y, int z) {
+    return static_cast<std::size_t>(x + side * (y + side * z));
+  }
+
+  glm::ivec3 first_{0};
+  glm::ivec3 count_{0};
+  std::array<const std::int16_t*, leaves * leaves * leaves> chosen_;
+  std::array<std::int16_t, side * side * side> samples_;
+};
+
+// The same from the octree itself, for lattices so coarse that a leaf's surroundings are many.
 double interpolate(const GreyOctree& grey, const glm::dvec3& p) {
   const glm::dvec3 cell = glm::floor(p);
   const glm::ivec3 low(cell);
@@ -82,6 +154,8 @@ void WindowOperand::words(const WantedLeaves& leaves) const {
 }
 
 Cover SampledWindowOperand::cover(const TargetBlock& block) const {
+  // Within a block of height 2, words() looks at the leaves themselves.
+  if (block.child_side == 4) return {0, all_children};
   const Imager image(source_from_target_, block.child_side);
   return cover_of_children(block, [&](const glm::dvec3& centre) {
     const ImageBox box = image(centre);
@@ -91,9 +165,27 @@ Cover SampledWindowOperand::cover(const TargetBlock& block) const {
 }
 
 void SampledWindowOperand::words(const WantedLeaves& leaves) const {
-  for_each_wanted_voxel(leaves, [&](const glm::dvec3& voxel) {
-    const double value = interpolate(window_->grey, glm::dvec3(source_from_target_ * glm::dvec4(voxel, 1.0)));
-    return value >= window_->low && value <= window_->high;
+  const GreyOctree& grey = window_->grey;
+  const Imager image(source_from_target_, 4);
+  NearSamples near;
+  for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {
+    const ImageBox box = image(glm::dvec3(origin) + 1.5);
+    const glm::ivec3 first = glm::ivec3(glm::floor(box.low)) >> 2;
+    const glm::ivec3 last = (glm::ivec3(glm::floor(box.high)) + 1) >> 2;
+    const bool is_near = glm::all(glm::lessThan(last - first, glm::ivec3(NearSamples::leaves)));
+    if (is_near) {
+      const Status status = status_of_range(near.choose(grey, first, last), window_->low, window_->high);
+      if (status == Status::Empty) return 0;
+      if (status == Status::Full) return all_children;
+      near.fetch(grey.background());
+    }
+    std::uint64_t word = 0;
+    for (int voxel = 0; voxel < 64; ++voxel) {
+      const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin + child_place(voxel)), 1.0));
+      const double value = is_near ? near.interpolate(p) : interpolate(grey, p);
+      word |= std::uint64_t{value >= window_->low && value <= window_->high} << voxel;
+    }
+    return word;
   });
 }
 

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <bit>
+#include <string>
+#include <vector>
+
+#include "convert/deck_format.h"
+
+// VTK XML unstructured grid, version 1.0: 64-bit block sizes, raw data appended after the markup.
+
+namespace octotomy::convert {
+namespace {
+
+constexpr std::uint8_t vtk_tetra = 10;
+
+/// Blocks of appended data, each behind its size in bytes; offsets count from behind the '_'.
+class Appended {
+ public:
+  template <typename T>
+  std::string add(const std::vector<T>& values) {
+    std::string offset = std::to_string(bytes_);
+    blocks_.push_back({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
+    bytes_ += sizeof(std::uint64_t) + values.size() * sizeof(T);
+    return offset;
+  }
+  void write(std::ostream& out) const {
+    for (const Block& block : blocks_) {
+      const std::uint64_t size = block.size;
+      out.write(reinterpret_cast<const char*>(&size), sizeof size);
+      out.write(block.data, static_cast<std::streamsize>(block.size));
+    }
+  }
+
+ private:
+  struct Block {
+    const char* data;
+    std::size_t size;
+  };
+  std::vector<Block> blocks_;
+  std::uint64_t bytes_ = 0;
+};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '>') {
+      result += "&gt;";
+    } else if (c == '-') {
+      result += "&#45;";  // "--" would end the comment
+    } else {
+      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void write_vtu(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out) {
+  std::vector<std::int64_t> connectivity;
+  std::vector<std::int64_t> offsets;
+  connectivity.reserve(4 * tetrahedra.tets.size());
+  offsets.reserve(tetrahedra.tets.size());
+  for (const std::array<std::uint32_t, 4>& tet : tetrahedra.tets) {
+    connectivity.insert(connectivity.end(), tet.begin(), tet.end());
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+  }
+  const std::vector<std::uint8_t> types(tetrahedra.tets.size(), vtk_tetra);
+  std::vector<std::uint8_t> surface(tetrahedra.nodes_mm.size(), 0);
+  for (const std::uint32_t node : tetrahedra.boundary_nodes) surface[node] = 1;
+
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
+  Appended appended;
+  const std::string order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
+  const auto array = [](const std::string& type, const std::string& name, const std::string& offset,
+                        const std::string& more = "") {
+    return "<DataArray type=\"" + type + "\" Name=\"" + name + "\"" + more +
+           " format=\"appended\" offset=\"" + offset + "\"/>\n";
+  };
+  out << "<?xml version=\"1.0\"?>\n";
+  if (!options.title.empty()) out << "<!-- " << escaped(options.title) << " -->\n";
+  out << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" << order
+      << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\""
+      << tetrahedra.nodes_mm.size() << "\" NumberOfCells=\"" << tetrahedra.tets.size() << "\">\n"
+      << "<PointData>\n"
+      << array("UInt8", "surface", appended.add(surface)) << "</PointData>\n<Points>\n"
+      << array("Float64", "Points", appended.add(tetrahedra.nodes_mm), " NumberOfComponents=\"3\"")
+      << "</Points>\n<Cells>\n"
+      << array("Int64", "connectivity", appended.add(connectivity))
+      << array("Int64", "offsets", appended.add(offsets)) << array("UInt8", "types", appended.add(types))
+      << "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+  appended.write(out);
+  out << "\n</AppendedData>\n</VTKFile>\n";
+}
+
+}  // namespace octotomy::convert

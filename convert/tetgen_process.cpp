@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tetgen_process.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <spawn.h>
+#include <stdexcept>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+// A spawned executable, not a fork: the parent has threads, and a child that is a copy of it could wait for
+// ever on a lock that another thread held. Request, answer and what TetGen prints are files in memory, so
+// neither side waits for the other and a child that dies early raises no SIGPIPE here.
+
+namespace octotomy::convert {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// How often a running child is looked at: a hundredth of the shortest run that would be noticed as slow.
+constexpr std::chrono::milliseconds look_every{1};
+/// How much of what TetGen printed is worth reading: its last words come last.
+constexpr std::size_t last_words_bytes = 400;
+
+[[noreturn]] void fail(const std::string& what, int error) {
+  throw std::runtime_error("tetrahedralise: " + what + ": " + std::strerror(error));
+}
+
+/// A file in memory, without a name and not inherited.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const char* name) : file_(memfd_create(name, MFD_CLOEXEC)) {
+    if (file_ < 0) fail("no file in memory for TetGen", errno);
+    // The child's standard streams are laid over 0 to 2 one by one: none of the sources may stand there.
+    if (file_ <= STDERR_FILENO) {
+      const int higher = fcntl(file_, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+      const int error = errno;
+      close(file_);
+      if (higher < 0) fail("no file in memory for TetGen", error);
+      file_ = higher;
+    }
+  }
+  ~MemoryFile() { close(file_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  int file() const { return file_; }
+  std::uint64_t size() const {
+    const off_t end = lseek(file_, 0, SEEK_END);
+    return end < 0 ? 0 : static_cast<std::uint64_t>(end);
+  }
+  void rewind() const { lseek(file_, 0, SEEK_SET); }
+
+  void write_all(const void* source, std::size_t bytes) const {
+    const auto* at = static_cast<const std::byte*>(source);
+    while (bytes > 0) {
+      const ssize_t put = write(file_, at, bytes);
+      if (put < 0 && errno == EINTR) continue;
+      if (put <= 0) fail("the surface cannot be handed to TetGen", errno);
+      at += put;
+      bytes -= static_cast<std::size_t>(put);
+    }
+  }
+  bool read_all(void* target, std::size_t bytes) const {
+    auto* at = static_cast<std::byte*>(target);
+    while (bytes > 0) {
+      const ssize_t got = read(file_, at, bytes);
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) return false;
+      at += got;
+      bytes -= static_cast<std::size_t>(got);
+    }
+    return true;
+  }
+
+ private:
+  int file_;
+};
+
+/// The executable that lies beside the running one.
+std::filesystem::path tetgen_executable() {
+  std::filesystem::path path =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octotomy-tetgen";
+  if (!std::filesystem::exists(path))
+    throw std::runtime_error("tetrahedralise: " + path.string() +
+                             " is missing: it belongs beside the program that uses it");
+  return path;
+}
+
+/// Starts the executable with three files as its standard streams and nothing else of ours open.
+pid_t start(const std::filesystem::path& executable, int in, int out, int log) {
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, in, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&files, log, STDERR_FILENO);
+  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigset_t all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+
+  std::string name = executable.string();
+  char* arguments[] = {name.data(), nullptr};
+  char* environment[] = {nullptr};
+  pid_t child = -1;
+  const int error = posix_spawn(&child, name.c_str(), &files, &attributes, arguments, environment);
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) fail(name + " cannot be started", error);
+  return child;
+}
+
+enum class Ended { ByItself, OutOfTime, Stopped };
+struct Ending {
+  Ended how = Ended::ByItself;
+  int status = 0;
+};
+
+/// Waits for the child within the limits and ends it where they are passed; it is gone on return.
+Ending wait_within(pid_t child, const TetgenLimits& limits) {
+  const Clock::time_point deadline = Clock::now() + limits.time;
+  Ending ending;
+  for (;;) {
+    const pid_t gone = waitpid(child, &ending.status, ending.how == Ended::ByItself ? WNOHANG : 0);
+    if (gone == child) return ending;
+    if (gone < 0 && errno != EINTR) fail("TetGen's process is lost", errno);
+    if (ending.how != Ended::ByItself) continue;
+    if (limits.stop.stop_requested() || Clock::now() >= deadline) {
+      ending.how = limits.stop.stop_requested() ? Ended::Stopped : Ended::OutOfTime;
+      kill(child, SIGKILL);
+      continue;
+    }
+    std::this_thread::sleep_for(look_every);
+  }
+}
+
+/// The end of what TetGen printed, on one line.
+std::string last_words(const MemoryFile& log) {
+  const std::uint64_t size = log.size();
+  const std::uint64_t count = std::min<std::uint64_t>(size, last_words_bytes);
+  std::string words(count, ' ');
+  lseek(log.file(), static_cast<off_t>(size - count), SEEK_SET);
+  if (!log.read_all(words.data(), words.size())) return {};
+  std::string line;
+  for (const char c : words) {
+    const bool space = static_cast<unsigned char>(c) <= ' ';
+    if (!space) line += c;
+    if (space && !line.empty() && line.back() != ' ') line += ' ';
+  }
+  if (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+struct Reason {
+  std::string what;
+  bool worth_another_try = true;
+};
+
+/// The numbers are those of TetGen 1.5's terminatetetgen().
+Reason reason_of_status(int status, const TetgenLimits& limits) {
+  const std::string memory = std::to_string(limits.memory_bytes >> 20) + " MiB";
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGXCPU || signal == SIGKILL)
+      return {"was ended by signal " + std::to_string(signal) + " (SIG" + sigabbrev_np(signal) +
+              "): out of processor time, or ended from outside"};
+    const char* name = sigabbrev_np(signal);
+    return {"crashed with signal " + std::to_string(signal) + " (SIG" + (name == nullptr ? "?" : name) + ")"};
+  }
+  switch (WEXITSTATUS(status)) {
+    case tetgen_exit_memory:
+      return {"needs more than the memory limit of " + memory + ": raise it or coarsen the surface"};
+    case tetgen_exit_protocol:
+      return {"did not understand the request: octotomy-tetgen is of another build", false};
+    case tetgen_exit_base + 2:
+      return {"met an internal error"};
+    case tetgen_exit_base + 3:
+      return {"found the surface intersecting itself: look at its health, then smooth or remesh it", false};
+    case tetgen_exit_base + 4:
+      return {"found features too small for its tolerance: remesh the surface"};
+    case tetgen_exit_base + 5:
+      return {"found two triangles too close to each other: remesh the surface"};
+    case tetgen_exit_base + 10:
+      return {"refused the surface as malformed", false};
+    default:
+      return {"ended with status " + std::to_string(WEXITSTATUS(status))};
+  }
+}
+
+void write_request(const MemoryFile& file, const TetgenInput& input, const std::string& switches,
+                   const TetgenLimits& limits) {
+  TetgenRequest request;
+  if (switches.size() >= request.switches.size())
+    throw std::invalid_argument("tetrahedralise: switches '" + switches + "' are too long");
+  std::copy(switches.begin(), switches.end(), request.switches.begin());
+  request.points = input.points_mm.size();
+  request.triangles = input.triangles.size();
+  request.holes = input.holes_mm.size();
+  request.memory_limit_bytes = limits.memory_bytes;
+  // The clock on the wall decides; processor time is the net below it, should this process be gone by then.
+  request.cpu_limit_seconds =
+      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(limits.time).count() + 2);
+  file.write_all(&request, sizeof request);
+  file.write_all(input.points_mm.data(), input.points_mm.size() * sizeof(glm::dvec3));
+  file.write_all(input.triangles.data(), input.triangles.size() * sizeof(input.triangles[0]));
+  file.write_all(input.holes_mm.data(), input.holes_mm.size() * sizeof(glm::dvec3));
+  file.rewind();
+}
+
+/// False where the answer is not whole.
+bool read_answer(const MemoryFile& file, TetgenOutcome& outcome) {
+  const std::uint64_t size = file.size();
+  file.rewind();
+  TetgenAnswer answer;
+  if (size < sizeof answer || !file.read_all(&answer, sizeof answer)) return false;
+  if (answer.version != TetgenRequest::this_version) return false;
+  const std::uint64_t point_bytes = sizeof(glm::dvec3);
+  const std::uint64_t tet_bytes = 4 * sizeof(std::uint32_t);
+  if (answer.points > size / point_bytes || answer.tetrahedra > size / tet_bytes) return false;
+  outcome.points_mm.resize(answer.points);
+  outcome.tetrahedra.resize(answer.tetrahedra);
+  return file.read_all(outcome.points_mm.data(), answer.points * point_bytes) &&
+         file.read_all(outcome.tetrahedra.data(), answer.tetrahedra * tet_bytes);
+}
+
+}  // namespace
+
+TetgenOutcome run_tetgen(const TetgenInput& input, const std::string& switches, const TetgenLimits& limits) {
+  const MemoryFile request("tetgen request");
+  const MemoryFile answer("tetgen answer");
+  const MemoryFile log("tetgen log");
+  write_request(request, input, switches, limits);
+
+  const std::filesystem::path executable = tetgen_executable();
+  const Clock::time_point started = Clock::now();
+  const Ending ending = wait_within(start(executable, request.file(), answer.file(), log.file()), limits);
+  const auto ran = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - started);
+
+  TetgenOutcome outcome;
+  std::string why;
+  if (ending.how == Ended::Stopped) {
+    why = "was stopped on request";
+  } else if (ending.how == Ended::OutOfTime) {
+    why = "did not end within the time limit of " + std::to_string(limits.time.count()) +
+          " ms: raise it, ease the radius-edge bound or coarsen the surface";
+    outcome.worth_another_try = true;
+  } else if (ending.status != 0) {
+    const Reason reason = reason_of_status(ending.status, limits);
+    why = reason.what;
+    outcome.worth_another_try = reason.worth_another_try;
+  } else if (!read_answer(answer, outcome)) {
+    why = "gave an answer that is not whole";
+    outcome.worth_another_try = true;
+  } else {
+    return outcome;
+  }
+  const std::string words = last_words(log);
+  outcome.points_mm.clear();
+  outcome.tetrahedra.clear();
+  outcome.failure = "TetGen -" + switches + " " + why + " (after " + std::to_string(ran.count()) + " ms" +
+                    (words.empty() ? "" : "; it said: " + words) + ")";
+  return outcome;
+}
+
+}  // namespace octotomy::convert

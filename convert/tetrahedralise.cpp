@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tetrahedralise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <tbb/parallel_sort.h>
+
+#include "convert/tetgen_process.h"
+
+// 1 The surface becomes points and triangles; what TetGen would abort on is refused here.
+// 2 A cavity is a connected part of the surface that is inside out. Half way from one of its triangles to
+//   the next surface in front of it lies a point that is in the cavity and in nothing else: the hole point.
+// 3 TetGen runs, with less and less to ask. Its answer is believed only where the volumes are positive and
+//   their sum is the volume that the surface encloses: that shows filled cavities and leaks.
+
+namespace octotomy::convert {
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw std::invalid_argument("tetrahedralise: " + why);
+}
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text << std::setprecision(6) << value;
+  return text.str();
+}
+
+/// How far the sum of the tetrahedra's volumes may be from the surface's, of that volume. Both are sums of
+/// n terms no larger than the bounding box, rounded to the machine's epsilon: sqrt(n) epsilon is 3e-13 for
+/// two million. 1e-9 leaves room for thin solids, whose volume is a small part of their box, and is a
+/// thousand times less than the smallest cavity that a scan could show.
+constexpr double volume_tolerance() {
+  return 1e-9;
+}
+
+/// Of the cube of its largest extent, the volume under which a solid is flat for TetGen: it takes points for
+/// coplanar within 1e-8 of the largest extent, so a plate that thin has no inside.
+constexpr double flat_volume() {
+  return 1e-8;
+}
+
+/// The extent under which a solid is nothing a scanner could have seen; TetGen's absolute tolerances begin to
+/// bite some orders below.
+constexpr double tiny_extent_mm() {
+  return 1e-3;
+}
+
+struct Bounds {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+  void add(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  bool meets(const Bounds& other) const {
+    return glm::all(glm::lessThanEqual(low, other.high)) && glm::all(glm::lessThanEqual(other.low, high));
+  }
+};
+
+/// Six times the signed volume of the tetrahedron; positive in the order that Tetrahedra documents.
+double six_volumes(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
+  return glm::dot(glm::cross(b - a, c - a), d - a);
+}
+
+/// The solid's faces as TetGen takes them. Vertices without a face are left out: TetGen would mesh to them.
+TetgenInput surface_of(const brep::Mesh& solid) {
+  TetgenInput input;
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> number(solid.n_vertices(), unused);
+  for (const auto face : solid.faces()) {
+    std::array<std::uint32_t, 3> triangle{};
+    std::size_t corner = 0;
+    for (const auto halfedge : solid.fh_range(face)) {
+      const auto vertex = solid.to_vertex_handle(halfedge);
+      const OpenMesh::Vec3d& p = solid.point(vertex);
+      if (solid.is_boundary(solid.opposite_halfedge_handle(halfedge)))
+        refuse("the surface is open at (" + text_of(p[0]) + ", " + text_of(p[1]) + ", " + text_of(p[2]) +
+               ") mm, so it has no inside: close its holes first");
+      if (!std::isfinite(p[0] + p[1] + p[2]))
+        refuse("vertex " + std::to_string(vertex.idx()) + " is not finite");
+      std::uint32_t& known = number[static_cast<std::size_t>(vertex.idx())];
+      if (known == unused) {
+        known = static_cast<std::uint32_t>(input.points_mm.size());
+        input.points_mm.emplace_back(p[0], p[1], p[2]);
+      }
+      triangle.at(corner++) = known;
+    }
+    input.triangles.push_back(triangle);
+  }
+  return input;
+}
+
+/// A part of the surface that hangs together by its points.
+struct Part {
+  std::vector<std::uint32_t> triangles;
+  Bounds bounds;
+  double six_volumes_mm3 = 0.0;
+};
+
+std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t v) {
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+/// Parts in the order of their first triangle. Volumes are taken about the surface's first point.
+std::vector<Part> parts_of(const TetgenInput& surface) {
+  std::vector<std::uint32_t> parent(surface.points_mm.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  for (const auto& [a, b, c] : surface.triangles) {
+    parent[root_of(parent, b)] = root_of(parent, a);
+    parent[root_of(parent, c)] = root_of(parent, a);
+  }
+  std::vector<Part> parts;
+  constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> part_of_root(surface.points_mm.size(), unknown);
+  const glm::dvec3 origin = surface.points_mm.front();
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    std::uint32_t& number = part_of_root[root_of(parent, a)];
+    if (number == unknown) {
+      number = static_cast<std::uint32_t>(parts.size());
+      parts.emplace_back();
+    }
+    Part& part = parts[number];
+    part.triangles.push_back(t);
+    for (const std::uint32_t v : surface.triangles[t]) part.bounds.add(surface.points_mm[v]);
+    part.six_volumes_mm3 += glm::dot(glm::cross(surface.points_mm[a] - origin, surface.points_mm[b] - origin),
+                                     surface.points_mm[c] - origin);
+  }
+  return parts;
+}
+
+/// How far along the ray a triangle is met, or infinity. Triangles are taken a little too large: a hit too
+/// many only brings the hole point nearer to where it starts.
+double distance_along(const glm::dvec3& from, const glm::dvec3& direction, const glm::dvec3& a,
+                      const glm::dvec3& b, const glm::dvec3& c) {
+  constexpr double missed = std::numeric_limits<double>::infinity();
+  // A hundred million times the rounding of the coordinates below, which are parts of the triangle's sides.
+  constexpr double margin = 1e-8;
+  const glm::dvec3 ab = b - a;
+  const glm::dvec3 ac = c - a;
+  const glm::dvec3 across = glm::cross(direction, ac);
+  const double scale = glm::dot(ab, across);
+  if (scale == 0.0) return missed;
+  const glm::dvec3 offset = from - a;
+  const double u = glm::dot(offset, across) / scale;
+  const glm::dvec3 turned = glm::cross(offset, ab);
+  const double v = glm::dot(direction, turned) / scale;
+  if (!(u >= -margin && v >= -margin && u + v <= 1.0 + margin)) return missed;
+  const double t = glm::dot(ac, turned) / scale;
+  return t > 0.0 ? t : missed;
+}
+
+double nearest_hit(const TetgenInput& surface, const Part& part, std::uint32_t start, const glm::dvec3& from,
+                   const glm::dvec3& direction) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t t : part.triangles) {
+    if (t == start) continue;
+    const auto& [a, b, c] = surface.triangles[t];
+    nearest = std::min(nearest, distance_along(from, direction, surface.points_mm[a], surface.points_mm[b],
+                                               surface.points_mm[c]));
+  }
+  return nearest;
+}
+
+/// A point inside the cavity that a part encloses: from its largest triangle along the normal, which points
+/// out of the solid and into the cavity, half way to the next surface. That is the part itself or an island
+/// in the cavity, whose bounds then meet the way.
+glm::dvec3 hole_point(const TetgenInput& surface, const std::vector<Part>& parts, const Part& cavity) {
+  const auto normal_of = [&](std::uint32_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    return glm::cross(surface.points_mm[b] - surface.points_mm[a],
+                      surface.points_mm[c] - surface.points_mm[a]);
+  };
+  const auto area = [&](std::uint32_t t) { return glm::length(normal_of(t)); };
+  const std::uint32_t start =
+      *std::max_element(cavity.triangles.begin(), cavity.triangles.end(),
+                        [&](std::uint32_t s, std::uint32_t t) { return area(s) < area(t); });
+  const auto& [a, b, c] = surface.triangles[start];
+  const glm::dvec3 from = (surface.points_mm[a] + surface.points_mm[b] + surface.points_mm[c]) / 3.0;
+  const glm::dvec3 direction = glm::normalize(normal_of(start));
+
+  double nearest = nearest_hit(surface, cavity, start, from, direction);
+  if (!std::isfinite(nearest))
+    refuse("a cavity at (" + text_of(from.x) + ", " + text_of(from.y) + ", " + text_of(from.z) +
+           ") mm has no other side: its triangles do not all face the same way; look at the mesh's health");
+  Bounds way;
+  way.add(from);
+  way.add(from + nearest * direction);
+  for (const Part& part : parts)
+    if (&part != &cavity && part.bounds.meets(way))
+      nearest = std::min(nearest, nearest_hit(surface, part, start, from, direction));
+  return from + 0.5 * nearest * direction;
+}
+
+/// The switches to try, the most asked for first.
+std::vector<std::string> ladder(const TetOptions& options) {
+  std::string asked = options.keep_boundary ? "pYq" : "pq";
+  asked += text_of(options.radius_edge);
+  if (options.limit_volume) asked.append("a").append(text_of(options.max_volume_mm3));
+  if (options.keep_boundary) return {asked, "pY", "p"};
+  return {asked, "p"};
+}
+
+/// What is wrong with TetGen's tetrahedra, or nothing.
+std::optional<std::string> fault_of(const TetgenOutcome& outcome, double surface_mm3) {
+  if (outcome.tetrahedra.empty()) return "gave no tetrahedra";
+  double sum = 0.0;
+  for (std::size_t t = 0; t < outcome.tetrahedra.size(); ++t) {
+    std::array<glm::dvec3, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) p.at(i) = outcome.points_mm.at(outcome.tetrahedra[t].at(i));
+    const double six = six_volumes(p[0], p[1], p[2], p[3]);
+    if (!(six > 0.0))
+      return "gave tetrahedron " + std::to_string(t) + " of volume " + text_of(six / 6.0) + " mm3";
+    sum += six;
+  }
+  if (std::abs(sum / 6.0 - surface_mm3) > volume_tolerance() * surface_mm3)
+    return "filled " + text_of(sum / 6.0) + " mm3 of a surface that encloses " + text_of(surface_mm3) +
+           " mm3";
+  return std::nullopt;
+}
+
+void check(const TetOptions& options) {
+  // TetGen's bound below which refinement need not end is 2 for surfaces in general; under 1 it never does.
+  if (!(options.radius_edge >= 1.0) || !std::isfinite(options.radius_edge))
+    refuse("the radius-edge bound must be 1 or more, not " + text_of(options.radius_edge));
+  if (options.limit_volume && !(options.max_volume_mm3 > 0.0))
+    refuse("the largest volume must be positive, not " + text_of(options.max_volume_mm3) + " mm3");
+}
+
+/// Volume of the solid. Throws where it is flat, tiny or inside out.
+double checked_volume_mm3(const TetgenInput& surface, const std::vector<Part>& parts) {
+  Bounds bounds;
+  double six = 0.0;
+  for (const Part& part : parts) {
+    bounds.add(part.bounds.low);
+    bounds.add(part.bounds.high);
+    six += part.six_volumes_mm3;
+  }
+  const glm::dvec3 extent = bounds.high - bounds.low;
+  const double largest = std::max({extent.x, extent.y, extent.z});
+  if (largest < tiny_extent_mm())
+    refuse("the solid is only " + text_of(largest) + " mm large: is its unit millimetres?");
+  const double volume = six / 6.0;
+  if (std::abs(volume) < flat_volume() * largest * largest * largest)
+    refuse("the solid is flat: " + text_of(volume) + " mm3 within " + text_of(largest) + " mm, of " +
+           std::to_string(surface.triangles.size()) + " triangles");
+  if (volume < 0.0)
+    refuse("the surface is inside out: it encloses " + text_of(volume) + " mm3; flip its triangles");
+  return volume;
+}
+
+struct TetMeasures {
+  double volume = 0.0;
+  double min_dihedral = 0.0;  ///< radians
+  double max_dihedral = 0.0;
+  double radius_edge = 0.0;
+};
+
+TetMeasures measures_of(const std::array<glm::dvec3, 4>& p) {
+  TetMeasures m;
+  const double six = six_volumes(p[0], p[1], p[2], p[3]);
+  m.volume = six / 6.0;
+
+  m.min_dihedral = std::numbers::pi;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      const std::size_t k = i == 0 ? (j == 1 ? 2 : 1) : 0;
+      const std::size_t l = 6 - i - j - k;
+      const glm::dvec3 edge = p.at(j) - p.at(i);
+      // The angle between the two faces at the edge, by what is left of them across it.
+      const glm::dvec3 one = glm::cross(edge, p.at(k) - p.at(i));
+      const glm::dvec3 other = glm::cross(edge, p.at(l) - p.at(i));
+      const double angle = std::atan2(glm::length(glm::cross(one, other)), glm::dot(one, other));
+      m.min_dihedral = std::min(m.min_dihedral, angle);
+      m.max_dihedral = std::max(m.max_dihedral, angle);
+      shortest = std::min(shortest, glm::length(edge));
+    }
+
+  const glm::dvec3 a = p[1] - p[0];
+  const glm::dvec3 b = p[2] - p[0];
+  const glm::dvec3 c = p[3] - p[0];
+  const glm::dvec3 numerator = glm::dot(a, a) * glm::cross(b, c) + glm::dot(b, b) * glm::cross(c, a) +
+                               glm::dot(c, c) * glm::cross(a, b);
+  m.radius_edge = glm::length(numerator) / (2.0 * std::abs(six)) / shortest;
+  return m;
+}
+
+}  // namespace
+
+TetQuality quality(const Tetrahedra& tetrahedra) {
+  if (tetrahedra.tets.empty()) refuse("there is no quality of no tetrahedra");
+  TetQuality q;
+  q.min_volume_mm3 = std::numeric_limits<double>::infinity();
+  q.min_dihedral_deg = 180.0;
+  for (const std::array<std::uint32_t, 4>& tet : tetrahedra.tets) {
+    std::array<glm::dvec3, 4> p;
+    for (std::size_t i = 0; i < 4; ++i) p.at(i) = tetrahedra.nodes_mm.at(tet.at(i));
+    const TetMeasures m = measures_of(p);
+    q.volume_mm3 += m.volume;
+    q.min_volume_mm3 = std::min(q.min_volume_mm3, m.volume);
+    q.min_dihedral_deg = std::min(q.min_dihedral_deg, glm::degrees(m.min_dihedral));
+    q.max_dihedral_deg = std::max(q.max_dihedral_deg, glm::degrees(m.max_dihedral));
+    q.max_radius_edge = std::max(q.max_radius_edge, m.radius_edge);
+  }
+  return q;
+}
+
+std::vector<std::uint32_t> boundary_nodes(const std::vector<std::array<std::uint32_t, 4>>& tets) {
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  faces.reserve(4 * tets.size());
+  for (const auto& [a, b, c, d] : tets)
+    for (std::array<std::uint32_t, 3> face : {std::array{a, b, c}, {a, b, d}, {a, c, d}, {b, c, d}}) {
+      std::sort(face.begin(), face.end());
+      faces.push_back(face);
+    }
+  tbb::parallel_sort(faces.begin(), faces.end());
+  std::vector<std::uint32_t> nodes;
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t end = i + 1;
+    while (end < faces.size() && faces[end] == faces[i]) ++end;
+    if (end == i + 1) nodes.insert(nodes.end(), faces[i].begin(), faces[i].end());
+    i = end;
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
+  check(options);
+  TetgenInput surface = surface_of(solid);
+  if (surface.triangles.size() < 4)
+    refuse("a surface of " + std::to_string(surface.triangles.size()) + " triangles encloses nothing");
+  const std::vector<Part> parts = parts_of(surface);
+  const double surface_mm3 = checked_volume_mm3(surface, parts);
+  for (const Part& part : parts)
+    if (part.six_volumes_mm3 < 0.0) surface.holes_mm.push_back(hole_point(surface, parts, part));
+
+  Tetrahedra result;
+  for (const std::string& switches : ladder(options)) {
+    TetgenOutcome outcome =
+        run_tetgen(surface, switches + "Q", {options.time_limit, options.memory_limit_bytes, options.stop});
+    if (!outcome.failure) {
+      if (const std::optional<std::string> fault = fault_of(outcome, surface_mm3)) {
+        outcome.failure = "TetGen -" + switches + "Q " + *fault;
+        outcome.worth_another_try = true;
+      }
+    }
+    if (outcome.failure) {
+      result.findings.push_back(*outcome.failure);
+      if (!outcome.worth_another_try) break;
+      continue;
+    }
+    result.nodes_mm = std::move(outcome.points_mm);
+    result.tets = std::move(outcome.tetrahedra);
+    result.boundary_nodes = boundary_nodes(result.tets);
+    result.method = "-" + switches;
+    return result;
+  }
+  std::string message = "tetrahedralise: no tetrahedra of " + std::to_string(surface.triangles.size()) +
+                        " triangles in " + std::to_string(parts.size()) + " parts";
+  for (const std::string& finding : result.findings) message += "; " + finding;
+  throw std::runtime_error(message);
+}
+
+}  // namespace octotomy::convert

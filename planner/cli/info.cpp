@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/health.h"
+#include "brep/read_mesh.h"
+#include "planner/answer.h"
+#include "planner/cli/verb.h"
+#include "planner/figures.h"
+#include "voxel/read_scene.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+int info_of_mesh(const Program& program, const std::filesystem::path& path) {
+  Timings timings;
+  brep::Triangles triangles;
+  {
+    const Stopwatch watch(timings, "read");
+    triangles = brep::read_triangles(path);
+  }
+  brep::Health health;
+  {
+    const Stopwatch watch(timings, "health");
+    health = brep::health(triangles);
+  }
+  Json json = answer(timings);
+  json["kind"] = "mesh";
+  json["source"] = path.string();
+  json.update(to_json(health));
+  std::string text = lines({{"mesh", path.string()},
+                            {"vertices", grouped(static_cast<double>(health.vertices), 0)},
+                            {"faces", grouped(static_cast<double>(health.faces), 0)},
+                            {"components", std::to_string(health.components)},
+                            {"euler", std::to_string(health.euler)},
+                            {"closed", health.closed ? "yes" : "no"},
+                            {"manifold", health.manifold ? "yes" : "no"},
+                            {"oriented", health.oriented ? "yes" : "no"},
+                            {"crossings", std::to_string(health.self_intersections)}});
+  for (const std::string& finding : health.findings) text += "  " + finding + "\n";
+  program.say(json, text);
+  return done;
+}
+
+int info_of_scan(const Program& program, const std::filesystem::path& path) {
+  Timings timings;
+  voxel::Scene scene;
+  {
+    const Stopwatch watch(timings, "read");
+    scene = voxel::read_scene(path);
+  }
+  const Json json = scan_answer(scene, timings);
+  const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
+  const voxel::Range range = voxel::range(scene);
+  const glm::ivec3 dims = scene.lattice.dims;
+  std::string text = lines(
+      {{"scan", path.string()},
+       {"modality", scene.modality.empty() ? "not stated" : scene.modality},
+       {"samples", std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z)},
+       {"spacing", grouped(spacing_mm.x, 4) + " x " + grouped(spacing_mm.y, 4) + " x " +
+                       grouped(spacing_mm.z, 4) + " mm"},
+       {"range",
+        grouped(range.low, 0) + " to " + grouped(range.high, 0) + (voxel::unit(scene) == "1" ? "" : " HU")}});
+  for (const voxel::Finding& finding : scene.audit)
+    text += "  " + to_string(finding.verdict) + "  " + finding.check + ": " + finding.detail + "\n";
+  program.say(json, text);
+  return done;
+}
+
+}  // namespace
+
+void add_info(Program& program) {
+  const auto path = std::make_shared<std::filesystem::path>();
+  CLI::App& verb =
+      program.verb("info", "What a file is: a scan's geometry, range and audit; a mesh's counts and health",
+                   "octotomy info head.nrrd --json", [&program, path] {
+                     return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path);
+                   });
+  verb.add_option("file", *path, "A DICOM folder or file, NIfTI, NRRD, MetaImage; STL, PLY, OBJ, OFF, VTK")
+      ->required()
+      ->check(CLI::ExistingPath);
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/verb.h"
+#include "planner/figures.h"
+#include "planner/first_look.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+struct LookText {
+  std::filesystem::path scan;
+  std::filesystem::path out;
+  LookOptions options;
+};
+
+int look(Program& program, LookText& text) {
+  text.options.evaluation = {program.stop.get_token(), program.progress(), true};
+  Result result = first_look(text.scan, text.options);
+  for (const voxel::Finding& finding : result.findings) warn(finding.detail);
+  for (const ScanRecord& scan : result.evaluation.scans)
+    for (const voxel::Finding& finding : scan.audit)
+      if (finding.verdict != voxel::Verdict::Pass)
+        warn(scan.path.string() + ": " + finding.check + ": " + finding.detail);
+  if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
+  const Json json = write_result(result, text.out);
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Object& object : result.evaluation.objects)
+    rows.emplace_back(
+        object.id,
+        grouped(object.voxel_measures.volume_mm3, 0) + " mm\u00b3 (voxels)" +
+            (object.mesh_measures ? ", " + grouped(object.mesh_measures->volume_mm3, 0) + " mm\u00b3 and " +
+                                        grouped(object.mesh_measures->area_mm2, 0) + " mm\u00b2 (mesh)"
+                                  : "") +
+            (object.certificate ? ", " + verify::to_string(object.certificate->agreement) : ""));
+  for (const Parts& parts : result.parts)
+    rows.emplace_back(parts.object + " parts", std::to_string(parts.volumes_mm3.size()));
+  rows.emplace_back("written", (text.out / "report.html").string());
+  program.say(json, lines(rows));
+  return verdict_counts(result.evaluation).fail > 0 ? disagreement : done;
+}
+
+}  // namespace
+
+void add_look(Program& program) {
+  const auto text = std::make_shared<LookText>();
+  CLI::App& verb =
+      program.verb("look", "A first look at a scan: audit, bone and skin in pictures, certified measures",
+                   "octotomy look head.nrrd -o look", [&program, text] { return look(program, *text); });
+  verb.add_option("scan", text->scan, "A DICOM folder or file, NIfTI, NRRD or MetaImage")
+      ->required()
+      ->check(CLI::ExistingPath);
+  verb.add_option("-o,--out", text->out, "The result's folder: new, empty, or an earlier result")->required();
+  verb.add_option("--bone", text->options.bone_low, "Lower bound of bone in sample units; default 300 HU")
+      ->type_name("LOW");
+  verb.add_option("--skin", text->options.skin_low, "Lower bound of all within the skin; default -300 HU")
+      ->type_name("LOW");
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The program: reads the command line, runs the chosen verb and turns what it throws into an exit status:
+// 2 for what the user can mend, 3 for time, memory and disk.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string>
+#include <system_error>
+#include <tbb/global_control.h>
+#include <thread>
+
+#include "planner/cli/verb.h"
+
+namespace {
+
+using octotomy::planner::cli::Program;
+namespace cli = octotomy::planner::cli;
+
+std::atomic<bool> interrupted{false};
+
+/// Asks the verb to stop when its time is over or the user interrupts; ends with its scope.
+class Watch {
+ public:
+  explicit Watch(Program& program)
+      : thread_([this, &program](const std::stop_token& over) {
+          const auto start = std::chrono::steady_clock::now();
+          std::unique_lock lock(mutex_);
+          while (!wake_.wait_for(lock, over, std::chrono::milliseconds(50), [] { return false; }) &&
+                 !over.stop_requested()) {
+            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+            const bool late = program.time_limit_s && spent.count() > *program.time_limit_s;
+            if (late || interrupted) program.stop.request_stop();
+          }
+        }) {}
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;
+};
+
+/// An error's text on one line: what, where, what to try.
+int refuse(const std::string& text, int status) {
+  std::string line = text;
+  for (char& symbol : line)
+    if (symbol == '\n') symbol = ' ';
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  cli::warn(line);
+  return status;
+}
+
+/// Whether an error is the disk's: libraries pass the system's own words on.
+bool no_space(const std::string& text) {
+  return text.find(std::strerror(ENOSPC)) != std::string::npos ||
+         text.find(std::strerror(EDQUOT)) != std::string::npos;
+}
+
+int run_chosen(Program& program) {
+  try {
+    std::unique_ptr<tbb::global_control> threads;
+    if (program.threads)
+      threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      static_cast<std::size_t>(*program.threads));
+    const Watch watch(program);
+    return program.chosen();
+  } catch (const CLI::ParseError& error) {
+    return refuse(error.what(), cli::bad_input);
+  } catch (const octotomy::planner::Stopped& error) {
+    return refuse(error.what(), cli::out_of_resources);
+  } catch (const std::bad_alloc&) {
+    return refuse(
+        "out of memory: nothing was written; use larger voxels (universe, voxel_mm) or a smaller scan",
+        cli::out_of_resources);
+  } catch (const std::system_error& error) {
+    const bool disk = error.code().value() == ENOSPC || error.code().value() == EDQUOT ||
+                      error.code().value() == EIO || error.code().value() == ENOMEM;
+    return refuse(error.what(), disk ? cli::out_of_resources : cli::bad_input);
+  } catch (const std::exception& error) {
+    return refuse(error.what(), no_space(error.what()) ? cli::out_of_resources : cli::bad_input);
+  }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+
+  CLI::App app(
+      "Plans an operation on a skull in two geometry kernels that check each other.\n"
+      "Lengths are in mm, angles in degrees, coordinates in DICOM's patient frame (LPS).",
+      "octotomy");
+  app.set_version_flag("--version", "octotomy " OCTOTOMY_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Example:\n"
+      "  octotomy phantom head -o head.nrrd\n"
+      "  octotomy run planner/le_fort_i.plan.json --scan ct=head.nrrd -o report\n"
+      "Exit status: 0 done, 1 the kernels disagree, 2 wrong usage or bad input, 3 out of time, memory or "
+      "disk.");
+  Program program(app);
+  cli::add_look(program);
+  cli::add_plan_verbs(program);
+  cli::add_info(program);
+  cli::add_measure(program);
+  cli::add_picture_verbs(program);
+  cli::add_mesh_verbs(program);
+  cli::add_phantom(program);
+  try {
+    app.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
+  }
+  return run_chosen(program);
+}

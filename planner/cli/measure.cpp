@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/measure.h"
+
+#include <limits>
+
+#include "brep/components.h"
+#include "brep/health.h"
+#include "brep/read_mesh.h"
+#include "convert/isosurface.h"
+#include "planner/answer.h"
+#include "planner/cli/verb.h"
+#include "planner/figures.h"
+#include "voxel/combine.h"
+#include "voxel/components.h"
+#include "voxel/measure.h"
+#include "voxel/read_scene.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+struct MeasureText {
+  std::filesystem::path file;
+  std::string window;
+  std::optional<double> voxel_mm;
+};
+
+int say(const Program& program, const Json& json) {
+  const auto value = [&](const char* key, int decimals) {
+    return json[key].is_null() ? "none" : grouped(json[key].get<double>(), decimals);
+  };
+  program.say(
+      json,
+      lines({{"volume", value("volume_mm3", 1) + " mm\u00b3, " + json["volume_estimator"].get<std::string>()},
+             {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
+             {"area", value("area_mm2", 1) + " mm\u00b2, " + json["area_estimator"].get<std::string>()},
+             {"components", value("components", 0)},
+             {"euler", value("euler", 0)}}));
+  return done;
+}
+
+int measure_mesh(const Program& program, const MeasureText& text) {
+  Timings timings;
+  brep::Triangles triangles;
+  {
+    const Stopwatch watch(timings, "read");
+    triangles = brep::read_triangles(text.file);
+  }
+  const auto start = std::make_unique<Stopwatch>(timings, "measure");
+  const brep::Health health = brep::health(triangles, {false});
+  if (!health.closed || !health.manifold || !health.oriented)
+    throw std::runtime_error(
+        text.file.string() + ": is not a closed, oriented surface (" +
+        (health.findings.empty() ? std::string("no triangles") : health.findings.front()) +
+        "), so it has no volume: mend it first, octotomy info tells all");
+  const brep::Mesh mesh = brep::mesh_of(triangles);
+  const brep::Measures measures = brep::measure(mesh);
+  Json json = answer(timings);
+  json["kind"] = "mesh";
+  json.update(to_json(measures));
+  json["area_estimator"] = "triangles";
+  json["volume_partial_mm3"] = nullptr;
+  json["components"] = health.components;
+  json["euler"] = health.euler;
+  json["findings"] = {"volume_partial_mm3: a mesh has no voxels to fill partly"};
+  return say(program, json);
+}
+
+int measure_scan(const Program& program, const MeasureText& text) {
+  if (text.window.empty())
+    throw std::runtime_error(text.file.string() +
+                             ": is a scan, say what of it: --window LOW:HIGH, for example --window 300:");
+  const WindowText window = parse_window(text.window);
+  Timings timings;
+  voxel::Scene scene;
+  {
+    const Stopwatch watch(timings, "read");
+    scene = voxel::read_scene(text.file);
+  }
+  voxel::Octree octree = voxel::Octree::empty({});
+  {
+    const Stopwatch watch(timings, "octree");
+    const voxel::Universe universe = universe_of(scene.lattice, text.voxel_mm);
+    voxel::Window leaf{voxel::grey_octree_of(universe, scene), window.low};
+    if (window.high) leaf.high = *window.high;
+    octree = voxel::combine(universe, voxel::Expression(leaf));
+  }
+  Json json;
+  {
+    const Stopwatch watch(timings, "measure");
+    json = to_json(voxel::measure(octree));
+    json["components"] = voxel::components(octree).voxel_counts.size();
+  }
+  brep::Measures surface;
+  brep::Health health;
+  {
+    const Stopwatch watch(timings, "isosurface");
+    const double high = window.high.value_or(std::numeric_limits<double>::infinity());
+    const brep::Triangles triangles = convert::isosurface(scene, window.low, high);
+    health = brep::health(triangles, {false});
+    surface = brep::measure(brep::mesh_of(triangles));
+  }
+  json["area_crofton13_mm2"] = json["area_mm2"];
+  json["area_mm2"] = surface.area_mm2;
+  json["area_estimator"] = mesh_area_estimator;
+  json["volume_partial_mm3"] = surface.volume_mm3;
+  json["volume_partial_estimator"] = "enclosed by the isosurface of the scan's own samples";
+  json["euler"] = health.euler;
+  json["euler_of"] = "the isosurface: V - E + F";
+  Json whole = answer(timings);
+  whole["kind"] = "scan";
+  whole["window"] = {window.low, window.high ? Json(*window.high) : Json(nullptr)};
+  whole.update(json);
+  whole["audit"] = to_json(scene.audit);
+  return say(program, whole);
+}
+
+}  // namespace
+
+void add_measure(Program& program) {
+  const auto text = std::make_shared<MeasureText>();
+  CLI::App& verb =
+      program.verb("measure", "Volume, area, centroid, extents, parts of a scan's window or a mesh",
+                   "octotomy measure head.nrrd --window 300: --json", [&program, text] {
+                     return is_mesh(text->file) ? measure_mesh(program, *text) : measure_scan(program, *text);
+                   });
+  verb.add_option("file", text->file, "A scan (with --window) or a mesh")
+      ->required()
+      ->check(CLI::ExistingPath);
+  verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units");
+  verb.add_option("--voxel", text->voxel_mm,
+                  "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
+      ->check(CLI::PositiveNumber);
+}
+
+}  // namespace octotomy::planner::cli

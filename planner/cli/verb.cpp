@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/verb.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+#include <unistd.h>
+
+namespace octotomy::planner::cli {
+namespace {
+
+/// Writes all of it, or throws; a reader that has gone away wants no more, which is no error.
+void put(const std::string& text) {
+  errno = 0;
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!written && errno != EPIPE) throw std::system_error(errno, std::generic_category(), "standard output");
+}
+
+std::optional<double> number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+CLI::App& Program::verb(const std::string& name, const std::string& does, const std::string& example,
+                        std::function<int()> action) {
+  CLI::App& sub = *app.add_subcommand(name, does);
+  sub.add_flag("--json", json, "One JSON object on standard output, nothing else there");
+  sub.add_option("--threads", threads, "Threads to use; the answer is the same on any number")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  sub.add_option("--time-limit", time_limit_s,
+                 "Give up after so many seconds, with exit status 3 and nothing written")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  sub.footer("Example:\n  " + example);
+  sub.callback([this, act = std::move(action)] { chosen = act; });
+  return sub;
+}
+
+void Program::say(const Json& answer, const std::string& text) const {
+  put(json ? answer.dump(2) + "\n" : text);
+}
+
+std::function<void(const std::string&, double)> Program::progress() const {
+  if (json || ::isatty(STDERR_FILENO) == 0) return {};
+  return [](const std::string& doing, double fraction) {
+    // Erase the line, so that a shorter text leaves nothing of a longer one.
+    std::fprintf(stderr, "\r\x1b[2K%3d %%  %s", static_cast<int>(100.0 * fraction), doing.c_str());
+    if (fraction >= 1.0) std::fputs("\r\x1b[2K", stderr);
+    std::fflush(stderr);
+  };
+}
+
+void warn(const std::string& line) {
+  std::fprintf(stderr, "octotomy: %s\n", line.c_str());
+}
+
+WindowText parse_window(const std::string& text) {
+  const auto colon = text.find(':');
+  const std::string low = text.substr(0, colon);
+  const std::string high = colon == std::string::npos ? "" : text.substr(colon + 1);
+  WindowText window;
+  const auto low_value = number(low);
+  const auto high_value = number(high);
+  if (!low_value || (!high.empty() && !high_value))
+    throw CLI::ValidationError("--window",
+                               "'" + text + "' is no window: give LOW:HIGH or LOW:, for example 300:3000");
+  window.low = *low_value;
+  if (!high.empty()) window.high = high_value;
+  if (window.high && *window.high < window.low)
+    throw CLI::ValidationError("--window", "'" + text + "' ends before it begins: swap LOW and HIGH");
+  return window;
+}
+
+bool is_mesh(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* known : {".stl", ".ply", ".obj", ".off", ".vtk", ".vtp"})
+    if (extension == known) return true;
+  return false;
+}
+
+void need_folder_of(const std::filesystem::path& out) {
+  const std::filesystem::path folder = std::filesystem::absolute(out).lexically_normal().parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw std::runtime_error(out.string() + ": there is no folder " + folder.string() +
+                             ": make it, or choose another -o");
+  if (::access(folder.c_str(), W_OK) != 0)
+    throw std::runtime_error(out.string() + ": " + folder.string() +
+                             " cannot be written to: choose another -o");
+}
+
+std::string lines(const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::size_t widest = 0;
+  for (const auto& [name, unused] : rows) widest = std::max(widest, name.size());
+  std::string text;
+  for (const auto& [name, value] : rows)
+    text += name + std::string(widest - name.size() + 2, ' ') + value + "\n";
+  return text;
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "planner/answer.h"
+#include "planner/evaluate.h"
+#include "voxel/lattice.h"
+
+// What the verbs of the command line have in common: one file a verb group adds its verbs to the program.
+namespace octotomy::planner::cli {
+
+/// Exit statuses. Anything else is a bug.
+enum Status { done = 0, disagreement = 1, bad_input = 2, out_of_resources = 3 };
+
+/// The program as a verb sees it.
+struct Program {
+  explicit Program(CLI::App& top) : app(top) {}
+
+  CLI::App& app;
+  bool json = false;
+  std::optional<int> threads;
+  std::optional<double> time_limit_s;
+  std::stop_source stop;
+  std::function<int()> chosen;  ///< what the verb on the command line does; its answer is the exit status
+
+  /// Adds a verb with the options that every verb has. `example` ends its --help.
+  CLI::App& verb(const std::string& name, const std::string& does, const std::string& example,
+                 std::function<int()> action);
+  /// Puts the answer on standard output: the JSON object, or the text for people.
+  void say(const Json& answer, const std::string& text) const;
+  /// A progress line on standard error where that is a terminal and people read.
+  std::function<void(const std::string&, double)> progress() const;
+};
+
+/// One line on standard error.
+void warn(const std::string& line);
+
+void add_info(Program& program);
+void add_phantom(Program& program);
+void add_plan_verbs(Program& program);
+void add_look(Program& program);
+void add_picture_verbs(Program& program);
+void add_measure(Program& program);
+void add_mesh_verbs(Program& program);
+
+/// LOW:HIGH, LOW: or LOW in sample units; throws CLI::ValidationError where it is none of these.
+struct WindowText {
+  double low = 0.0;
+  std::optional<double> high;
+};
+WindowText parse_window(const std::string& text);
+
+/// Whether a path is a surface's by its extension.
+bool is_mesh(const std::filesystem::path& path);
+
+/// Throws std::runtime_error where a file cannot be made at `out`: before the work, so that none is lost.
+void need_folder_of(const std::filesystem::path& out);
+
+/// A table of two columns for people.
+std::string lines(const std::vector<std::pair<std::string, std::string>>& rows);
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "brep/measure.h"
+#include "brep/mesh.h"
+#include "planner/plan.h"
+#include "planner/stopwatch.h"
+#include "verify/certificate.h"
+#include "voxel/grey_octree.h"
+#include "voxel/measure.h"
+#include "voxel/octree.h"
+#include "voxel/scene.h"
+
+namespace octotomy::planner {
+
+/// A scan without its samples: what a report says of it.
+struct ScanRecord {
+  std::string name;
+  std::filesystem::path path;
+  std::string sha256;
+  voxel::Lattice lattice;
+  voxel::Meaning meaning = voxel::Meaning::Raw;
+  std::string modality;
+  std::string unit;
+  voxel::Range range;
+  std::vector<voxel::Finding> audit;
+};
+
+/// What a window, mask, combine or move step made, in both kernels.
+struct Object {
+  explicit Object(voxel::Octree voxels) : octree(std::move(voxels)) {}
+
+  std::string id;
+  std::string kind;        ///< the step's `do`
+  std::string definition;  ///< for people: "skull & cut"
+  voxel::Octree octree;
+  voxel::Measures voxel_measures;
+  /// The mesh kernel's answer within the universe; null where it has none, and `findings` says why.
+  std::shared_ptr<const brep::Mesh> mesh;
+  std::optional<brep::Measures> mesh_measures;
+  std::optional<verify::Certificate> certificate;  ///< none for masks, and where there is no mesh
+  std::vector<std::string> findings;
+  /// Where all of its surface that is not a cut is one window's lower bound on a scan as it lies: the samples
+  /// to interpolate that surface from.
+  std::optional<voxel::GreyOctree> grey;
+  double threshold = 0.0;
+  std::string scan;  ///< that grey is of
+};
+
+/// A measure step's answer: indices into Evaluation::objects.
+struct Measured {
+  std::string id;
+  std::size_t object = 0;
+};
+
+struct Evaluation {
+  std::vector<ScanRecord> scans;
+  voxel::Universe universe;
+  std::vector<Object> objects;     ///< in the order of their steps
+  std::vector<Measured> measured;  ///< in the order of their steps
+  Timings timings;
+
+  const Object& object(const std::string& id) const;
+};
+
+/// The stop token was set: nothing was decided, nothing is written.
+struct Stopped : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct EvaluateOptions {
+  std::stop_token stop;  ///< looked at between steps
+  /// Called with what is being done and the fraction of the steps done, 0..1.
+  std::function<void(const std::string& doing, double fraction)> progress;
+  bool certify = true;
+};
+
+/// The universe a plan is evaluated in: around the scan's bounds, voxels of the asked edge; by default the
+/// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger.
+voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
+
+/// Evaluates every step of the plan but its exports, in the voxel kernel (windows on grey octrees, Boolean
+/// expressions and moves on octrees) and in the mesh kernel (isosurfaces of the scan's own samples, prisms
+/// of the masks, corefinement), and certifies their agreement object by object. Neither kernel sees the
+/// other's answer before both are there. A moved object keeps its motion symbolic, so that moving it again
+/// samples the still object once.
+///
+/// Throws std::runtime_error naming step and reason where a scan cannot be read, is not the one whose SHA-256
+/// is given, or a window or mask holds no voxel; Stopped. Where the mesh kernel cannot do an operation, the
+/// object keeps its voxel answer, has no mesh and a finding; so has what depends on it.
+/// Memory: the largest scan, its grey octree, and one mesh and octree an object.
+Evaluation evaluate(const Plan& plan, const EvaluateOptions& options = {});
+
+}  // namespace octotomy::planner

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/export_object.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "brep/components.h"
+#include "brep/decimate.h"
+#include "brep/write_mesh.h"
+#include "convert/deck.h"
+#include "convert/tetrahedralise.h"
+#include "planner/figures.h"
+#include "voxel/write_scene.h"
+
+namespace octotomy::planner {
+namespace {
+
+void export_mesh(const Object& object, const std::filesystem::path& path, Exported& exported,
+                 Timings& timings) {
+  const Stopwatch watch(timings, "write");
+  brep::write_mesh(*object.mesh, path);
+  exported.written = true;
+  exported.content = grouped(static_cast<double>(object.mesh->n_faces()), 0) + " triangles";
+  exported.details = {{"faces", object.mesh->n_faces()},
+                      {"vertices", object.mesh->n_vertices()},
+                      {"volume_mm3", object.mesh_measures->volume_mm3}};
+}
+
+/// The parts of the mesh that a deck is made of: crumbs that a cut leaves, under a hundredth of the largest
+/// part, are no bodies to load and hold; what is left out is a finding, and so are several bodies.
+brep::Mesh bodies_of(const brep::Mesh& mesh, Filling& filling) {
+  constexpr double crumb = 0.01;
+  const auto parts = brep::components(mesh);
+  std::vector<std::uint32_t> faces;
+  std::size_t bodies = 0;
+  double left_out_mm3 = 0.0;
+  for (const brep::Component& part : parts) {
+    if (part.volume_mm3 >= crumb * parts.front().volume_mm3) {
+      faces.insert(faces.end(), part.faces.begin(), part.faces.end());
+      ++bodies;
+    } else {
+      left_out_mm3 += part.volume_mm3;
+    }
+  }
+  filling.bodies = bodies;
+  if (bodies > 1)
+    filling.findings.push_back("holds " + std::to_string(bodies) +
+                               " bodies that do not touch: hold each of them, or the stiffness is singular");
+  if (bodies < parts.size())
+    filling.findings.push_back(
+        std::to_string(parts.size() - bodies) + " crumbs, " + grouped(left_out_mm3, 1) +
+        " mm\u00b3 together, each under a hundredth of the largest body, are left out");
+  return bodies < parts.size() ? brep::part_of(mesh, faces) : mesh;
+}
+
+/// A third of the voxel's edge: no more than sampling leaves unknown of a surface anyhow.
+double simplification_mm(const voxel::Universe& universe) {
+  const glm::dvec3 edge_mm = universe.lattice().spacing_mm();
+  return std::min({edge_mm.x, edge_mm.y, edge_mm.z}) / 3.0;
+}
+
+/// The surface with fewer and better triangles, as tetrahedra can be no better than the triangles they stand
+/// on; as it was where that cannot be done.
+brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling) {
+  brep::DecimateOptions options;
+  options.max_error_mm = error_mm;
+  options.max_aspect = 5.0;
+  try {
+    brep::Mesh simple = brep::decimate(mesh, options);
+    filling.findings.push_back("the surface was simplified from " +
+                               grouped(static_cast<double>(mesh.n_faces()), 0) + " to " +
+                               grouped(static_cast<double>(simple.n_faces()), 0) + " triangles, within " +
+                               grouped(error_mm, 2) + " mm of the exact piece");
+    return simple;
+  } catch (const std::runtime_error& error) {
+    filling.findings.push_back(std::string("the surface was not simplified: ") + error.what());
+  } catch (const std::invalid_argument& error) {
+    filling.findings.push_back(std::string("the surface was not simplified: ") + error.what());
+  }
+  return mesh;
+}
+
+Filling filling_of(const Object& object) {
+  Filling filling;
+  const brep::Mesh bodies = bodies_of(*object.mesh, filling);
+  filling.tetrahedra =
+      convert::tetrahedralise(simplified(bodies, simplification_mm(object.octree.universe()), filling));
+  return filling;
+}
+
+void export_tetrahedra(const Object& object, const std::filesystem::path& path, Exported& exported,
+                       Fillings& fillings, Timings& timings) {
+  {
+    const Stopwatch watch(timings, "tetrahedralise");
+    try {
+      if (!fillings.contains(object.id)) fillings.emplace(object.id, filling_of(object));
+    } catch (const std::runtime_error& error) {
+      exported.findings.push_back(std::string("not written: ") + error.what());
+      return;
+    } catch (const std::invalid_argument& error) {
+      exported.findings.push_back(std::string("not written: ") + error.what());
+      return;
+    }
+  }
+  const Stopwatch watch(timings, "write");
+  const auto& [tetrahedra, bodies, findings] = fillings.at(object.id);
+  exported.details["regions"] = bodies;
+  exported.findings = findings;
+  const convert::TetQuality quality = convert::quality(tetrahedra);
+  convert::DeckOptions options;
+  options.title = object.id + " = " + object.definition;
+  convert::write_deck(tetrahedra, path, options);
+  exported.written = true;
+  exported.content = grouped(static_cast<double>(tetrahedra.tets.size()), 0) +
+                     " tetrahedra, dihedral angles " + grouped(quality.min_dihedral_deg, 1) + "\u00b0 to " +
+                     grouped(quality.max_dihedral_deg, 1) + "\u00b0";
+  exported.details["nodes"] = tetrahedra.nodes_mm.size();
+  exported.details["tets"] = tetrahedra.tets.size();
+  exported.details["volume_mm3"] = quality.volume_mm3;
+  exported.details["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
+                                 {"max_dihedral_deg", quality.max_dihedral_deg},
+                                 {"max_radius_edge", quality.max_radius_edge}};
+}
+
+void export_label(const Object& object, const std::filesystem::path& path, Exported& exported,
+                  Timings& timings) {
+  const Stopwatch watch(timings, "write");
+  voxel::Scene scene;
+  scene.lattice = object.octree.universe().lattice();
+  scene.meaning = voxel::Meaning::Label;
+  scene.source = object.id;
+  std::vector<std::int16_t> labels(scene.lattice.sample_count(), 0);
+  std::size_t at = 0;
+  const int side = object.octree.universe().side();
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) labels[at++] = object.octree.contains({x, y, z}) ? 1 : 0;
+  scene.samples = std::move(labels);
+  voxel::write_scene(scene, path);
+  exported.written = true;
+  exported.content = grouped(static_cast<double>(object.octree.voxel_count()), 0) + " voxels labelled 1";
+  exported.details = {{"voxels", object.octree.voxel_count()},
+                      {"volume_mm3", object.voxel_measures.volume_mm3}};
+}
+
+}  // namespace
+
+Exported export_object(const Object& object, const std::string& id, const ExportStep& step,
+                       const std::filesystem::path& folder, Fillings& fillings, Timings& timings) {
+  Exported exported;
+  exported.id = id;
+  exported.object = object.id;
+  exported.path = step.path.generic_string();
+  exported.details = nlohmann::ordered_json::object();
+  const std::filesystem::path path = folder / step.path;
+  const bool wants_mesh = step.kind != ExportKind::Label;
+  if (wants_mesh && !object.mesh)
+    exported.findings.push_back("not written: '" + object.id + "' has no mesh, see its findings");
+  else if (wants_mesh ? object.mesh->n_faces() == 0 : object.octree.is_empty())
+    exported.findings.push_back("not written: '" + object.id + "' is empty");
+  if (!exported.findings.empty()) return exported;
+
+  std::filesystem::create_directories(path.parent_path());
+  if (step.kind == ExportKind::Mesh) export_mesh(object, path, exported, timings);
+  if (step.kind == ExportKind::Tetrahedra) export_tetrahedra(object, path, exported, fillings, timings);
+  if (step.kind == ExportKind::Label) export_label(object, path, exported, timings);
+  if (exported.written) exported.details["bytes"] = std::filesystem::file_size(path);
+  return exported;
+}
+
+}  // namespace octotomy::planner

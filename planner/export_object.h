@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convert/tetrahedralise.h"
+#include "planner/evaluate.h"
+
+namespace octotomy::planner {
+
+/// What an export step wrote, or why it wrote nothing.
+struct Exported {
+  std::string id;
+  std::string object;
+  std::string path;  ///< within the result folder
+  bool written = false;
+  std::string content;  ///< for people: "12 345 tetrahedra, smallest dihedral 6.1 degrees"
+  nlohmann::ordered_json details;
+  std::vector<std::string> findings;
+};
+
+/// The tetrahedra of an object, and what is to be said of them.
+struct Filling {
+  convert::Tetrahedra tetrahedra;
+  std::size_t bodies = 0;
+  std::vector<std::string> findings;
+};
+/// Objects that were filled already: several decks of one object are one filling.
+using Fillings = std::map<std::string, Filling>;
+
+/// Writes an object into a folder as the step's extension says: its mesh; tetrahedra that fill its mesh; its
+/// voxels as a label map of the universe. Times are added to "tetrahedralise" and "write".
+///
+/// Tetrahedra fill the mesh's parts down to a hundredth of the largest: the crumbs that a cut leaves are no
+/// bodies to load and hold. The surface is simplified before, within a third of a voxel. What is left out is
+/// a finding with its volume, and so are several bodies in one deck.
+///
+/// An object that is empty, has no mesh, or that TetGen cannot fill is not written; a finding says why.
+/// Throws what the writers throw where the disk does not take it.
+Exported export_object(const Object& object, const std::string& id, const ExportStep& step,
+                       const std::filesystem::path& folder, Fillings& fillings, Timings& timings);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/report.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "planner/answer.h"
+#include "planner/report_page.h"
+#include "planner/result_folder.h"
+#include "voxel/components.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr int picture_px = 480;
+
+Json measurement_json(const Measured& measured, const Object& object) {
+  const double voxels_mm3 = object.voxel_measures.volume_mm3;
+  Json json{{"id", measured.id},
+            {"object", object.id},
+            {"volume_mm3", voxels_mm3},
+            {"volume_estimator", "voxels counted"},
+            {"area_mm2", nullptr},
+            {"area_estimator", mesh_area_estimator},
+            {"centroid_mm", to_json(object.voxel_measures.centroid_mm)},
+            {"voxel", to_json(object.voxel_measures)},
+            {"mesh", nullptr},
+            {"difference_mm3", nullptr},
+            {"difference_percent", nullptr}};
+  if (object.mesh_measures) {
+    const double mesh_mm3 = object.mesh_measures->volume_mm3;
+    json["area_mm2"] = object.mesh_measures->area_mm2;
+    json["mesh"] = to_json(*object.mesh_measures);
+    json["difference_mm3"] = voxels_mm3 - mesh_mm3;
+    if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;
+  } else {
+    json["area_mm2"] = object.voxel_measures.area_crofton13_mm2;
+    json["area_estimator"] = voxel_area_estimator;
+  }
+  return json;
+}
+
+Json certificates_json(const Evaluation& evaluation) {
+  Json certificates = Json::array();
+  for (const Object& object : evaluation.objects) {
+    if (!object.certificate) continue;
+    Json json{{"object", object.id}};
+    json.update(to_json(*object.certificate));
+    certificates.push_back(std::move(json));
+  }
+  return certificates;
+}
+
+Json exported_json(const Exported& exported) {
+  Json json{{"id", exported.id},
+            {"object", exported.object},
+            {"path", exported.path},
+            {"written", exported.written}};
+  json.update(exported.details);
+  json["findings"] = exported.findings;
+  return json;
+}
+
+void write_pictures(const Result& result, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const PictureGroup& group : result.pictures)
+    for (const ScenePicture& picture : group.pictures) {
+      std::string view = picture.view;
+      std::replace(view.begin(), view.end(), ',', '_');
+      write_text(folder / (group.name + "_" + view + ".png"), {picture.png.begin(), picture.png.end()});
+    }
+}
+
+}  // namespace
+
+VerdictCounts verdict_counts(const Evaluation& evaluation) {
+  VerdictCounts counts;
+  for (const Object& object : evaluation.objects) {
+    if (!object.certificate) continue;
+    switch (object.certificate->agreement) {
+      case verify::Agreement::Pass:
+        ++counts.pass;
+        break;
+      case verify::Agreement::Warn:
+        ++counts.warn;
+        break;
+      case verify::Agreement::Fail:
+        ++counts.fail;
+        break;
+      case verify::Agreement::BelowResolution:
+        ++counts.below_resolution;
+        break;
+    }
+  }
+  return counts;
+}
+
+Parts parts_of(const Object& object) {
+  const double voxel_mm3 = object.octree.universe().lattice().voxel_mm3();
+  Parts parts{object.id, {}};
+  for (const std::uint64_t count : voxel::components(object.octree).voxel_counts)
+    parts.volumes_mm3.push_back(static_cast<double>(count) * voxel_mm3);
+  return parts;
+}
+
+std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation) {
+  const Stopwatch watch(evaluation.timings, "render");
+  const FinalScene scene = final_scene(plan, evaluation);
+  std::vector<voxel::Drawn> framed = scene.before;
+  framed.insert(framed.end(), scene.after.begin(), scene.after.end());
+  std::vector<PictureGroup> groups;
+  if (scene.moves) {
+    groups.push_back({"before", "Before", scene.before, {}});
+    draw(groups.back(), {"left", "35,15"}, framed, picture_px);
+  }
+  groups.push_back({"after", scene.moves ? "Views after" : "Views", scene.after, {}});
+  draw(groups.back(), all_views(), framed, picture_px);
+  return groups;
+}
+
+Json result_json(const Result& result) {
+  const Evaluation& evaluation = result.evaluation;
+  const VerdictCounts counts = verdict_counts(evaluation);
+  Json json = answer(evaluation.timings);
+  json["plan"] = {{"name", result.plan.name}, {"steps", result.plan.steps.size()}};
+  if (!result.plan.text.empty()) json["plan"] = Json::parse(result.plan.text);
+  json["universe"] = {{"side", evaluation.universe.side()},
+                      {"voxel_mm", to_json(evaluation.universe.lattice().spacing_mm())},
+                      {"lps_from_voxel", to_json(evaluation.universe.lps_from_voxel)}};
+  for (const char* key : {"scans", "objects", "measurements", "certificates", "components", "exports"})
+    json[key] = Json::array();
+  for (const ScanRecord& scan : evaluation.scans) json["scans"].push_back(to_json(scan));
+  for (const Object& object : evaluation.objects) json["objects"].push_back(to_json(object));
+  for (const Measured& measured : evaluation.measured)
+    json["measurements"].push_back(measurement_json(measured, evaluation.objects[measured.object]));
+  json["certificates"] = certificates_json(evaluation);
+  json["counts"] = {{"PASS", counts.pass},
+                    {"WARN", counts.warn},
+                    {"FAIL", counts.fail},
+                    {"BELOW_RESOLUTION", counts.below_resolution}};
+  for (const Parts& parts : result.parts)
+    json["components"].push_back(
+        {{"object", parts.object}, {"count", parts.volumes_mm3.size()}, {"volumes_mm3", parts.volumes_mm3}});
+  for (const Exported& exported : result.exported) json["exports"].push_back(exported_json(exported));
+  json["findings"] = to_json(result.findings);
+  return json;
+}
+
+Json write_result(Result& result, const std::filesystem::path& folder) {
+  ResultFolder output(folder);
+  Fillings fillings;
+  for (const Step& step : result.plan.steps)
+    if (const auto* to = std::get_if<ExportStep>(&step.action))
+      result.exported.push_back(export_object(result.evaluation.object(to->object), step.id, *to,
+                                              output.path(), fillings, result.evaluation.timings));
+  {
+    const Stopwatch watch(result.evaluation.timings, "write");
+    write_pictures(result, output.path() / "views");
+    write_text(output.path() / "report.html", report_html(result));
+  }
+  Json json = result_json(result);
+  write_text(output.path() / "result.json", json.dump(2) + "\n");
+  output.publish();
+  return json;
+}
+
+}  // namespace octotomy::planner

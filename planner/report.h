@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/evaluate.h"
+#include "planner/export_object.h"
+#include "planner/scene_pictures.h"
+#include "voxel/scene.h"
+
+namespace octotomy::planner {
+
+/// Connected parts of an object, largest first.
+struct Parts {
+  std::string object;
+  std::vector<double> volumes_mm3;
+};
+
+/// Everything a plan's evaluation leaves behind.
+struct Result {
+  Plan plan;
+  Evaluation evaluation;
+  std::vector<PictureGroup> pictures;
+  std::vector<Exported> exported;
+  std::vector<Parts> parts;
+  std::vector<voxel::Finding> findings;  ///< on the plan as a whole, beside those of its parts
+};
+
+/// Certificates by verdict, and whether any disagrees.
+struct VerdictCounts {
+  int pass = 0, warn = 0, fail = 0, below_resolution = 0;
+};
+VerdictCounts verdict_counts(const Evaluation& evaluation);
+
+/// The connected parts (by faces) of an object in the voxel kernel.
+Parts parts_of(const Object& object);
+
+/// Pictures of a plan's end: all views of the final scene and, where something moved, the left and an
+/// oblique view of it before. Time is added to "render".
+std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation);
+
+/// The whole result as JSON: scans with their audit, universe, objects, measurements, certificates, exports,
+/// findings, timings.
+nlohmann::ordered_json result_json(const Result& result);
+
+/// Writes a result's folder whole or not at all: its exports, views/*.png, report.html and result.json.
+/// Fills `result.exported`; returns what result.json holds. Throws as ResultFolder and the writers do.
+nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/sha256.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <memory>
+#include <openssl/evp.h>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace octotomy::planner {
+namespace {
+
+class Digest {
+ public:
+  Digest() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1)
+      throw std::runtime_error("libcrypto offers no SHA-256 here: check its configuration");
+  }
+  void add(const char* bytes, std::size_t count) { EVP_DigestUpdate(context_.get(), bytes, count); }
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> sum{};
+    unsigned length = 0;
+    EVP_DigestFinal_ex(context_.get(), sum.data(), &length);
+    std::string text;
+    for (unsigned i = 0; i < length; ++i) {
+      text += "0123456789abcdef"[sum[i] >> 4];
+      text += "0123456789abcdef"[sum[i] & 15];
+    }
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error(path.string() + ": cannot be opened for its SHA-256");
+  Digest digest;
+  std::vector<char> buffer(std::size_t{1} << 20);
+  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || file.gcount() > 0)
+    digest.add(buffer.data(), static_cast<std::size_t>(file.gcount()));
+  if (file.bad()) throw std::runtime_error(path.string() + ": reading failed for its SHA-256");
+  return digest.hex();
+}
+
+}  // namespace
+
+std::string sha256_of(std::string_view bytes) {
+  Digest digest;
+  digest.add(bytes.data(), bytes.size());
+  return digest.hex();
+}
+
+std::string sha256_of_path(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return sha256_of_file(path);
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
+    if (entry.is_regular_file())
+      lines.emplace_back(std::filesystem::relative(entry.path(), path).generic_string(),
+                         sha256_of_file(entry.path()));
+  std::sort(lines.begin(), lines.end());
+  Digest digest;
+  for (const auto& [name, sum] : lines) {
+    const std::string line = name + std::string(1, '\0') + sum + "\n";
+    digest.add(line.data(), line.size());
+  }
+  return digest.hex();
+}
+
+}  // namespace octotomy::planner

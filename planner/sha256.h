@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace octotomy::planner {
+
+/// SHA-256 of bytes, as 64 lower-case hexadecimal digits.
+std::string sha256_of(std::string_view bytes);
+
+/// The same of a file. Of a folder: of the lines `relative path`, a zero byte, `sha256 of that file`, a
+/// newline, for every regular file in it at any depth, sorted by path as bytes; so a folder's sum says its
+/// files' names and contents and nothing else. Throws std::runtime_error with path and reason where something
+/// cannot be read.
+std::string sha256_of_path(const std::filesystem::path& path);
+
+}  // namespace octotomy::planner

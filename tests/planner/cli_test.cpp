@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The program as scripts see it: exit status, standard output, what is left on disk.
+#include <cstdio>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Answer {
+  int status = -1;
+  std::string out;
+  std::string errors;
+};
+
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() {
+    voxel::write_scene(tests::ball_scene(12.0, 32), folder_ / "ball.nrrd");
+    write("ball.plan.json",
+          R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "size", "do": "measure", "object": "ball" },
+                 { "id": "mesh", "do": "export", "object": "ball", "path": "ball.stl" } ] })");
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  std::string at(const std::string& name) const { return "'" + (folder_ / name).string() + "'"; }
+
+  Answer run(const std::string& arguments) const {
+    const std::string errors = (folder_ / "stderr").string();
+    const std::string command =
+        std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments + " 2>'" + errors + "'";
+    std::FILE* pipe = ::popen(command.c_str(), "r");
+    Answer answer;
+    char buffer[4096];
+    for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+      answer.out.append(buffer, got);
+    const int status = ::pclose(pipe);
+    answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    std::ifstream file(errors);
+    answer.errors.assign(std::istreambuf_iterator<char>(file), {});
+    return answer;
+  }
+  /// Exactly one line that says octotomy, and nothing on standard output.
+  void expect_refused(const Answer& answer, const std::string& word) const {
+    EXPECT_EQ(answer.status, 2) << answer.errors;
+    EXPECT_EQ(answer.out, "");
+    EXPECT_EQ(answer.errors.rfind("octotomy: ", 0), 0u) << answer.errors;
+    EXPECT_EQ(std::count(answer.errors.begin(), answer.errors.end(), '\n'), 1) << answer.errors;
+    EXPECT_NE(answer.errors.find(word), std::string::npos) << answer.errors;
+  }
+
+  tests::TestFolder folder_;
+};
+
+TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
+  EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
+  const std::string help = run("--help").out;
+  for (const char* verb :
+       {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "tet", "phantom"}) {
+    EXPECT_NE(help.find(verb), std::string::npos) << verb;
+    const Answer answer = run(std::string(verb) + " --help");
+    EXPECT_EQ(answer.status, 0) << verb;
+    EXPECT_NE(answer.out.find("Example:"), std::string::npos) << verb;
+    EXPECT_NE(answer.out.find("--json"), std::string::npos) << verb;
+  }
+}
+
+TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
+  expect_refused(run(""), "subcommand");
+  expect_refused(run("lok " + at("ball.nrrd")), "lok");
+  expect_refused(run("info"), "file");
+  expect_refused(run("info " + at("missing.nrrd")), "missing.nrrd");
+  expect_refused(run("measure " + at("ball.nrrd") + " --json"), "--window");
+  expect_refused(run("measure " + at("ball.nrrd") + " --window abc"), "abc");
+  expect_refused(run("measure " + at("ball.nrrd") + " --window 5:1"), "5:1");
+  expect_refused(run("render " + at("ball.nrrd") + " --window 0: --view front -o " + at("p.png")), "front");
+  expect_refused(run("render " + at("ball.nrrd") + " --window 0: --size 0x5 -o " + at("p.png")), "0x5");
+  expect_refused(run("render " + at("ball.nrrd") + " --window 0: -o " + at("no/p.png")), "no folder");
+  expect_refused(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("p.stp")), ".stl");
+  expect_refused(run("run " + at("ball.plan.json") + " -o " + at("out") + " --scan tc=x"),
+                 "did you mean 'ct'");
+  expect_refused(run("phantom torso -o " + at("p.nrrd")), "torso");
+}
+
+TEST_F(CommandLine, ABrokenPlanLeavesNothing) {
+  write("broken.plan.json", R"({ "octotomy_plan": 1, "name": "x", "scans": { "ct": { "path": "ball.nrrd" } },
+    "steps": [ { "id": "ball", "do": "window", "scan": "ct", "lo": 0 } ] })");
+  expect_refused(run("run " + at("broken.plan.json") + " -o " + at("out") + " --json"),
+                 "did you mean 'low'?");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  write("empty.plan.json", R"({ "octotomy_plan": 1, "name": "x", "scans": { "ct": { "path": "ball.nrrd" } },
+    "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 9000 } ] })");
+  expect_refused(run("run " + at("empty.plan.json") + " -o " + at("out") + " --json"), "no voxel");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(CommandLine, RunAnswersWithTheFileItWrote) {
+  const Answer answer = run("run " + at("ball.plan.json") + " -o " + at("out") + " --json");
+  ASSERT_EQ(answer.status, 0) << answer.errors;
+  const Json said = Json::parse(answer.out);
+  std::ifstream file(folder_ / "out/result.json");
+  EXPECT_EQ(said, Json::parse(file));
+  EXPECT_EQ(said["octotomy"], OCTOTOMY_VERSION);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/ball.stl"));
+}
+
+TEST_F(CommandLine, AnotherScanCanTakeTheNamedOnesPlace) {
+  voxel::write_scene(tests::ball_scene(9.0, 32), folder_ / "small.nrrd");
+  const Answer answer = run("verify " + at("ball.plan.json") + " --scan ct=" + at("small.nrrd") + " --json");
+  ASSERT_EQ(answer.status, 0) << answer.errors;
+  const Json said = Json::parse(answer.out);
+  EXPECT_NEAR(said["certificates"][0]["voxel"]["volume_mm3"].get<double>(), tests::ball_mm3(9.0), 60.0);
+  EXPECT_EQ(said["counts"]["FAIL"], 0);
+}
+
+TEST_F(CommandLine, TheAnswerIsTheSameOnAnyNumberOfThreads) {
+  const auto measured = [&](const std::string& threads) {
+    Json json =
+        Json::parse(run("measure " + at("ball.nrrd") + " --window 0: --json --threads " + threads).out);
+    json.erase("timings_ms");
+    return json;
+  };
+  EXPECT_EQ(measured("1"), measured("2"));
+}
+
+TEST_F(CommandLine, MeasuresAScansWindowAndAMesh) {
+  const Json scan = Json::parse(run("measure " + at("ball.nrrd") + " --window 0: --json").out);
+  EXPECT_NEAR(scan["volume_mm3"].get<double>(), tests::ball_mm3(12.0), 60.0);
+  EXPECT_NEAR(scan["volume_partial_mm3"].get<double>(), tests::ball_mm3(12.0), 60.0);
+  EXPECT_NEAR(scan["area_mm2"].get<double>(), 4.0 * M_PI * 144.0, 0.03 * 4.0 * M_PI * 144.0);
+  EXPECT_EQ(scan["components"], 1);
+  EXPECT_EQ(scan["euler"], 2);
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.ply")).status, 0);
+  const Json mesh = Json::parse(run("measure " + at("ball.ply") + " --json").out);
+  EXPECT_NEAR(mesh["volume_mm3"].get<double>(), scan["volume_partial_mm3"].get<double>(), 1e-6);
+  EXPECT_TRUE(mesh["volume_partial_mm3"].is_null());
+  EXPECT_FALSE(mesh["findings"].empty());
+}
+
+TEST_F(CommandLine, ARenderedBallCoversItsDisc) {
+  const Json json = Json::parse(
+      run("render " + at("ball.nrrd") + " --window 0: --size 256x256 --json -o " + at("ball.png")).out);
+  const double lit_mm2 = json["lit_pixels"].get<double>() * std::pow(json["pixel_mm"].get<double>(), 2);
+  EXPECT_NEAR(lit_mm2, M_PI * 144.0, 2.0 * M_PI * 12.0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "ball.png"));
+}
+
+TEST_F(CommandLine, TimeOverIsStatusThreeAndLeavesNothing) {
+  const Answer answer =
+      run("run " + at("ball.plan.json") + " -o " + at("out") + " --json --time-limit 0.000001");
+  EXPECT_TRUE(answer.status == 3 || answer.status == 0) << answer.errors;
+  EXPECT_EQ(answer.status == 3, !std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(CommandLine, AFullDiskIsStatusThree) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
+  EXPECT_EQ(run("info " + at("ball.nrrd") + " --json > /dev/full").status, 3);
+}
+
+TEST_F(CommandLine, AReaderThatGoesAwayIsNoError) {
+  const std::string command = "bash -c \"set -o pipefail; '" + std::string(OCTOTOMY_BINARY_DIR) +
+                              "/octotomy' info " + (folder_ / "ball.nrrd").string() + " --json | true\"";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+}
+
+}  // namespace
+}  // namespace octotomy::planner

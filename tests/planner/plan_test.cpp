@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::json;
+
+Json le_fort_i() {
+  std::ifstream file(std::string(OCTOTOMY_SOURCE_DIR) + "/planner/le_fort_i.plan.json");
+  return Json::parse(file);
+}
+
+/// What a plan is refused with; empty where it is taken.
+std::string refusal(const std::string& text) {
+  try {
+    parse_plan(text, "/plans");
+    return "";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+std::string refusal(const Json& plan) {
+  return refusal(plan.dump());
+}
+
+/// The step of le_fort_i with this id.
+Json& step(Json& plan, const std::string& id) {
+  for (Json& step : plan["steps"])
+    if (step["id"] == id) return step;
+  throw std::out_of_range(id);
+}
+
+void expect_says(const std::string& said, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(said.find(part), std::string::npos) << "refusal: '" << said << "'\nlacks:   '" << part << "'";
+}
+
+TEST(Plan, TheExampleIsReadWithEveryNumberInItsPlace) {
+  const Plan plan = read_plan(std::string(OCTOTOMY_SOURCE_DIR) + "/planner/le_fort_i.plan.json");
+  EXPECT_EQ(plan.voxel_mm, 1.0);
+  EXPECT_EQ(scan_path(plan, plan.scans.at("ct")), plan.folder / "head.nrrd");
+  ASSERT_GE(plan.steps.size(), 7u);
+  const auto& window = std::get<WindowStep>(plan.steps[0].action);
+  EXPECT_EQ(window.low, 300.0);
+  EXPECT_EQ(window.high, std::nullopt);
+  const auto& mask = std::get<MaskStep>(plan.steps[1].action);
+  ASSERT_EQ(mask.regions.size(), 2u);
+  EXPECT_EQ(mask.regions[0].view, "anterior");
+  EXPECT_EQ(mask.regions[1].polygons_mm[0][0], glm::dvec2(-90, -60));
+  const auto& move = std::get<MoveStep>(plan.steps[4].action);
+  EXPECT_EQ(move.translate_mm, glm::dvec3(0, -6, 2));
+  ASSERT_TRUE(move.rotate);
+  EXPECT_EQ(move.rotate->degrees, 5.0);
+  EXPECT_EQ(move.rotate->about_mm, glm::dvec3(0, -40, -30));
+  EXPECT_EQ(verb(plan.steps[1]), "mask");
+  EXPECT_EQ(verb(plan.steps.back()), "export");
+}
+
+TEST(Plan, AnUnknownKeyIsRefusedWithTheStepAndTheNearestKnownOne) {
+  Json plan = le_fort_i();
+  step(plan, "advanced")["translate"] = {0, -6, 2};
+  expect_says(refusal(plan), {"step 'advanced'", "unknown key 'translate'", "did you mean 'translate_mm'?"});
+  plan = le_fort_i();
+  plan["universe"]["voxelmm"] = 1.0;
+  expect_says(refusal(plan), {"universe", "'voxelmm'", "'voxel_mm'"});
+  plan = le_fort_i();
+  plan["step"] = Json::array();
+  expect_says(refusal(plan), {"'step'", "'steps'"});
+}
+
+TEST(Plan, AnUnknownStepIsRefusedWithTheStepsThereAre) {
+  Json plan = le_fort_i();
+  step(plan, "maxilla")["do"] = "combin";
+  expect_says(refusal(plan),
+              {"step 'maxilla'", "unknown step 'combin'", "did you mean 'combine'?", "window, mask"});
+}
+
+TEST(Plan, ANameIsRefusedBeforeItIsBound) {
+  Json plan = le_fort_i();
+  std::swap(plan["steps"][0], plan["steps"][2]);
+  expect_says(refusal(plan), {"step 'maxilla'", "no earlier step is called 'skull'"});
+  plan = le_fort_i();
+  step(plan, "maxilla")["expression"] = "maxilla & cut";
+  expect_says(refusal(plan), {"no earlier step is called 'maxilla'"});
+  plan = le_fort_i();
+  step(plan, "result")["expression"] = "rest | advance";
+  expect_says(refusal(plan), {"step 'result'", "did you mean 'advanced'?"});
+}
+
+TEST(Plan, AMeasurementIsNoObject) {
+  Json plan = le_fort_i();
+  plan["steps"].push_back({{"id", "again"}, {"do", "measure"}, {"object", "overlap_size"}});
+  expect_says(refusal(plan), {"step 'again'", "'overlap_size' is a measure step"});
+}
+
+TEST(Plan, IdsAreUniqueIdentifiers) {
+  for (const char* id : {"two words", "1st", "a-b", "", "\xc3\xa4", "a.b"}) {
+    Json plan = le_fort_i();
+    plan["steps"].push_back({{"id", id}, {"do", "measure"}, {"object", "skull"}});
+    EXPECT_NE(refusal(plan), "") << "id '" << id << "' was taken";
+  }
+  Json plan = le_fort_i();
+  plan["steps"].push_back({{"id", "skull"}, {"do", "measure"}, {"object", "skull"}});
+  expect_says(refusal(plan), {"'skull'", "taken"});
+}
+
+TEST(Plan, AnExpressionIsParsedBeforeAnythingIsEvaluated) {
+  for (const char* expression :
+       {"skull &", "skull cut", "(skull", "& cut", "move(skull, cut)", "skull + cut"}) {
+    Json plan = le_fort_i();
+    step(plan, "maxilla")["expression"] = expression;
+    expect_says(refusal(plan), {"step 'maxilla'", "expression"});
+  }
+}
+
+TEST(Plan, NumbersAreFiniteNumbers) {
+  std::string text = le_fort_i().dump();
+  const std::string low = "\"low\":300";
+  const auto at = text.find(low);
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_NE(refusal(std::string(text).replace(at, low.size(), "\"low\":1e999")), "");
+  EXPECT_NE(refusal(std::string(text).replace(at, low.size(), "\"low\":NaN")), "");
+  expect_says(refusal(std::string(text).replace(at, low.size(), "\"low\":\"300\"")),
+              {"step 'skull', low", "number"});
+  EXPECT_EQ(refusal(text), "");
+}
+
+TEST(Plan, AKeySaidTwiceIsRefused) {
+  std::string text = le_fort_i().dump();
+  const std::string low = "\"low\":300";
+  text.replace(text.find(low), low.size(), "\"low\":300,\"low\":400");
+  expect_says(refusal(text), {"'low'", "twice"});
+}
+
+TEST(Plan, AnExportIsRefusedWhereNothingCouldWriteIt) {
+  Json plan = le_fort_i();
+  step(plan, "piece")["path"] = "maxilla.stp";
+  expect_says(refusal(plan), {"step 'piece'", "maxilla.stp", "did you mean '.stl'?"});
+  for (const char* path :
+       {"/tmp/maxilla.stl", "../maxilla.stl", "a/../../maxilla.stl", "views/maxilla.stl"}) {
+    step(plan, "piece")["path"] = path;
+    expect_says(refusal(plan), {"within the result folder"});
+  }
+  plan = le_fort_i();
+  plan["steps"].push_back({{"id", "twin"}, {"do", "export"}, {"object", "skull"}, {"path", "./maxilla.stl"}});
+  expect_says(refusal(plan), {"step 'twin'", "written by an earlier step"});
+}
+
+TEST(Plan, TheExtensionSaysWhatIsExported) {
+  Json plan = le_fort_i();
+  step(plan, "piece")["path"] = "maxilla.nii.gz";
+  const Plan read = parse_plan(plan.dump(), "/plans");
+  for (const Step& each : read.steps) {
+    const auto* to = std::get_if<ExportStep>(&each.action);
+    if (to == nullptr) continue;
+    EXPECT_EQ(to->kind, each.id == "piece" ? ExportKind::Label : ExportKind::Tetrahedra) << each.id;
+  }
+}
+
+TEST(Plan, ARegionWithoutAreaOrOfAnUnknownViewIsRefused) {
+  Json plan = le_fort_i();
+  step(plan, "cut")["regions"][0]["view"] = "front";
+  expect_says(refusal(plan), {"step 'cut'", "regions[0]", "front", "anterior"});
+  plan = le_fort_i();
+  step(plan, "cut")["regions"][1]["polygons_mm"][0] = {{0, 0}, {1, 1}};
+  expect_says(refusal(plan), {"step 'cut'"});
+  plan = le_fort_i();
+  step(plan, "cut")["regions"][1]["polygons_mm"][0][2] = {0, 0, 0};
+  expect_says(refusal(plan), {"step 'cut'", "polygons_mm[0][2]", "two numbers"});
+}
+
+TEST(Plan, AnUpsideDownWindowAMoveOfNothingAndARotationWithoutAxisAreRefused) {
+  Json plan = le_fort_i();
+  step(plan, "skull")["high"] = 200;
+  expect_says(refusal(plan), {"step 'skull', high", "below"});
+  plan = le_fort_i();
+  step(plan, "advanced").erase("translate_mm");
+  step(plan, "advanced").erase("rotate");
+  expect_says(refusal(plan), {"step 'advanced'", "moves nothing"});
+  plan = le_fort_i();
+  step(plan, "advanced")["rotate"]["axis"] = {0, 0, 0};
+  expect_says(refusal(plan), {"step 'advanced', rotate, axis"});
+}
+
+TEST(Plan, OnlyVersionOneIsRead) {
+  Json plan = le_fort_i();
+  plan["octotomy_plan"] = 2;
+  expect_says(refusal(plan), {"octotomy_plan"});
+  plan.erase("octotomy_plan");
+  expect_says(refusal(plan), {"'octotomy_plan' is missing"});
+  EXPECT_NE(refusal(std::string("[]")), "");
+  EXPECT_NE(refusal(std::string("{")), "");
+  EXPECT_NE(refusal(std::string("")), "");
+}
+
+TEST(Plan, AFileThatIsNotAPlanIsNamed) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "octotomy_not_a.plan.json";
+  std::ofstream(path) << "{ \"octotomy_plan\": 1 ";
+  try {
+    read_plan(path);
+    FAIL() << "half a plan was read";
+  } catch (const std::runtime_error& error) {
+    expect_says(error.what(), {path.string(), "not JSON"});
+  }
+  std::filesystem::remove(path);
+  EXPECT_THROW(read_plan("/no/such.plan.json"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace octotomy::planner

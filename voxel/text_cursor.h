@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace octotomy::voxel {
+
+/// Reads a representation's text from left to right and knows where it stands, so that a refusal can say so.
+class TextCursor {
+ public:
+  /// `what` is the text's kind, which a refusal begins with: "treecode".
+  TextCursor(std::string_view what, std::string_view text) : what_(what), text_(text) {}
+
+  std::size_t position() const { return position_; }
+  bool at_end() const { return position_ == text_.size(); }
+  /// The next character; 0 at the end.
+  char peek() const { return at_end() ? '\0' : text_[position_]; }
+  void advance() { ++position_; }
+
+  void skip_spaces();  ///< and line ends
+  void skip_blanks();  ///< spaces and tabs within a line
+  bool accept(std::string_view expected);
+  void expect(std::string_view expected);
+  /// A number of decimal digits, at most `largest`.
+  std::uint64_t number(std::uint64_t largest);
+  /// Nothing but spaces may follow.
+  void expect_end();
+
+  /// Throws std::invalid_argument: "treecode, character 12: ...", counted from one.
+  [[noreturn]] void refuse(const std::string& why) const { refuse_at(position_, why); }
+  [[noreturn]] void refuse_at(std::size_t position, const std::string& why) const;
+  /// The same, naming what stands there instead.
+  [[noreturn]] void refuse_unexpected(const std::string& expected) const;
+
+ private:
+  std::string_view what_;
+  std::string_view text_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace octotomy::voxel
