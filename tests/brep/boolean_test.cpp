@@ -207,7 +207,13 @@ TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
   for (const glm::dvec3& slide : {glm::dvec3(0, -6, 0), glm::dvec3(0.125, 0.25, 0), glm::dvec3(0, 0, 0)}) {
     const Mesh piece = moved(*cut.intersection, glm::translate(glm::dmat4(1.0), slide));
     const BooleanResult united = boolean(*cut.a_minus_b, Operation::Union, piece);
-    EXPECT_NEAR(volume(united.mesh), volume(ball), 1e-4) << told(united.findings);
+    // Cut points are rounded, so the faces meet to the last place only. Where that leaves them touching in
+    // points, the piece is shifted and it is told: by up to three steps over the area of the cut.
+    const bool shifted = told(united.findings).find("shifted: b was moved by") != std::string::npos;
+    const double cut_mm2 = std::numbers::pi * (10 * 10 - 2.5 * 2.5);
+    const double step_mm = 0x1p-18 * glm::length(glm::dvec3(20, 26, 20));
+    EXPECT_NEAR(volume(united.mesh), volume(ball), shifted ? 3 * step_mm * cut_mm2 : 1e-4)
+        << told(united.findings);
     const Health h = health(united.mesh);
     EXPECT_TRUE(h.closed && h.manifold && h.oriented) << told(h.findings);
   }
