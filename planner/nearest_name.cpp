@@ -32,17 +32,25 @@ std::size_t edits(std::string_view a, std::string_view b) {
   return above[b.size()];
 }
 
+std::size_t common_beginning(std::string_view a, std::string_view b) {
+  std::size_t length = 0;
+  while (length < std::min(a.size(), b.size()) && lower(a[length]) == lower(b[length])) ++length;
+  return length;
+}
+
 }  // namespace
 
 std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string> known) {
   std::optional<std::string> nearest;
-  std::size_t fewest = 0;
+  std::size_t fewest = 0, beginning = 0;
   for (const std::string& candidate : known) {
     const std::size_t distance = edits(name, candidate);
     if (2 * distance > std::max(name.size(), candidate.size())) continue;
-    if (nearest && distance >= fewest) continue;
+    const std::size_t shared = common_beginning(name, candidate);
+    if (nearest && (distance > fewest || (distance == fewest && shared <= beginning))) continue;
     nearest = candidate;
     fewest = distance;
+    beginning = shared;
   }
   return nearest;
 }

@@ -9,8 +9,8 @@
 #include "voxel/slice_bits.h"
 
 // Source: He, Chao, Suzuki 2008, run-based labelling, in three dimensions: runs of voxels along x are the
-// units; a run joins those of the row before and of the slice before that share an x with it. The memory is
-// that of the runs, which follow the boundary.
+// units; a run joins those of the rows before, in its slice and the slice before, that share an x with it, or
+// come as close as the neighbourhood says. The memory is that of the runs, which follow the boundary.
 
 namespace octotomy::voxel {
 namespace {
@@ -85,22 +85,57 @@ class DisjointSets {
   std::vector<std::uint32_t> parent_;
 };
 
-void join_overlaps(const Runs& runs, int y, int z, int other_y, int other_z, DisjointSets& sets) {
-  if (other_y < 0 || other_z < 0) return;
-  std::size_t a = runs.begin(y, z);
-  std::size_t b = runs.begin(other_y, other_z);
-  while (a < runs.end(y, z) && b < runs.end(other_y, other_z)) {
+// Joins runs of a row to those of an earlier row that come within `gap` voxels along x.
+void join_rows(const Runs& runs, const glm::ivec2& row, const glm::ivec2& earlier, int gap,
+               DisjointSets& sets) {
+  if (earlier.x < 0 || earlier.x >= runs.side || earlier.y < 0) return;
+  std::size_t a = runs.begin(row.x, row.y);
+  std::size_t b = runs.begin(earlier.x, earlier.y);
+  while (a < runs.end(row.x, row.y) && b < runs.end(earlier.x, earlier.y)) {
     const Run& own = runs.runs[a];
     const Run& other = runs.runs[b];
-    if (own.first <= other.last && other.first <= own.last)
+    if (own.first <= other.last + gap && other.first <= own.last + gap)
       sets.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
     own.last < other.last ? ++a : ++b;
   }
 }
 
-// The block of 16 voxels a side of the runs of one part.
-Block block_of_part(const Runs& runs, const std::vector<std::uint32_t>& part, std::uint32_t wanted,
-                    const glm::ivec3& block) {
+// Parts as the numbers of their first runs, a part a run, and voxels of each part by that number.
+struct Parts {
+  Runs runs;
+  std::vector<std::uint32_t> part;
+  std::vector<std::uint64_t> voxel_count;
+};
+
+Parts parts_of(const Octree& octree, Neighbours neighbours) {
+  Parts parts{runs_of(octree), {}, {}};
+  const Runs& runs = parts.runs;
+  DisjointSets sets(runs.runs.size());
+  // A row's neighbour across a face lets x differ by as much as the neighbourhood has left, and so does one
+  // across an edge.
+  const int across_face = neighbours == Neighbours::Faces ? 0 : 1;
+  const int across_edge = neighbours == Neighbours::Corners ? 1 : 0;
+  for (int z = 0; z < runs.side; ++z)
+    for (int y = 0; y < runs.side; ++y) {
+      join_rows(runs, {y, z}, {y - 1, z}, across_face, sets);
+      join_rows(runs, {y, z}, {y, z - 1}, across_face, sets);
+      if (neighbours == Neighbours::Faces) continue;
+      join_rows(runs, {y, z}, {y - 1, z - 1}, across_edge, sets);
+      join_rows(runs, {y, z}, {y + 1, z - 1}, across_edge, sets);
+    }
+  parts.part.resize(runs.runs.size());
+  parts.voxel_count.resize(runs.runs.size(), 0);
+  for (std::uint32_t i = 0; i < parts.part.size(); ++i) {
+    parts.part[i] = sets.find(i);
+    parts.voxel_count[parts.part[i]] +=
+        static_cast<std::uint64_t>(runs.runs[i].last - runs.runs[i].first + 1);
+  }
+  return parts;
+}
+
+// The block of 16 voxels a side of the runs of the wanted parts.
+Block block_of_parts(const Parts& parts, const std::vector<bool>& wanted, const glm::ivec3& block) {
+  const Runs& runs = parts.runs;
   std::uint64_t words[64] = {};
   bool any = false;
   for (int z = 0; z < 16; ++z)
@@ -112,7 +147,7 @@ Block block_of_part(const Runs& runs, const std::vector<std::uint32_t>& part, st
       auto run = std::lower_bound(row + static_cast<std::ptrdiff_t>(runs.begin(at.y, at.z)), end, at.x,
                                   [](const Run& r, int x) { return r.last < x; });
       for (; run != end && run->first < at.x + 16; ++run) {
-        if (part[static_cast<std::size_t>(run - row)] != wanted) continue;
+        if (!wanted[parts.part[static_cast<std::size_t>(run - row)]]) continue;
         const int first = std::max(run->first - at.x, 0);
         const int last = std::min(run->last - at.x, 15);
         for (int x = first; x <= last; ++x)
@@ -123,35 +158,60 @@ Block block_of_part(const Runs& runs, const std::vector<std::uint32_t>& part, st
   return any ? make_leaf_block(0, all_children, words) : Block();
 }
 
+Octree octree_of_parts(const Octree& octree, const Parts& parts, const std::vector<bool>& wanted) {
+  return octree_of_blocks(octree.universe(),
+                          [&](const glm::ivec3& block) { return block_of_parts(parts, wanted, block); });
+}
+
 }  // namespace
 
-Components components(const Octree& octree) {
-  const Runs runs = runs_of(octree);
-  DisjointSets sets(runs.runs.size());
-  for (int z = 0; z < runs.side; ++z)
-    for (int y = 0; y < runs.side; ++y) {
-      join_overlaps(runs, y, z, y - 1, z, sets);
-      join_overlaps(runs, y, z, y, z - 1, sets);
-    }
-
-  std::vector<std::uint32_t> part(runs.runs.size());
-  std::vector<std::uint64_t> size(runs.runs.size(), 0);
+Components components(const Octree& octree, Neighbours neighbours) {
+  const Parts parts = parts_of(octree, neighbours);
   std::vector<std::uint32_t> firsts;
-  for (std::uint32_t i = 0; i < part.size(); ++i) {
-    part[i] = sets.find(i);
-    if (part[i] == i) firsts.push_back(i);
-    size[part[i]] += static_cast<std::uint64_t>(runs.runs[i].last - runs.runs[i].first + 1);
-  }
-  std::stable_sort(firsts.begin(), firsts.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return size[a] > size[b]; });
-
+  for (std::uint32_t i = 0; i < parts.part.size(); ++i)
+    if (parts.part[i] == i) firsts.push_back(i);
+  std::stable_sort(firsts.begin(), firsts.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return parts.voxel_count[a] > parts.voxel_count[b];
+  });
   Components result{{}, Octree::empty(octree.universe())};
-  for (const std::uint32_t first : firsts) result.voxel_counts.push_back(size[first]);
-  if (!firsts.empty())
-    result.largest = octree_of_blocks(octree.universe(), [&](const glm::ivec3& block) {
-      return block_of_part(runs, part, firsts.front(), block);
-    });
+  for (const std::uint32_t first : firsts) result.voxel_counts.push_back(parts.voxel_count[first]);
+  if (firsts.empty()) return result;
+  std::vector<bool> wanted(parts.part.size(), false);
+  wanted[firsts.front()] = true;
+  result.largest = octree_of_parts(octree, parts, wanted);
   return result;
+}
+
+Octree components_at(const Octree& octree, const std::vector<glm::ivec3>& seeds, Neighbours neighbours) {
+  const Parts parts = parts_of(octree, neighbours);
+  std::vector<bool> wanted(parts.part.size(), false);
+  for (const glm::ivec3& seed : seeds) {
+    if (!octree.contains(seed)) continue;
+    std::size_t run = parts.runs.begin(seed.y, seed.z);
+    while (parts.runs.runs[run].last < seed.x) ++run;
+    wanted[parts.part[run]] = true;
+  }
+  return octree_of_parts(octree, parts, wanted);
+}
+
+Octree components_of_at_least(const Octree& octree, std::uint64_t voxel_count, Neighbours neighbours) {
+  const Parts parts = parts_of(octree, neighbours);
+  std::vector<bool> wanted(parts.part.size(), false);
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = parts.voxel_count[i] >= voxel_count;
+  return octree_of_parts(octree, parts, wanted);
+}
+
+Octree components_at_faces(const Octree& octree, Neighbours neighbours) {
+  const Parts parts = parts_of(octree, neighbours);
+  const int last = parts.runs.side - 1;
+  std::vector<bool> wanted(parts.part.size(), false);
+  for (int z = 0; z <= last; ++z)
+    for (int y = 0; y <= last; ++y)
+      for (std::size_t run = parts.runs.begin(y, z); run < parts.runs.end(y, z); ++run)
+        if (y == 0 || y == last || z == 0 || z == last || parts.runs.runs[run].first == 0 ||
+            parts.runs.runs[run].last == last)
+          wanted[parts.part[run]] = true;
+  return octree_of_parts(octree, parts, wanted);
 }
 
 }  // namespace octotomy::voxel

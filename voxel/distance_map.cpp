@@ -13,9 +13,9 @@
 #include "voxel/build.h"
 #include "voxel/slice_bits.h"
 
-// One axis after the other: along x, two sweeps give the distance to the row's nearest voxel; along y and z, each
-// line of squares becomes the lower envelope of the parabolas that stand on it. Lines are independent, so that
-// threads share nothing.
+// One axis after the other: along x, two sweeps give the distance to the row's nearest voxel; along y and z,
+// each line of squares becomes the lower envelope of the parabolas that stand on it. Lines are independent,
+// so that threads share nothing.
 
 namespace octotomy::voxel {
 namespace {
@@ -72,7 +72,8 @@ glm::dvec3 orthogonal_spacing_mm(const Universe& universe) {
   const glm::dvec3 spacing_mm = universe.lattice().spacing_mm();
   for (int axis = 0; axis < 3; ++axis) {
     const int next = (axis + 1) % 3;
-    // A shear of 2^-20 moves the end of the longest universe, 4096 voxels, by less than a hundredth of a voxel.
+    // A shear of 2^-20 moves the end of the longest universe, 4096 voxels, by less than a hundredth of a
+    // voxel.
     if (std::abs(glm::dot(edges[axis], edges[next])) > 0x1p-20 * spacing_mm[axis] * spacing_mm[next])
       throw std::invalid_argument(
           "distances need a universe whose axes are at right angles: resample the sheared scan first");
@@ -80,40 +81,34 @@ glm::dvec3 orthogonal_spacing_mm(const Universe& universe) {
   return spacing_mm;
 }
 
-// Square distances along x to the voxels of the set (or of its complement) in slice z.
-void sweep_rows(const Octree& octree, bool complement, int z, double step, DistanceMap& map) {
+// Zero at the voxels of the set (or of its complement) in slice z, far away at the others.
+void seed_slice(const Octree& octree, bool complement, int z, DistanceMap& map) {
   const int side = octree.universe().side();
   SliceBits slice;
   const bool outside = z < 0 || z >= side;
   if (!outside) read_slice(octree, z, slice);
-  const VoxelRange& range = map.range;
-  // The nearest voxel of the row may lie beside the range; beyond the universe all voxels are alike.
-  const int first = std::min(range.low.x, -1);
-  const int last = std::max(range.high.x, side);
-  std::vector<int> nearest(static_cast<std::size_t>(last - first + 1));
-  constexpr int none = std::numeric_limits<int>::max() / 2;
-  for (int y = range.low.y; y <= range.high.y; ++y) {
+  float* out = &map.square_mm2[map.index({map.range.low.x, map.range.low.y, z})];
+  for (int y = map.range.low.y; y <= map.range.high.y; ++y) {
     const std::uint64_t* row = outside || y < 0 || y >= side ? nullptr : slice.row(y);
-    const auto in_set = [&](int x) {
+    for (int x = map.range.low.x; x <= map.range.high.x; ++x) {
       const bool inside = row != nullptr && x >= 0 && x < side && ((row[x / 64] >> (x % 64)) & 1) != 0;
-      return inside != complement;
-    };
-    int away = none;
-    for (int x = first; x <= last; ++x) {
-      away = in_set(x) ? 0 : std::min(away + 1, none);
-      nearest[static_cast<std::size_t>(x - first)] = away;
+      *out++ = inside != complement ? 0.0F : far_away;
     }
-    away = none;
-    for (int x = last; x >= first; --x) {
-      int& here = nearest[static_cast<std::size_t>(x - first)];
-      away = std::min(here, std::min(away + 1, none));
-      here = away;
-    }
-    float* out = &map.square_mm2[map.index({range.low.x, y, z})];
-    for (int x = range.low.x; x <= range.high.x; ++x) {
-      const int steps = nearest[static_cast<std::size_t>(x - first)];
-      *out++ = steps >= none ? far_away : static_cast<float>((step * steps) * (step * steps));
-    }
+  }
+}
+
+// From zeros and far away to square distances along a row.
+void sweep_row(float* row, int count, double step) {
+  constexpr int none = std::numeric_limits<int>::max() / 2;
+  int away = none;
+  for (int x = 0; x < count; ++x) {
+    away = row[x] == 0.0F ? 0 : std::min(away + 1, none);
+    if (away < none) row[x] = static_cast<float>((step * away) * (step * away));
+  }
+  away = none;
+  for (int x = count - 1; x >= 0; --x) {
+    away = row[x] == 0.0F ? 0 : std::min(away + 1, none);
+    if (away < none) row[x] = std::min(row[x], static_cast<float>((step * away) * (step * away)));
   }
 }
 
@@ -140,39 +135,36 @@ void sweep_lines(DistanceMap& map, int axis, double step) {
   });
 }
 
-DistanceMap map_of(const Octree& octree, bool complement, const VoxelRange& wanted) {
-  const glm::dvec3 spacing_mm = orthogonal_spacing_mm(octree.universe());
-  DistanceMap map{wanted, {}};
-  if (wanted.is_empty()) return map;
-  // Lines must hold every voxel of the set that could be nearest: the whole set's range, or for the complement
-  // a shell of outside voxels around what is asked for, beyond which there are only farther ones.
-  const VoxelRange set = complement ? grown(wanted, 1) : range_of(octree);
-  if (!set.is_empty()) {
-    map.range.low = glm::min(map.range.low, set.low);
-    map.range.high = glm::max(map.range.high, set.high);
-  }
-  if (complement) {
-    map.range.low = glm::min(map.range.low, glm::ivec3(-1));
-    map.range.high = glm::max(map.range.high, glm::ivec3(octree.universe().side()));
-  }
-  const glm::ivec3 dims = map.range.dims();
-  map.square_mm2.resize(static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
-                        static_cast<std::size_t>(dims.z));
-  tbb::parallel_for(map.range.low.z, map.range.high.z + 1,
-                    [&](int z) { sweep_rows(octree, complement, z, spacing_mm.x, map); });
-  sweep_lines(map, 1, spacing_mm.y);
-  sweep_lines(map, 2, spacing_mm.z);
-  if (map.range.low == wanted.low && map.range.high == wanted.high) return map;
-  DistanceMap cropped{wanted, {}};
-  const glm::ivec3 kept = wanted.dims();
-  cropped.square_mm2.reserve(static_cast<std::size_t>(kept.x) * static_cast<std::size_t>(kept.y) *
-                             static_cast<std::size_t>(kept.z));
+std::size_t voxels_of(const VoxelRange& range) {
+  const glm::ivec3 dims = range.dims();
+  return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
+         static_cast<std::size_t>(dims.z);
+}
+
+DistanceMap cropped(DistanceMap map, const VoxelRange& wanted) {
+  if (map.range == wanted) return map;
+  DistanceMap part{wanted, {}};
+  part.square_mm2.reserve(voxels_of(wanted));
   for (int z = wanted.low.z; z <= wanted.high.z; ++z)
     for (int y = wanted.low.y; y <= wanted.high.y; ++y) {
       const auto row = map.square_mm2.begin() + static_cast<std::ptrdiff_t>(map.index({wanted.low.x, y, z}));
-      cropped.square_mm2.insert(cropped.square_mm2.end(), row, row + kept.x);
+      part.square_mm2.insert(part.square_mm2.end(), row, row + wanted.dims().x);
     }
-  return cropped;
+  return part;
+}
+
+DistanceMap map_of(const Octree& octree, bool complement, const VoxelRange& wanted) {
+  DistanceMap map{wanted, {}};
+  if (wanted.is_empty()) return map;
+  // Every voxel that could be nearest must take part. Of the set, that is its own range; of the complement a
+  // shell around that, as any voxel farther out has one of the shell before it.
+  const VoxelRange set = grown(range_of(octree), 1);
+  if (!set.is_empty()) map.range = {glm::min(wanted.low, set.low), glm::max(wanted.high, set.high)};
+  map.square_mm2.resize(voxels_of(map.range));
+  tbb::parallel_for(map.range.low.z, map.range.high.z + 1,
+                    [&](int z) { seed_slice(octree, complement, z, map); });
+  spread(map, octree.universe());
+  return cropped(std::move(map), wanted);
 }
 
 void widen(BlockRef block, int height, const glm::ivec3& origin, VoxelRange& range) {
@@ -218,7 +210,19 @@ std::size_t DistanceMap::index(const glm::ivec3& voxel) const {
   const glm::ivec3 dims = range.dims();
   return static_cast<std::size_t>(at.x) +
          static_cast<std::size_t>(dims.x) *
-             (static_cast<std::size_t>(at.y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(at.z));
+             (static_cast<std::size_t>(at.y) +
+              static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(at.z));
+}
+
+void spread(DistanceMap& map, const Universe& universe) {
+  const glm::dvec3 spacing_mm = orthogonal_spacing_mm(universe);
+  const glm::ivec3 dims = map.range.dims();
+  tbb::parallel_for(map.range.low.z, map.range.high.z + 1, [&](int z) {
+    for (int y = map.range.low.y; y <= map.range.high.y; ++y)
+      sweep_row(&map.square_mm2[map.index({map.range.low.x, y, z})], dims.x, spacing_mm.x);
+  });
+  sweep_lines(map, 1, spacing_mm.y);
+  sweep_lines(map, 2, spacing_mm.z);
 }
 
 DistanceMap distance_map(const Octree& octree, const VoxelRange& range) {
@@ -229,17 +233,19 @@ DistanceMap distance_map_of_complement(const Octree& octree, const VoxelRange& r
   return map_of(octree, true, range);
 }
 
-Octree octree_within(const Universe& universe, const DistanceMap& map, double limit_mm2) {
+Octree octree_where(const Universe& universe, const DistanceMap& map,
+                    const std::function<bool(double square_mm2)>& wanted) {
   return octree_of_blocks(universe, [&](const glm::ivec3& block) -> Block {
     const glm::ivec3 low = glm::max(block * 16, map.range.low);
-    const glm::ivec3 high = glm::min(glm::min(block * 16 + 15, map.range.high), glm::ivec3(universe.side() - 1));
+    const glm::ivec3 high =
+        glm::min(glm::min(block * 16 + 15, map.range.high), glm::ivec3(universe.side() - 1));
     if (glm::any(glm::greaterThan(low, high))) return {};
     std::array<std::uint64_t, 64> words{};
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y) {
         const float* row = &map.square_mm2[map.index({low.x, y, z})];
         for (int x = low.x; x <= high.x; ++x)
-          if (static_cast<double>(*row++) <= limit_mm2) {
+          if (wanted(static_cast<double>(*row++))) {
             const glm::ivec3 leaf = (glm::ivec3(x, y, z) >> 2) & 3;
             words[static_cast<std::size_t>(child_index(leaf.x, leaf.y, leaf.z))] |=
                 std::uint64_t{1} << child_index(x & 3, y & 3, z & 3);

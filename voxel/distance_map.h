@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "voxel/octree.h"
@@ -14,6 +15,7 @@ struct VoxelRange {
 
   bool is_empty() const { return glm::any(glm::greaterThan(low, high)); }
   glm::ivec3 dims() const { return high - low + 1; }
+  bool operator==(const VoxelRange&) const = default;
 };
 
 /// The least range that holds every voxel of the octree; empty where there is none.
@@ -31,18 +33,24 @@ struct DistanceMap {
   std::size_t index(const glm::ivec3& voxel) const;
 };
 
-/// Distances to the octree's voxels. Voxels outside the universe are not in the set. The range may reach beyond
-/// the universe. Exact (the nearest voxel is the nearest) but for the rounding of sums of squares: each float
-/// is within two units in the last place of a float. Preconditions: axes of the universe at right angles; throws
-/// std::invalid_argument where they are not. Parallel; same bits on any thread count. Cost: three passes over
-/// the range, 4 bytes a voxel. Source: Felzenszwalb and Huttenlocher, Theory of Computing 8, 2012.
+/// Distances to the octree's voxels. Voxels outside the universe are not in the set. The range may reach
+/// beyond the universe. Exact (the nearest voxel is the nearest) but for the rounding of sums of squares:
+/// each float is within two units in the last place of a float. Preconditions: axes of the universe at right
+/// angles; throws std::invalid_argument where they are not. Parallel; same bits on any thread count. Cost:
+/// three passes over the range, 4 bytes a voxel. Source: Felzenszwalb and Huttenlocher, Theory of Computing
+/// 8, 2012.
 DistanceMap distance_map(const Octree& octree, const VoxelRange& range);
 
 /// The same to the voxels that are not in the octree, those beyond the universe among them.
 DistanceMap distance_map_of_complement(const Octree& octree, const VoxelRange& range);
 
-/// The voxels of the range whose square distance is at most `limit_mm2`.
-Octree octree_within(const Universe& universe, const DistanceMap& map, double limit_mm2);
+/// From a map that is zero at the voxels of a set and infinite at all others, their distances: what
+/// distance_map() does with an octree's voxels.
+void spread(DistanceMap& map, const Universe& universe);
+
+/// The voxels of the range, and of the universe, whose square distance is wanted.
+Octree octree_where(const Universe& universe, const DistanceMap& map,
+                    const std::function<bool(double square_mm2)>& wanted);
 
 /// Signed distances in millimetres from the set's surface, negative inside: between centres of voxels inside
 /// and outside the surface lies in the middle, so that a voxel's value is its distance to the nearest voxel

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "voxel/cell_counts.h"
 #include "voxel/slice_bits.h"
 
 // Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of how
@@ -97,7 +98,8 @@ class Accumulator {
 
   // Pairs of neighbours along each direction of which just one is inside, both ends of the universe included.
   std::array<std::uint64_t, 13> crossings{};
-  glm::dvec3 first_moment{0.0};  ///< sum of voxel indices: exact below 2^53
+  glm::dvec3 first_moment{0.0};   ///< sum of voxel indices: exact below 2^53
+  glm::dmat3 second_moment{0.0};  ///< sum of products of voxel indices: the lower triangle
   glm::ivec3 low{std::numeric_limits<int>::max()};
   glm::ivec3 high{-1};
 
@@ -136,6 +138,7 @@ class Accumulator {
   void add_moments(const std::uint64_t* row, int words, int y, int z) {
     double count = 0.0;
     double sum_x = 0.0;
+    double sum_xx = 0.0;
     for (int i = 0; i < words; ++i) {
       std::uint64_t word = row[i];
       if (word == 0) continue;
@@ -143,27 +146,108 @@ class Accumulator {
       high.x = std::max(high.x, 64 * i + 63 - std::countl_zero(word));
       const int bits = std::popcount(word);
       count += bits;
-      sum_x += 64.0 * i * bits + sum_of_places(word);
+      const double first = 64.0 * i;
+      const double place_sum = sum_of_places(word);
+      sum_x += first * bits + place_sum;
+      sum_xx += first * (first * bits + 2.0 * place_sum) + sum_of_square_places(word);
     }
     if (count == 0.0) return;
     low = {low.x, std::min(low.y, y), std::min(low.z, z)};
     high = {high.x, std::max(high.y, y), std::max(high.z, z)};
     first_moment += glm::dvec3(sum_x, count * y, count * z);
+    second_moment[0] += glm::dvec3(sum_xx, sum_x * y, sum_x * z);
+    second_moment[1] += glm::dvec3(0.0, count * y * y, count * y * z);
+    second_moment[2].z += count * z * z;
   }
+
+  // Places whose number has bit k.
+  static constexpr std::array<std::uint64_t, 6> places{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc,
+                                                       0xf0f0f0f0f0f0f0f0, 0xff00ff00ff00ff00,
+                                                       0xffff0000ffff0000, 0xffffffff00000000};
 
   // Sum of the numbers of the bits that are set: bit k of a place counts 2^k for every set bit whose place
   // has it.
   static double sum_of_places(std::uint64_t word) {
-    constexpr std::array<std::uint64_t, 6> places{0xaaaaaaaaaaaaaaaa, 0xcccccccccccccccc, 0xf0f0f0f0f0f0f0f0,
-                                                  0xff00ff00ff00ff00, 0xffff0000ffff0000, 0xffffffff00000000};
     int sum = 0;
     for (std::size_t k = 0; k < places.size(); ++k) sum += std::popcount(word & places[k]) << k;
+    return sum;
+  }
+
+  // Of their squares: a pair of bits j and k of a place counts 2^(j + k).
+  static double sum_of_square_places(std::uint64_t word) {
+    if (word == all_children) return 63.0 * 64.0 * 127.0 / 6.0;
+    int sum = 0;
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      sum += std::popcount(word & places[j]) << (2 * j);
+      for (std::size_t k = 0; k < j; ++k) sum += std::popcount(word & places[j] & places[k]) << (j + k + 1);
+    }
     return sum;
   }
 
   const Octree& octree_;
   int side_;
 };
+
+// Lindblad's weight of a pattern of 2 x 2 x 2 voxels, in squares of the voxel's edge. Patterns of more than
+// four voxels weigh as their complements; which of the 14 cases it is, how many voxels it has and which of
+// them are neighbours by faces decide.
+double lindblad_weight(unsigned pattern) {
+  if (std::popcount(pattern) > 4) pattern = ~pattern & 255U;
+  int joints = 0;
+  int most_joints = 0;
+  for (unsigned v = 0; v < 8; ++v) {
+    if ((pattern >> v & 1U) == 0) continue;
+    int own = 0;
+    for (const unsigned step : {1U, 2U, 4U}) own += static_cast<int>(pattern >> (v ^ step) & 1U);
+    joints += own;
+    most_joints = std::max(most_joints, own);
+  }
+  joints /= 2;
+  switch (std::popcount(pattern)) {
+    case 1:
+      return 0.636;
+    case 2:
+      return joints == 1 ? 0.669 : 1.272;
+    case 3:
+      return joints == 2 ? 0.554 : joints == 1 ? 1.305 : 1.908;
+    default:
+      break;
+  }
+  if (joints == 4) return 0.927;                             // a face
+  if (joints == 3) return most_joints == 3 ? 0.422 : 1.573;  // a corner and its neighbours; a chain
+  if (joints == 2) return most_joints == 1 ? 1.338 : 1.190;  // two edges; three of a face and one apart
+  return 2.544;
+}
+
+std::optional<double> lindblad_mm2(const Octree& octree) {
+  const Lattice lattice = octree.universe().lattice();
+  const glm::dvec3 edge_mm = lattice.spacing_mm();
+  // Voxels count as cubes where edges and volume are those of one to the millionth: the weights have three
+  // digits.
+  constexpr double slack = 1e-6;
+  const double cube_mm3 = edge_mm.x * edge_mm.x * edge_mm.x;
+  if (std::abs(edge_mm.y / edge_mm.x - 1.0) > slack || std::abs(edge_mm.z / edge_mm.x - 1.0) > slack ||
+      std::abs(lattice.voxel_mm3() / cube_mm3 - 1.0) > 4.0 * slack)
+    return std::nullopt;
+  const std::array<std::uint64_t, 256> counts = cell_counts(octree);
+  double squares = 0.0;
+  for (unsigned pattern = 1; pattern < 255; ++pattern)
+    squares += lindblad_weight(pattern) * static_cast<double>(counts[pattern]);
+  return squares * edge_mm.x * edge_mm.x;
+}
+
+// From sums over voxel indices; every voxel is a cuboid with a spread of its own, 1/12 along each edge.
+glm::dmat3 inertia_mm5(const Lattice& lattice, double count, const glm::dvec3& first,
+                       const glm::dmat3& second) {
+  glm::dmat3 spread = second;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < column; ++row) spread[column][row] = spread[row][column];
+  spread -= glm::outerProduct(first, first) / count;
+  spread += glm::dmat3(count / 12.0);
+  const glm::dmat3 edges(lattice.lps_from_voxel);
+  const glm::dmat3 spread_mm5 = edges * spread * glm::transpose(edges) * lattice.voxel_mm3();
+  return glm::dmat3(spread_mm5[0][0] + spread_mm5[1][1] + spread_mm5[2][2]) - spread_mm5;
+}
 
 }  // namespace
 
@@ -177,6 +261,9 @@ Measures measure(const Octree& octree) {
   Accumulator sums(octree);
   sums.run();
   measures.centroid_mm = lattice.lps_mm(sums.first_moment / static_cast<double>(measures.voxel_count));
+  measures.inertia_mm5 =
+      inertia_mm5(lattice, static_cast<double>(measures.voxel_count), sums.first_moment, sums.second_moment);
+  measures.area_lindblad_mm2 = lindblad_mm2(octree);
   Lattice part = lattice;
   part.dims = sums.high - sums.low + 1;
   part.lps_from_voxel[3] = glm::dvec4(lattice.lps_mm(glm::dvec3(sums.low)), 1.0);

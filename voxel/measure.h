@@ -20,9 +20,17 @@ struct Measures {
   /// Area by the Crofton formula over 13 directions (Lang, Ohser, Hilfer 2001): unbiased to a few per cent on
   /// curved boundary, up to 9 % low on axis-aligned flats.
   double area_crofton13_mm2 = 0.0;
+  /// Area by Lindblad's weighted patterns of 2 x 2 x 2 voxels (Image and Vision Computing 23, 2005): within
+  /// one per cent on curved boundary, 7.3 % low on axis-aligned flats. Its weights are those of cubic voxels:
+  /// none for others.
+  std::optional<double> area_lindblad_mm2;
+  /// Inertia tensor about the centroid at a density of 1 per cubic millimetre, in mm^5, along the LPS axes;
+  /// none for an empty object. For kilograms times square millimetres multiply by the density in kg / mm^3.
+  std::optional<glm::dmat3> inertia_mm5;
   /// Exposed voxel faces by direction (x, y, z) in square millimetres: not an area, a term of error bounds.
   glm::dvec3 exposed_mm2{0.0};
 };
+/// Cost: two walks over the slices, word by word.
 Measures measure(const Octree& octree);
 
 }  // namespace octotomy::voxel

@@ -21,8 +21,8 @@ void check_radius(double radius_mm) {
                                 std::to_string(radius_mm));
 }
 
-// Squares of distances are compared; what lies on the ball's surface counts as within it, though a square may be
-// rounded by two units in the last place of a float.
+// Squares of distances are compared; what lies on the ball's surface counts as within it, though a square may
+// be rounded by two units in the last place of a float.
 double limit_mm2(double radius_mm) {
   return radius_mm * radius_mm * (1.0 + 4.0 * static_cast<double>(std::numeric_limits<float>::epsilon()));
 }
@@ -41,23 +41,22 @@ VoxelRange within_universe(VoxelRange range, const Universe& universe) {
   return range;
 }
 
-// The voxels of `octree` whose square distance in `map`, over a range that holds it, is more than the limit.
-Octree farther(const Octree& octree, const DistanceMap& map, double limit) {
-  return combine(octree.universe(), Expression(octree) - octree_within(octree.universe(), map, limit));
-}
-
 }  // namespace
 
 Octree dilate(const Octree& octree, double radius_mm) {
   check_radius(radius_mm);
   const VoxelRange range =
       within_universe(grown(range_of(octree), reach_voxels(octree.universe(), radius_mm)), octree.universe());
-  return octree_within(octree.universe(), distance_map(octree, range), limit_mm2(radius_mm));
+  const double limit = limit_mm2(radius_mm);
+  return octree_where(octree.universe(), distance_map(octree, range),
+                      [&](double square_mm2) { return square_mm2 <= limit; });
 }
 
 Octree erode(const Octree& octree, double radius_mm) {
   check_radius(radius_mm);
-  return farther(octree, distance_map_of_complement(octree, range_of(octree)), limit_mm2(radius_mm));
+  const double limit = limit_mm2(radius_mm);
+  return octree_where(octree.universe(), distance_map_of_complement(octree, range_of(octree)),
+                      [&](double square_mm2) { return square_mm2 > limit; });
 }
 
 Octree open(const Octree& octree, double radius_mm) {
@@ -67,18 +66,19 @@ Octree open(const Octree& octree, double radius_mm) {
 Octree close(const Octree& octree, double radius_mm) {
   check_radius(radius_mm);
   const double limit = limit_mm2(radius_mm);
-  const int reach = reach_voxels(octree.universe(), radius_mm);
-  // The dilation may leave the universe: it is kept as a map over all it reaches, and its outside as a second.
-  const VoxelRange range = grown(range_of(octree), reach);
-  DistanceMap map = distance_map(octree, range);
-  for (float& square : map.square_mm2) square = static_cast<double>(square) <= limit ? 1.0F : 0.0F;
-  const VoxelRange inner = within_universe(range_of(octree), octree.universe());
-  return octree_within(octree.universe(), distances_to_zero(map, octree.universe(), inner, limit), 0.0);
+  // The dilation may leave the universe: it is kept as a map over all it reaches and a shell around it, so
+  // that the shell's voxels are the nearest of all that lie beyond.
+  DistanceMap map =
+      distance_map(octree, grown(range_of(octree), reach_voxels(octree.universe(), radius_mm) + 1));
+  for (float& square_mm2 : map.square_mm2)
+    square_mm2 = static_cast<double>(square_mm2) > limit ? 0.0F : std::numeric_limits<float>::infinity();
+  spread(map, octree.universe());
+  return octree_where(octree.universe(), map, [&](double square_mm2) { return square_mm2 > limit; });
 }
 
 Octree fill_cavities(const Octree& octree) {
   const Octree outside = combine(octree.universe(), ~Expression(octree));
-  return combine(octree.universe(), ~Expression(reaching_faces(outside, Neighbours::Faces)));
+  return combine(octree.universe(), ~Expression(components_at_faces(outside)));
 }
 
 }  // namespace octotomy::voxel

@@ -13,12 +13,15 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <tbb/global_control.h>
 #include <thread>
+#include <vector>
 
 #include "planner/cli/verb.h"
+#include "planner/nearest_name.h"
 
 namespace {
 
@@ -89,6 +92,15 @@ int run_chosen(Program& program) {
   }
 }
 
+/// Nothing has that name: the nearest one, or where to find them.
+std::string unknown_verb(CLI::App& app, const std::string& word) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+  const std::optional<std::string> nearest = octotomy::planner::nearest_name(word, verbs);
+  return "there is no verb '" + word + "'" + (nearest ? ", did you mean '" + *nearest + "'?" : "") +
+         "; see octotomy --help";
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -120,6 +132,8 @@ int main(int count, char** arguments) {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
+    if (count > 1 && arguments[1][0] != '-' && app.get_subcommands().empty())
+      return refuse(unknown_verb(app, arguments[1]), cli::bad_input);
     return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
   }
   return run_chosen(program);

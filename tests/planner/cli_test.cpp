@@ -76,7 +76,7 @@ TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
 }
 
 TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
-  expect_refused(run(""), "subcommand");
+  expect_refused(run(""), "subcommand is required");
   expect_refused(run("lok " + at("ball.nrrd")), "lok");
   expect_refused(run("info"), "file");
   expect_refused(run("info " + at("missing.nrrd")), "missing.nrrd");

@@ -10,7 +10,7 @@ namespace {
 const std::vector<std::string> known{"translate_mm", "rotate", "object", "window", "do"};
 
 TEST(NearestName, CountsASwapOfNeighboursAsOneEdit) {
-  const std::vector<std::string> words{"ab", "bxa"};
+  const std::vector<std::string> words{"bxya", "ab"};
   EXPECT_EQ(nearest_name("ba", words), "ab");
 }
 
@@ -18,6 +18,11 @@ TEST(NearestName, IsDeafToCaseAndFindsAForgottenUnit) {
   EXPECT_EQ(nearest_name("Translate", known), "translate_mm");
   EXPECT_EQ(nearest_name("objct", known), "object");
   EXPECT_EQ(nearest_name("WINDOW", known), "window");
+}
+
+TEST(NearestName, PrefersTheSameBeginningAmongEquallyNear) {
+  const std::vector<std::string> words{"do", "id", "low"};
+  EXPECT_EQ(nearest_name("lo", words), "low");
 }
 
 TEST(NearestName, GivesNoneWhereTheNearestWouldMislead) {

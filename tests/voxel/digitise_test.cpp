@@ -138,11 +138,16 @@ TEST(Digitise, AgreesWithPointsSampledInEveryVoxel) {
         boundary += mixed;
         if (!mixed) return;
         // Thin corners and edges of a voxel need points close to its faces.
-        for_each_point(v, fineness, [&](const glm::dvec3& p) {
-          constexpr double inset = 0.998;
-          in += cut.contains(glm::dvec3(v) + (p - glm::dvec3(v)) * (inset / (1.0 - 1.0 / fineness)));
-          ++all;
-        });
+        for (const int finer : {fineness, 6 * fineness}) {
+          if (in != 0 && in != all) break;
+          // Planes of simple slopes graze many corners by the same small overlap: the second look goes
+          // closer.
+          const double inset = finer == fineness ? 0.998 : 1.0 - 1e-6;
+          for_each_point(v, finer, [&](const glm::dvec3& p) {
+            in += cut.contains(glm::dvec3(v) + (p - glm::dvec3(v)) * (inset / (1.0 - 1.0 / finer)));
+            ++all;
+          });
+        }
         without_witness += in == 0 || in == all;
       });
       EXPECT_EQ(wrong, 0);
