@@ -253,9 +253,9 @@ std::string view_title(const ScenePicture& picture) {
   const auto comma = picture.view.find(',');
   if (comma == std::string::npos) return picture.view;
   const bool to_right = picture.view.starts_with('-');
-  return "oblique, " + picture.view.substr(to_right ? 1 : 0, comma - (to_right ? 1 : 0)) +
-         "\u00b0 from the patient's " + (to_right ? "right" : "left") + ", " +
-         picture.view.substr(comma + 1) + "\u00b0 from above";
+  const std::size_t first = to_right ? 1 : 0;
+  return picture.view.substr(first, comma - first) + "\u00b0 to the patient's " +
+         (to_right ? "right" : "left") + ", " + picture.view.substr(comma + 1) + "\u00b0 above";
 }
 
 /// How a picture stands on the page.

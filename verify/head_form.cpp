@@ -139,7 +139,9 @@ Form maxilla() {
   const Form body = ellipsoid({22, -60, -20}, {20, 22, 19}, turned({0, 0, 20}));
   const Form alveolus = swept_arch_left(-82.0, -37.5, 6.2, 1.45, 27.5);
   const Form canine_ridge = tapered_capsule({{16, -80, -18}, 3.5}, {{16.5, -69, -42}, 5.5});
-  const Form palate = rounded_box({0, -57, -33.5}, {24, 24, 2.2}, 2.0);
+  // Inclined, as in life: along a scan's slices its flat faces would err in step, by up to half a voxel of
+  // their area.
+  const Form palate = rounded_box({0, -57, -33.5}, {24, 24, 2.2}, 2.0, turned({6, 0, 0}));
   const Form pterygoid = tapered_capsule({{15, -26, -14}, 5.0}, {{18, -31, -42}, 4.2}, {0.8, 1.3, 1.0});
   const Form spine = tapered_capsule({{0, -81, -33}, 3.6}, {{0, -87.5, -31.5}, 1.8});
   Form left = blended(blended(body, alveolus, 8.0), canine_ridge, 4.0);
