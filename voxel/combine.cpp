@@ -188,27 +188,34 @@ class Combiner {
     for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1)
       numbers[next++] = std::countr_zero(rest);
 
+    const int child_side = 1 << (2 * height - 2);
+    // The child, or the node that it shares, which is not retained yet.
     const auto child_block = [&](std::size_t slot, std::vector<Operation>& inner,
-                                 std::vector<Reduced>& stack) {
+                                 std::vector<Reduced>& stack) -> const Node* {
       const int child = numbers[slot];
       const Reduced reduced = reduce(child, operations, scratch.covers, inner, stack);
-      if (reduced.form == Reduced::Form::Operand && inner[reduced.operand].node != nullptr) {
-        children[slot] = Block::share(BlockRef::of(inner[reduced.operand].node)).detach();
-        return;
-      }
-      const int child_side = 1 << (2 * height - 2);
+      if (reduced.form == Reduced::Form::Operand && inner[reduced.operand].node != nullptr)
+        return inner[reduced.operand].node;
       const glm::ivec3 place(child & 3, (child >> 2) & 3, child >> 4);
       children[slot] = evaluate(height - 1, origin + place * child_side, inner.data(), all_children).detach();
+      return nullptr;
     };
     if (height >= parallel_height) {
       tbb::parallel_for(std::size_t{0}, count, [&](std::size_t slot) {
         std::vector<Operation> inner(operands_.size());
         std::vector<Reduced> stack(program_.stack_size);
-        child_block(slot, inner, stack);
+        if (const Node* shared = child_block(slot, inner, stack))
+          children[slot] = Block::share(BlockRef::of(shared)).detach();
       });
     } else {
       std::vector<Operation> inner(operands_.size());
-      for (std::size_t slot = 0; slot < count; ++slot) child_block(slot, inner, scratch.reduced_stack);
+      std::array<const Node*, 64> shared;
+      for (std::size_t slot = 0; slot < count; ++slot) {
+        shared[slot] = child_block(slot, inner, scratch.reduced_stack);
+        if (shared[slot] != nullptr) prefetch_references(shared[slot]);
+      }
+      for (std::size_t slot = 0; slot < count; ++slot)
+        if (shared[slot] != nullptr) children[slot] = Block::share(BlockRef::of(shared[slot])).detach();
     }
     return make_block(height, result.full, undecided, {children.data(), count});
   }

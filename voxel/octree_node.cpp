@@ -34,8 +34,11 @@ void retain(BlockRef block) {
 void release(BlockRef block) {
   const Node* node = block.node();
   if (node == nullptr || node->references.fetch_sub(1, std::memory_order_acq_rel) != 1) return;
-  if (node->height > 2)
-    for (int i = 0; i < node->payload_count(); ++i) release(BlockRef::of(node->nodes()[i]));
+  if (node->height > 2) {
+    const int count = node->payload_count();
+    for (int i = 0; i < count; ++i) prefetch_references(node->nodes()[i]);
+    for (int i = 0; i < count; ++i) release(BlockRef::of(node->nodes()[i]));
+  }
   free_node(node);
 }
 
