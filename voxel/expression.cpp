@@ -183,7 +183,7 @@ glm::dmat4 moved_from_still(const Motion& motion) {
   const double sum =
       motion.degrees + glm::dot(motion.translate_mm + motion.axis + motion.about_mm, glm::dvec3(1.0));
   if (!std::isfinite(sum)) throw std::invalid_argument("a motion's numbers must be finite");
-  const glm::dmat4 translated = glm::translate(glm::dmat4(1.0), motion.translate_mm);
+  glm::dmat4 translated = glm::translate(glm::dmat4(1.0), motion.translate_mm);
   if (motion.degrees == 0.0) return translated;
   if (!(glm::length(motion.axis) > 0.0))
     throw std::invalid_argument("a rotation needs an axis that is not (0, 0, 0)");

@@ -62,7 +62,7 @@ Status status_within(BlockRef block, int height, const VoxelBox& box) {
   return *agreed;
 }
 
-Status status_in_universe(const Octree& octree, VoxelBox box) {
+Status status_in_universe(const Octree& octree, const VoxelBox& box) {
   const int last = octree.universe().side() - 1;
   const VoxelBox clipped{glm::max(box.low, 0), glm::min(box.high, last)};
   if (glm::any(glm::greaterThan(clipped.low, clipped.high))) return Status::Empty;
