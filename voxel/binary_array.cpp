@@ -91,7 +91,8 @@ BinaryArray parse_binary_array(const Universe& universe, std::string_view text) 
   const auto side = static_cast<std::size_t>(universe.side());
   TextCursor cursor("binary array", text);
   if (text.size() < side * side * side)
-    cursor.refuse_at(text.size(), "the text ends before its " + std::to_string(side * side * side) + " voxels");
+    cursor.refuse_at(text.size(),
+                     "the text ends before its " + std::to_string(side * side * side) + " voxels");
   BinaryArray array{universe, std::vector<std::uint8_t>(byte_count(universe.depth), 0)};
   std::size_t i = 0;
   for (std::size_t z = 0; z < side; ++z) {

@@ -125,7 +125,8 @@ CuberilleFaces cuberille_faces(const Octree& octree) {
     return &slices[slot];
   };
   for (int z = 0; z < side; ++z)
-    if (const SliceBits* slice = slice_at(z)) append_slice(z, *slice, slice_at(z - 1), slice_at(z + 1), faces);
+    if (const SliceBits* slice = slice_at(z))
+      append_slice(z, *slice, slice_at(z - 1), slice_at(z + 1), faces);
   return faces;
 }
 

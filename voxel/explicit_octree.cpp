@@ -22,8 +22,8 @@ constexpr std::size_t entry_count(int level) {
 void check_room(int depth) {
   check_depth(depth);
   if (depth > ExplicitOctree::max_depth)
-    throw std::length_error("an explicit octree of depth " + std::to_string(depth) +
-                            " takes 8^" + std::to_string(depth) + " entries: at most depth " +
+    throw std::length_error("an explicit octree of depth " + std::to_string(depth) + " takes 8^" +
+                            std::to_string(depth) + " entries: at most depth " +
                             std::to_string(ExplicitOctree::max_depth) + " is made, use treecode instead");
 }
 
@@ -31,8 +31,7 @@ void fill(const LogicalNode& node, int level, std::size_t entry, std::vector<std
   const Status status = node.status();
   levels[static_cast<std::size_t>(level)][entry] = status_characters[static_cast<std::size_t>(status)];
   if (status != Status::Partial) return;
-  for (int k = 0; k < 8; ++k)
-    fill(node.child(k), level + 1, 8 * entry + static_cast<std::size_t>(k), levels);
+  for (int k = 0; k < 8; ++k) fill(node.child(k), level + 1, 8 * entry + static_cast<std::size_t>(k), levels);
 }
 
 // Entries are met level by level in order, which on each level is preorder: next_ stands where it is.
@@ -54,7 +53,8 @@ class ExplicitSource {
         open_.push_back(entry);
         return static_cast<Status>(status);
       }
-    refuse(at, entry, c == absent ? "a child of a Partial node is missing" : "only E, F, P and '.' stand here");
+    refuse(at, entry,
+           c == absent ? "a child of a Partial node is missing" : "only E, F, P and '.' stand here");
   }
   void close(bool homogeneous) const {
     if (homogeneous)

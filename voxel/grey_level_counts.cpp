@@ -40,7 +40,8 @@ class GreyCounter {
     const int height = side_log2 / 2;  // of the block, or of the eight that the node is made of
     MinMax range = range_of_block(origin, height);
     for (int k = 1; k < (is_block ? 1 : 8); ++k)
-      widen(range, range_of_block(origin + (glm::ivec3(k & 1, (k >> 1) & 1, k >> 2) << (2 * height)), height));
+      widen(range,
+            range_of_block(origin + (glm::ivec3(k & 1, (k >> 1) & 1, k >> 2) << (2 * height)), height));
     return range;
   }
 

@@ -30,8 +30,10 @@ class LinearSource {
     else if (level > 0)
       path_.push_back(path_.back().child(0));
     const OctalCode node = path_.back();
-    if (next_ == codes_.size() || codes_[next_].ancestor(level) != node) return Status::Empty;
-    if (codes_[next_].level() > level) return Status::Partial;
+    if (next_ == codes_.size()) return Status::Empty;
+    const OctalCode& next = codes_[next_];
+    if (next.level() < level || next.ancestor(level) != node) return Status::Empty;
+    if (next.level() > level) return Status::Partial;
     ++next_;
     return Status::Full;
   }

@@ -69,8 +69,9 @@ Octree octree_of(const MarginalIndex& index) {
   return octree_of_slices(index.universe, [&](int z, SliceBits& bits) {
     const MarginalIndex::Slice& slice = index.slices[static_cast<std::size_t>(z)];
     for (std::size_t y = 0; y < slice.size(); ++y)
-      std::copy(slice[y].begin(), slice[y].end(),
-                bits.words.begin() + static_cast<std::ptrdiff_t>(y * static_cast<std::size_t>(bits.words_per_row)));
+      std::copy(
+          slice[y].begin(), slice[y].end(),
+          bits.words.begin() + static_cast<std::ptrdiff_t>(y * static_cast<std::size_t>(bits.words_per_row)));
     return !slice.empty();
   });
 }

@@ -24,7 +24,7 @@ class OctalCode {
   /// The digit of level 1..level(). Precondition: in that range.
   int element(int level) const { return static_cast<int>((digits_ >> (3 * (level_ - level))) & 7); }
   OctalCode child(int number) const { return {level_ + 1, 8 * digits_ + static_cast<std::uint64_t>(number)}; }
-  /// The ancestor at a level of at most level(), which may be this node itself.
+  /// The ancestor at a level, or this node itself. Precondition: the level in 0..level().
   OctalCode ancestor(int level) const { return {level, digits_ >> (3 * (level_ - level))}; }
 
   bool operator==(const OctalCode&) const = default;

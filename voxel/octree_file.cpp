@@ -195,9 +195,8 @@ Bytes section_of(std::uint32_t number, const Piece& piece) {
   if (context == nullptr) throw std::bad_alloc();
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, compression_level);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
-  const std::size_t stored =
-      ZSTD_compress2(context.get(), section.data() + section_header_bytes,
-                     section.size() - section_header_bytes, raw.data(), raw.size());
+  const std::size_t stored = ZSTD_compress2(context.get(), section.data() + section_header_bytes,
+                                            section.size() - section_header_bytes, raw.data(), raw.size());
   if (ZSTD_isError(stored) != 0)
     throw std::runtime_error(std::string("zstd cannot compress: ") + ZSTD_getErrorName(stored));
   section.resize(section_header_bytes + stored);
@@ -262,8 +261,7 @@ class Reader {
     if (bytes_.size() < size)
       refuse_damaged("is cut short: it has " + std::to_string(bytes_.size()) + " of its " +
                      std::to_string(size) + " bytes");
-    if (bytes_.size() > size)
-      refuse_damaged("goes on after its end, byte " + std::to_string(size));
+    if (bytes_.size() > size) refuse_damaged("goes on after its end, byte " + std::to_string(size));
     section_count_ = get<std::uint32_t>(bytes_.data() + 24);
   }
 
@@ -272,8 +270,7 @@ class Reader {
     for (std::uint32_t number = 0; number < section_count_; ++number) {
       const std::string which = "section " + std::to_string(number + 1) + " of " +
                                 std::to_string(section_count_) + ", from byte " + std::to_string(at);
-      if (bytes_.size() - at < section_header_bytes)
-        refuse_damaged(which + ", does not fit into the file");
+      if (bytes_.size() - at < section_header_bytes) refuse_damaged(which + ", does not fit into the file");
       const std::uint8_t* header = bytes_.data() + at;
       Section section;
       section.name.assign(header, header + 4);
@@ -292,7 +289,8 @@ class Reader {
   void unpack_sections() {
     std::vector<std::string> damage(sections_.size());
     tbb::parallel_for(std::size_t{0}, sections_.size(), [&](std::size_t number) {
-      if (const auto found = unpack(static_cast<std::uint32_t>(number), sections_[number])) damage[number] = *found;
+      if (const auto found = unpack(static_cast<std::uint32_t>(number), sections_[number]))
+        damage[number] = *found;
     });
     for (std::size_t number = 0; number < sections_.size(); ++number)
       if (!damage[number].empty()) refuse_damaged(named(number) + ", " + damage[number]);
@@ -306,8 +304,8 @@ class Reader {
     if (section.raw_size > largest_raw || section.raw_size > section.stored.size() * largest_ratio)
       return "is larger than a section can be";
     section.raw.resize(section.raw_size);
-    const std::size_t size = ZSTD_decompress(section.raw.data(), section.raw.size(), section.stored.data(),
-                                             section.stored.size());
+    const std::size_t size =
+        ZSTD_decompress(section.raw.data(), section.raw.size(), section.stored.data(), section.stored.size());
     if (ZSTD_isError(size) != 0) return std::string("does not decompress: ") + ZSTD_getErrorName(size);
     if (size != section.raw_size) return "is shorter than it says";
     return std::nullopt;
@@ -335,7 +333,8 @@ class Reader {
 
   Universe read_universe() {
     const Bytes raw = take_needed("UNIV");
-    if (raw.size() != 8 + 16 * 8) refuse("section UNIV has " + std::to_string(raw.size()) + " bytes, not 136");
+    if (raw.size() != 8 + 16 * 8)
+      refuse("section UNIV has " + std::to_string(raw.size()) + " bytes, not 136");
     Universe universe;
     const auto depth = get<std::uint32_t>(raw.data());
     if (depth < 2 || depth > Universe::max_depth)
@@ -400,7 +399,8 @@ class Reader {
       samples += samples_per_brick * bricks;
     }
     if (samples != bits * samples_per_brick)
-      refuse("has " + std::to_string(samples / samples_per_brick) + " of its " + std::to_string(bits) + " bricks");
+      refuse("has " + std::to_string(samples / samples_per_brick) + " of its " + std::to_string(bits) +
+             " bricks");
     blocks.reserve(bits);
     for_each_block(universe, [&](std::size_t number, const glm::ivec3& block) {
       if (((grid[number / 8] >> (number % 8)) & 1) != 0) blocks.push_back(block);
@@ -408,15 +408,16 @@ class Reader {
     if (blocks.size() != bits) refuse("section GRID has bits beyond the universe");
     // Within a section a brick continues from the one before: what precedes each is found first.
     tbb::parallel_for(first, next_, [&](std::size_t number) { unfold(sections_[number].raw); });
-    GreyOctree grey = grey_octree_of_bricks(universe, background_, blocks, [&](std::size_t i, GreyBrick& brick) {
-      const Bytes& raw = sections_[first + i / bricks_per_section].raw;
-      const std::uint8_t* from = raw.data() + 2 * samples_per_brick * (i % bricks_per_section);
-      for (auto& leaf : brick.samples)
-        for (std::int16_t& sample : leaf) {
-          sample = static_cast<std::int16_t>(get<std::uint16_t>(from));
-          from += 2;
-        }
-    });
+    GreyOctree grey =
+        grey_octree_of_bricks(universe, background_, blocks, [&](std::size_t i, GreyBrick& brick) {
+          const Bytes& raw = sections_[first + i / bricks_per_section].raw;
+          const std::uint8_t* from = raw.data() + 2 * samples_per_brick * (i % bricks_per_section);
+          for (auto& leaf : brick.samples)
+            for (std::int16_t& sample : leaf) {
+              sample = static_cast<std::int16_t>(get<std::uint16_t>(from));
+              from += 2;
+            }
+        });
     return grey;
   }
 
@@ -504,8 +505,8 @@ OctreeFile read_octree(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!stream || error)
-    throw std::runtime_error(path.string() + ": cannot be read: " +
-                             (error ? error.message() : std::string(std::strerror(errno))));
+    throw std::runtime_error(
+        path.string() + ": cannot be read: " + (error ? error.message() : std::string(std::strerror(errno))));
   Bytes bytes(size);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (static_cast<std::uintmax_t>(stream.gcount()) != size)

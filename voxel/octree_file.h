@@ -15,15 +15,16 @@
 // The .octree format, version 1. Numbers are little-endian.
 //
 //   header    32 bytes  magic 89 4f 43 54 52 45 45 0a ("\x89OCTREE\n"), u32 version, u32 kind (1 binary,
-//                       2 grey, 3 partial), u64 bytes of the file, u32 number of sections, u32 checksum of the
-//                       28 bytes before it
-//   sections            each 4 letters of name, u32 checksum, u32 raw bytes, u32 stored bytes, then the stored
+//                       2 grey, 3 partial), u64 bytes of the file, u32 number of sections, u32 checksum of
+//                       the 28 bytes before it
+//   sections            each 4 letters of name, u32 checksum, u32 raw bytes, u32 stored bytes, then the
+//   stored
 //                       bytes: one zstd frame of the raw ones
 //
 // A checksum is a CRC-32 (zlib's); a section's is of its number, counted from 0 as a u32, and all of the
-// section but the checksum itself. So a burst of 32 flipped bits is always found, any other damage but for one
-// in 2^32, and one in 2^64 where zstd's own checksum of the raw bytes sees it too. A section's raw bytes are at
-// most 2^20; what is longer is cut into sections of the same name and of that length but for the last.
+// section but the checksum itself. So a burst of 32 flipped bits is always found, any other damage but for
+// one in 2^32, and one in 2^64 where zstd's own checksum of the raw bytes sees it too. A section's raw bytes
+// are at most 2^20; what is longer is cut into sections of the same name and of that length but for the last.
 // Sections stand in this order:
 //
 //   UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column
@@ -34,10 +35,11 @@
 //   FRAC  partial: u16 fractions of the voxels between, in tree order
 //   GRID  grey: a bit a block of 16 x 16 x 16 voxels, x fastest, low bits first: set where it has a brick;
 //         the others are background
-//   BRIK  grey: the bricks of up to 64 blocks in the order of the grid. Samples are in tree order, each as its
-//         difference from the one before it on its row of the leaf (at a row's start, from the row before; at a
-//         layer's start, from the layer before; at a leaf's, from the leaf before; at the section's, from the
-//         background), modulo 2^16 and folded so that small differences of either sign are small numbers
+//   BRIK  grey: the bricks of up to 64 blocks in the order of the grid. Samples are in tree order, each as
+//   its
+//         difference from the one before it on its row of the leaf (at a row's start, from the row before; at
+//         a layer's start, from the layer before; at a leaf's, from the leaf before; at the section's, from
+//         the background), modulo 2^16 and folded so that small differences of either sign are small numbers
 //         (0, -1, 1, -2, ...); first the low bytes of all, then the high bytes
 
 namespace octotomy::voxel {
@@ -58,7 +60,8 @@ std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file);
 /// The inverse; `source` begins what is thrown. Throws std::runtime_error naming the section and its first
 /// byte where a checksum, a size or a tree is not right, where the file is cut short or goes on, and where it
 /// is of a later version. Every checksum is verified before anything is built.
-/// Memory: at most 2^15 times the bytes, which is as far as zstd compresses, and an empty tree of the universe.
+/// Memory: at most 2^15 times the bytes, which is as far as zstd compresses, and an empty tree of the
+/// universe.
 OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
 
 /// Writes beside and renames into place. Throws std::runtime_error with path and reason.

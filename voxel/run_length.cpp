@@ -25,7 +25,8 @@ void check(const RunLength& code) {
     if (run.last >= voxels) refuse("leaves the universe of " + std::to_string(voxels) + " voxels");
     if (i == 0) continue;
     if (run.first <= code.runs[i - 1].last) refuse("does not come after its predecessor");
-    if (run.first == code.runs[i - 1].last + 1) refuse("goes on where its predecessor ends: they are one run");
+    if (run.first == code.runs[i - 1].last + 1)
+      refuse("goes on where its predecessor ends: they are one run");
   }
 }
 

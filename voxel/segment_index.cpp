@@ -70,8 +70,7 @@ Octree octree_of(const SegmentIndex& index) {
   return octree_of_slices(index.universe, [&](int z, SliceBits& bits) {
     const SegmentIndex::Slice& slice = index.slices[static_cast<std::size_t>(z)];
     for (std::size_t y = 0; y < slice.size(); ++y)
-      for (const Segment& segment : slice[y])
-        set_row(bits, static_cast<int>(y), segment.first, segment.last);
+      for (const Segment& segment : slice[y]) set_row(bits, static_cast<int>(y), segment.first, segment.last);
     return !slice.empty();
   });
 }

@@ -22,7 +22,8 @@ void mark_slices(BlockRef block, int height, int z, std::vector<bool>& occupied)
     const Node* node = block.node();
     const std::uint64_t full = node != nullptr ? node->full : all_children;
     if ((full & children) != 0) {
-      for (int i = first; i < std::min(first + child_side, side); ++i) occupied[static_cast<std::size_t>(i)] = true;
+      for (int i = first; i < std::min(first + child_side, side); ++i)
+        occupied[static_cast<std::size_t>(i)] = true;
       continue;
     }
     for (std::uint64_t rest = node->partial & children; rest != 0; rest &= rest - 1) {
@@ -33,7 +34,8 @@ void mark_slices(BlockRef block, int height, int z, std::vector<bool>& occupied)
       }
       const std::uint64_t word = block.word(child);
       for (int i = 0; i < 4; ++i)
-        if ((word & (std::uint64_t{0xffff} << (16 * i))) != 0) occupied[static_cast<std::size_t>(first + i)] = true;
+        if ((word & (std::uint64_t{0xffff} << (16 * i))) != 0)
+          occupied[static_cast<std::size_t>(first + i)] = true;
     }
   }
 }
@@ -106,7 +108,8 @@ class LayerBuild {
     if (!any) return {};
     const int count = blocks_along(2);
     std::vector<Block> blocks(static_cast<std::size_t>(count) * static_cast<std::size_t>(count));
-    for (int y = 0; y < count; ++y) draw_blocks(y, count, drawn, &blocks[static_cast<std::size_t>(y * count)]);
+    for (int y = 0; y < count; ++y)
+      draw_blocks(y, count, drawn, &blocks[static_cast<std::size_t>(y * count)]);
     for (std::size_t i = 0; i < drawn.size(); ++i)
       if (drawn[i]) std::fill(slices_[i].words.begin(), slices_[i].words.end(), 0);
     return blocks;
@@ -167,7 +170,8 @@ Octree octree_of_slices(const Universe& universe, const std::function<bool(int z
 }
 
 void set_row(SliceBits& slice, int y, int first, int last) {
-  std::uint64_t* row = slice.words.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(slice.words_per_row);
+  std::uint64_t* row =
+      slice.words.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(slice.words_per_row);
   const std::uint64_t from = all_children << (first % 64);
   const std::uint64_t to = all_children >> (63 - last % 64);
   if (first / 64 == last / 64) {
