@@ -89,7 +89,7 @@ std::vector<CutPlane> planes_of(const voxel::RegionMask& mask) {
   for (const voxel::Region& region : mask.regions)
     for (const auto& polygon : region.polygons_mm)
       for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const glm::dvec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+        const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
         if (a == b) continue;
         const glm::dvec2 across = glm::normalize(glm::dvec2(a.y - b.y, b.x - a.x));
         const glm::dvec3 normal = across.x * region.view.right + across.y * region.view.up;
@@ -134,6 +134,11 @@ std::string place(const voxel::Box& box) {
     return std::string(1, name) + " " + number(box.low_mm[i]) + ".." + number(box.high_mm[i]);
   };
   return axis('x', 0) + ", " + axis('y', 1) + ", " + axis('z', 2) + " mm";
+}
+
+[[noreturn]] void refuse_missing(const std::string& name, const std::filesystem::path& path) {
+  throw std::runtime_error("scan '" + name + "': " + path.string() +
+                           ": no such file or folder; correct the plan or use --scan " + name + "=PATH");
 }
 
 /// One evaluation in progress.
@@ -198,10 +203,7 @@ class Evaluator {
       voxel::Scene scene;
       {
         const Stopwatch watch(result_.timings, "read");
-        if (!std::filesystem::exists(path))
-          throw std::runtime_error("scan '" + name + "': " + path.string() +
-                                   ": no such file or folder; correct the plan or use --scan " + name +
-                                   "=PATH");
+        if (!std::filesystem::exists(path)) refuse_missing(name, path);
         record.sha256 = sha256_of_path(path);
         if (source.sha256 && *source.sha256 != record.sha256)
           throw std::runtime_error("scan '" + name + "': " + path.string() + " has SHA-256 " + record.sha256 +

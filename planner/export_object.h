@@ -12,8 +12,8 @@
 
 namespace octotomy::planner {
 
-/// What an export step wrote, or why it wrote nothing.
-struct Exported {
+/// What an export step wrote, or why it wrote nothing. Moving it may throw, as moving its JSON may.
+struct Exported {  // NOLINT(bugprone-exception-escape)
   std::string id;
   std::string object;
   std::string path;  ///< within the result folder

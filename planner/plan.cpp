@@ -28,6 +28,14 @@ std::string type_of(const Json& value) {
                            : "a JSON " + std::string(value.type_name());
 }
 
+/// The names of pairs or of a map's entries, in their order.
+template <typename Pairs>
+std::vector<std::string> names_of(const Pairs& pairs) {
+  std::vector<std::string> names(pairs.size());
+  std::transform(pairs.begin(), pairs.end(), names.begin(), [](const auto& pair) { return pair.first; });
+  return names;
+}
+
 /// Reads JSON, refusing keys that an object says twice, which would otherwise silently take the last.
 Json strict_json(const std::string& text) {
   std::vector<std::set<std::string>> open;
@@ -108,9 +116,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
 };
 
 std::vector<std::string> step_words() {
-  std::vector<std::string> words;
-  for (const auto& [word, unused] : steps_known) words.push_back(word);
-  return words;
+  return names_of(steps_known);
 }
 
 const std::array<std::pair<std::string, ExportKind>, 9> extensions{{{".stl", ExportKind::Mesh},
@@ -152,8 +158,7 @@ class Bound {
 
 WindowStep window_step(const Keys& keys, const std::map<std::string, ScanSource>& scans) {
   WindowStep step{keys.text("scan"), keys.number("low"), keys.number_if("high")};
-  std::vector<std::string> names;
-  for (const auto& [name, unused] : scans) names.push_back(name);
+  const std::vector<std::string> names = names_of(scans);
   if (!scans.contains(step.scan))
     refuse(keys.at("scan"), "no scan is called '" + step.scan + "'" + suggestion(step.scan, names));
   if (step.high && *step.high < step.low)
@@ -246,8 +251,7 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
   const std::string name = step.path.lexically_normal().generic_string();
   const auto extension = std::find_if(extensions.begin(), extensions.end(),
                                       [&](const auto& known) { return name.ends_with(known.first); });
-  std::vector<std::string> known;
-  for (const auto& [text, unused] : extensions) known.push_back(text);
+  const std::vector<std::string> known = names_of(extensions);
   if (extension == extensions.end())
     refuse(keys.at("path"),
            "nothing can be written as '" + name + "'" + suggestion(step.path.extension().string(), known));

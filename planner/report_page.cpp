@@ -198,10 +198,10 @@ std::string tiles(const Result& result) {
 
 /// The letter of the patient's side that a direction in LPS points to; empty for oblique ones.
 std::string letter(const glm::dvec3& direction) {
-  const std::array<const char*, 6> sides{"R", "L", "A", "P", "I", "S"};
+  const std::array<const char*, 3> low{"R", "A", "I"}, high{"L", "P", "S"};
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(direction[axis]) > 0.99)
-      return sides[static_cast<std::size_t>(2 * axis + (direction[axis] > 0 ? 1 : 0))];
+      return (direction[axis] > 0.0 ? high : low)[static_cast<std::size_t>(axis)];
   return "";
 }
 

@@ -95,12 +95,13 @@ voxel::RenderOptions options_of(const voxel::View& view, const Frame& frame, int
 Frame frame_of(const std::vector<voxel::Drawn>& objects, const voxel::View& view) {
   constexpr int probe_px = 96;
   constexpr double margin = 7.0 / 6.0;
-  const Frame loose = loose_frame(objects, view);
+  Frame loose = loose_frame(objects, view);
   const voxel::Picture probe = voxel::render(objects, options_of(view, loose, probe_px));
   glm::ivec2 low(probe_px), high(-1);
+  std::size_t pixel = 0;
   for (int y = 0; y < probe_px; ++y)
     for (int x = 0; x < probe_px; ++x)
-      if (probe.object[static_cast<std::size_t>(y * probe_px + x)] >= 0) {
+      if (probe.object[pixel++] >= 0) {
         low = glm::min(low, glm::ivec2(x, y));
         high = glm::max(high, glm::ivec2(x, y));
       }

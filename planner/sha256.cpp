@@ -65,8 +65,9 @@ std::string sha256_of_path(const std::filesystem::path& path) {
   std::sort(lines.begin(), lines.end());
   Digest digest;
   for (const auto& [name, sum] : lines) {
-    const std::string line = name + std::string(1, '\0') + sum + "\n";
-    digest.add(line.data(), line.size());
+    digest.add(name.c_str(), name.size() + 1);  // with its terminating zero byte
+    digest.add(sum.data(), sum.size());
+    digest.add("\n", 1);
   }
   return digest.hex();
 }

@@ -18,7 +18,7 @@ class MeshExpressions::Parser {
       : owner_(owner), text_(text), names_(names) {}
 
   Signed whole() {
-    const Signed answer = either();
+    Signed answer = either();
     skip_blanks();
     if (at_ < text_.size()) expected("an operator or the end");
     return answer;
@@ -51,7 +51,7 @@ class MeshExpressions::Parser {
   Signed single() {
     if (take('~')) return complement(single());
     if (take('(')) {
-      const Signed inner = either();
+      Signed inner = either();
       if (!take(')')) expected("')'");
       return inner;
     }

@@ -115,19 +115,34 @@ constexpr std::uint16_t unfolded(std::uint16_t number) {
 Bytes brick_bytes(const GreyOctree& grey, std::span<const glm::ivec3> blocks) {
   const std::size_t count = blocks.size() * samples_per_brick;
   Bytes raw(2 * count);
-  auto before = static_cast<std::uint16_t>(grey.background());
   std::size_t at = 0;
-  for (const glm::ivec3& block : blocks)
+  for (const glm::ivec3& block : blocks) {
+    std::int16_t before = grey.background();
     for (const auto& leaf : grey.brick(block).samples) {
       for (std::size_t i = 0; i < leaf.size(); ++i, ++at) {
-        const auto predicted = i == 0 ? before : static_cast<std::uint16_t>(leaf[predictor(i)]);
+        const std::int16_t predicted = i == 0 ? before : leaf[predictor(i)];
         const std::uint16_t number = folded(static_cast<std::uint16_t>(leaf[i] - predicted));
         raw[at] = static_cast<std::uint8_t>(number);
         raw[count + at] = static_cast<std::uint8_t>(number >> 8);
       }
-      before = static_cast<std::uint16_t>(leaf.front());
+      before = leaf.front();
     }
+  }
   return raw;
+}
+
+// The inverse for brick `number` of a section.
+void read_brick(const Bytes& raw, std::size_t number, std::int16_t background, GreyBrick& brick) {
+  const std::uint8_t* low = raw.data() + number * samples_per_brick;
+  const std::uint8_t* high = low + raw.size() / 2;
+  std::int16_t before = background;
+  for (auto& leaf : brick.samples) {
+    for (std::size_t i = 0; i < leaf.size(); ++i) {
+      const auto coded = static_cast<std::uint16_t>(*low++ | (*high++ << 8));
+      leaf[i] = static_cast<std::int16_t>((i == 0 ? before : leaf[predictor(i)]) + unfolded(coded));
+    }
+    before = leaf.front();
+  }
 }
 
 // Calls `visit` for every block of the grid of a universe, x fastest.
@@ -406,34 +421,9 @@ class Reader {
       if (((grid[number / 8] >> (number % 8)) & 1) != 0) blocks.push_back(block);
     });
     if (blocks.size() != bits) refuse("section GRID has bits beyond the universe");
-    // Within a section a brick continues from the one before: what precedes each is found first.
-    tbb::parallel_for(first, next_, [&](std::size_t number) { unfold(sections_[number].raw); });
-    GreyOctree grey =
-        grey_octree_of_bricks(universe, background_, blocks, [&](std::size_t i, GreyBrick& brick) {
-          const Bytes& raw = sections_[first + i / bricks_per_section].raw;
-          const std::uint8_t* from = raw.data() + 2 * samples_per_brick * (i % bricks_per_section);
-          for (auto& leaf : brick.samples)
-            for (std::int16_t& sample : leaf) {
-              sample = static_cast<std::int16_t>(get<std::uint16_t>(from));
-              from += 2;
-            }
-        });
-    return grey;
-  }
-
-  // Replaces a section's coded bytes by its samples, two bytes each.
-  void unfold(Bytes& raw) const {
-    const std::size_t count = raw.size() / 2;
-    Bytes samples(raw.size());
-    std::array<std::uint16_t, 64> leaf{};
-    leaf.front() = static_cast<std::uint16_t>(background_);
-    for (std::size_t at = 0; at < count; at += leaf.size())
-      for (std::size_t i = 0; i < leaf.size(); ++i) {
-        const auto number = static_cast<std::uint16_t>(raw[at + i] | (raw[count + at + i] << 8));
-        leaf[i] = static_cast<std::uint16_t>(leaf[i == 0 ? 0 : predictor(i)] + unfolded(number));
-        put(leaf[i], samples.data() + 2 * (at + i));
-      }
-    raw = std::move(samples);
+    return grey_octree_of_bricks(universe, background_, blocks, [&](std::size_t i, GreyBrick& brick) {
+      read_brick(sections_[first + i / bricks_per_section].raw, i % bricks_per_section, background_, brick);
+    });
   }
 
   void expect_end() const {

@@ -14,12 +14,11 @@
 
 // The .octree format, version 1. Numbers are little-endian.
 //
-//   header    32 bytes  magic 89 4f 43 54 52 45 45 0a ("\x89OCTREE\n"), u32 version, u32 kind (1 binary,
-//                       2 grey, 3 partial), u64 bytes of the file, u32 number of sections, u32 checksum of
-//                       the 28 bytes before it
-//   sections            each 4 letters of name, u32 checksum, u32 raw bytes, u32 stored bytes, then the
-//   stored
-//                       bytes: one zstd frame of the raw ones
+//   header    32 bytes: magic 89 4f 43 54 52 45 45 0a ("\x89OCTREE\n"), u32 version, u32 kind (1 binary,
+//             2 grey, 3 partial), u64 bytes of the file, u32 number of sections, u32 checksum of the 28 bytes
+//             before it
+//   sections  each 4 letters of name, u32 checksum, u32 raw bytes, u32 stored bytes; then the stored bytes,
+//             one zstd frame of the raw ones
 //
 // A checksum is a CRC-32 (zlib's); a section's is of its number, counted from 0 as a u32, and all of the
 // section but the checksum itself. So a burst of 32 flipped bits is always found, any other damage but for
@@ -35,12 +34,12 @@
 //   FRAC  partial: u16 fractions of the voxels between, in tree order
 //   GRID  grey: a bit a block of 16 x 16 x 16 voxels, x fastest, low bits first: set where it has a brick;
 //         the others are background
-//   BRIK  grey: the bricks of up to 64 blocks in the order of the grid. Samples are in tree order, each as
-//   its
-//         difference from the one before it on its row of the leaf (at a row's start, from the row before; at
-//         a layer's start, from the layer before; at a leaf's, from the leaf before; at the section's, from
-//         the background), modulo 2^16 and folded so that small differences of either sign are small numbers
-//         (0, -1, 1, -2, ...); first the low bytes of all, then the high bytes
+//   BRIK  grey: the bricks of up to 64 blocks in the grid's order, first the low bytes of all their numbers,
+//         then the high bytes. A number stands for a sample, in tree order (leaves, and samples within each,
+//         x + 4y + 16z): its difference, modulo 2^16, from the one before it in its row of the leaf; at a
+//         row's start from the row before, at a layer's from the layer before, at a leaf's from the first
+//         of the leaf before, at a brick's from the background. Differences 0, -1, 1, -2, ... are written
+//         0, 1, 2, 3, ...
 
 namespace octotomy::voxel {
 

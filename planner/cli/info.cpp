@@ -68,12 +68,15 @@ int info_of_scan(const Program& program, const std::filesystem::path& path) {
 
 void add_info(Program& program) {
   const auto path = std::make_shared<std::filesystem::path>();
-  CLI::App& verb =
-      program.verb("info", "What a file is: a scan's geometry, range and audit; a mesh's counts and health",
-                   "octotomy info head.nrrd --json", [&program, path] {
-                     return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path);
-                   });
-  verb.add_option("file", *path, "A DICOM folder or file, NIfTI, NRRD, MetaImage; STL, PLY, OBJ, OFF, VTK")
+  CLI::App& verb = program.verb(
+      "info",
+      "What a file is: a scan's geometry, range and audit; an octree's levels; a mesh's counts and health",
+      "octotomy info head.nrrd --json", [&program, path] {
+        if (is_octree(*path)) return info_of_octree(program, *path);
+        return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path);
+      });
+  verb.add_option("file", *path,
+                  "A DICOM folder or file, NIfTI, NRRD, MetaImage; .octree; STL, PLY, OBJ, OFF, VTK")
       ->required()
       ->check(CLI::ExistingPath);
 }

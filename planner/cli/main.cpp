@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -101,13 +102,7 @@ std::string unknown_verb(CLI::App& app, const std::string& word) {
          "; see octotomy --help";
 }
 
-}  // namespace
-
-int main(int count, char** arguments) {
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
-
+int parse_and_run(int count, char** arguments) {
   CLI::App app(
       "Plans an operation on a skull in two geometry kernels that check each other.\n"
       "Lengths are in mm, angles in degrees, coordinates in DICOM's patient frame (LPS).",
@@ -127,6 +122,7 @@ int main(int count, char** arguments) {
   cli::add_measure(program);
   cli::add_picture_verbs(program);
   cli::add_mesh_verbs(program);
+  cli::add_octree_verbs(program);
   cli::add_phantom(program);
   try {
     app.parse(count, arguments);
@@ -137,4 +133,19 @@ int main(int count, char** arguments) {
     return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
   }
   return run_chosen(program);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  std::signal(SIGTERM, [](int) { interrupted = true; });
+  try {
+    return parse_and_run(count, arguments);
+  } catch (...) {
+    // Only a lack of memory gets past run_chosen(); a line that is no allocation can still be said.
+    std::fputs("octotomy: out of memory before anything was done\n", stderr);
+    return cli::out_of_resources;
+  }
 }

@@ -104,7 +104,7 @@ std::string lines(const std::vector<std::pair<std::string, std::string>>& rows) 
   for (const auto& [name, unused] : rows) widest = std::max(widest, name.size());
   std::string text;
   for (const auto& [name, value] : rows)
-    text += name + std::string(widest - name.size() + 2, ' ') + value + "\n";
+    text.append(name).append(widest - name.size() + 2, ' ').append(value).append("\n");
   return text;
 }
 

@@ -48,6 +48,7 @@ void add_look(Program& program);
 void add_picture_verbs(Program& program);
 void add_measure(Program& program);
 void add_mesh_verbs(Program& program);
+void add_octree_verbs(Program& program);
 
 /// LOW:HIGH, LOW: or LOW in sample units; throws CLI::ValidationError where it is none of these.
 struct WindowText {
@@ -58,6 +59,11 @@ WindowText parse_window(const std::string& text);
 
 /// Whether a path is a surface's by its extension.
 bool is_mesh(const std::filesystem::path& path);
+
+/// Whether a path is an octree's by its extension.
+bool is_octree(const std::filesystem::path& path);
+/// What info does for an .octree file.
+int info_of_octree(const Program& program, const std::filesystem::path& path);
 
 /// Throws std::runtime_error where a file cannot be made at `out`: before the work, so that none is lost.
 void need_folder_of(const std::filesystem::path& out);

@@ -65,8 +65,8 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
-  for (const char* verb :
-       {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "tet", "phantom"}) {
+  for (const char* verb : {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "tet",
+                           "phantom", "octree", "eval"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const Answer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
@@ -153,6 +153,62 @@ TEST_F(CommandLine, ARenderedBallCoversItsDisc) {
   const double lit_mm2 = json["lit_pixels"].get<double>() * std::pow(json["pixel_mm"].get<double>(), 2);
   EXPECT_NEAR(lit_mm2, M_PI * 144.0, 2.0 * M_PI * 12.0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "ball.png"));
+}
+
+TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
+  const Json ball =
+      Json::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);
+  EXPECT_EQ(ball["fields"], "binary");
+  EXPECT_EQ(ball["depth"], 5);
+  EXPECT_NEAR(ball["voxels"].get<double>(), tests::ball_mm3(12.0), 60.0);
+  EXPECT_EQ(ball["bytes_file"], std::filesystem::file_size(folder_ / "ball.octree"));
+  const Json told = Json::parse(run("info " + at("ball.octree") + " --json").out);
+  for (const char* key : {"depth", "levels", "voxels", "bytes_memory", "bytes_file", "metadata"})
+    EXPECT_EQ(told[key], ball[key]) << key;
+  ASSERT_EQ(told["levels"].size(), 5u);
+  std::uint64_t voxels = 0;
+  for (const Json& level : told["levels"])
+    voxels += level["full"].get<std::uint64_t>() << (3 * (5 - level["level"].get<int>()));
+  EXPECT_EQ(voxels, told["voxels"]);
+
+  // The same object by way of its samples, moved by whole voxels there and back.
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
+  const std::string lets = " --let ball=" + at("ball.octree") + " --let grey=" + at("grey.octree") +
+                           " --window grey=0: --motion there=2,0,-1 --motion back=-2,0,1 --json -o " +
+                           at("result.octree");
+  EXPECT_EQ(Json::parse(run("eval 'move(move(ball, there), back) ^ grey'" + lets).out)["voxels"], 0);
+  const Json moved = Json::parse(run("eval 'move(grey, there) | ball'" + lets).out);
+  EXPECT_GT(moved["voxels"], ball["voxels"]);
+  expect_refused(run("eval 'bal | grey'" + lets), "did you mean 'ball'");
+  expect_refused(run("eval 'ball |'" + lets), "character");
+  expect_refused(run("eval grey --let grey=" + at("grey.octree") + " -o " + at("x.octree")),
+                 "--window grey=");
+  expect_refused(run("octree " + at("ball.nrrd") + " -o " + at("x.octree")), "--window LOW:HIGH");
+  expect_refused(run("octree " + at("grey.octree") + " --as runs -o " + at("x.txt")), "--window LOW:HIGH");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.octree"));
+}
+
+TEST_F(CommandLine, Figure31GoesThroughEveryRepresentation) {
+  write("figure.txt", "P(EP(EEEEEEEF)FP(EEEEFEEE)EEP(EFFEEFEE)E)\n");
+  ASSERT_EQ(run("octree " + at("figure.txt") + " --from treecode --depth 2 -o " + at("figure.octree")).status,
+            0);
+  const auto content = [&](const std::string& name) {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  for (const char* form : {"treecode", "linear", "explicit", "runs", "segments", "marginal", "faces", "array",
+                           "packed", "bits"}) {
+    SCOPED_TRACE(form);
+    ASSERT_EQ(run("octree " + at("figure.octree") + " --as " + form + " -o " + at(form)).status, 0);
+    ASSERT_EQ(run("octree " + at(form) + " --from " + form + " --depth 2 -o " + at("back.octree")).status, 0);
+    ASSERT_EQ(run("octree " + at("back.octree") + " --as treecode -o " + at("back.txt")).status, 0);
+    EXPECT_EQ(content("back.txt"), content("figure.txt"));
+  }
+  EXPECT_EQ(content("linear"), "17, 2, 34, 61, 62, 65\n");
+  EXPECT_EQ(content("runs"), "8:9 12:13 23:26 28:29 41:41 44:44 57:57\n");
+  expect_refused(run("octree " + at("runs") + " --from linear --depth 2 -o " + at("x.octree")),
+                 "character 1");
+  expect_refused(run("octree " + at("runs") + " --from runs -o " + at("x.octree")), "--depth");
 }
 
 TEST_F(CommandLine, TimeOverIsStatusThreeAndLeavesNothing) {

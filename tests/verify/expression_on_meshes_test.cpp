@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/expression_on_meshes.h"
+
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+#include "brep/measure.h"
+#include "brep/prism.h"
+
+namespace octotomy::verify {
+namespace {
+
+/// An axis-aligned box.
+SharedMesh box(const glm::dvec3& a, const glm::dvec3& b) {
+  brep::Prism prism;
+  prism.polygons_mm = {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}};
+  prism.from_mm = a.y;
+  prism.to_mm = b.y;
+  return std::make_shared<const brep::Mesh>(brep::mesh_of(prism));
+}
+
+/// Three boxes in general position within a world of 10 x 10 x 10; their volumes are products.
+class MeshExpression : public testing::Test {
+ protected:
+  double volume_mm3(const std::string& text) {
+    return brep::measure(*meshes_.evaluate(text, [this](std::string_view name) { return solid(name); }))
+        .volume_mm3;
+  }
+  SharedMesh solid(std::string_view name) const {
+    if (name == "a") return a_;
+    if (name == "b") return b_;
+    if (name == "c") return c_;
+    if (name == "far") return far_;
+    throw std::invalid_argument("no " + std::string(name));
+  }
+
+  SharedMesh a_ = box({1, 1, 1}, {5, 5, 5});              // 64
+  SharedMesh b_ = box({3, 2, 2}, {7, 4, 4});              // 16, of which a holds 8
+  SharedMesh c_ = box({4, 3, 0.5}, {4.5, 3.5, 9});        // 2.125; a holds 1, b 0.5, all of it in a
+  SharedMesh far_ = box({8, 8, 8}, {9, 9, 9});            // 1
+  MeshExpressions meshes_{box({0, 0, 0}, {10, 10, 10})};  // 1000
+};
+
+constexpr double rounding_mm3 = 1e-9;
+
+TEST_F(MeshExpression, TheFourOperationsHaveTheirVolumes) {
+  EXPECT_NEAR(volume_mm3("a & b"), 8.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("a | b"), 72.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("a - b"), 56.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("b - a"), 8.0, rounding_mm3);
+}
+
+TEST_F(MeshExpression, OperatorsBindAsInPython) {
+  // Each pair of readings has volumes of its own, so a wrong precedence cannot pass.
+  EXPECT_NEAR(volume_mm3("far | a & b"), 9.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("(far | a) & b"), 8.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("b & a - c"), 7.5, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("far - far & a"), 0.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("far - (far & a)"), 1.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("a - b - c"), 55.5, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("a - (b - c)"), 56.5, rounding_mm3);
+}
+
+TEST_F(MeshExpression, AComplementIsTakenWithinTheWorldAndNoEarlier) {
+  EXPECT_NEAR(volume_mm3("~a"), 1000.0 - 64.0, rounding_mm3 * 1000.0);
+  EXPECT_NEAR(volume_mm3("b & ~a"), 8.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("~(~a | ~b)"), 8.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("~~a"), 64.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("~a & ~b"), 1000.0 - 72.0, rounding_mm3 * 1000.0);
+}
+
+TEST_F(MeshExpression, EqualAndEmptyOperandsNeedNoGeometry) {
+  EXPECT_EQ(volume_mm3("a - a"), 0.0);
+  EXPECT_NEAR(volume_mm3("a & a"), 64.0, rounding_mm3);
+  EXPECT_EQ(volume_mm3("(a - a) & b"), 0.0);
+  EXPECT_NEAR(volume_mm3("b | (a - a)"), 16.0, rounding_mm3);
+  EXPECT_NEAR(volume_mm3("b - (a & far)"), 16.0, rounding_mm3);
+}
+
+TEST_F(MeshExpression, APairIsCorefinedOnceForAllItsResults) {
+  const auto names = [this](std::string_view name) { return solid(name); };
+  const SharedMesh first = meshes_.evaluate("a - b", names);
+  volume_mm3("a & b");
+  EXPECT_EQ(meshes_.evaluate("a - b", names), first);
+}
+
+TEST_F(MeshExpression, SaysWhereAnExpressionGoesWrong) {
+  for (const char* text : {"", "a &", "a b", "(a", "& a", "a + b", "a)"}) {
+    try {
+      volume_mm3(text);
+      ADD_FAILURE() << "'" << text << "' was taken";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("position"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_THROW(volume_mm3("a & nobody"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace octotomy::verify
