@@ -101,6 +101,7 @@ const Codec& codec(std::string_view name) {
 
 std::vector<std::string> representation_names() {
   std::vector<std::string> names;
+  names.reserve(codecs.size());
   for (const Codec& known : codecs) names.emplace_back(known.name);
   return names;
 }

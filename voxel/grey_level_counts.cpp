@@ -2,6 +2,7 @@
 #include "voxel/grey_level_counts.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "voxel/octree_node.h"
 
@@ -20,6 +21,7 @@ class GreyCounter {
 
   // Counts the eight children of a Partial node, a cube of 2^side_log2 voxels a side.
   void count_children(const glm::ivec3& origin, int side_log2) {
+    assert(side_log2 > 0);  // a voxel has one sample
     for (int k = 0; k < 8; ++k) {
       const int child_log2 = side_log2 - 1;
       const glm::ivec3 child = origin + (glm::ivec3(k & 1, (k >> 1) & 1, k >> 2) << child_log2);

@@ -29,19 +29,19 @@ void check_octree_extension(const fs::path& out) {
                              ": an octree is written as .octree; for another form of it add --as");
 }
 
+voxel::OctreeFile read_timed(const fs::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  return voxel::read_octree(path);
+}
+
 void write_content(const std::string& content, const fs::path& path) {
   voxel::Staging staging(path.parent_path());
   const fs::path staged = staging.folder() / path.filename();
   std::FILE* const stream = std::fopen(staged.c_str(), "wb");
-  const bool written =
+  bool written =
       stream != nullptr && std::fwrite(content.data(), 1, content.size(), stream) == content.size();
-  int reason = errno;
-  if (stream != nullptr && std::fclose(stream) != 0 && written)
-    reason = errno;
-  else if (written)
-    reason = 0;
-  if (reason != 0 || !written)
-    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(reason));
+  if (stream != nullptr && std::fclose(stream) != 0) written = false;  // a full disk may show only here
+  if (!written) throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
   staging.commit(path.filename());
 }
 
@@ -109,11 +109,7 @@ voxel::OctreeFile from_representation(const OctreeText& text, Timings& timings) 
 }
 
 voxel::OctreeFile from_octree(const OctreeText& text, Timings& timings) {
-  voxel::OctreeFile file{voxel::Octree::empty({}), "", ""};
-  {
-    const Stopwatch watch(timings, "read");
-    file = voxel::read_octree(text.in);
-  }
+  voxel::OctreeFile file = read_timed(text.in, timings);
   if (text.window.empty()) return file;
   const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree);
   if (grey == nullptr)
@@ -206,7 +202,8 @@ std::map<std::string, std::string> bound(const std::vector<std::string>& texts, 
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw CLI::ValidationError(option, "'" + text + "' binds nothing: give NAME=" + value);
+      throw CLI::ValidationError(option,
+                                 std::string("'").append(text).append("' binds nothing: give NAME=") + value);
     if (!values.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
       throw CLI::ValidationError(option, "'" + text.substr(0, equals) + "' is bound twice");
   }
@@ -215,6 +212,7 @@ std::map<std::string, std::string> bound(const std::vector<std::string>& texts, 
 
 std::vector<std::string> names_of(const std::map<std::string, std::string>& values) {
   std::vector<std::string> names;
+  names.reserve(values.size());
   for (const auto& [name, unused] : values) names.push_back(name);
   return names;
 }
@@ -228,7 +226,7 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
     if (read && *end == ',') continue;
     if (read && *end == '\0' && (numbers.size() == 3 || numbers.size() == 7 || numbers.size() == 10)) break;
     throw CLI::ValidationError("--motion",
-                               "'" + name + "=" + text +
+                               std::string("'").append(name).append("=").append(text) +
                                    "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the "
                                    "axis X,Y,Z, then perhaps the point X,Y,Z in mm it passes through");
   }
@@ -347,11 +345,7 @@ bool is_octree(const fs::path& path) {
 
 int info_of_octree(const Program& program, const fs::path& path) {
   Timings timings;
-  voxel::OctreeFile file{voxel::Octree::empty({}), "", ""};
-  {
-    const Stopwatch watch(timings, "read");
-    file = voxel::read_octree(path);
-  }
+  const voxel::OctreeFile file = read_timed(path, timings);
   Json json = octree_answer(file, fs::file_size(path), timings);
   json["source"] = path.string();
   program.say(json, octree_text(path.string(), json));
