@@ -45,6 +45,13 @@ Json to_json(const glm::dmat4& matrix) {
   return rows;
 }
 
+Json to_json(const glm::dmat3& matrix) {
+  Json rows = Json::array();
+  for (int row = 0; row < 3; ++row)
+    rows.push_back({finite(matrix[0][row]), finite(matrix[1][row]), finite(matrix[2][row])});
+  return rows;
+}
+
 Json to_json(const std::vector<voxel::Finding>& audit) {
   Json lines = Json::array();
   for (const voxel::Finding& finding : audit)
@@ -59,8 +66,12 @@ Json to_json(const voxel::Measures& measures) {
             {"voxels", measures.voxel_count},
             {"area_mm2", measures.area_crofton13_mm2},
             {"area_estimator", voxel_area_estimator},
+            {"area_lindblad_mm2", nullptr},
             {"centroid_mm", to_json(measures.centroid_mm)},
+            {"inertia_mm5", nullptr},
             {"extents_mm", nullptr}};
+  if (measures.area_lindblad_mm2) json["area_lindblad_mm2"] = *measures.area_lindblad_mm2;
+  if (measures.inertia_mm5) json["inertia_mm5"] = to_json(*measures.inertia_mm5);
   if (measures.extents)
     json["extents_mm"] = Json::array({to_json(measures.extents->low_mm), to_json(measures.extents->high_mm)});
   return json;

@@ -21,6 +21,7 @@ Json answer(const Timings& timings);
 Json to_json(const glm::dvec3& value);
 Json to_json(const std::optional<glm::dvec3>& value);
 /// Row by row.
+Json to_json(const glm::dmat3& matrix);
 Json to_json(const glm::dmat4& matrix);
 Json to_json(const std::vector<voxel::Finding>& audit);
 Json to_json(const voxel::Measures& measures);

@@ -86,7 +86,8 @@ struct EvaluateOptions {
 };
 
 /// The universe a plan is evaluated in: around the scan's bounds, voxels of the asked edge; by default the
-/// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger.
+/// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger. A voxel's centre
+/// lies on the scan's first sample, so that samples as far apart as voxels are taken over as they are.
 voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
 
 /// Evaluates every step of the plan but its exports, in the voxel kernel (windows on grey octrees, Boolean

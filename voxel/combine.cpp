@@ -73,9 +73,10 @@ struct Reduced {
 
 class Combiner {
  public:
-  Combiner(const Universe& universe, const Program& program) : program_(program) {
+  Combiner(const Universe& universe, const Program& program, const Resampling& resampling)
+      : program_(program) {
     for (const Program::Operand& operand : program.operands)
-      operands_.push_back(operand_of(operand, universe));
+      operands_.push_back(operand_of(operand, universe, resampling));
     universe_children_ = octotomy::voxel::universe_children(universe.depth);
   }
 
@@ -254,9 +255,9 @@ class Combiner {
 
 }  // namespace
 
-Octree combine(const Universe& universe, const Expression& expression) {
+Octree combine(const Universe& universe, const Expression& expression, const Resampling& resampling) {
   const Program program = program_of(expression);
-  return {universe, Combiner(universe, program).evaluate_root(root_height(universe.depth))};
+  return {universe, Combiner(universe, program, resampling).evaluate_root(root_height(universe.depth))};
 }
 
 }  // namespace octotomy::voxel

@@ -2,6 +2,7 @@
 #include "voxel/expression.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -157,6 +158,8 @@ Expression::Expression(Kind kind, const Expression& a, const Expression& b) {
 
 Expression::Expression(RegionMask mask) : Expression(Leaf((check(mask), std::move(mask)))) {}
 
+Expression::Expression(SliceMask mask) : Expression(Leaf((check(mask), std::move(mask)))) {}
+
 Expression::Expression(const HalfSpace& half_space) : Expression(Leaf(half_space)) {
   if (!(std::abs(glm::length(half_space.normal) - 1.0) <= rigidity_tolerance()))
     throw std::invalid_argument("a half-space needs a normal of length 1");
@@ -214,6 +217,51 @@ Expression parse_expression(std::string_view text, const Names& names) {
         }
       },
       [](const Expression& a) { return ~a; });
+}
+
+namespace {
+
+// How strongly a kind binds, as the grammar's levels: what binds less than its place asks for is bracketed.
+int strength(Expression::Kind kind) {
+  switch (kind) {
+    case Expression::Kind::Or:
+      return 0;
+    case Expression::Kind::Xor:
+      return 1;
+    case Expression::Kind::And:
+      return 2;
+    case Expression::Kind::Minus:
+      return 3;
+    default:
+      return 4;
+  }
+}
+
+constexpr std::array<std::string_view, 4> symbols{" | ", " ^ ", " & ", " - "};
+
+std::string print(const Expression::Term& term, int at_least, const Labels& labels) {
+  const int own = strength(term.kind);
+  std::string text;
+  switch (term.kind) {
+    case Expression::Kind::Leaf:
+      return labels.object(*term.leaf);
+    case Expression::Kind::Not:
+      return "~" + print(*term.left, 4, labels);
+    case Expression::Kind::Moved:
+      return "move(" + print(*term.left, 0, labels) + ", " + labels.motion(term.moved_from_still) + ")";
+    default:
+      // From the left: the right side of an operator of the same strength needs brackets.
+      text = print(*term.left, own, labels)
+                 .append(symbols[static_cast<std::size_t>(own)])
+                 .append(print(*term.right, own + 1, labels));
+  }
+  return own < at_least ? "(" + text + ")" : text;
+}
+
+}  // namespace
+
+std::string print_expression(const Expression& expression, const Labels& labels) {
+  return print(expression.term(), 0, labels);
 }
 
 std::vector<std::string> names_in(std::string_view text) {

@@ -14,6 +14,7 @@
 #include "voxel/grey_octree.h"
 #include "voxel/octree.h"
 #include "voxel/region_mask.h"
+#include "voxel/slice_mask.h"
 
 namespace octotomy::voxel {
 
@@ -38,7 +39,7 @@ struct Window {
 class Expression {
  public:
   enum class Kind { Leaf, And, Or, Minus, Xor, Not, Moved };
-  using Leaf = std::variant<Octree, Window, RegionMask, HalfSpace, Sphere, Box>;
+  using Leaf = std::variant<Octree, Window, RegionMask, SliceMask, HalfSpace, Sphere, Box>;
   struct Term {
     Kind kind = Kind::Leaf;
     std::optional<Leaf> leaf;                 ///< Kind::Leaf only
@@ -50,6 +51,8 @@ class Expression {
   Expression(Window window) : Expression(Leaf(std::move(window))) {}
   /// Throws std::invalid_argument as check(RegionMask).
   Expression(RegionMask mask);
+  /// Throws std::invalid_argument as check(SliceMask).
+  Expression(SliceMask mask);
   /// Throws std::invalid_argument where the normal is not of unit length.
   Expression(const HalfSpace& half_space);
   Expression(const Sphere& sphere) : Expression(Leaf(sphere)) {}
@@ -96,6 +99,16 @@ struct Names {
 /// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the position
 /// of what it did not expect and what it did; a name's own refusal comes through with the name's position.
 Expression parse_expression(std::string_view text, const Names& names);
+
+/// What the leaves and motions of an expression are called in its text: names as parse_expression() takes
+/// them.
+struct Labels {
+  std::function<std::string(const Expression::Leaf& leaf)> object;
+  std::function<std::string(const glm::dmat4& moved_from_still)> motion;
+};
+/// The expression as text with no more parentheses than it takes: parsed again with names that undo the
+/// labels, it is the same expression, term by term.
+std::string print_expression(const Expression& expression, const Labels& labels);
 
 /// The objects named in an expression's text, each once, in order. Throws as parse_expression.
 std::vector<std::string> names_in(std::string_view text);

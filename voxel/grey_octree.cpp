@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tbb/parallel_for.h>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "voxel/octree_node.h"
+#include "voxel/operand_frame.h"
 
 // Passes: 1 find the blocks that the scan reaches and number their bricks; 2 fill the bricks, each with the
 // ranges of its leaves; 3 join ranges level by level up to the root.
@@ -46,8 +48,8 @@ class Resampler {
         dims_(scene.lattice.dims),
         background_(background),
         scan_from_universe_(glm::inverse(scene.lattice.lps_from_voxel) * universe.lps_from_voxel),
-        coincident_(scene.lattice.lps_from_voxel == universe.lps_from_voxel) {
-    if (!coincident_ && is_diagonal()) {
+        offset_(whole_voxel_offset(scan_from_universe_)) {
+    if (!offset_ && is_diagonal()) {
       for (int axis = 0; axis < 3; ++axis)
         for (int i = 0; i < std::max(universe.side(), row_length); ++i) {
           glm::dvec3 voxel(0.0);
@@ -58,7 +60,7 @@ class Resampler {
   }
 
   void read(const glm::ivec3& first, Row& row) const {
-    if (coincident_) return copy(first, row);
+    if (offset_) return copy(first + *offset_, row);
     if (!along_[0].empty()) return read_aligned(first, row);
     for (int i = 0; i < row_length; ++i) {
       const glm::dvec3 p = position(glm::dvec3(first + glm::ivec3(i, 0, 0)));
@@ -97,10 +99,10 @@ class Resampler {
 
   void copy(const glm::ivec3& first, Row& row) const {
     row.fill(background_);
-    if (first.y >= dims_.y || first.z >= dims_.z) return;
+    if (first.y < 0 || first.z < 0 || first.y >= dims_.y || first.z >= dims_.z) return;
     const Sample* source = sample_row(first.y, first.z) + first.x;
-    const int count = std::min(row_length, dims_.x - first.x);
-    for (int i = 0; i < count; ++i) {
+    const int end = std::min(row_length, dims_.x - first.x);
+    for (int i = std::max(0, -first.x); i < end; ++i) {
       if constexpr (std::is_same_v<Sample, std::int16_t>)
         row[static_cast<std::size_t>(i)] = source[i];
       else
@@ -135,7 +137,7 @@ class Resampler {
   glm::ivec3 dims_;
   std::int16_t background_;
   glm::dmat4 scan_from_universe_;
-  bool coincident_;
+  std::optional<glm::ivec3> offset_;         ///< of the scan's samples, where the two lattices coincide
   std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, where the lattices' axes are parallel
 };
 

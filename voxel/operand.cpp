@@ -23,21 +23,6 @@ double rounding_slack(const Linear& f) {
 // translation that means to leave whole voxels leaves them by far more than a millionth.
 constexpr double whole_voxel_tolerance = 1e-6;
 
-std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_target) {
-  glm::ivec3 offset(0);
-  for (int row = 0; row < 3; ++row) {
-    const Linear f = component(source_from_target, row);
-    glm::dvec3 expected(0.0);
-    expected[row] = 1.0;
-    const glm::dvec3 stray = glm::abs(f.gradient - expected) * static_cast<double>(1 << Universe::max_depth);
-    const double nearest = std::floor(f.constant + 0.5);
-    if (stray.x + stray.y + stray.z + std::abs(f.constant - nearest) > whole_voxel_tolerance)
-      return std::nullopt;
-    offset[row] = static_cast<int>(nearest);
-  }
-  return offset;
-}
-
 }  // namespace
 
 double reach(const Linear& f, int child_side) {
@@ -60,7 +45,22 @@ Linear along(const glm::dmat4& map, const glm::dvec3& direction, double offset) 
   return f;
 }
 
-Operand operand_of(const Program::Operand& operand, const Universe& target) {
+std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_target) {
+  glm::ivec3 offset(0);
+  for (int row = 0; row < 3; ++row) {
+    const Linear f = component(source_from_target, row);
+    glm::dvec3 expected(0.0);
+    expected[row] = 1.0;
+    const glm::dvec3 stray = glm::abs(f.gradient - expected) * static_cast<double>(1 << Universe::max_depth);
+    const double nearest = std::floor(f.constant + 0.5);
+    if (stray.x + stray.y + stray.z + std::abs(f.constant - nearest) > whole_voxel_tolerance)
+      return std::nullopt;
+    offset[row] = static_cast<int>(nearest);
+  }
+  return offset;
+}
+
+Operand operand_of(const Program::Operand& operand, const Universe& target, const Resampling& resampling) {
   const glm::dmat4 still_from_target = glm::inverse(operand.moved_from_still) * target.lps_from_voxel;
   const auto source_from_target = [&](const Universe& source) {
     return glm::inverse(source.lps_from_voxel) * still_from_target;
@@ -68,6 +68,7 @@ Operand operand_of(const Program::Operand& operand, const Universe& target) {
   struct Visitor {
     const Program::Operand& operand;
     const Universe& target;
+    const Resampling& resampling;
     const glm::dmat4& still_from_target;
     const decltype(source_from_target)& source;
 
@@ -76,15 +77,17 @@ Operand operand_of(const Program::Operand& operand, const Universe& target) {
       const glm::dmat4 source_from_target = source(octree.universe());
       if (const std::optional<glm::ivec3> offset = whole_voxel_offset(source_from_target))
         return ShiftedOctreeOperand(octree, *offset);
+      if (resampling.voxels == Resampling::Voxels::Half) return HalfOctreeOperand(octree, source_from_target);
       return SampledOctreeOperand(octree, source_from_target);
     }
     Operand operator()(const Window& window) const {
       if (operand.still && window.grey.universe() == target)
         if (const std::optional<Window16> bits = window16(window.low, window.high))
           return WindowOperand(window.grey, *bits);
-      return SampledWindowOperand(window, source(window.grey.universe()));
+      return SampledWindowOperand(window, source(window.grey.universe()), resampling.samples);
     }
     Operand operator()(const RegionMask& mask) const { return MaskOperand(mask, still_from_target); }
+    Operand operator()(const SliceMask& mask) const { return SliceMaskOperand(mask, still_from_target); }
     Operand operator()(const HalfSpace& half_space) const {
       return ConvexOperand({along(still_from_target, half_space.normal, half_space.offset_mm)});
     }
@@ -100,7 +103,8 @@ Operand operand_of(const Program::Operand& operand, const Universe& target) {
       return ConvexOperand(std::move(sides));
     }
   };
-  return std::visit(Visitor{operand, target, still_from_target, source_from_target}, *operand.leaf);
+  return std::visit(Visitor{operand, target, resampling, still_from_target, source_from_target},
+                    *operand.leaf);
 }
 
 }  // namespace octotomy::voxel

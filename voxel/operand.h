@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voxel/program.h"
+#include "voxel/resampling.h"
 #include "voxel/window_bits.h"
 
 // Operands as a walk over a target universe meets them. Each answers two questions: which of a block's 64
@@ -75,6 +76,18 @@ class MaskOperand {
   std::vector<Projected> regions_;
 };
 
+/// A volume between regions on parallel slices.
+class SliceMaskOperand {
+ public:
+  SliceMaskOperand(const SliceMask& mask, const glm::dmat4& still_from_target);
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  SliceDistance distance_;
+  Linear u_, v_, w_;  ///< the view's millimetres, and the slices' position
+};
+
 /// A grey octree's window on the target's own lattice.
 class WindowOperand {
  public:
@@ -120,17 +133,33 @@ class SampledOctreeOperand {
   glm::ivec3 lowest_{0}, highest_{0};
 };
 
+/// An octree on another lattice or under a motion: a voxel is inside where most of a grid of 5 x 5 x 5 points
+/// in it is (D4).
+class HalfOctreeOperand {
+ public:
+  HalfOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  const Octree* octree_;
+  glm::dmat4 source_from_target_;
+  std::array<glm::dvec3, 125> points_;  ///< from a voxel's centre, in the source
+};
+
 /// A grey octree's window on another lattice or under a motion: samples are interpolated, then compared.
 class SampledWindowOperand {
  public:
-  SampledWindowOperand(const Window& window, const glm::dmat4& source_from_target)
-      : window_(&window), source_from_target_(source_from_target) {}
+  SampledWindowOperand(const Window& window, const glm::dmat4& source_from_target,
+                       Interpolation interpolation)
+      : window_(&window), source_from_target_(source_from_target), interpolation_(interpolation) {}
   Cover cover(const TargetBlock& block) const;
   void words(const WantedLeaves& leaves) const;
 
  private:
   const Window* window_;
   glm::dmat4 source_from_target_;
+  Interpolation interpolation_;
 };
 
 /// An octree on the target's own lattice: the walk follows its nodes, and asks nothing here.
@@ -138,10 +167,11 @@ struct AlignedOctreeOperand {
   BlockRef root;
 };
 
-using Operand = std::variant<AlignedOctreeOperand, ShiftedOctreeOperand, SampledOctreeOperand, WindowOperand,
-                             SampledWindowOperand, MaskOperand, ConvexOperand, SphereOperand>;
+using Operand = std::variant<AlignedOctreeOperand, ShiftedOctreeOperand, SampledOctreeOperand,
+                             HalfOctreeOperand, WindowOperand, SampledWindowOperand, MaskOperand,
+                             SliceMaskOperand, ConvexOperand, SphereOperand>;
 
 /// The operand for a walk over `target`; it refers to the expression behind it.
-Operand operand_of(const Program::Operand& operand, const Universe& target);
+Operand operand_of(const Program::Operand& operand, const Universe& target, const Resampling& resampling);
 
 }  // namespace octotomy::voxel

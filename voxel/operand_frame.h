@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "voxel/operand.h"
 
@@ -61,6 +62,9 @@ double reach(const Linear& f, int child_side);
 /// Row `row` of an affine map, and the map followed by a projection onto a direction, less an offset.
 Linear component(const glm::dmat4& map, int row);
 Linear along(const glm::dmat4& map, const glm::dvec3& direction, double offset);
+
+/// What is added to a target's voxel to give the source's, where the map is a translation by whole voxels.
+std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_target);
 
 /// The box in another frame that holds the centres of a child's voxels.
 struct ImageBox {

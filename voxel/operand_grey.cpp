@@ -10,7 +10,7 @@
 namespace octotomy::voxel {
 namespace {
 
-Status status_of_range(const MinMax& range, double low, double high) {
+Status status_of_range(const ValueRange& range, double low, double high) {
   if (range.low >= low && range.high <= high) return Status::Full;
   return range.high < low || range.low > high ? Status::Empty : Status::Mixed;
 }
@@ -39,6 +39,12 @@ MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
     range.high = std::max(range.high, grey.background());
   }
   return range;
+}
+
+// The samples that values within an image may depend on.
+VoxelBox support(const ImageBox& box, Interpolation interpolation) {
+  const Margin around = margin(interpolation);
+  return {glm::ivec3(glm::floor(box.low)) - around.before, glm::ivec3(glm::floor(box.high)) + around.after};
 }
 
 // The samples around one leaf, copied together from up to 4 leaves an axis.
@@ -87,8 +93,29 @@ class NearSamples {
         }
   }
 
-  // The trilinear value at a position of the source.
-  double interpolate(const glm::dvec3& position) const {
+  // The value at a position of the source.
+  double interpolate(const glm::dvec3& position, Interpolation interpolation) const {
+    if (interpolation == Interpolation::Linear) return trilinear(position);
+    const glm::dvec3 p = position - glm::dvec3(4 * first_);
+    const Stencil x = stencil(p.x, interpolation);
+    const Stencil y = stencil(p.y, interpolation);
+    const Stencil z = stencil(p.z, interpolation);
+    double value = 0.0;
+    for (int k = 0; k < z.count; ++k) {
+      double plane = 0.0;
+      for (int j = 0; j < y.count; ++j) {
+        const std::int16_t* samples = &samples_[index(x.first, y.first + j, z.first + k)];
+        double row = 0.0;
+        for (int i = 0; i < x.count; ++i) row += x.weight[static_cast<std::size_t>(i)] * samples[i];
+        plane += y.weight[static_cast<std::size_t>(j)] * row;
+      }
+      value += z.weight[static_cast<std::size_t>(k)] * plane;
+    }
+    return value;
+  }
+
+ private:
+  double trilinear(const glm::dvec3& position) const {
     const glm::dvec3 p = position - glm::dvec3(4 * first_);
     const glm::ivec3 low(p);
     const glm::dvec3 t = p - glm::dvec3(low);
@@ -99,7 +126,6 @@ class NearSamples {
     return below * (1.0 - t.z) + above * t.z;
   }
 
- private:
   static std::size_t index(int x, int y, int z) {
     return static_cast<std::size_t>(x + side * (y + side * z));
   }
@@ -109,20 +135,6 @@ class NearSamples {
   std::array<const std::int16_t*, leaves * leaves * leaves> chosen_;
   std::array<std::int16_t, side * side * side> samples_;
 };
-
-// The same from the octree itself, for lattices so coarse that a leaf's surroundings are many.
-double interpolate(const GreyOctree& grey, const glm::dvec3& p) {
-  const glm::dvec3 cell = glm::floor(p);
-  const glm::ivec3 low(cell);
-  const glm::dvec3 t = p - cell;
-  const auto along_x = [&](int y, int z) {
-    return grey.sample(low + glm::ivec3(0, y, z)) * (1.0 - t.x) +
-           grey.sample(low + glm::ivec3(1, y, z)) * t.x;
-  };
-  const double below = along_x(0, 0) * (1.0 - t.y) + along_x(1, 0) * t.y;
-  const double above = along_x(0, 1) * (1.0 - t.y) + along_x(1, 1) * t.y;
-  return below * (1.0 - t.z) + above * t.z;
-}
 
 }  // namespace
 
@@ -137,7 +149,8 @@ Cover WindowOperand::cover(const TargetBlock& block) const {
     const MinMax range = child_height == 1
                              ? grey_->brick(block.origin >> 4).leaf_range[static_cast<std::size_t>(child)]
                              : grey_->range(child_height, first + place);
-    const Status status = status_of_range(range, window_.low, window_.high);
+    const Status status =
+        status_of_range(value_range(range, Interpolation::Nearest), window_.low, window_.high);
     const std::uint64_t bit = std::uint64_t{1} << child;
     if (status == Status::Full) cover.full |= bit;
     if (status != Status::Empty) cover.some |= bit;
@@ -158,9 +171,8 @@ Cover SampledWindowOperand::cover(const TargetBlock& block) const {
   if (block.child_side == 4) return {0, all_children};
   const Imager image(source_from_target_, block.child_side);
   return cover_of_children(block, [&](const glm::dvec3& centre) {
-    const ImageBox box = image(centre);
-    const VoxelBox voxels{glm::ivec3(glm::floor(box.low)), glm::ivec3(glm::floor(box.high)) + 1};
-    return status_of_range(range_within(window_->grey, voxels), window_->low, window_->high);
+    const MinMax range = range_within(window_->grey, support(image(centre), interpolation_));
+    return status_of_range(value_range(range, interpolation_), window_->low, window_->high);
   });
 }
 
@@ -169,12 +181,13 @@ void SampledWindowOperand::words(const WantedLeaves& leaves) const {
   const Imager image(source_from_target_, 4);
   NearSamples near;
   for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {
-    const ImageBox box = image(glm::dvec3(origin) + 1.5);
-    const glm::ivec3 first = glm::ivec3(glm::floor(box.low)) >> 2;
-    const glm::ivec3 last = (glm::ivec3(glm::floor(box.high)) + 1) >> 2;
+    const VoxelBox box = support(image(glm::dvec3(origin) + 1.5), interpolation_);
+    const glm::ivec3 first = box.low >> 2;
+    const glm::ivec3 last = box.high >> 2;
     const bool is_near = glm::all(glm::lessThan(last - first, glm::ivec3(NearSamples::leaves)));
     if (is_near) {
-      const Status status = status_of_range(near.choose(grey, first, last), window_->low, window_->high);
+      const ValueRange range = value_range(near.choose(grey, first, last), interpolation_);
+      const Status status = status_of_range(range, window_->low, window_->high);
       if (status == Status::Empty) return 0;
       if (status == Status::Full) return all_children;
       near.fetch(grey.background());
@@ -182,7 +195,9 @@ void SampledWindowOperand::words(const WantedLeaves& leaves) const {
     std::uint64_t word = 0;
     for (int voxel = 0; voxel < 64; ++voxel) {
       const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin + child_place(voxel)), 1.0));
-      const double value = is_near ? near.interpolate(p) : interpolate(grey, p);
+      // A lattice so coarse that a leaf's surroundings are many is read from the octree itself.
+      const double value =
+          is_near ? near.interpolate(p, interpolation_) : interpolate(grey, p, interpolation_);
       word |= std::uint64_t{value >= window_->low && value <= window_->high} << voxel;
     }
     return word;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/partial_octree.h"
 
+#include <array>
 #include <bit>
 #include <stdexcept>
 #include <string>
+
+#include "voxel/combine.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -96,11 +99,30 @@ void for_each_boundary_leaf(BlockRef inside, BlockRef touching, int height, cons
   }
 }
 
-bool within(BlockRef inside, BlockRef touching, int height) {
+// The voxels inside and those of the boundary at least half filled; fractions are taken in tree order.
+Block half_filled(BlockRef inside, BlockRef touching, int height, const std::uint16_t*& next) {
+  if (inside == touching) return Block::share(inside);
+  std::array<std::uint64_t, 64> words{};
+  std::array<BlockRef, 64> children;
+  for (std::size_t child = 0; child < 64; ++child) {
+    const int number = static_cast<int>(child);
+    if (height > 2) {
+      children[child] = half_filled(inside.child(number), touching.child(number), height - 1, next).detach();
+      continue;
+    }
+    words[child] = inside.word(number);
+    for (std::uint64_t rest = touching.word(number) & ~inside.word(number); rest != 0; rest &= rest - 1)
+      if (2 * *next++ >= PartialOctree::whole) words[child] |= rest & (~rest + 1);
+  }
+  return height > 2 ? make_block(height, 0, all_children, children)
+                    : make_leaf_block(0, all_children, words.data());
+}
+
+bool is_subset(BlockRef inside, BlockRef touching, int height) {
   if (inside.is_empty() || touching.is_full() || inside == touching) return true;
   if (inside.is_full() || touching.is_empty()) return false;
   for (int child = 0; child < 64; ++child) {
-    const bool holds = height > 2 ? within(inside.child(child), touching.child(child), height - 1)
+    const bool holds = height > 2 ? is_subset(inside.child(child), touching.child(child), height - 1)
                                   : (inside.word(child) & ~touching.word(child)) == 0;
     if (!holds) return false;
   }
@@ -112,7 +134,7 @@ bool within(BlockRef inside, BlockRef touching, int height) {
 void check(const PartialOctree& partial) {
   if (partial.inside.universe() != partial.touching.universe())
     throw std::invalid_argument("a partial octree's inside and touching voxels are of different universes");
-  if (!within(partial.inside.root(), partial.touching.root(), partial.inside.root_height()))
+  if (!is_subset(partial.inside.root(), partial.touching.root(), partial.inside.root_height()))
     throw std::invalid_argument("a partial octree has a voxel inside that is not among those touching");
   const std::uint64_t boundary = partial.touching.voxel_count() - partial.inside.voxel_count();
   if (partial.fractions.size() != boundary)
@@ -142,6 +164,25 @@ void for_each_boundary_voxel(
                                    partial.fractions[next++]);
                            }
                          });
+}
+
+PartialOctree within(const PartialOctree& partial, const Octree& voxels) {
+  const Universe& universe = partial.touching.universe();
+  if (voxels.universe() != universe)
+    throw std::invalid_argument("a solid and the voxels to keep of it are of different universes");
+  PartialOctree kept{combine(universe, Expression(partial.inside) & voxels),
+                     combine(universe, Expression(partial.touching) & voxels),
+                     {}};
+  for_each_boundary_voxel(partial, [&](const glm::ivec3& voxel, std::uint16_t fraction) {
+    if (voxels.contains(voxel)) kept.fractions.push_back(fraction);
+  });
+  return kept;
+}
+
+Octree at_least_half(const PartialOctree& partial) {
+  const std::uint16_t* next = partial.fractions.data();
+  return {partial.touching.universe(),
+          half_filled(partial.inside.root(), partial.touching.root(), partial.touching.root_height(), next)};
 }
 
 double volume_mm3(const PartialOctree& partial) {

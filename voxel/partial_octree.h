@@ -36,6 +36,13 @@ void for_each_boundary_voxel(
     const PartialOctree& partial,
     const std::function<void(const glm::ivec3& voxel, std::uint16_t fraction)>& visit);
 
+/// The part of a solid that lies in certain whole voxels of its universe. Throws std::invalid_argument where
+/// the universes differ. Precondition: passes check().
+PartialOctree within(const PartialOctree& partial, const Octree& voxels);
+
+/// The voxels at least half filled (D4). Precondition: passes check().
+Octree at_least_half(const PartialOctree& partial);
+
 /// Volume by fractions, in cubic millimetres; sums integers, hence exact but for the fractions' rounding to
 /// 1 / 65535 each.
 double volume_mm3(const PartialOctree& partial);

@@ -39,9 +39,9 @@ void check(const RegionMask& mask) {
   }
 }
 
-bool contains(const Region& region, const glm::dvec2& p_mm) {
+bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm) {
   bool inside = false;
-  for (const std::vector<glm::dvec2>& polygon : region.polygons_mm)
+  for (const std::vector<glm::dvec2>& polygon : polygons_mm)
     for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
       const glm::dvec2& a = polygon[last];
       const glm::dvec2& b = polygon[i];
@@ -50,6 +50,10 @@ bool contains(const Region& region, const glm::dvec2& p_mm) {
       if (p_mm.x < (b.x - a.x) * (p_mm.y - a.y) / (b.y - a.y) + a.x) inside = !inside;
     }
   return inside;
+}
+
+bool contains(const Region& region, const glm::dvec2& p_mm) {
+  return contains(region.polygons_mm, p_mm);
 }
 
 bool contains(const RegionMask& mask, const glm::dvec3& p_mm) {

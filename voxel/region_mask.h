@@ -26,6 +26,8 @@ struct RegionMask {
 /// a coordinate that is not finite, no area.
 void check(const RegionMask& mask);
 
+/// By the even-odd rule over all polygons.
+bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm);
 bool contains(const Region& region, const glm::dvec2& p_mm);
 bool contains(const RegionMask& mask, const glm::dvec3& p_mm);
 

@@ -10,9 +10,12 @@
 #include "planner/answer.h"
 #include "planner/cli/verb.h"
 #include "planner/figures.h"
+#include "voxel/cell_counts.h"
 #include "voxel/combine.h"
 #include "voxel/components.h"
 #include "voxel/measure.h"
+#include "voxel/octree_file.h"
+#include "voxel/partial_volume.h"
 #include "voxel/read_scene.h"
 
 namespace octotomy::planner::cli {
@@ -65,36 +68,92 @@ int measure_mesh(const Program& program, const MeasureText& text) {
   return say(program, json);
 }
 
-int measure_scan(const Program& program, const MeasureText& text) {
+/// What voxels alone tell of an object.
+Json of_voxels(const voxel::Octree& octree, Timings& timings) {
+  const Stopwatch watch(timings, "measure");
+  Json json = to_json(voxel::measure(octree));
+  json["components"] = voxel::components(octree).voxel_counts.size();
+  json["euler"] = voxel::euler_numbers(octree).by_faces;
+  json["euler_of"] = "voxels that touch by faces";
+  json["findings"] = Json::array();
+  return json;
+}
+
+void add_partial_volume(const voxel::Window& window, Timings& timings, Json& json) {
+  const Stopwatch watch(timings, "partial volume");
+  json["volume_partial_mm3"] = nullptr;
+  try {
+    json["volume_partial_mm3"] = voxel::partial_volume_mm3(window);
+    json["volume_partial_estimator"] = "trilinear interpolant of the samples";
+  } catch (const std::invalid_argument& error) {
+    json["findings"].push_back(std::string("volume_partial_mm3: ") + error.what());
+  }
+}
+
+voxel::Window window_of(const voxel::GreyOctree& grey, const MeasureText& text) {
   if (text.window.empty())
-    throw std::runtime_error(text.file.string() +
-                             ": is a scan, say what of it: --window LOW:HIGH, for example --window 300:");
-  const WindowText window = parse_window(text.window);
+    throw std::runtime_error(
+        text.file.string() +
+        ": holds samples, say which are meant: --window LOW:HIGH, for example --window 300:");
+  const WindowText range = parse_window(text.window);
+  voxel::Window window{grey, range.low};
+  if (range.high) window.high = *range.high;
+  return window;
+}
+
+int measure_octree(const Program& program, const MeasureText& text) {
+  Timings timings;
+  voxel::OctreeFile file{voxel::Octree::empty({}), "", ""};
+  {
+    const Stopwatch watch(timings, "read");
+    file = voxel::read_octree(text.file);
+  }
+  Json json;
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+    const voxel::Window window = window_of(*grey, text);
+    json = of_voxels(voxel::combine(grey->universe(), window), timings);
+    add_partial_volume(window, timings, json);
+  } else if (!text.window.empty()) {
+    throw std::runtime_error(text.file.string() + ": holds no samples to take a --window of: leave it out");
+  } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
+    json = of_voxels(voxel::at_least_half(*partial), timings);
+    json["volume_estimator"] = "voxels at least half filled, counted";
+    json["volume_partial_mm3"] = voxel::volume_mm3(*partial);
+    json["volume_partial_estimator"] = "the voxels' filled shares";
+  } else {
+    json = of_voxels(std::get<voxel::Octree>(file.tree), timings);
+    json["volume_partial_mm3"] = nullptr;
+    json["findings"].push_back(
+        "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
+        "shares (--digitise partial)");
+  }
+  Json whole = answer(timings);
+  whole["kind"] = "octree";
+  whole["source"] = text.file.string();
+  whole.update(json);
+  return say(program, whole);
+}
+
+int measure_scan(const Program& program, const MeasureText& text) {
   Timings timings;
   voxel::Scene scene;
   {
     const Stopwatch watch(timings, "read");
     scene = voxel::read_scene(text.file);
   }
-  voxel::Octree octree = voxel::Octree::empty({});
+  std::optional<voxel::GreyOctree> grey;
   {
     const Stopwatch watch(timings, "octree");
-    const voxel::Universe universe = universe_of(scene.lattice, text.voxel_mm);
-    voxel::Window leaf{voxel::grey_octree_of(universe, scene), window.low};
-    if (window.high) leaf.high = *window.high;
-    octree = voxel::combine(universe, voxel::Expression(leaf));
+    grey = voxel::grey_octree_of(universe_of(scene.lattice, text.voxel_mm), scene);
   }
-  Json json;
-  {
-    const Stopwatch watch(timings, "measure");
-    json = to_json(voxel::measure(octree));
-    json["components"] = voxel::components(octree).voxel_counts.size();
-  }
+  const voxel::Window window = window_of(*grey, text);
+  Json json = of_voxels(voxel::combine(grey->universe(), window), timings);
+  add_partial_volume(window, timings, json);
   brep::Measures surface;
   brep::Health health;
   {
     const Stopwatch watch(timings, "isosurface");
-    const double high = window.high.value_or(std::numeric_limits<double>::infinity());
+    const double high = parse_window(text.window).high.value_or(std::numeric_limits<double>::infinity());
     const brep::Triangles triangles = convert::isosurface(scene, window.low, high);
     health = brep::health(triangles, {false});
     surface = brep::measure(brep::mesh_of(triangles));
@@ -102,13 +161,12 @@ int measure_scan(const Program& program, const MeasureText& text) {
   json["area_crofton13_mm2"] = json["area_mm2"];
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;
-  json["volume_partial_mm3"] = surface.volume_mm3;
-  json["volume_partial_estimator"] = "enclosed by the isosurface of the scan's own samples";
+  json["volume_isosurface_mm3"] = surface.volume_mm3;
   json["euler"] = health.euler;
   json["euler_of"] = "the isosurface: V - E + F";
   Json whole = answer(timings);
   whole["kind"] = "scan";
-  whole["window"] = {window.low, window.high ? Json(*window.high) : Json(nullptr)};
+  whole["window"] = {window.low, parse_window(text.window).high ? Json(window.high) : Json(nullptr)};
   whole.update(json);
   whole["audit"] = to_json(scene.audit);
   return say(program, whole);
@@ -118,12 +176,15 @@ int measure_scan(const Program& program, const MeasureText& text) {
 
 void add_measure(Program& program) {
   const auto text = std::make_shared<MeasureText>();
-  CLI::App& verb =
-      program.verb("measure", "Volume, area, centroid, extents, parts of a scan's window or a mesh",
-                   "octotomy measure head.nrrd --window 300: --json", [&program, text] {
-                     return is_mesh(text->file) ? measure_mesh(program, *text) : measure_scan(program, *text);
-                   });
-  verb.add_option("file", text->file, "A scan (with --window) or a mesh")
+  CLI::App& verb = program.verb(
+      "measure", "Volume, area, centroid, inertia, extents, parts of a scan's window, an octree or a mesh",
+      "octotomy measure head.nrrd --window 300: --json\n"
+      "  octotomy measure skull.octree",
+      [&program, text] {
+        if (is_octree(text->file)) return measure_octree(program, *text);
+        return is_mesh(text->file) ? measure_mesh(program, *text) : measure_scan(program, *text);
+      });
+  verb.add_option("file", text->file, "A scan or grey octree (with --window), an octree, a mesh")
       ->required()
       ->check(CLI::ExistingPath);
   verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units");

@@ -4,20 +4,30 @@
 #include "planner/answer.h"
 #include "planner/cli/verb.h"
 #include "planner/figures.h"
+#include "planner/octree_answer.h"
+#include "verify/form.h"
+#include "verify/solid_phantom.h"
 #include "voxel/write_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 struct PhantomText {
+  const CLI::App* verb = nullptr;
   std::string kind;
   std::filesystem::path out;
+  // Of the head.
   verify::HeadOptions head;
   double truth_step_mm = 1.0;
   bool dicom = false;
+  // Of solids.
+  std::optional<int> voxels;
+  std::optional<double> radius_voxels;
+  std::vector<double> turn_deg;
+  std::string digitise = "centre";
 };
 
-int phantom(const Program& program, const PhantomText& text) {
+int head(const Program& program, const PhantomText& text) {
   const std::string name = text.out.filename().string();
   const bool image = name.ends_with(".nrrd") || name.ends_with(".nhdr") || name.ends_with(".nii") ||
                      name.ends_with(".nii.gz") || name.ends_with(".mha") || name.ends_with(".mhd");
@@ -25,7 +35,6 @@ int phantom(const Program& program, const PhantomText& text) {
   if (!image && !folder)
     throw std::runtime_error(text.out.string() +
                              ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
-  need_folder_of(text.out);
   Timings timings;
   voxel::Scene scene;
   {
@@ -65,31 +74,142 @@ int phantom(const Program& program, const PhantomText& text) {
   return done;
 }
 
+verify::Solid solid_of(const PhantomText& text) {
+  verify::SolidOptions options;
+  if (text.kind == "figure_3_1") options.voxels = 4;
+  if (text.voxels) options.voxels = *text.voxels;
+  options.radius_voxels = text.radius_voxels;
+  options.spacing_mm = glm::dvec3(text.head.voxel_mm);
+  if (!text.turn_deg.empty())
+    options.lps_from_axes = verify::turned({text.turn_deg[0], text.turn_deg[1], text.turn_deg[2]});
+  return verify::solid_phantom(text.kind, options);
+}
+
+decltype(voxel::OctreeFile::tree) digitised(const verify::Solid& solid, const std::string& how) {
+  using enum voxel::Digitisation;
+  if (how == "partial") return verify::digitise_partial(solid);
+  return verify::digitise(solid, how == "inside"     ? Inside
+                                 : how == "touching" ? Touching
+                                 : how == "half"     ? Half
+                                                     : Centre);
+}
+
+int solid(const Program& program, const PhantomText& text) {
+  if (!is_octree(text.out))
+    throw std::runtime_error(text.out.string() + ": a " + text.kind + " is written as .octree");
+  Timings timings;
+  voxel::OctreeFile file{voxel::Octree::empty({}), text.kind, ""};
+  Json truth;
+  {
+    const Stopwatch watch(timings, "phantom");
+    const verify::Solid solid = solid_of(text);
+    file.tree = digitised(solid, text.digitise);
+    truth = {{"volume_mm3", solid.volume_mm3},
+             {"area_mm2", solid.area_mm2},
+             {"centroid_mm", to_json(solid.centroid_mm)}};
+    file.metadata = Json{
+        {"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
+        {"phantom", text.kind},
+        {"digitise", text.digitise},
+        {"truth",
+         truth}}.dump();
+  }
+  {
+    const Stopwatch watch(timings, "write");
+    voxel::write_octree(file, text.out);
+  }
+  Json json = octree_answer(file, std::filesystem::file_size(text.out), timings);
+  json["path"] = text.out.string();
+  json["truth"] = truth;
+  program.say(json, octree_text(text.out.string(), json) +
+                        lines({{"truth", grouped(truth["volume_mm3"].get<double>(), 2) + " mm\u00b3, " +
+                                             grouped(truth["area_mm2"].get<double>(), 2) + " mm\u00b2"}}));
+  return done;
+}
+
+constexpr const char* head_group = "head";
+constexpr const char* solid_group = "solids";
+
+int phantom(const Program& program, const PhantomText& text) {
+  const std::string others = text.kind == "head" ? solid_group : head_group;
+  for (const CLI::Option* option : text.verb->get_options())
+    if (option->get_group() == others && option->count() > 0)
+      throw CLI::ValidationError(option->get_name(), "means nothing for " + text.kind + ": leave it out");
+  need_folder_of(text.out);
+  return text.kind == "head" ? head(program, text) : solid(program, text);
+}
+
+std::string kinds_said() {
+  std::string said = "head: a CT of a head; or an octree of a solid:";
+  for (const verify::SolidKind& kind : verify::solid_kinds())
+    said.append("\n").append(kind.name).append(": ").append(kind.what);
+  return said;
+}
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names{"head"};
+  for (const verify::SolidKind& kind : verify::solid_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+void add_head_options(CLI::App& verb, PhantomText& text) {
+  verb.add_option("--slice", text.head.slice_mm, "Spacing of slices, mm; default: the voxel's edge")
+      ->check(CLI::Range(0.1, 50.0))
+      ->group(head_group);
+  verb.add_option("--tilt", text.head.gantry_tilt_deg, "Gantry tilt, degrees")
+      ->check(CLI::Range(-45.0, 45.0))
+      ->group(head_group);
+  verb.add_option("--noise", text.head.noise_sigma_hu, "Standard deviation of Gaussian noise, HU")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->group(head_group);
+  verb.add_option("--blur", text.head.point_spread_sigma_mm, "Standard deviation of the point spread, mm")
+      ->check(CLI::Range(0.0, 10.0))
+      ->group(head_group);
+  verb.add_option("--seed", text.head.seed, "Seed of the noise")->group(head_group);
+  verb.add_option("--truth-step", text.truth_step_mm, "Step at which the true volume is sampled, mm")
+      ->check(CLI::Range(0.1, 5.0))
+      ->capture_default_str()
+      ->group(head_group);
+  verb.add_flag("--dicom", text.dicom, "Write a DICOM series into the folder")->group(head_group);
+}
+
+void add_solid_options(CLI::App& verb, PhantomText& text) {
+  verb.add_option("--voxels", text.voxels, "Voxels a side of the universe, a power of two; default 256")
+      ->group(solid_group);
+  verb.add_option("--radius", text.radius_voxels, "R in voxels; default a quarter of the side")
+      ->check(CLI::PositiveNumber)
+      ->group(solid_group);
+  verb.add_option("--digitise", text.digitise,
+                  "Which voxels: inside (D1), touching (D2), centre (D3), half (D4), or partial, with the "
+                  "share of each that is filled")
+      ->check(CLI::IsMember({"inside", "touching", "centre", "half", "partial"}))
+      ->capture_default_str()
+      ->group(solid_group);
+  verb.add_option("--turn", text.turn_deg, "Degrees about x, then y, then z: turns the solid")
+      ->expected(3)
+      ->delimiter(',')
+      ->group(solid_group);
+}
+
 }  // namespace
 
 void add_phantom(Program& program) {
   const auto text = std::make_shared<PhantomText>();
-  CLI::App& verb = program.verb("phantom", "Writes a scan whose truth is known",
-                                "octotomy phantom head -o head.nrrd --json",
-                                [&program, text] { return phantom(program, *text); });
-  verb.add_option("kind", text->kind, "head: a CT of a head")->required()->check(CLI::IsMember({"head"}));
-  verb.add_option("-o,--out", text->out, "A .nrrd, .nii.gz or .mha file, or a folder for DICOM")->required();
+  CLI::App& verb =
+      program.verb("phantom", "Writes a scan or a solid whose truth is known",
+                   "octotomy phantom head -o head.nrrd --json\n"
+                   "  octotomy phantom sphere -o sphere.octree --voxels 256 --radius 64 --digitise partial",
+                   [&program, text] { return phantom(program, *text); });
+  text->verb = &verb;
+  verb.add_option("kind", text->kind, kinds_said())->required()->check(CLI::IsMember(kind_names()));
+  verb.add_option("-o,--out", text->out,
+                  "A .octree file; of head a .nrrd, .nii.gz or .mha file, or a folder for DICOM")
+      ->required();
   verb.add_option("--voxel", text->head.voxel_mm, "Edge of a voxel, mm")
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
-  verb.add_option("--slice", text->head.slice_mm, "Spacing of slices, mm; default: the voxel's edge")
-      ->check(CLI::Range(0.1, 50.0));
-  verb.add_option("--tilt", text->head.gantry_tilt_deg, "Gantry tilt, degrees")
-      ->check(CLI::Range(-45.0, 45.0));
-  verb.add_option("--noise", text->head.noise_sigma_hu, "Standard deviation of Gaussian noise, HU")
-      ->check(CLI::Range(0.0, 1000.0));
-  verb.add_option("--blur", text->head.point_spread_sigma_mm, "Standard deviation of the point spread, mm")
-      ->check(CLI::Range(0.0, 10.0));
-  verb.add_option("--seed", text->head.seed, "Seed of the noise");
-  verb.add_option("--truth-step", text->truth_step_mm, "Step at which the true volume is sampled, mm")
-      ->check(CLI::Range(0.1, 5.0))
-      ->capture_default_str();
-  verb.add_flag("--dicom", text->dicom, "Write a DICOM series into the folder");
+  add_head_options(verb, *text);
+  add_solid_options(verb, *text);
 }
 
 }  // namespace octotomy::planner::cli

@@ -48,7 +48,9 @@ void add_look(Program& program);
 void add_picture_verbs(Program& program);
 void add_measure(Program& program);
 void add_mesh_verbs(Program& program);
-void add_octree_verbs(Program& program);
+void add_octree(Program& program);
+void add_eval(Program& program);
+void add_mask(Program& program);
 
 /// LOW:HIGH, LOW: or LOW in sample units; throws CLI::ValidationError where it is none of these.
 struct WindowText {

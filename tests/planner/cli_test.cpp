@@ -66,7 +66,7 @@ TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
   for (const char* verb : {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "tet",
-                           "phantom", "octree", "eval"}) {
+                           "phantom", "octree", "eval", "mask"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const Answer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
@@ -142,7 +142,10 @@ TEST_F(CommandLine, MeasuresAScansWindowAndAMesh) {
   EXPECT_EQ(scan["euler"], 2);
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.ply")).status, 0);
   const Json mesh = Json::parse(run("measure " + at("ball.ply") + " --json").out);
-  EXPECT_NEAR(mesh["volume_mm3"].get<double>(), scan["volume_partial_mm3"].get<double>(), 1e-6);
+  EXPECT_NEAR(mesh["volume_mm3"].get<double>(), scan["volume_isosurface_mm3"].get<double>(), 1e-6);
+  // The voxels' own partial volume is another estimate of the same, from the same samples.
+  EXPECT_NEAR(mesh["volume_mm3"].get<double>() / scan["volume_partial_mm3"].get<double>(), 1.0, 0.003);
+  EXPECT_NE(mesh["volume_mm3"], scan["volume_partial_mm3"]);
   EXPECT_TRUE(mesh["volume_partial_mm3"].is_null());
   EXPECT_FALSE(mesh["findings"].empty());
 }
@@ -209,6 +212,76 @@ TEST_F(CommandLine, Figure31GoesThroughEveryRepresentation) {
   expect_refused(run("octree " + at("runs") + " --from linear --depth 2 -o " + at("x.octree")),
                  "character 1");
   expect_refused(run("octree " + at("runs") + " --from runs -o " + at("x.octree")), "--depth");
+}
+
+TEST_F(CommandLine, TheThesissSphereHasTable3_1) {
+  const Json made = Json::parse(
+      run("phantom sphere --voxels 256 --radius 64 --digitise partial --json -o " + at("sphere.octree")).out);
+  EXPECT_NEAR(made["truth"]["volume_mm3"], 4.0 / 3.0 * M_PI * 64 * 64 * 64, 1e-6);
+  EXPECT_NEAR(made["truth"]["area_mm2"], 4.0 * M_PI * 64 * 64, 1e-6);
+  const Json told = Json::parse(run("info " + at("sphere.octree") + " --json").out);
+  const std::vector<std::array<int, 3>> table{{8, 0, 0},           {8, 0, 56},        {56, 8, 0},
+                                              {272, 72, 104},      {1160, 480, 536},  {4760, 2240, 2280},
+                                              {19232, 9360, 9488}, {0, 115784, 38072}};
+  ASSERT_EQ(told["levels"].size(), table.size());
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    EXPECT_EQ(told["levels"][i]["level"], i + 1);
+    EXPECT_EQ(told["levels"][i]["partial"], table[i][0]) << "level " << i + 1;
+    EXPECT_EQ(told["levels"][i]["full"], table[i][1]) << "level " << i + 1;
+    EXPECT_EQ(told["levels"][i]["empty"], table[i][2]) << "level " << i + 1;
+  }
+  const Json measured = Json::parse(run("measure " + at("sphere.octree") + " --json").out);
+  EXPECT_NEAR(measured["volume_partial_mm3"].get<double>() / made["truth"]["volume_mm3"].get<double>(), 1.0,
+              1e-4);
+  EXPECT_NEAR(measured["area_mm2"].get<double>() / made["truth"]["area_mm2"].get<double>(), 1.0, 0.02);
+  EXPECT_EQ(measured["components"], 1);
+  EXPECT_EQ(measured["euler"], 1);
+  expect_refused(run("phantom sphere --voxels 100 -o " + at("x.octree")), "100");
+  expect_refused(run("phantom sphere --noise 3 -o " + at("x.octree")), "--noise");
+  expect_refused(run("phantom head --radius 3 -o " + at("x.nrrd")), "--radius");
+}
+
+TEST_F(CommandLine, MasksComeFromViewsAndSlicesAndAreEditedFurther) {
+  write("front.json", R"({"polygons_mm": [[[-10,-10],[6,-10],[6,10],[-10,10]]]})");
+  write("side.json", "[[[-8,-10],[8,-10],[8,10],[-8,10]]]");
+  write("slices.json", R"({"view": "inferior", "slices": [
+      {"position_mm": 6, "polygons_mm": [[[-5,-5],[5,-5],[5,5],[-5,5]]]},
+      {"position_mm": 2, "polygons_mm": [[[-5,-5],[5,-5],[5,5],[-5,5]]]}]})");
+  const std::string front = " --region anterior:" + at("front.json");
+  const std::string side = " --region left:" + at("side.json");
+  const Json both = Json::parse(run("mask" + front + side + " --json -o " + at("both.octree")).out);
+  EXPECT_EQ(both["voxels"], 16 * 16 * 20);
+  const Json one = Json::parse(
+      run("mask" + front + " --like " + at("both.octree") + " --json -o " + at("one.octree")).out);
+  EXPECT_GT(one["voxels"], both["voxels"]);
+  const Json edited = Json::parse(
+      run("mask" + side + " --edit " + at("one.octree") + " --json -o " + at("edited.octree")).out);
+  EXPECT_EQ(edited["levels"], both["levels"]);
+  const Json slices =
+      Json::parse(run("mask --slices " + at("slices.json") + " --json -o " + at("slices.octree")).out);
+  EXPECT_EQ(slices["voxels"], 10 * 10 * 8);
+  expect_refused(run("mask" + front + " -o " + at("x.octree")), "--like");
+  expect_refused(run("mask -o " + at("x.octree")), "--region");
+  expect_refused(run("mask --region front:" + at("front.json") + " -o " + at("x.octree")), "front");
+  expect_refused(run("mask --region anterior:" + at("slices.json") + " -o " + at("x.octree")), "slices");
+}
+
+TEST_F(CommandLine, GreyResultsKeepTheirSamplesAndAreMeasured) {
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
+  const std::string ask = " --let g=" + at("grey.octree") + " --window g=0: ";
+  const Json kept = Json::parse(run("eval g" + ask + "--grey --json -o " + at("kept.octree")).out);
+  EXPECT_EQ(kept["fields"], "grey");
+  EXPECT_GE(kept["range"][1], 900);
+  // The object that keeps its samples has the samples' surface still, and so does not when moved by halves.
+  const Json measured = Json::parse(run("measure " + at("grey.octree") + " --window 0: --json").out);
+  EXPECT_NEAR(measured["volume_partial_mm3"].get<double>() / tests::ball_mm3(12.0), 1.0, 0.005);
+  EXPECT_EQ(measured["inertia_mm5"].size(), 3u);
+  for (const char* how : {"--interpolate nearest", "--interpolate cubic", "--digitise half"})
+    EXPECT_EQ(run("eval 'move(g, m)'" + ask + "--motion m=0.4,0,0,10,0,0,1 " + how + " -o " + at("m.octree"))
+                  .status,
+              0)
+        << how;
+  expect_refused(run("measure " + at("grey.octree")), "--window");
 }
 
 TEST_F(CommandLine, TimeOverIsStatusThreeAndLeavesNothing) {

@@ -201,5 +201,19 @@ TEST_F(Evaluate, RealSkullsAgreeInBothKernels) {
   EXPECT_GT(evaluation.object("overlap").voxel_measures.volume_mm3, 0.0);
 }
 
+TEST(UniverseOf, HasAVoxelOnEverySampleOfACubicScanWhateverItsCounts) {
+  for (const glm::ivec3& dims : {glm::ivec3(60, 61, 47), glm::ivec3(64, 63, 33), glm::ivec3(1, 2, 3)}) {
+    const voxel::Lattice scan =
+        voxel::axis_aligned_lattice(dims, glm::dvec3(0.7), glm::dvec3(-20.3, 11.17, 5.05));
+    const voxel::Universe universe = universe_of(scan, std::nullopt);
+    for (const glm::ivec3& corner : {glm::ivec3(0), dims - 1}) {
+      const glm::dvec3 p = universe.lattice().voxel(scan.lps_mm(glm::dvec3(corner)));
+      EXPECT_LT(glm::distance(p, glm::round(p)), 1e-9);
+      EXPECT_TRUE(glm::all(glm::greaterThan(p, glm::dvec3(-0.1))) &&
+                  glm::all(glm::lessThan(p, glm::dvec3(universe.side() - 0.9))));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace octotomy::planner

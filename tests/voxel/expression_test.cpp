@@ -2,6 +2,7 @@
 #include "voxel/expression.h"
 
 #include <gtest/gtest.h>
+#include <random>
 #include <stdexcept>
 
 #include "voxel/combine.h"
@@ -71,6 +72,77 @@ TEST(ParseExpression, SaysWhereAndWhatItExpected) {
   EXPECT_EQ(refusal(""), "expression \"\", character 1: expected a name, '~', 'move(' or '('");
   EXPECT_NE(refusal(std::string(100000, '(')).find("nested more than 200 deep"), std::string::npos);
   EXPECT_NE(refusal(std::string(100000, '~')).find("nested more than 200 deep"), std::string::npos);
+}
+
+// Labels that undo names(): primitives are told apart by where they are.
+Labels labels() {
+  Labels result;
+  result.object = [](const Expression::Leaf& leaf) -> std::string {
+    if (const auto* sphere = std::get_if<Sphere>(&leaf)) return sphere->centre_mm.x < 0 ? "a" : "b";
+    return "c";
+  };
+  result.motion = [](const glm::dmat4&) { return "up"; };
+  return result;
+}
+
+// Every bracket written out: two expressions of one structure and no others have it in common.
+std::string structure(const Expression::Term& term) {
+  using Kind = Expression::Kind;
+  switch (term.kind) {
+    case Kind::Leaf:
+      return labels().object(*term.leaf);
+    case Kind::Not:
+      return "~(" + structure(*term.left) + ")";
+    case Kind::Moved:
+      return "move(" + structure(*term.left) + ")";
+    default:
+      return "(" + structure(*term.left) + std::to_string(static_cast<int>(term.kind)) +
+             structure(*term.right) + ")";
+  }
+}
+
+Expression random_expression(std::mt19937_64& random, int depth) {
+  const auto choice = random() % (depth == 0 ? 3 : 10);
+  const auto inner = [&] { return random_expression(random, depth - 1); };
+  switch (choice) {
+    case 0:
+      return names().object("a");
+    case 1:
+      return names().object("b");
+    case 2:
+      return names().object("c");
+    case 3:
+      return ~inner();
+    case 4:
+      return moved(inner(), names().motion("up"));
+    case 5:
+      return inner() & inner();
+    case 6:
+      return inner() | inner();
+    case 7:
+      return inner() ^ inner();
+    default:
+      return inner() - inner();
+  }
+}
+
+TEST(PrintExpression, IsReadBackAsTheSameTerms) {
+  std::size_t brackets = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    std::mt19937_64 random(seed);
+    const Expression expression = random_expression(random, 6);
+    const std::string text = print_expression(expression, labels());
+    ASSERT_EQ(structure(parse_expression(text, names()).term()), structure(expression.term()))
+        << "seed " << seed << ": " << text;
+    brackets += text.find('(') != std::string::npos;
+  }
+  EXPECT_GT(brackets, 500U);
+}
+
+TEST(PrintExpression, BracketsNoMoreThanItTakes) {
+  for (const char* text : {"a | b & c", "(a | b) & c", "a - b - c", "a - (b - c)", "~a & b", "~(a & b)",
+                           "move(a | b, up) - c", "a ^ b | c", "a ^ (b | c)"})
+    EXPECT_EQ(print_expression(parse_expression(text, names()), labels()), text);
 }
 
 TEST(NamesIn, ListsEachObjectOnceInOrderAndNoMotion) {

@@ -40,6 +40,22 @@ TEST(GreyOctree, KeepsEverySampleOfACoincidentScan) {
   EXPECT_EQ(grey.sample({64, 0, 0}), -1024);
 }
 
+TEST(GreyOctree, TakesSamplesOverThatLieWholeVoxelsAway) {
+  const Scene scene = ramp_scene({{20, 25, 30}, glm::dmat4(1.0)}, {3, -7, 11, 5});
+  Universe universe{5, glm::dmat4(1.0)};
+  universe.lps_from_voxel[3] = glm::dvec4(-4, 3, -1, 1);
+  const GreyOctree grey = grey_octree_of(universe, scene, -1024);
+  for (int z = 0; z < 32; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) {
+        const glm::ivec3 at = glm::ivec3(x, y, z) + glm::ivec3(-4, 3, -1);
+        const bool inside = glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
+                            glm::all(glm::lessThan(at, scene.lattice.dims));
+        ASSERT_EQ(grey.sample({x, y, z}), inside ? 3 * at.x - 7 * at.y + 11 * at.z + 5 : -1024)
+            << x << ' ' << y << ' ' << z;
+      }
+}
+
 TEST(GreyOctree, RangesHoldTheSamplesBelowThemTightly) {
   const Universe universe{7, glm::dmat4(1.0)};
   const GreyOctree grey =

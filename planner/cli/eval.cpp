@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <map>
+
+#include "planner/cli/octree_out.h"
+#include "planner/nearest_name.h"
+#include "voxel/combine.h"
+#include "voxel/combine_grey.h"
+#include "voxel/expression.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvalText {
+  std::string expression;
+  fs::path out;
+  std::vector<std::string> lets, windows, motions;
+  bool grey = false;
+  std::string digitise = "centre";
+  std::string interpolate = "linear";
+};
+
+voxel::Resampling resampling_of(const EvalText& text) {
+  using voxel::Interpolation;
+  return {text.digitise == "half" ? voxel::Resampling::Voxels::Half : voxel::Resampling::Voxels::Centre,
+          text.interpolate == "nearest" ? Interpolation::Nearest
+          : text.interpolate == "cubic" ? Interpolation::Cubic
+                                        : Interpolation::Linear};
+}
+
+/// NAME=VALUE texts by name; refuses others, and names said twice.
+std::map<std::string, std::string> bound(const std::vector<std::string>& texts, const std::string& option,
+                                         const std::string& value) {
+  std::map<std::string, std::string> values;
+  for (const std::string& text : texts) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+      throw CLI::ValidationError(option,
+                                 std::string("'").append(text).append("' binds nothing: give NAME=") + value);
+    if (!values.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
+      throw CLI::ValidationError(option, "'" + text.substr(0, equals) + "' is bound twice");
+  }
+  return values;
+}
+
+std::vector<std::string> names_of(const std::map<std::string, std::string>& values) {
+  std::vector<std::string> names;
+  names.reserve(values.size());
+  for (const auto& [name, unused] : values) names.push_back(name);
+  return names;
+}
+
+glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  for (char* end = nullptr;; at = end + 1) {
+    numbers.push_back(std::strtod(at, &end));
+    const bool read = end != at;
+    if (read && *end == ',') continue;
+    if (read && *end == '\0' && (numbers.size() == 3 || numbers.size() == 7 || numbers.size() == 10)) break;
+    throw CLI::ValidationError("--motion",
+                               std::string("'").append(name).append("=").append(text) +
+                                   "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the "
+                                   "axis X,Y,Z, then perhaps the point X,Y,Z in mm it passes through");
+  }
+  voxel::Motion motion;
+  motion.translate_mm = {numbers[0], numbers[1], numbers[2]};
+  if (numbers.size() >= 7) {
+    motion.degrees = numbers[3];
+    motion.axis = {numbers[4], numbers[5], numbers[6]};
+  }
+  if (numbers.size() == 10) motion.about_mm = {numbers[7], numbers[8], numbers[9]};
+  return voxel::moved_from_still(motion);
+}
+
+/// A file as an operand, with its universe.
+struct Operand {
+  voxel::Expression expression;
+  voxel::Universe universe;
+};
+
+Operand operand_of(const std::string& name, const fs::path& path,
+                   const std::map<std::string, std::string>& windows) {
+  if (!is_octree(path))
+    throw std::runtime_error(name + "=" + path.string() +
+                             ": names stand for .octree files: make one with octotomy octree");
+  const voxel::OctreeFile file = voxel::read_octree(path);
+  const auto window = windows.find(name);
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+    if (window == windows.end())
+      throw std::runtime_error(path.string() + ": is grey, say which object '" + name + "' is: --window " +
+                               name + "=LOW:HIGH, for example --window " + name + "=300:");
+    const WindowText range = parse_window(window->second);
+    voxel::Window leaf{*grey, range.low};
+    if (range.high) leaf.high = *range.high;
+    return {leaf, grey->universe()};
+  }
+  if (window != windows.end())
+    throw std::runtime_error(path.string() + ": holds no samples to take a --window of: leave '" + name +
+                             "' out");
+  const auto* octree = std::get_if<voxel::Octree>(&file.tree);
+  if (octree == nullptr)
+    throw std::runtime_error(path.string() +
+                             ": holds fractions, which have no Boolean: digitise it as centre or half");
+  return {*octree, octree->universe()};
+}
+
+int eval(const Program& program, const EvalText& text) {
+  need_octree_extension(text.out);
+  need_folder_of(text.out);
+  const auto lets = bound(text.lets, "--let", "FILE");
+  const auto windows = bound(text.windows, "--window", "LOW:HIGH");
+  const auto motions = bound(text.motions, "--motion", "X,Y,Z");
+  const std::vector<std::string> known = names_of(lets);
+  for (const auto& [name, unused] : windows)
+    if (!lets.contains(name))
+      throw CLI::ValidationError("--window",
+                                 "'" + name + "' is not bound by --let" + suggestion(name, known));
+
+  // Read what the expression names, and no more.
+  const std::vector<std::string> used = voxel::names_in(text.expression);
+  std::vector<std::string> findings;
+  for (const std::string& name : known)
+    if (std::find(used.begin(), used.end(), name) == used.end())
+      findings.push_back("--let " + name + ": the expression does not name it");
+  Timings timings;
+  std::map<std::string, Operand> operands;
+  {
+    const Stopwatch watch(timings, "read");
+    for (const std::string& name : used)
+      if (const auto let = lets.find(name); let != lets.end())
+        operands.emplace(name, operand_of(name, let->second, windows));
+  }
+  const voxel::Names names{[&](std::string_view name) {
+                             const auto found = operands.find(std::string(name));
+                             if (found == operands.end())
+                               throw std::invalid_argument("nothing is called '" + std::string(name) + "'" +
+                                                           suggestion(name, known) + ": bind it with --let " +
+                                                           std::string(name) + "=FILE");
+                             return found->second.expression;
+                           },
+                           [&](std::string_view name) {
+                             const auto found = motions.find(std::string(name));
+                             if (found == motions.end())
+                               throw std::invalid_argument("no motion is called '" + std::string(name) + "'" +
+                                                           suggestion(name, names_of(motions)) +
+                                                           ": bind it with --motion " + std::string(name) +
+                                                           "=X,Y,Z");
+                             return parse_motion(found->first, found->second);
+                           }};
+  const voxel::Expression expression = voxel::parse_expression(text.expression, names);
+  const voxel::Universe universe = operands.at(used.front()).universe;
+  for (const std::string& name : used)
+    if (!(operands.at(name).universe == universe))
+      findings.push_back(name + ": lives in another universe than " + used.front() +
+                         ", whose voxels the result has: it is resampled there");
+  voxel::OctreeFile result{voxel::Octree::empty(universe), text.expression, ""};
+  {
+    const Stopwatch watch(timings, "combine");
+    const voxel::Resampling resampling = resampling_of(text);
+    if (text.grey) {
+      voxel::GreyResult options;
+      options.resampling = resampling;
+      result.tree = voxel::combine_grey(universe, expression, options);
+    } else {
+      result.tree = voxel::combine(universe, expression, resampling);
+    }
+  }
+  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"expression", text.expression}};
+  for (const std::string& name : used) made["let"][name] = fs::path(lets.at(name)).filename().string();
+  for (const auto& [name, window] : windows) made["window"][name] = window;
+  for (const auto& [name, motion] : motions) made["motion"][name] = motion;
+  result.metadata = made.dump();
+  return write_and_say(program, result, text.out, timings, findings);
+}
+
+}  // namespace
+
+void add_eval(Program& program) {
+  const auto to_evaluate = std::make_shared<EvalText>();
+  CLI::App& evaluate = program.verb(
+      "eval", "Evaluates a Boolean expression of octrees: & | - ^ ~, parentheses, move(a, m)",
+      "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree",
+      [&program, to_evaluate] { return eval(program, *to_evaluate); });
+  evaluate.add_option("expression", to_evaluate->expression, "For example \"(a | b) - c\"")->required();
+  evaluate.add_option("-o,--out", to_evaluate->out, "An .octree file, in the universe of the first name")
+      ->required();
+  evaluate.add_option("--let", to_evaluate->lets, "NAME=FILE: what a name stands for, an .octree file")
+      ->type_name("NAME=FILE")
+      ->expected(1)
+      ->take_all();
+  evaluate.add_option("--window", to_evaluate->windows, "NAME=LOW:HIGH: which object of a grey octree")
+      ->type_name("NAME=LOW:HIGH")
+      ->expected(1)
+      ->take_all();
+  evaluate
+      .add_option(
+          "--motion", to_evaluate->motions,
+          "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a translation in mm after a rotation about an axis through "
+          "a point")
+      ->type_name("NAME=X,Y,Z")
+      ->expected(1)
+      ->take_all();
+  evaluate.add_flag("--grey", to_evaluate->grey,
+                    "Keep samples: each voxel those of the first window that holds it");
+  evaluate
+      .add_option("--digitise", to_evaluate->digitise,
+                  "Which voxels a moved octree becomes: those whose centre it holds, or fills to the half")
+      ->check(CLI::IsMember({"centre", "half"}))
+      ->capture_default_str();
+  evaluate
+      .add_option("--interpolate", to_evaluate->interpolate,
+                  "How samples of a moved grey octree are read: nearest, linear or cubic")
+      ->check(CLI::IsMember({"nearest", "linear", "cubic"}))
+      ->capture_default_str();
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/octree_out.h"
+
+#include <algorithm>
+
+#include "planner/octree_answer.h"
+
+namespace octotomy::planner::cli {
+
+namespace fs = std::filesystem;
+
+bool is_octree(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".octree";
+}
+
+void need_octree_extension(const fs::path& out) {
+  if (!is_octree(out)) throw std::runtime_error(out.string() + ": an octree is written as .octree");
+}
+
+voxel::OctreeFile read_timed(const fs::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  return voxel::read_octree(path);
+}
+
+int write_and_say(const Program& program, const voxel::OctreeFile& file, const fs::path& out,
+                  Timings& timings, const std::vector<std::string>& findings) {
+  if (program.stop.stop_requested()) throw Stopped("stopped before " + out.string() + " was written");
+  {
+    const Stopwatch watch(timings, "write");
+    voxel::write_octree(file, out);
+  }
+  Json json = octree_answer(file, fs::file_size(out), timings);
+  json["path"] = out.string();
+  for (const std::string& finding : findings) {
+    warn(finding);
+    json["findings"].push_back(finding);
+  }
+  program.say(json, octree_text(out.string(), json));
+  return done;
+}
+
+int info_of_octree(const Program& program, const fs::path& path) {
+  Timings timings;
+  const voxel::OctreeFile file = read_timed(path, timings);
+  Json json = octree_answer(file, fs::file_size(path), timings);
+  json["source"] = path.string();
+  program.say(json, octree_text(path.string(), json));
+  return done;
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/cli/verb.h"
+#include "voxel/octree_file.h"
+
+// What the verbs that write an .octree file have in common.
+namespace octotomy::planner::cli {
+
+/// Throws std::runtime_error where a path does not end in .octree.
+void need_octree_extension(const std::filesystem::path& out);
+
+/// Reads the file; "read" in the timings.
+voxel::OctreeFile read_timed(const std::filesystem::path& path, Timings& timings);
+
+/// Writes the file and says of it what info does, and the findings. Throws Stopped before anything is written
+/// where the program is asked to stop.
+int write_and_say(const Program& program, const voxel::OctreeFile& file, const std::filesystem::path& out,
+                  Timings& timings, const std::vector<std::string>& findings = {});
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/drawn_regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "planner/nearest_name.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::json;
+
+[[noreturn]] void refuse(const std::string& where, const std::string& what) {
+  throw std::runtime_error(where + ": " + what);
+}
+
+Json content_of(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  if (!stream) refuse(path.string(), "cannot be opened");
+  try {
+    return Json::parse(stream);
+  } catch (const Json::exception& error) {
+    refuse(path.string(), std::string("is no JSON: ") + error.what());
+  }
+}
+
+void check_keys(const Json& object, const std::string& where, const std::vector<std::string>& known) {
+  if (!object.is_object()) refuse(where, "must be an object with the keys of this kind of file");
+  for (const auto& [key, unused] : object.items())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      refuse(where, "unknown key '" + key + "'" + suggestion(key, known));
+}
+
+double number(const Json& value, const std::string& where) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(where, "must be a finite number");
+  return value.get<double>();
+}
+
+std::vector<std::vector<glm::dvec2>> polygons_of(const Json& value, const std::string& where) {
+  if (!value.is_array()) refuse(where, "must be a list of polygons [[[u, v], ...], ...]");
+  std::vector<std::vector<glm::dvec2>> polygons;
+  for (const Json& polygon : value) {
+    const std::string at = where + "[" + std::to_string(polygons.size()) + "]";
+    if (!polygon.is_array()) refuse(at, "must be a list of points [u, v]");
+    polygons.emplace_back();
+    for (const Json& point : polygon) {
+      const std::string place = at + "[" + std::to_string(polygons.back().size()) + "]";
+      if (!point.is_array() || point.size() != 2) refuse(place, "must be two numbers [u, v]");
+      polygons.back().emplace_back(number(point[0], place), number(point[1], place));
+    }
+  }
+  return polygons;
+}
+
+const Json& need(const Json& object, const std::string& key, const std::string& where) {
+  if (!object.contains(key)) refuse(where, "has no '" + key + "'");
+  return object[key];
+}
+
+std::string word(const Json& value, const std::string& where) {
+  if (!value.is_string()) refuse(where, "must be a word");
+  return value.get<std::string>();
+}
+
+voxel::SliceMask slices_of(const Json& json, const std::string& source) {
+  check_keys(json, source, {"view", "between", "slices"});
+  voxel::SliceMask mask;
+  mask.view = voxel::parse_view(word(need(json, "view", source), source + ": view"));
+  if (json.contains("between")) {
+    const std::string between = word(json["between"], source + ": between");
+    if (between != "shape_based" && between != "nearest")
+      refuse(source + ": between", "is shape_based or nearest, not '" + between + "'");
+    mask.between =
+        between == "nearest" ? voxel::SliceMask::Between::Nearest : voxel::SliceMask::Between::ShapeBased;
+  }
+  const Json& slices = need(json, "slices", source);
+  if (!slices.is_array()) refuse(source + ": slices", "must be a list");
+  for (const Json& slice : slices) {
+    const std::string where = source + ": slices[" + std::to_string(mask.slices.size()) + "]";
+    check_keys(slice, where, {"position_mm", "polygons_mm"});
+    mask.slices.push_back({number(need(slice, "position_mm", where), where + ".position_mm"),
+                           polygons_of(need(slice, "polygons_mm", where), where + ".polygons_mm")});
+  }
+  std::stable_sort(mask.slices.begin(), mask.slices.end(),
+                   [](const auto& a, const auto& b) { return a.position_mm < b.position_mm; });
+  voxel::check(mask);
+  return mask;
+}
+
+}  // namespace
+
+voxel::Region read_region(const voxel::View& view, const std::filesystem::path& path) {
+  const Json json = content_of(path);
+  if (json.is_array()) return {view, polygons_of(json, path.string())};
+  check_keys(json, path.string(), {"polygons_mm"});
+  return {view, polygons_of(need(json, "polygons_mm", path.string()), path.string() + ": polygons_mm")};
+}
+
+voxel::SliceMask read_slices(const std::filesystem::path& path) {
+  try {
+    return slices_of(content_of(path), path.string());
+  } catch (const std::invalid_argument& error) {
+    refuse(path.string(), error.what());
+  }
+}
+
+}  // namespace octotomy::planner
