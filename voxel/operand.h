@@ -145,6 +145,7 @@ class HalfOctreeOperand {
   const Octree* octree_;
   glm::dmat4 source_from_target_;
   std::array<glm::dvec3, 125> points_;  ///< from a voxel's centre, in the source
+  glm::dvec3 reach_{0.0};               ///< of the points from the centre
 };
 
 /// A grey octree's window on another lattice or under a motion: samples are interpolated, then compared.

@@ -34,6 +34,7 @@ HalfOctreeOperand::HalfOctreeOperand(const Octree& octree, const glm::dmat4& sou
     for (int y = 0; y < points_an_axis; ++y)
       for (int x = 0; x < points_an_axis; ++x)
         points_[next++] = linear * ((glm::dvec3(x, y, z) + 0.5) / static_cast<double>(points_an_axis) - 0.5);
+  for (const glm::dvec3& point : points_) reach_ = glm::max(reach_, glm::abs(point));
 }
 
 Cover HalfOctreeOperand::cover(const TargetBlock& block) const {
@@ -61,12 +62,24 @@ void HalfOctreeOperand::words(const WantedLeaves& leaves) const {
       const glm::ivec3 bit = voxel & 3;
       return ((region.word(leaf.x, leaf.y, leaf.z) >> child_index(bit.x, bit.y, bit.z)) & 1) != 0;
     };
+    // Of most voxels all that their points may meet is in, or all out: a few look-ups spare the many.
+    const auto agreed = [&](const glm::ivec3& low, const glm::ivec3& high, bool inside) {
+      for (int z = low.z; z <= high.z; ++z)
+        for (int y = low.y; y <= high.y; ++y)
+          for (int x = low.x; x <= high.x; ++x)
+            if (holds({x, y, z}) != inside) return false;
+      return true;
+    };
     std::uint64_t word = 0;
     for (int voxel = 0; voxel < 64; ++voxel) {
       const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin + child_place(voxel)), 1.0));
-      int inside = 0;
-      for (const glm::dvec3& point : points_) inside += holds(nearest_voxel(p + point)) ? 1 : 0;
-      word |= std::uint64_t{2 * inside > static_cast<int>(points_.size())} << voxel;
+      bool inside = holds(nearest_voxel(p));
+      if (!agreed(nearest_voxel(p - reach_), nearest_voxel(p + reach_), inside)) {
+        std::size_t count = 0;
+        for (const glm::dvec3& point : points_) count += holds(nearest_voxel(p + point)) ? 1 : 0;
+        inside = 2 * count > points_.size();
+      }
+      word |= std::uint64_t{inside} << voxel;
     }
     return word;
   });

@@ -235,6 +235,40 @@ TEST(Combine, AnOctreeOfAFinerUniverseIsSampledAtTheCoarserOnesCentres) {
   }
 }
 
+TEST(Combine, IndexArithmeticHoldsAcrossAUniverseOf4096VoxelsASide) {
+  const Universe universe = universe_of(12);
+  const auto block = [](const glm::dvec3& low, const glm::dvec3& high) {
+    return Expression(Box{low - 0.5, high + 0.5});
+  };
+  // Beams along the last row and layer, a slab one voxel thick across the middle, a corner voxel.
+  const Octree beam = combine(universe, block({0, 4095, 4095}, {4095, 4095, 4095}));
+  const Octree slab = combine(universe, block({0, 0, 2048}, {4095, 4095, 2048}));
+  const Octree corner = combine(universe, block({4095, 4095, 4095}, {4095, 4095, 4095}));
+  EXPECT_EQ(beam.voxel_count(), 4096U);
+  EXPECT_EQ(slab.voxel_count(), 4096U * 4096U);
+  EXPECT_EQ(corner.voxel_count(), 1U);
+  EXPECT_TRUE(combine(universe, Expression(beam) & corner) == corner);
+  EXPECT_EQ(combine(universe, Expression(beam) - corner).voxel_count(), 4095U);
+  EXPECT_EQ(combine(universe, Expression(beam) ^ slab).voxel_count(), 4096U * 4097U);
+  const Octree complement = combine(universe, ~Expression(corner));
+  EXPECT_EQ(complement.voxel_count(), (std::uint64_t{1} << 36) - 1);
+  EXPECT_FALSE(complement.contains({4095, 4095, 4095}));
+  // Moved by whole voxels from corner to corner, and turned a quarter about the universe's middle.
+  Motion across;
+  across.translate_mm = glm::dvec3(-4095);
+  const Octree first = combine(universe, moved(corner, moved_from_still(across)));
+  EXPECT_TRUE(first.contains({0, 0, 0}));
+  EXPECT_EQ(first.voxel_count(), 1U);
+  Motion quarter;
+  quarter.degrees = 90;
+  quarter.about_mm = glm::dvec3(2047.5);
+  const Octree turned = combine(universe, moved(beam, moved_from_still(quarter)));
+  EXPECT_EQ(turned.voxel_count(), 4096U);
+  EXPECT_TRUE(turned.contains({0, 0, 4095}) && turned.contains({0, 4095, 4095}));
+  const Octree ball = combine(universe, Sphere{{4000, 100, 4000}, 40});
+  EXPECT_NEAR(static_cast<double>(ball.voxel_count()), 4.0 / 3.0 * M_PI * 64000, 150);
+}
+
 TEST(Combine, GivesTheSameTreeOnOneThreadAndOnTwo) {
   const Universe universe = universe_of(8);
   const Expression lens = Expression(Sphere{{100, 128, 128}, 70}) & Sphere{{150, 120, 130}, 66};
