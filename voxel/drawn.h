@@ -20,6 +20,14 @@ struct Drawn {
   glm::vec3 colour{0.93f, 0.89f, 0.80f};  ///< sRGB, 0..1
   std::optional<GreyOctree> grey{};
   double threshold = 0.0;
+  float opacity = 1.0f;  ///< 0: hidden, 1: opaque
+  /// Visits are counted in the min-max octree of `grey`, its window from the threshold up, instead of in the
+  /// binary octree. Precondition where set: `octree` holds just the samples of that window.
+  bool counted_in_grey = false;
+  /// Of an object digitised by partial volume, where `octree` holds all voxels touched: those wholly inside.
+  /// Visits are then counted in the thesis's tree of it (table 3.1), where a node is Full only if wholly
+  /// inside and boundary voxels are Full without being merged.
+  std::optional<Octree> inside{};
 };
 
 }  // namespace octotomy::voxel

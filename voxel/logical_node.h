@@ -14,6 +14,8 @@ enum class Status : std::uint8_t { Empty, Full, Partial };
 /// whatever the physical nodes are. A value of a few words that looks into its octree, which must outlive it.
 class LogicalNode {
  public:
+  /// The Empty root of no octree.
+  LogicalNode() = default;
   static LogicalNode root(const Octree& octree);
 
   Status status() const;

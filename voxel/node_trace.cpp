@@ -310,29 +310,4 @@ ColumnMap node_trace(const std::vector<Drawn>& objects, const AxisView& axes) {
   return map;
 }
 
-Seen ColumnMap::seen(const glm::dvec2& column) const {
-  const glm::dvec2 nearest = glm::floor(column + 0.5);
-  if (!(nearest.x >= 0.0 && nearest.y >= 0.0 && nearest.x < side && nearest.y < side)) return {};
-  Seen answer = at(static_cast<int>(nearest.x), static_cast<int>(nearest.y));
-  if (!answer.lit()) return answer;
-  const glm::dvec2 low = glm::floor(column);
-  const glm::dvec2 t = column - low;
-  const auto limit_mm = static_cast<float>(break_mm(std::max(spacing_mm.x, spacing_mm.y)));
-  double sum = 0.0;
-  double weights = 0.0;
-  for (int corner = 0; corner < 4; ++corner) {
-    const int i = static_cast<int>(low.x) + (corner & 1);
-    const int j = static_cast<int>(low.y) + (corner >> 1);
-    if (i < 0 || j < 0 || i >= side || j >= side) continue;
-    const Seen& other = at(i, j);
-    if (other.object != answer.object || !(std::abs(other.depth_mm - answer.depth_mm) <= limit_mm)) continue;
-    const double weight = ((corner & 1) != 0 ? t.x : 1.0 - t.x) * ((corner >> 1) != 0 ? t.y : 1.0 - t.y);
-    sum += weight * other.depth_mm;
-    weights += weight;
-  }
-  // The nearest column itself has a weight of a quarter at least.
-  answer.depth_mm = static_cast<float>(sum / weights);
-  return answer;
-}
-
 }  // namespace octotomy::voxel

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/render.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <tbb/parallel_for.h>
 
+#include "voxel/back_to_front.h"
 #include "voxel/camera.h"
+#include "voxel/counted_trace.h"
 #include "voxel/depth_image.h"
+#include "voxel/front_to_back.h"
 #include "voxel/node_trace.h"
+#include "voxel/object_normals.h"
 #include "voxel/ray_cast.h"
 #include "voxel/shade.h"
 #include "voxel/surface_break.h"
@@ -48,8 +55,8 @@ struct DepthSpan {
 };
 
 /// Fills the depth image by `seen_at`, asked for the centres of all pixels, tile by tile.
-template <typename SeenAt>
-DepthImage sample(const glm::ivec2& size_px, const SeenAt& seen_at) {
+template <typename At>
+DepthImage sample(const glm::ivec2& size_px, const At& seen_at) {
   constexpr int tile_px = 16;
   DepthImage image{size_px, {}};
   image.pixels.resize(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y));
@@ -82,8 +89,8 @@ DepthSpan span_about(const DepthImage& image, const glm::ivec2& pixel, double re
 
 /// Blends edge pixels of four parts each. A part is only looked at between the depths that the pixels about
 /// it see: what lies elsewhere has no shaded pixel to take a colour from.
-template <typename SeenAt>
-void antialias(const DepthImage& image, const Scenery& scenery, const SeenAt& seen_at,
+template <typename At>
+void antialias(const DepthImage& image, const Scenery& scenery, const At& seen_at,
                std::vector<std::uint8_t>& rgb) {
   const double reach_mm = break_mm(std::max(scenery.pixel_mm, scenery.voxel_mm));
   const std::vector<std::uint32_t> edges = edge_pixels(image, scenery);
@@ -104,21 +111,198 @@ void antialias(const DepthImage& image, const Scenery& scenery, const SeenAt& se
       rgb[3 * std::size_t{edges[i]} + channel] = blended[i][channel];
 }
 
-template <typename SeenAt>
-void draw(const SeenAt& seen_at, const Scenery& scenery, bool antialiased, Picture& picture) {
-  const DepthImage image = sample(picture.size_px, seen_at);
-  picture.rgb = shade(image, scenery);
-  if (antialiased) antialias(image, scenery, seen_at, picture.rgb);
-  picture.depth_mm.resize(image.pixels.size());
-  picture.object.resize(image.pixels.size());
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-    picture.depth_mm[i] = image.pixels[i].depth_mm;
-    picture.object[i] = image.pixels[i].object;
-    picture.lit_pixels += image.pixels[i].lit() ? 1 : 0;
+/// What a pixel position sees between two depths.
+using SeenAt = std::function<Seen(const glm::dvec2&, const DepthSpan&)>;
+
+/// A depth image, and what sees more of the same scene.
+struct Drawing {
+  DepthImage image;
+  SeenAt seen_at;
+};
+
+Drawing drawing_of_columns(ColumnMap columns, const AxisView& axes, const VoxelRays& rays,
+                           const glm::ivec2& size_px) {
+  const auto map = std::make_shared<const ColumnMap>(std::move(columns));
+  const auto seen_at = [map, axes, rays](const glm::dvec2& p_px, const DepthSpan&) {
+    const glm::dvec3 p_voxel = rays.start(p_px);
+    return map->seen({p_voxel[axes.axis[0]], p_voxel[axes.axis[1]]});
+  };
+  return {sample(size_px, seen_at), seen_at};
+}
+
+/// The surface that samples show about the voxels' faces that were found.
+DepthImage refined(DepthImage image, const RayCast& cast) {
+  tbb::parallel_for(0, image.size_px.y, [&](int y) {
+    for (int x = 0; x < image.size_px.x; ++x) {
+      Seen& seen = image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +
+                                static_cast<std::size_t>(x)];
+      if (seen.lit()) seen = cast.seen({x + 0.5, y + 0.5});
+    }
+  });
+  return image;
+}
+
+/// Finds what is seen, by the algorithm asked for.
+Drawing drawing_of(const std::vector<Drawn>& objects, const ImagePlane& plane, Algorithm algorithm,
+                   Visits* visits) {
+  const Universe& universe = objects.front().octree.universe();
+  const VoxelRays rays = voxel_rays(universe, plane);
+  const std::optional<AxisView> axes = axis_view(universe, plane.view);
+  if (algorithm == Algorithm::NodeTrace)
+    return drawing_of_columns(
+        visits != nullptr ? quadtree_trace(objects, *axes, visits) : node_trace(objects, *axes), *axes, rays,
+        plane.size_px);
+  if (algorithm != Algorithm::RayCast && axes)
+    return drawing_of_columns(algorithm == Algorithm::FrontToBack ? front_to_back(objects, *axes, visits)
+                                                                  : back_to_front(objects, *axes, visits),
+                              *axes, rays, plane.size_px);
+  const RayCast cast(objects, plane);
+  const SeenAt seen_at = [cast](const glm::dvec2& p_px, const DepthSpan& span) {
+    return cast.seen(p_px, span.near_mm, span.far_mm);
+  };
+  if (algorithm == Algorithm::RayCast) {
+    if (visits != nullptr) count_rays(objects, plane, *visits);
+    return {sample(plane.size_px, [&](const glm::dvec2& p_px, const DepthSpan&) { return cast.seen(p_px); }),
+            seen_at};
+  }
+  DepthImage faces = algorithm == Algorithm::FrontToBack ? front_to_back(objects, plane, visits)
+                                                         : back_to_front(objects, plane, visits);
+  const bool grey = std::any_of(objects.begin(), objects.end(),
+                                [](const Drawn& object) { return object.grey.has_value(); });
+  return {grey ? refined(std::move(faces), cast) : std::move(faces), seen_at};
+}
+
+Scenery scenery_of(const std::vector<Drawn>& objects, const ImagePlane& plane, const RenderOptions& options) {
+  Scenery scenery;
+  for (const Drawn& object : objects) scenery.colours.push_back(object.colour);
+  scenery.background = options.background;
+  scenery.pixel_mm = plane.pixel_mm;
+  scenery.voxel_mm = std::cbrt(objects.front().octree.universe().lattice().voxel_mm3());
+  scenery.depth_range_mm = plane.depth_range_mm;
+  scenery.occlusion = options.occlusion;
+  if (!options.lights.empty()) scenery.lights = options.lights;
+  if (options.shading == Shading::Depth) scenery.style = Style::Depth;
+  if (options.shading == Shading::Silhouette) scenery.style = Style::Silhouette;
+  if (options.shading == Shading::Outline) scenery.style = Style::Outline;
+  return scenery;
+}
+
+/// Finds and shades one set of objects.
+struct Layer {
+  DepthImage image;
+  std::vector<std::uint8_t> rgb;
+};
+Layer layer_of(const std::vector<Drawn>& objects, const ImagePlane& plane, const RenderOptions& options,
+               Algorithm algorithm, Visits* visits) {
+  Drawing drawing = drawing_of(objects, plane, algorithm, visits);
+  const Scenery scenery = scenery_of(objects, plane, options);
+  std::vector<glm::vec3> normals;
+  if (options.shading == Shading::Context || options.shading == Shading::GreyGradient)
+    normals =
+        object_normals(drawing.image, objects, plane,
+                       options.shading == Shading::Context ? ObjectNormals::Context : ObjectNormals::Grey);
+  Layer layer{std::move(drawing.image), {}};
+  layer.rgb = shade(layer.image, scenery, normals);
+  if (options.antialias && options.shading != Shading::Outline)
+    antialias(layer.image, scenery, drawing.seen_at, layer.rgb);
+  return layer;
+}
+
+/// Lays a translucent object's layer over the picture where it is nearer than what is opaque there.
+void lay_over(const Layer& layer, float opacity, const DepthImage& opaque, std::vector<std::uint8_t>& rgb) {
+  for (std::size_t i = 0; i < layer.image.pixels.size(); ++i) {
+    const Seen& seen = layer.image.pixels[i];
+    if (!seen.lit() || seen.depth_mm > opaque.pixels[i].depth_mm) continue;
+    for (std::size_t channel = 3 * i; channel < 3 * i + 3; ++channel)
+      rgb[channel] = static_cast<std::uint8_t>(std::lround(
+          glm::mix(static_cast<float>(rgb[channel]), static_cast<float>(layer.rgb[channel]), opacity)));
+  }
+}
+
+/// Objects of a scene by how they are drawn; numbers are those of the scene.
+struct Parted {
+  std::vector<Drawn> opaque;
+  std::vector<std::int16_t> opaque_numbers;
+  std::vector<std::int16_t> translucent_numbers;
+};
+Parted parted(const std::vector<Drawn>& objects, const RenderOptions& options) {
+  Parted parts;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].opacity >= 1.0f) {
+      parts.opaque.push_back(objects[i]);
+      // Gradients of the voxels' faces: what samples could add is left out.
+      if (options.shading == Shading::Gradient) parts.opaque.back().grey.reset();
+      parts.opaque_numbers.push_back(static_cast<std::int16_t>(i));
+    } else if (objects[i].opacity > 0.0f) {
+      parts.translucent_numbers.push_back(static_cast<std::int16_t>(i));
+    }
+  }
+  return parts;
+}
+
+/// Median depth of a layer, by which whole objects are sorted: layers are laid over each other back to front.
+float middle_mm(const DepthImage& image) {
+  std::vector<float> depths;
+  for (const Seen& seen : image.pixels)
+    if (seen.lit()) depths.push_back(seen.depth_mm);
+  if (depths.empty()) return 0.0f;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+void compose(const std::vector<Drawn>& objects, const ImagePlane& plane, const RenderOptions& options,
+             Picture& picture) {
+  const Parted parts = parted(objects, options);
+  Visits* visits = picture.visits ? &*picture.visits : nullptr;
+  Layer opaque{{plane.size_px, {}}, {}};
+  if (parts.opaque.empty()) {
+    opaque.image.pixels.resize(static_cast<std::size_t>(plane.size_px.x) *
+                               static_cast<std::size_t>(plane.size_px.y));
+    opaque.rgb = shade(opaque.image, scenery_of(objects, plane, options));
+  } else {
+    opaque = layer_of(parts.opaque, plane, options, picture.algorithm, visits);
+    for (Seen& seen : opaque.image.pixels)
+      if (seen.lit()) seen.object = parts.opaque_numbers[static_cast<std::size_t>(seen.object)];
+  }
+  picture.rgb = std::move(opaque.rgb);
+  std::vector<std::pair<Layer, std::int16_t>> layers;
+  for (const std::int16_t number : parts.translucent_numbers)
+    layers.emplace_back(
+        layer_of({objects[static_cast<std::size_t>(number)]}, plane, options, picture.algorithm, visits),
+        number);
+  std::stable_sort(layers.begin(), layers.end(), [](const auto& a, const auto& b) {
+    return middle_mm(a.first.image) > middle_mm(b.first.image);
+  });
+  const DepthImage behind = opaque.image;
+  for (const auto& [layer, number] : layers) {
+    const float opacity = objects[static_cast<std::size_t>(number)].opacity;
+    lay_over(layer, opacity, behind, picture.rgb);
+    for (std::size_t i = 0; i < opaque.image.pixels.size(); ++i) {
+      const Seen& seen = layer.image.pixels[i];
+      if (opacity < 0.5f || !seen.lit() || seen.depth_mm >= opaque.image.pixels[i].depth_mm) continue;
+      opaque.image.pixels[i] = seen;
+      opaque.image.pixels[i].object = number;
+    }
+  }
+  picture.depth_mm.reserve(opaque.image.pixels.size());
+  picture.object.reserve(opaque.image.pixels.size());
+  for (const Seen& seen : opaque.image.pixels) {
+    picture.depth_mm.push_back(seen.depth_mm);
+    picture.object.push_back(seen.object);
+    picture.lit_pixels += seen.lit() ? 1 : 0;
   }
 }
 
 }  // namespace
+
+std::optional<glm::dvec3> Picture::point_mm(const glm::ivec2& pixel) const {
+  const std::size_t index = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(size_px.x) +
+                            static_cast<std::size_t>(pixel.x);
+  if (object[index] < 0) return std::nullopt;
+  const ImagePlane plane{view, size_px, centre_mm, pixel_mm, nearest_mm, 0.0};
+  return plane.lps_mm(glm::dvec2(pixel) + 0.5, depth_mm[index]);
+}
 
 Picture render(const std::vector<Drawn>& objects, const RenderOptions& options) {
   check(objects, options);
@@ -135,33 +319,14 @@ Picture render(const std::vector<Drawn>& objects, const RenderOptions& options) 
   picture.pixel_mm = plane.pixel_mm;
   picture.centre_mm = plane.centre_mm;
   picture.nearest_mm = plane.nearest_mm;
+  picture.view = options.view;
   picture.algorithm = options.algorithm.value_or(axes ? Algorithm::NodeTrace : Algorithm::RayCast);
   if (picture.algorithm == Algorithm::NodeTrace && !axes)
     throw std::invalid_argument(
         "node tracing needs a view along the universe's axes: use one of the six named views of an upright "
         "universe, or ray casting");
-
-  Scenery scenery;
-  for (const Drawn& object : objects) scenery.colours.push_back(object.colour);
-  scenery.background = options.background;
-  scenery.pixel_mm = plane.pixel_mm;
-  scenery.voxel_mm = std::cbrt(universe.lattice().voxel_mm3());
-  scenery.depth_range_mm = plane.depth_range_mm;
-  if (picture.algorithm == Algorithm::NodeTrace) {
-    const ColumnMap map = node_trace(objects, *axes);
-    const VoxelRays rays = voxel_rays(universe, plane);
-    draw(
-        [&](const glm::dvec2& p_px, const DepthSpan&) {
-          const glm::dvec3 p_voxel = rays.start(p_px);
-          return map.seen({p_voxel[axes->axis[0]], p_voxel[axes->axis[1]]});
-        },
-        scenery, options.antialias, picture);
-  } else {
-    const RayCast cast(objects, plane);
-    draw([&](const glm::dvec2& p_px,
-             const DepthSpan& span) { return cast.seen(p_px, span.near_mm, span.far_mm); },
-         scenery, options.antialias, picture);
-  }
+  if (options.count) picture.visits.emplace();
+  compose(objects, plane, options, picture);
   return picture;
 }
 

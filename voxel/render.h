@@ -6,14 +6,24 @@
 #include <optional>
 #include <vector>
 
+#include "voxel/camera.h"
 #include "voxel/drawn.h"
+#include "voxel/shade.h"
 #include "voxel/view.h"
+#include "voxel/visits.h"
 
 namespace octotomy::voxel {
 
 /// NodeTrace: quadtree rays through the octree, for views along the universe's axes (thesis 4.5).
 /// RayCast: one ray a pixel that steps over homogeneous blocks, for any view.
-enum class Algorithm { NodeTrace, RayCast };
+/// FrontToBack, BackToFront: node by node into the picture, for any view; slower (thesis 4.4.3).
+enum class Algorithm { NodeTrace, RayCast, FrontToBack, BackToFront };
+
+/// Depth: brightness by depth alone. Gradient: from the gradient of the depth image of voxels' faces (thesis
+/// 5.2.2.1). PartialVolume: the same of depths interpolated by partial volume (5.2.2.2) where an object has
+/// its samples. Context: object-based, from each voxel's neighbours (5.2.1.1). GreyGradient: object-based,
+/// from the gradient of the samples (5.2.1.2). Silhouette, Outline: for print.
+enum class Shading { Depth, Gradient, Context, PartialVolume, GreyGradient, Silhouette, Outline };
 
 struct RenderOptions {
   View view;
@@ -25,7 +35,12 @@ struct RenderOptions {
   /// shows whole columns of voxels, so that outlines are angular where pixels are much smaller; RayCast
   /// follows the interpolated surface there.
   std::optional<Algorithm> algorithm;
+  Shading shading = Shading::PartialVolume;
   glm::vec3 background{1.0f, 1.0f, 1.0f};  ///< sRGB, 0..1
+  std::vector<Light> lights;  ///< none: a key light from the upper left, a fill light from the lower right
+  bool occlusion = true;      ///< darkens what lies behind its surroundings
+  /// Counts what the algorithm visits (appendix A); takes far longer than drawing does.
+  bool count = false;
   /// Blends the colours of what four parts of a pixel see along edges; depth, object and lit pixels are those
   /// of the pixel's centre either way. Adds a sixth (node tracing) to a half (ray casting) to the time of
   /// a frame.
@@ -44,10 +59,16 @@ struct Picture {
   double nearest_mm = 0.0;    ///< p . look where depth is 0
   std::uint64_t lit_pixels = 0;
   Algorithm algorithm = Algorithm::NodeTrace;
+  std::optional<Visits> visits;  ///< where they were to be counted
+  View view;
+
+  /// The LPS point that a pixel shows; none where it shows the background.
+  std::optional<glm::dvec3> point_mm(const glm::ivec2& pixel) const;
 };
 
-/// Draws objects of one universe, shaded from the gradient of the depth image with break detection (thesis
-/// 5.2.2.1). Throws std::invalid_argument where there is no object, more than 32767, universes differ, or
+/// Draws objects of one universe: opaque ones by the algorithm asked for, translucent ones over them, objects
+/// of no opacity not at all. Depth and object are those of the nearest surface that is at least half opaque.
+/// Throws std::invalid_argument where there is no object, more than 32767, universes differ, or
 /// size or width are not positive. Parallel over pixels; same bits on any thread count.
 Picture render(const std::vector<Drawn>& objects, const RenderOptions& options);
 

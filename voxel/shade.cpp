@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <tbb/parallel_for.h>
 
 #include "voxel/surface_break.h"
@@ -303,26 +305,35 @@ void put(std::uint8_t* rgb, const glm::vec3& linear) {
   for (int channel = 0; channel < 3; ++channel) rgb[channel] = tone().srgb(linear[channel]);
 }
 
-/// Lights in (right, up, look); directions point towards the light.
-struct Lights {
-  glm::vec3 key = glm::normalize(glm::vec3(-0.45f, 0.55f, -1.0f));
-  glm::vec3 fill = glm::normalize(glm::vec3(0.7f, -0.25f, -1.0f));
-  /// Halfway between the key light and the observer: where a surface would mirror it.
-  glm::vec3 halfway = glm::normalize(key + glm::vec3(0.0f, 0.0f, -1.0f));
-  float ambient = 0.06f;
-  float key_strength = 0.90f;
-  float fill_strength = 0.25f;
-  float gloss = 0.06f;
+/// Phong's model in (right, up, look).
+class Lighting {
+ public:
+  explicit Lighting(const Scenery& scenery) : ambient_(scenery.ambient), gloss_(scenery.gloss) {
+    for (const Light& light : scenery.lights)
+      lights_.push_back({glm::normalize(light.towards), light.strength});
+    // Halfway between the light and the observer: where a surface would mirror it.
+    if (!lights_.empty()) halfway_ = glm::normalize(lights_.front().towards + glm::vec3(0.0f, 0.0f, -1.0f));
+  }
 
   float diffuse(const glm::vec3& normal) const {
-    return ambient + key_strength * std::max(0.0f, glm::dot(normal, key)) +
-           fill_strength * std::max(0.0f, glm::dot(normal, fill));
+    float light = ambient_;
+    for (const Light& each : lights_) light += each.strength * std::max(0.0f, glm::dot(normal, each.towards));
+    return light;
   }
+  /// The power of 48 by squarings.
   float glossy(const glm::vec3& normal) const {
-    const float mirror2 = std::pow(std::max(0.0f, glm::dot(normal, halfway)), 2.0f);
+    if (lights_.empty()) return 0.0f;
+    const float mirror = std::max(0.0f, glm::dot(normal, halfway_));
+    const float mirror2 = mirror * mirror;
     const float mirror8 = mirror2 * mirror2 * mirror2 * mirror2;
-    return gloss * mirror8 * mirror8 * mirror8;
+    const float mirror16 = mirror8 * mirror8;
+    return gloss_ * mirror16 * mirror16 * mirror16;
   }
+
+ private:
+  std::vector<Light> lights_;
+  glm::vec3 halfway_{0.0f, 0.0f, -1.0f};
+  float ambient_, gloss_;
 };
 
 /// How much of the light reaches a pixel that lies `behind_mm` behind its surroundings, as a part of the
@@ -378,39 +389,110 @@ std::vector<glm::vec2> slopes(const DepthImage& image, const Scenery& scenery) {
   return result;
 }
 
-std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery) {
-  const Plane depth = depth_plane(image, scenery);
-  const Surroundings surroundings(depth, image.size_px);
-  const Lights lights;
+namespace {
+
+/// Pictures of one tone an object: Depth, Silhouette.
+std::vector<std::uint8_t> flat_picture(const DepthImage& image, const Scenery& scenery) {
+  std::vector<std::uint8_t> rgb(3 * image.pixels.size());
   const float nearest = nearest_mm(image);
-  const auto per_range = static_cast<float>(1.0 / scenery.depth_range_mm);
+  float farthest = nearest;
+  for (const Seen& seen : image.pixels)
+    if (seen.lit()) farthest = std::max(farthest, seen.depth_mm);
+  const float per_span = farthest > nearest ? 1.0f / (farthest - nearest) : 0.0f;
+  tbb::parallel_for(std::size_t{0}, image.pixels.size(), [&](std::size_t i) {
+    const Seen& seen = image.pixels[i];
+    glm::vec3 colour = linear_from_srgb(scenery.background);
+    if (seen.lit()) {
+      colour = linear_from_srgb(scenery.colours[static_cast<std::size_t>(seen.object)]);
+      // The farthest keeps a tenth, so that it stays apart from black.
+      if (scenery.style == Style::Depth) colour *= 1.0f - 0.9f * (seen.depth_mm - nearest) * per_span;
+    }
+    put(&rgb[3 * i], colour);
+  });
+  return rgb;
+}
+
+/// Lines where a surface ends or its slope changes by more than a crease's.
+std::vector<std::uint8_t> outline_picture(const DepthImage& image, const Scenery& scenery) {
+  std::vector<std::uint8_t> rgb(3 * image.pixels.size(), 255);
+  const auto blacken = [&](std::size_t pixel) {
+    for (std::size_t channel = 0; channel < 3; ++channel) rgb[3 * pixel + channel] = 0;
+  };
+  for (const std::uint32_t pixel : edge_pixels(image, scenery))
+    if (image.pixels[pixel].lit()) blacken(pixel);
+  const std::vector<glm::vec2> slope = slopes(image, scenery);
+  const auto normal = [&](std::size_t pixel) {
+    return glm::normalize(glm::vec3(slope[pixel].x, slope[pixel].y, -1.0f));
+  };
+  // Two sides of an edge of the body, not of its relief: 40 degrees apart within two pixels.
+  constexpr float cosine_of_crease = 0.766f;
+  for (int y = 0; y + 2 < image.size_px.y; ++y)
+    for (int x = 0; x + 2 < image.size_px.x; ++x) {
+      const std::size_t here = pixel_index(image, x, y);
+      if (!image.pixels[here].lit()) continue;
+      for (const std::size_t other : {pixel_index(image, x + 2, y), pixel_index(image, x, y + 2)})
+        if (image.pixels[other].lit() && glm::dot(normal(here), normal(other)) < cosine_of_crease)
+          blacken(here);
+    }
+  return rgb;
+}
+
+std::vector<std::uint8_t> shaded_picture(const DepthImage& image, const Scenery& scenery,
+                                         std::span<const glm::vec3> normals) {
+  const Plane depth = depth_plane(image, scenery);
+  std::optional<Surroundings> surroundings;
+  if (scenery.occlusion) surroundings.emplace(depth, image.size_px);
+  const Lighting lighting(scenery);
+  const float nearest = nearest_mm(image);
+  const auto per_range = static_cast<float>(scenery.depth_cue ? 1.0 / scenery.depth_range_mm : 0.0);
   const auto width_mm = static_cast<float>(scenery.pixel_mm * image.size_px.x);
   std::vector<glm::vec3> colours;
   for (const glm::vec3& colour : scenery.colours) colours.push_back(linear_from_srgb(colour));
   const glm::vec3 background = linear_from_srgb(scenery.background);
   std::vector<std::uint8_t> rgb(3 * image.pixels.size());
-  each_slope_row(
-      image, scenery, depth,
-      [&](int y, const std::vector<float>& to_right, const std::vector<float>& to_top) {
-        const float* depths = depth.row(y);
-        for (int x = 0; x < image.size_px.x; ++x) {
-          const Seen& seen = image.at(x, y);
-          std::uint8_t* pixel = &rgb[3 * pixel_index(image, x, y)];
-          if (!seen.lit()) {
-            put(pixel, background);
-            continue;
-          }
-          // Depth grows towards the side that a surface turns away from, so its normal leans there.
-          const glm::vec3 normal = glm::normalize(
-              glm::vec3(to_right[static_cast<std::size_t>(x)], to_top[static_cast<std::size_t>(x)], -1.0f));
-          const float cue = 1.0f - 0.35f * std::min(1.0f, (seen.depth_mm - nearest) * per_range);
-          const float open = openness(depths[x] - surroundings.mean_mm(x, y), width_mm);
-          const float light = cue * open;
-          put(pixel, colours[static_cast<std::size_t>(seen.object)] * (light * lights.diffuse(normal)) +
-                         light * lights.glossy(normal));
-        }
-      });
+  each_slope_row(image, scenery, depth,
+                 [&](int y, const std::vector<float>& to_right, const std::vector<float>& to_top) {
+                   const float* depths = depth.row(y);
+                   for (int x = 0; x < image.size_px.x; ++x) {
+                     const std::size_t index = pixel_index(image, x, y);
+                     const Seen& seen = image.pixels[index];
+                     if (!seen.lit()) {
+                       put(&rgb[3 * index], background);
+                       continue;
+                     }
+                     // Depth grows towards the side that a surface turns away from, so its normal leans
+                     // there.
+                     const glm::vec3 normal =
+                         normals.empty()
+                             ? glm::normalize(glm::vec3(to_right[static_cast<std::size_t>(x)],
+                                                        to_top[static_cast<std::size_t>(x)], -1.0f))
+                             : normals[index];
+                     const float cue = 1.0f - 0.35f * std::min(1.0f, (seen.depth_mm - nearest) * per_range);
+                     const float open =
+                         surroundings ? openness(depths[x] - surroundings->mean_mm(x, y), width_mm) : 1.0f;
+                     const float light = cue * open;
+                     put(&rgb[3 * index],
+                         colours[static_cast<std::size_t>(seen.object)] * (light * lighting.diffuse(normal)) +
+                             light * lighting.glossy(normal));
+                   }
+                 });
   return rgb;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery,
+                                std::span<const glm::vec3> normals) {
+  switch (scenery.style) {
+    case Style::Depth:
+    case Style::Silhouette:
+      return flat_picture(image, scenery);
+    case Style::Outline:
+      return outline_picture(image, scenery);
+    case Style::Shaded:
+      break;
+  }
+  return shaded_picture(image, scenery, normals);
 }
 
 std::vector<std::uint32_t> edge_pixels(const DepthImage& image, const Scenery& scenery) {

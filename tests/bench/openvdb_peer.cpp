@@ -3,7 +3,10 @@
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/GridTransformer.h>
+#include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/Prune.h>
+#include <openvdb/tools/RayIntersector.h>
+#include <openvdb/tools/RayTracer.h>
 
 namespace octotomy::bench {
 
@@ -58,6 +61,42 @@ std::uint64_t OpenVdbPeer::transform(const std::array<double, 16>& target_from_s
 
 std::uint64_t OpenVdbPeer::bytes() const {
   return grids_->mask->memUsage();
+}
+
+struct OpenVdbSurface::Grid {
+  openvdb::FloatGrid::Ptr level_set;
+  std::unique_ptr<openvdb::tools::LevelSetRayIntersector<openvdb::FloatGrid>> intersector;
+};
+
+OpenVdbSurface::OpenVdbSurface(const FlatMesh& mesh, double voxel_mm) : grid_(std::make_unique<Grid>()) {
+  openvdb::initialize();
+  std::vector<openvdb::Vec3s> points;
+  for (std::size_t i = 0; i < mesh.points_mm.size(); i += 3)
+    points.emplace_back(mesh.points_mm[i], mesh.points_mm[i + 1], mesh.points_mm[i + 2]);
+  std::vector<openvdb::Vec3I> triangles;
+  for (std::size_t i = 0; i < mesh.faces.size(); i += 3)
+    triangles.emplace_back(mesh.faces[i], mesh.faces[i + 1], mesh.faces[i + 2]);
+  grid_->level_set = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
+      *openvdb::math::Transform::createLinearTransform(voxel_mm), points, triangles);
+  grid_->intersector =
+      std::make_unique<openvdb::tools::LevelSetRayIntersector<openvdb::FloatGrid>>(*grid_->level_set);
+}
+
+OpenVdbSurface::~OpenVdbSurface() = default;
+
+int OpenVdbSurface::draw(const PicturePlane& plane) const {
+  const auto vec = [](const Triple& p) { return openvdb::Vec3R(p[0], p[1], p[2]); };
+  const openvdb::Vec3R centre = vec(plane.centre_mm);
+  const auto side = static_cast<std::size_t>(plane.side_px);
+  openvdb::tools::Film film(side, side, openvdb::tools::Film::RGBA(1.0f, 1.0f, 1.0f, 0.0f));
+  openvdb::tools::OrthographicCamera camera(film, openvdb::Vec3R(0.0),
+                                            centre - plane.range_mm * vec(plane.look), plane.width_mm);
+  camera.lookAt(centre, vec(plane.up));
+  const openvdb::tools::DiffuseShader<> shader(openvdb::tools::Film::RGBA(0.9f, 0.9f, 0.9f));
+  openvdb::tools::rayTrace(*grid_->level_set, *grid_->intersector, shader, camera, 1, 0, true);
+  int lit = 0;
+  for (std::size_t i = 0; i < side * side; ++i) lit += film.pixels()[i].a > 0.5f;
+  return lit;
 }
 
 }  // namespace octotomy::bench

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "tests/bench/picture_plane.h"
+
 // OpenVDB behind a narrow door: its headers and oneTBB's do not agree in C++20, so its unit is compiled as
 // C++17.
 
@@ -32,6 +34,22 @@ class OpenVdbPeer {
  private:
   struct Grids;
   std::unique_ptr<Grids> grids_;
+};
+
+/// A surface as a level set in world millimetres, drawn by LevelSetRayTracer.
+class OpenVdbSurface {
+ public:
+  OpenVdbSurface(const FlatMesh& mesh, double voxel_mm);
+  ~OpenVdbSurface();
+  OpenVdbSurface(const OpenVdbSurface&) = delete;
+  OpenVdbSurface& operator=(const OpenVdbSurface&) = delete;
+
+  /// Draws a picture with its diffuse shader and gives back the number of lit pixels.
+  int draw(const PicturePlane& plane) const;
+
+ private:
+  struct Grid;
+  std::unique_ptr<Grid> grid_;
 };
 
 }  // namespace octotomy::bench

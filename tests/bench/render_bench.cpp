@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Whole pictures of the head phantom's skull, partial-volume depth and shading included, and what the same
+// picture takes elsewhere: the isosurface mesh in Embree, its level set in OpenVDB, the scan in VTK. What
+// each builds once is not counted. Peers light a pixel by one head light on the surface they met.
+#include <memory>
+#include <optional>
+#include <string>
+#include <tbb/global_control.h>
+
+#include "convert/isosurface.h"
+#include "tests/bench/benchmarks.h"
+#include "tests/bench/dense_bits.h"
+#include "tests/bench/pairs.h"
+#include "tests/bench/picture_plane.h"
+#include "tests/bench/subjects.h"
+#include "voxel/camera.h"
+#include "voxel/combine.h"
+#include "voxel/render.h"
+#ifdef OCTOTOMY_HAS_EMBREE
+#include "tests/bench/embree_peer.h"
+#endif
+#ifdef OCTOTOMY_HAS_OPENVDB
+#include "tests/bench/openvdb_peer.h"
+#endif
+#ifdef OCTOTOMY_HAS_VTK
+#include "tests/bench/vtk_peer.h"
+#endif
+
+namespace octotomy::bench {
+namespace {
+
+constexpr double bone_hu = 300.0;
+
+struct Case {
+  std::string algorithm;  ///< node_trace or ray_cast
+  std::string view;       ///< anterior or oblique
+  int side_px = 512;
+  int side = 512;
+
+  std::string name() const {
+    return "render/" + algorithm + "/" + view + "/" + std::to_string(side_px) + "px/" + std::to_string(side);
+  }
+  voxel::View axes() const { return voxel::parse_view(view == "oblique" ? "35,15" : view); }
+};
+
+voxel::Drawn drawn_skull(int side) {
+  const voxel::GreyOctree grey = grey_skull(side);
+  return {"skull", voxel::combine(universe(side), voxel::Window{grey, bone_hu, 32767.0}), {}, grey, bone_hu};
+}
+
+voxel::RenderOptions options_of(const Case& the) {
+  voxel::RenderOptions options;
+  options.view = the.axes();
+  options.size_px = glm::ivec2(the.side_px);
+  options.algorithm = the.algorithm == "node_trace" ? voxel::Algorithm::NodeTrace : voxel::Algorithm::RayCast;
+  options.antialias = false;  // a ray a pixel, as everywhere
+  return options;
+}
+
+void run(benchmark::State& state, const Case& the) {
+  const std::vector<voxel::Drawn> objects{drawn_skull(the.side)};
+  voxel::RenderOptions options = options_of(the);
+  const voxel::Frame frame = voxel::frame_about(objects, options.view, options.size_px);
+  options.centre_mm = frame.centre_mm;
+  options.width_mm = frame.width_mm;
+  std::uint64_t lit = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(lit = voxel::render(objects, options).lit_pixels);
+  state.counters["lit"] = static_cast<double>(lit);
+}
+
+Triple triple(const glm::dvec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+PicturePlane plane_of(const Case& the) {
+  const std::vector<voxel::Drawn> objects{{"skull", skull(the.side)}};
+  const glm::ivec2 size_px(the.side_px);
+  const voxel::Frame frame = voxel::frame_about(objects, the.axes(), size_px);
+  const voxel::ImagePlane image = voxel::image_plane(universe(the.side), the.axes(), size_px, frame);
+  PicturePlane plane;
+  plane.side_px = the.side_px;
+  plane.first_mm = triple(image.lps_mm({0.5, 0.5}, 0.0));
+  plane.per_px_x_mm = triple(image.view.right * image.pixel_mm);
+  plane.per_px_y_mm = triple(image.view.up * -image.pixel_mm);
+  plane.look = triple(image.view.look);
+  plane.up = triple(image.view.up);
+  plane.centre_mm = triple(image.lps_mm(glm::dvec2(0.5 * the.side_px), 0.5 * image.depth_range_mm));
+  plane.width_mm = frame.width_mm;
+  plane.range_mm = image.depth_range_mm;
+  return plane;
+}
+
+FlatMesh mesh_of(int side) {
+  const brep::Triangles triangles =
+      convert::isosurface(head(side), bone_hu, std::numeric_limits<double>::infinity());
+  FlatMesh mesh;
+  for (const glm::dvec3& p : triangles.points_mm)
+    for (int axis = 0; axis < 3; ++axis) mesh.points_mm.push_back(static_cast<float>(p[axis]));
+  for (const auto& face : triangles.faces) mesh.faces.insert(mesh.faces.end(), face.begin(), face.end());
+  return mesh;
+}
+
+#ifdef OCTOTOMY_HAS_EMBREE
+void run_embree(benchmark::State& state, const Case& the) {
+  const EmbreePeer peer(mesh_of(the.side));
+  const PicturePlane plane = plane_of(the);
+  std::vector<std::uint8_t> rgb;
+  int lit = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(lit = peer.draw(plane, rgb));
+  state.counters["lit"] = lit;
+}
+#endif
+
+#ifdef OCTOTOMY_HAS_OPENVDB
+void run_openvdb(benchmark::State& state, const Case& the) {
+  const OpenVdbSurface peer(mesh_of(the.side), universe(the.side).lattice().spacing_mm().x);
+  const PicturePlane plane = plane_of(the);
+  int lit = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(lit = peer.draw(plane));
+  state.counters["lit"] = lit;
+}
+#endif
+
+#ifdef OCTOTOMY_HAS_VTK
+void run_vtk(benchmark::State& state, const Case& the) {
+  const voxel::Scene& scene = head(the.side);
+  FlatScan scan;
+  for (int axis = 0; axis < 3; ++axis) scan.dims[static_cast<std::size_t>(axis)] = scene.lattice.dims[axis];
+  scan.first_mm = triple(scene.lattice.lps_mm(glm::dvec3(0.0)));
+  scan.spacing_mm = triple(scene.lattice.spacing_mm());
+  scan.samples = std::get<std::vector<std::int16_t>>(scene.samples).data();
+  const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const VtkPeer peer(scan, bone_hu, static_cast<int>(threads));
+  const PicturePlane plane = plane_of(the);
+  int lit = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(lit = peer.draw(plane));
+  state.counters["lit"] = lit;
+}
+#endif
+
+}  // namespace
+
+void register_render() {
+  for (const char* algorithm : {"node_trace", "ray_cast"})
+    for (const char* view : {"anterior", "oblique"}) {
+      const bool traces = std::string(algorithm) == "node_trace";
+      if (traces && std::string(view) == "oblique") continue;  // node tracing is for views along the axes
+      for (const int side_px : {512, 1024})
+        for (const int side : {256, 512}) {
+          const Case the{algorithm, view, side_px, side};
+          add(the.name(), [=](benchmark::State& state) { run(state, the); });
+#ifdef OCTOTOMY_HAS_EMBREE
+          add("peer/embree/" + the.name(), [=](benchmark::State& state) { run_embree(state, the); });
+#endif
+#ifdef OCTOTOMY_HAS_OPENVDB
+          add("peer/openvdb/" + the.name(), [=](benchmark::State& state) { run_openvdb(state, the); });
+#endif
+#ifdef OCTOTOMY_HAS_VTK
+          add("peer/vtk/" + the.name(), [=](benchmark::State& state) { run_vtk(state, the); });
+#endif
+        }
+    }
+}
+
+}  // namespace octotomy::bench

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "voxel/camera.h"
+#include "voxel/logical_node.h"
+
+// What the thesis's walks along an axis share (appendix A.2): quadtree child i is the projection of octree
+// children front(i) and back(i) (table 4.3), and the picture holds for every column of voxels the number of
+// voxels before the first of the object.
+
+namespace octotomy::voxel {
+
+/// Numbers of voxels before the first of the object, by column i + side j as in ColumnMap; -1: none.
+using ColumnDepths = std::vector<std::int32_t>;
+
+class AxisFrame {
+ public:
+  AxisFrame(const AxisView& axes, int depth) : axes_(axes), depth_(depth), side_(1 << depth) {}
+
+  int depth() const { return depth_; }
+  int side() const { return side_; }
+  std::size_t column_count() const {
+    return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
+  }
+  std::size_t column(int p, int q) const {
+    return static_cast<std::size_t>(p) + static_cast<std::size_t>(q) * static_cast<std::size_t>(side_);
+  }
+  /// Octree child x + 2y + 4z before or behind quadtree child p + 2q.
+  int child(int quadtree_child, bool behind) const {
+    const bool far_half = behind != axes_.reversed[2];
+    return ((quadtree_child & 1) << axes_.axis[0]) | ((quadtree_child >> 1) << axes_.axis[1]) |
+           (static_cast<int>(far_half) << axes_.axis[2]);
+  }
+  /// The child of a level's node that holds a place of the picture at a depth in voxels.
+  int child_at(int level, int p, int q, int d) const {
+    const int bit = depth_ - 1 - level;
+    return child(((p >> bit) & 1) | (((q >> bit) & 1) << 1), ((d >> bit) & 1) != 0);
+  }
+
+  /// Paints a square of columns.
+  void paint(ColumnDepths& columns, int p, int q, int level, int d) const {
+    const int edge = side_ >> level;
+    for (int row = q; row < q + edge; ++row)
+      for (int at = p; at < p + edge; ++at) columns[column(at, row)] = d;
+  }
+
+ private:
+  AxisView axes_;
+  int depth_, side_;
+};
+
+}  // namespace octotomy::voxel

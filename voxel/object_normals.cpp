@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/object_normals.h"
+
+#include <tbb/parallel_for.h>
+
+namespace octotomy::voxel {
+namespace {
+
+glm::ivec3 unit(int axis, int sign) {
+  glm::ivec3 step(0);
+  step[axis] = sign;
+  return step;
+}
+
+/// 1 where the surface rises beyond a side of the face, 0 where it goes on, -1 where it falls.
+int turn(const Octree& octree, const glm::ivec3& voxel, const glm::ivec3& outward, const glm::ivec3& side) {
+  if (octree.contains(voxel + side + outward)) return 1;
+  return octree.contains(voxel + side) ? 0 : -1;
+}
+
+/// The voxel of the object that a ray meets at a depth, and the axis of the face it enters through.
+struct Face {
+  glm::ivec3 voxel{0};
+  int axis = 0;
+  int outward = 1;
+};
+Face face_at(const Octree& octree, const glm::dvec3& p_voxel, const glm::dvec3& per_mm) {
+  // A face's depth is rounded to float; an interpolated one lies up to two voxels before the first voxel.
+  const glm::dvec3 direction = glm::normalize(per_mm);
+  constexpr double step_voxels = 1.0 / 64.0;
+  glm::ivec3 before = glm::ivec3(glm::floor(p_voxel - step_voxels * direction + 0.5));
+  Face face;
+  for (int step = 0; step <= 3 * 64; ++step) {
+    const glm::ivec3 here = glm::ivec3(glm::floor(p_voxel + step * step_voxels * direction + 0.5));
+    if (octree.contains(here)) {
+      face.voxel = here;
+      // Through an edge or corner, the axis along which the ray runs most.
+      double most = -1.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double along = std::abs(direction[axis]) + (here[axis] != before[axis] ? 2.0 : 0.0);
+        if (along <= most) continue;
+        most = along;
+        face.axis = axis;
+        face.outward = direction[axis] > 0.0 ? -1 : 1;
+      }
+      return face;
+    }
+    before = here;
+  }
+  face.voxel = before;
+  return face;
+}
+
+double sample(const GreyOctree& grey, const glm::dvec3& p) {
+  const glm::dvec3 cell = glm::floor(p);
+  const glm::dvec3 t = p - cell;
+  double sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
+    const glm::dvec3 weight = glm::mix(1.0 - t, t, glm::dvec3(side));
+    sum += weight.x * weight.y * weight.z * grey.sample(glm::ivec3(cell) + side);
+  }
+  return sum;
+}
+
+}  // namespace
+
+glm::dvec3 context_normal(const Octree& octree, const glm::ivec3& voxel, int axis, int outward) {
+  glm::dvec3 normal(0.0);
+  normal[axis] = outward;
+  for (int side = 0; side < 3; ++side) {
+    if (side == axis) continue;
+    const int rise = turn(octree, voxel, unit(axis, outward), unit(side, 1)) -
+                     turn(octree, voxel, unit(axis, outward), unit(side, -1));
+    normal[side] = -0.5 * rise;
+  }
+  return normal;
+}
+
+glm::dvec3 grey_normal(const GreyOctree& grey, const glm::dvec3& p_voxel) {
+  glm::dvec3 normal;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3 step(unit(axis, 1));
+    normal[axis] = sample(grey, p_voxel - step) - sample(grey, p_voxel + step);
+  }
+  return normal;
+}
+
+std::vector<glm::vec3> object_normals(const DepthImage& image, const std::vector<Drawn>& objects,
+                                      const ImagePlane& plane, ObjectNormals kind) {
+  const Universe& universe = objects.front().octree.universe();
+  const VoxelRays rays = voxel_rays(universe, plane);
+  // Normals are carried by the inverse transpose; of index space into LPS, then into the view.
+  const glm::dmat3 lps_from_normal = glm::transpose(glm::inverse(glm::dmat3(universe.lps_from_voxel)));
+  const glm::dmat3 view_from_lps =
+      glm::transpose(glm::dmat3(plane.view.right, plane.view.up, plane.view.look));
+  const glm::dmat3 view_from_normal = view_from_lps * lps_from_normal;
+  std::vector<glm::vec3> normals(image.pixels.size(), glm::vec3(0.0f));
+  tbb::parallel_for(0, image.size_px.y, [&](int y) {
+    for (int x = 0; x < image.size_px.x; ++x) {
+      const Seen& seen = image.at(x, y);
+      if (!seen.lit()) continue;
+      const Drawn& object = objects[static_cast<std::size_t>(seen.object)];
+      const glm::dvec3 p = rays.start({x + 0.5, y + 0.5}) + double(seen.depth_mm) * rays.per_mm;
+      glm::dvec3 normal(0.0);
+      if (kind == ObjectNormals::Grey && object.grey && !seen.stepped) normal = grey_normal(*object.grey, p);
+      if (normal == glm::dvec3(0.0)) {
+        const Face face = face_at(object.octree, p, rays.per_mm);
+        normal = context_normal(object.octree, face.voxel, face.axis, face.outward);
+      }
+      normals[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +
+              static_cast<std::size_t>(x)] = glm::vec3(glm::normalize(view_from_normal * normal));
+    }
+  });
+  return normals;
+}
+
+}  // namespace octotomy::voxel
