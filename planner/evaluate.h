@@ -19,6 +19,7 @@
 #include "voxel/grey_octree.h"
 #include "voxel/measure.h"
 #include "voxel/octree.h"
+#include "voxel/read_scene.h"
 #include "voxel/scene.h"
 
 namespace octotomy::planner {
@@ -74,9 +75,7 @@ struct Evaluation {
 };
 
 /// The stop token was set: nothing was decided, nothing is written.
-struct Stopped : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+using voxel::Stopped;
 
 struct EvaluateOptions {
   std::stop_token stop;  ///< looked at between steps

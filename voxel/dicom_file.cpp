@@ -49,8 +49,21 @@ bool DicomFile::begins(std::string_view head) {
   return head.size() >= 8 && (head[0] == 2 || head[0] == 8) && head[1] == 0 && head[3] == 0;
 }
 
-DicomFile::DicomFile(std::string_view bytes)
-    : bytes_(bytes), at_(has_prefix(bytes) ? 132 : 0), explicit_(at_ > 0) {
+DicomFile::DicomFile(std::string_view bytes, std::size_t file_bytes, bool inflated)
+    : bytes_(bytes),
+      file_bytes_(file_bytes),
+      at_(has_prefix(bytes) ? 132 : 0),
+      inflated_(inflated),
+      explicit_(at_ > 0) {
+  walk();
+}
+
+DicomFile::DicomFile(std::string_view bytes, bool explicit_vr, bool big_endian)
+    : bytes_(bytes),
+      file_bytes_(bytes.size()),
+      is_item_(true),
+      explicit_(explicit_vr),
+      big_endian_(big_endian) {
   walk();
 }
 
@@ -65,19 +78,24 @@ std::uint32_t DicomFile::u32(std::size_t at) const {
 
 void DicomFile::require(std::size_t length, DicomTag tag) const {
   if (length <= left()) return;
+  if (length <= file_bytes_ - at_) throw NeedsMore{};
   std::array<char, 112> text{};
   std::snprintf(text.data(), text.size(),
                 "cut short or damaged: attribute (%04x,%04x) claims %zu bytes of %zu left", tag >> 16,
-                tag & 0xffffu, length, left());
+                tag & 0xffffu, length, file_bytes_ - at_);
   throw std::runtime_error(text.data());
+}
+
+/// What is left is too short for an attribute: the file's end, or that of the part of it at hand.
+void DicomFile::require_more() const {
+  if (bytes_.size() < file_bytes_) throw NeedsMore{};
 }
 
 void DicomFile::leave_meta() {
   transfer_syntax_ = text(transfer_syntax_tag);
   if (transfer_syntax_ == "1.2.840.10008.1.2") explicit_ = false;
   if (transfer_syntax_ == "1.2.840.10008.1.2.2") big_endian_ = true;
-  if (transfer_syntax_ == "1.2.840.10008.1.2.1.99")
-    throw std::runtime_error("deflated as a whole, which is not supported; convert it to explicit VR");
+  if (transfer_syntax_ == "1.2.840.10008.1.2.1.99" && !inflated_) throw Deflated{at_};
 }
 
 /// Steps over the head of the attribute at hand. Precondition: eight bytes are left.
@@ -110,10 +128,14 @@ void DicomFile::take_fragments() {
     if (head.tag != item_tag)
       throw std::runtime_error("compressed pixels are damaged: no item where one should be");
     require(head.length, head.tag);
-    if (!is_offset_table) fragments_->push_back(bytes_.substr(at_, head.length));
+    if (is_offset_table)
+      for (std::size_t i = 0; i + 4 <= head.length; i += 4) frame_offsets_.push_back(u32(at_ + i));
+    else
+      fragments_->push_back({at_, head.length});
     is_offset_table = false;
     at_ += head.length;
   }
+  require_more();
   throw std::runtime_error("cut short: the compressed pixels do not end");
 }
 
@@ -121,6 +143,8 @@ void DicomFile::walk() {
   // Of sequences and items without a length, how each was written around them; the rest is stepped over
   // whole.
   std::vector<bool> explicit_outside;
+  DicomTag open_tag = 0;       // the outermost of them
+  std::size_t open_start = 0;  // and where its items begin
   bool in_meta = at_ > 0;
   while (left() >= 8) {
     if (in_meta && u16(at_) != 2) {
@@ -130,26 +154,56 @@ void DicomFile::walk() {
     const Head head = take_head();
     const bool is_top = explicit_outside.empty();
     if (head.tag == item_end_tag || head.tag == sequence_end_tag) {
-      if (!is_top) {
-        explicit_ = explicit_outside.back();
-        explicit_outside.pop_back();
-      }
+      if (is_top && is_item_) return;
+      if (is_top) continue;
+      explicit_ = explicit_outside.back();
+      explicit_outside.pop_back();
+      if (explicit_outside.empty())
+        values_.emplace(open_tag, bytes_.substr(open_start, at_ - 8 - open_start));
       continue;
     }
-    if (head.tag == pixels_tag && is_top && head.is_open()) return take_fragments();
+    const bool is_pixels = head.tag == pixels_tag && is_top && !is_item_;
+    if (is_pixels && head.is_open()) return take_fragments();
+    if (is_top && head.is_unknown) implicit_inside_.insert(head.tag);
     if (head.is_open()) {
+      if (is_top) {
+        open_tag = head.tag;
+        open_start = at_;
+      }
       explicit_outside.push_back(explicit_);
       if (head.is_unknown) explicit_ = false;  // PS3.5, 6.2.2: unknown sequences are implicit inside
       continue;
     }
-    require(head.length, head.tag);
-    if (is_top) values_.emplace(head.tag, bytes_.substr(at_, head.length));
-    if (head.tag == pixels_tag && is_top) {
-      raw_pixels_ = bytes_.substr(at_, head.length);
+    if (is_pixels && head.length <= file_bytes_ - at_) {
+      raw_pixels_ = DicomExtent{at_, head.length};
       return;
     }
+    require(head.length, head.tag);
+    if (is_top) values_.emplace(head.tag, bytes_.substr(at_, head.length));
     at_ += head.length;
   }
+  require_more();
+}
+
+std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
+  std::vector<DicomFile> found;
+  const auto value = values_.find(sequence);
+  if (value == values_.end()) return found;
+  const bool explicit_vr = explicit_ && !implicit_inside_.contains(sequence);
+  // The heads of items are the same whichever way attributes are written.
+  DicomFile marks(std::string_view(), explicit_vr, big_endian_);
+  marks.bytes_ = value->second;
+  marks.file_bytes_ = marks.bytes_.size();
+  while (marks.left() >= 8) {
+    const Head head = marks.take_head();
+    if (head.tag == sequence_end_tag) break;
+    if (head.tag != item_tag) throw std::runtime_error("a sequence is damaged: no item where one should be");
+    if (!head.is_open()) marks.require(head.length, head.tag);
+    const std::size_t length = head.is_open() ? marks.left() : head.length;
+    found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, big_endian_));
+    marks.at_ += head.is_open() ? found.back().at_ : length;
+  }
+  return found;
 }
 
 std::string DicomFile::text(DicomTag tag) const {

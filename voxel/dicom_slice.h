@@ -8,17 +8,38 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
+
+#include "voxel/dicom_file.h"
 
 namespace octotomy::voxel {
 
-/// What the header of one single-frame grey DICOM image says, as far as a volume needs it. LPS, millimetres.
+/// Where an image's pixels lie in its file and how they are stored: in `allocated` bits, of which `stored`
+/// ending at `high` are their value.
+struct DicomPixels {
+  std::string transfer_syntax;
+  std::vector<DicomExtent> parts;  ///< one of raw pixels; fragments of compressed ones
+  bool is_compressed = false;
+  bool is_deflated = false;  ///< parts then count in the inflated file
+  bool is_big_endian = false;
+  unsigned allocated = 16;
+  unsigned stored = 16;
+  unsigned high = 15;
+  bool is_signed = false;
+};
+
+/// What the header of one grey DICOM image says, as far as a volume needs it: a file of one frame, or one
+/// frame of several. LPS, millimetres.
 struct DicomSlice {
   std::filesystem::path path;
+  int frame = 0;
+  DicomPixels pixels;
   std::string instance_uid;
   std::string series_uid;
   std::string series_description;  ///< UTF-8
   std::string modality;
   std::string rescale_type;
+  int series_number = 0;
   int instance_number = 0;
   glm::ivec2 size_px{0};             ///< columns, rows
   glm::dvec2 spacing_mm{0.0};        ///< between columns, between rows
@@ -27,20 +48,23 @@ struct DicomSlice {
   glm::dvec3 first_mm{0.0};          ///< centre of the first pixel
   bool spacing_at_detector = false;  ///< PixelSpacing is absent, ImagerPixelSpacing took its place
   bool inverted = false;             ///< MONOCHROME1
+  bool is_localizer = false;         ///< ImageType says so
   std::optional<double> slope;
   std::optional<double> intercept;
+  std::optional<double> padding;  ///< value of pixels that were not measured, rescaled
   std::optional<double> thickness_mm;
   std::optional<double> tilt_deg;  ///< the scanner's own tag; its sign varies from vendor to vendor
 };
 
-/// Why a file is not a slice.
+/// Why a file holds no slice.
 struct NoSlice {
   std::string reason;
 };
 
-/// Reads the header of a file and checks that its elements and pixels end within it. Never throws on a file's
-/// contents. Memory: the file once.
-std::variant<DicomSlice, NoSlice> read_dicom_slice(const std::filesystem::path& path);
+/// Reads the header of a file and checks that its elements and pixels end within it: one slice, or one a
+/// frame of an enhanced CT or MR. Never throws on a file's contents. Memory: the file's attributes, or the
+/// whole file where it is compressed.
+std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::filesystem::path& path);
 
 /// Decodes a slice and applies its rescale (absent: slope 1, intercept 0), row by row, x fastest. Returns
 /// false where a value is not an integer of int16's range. Precondition: `samples` has a place for every

@@ -17,18 +17,19 @@ namespace {
 
 namespace fs = std::filesystem;
 using Encode = decltype(&octotomy_encode_image);
+using Read = decltype(&octotomy_read_images);
 
 /// Loads the library once; it stays until the program ends, since OpenImageIO's threads do.
-Encode load() {
+void* symbol_of_library(const char* name) {
   const fs::path path = program_folder() / "octotomy_image_io.so";
   void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr)
-    throw std::runtime_error(path.string() + ": pictures cannot be encoded: " + dlerror() +
+    throw std::runtime_error(path.string() + ": pictures cannot be read or written: " + dlerror() +
                              "; the library belongs beside the program, and OpenImageIO must be installed");
-  void* symbol = dlsym(library, "octotomy_encode_image");
+  void* symbol = dlsym(library, name);
   if (symbol == nullptr)
     throw std::runtime_error(path.string() + ": is not this program's library; build both anew");
-  return reinterpret_cast<Encode>(symbol);
+  return symbol;
 }
 
 }  // namespace
@@ -43,12 +44,26 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
                                 std::to_string(rgb.size()) + " bytes");
   if (format != "png" && format != "jpeg" && format != "webp")
     throw std::runtime_error("no picture is encoded as '" + format + "'; choose png, jpeg or webp");
-  static const Encode encode = load();
+  static const Encode encode = reinterpret_cast<Encode>(symbol_of_library("octotomy_encode_image"));
   std::vector<std::uint8_t> encoded;
   std::string error;
   if (!encode(format.c_str(), size_px.x, size_px.y, rgb.data(), &encoded, &error))
     throw std::runtime_error("a picture cannot be encoded as " + format + ": " + error);
   return encoded;
+}
+
+std::vector<StoredImage> read_images(const fs::path& path) {
+  static const Read read = reinterpret_cast<Read>(symbol_of_library("octotomy_read_images"));
+  // Compressed pixels may be blank: up to 4096 x 4096 of four bytes are believed of any file.
+  const std::size_t most_bytes =
+      std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
+  std::vector<StoredImage> images;
+  std::string error;
+  if (!read(path.c_str(), most_bytes, &images, &error)) {
+    std::replace(error.begin(), error.end(), '\n', ' ');
+    throw std::runtime_error(path.string() + ": cannot be read as images: " + error);
+  }
+  return images;
 }
 
 void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "voxel/image_file_oiio.h"
+
 namespace octotomy::voxel {
 
 /// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). The library
@@ -21,5 +23,9 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
 /// place. Throws as encode_image, and std::runtime_error with path and reason.
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
                  const std::vector<std::uint8_t>& rgb);
+
+/// The grey images of a file in any format that OpenImageIO reads, one a page of it. Throws
+/// std::runtime_error with path and reason. Memory: at most 64 MiB or 1100 times the file.
+std::vector<StoredImage> read_images(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

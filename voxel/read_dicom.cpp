@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Slices to a lattice:
-//   1  read every file's header; what is no slice is counted, not hidden
-//   2  choose the series with most slices, and in it the commonest size and orientation
-//   3  order the slices by position along their normal and drop repeated ones
-//   4  lay a lattice through them: the finest gap that occurs is its step
-//   5  decode the slices, rescaled
-//   6  where slices do not stand on the lattice - gantry tilt, uneven or missing slices - interpolate
-//   linearly 7  judge by the air whether the values are Hounsfield
+// A stack of slices to a lattice:
+//   1  lay a lattice through the slices: the finest gap that occurs is its step
+//   2  decode the slices, rescaled
+//   3  where slices do not stand on the lattice - gantry tilt, uneven or missing slices - interpolate
+//   linearly
+//   4  judge by the air whether the values are Hounsfield
 // ImagePositionPatient and ImageOrientationPatient decide; the scanner's tags for tilt and spacing are only
 // compared with them, since vendors disagree about the former's sign and the meaning of the latter.
 #include "voxel/read_dicom.h"
@@ -15,22 +13,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <span>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
 #include "voxel/air_level.h"
-#include "voxel/dicom_slice.h"
+#include "voxel/dicom_series.h"
 
 namespace octotomy::voxel {
 
 namespace {
 
 namespace fs = std::filesystem;
+using Stack = DicomStack;
 
 /// Positions are decimal strings that some scanners end after two decimals, so that the difference of two
 /// errs by up to 0.01 mm; beyond that a hundredth of the step moves a sample by less than interpolation
@@ -39,21 +36,10 @@ double position_tolerance_mm(double step_mm) {
   return std::max(0.01, 0.01 * step_mm);
 }
 
-/// Slices closer than a tenth of the usual gap cannot be two samples of the stack: they repeat one place.
-double repeat_tolerance_mm(double usual_gap_mm) {
-  return 0.1 * usual_gap_mm;
-}
-
 /// A shift of d pixels changes a sample at a step edge by d times the step; a tenth is below the partial
 /// volume effect of any slice, and far above the rounding of positions.
 constexpr double aside_tolerance_px() {
   return 0.1;
-}
-
-/// Direction cosines are printed with six decimals at worst; over the longest side in use, 4096 pixels, a
-/// thousandth would already be four pixels, so ten roundings is all that one orientation may spread.
-constexpr double cosine_tolerance() {
-  return 1e-5;
 }
 
 template <typename... Parts>
@@ -63,58 +49,9 @@ std::string print(const char* format, Parts... parts) {
   return text;
 }
 
-std::string slices(std::size_t count) {
-  return std::to_string(count) + (count == 1 ? " slice" : " slices");
-}
-
 [[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
   throw std::runtime_error(path.string() + ": " + reason);
 }
-
-/// Runs a task an index in parallel; of several exceptions the lowest index's is thrown, on any thread count.
-void for_each_index(std::size_t count, const std::function<void(std::size_t)>& task) {
-  std::vector<std::exception_ptr> errors(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    try {
-      task(i);
-    } catch (...) {
-      errors[i] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
-}
-
-/// The regular files of a folder and its subfolders, sorted.
-std::vector<fs::path> files_of(const fs::path& path) {
-  if (!fs::is_directory(path)) return {path};
-  std::vector<fs::path> files;
-  std::error_code error;
-  fs::recursive_directory_iterator entry(path, error);
-  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
-    if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
-  if (error) refuse(path, "the folder cannot be listed: " + error.message());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-/// A stack of slices with one size and orientation, ordered along the normal.
-struct Stack {
-  std::vector<DicomSlice> slices;
-  glm::dvec3 along_row{1, 0, 0};
-  glm::dvec3 along_column{0, 1, 0};
-  glm::dvec3 normal{0, 0, 1};
-
-  const DicomSlice& first() const { return slices.front(); }
-  double height_mm(const DicomSlice& slice) const {
-    return glm::dot(slice.first_mm - first().first_mm, normal);
-  }
-  /// How far a slice's first pixel lies from the first slice's normal, in pixels.
-  glm::dvec2 aside_px(const DicomSlice& slice) const {
-    const glm::dvec3 offset_mm = slice.first_mm - first().first_mm;
-    return glm::dvec2(glm::dot(offset_mm, along_row), glm::dot(offset_mm, along_column)) / first().spacing_mm;
-  }
-};
 
 /// Where the lattice's slices lie in the stack.
 struct Plan {
@@ -137,14 +74,17 @@ struct Plan {
 
 class SeriesReader {
  public:
-  explicit SeriesReader(fs::path path) : path_(std::move(path)) {}
+  SeriesReader(fs::path path, const ReadOptions& options) : path_(std::move(path)), options_(options) {}
 
   Scene run() {
-    Stack stack = orient(choose(read_headers()));
-    order(stack);
+    tell(0.0);
+    const Stack stack = stack_of_series(path_, options_, scene_.audit);
+    tell(0.1);
     const Plan plan = lay(stack);
     if (!decode_as<std::int16_t>(stack)) decode_as<float>(stack);
+    tell(0.8);
     audit_rescale(stack);
+    audit_padding(stack);
     if (!plan.is_copy())
       std::visit([&](auto& samples) { samples = resample(stack, plan, samples); }, scene_.samples);
     place(stack, plan);
@@ -167,185 +107,8 @@ class SeriesReader {
   void find(const char* check, Verdict verdict, std::string detail) {
     scene_.audit.push_back({check, verdict, std::move(detail)});
   }
-
-  std::vector<DicomSlice> read_headers() {
-    const std::vector<fs::path> files = files_of(path_);
-    std::vector<std::variant<DicomSlice, NoSlice>> headers(files.size());
-    for_each_index(files.size(), [&](std::size_t i) { headers[i] = read_dicom_slice(files[i]); });
-    std::vector<DicomSlice> found;
-    std::size_t stray_count = 0;
-    std::string first_stray;
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      if (DicomSlice* slice = std::get_if<DicomSlice>(&headers[i])) {
-        found.push_back(std::move(*slice));
-      } else if (stray_count++ == 0) {
-        first_stray =
-            (fs::is_directory(path_) ? fs::relative(files[i], path_) : files[i].filename()).string() + " (" +
-            std::get<NoSlice>(headers[i]).reason + ")";
-      }
-    }
-    if (found.empty() && !fs::is_directory(path_))
-      refuse(path_, "is no scan that can be read: " + std::get<NoSlice>(headers.front()).reason +
-                        "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
-    if (found.empty())
-      refuse(path_,
-             "no DICOM slice in the folder or below; " +
-                 (stray_count == 0 ? "it holds no files"
-                                   : std::to_string(stray_count) + " files, the first " + first_stray));
-    if (stray_count == 0)
-      find("stray_files", Verdict::Pass, "every file is a DICOM slice");
-    else
-      find("stray_files", Verdict::Warn,
-           std::to_string(stray_count) + (stray_count == 1 ? " file" : " files") +
-               " skipped that are no DICOM slices, the first " + first_stray);
-    return found;
-  }
-
-  /// The slices of the series with most of them; of equal ones that with the lowest identifier.
-  std::vector<DicomSlice> choose(std::vector<DicomSlice> found) {
-    std::map<std::string, std::vector<DicomSlice>> series;
-    for (DicomSlice& slice : found) series[slice.series_uid].push_back(std::move(slice));
-    const auto named = [](const std::vector<DicomSlice>& members) {
-      const DicomSlice& first = members.front();
-      return "'" + first.series_description + "' (" + first.modality + ", " + slices(members.size()) + ")";
-    };
-    auto most = series.begin();
-    for (auto it = series.begin(); it != series.end(); ++it)
-      if (it->second.size() > most->second.size()) most = it;
-    if (series.size() == 1) {
-      find("series", Verdict::Pass, "one series: " + named(most->second));
-    } else {
-      std::string others;
-      for (const auto& [uid, members] : series)
-        if (uid != most->first) others += (others.empty() ? "" : ", ") + named(members);
-      find("series", Verdict::Warn,
-           std::to_string(series.size()) + " series: took " + named(most->second) + ", left " + others +
-               "; give a folder of one series to choose another");
-    }
-    return std::move(most->second);
-  }
-
-  /// Keeps the slices that share the commonest of something; the others are said in a finding.
-  void keep_commonest(const char* check, std::vector<DicomSlice>& members,
-                      const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike,
-                      const std::function<std::string(const DicomSlice&)>& named) {
-    std::vector<std::vector<DicomSlice>> kinds;
-    for (DicomSlice& slice : members) {
-      const auto kind = std::find_if(kinds.begin(), kinds.end(),
-                                     [&](const auto& known) { return alike(known.front(), slice); });
-      if (kind == kinds.end())
-        kinds.push_back({std::move(slice)});
-      else
-        kind->push_back(std::move(slice));
-    }
-    auto& most = *std::max_element(kinds.begin(), kinds.end(),
-                                   [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    const std::string taken = named(most.front());
-    if (const std::size_t left = members.size() - most.size(); left == 0)
-      find(check, Verdict::Pass, taken);
-    else
-      find(check, Verdict::Warn,
-           "mixed in one series: kept " + slices(most.size()) + " of " + taken + ", left " + slices(left));
-    members = std::vector<DicomSlice>(std::move(most));
-  }
-
-  Stack orient(std::vector<DicomSlice> members) {
-    keep_commonest(
-        "size", members,
-        [](const DicomSlice& a, const DicomSlice& b) {
-          return a.size_px == b.size_px &&
-                 glm::all(glm::lessThan(glm::abs(a.spacing_mm - b.spacing_mm), 1e-5 * a.spacing_mm));
-        },
-        [](const DicomSlice& slice) {
-          return print("%d x %d pixels of %.6g x %.6g mm", slice.size_px.x, slice.size_px.y,
-                       slice.spacing_mm.x, slice.spacing_mm.y);
-        });
-    keep_commonest(
-        "orientation", members,
-        [](const DicomSlice& a, const DicomSlice& b) {
-          return glm::length(a.along_row - b.along_row) < cosine_tolerance() &&
-                 glm::length(a.along_column - b.along_column) < cosine_tolerance();
-        },
-        [](const DicomSlice& slice) {
-          const glm::dvec3 normal = glm::abs(glm::cross(slice.along_row, slice.along_column));
-          const char* plane = normal.z >= normal.x && normal.z >= normal.y ? "axial"
-                              : normal.y >= normal.x                       ? "coronal"
-                                                                           : "sagittal";
-          return print("%s slices, rows along (%.4g, %.4g, %.4g), columns along (%.4g, %.4g, %.4g) in LPS",
-                       plane, slice.along_row.x + 0.0, slice.along_row.y + 0.0, slice.along_row.z + 0.0,
-                       slice.along_column.x + 0.0, slice.along_column.y + 0.0, slice.along_column.z + 0.0);
-        });
-    Stack stack;
-    stack.slices = std::move(members);
-    make_perpendicular(stack);
-    if (stack.first().spacing_at_detector)
-      find("pixel_spacing", Verdict::Warn,
-           "PixelSpacing is absent; ImagerPixelSpacing, measured at the detector, is taken in its place");
-    return stack;
-  }
-
-  void make_perpendicular(Stack& stack) {
-    const DicomSlice& first = stack.first();
-    const double row = glm::length(first.along_row);
-    const double column = glm::length(first.along_column);
-    const double lean = glm::dot(first.along_row, first.along_column);
-    // A thousandth is fifty times the worst rounding seen; more is no rounding but a wrong header.
-    if (!(std::abs(row - 1.0) < 1e-3 && std::abs(column - 1.0) < 1e-3 && std::abs(lean) < 1e-3))
-      refuse(first.path, "ImageOrientationPatient is not two perpendicular unit vectors");
-    stack.along_row = first.along_row / row;
-    stack.along_column =
-        glm::normalize(first.along_column - glm::dot(first.along_column, stack.along_row) * stack.along_row);
-    // Adding zero takes the sign from -0, which headers hold and no reader wants to see.
-    stack.along_row += 0.0;
-    stack.along_column += 0.0;
-    stack.normal = glm::cross(stack.along_row, stack.along_column) + 0.0;
-  }
-
-  void order(Stack& stack) {
-    // Heights count from the first slice in file order, which sorting must not move under the comparison.
-    const glm::dvec3 normal = stack.normal;
-    std::stable_sort(stack.slices.begin(), stack.slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
-      const double height_a = glm::dot(a.first_mm, normal);
-      const double height_b = glm::dot(b.first_mm, normal);
-      return height_a != height_b ? height_a < height_b : a.instance_number < b.instance_number;
-    });
-    drop_repeated(stack);
-  }
-
-  void drop_repeated(Stack& stack) {
-    std::vector<double> gaps;
-    for (std::size_t i = 1; i < stack.slices.size(); ++i)
-      gaps.push_back(stack.height_mm(stack.slices[i]) - stack.height_mm(stack.slices[i - 1]));
-    std::erase_if(gaps, [](double gap) { return gap < 1e-6; });  // far below any printed position
-    double usual_gap_mm = 0.0;
-    if (!gaps.empty()) {
-      std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
-      usual_gap_mm = gaps[gaps.size() / 2];
-    }
-    std::vector<DicomSlice> kept;
-    std::size_t copy_count = 0;
-    std::size_t rival_count = 0;
-    std::string first_repeat;
-    for (DicomSlice& slice : stack.slices) {
-      const bool repeats = !kept.empty() && glm::dot(slice.first_mm - kept.back().first_mm, stack.normal) <=
-                                                repeat_tolerance_mm(usual_gap_mm);
-      if (!repeats) {
-        kept.push_back(std::move(slice));
-        continue;
-      }
-      if (copy_count + rival_count == 0) first_repeat = slice.path.filename().string();
-      ++(slice.instance_uid == kept.back().instance_uid ? copy_count : rival_count);
-    }
-    stack.slices = std::move(kept);
-    if (copy_count + rival_count == 0)
-      find("duplicates", Verdict::Pass, "every slice has a place of its own");
-    else if (rival_count == 0)
-      find("duplicates", Verdict::Warn,
-           slices(copy_count) + " stored twice and left out, the first " + first_repeat);
-    else
-      find("duplicates", Verdict::Fail,
-           slices(rival_count) + " of other images at places already taken, left out, the first " +
-               first_repeat + "; the series holds several scans: separate them to choose");
+  void tell(double fraction) const {
+    if (options_.progress) options_.progress(fraction);
   }
 
   Plan lay(const Stack& stack) {
@@ -492,7 +255,7 @@ class SeriesReader {
     const std::size_t area = static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
     std::vector<Sample> samples(area * stack.slices.size());
     std::vector<char> fits(stack.slices.size(), 0);
-    for_each_index(stack.slices.size(), [&](std::size_t i) {
+    for_each_index(stack.slices.size(), options_.stop, [&](std::size_t i) {
       fits[i] = read_dicom_samples(stack.slices[i], std::span<Sample>(samples).subspan(i * area, area));
     });
     const bool all_fit = std::all_of(fits.begin(), fits.end(), [](char fit) { return fit != 0; });
@@ -530,6 +293,25 @@ class SeriesReader {
            print("slope %g, intercept %g applied", first.slope.value_or(1.0), first.intercept.value_or(0.0)));
     if (first.inverted)
       find("photometric", Verdict::Warn, "MONOCHROME1: shown inverted by viewers, read as stored");
+  }
+
+  /// Pixels beyond the scanner's circle hold a value of their own that is no measurement.
+  void audit_padding(const Stack& stack) {
+    const std::optional<double> padding = stack.first().padding;
+    if (!padding) return find("padding", Verdict::Pass, "the header names no padding value");
+    const auto count = std::visit(
+        [&](const auto& samples) {
+          return std::count_if(samples.begin(), samples.end(),
+                               [&](auto sample) { return static_cast<double>(sample) == *padding; });
+        },
+        scene_.samples);
+    if (count == 0)
+      find("padding", Verdict::Pass, print("no sample has the padding value %g", *padding));
+    else
+      find("padding", Verdict::Warn,
+           print("%td samples have the padding value %g, which is no measurement; they are kept as they are: "
+                 "a window must not hold it",
+                 count, *padding));
   }
 
   template <typename Sample>
@@ -588,13 +370,14 @@ class SeriesReader {
   }
 
   fs::path path_;
+  const ReadOptions& options_;
   Scene scene_;
 };
 
 }  // namespace
 
-Scene read_dicom(const fs::path& path) {
-  return SeriesReader(path).run();
+Scene read_dicom(const fs::path& path, const ReadOptions& options) {
+  return SeriesReader(path, options).run();
 }
 
 }  // namespace octotomy::voxel

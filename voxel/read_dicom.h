@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <filesystem>
-
-#include "voxel/scene.h"
+#include "voxel/read_scene.h"
 
 namespace octotomy::voxel {
 
-/// Reads the longest DICOM series of a folder and its subfolders, or a single slice. Slices are ordered along
-/// their normal by position, never by name or number; what had to be interpolated to come to a lattice is
-/// said in the audit, whose checks are stray_files, series, size, orientation, duplicates, slice_spacing,
-/// missing_slices, gantry_tilt, pixel_spacing, rescale, photometric, air_level.
-/// Throws as read_scene. Parallel over slices; same bits on any thread count.
-Scene read_dicom(const std::filesystem::path& path);
+/// Reads one DICOM series of a folder and its subfolders, a multi-frame file, or a single slice. Slices are
+/// ordered along their normal by position, never by name or number; what had to be interpolated to come to a
+/// lattice is said in the audit, whose checks are stray_files, series, localizers, size, orientation,
+/// duplicates, slice_spacing, missing_slices, gantry_tilt, pixel_spacing, rescale, padding, photometric,
+/// air_level. Throws as read_scene. Parallel over slices; same bits on any thread count.
+Scene read_dicom(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace octotomy::voxel

@@ -4,22 +4,50 @@
 #include <stdexcept>
 
 #include "voxel/read_dicom.h"
+#include "voxel/read_image_stack.h"
+#include "voxel/read_nifti2.h"
+#include "voxel/read_raw.h"
 #include "voxel/scene_itk.h"
 
 namespace octotomy::voxel {
+namespace {
 
-Scene read_scene(const std::filesystem::path& path) {
+namespace fs = std::filesystem;
+
+Scene read_any(const fs::path& path, const ReadOptions& options) {
+  if (options.raw) return read_raw(path, options);
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw std::runtime_error(path.string() + ": no such file or folder");
-  const bool is_folder = std::filesystem::is_directory(status);
-  const std::optional<VolumeFormat> format = volume_format(path);
-  Scene scene = !is_folder && format ? read_volume_file(path, *format) : read_dicom(path);
+  const fs::file_status status = fs::status(path, error);
+  const bool is_folder = fs::is_directory(status);
+  if (!is_folder) {
+    if (!image_files(path).empty()) return read_image_stack(path, options);
+    if (!fs::exists(status)) throw std::runtime_error(path.string() + ": no such file or folder");
+    const std::optional<VolumeFormat> format = volume_format(path);
+    if (!format) return read_dicom(path, options);
+    if (format == VolumeFormat::Nifti && is_nifti2(path)) return read_nifti2(path);
+    return read_volume_file(path, *format);
+  }
+  // A folder of images may hold DICOM as well, and DICOM knows where it lies.
+  if (image_files(path).empty()) return read_dicom(path, options);
+  try {
+    return read_dicom(path, options);
+  } catch (const Stopped&) {
+    throw;
+  } catch (const std::runtime_error&) {
+    return read_image_stack(path, options);
+  }
+}
+
+}  // namespace
+
+Scene read_scene(const fs::path& path, const ReadOptions& options) {
+  Scene scene = read_any(path, options);
   try {
     check(scene);
   } catch (const std::invalid_argument& flaw) {
     throw std::runtime_error(path.string() + ": the header's geometry is unusable: " + flaw.what());
   }
+  if (options.progress) options.progress(1.0);
   return scene;
 }
 

@@ -32,6 +32,7 @@
 #include <zlib.h>
 
 #include "voxel/air_level.h"
+#include "voxel/stored_samples.h"
 
 namespace octotomy::voxel {
 
@@ -135,49 +136,6 @@ Lattice lattice_of(const itk::ImageIOBase& io, const fs::path& path, std::uintma
     lattice.lps_from_voxel[3][static_cast<int>(axis)] = io.GetOrigin(axis) + 0.0;
   }
   return lattice;
-}
-
-/// The samples as int16 where each is an integer of its range, else as float; says what had to be changed.
-template <typename Stored>
-void take_samples(const std::vector<Stored>& stored, Scene& scene) {
-  constexpr double int16_low = std::numeric_limits<std::int16_t>::min();
-  constexpr double int16_high = std::numeric_limits<std::int16_t>::max();
-  std::size_t unreal_count = 0;
-  bool fits = true;
-  bool is_exact = true;
-  double low = std::numeric_limits<double>::infinity();
-  for (const Stored value : stored) {
-    const auto real = static_cast<double>(value);
-    if (!std::isfinite(real)) {
-      ++unreal_count;
-      continue;
-    }
-    fits = fits && real >= int16_low && real <= int16_high && real == std::trunc(real);
-    is_exact = is_exact && static_cast<double>(static_cast<float>(real)) == real;
-    low = std::min(low, real);
-  }
-  if (unreal_count == stored.size()) throw std::runtime_error("no sample is a finite number");
-  if (unreal_count > 0)
-    scene.audit.push_back({"finite", Verdict::Warn,
-                           std::to_string(unreal_count) +
-                               " samples are no finite numbers; they take the lowest "
-                               "value, " +
-                               std::to_string(low)});
-  const auto convert = [&](auto& samples) {
-    using Sample = typename std::decay_t<decltype(samples)>::value_type;
-    samples.resize(stored.size());
-    std::transform(stored.begin(), stored.end(), samples.begin(), [&](Stored value) {
-      return static_cast<Sample>(std::isfinite(static_cast<double>(value)) ? static_cast<double>(value)
-                                                                           : low);
-    });
-  };
-  if (fits) {
-    convert(scene.samples.emplace<std::vector<std::int16_t>>());
-    return;
-  }
-  convert(scene.samples.emplace<std::vector<float>>());
-  if (!is_exact)
-    scene.audit.push_back({"precision", Verdict::Warn, "samples are rounded to single precision"});
 }
 
 template <typename Stored>

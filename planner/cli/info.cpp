@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+
 #include "brep/health.h"
 #include "brep/read_mesh.h"
 #include "planner/answer.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/scan_in.h"
 #include "planner/figures.h"
-#include "voxel/read_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -39,14 +40,28 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
   return done;
 }
 
-int info_of_scan(const Program& program, const std::filesystem::path& path) {
+/// The series of a DICOM folder, as --series counts them; null of what is none.
+Json series_of(const std::filesystem::path& path, const voxel::Scene& scene) {
+  const bool dicom = std::any_of(scene.audit.begin(), scene.audit.end(),
+                                 [](const voxel::Finding& line) { return line.check == "series"; });
+  if (!dicom) return nullptr;
+  Json list = Json::array();
+  for (const voxel::SeriesEntry& entry : voxel::list_series(path))
+    list.push_back({{"series", list.size() + 1},
+                    {"description", entry.description},
+                    {"modality", entry.modality},
+                    {"number", entry.number},
+                    {"slices", entry.slices},
+                    {"size_px", {entry.size_px.x, entry.size_px.y}},
+                    {"uid", entry.uid}});
+  return list;
+}
+
+int info_of_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in) {
   Timings timings;
-  voxel::Scene scene;
-  {
-    const Stopwatch watch(timings, "read");
-    scene = voxel::read_scene(path);
-  }
-  const Json json = scan_answer(scene, timings);
+  const voxel::Scene scene = read_scan(program, path, in, timings);
+  Json json = scan_answer(scene, timings);
+  json["series"] = series_of(path, scene);
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   const voxel::Range range = voxel::range(scene);
   const glm::ivec3 dims = scene.lattice.dims;
@@ -58,6 +73,11 @@ int info_of_scan(const Program& program, const std::filesystem::path& path) {
                        grouped(spacing_mm.z, 4) + " mm"},
        {"range",
         grouped(range.low, 0) + " to " + grouped(range.high, 0) + (voxel::unit(scene) == "1" ? "" : " HU")}});
+  if (json["series"].size() > 1)
+    for (const Json& series : json["series"])
+      text += "  series " + std::to_string(series["series"].get<int>()) + ": '" +
+              series["description"].get<std::string>() + "', " + series["modality"].get<std::string>() +
+              ", " + std::to_string(series["slices"].get<int>()) + " slices\n";
   for (const voxel::Finding& finding : scene.audit)
     text += "  " + to_string(finding.verdict) + "  " + finding.check + ": " + finding.detail + "\n";
   program.say(json, text);
@@ -68,17 +88,19 @@ int info_of_scan(const Program& program, const std::filesystem::path& path) {
 
 void add_info(Program& program) {
   const auto path = std::make_shared<std::filesystem::path>();
+  const auto in = std::make_shared<ScanIn>();
   CLI::App& verb = program.verb(
       "info",
       "What a file is: a scan's geometry, range and audit; an octree's levels; a mesh's counts and health",
-      "octotomy info head.nrrd --json", [&program, path] {
+      "octotomy info head.nrrd --json", [&program, path, in] {
         if (is_octree(*path)) return info_of_octree(program, *path);
-        return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path);
+        return is_mesh(*path) ? info_of_mesh(program, *path) : info_of_scan(program, *path, *in);
       });
   verb.add_option("file", *path,
                   "A DICOM folder or file, NIfTI, NRRD, MetaImage; .octree; STL, PLY, OBJ, OFF, VTK")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(scan_path());
+  add_scan_options(verb, *in);
 }
 
 }  // namespace octotomy::planner::cli

@@ -119,6 +119,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_look(program);
   cli::add_plan_verbs(program);
   cli::add_info(program);
+  cli::add_convert(program);
   cli::add_measure(program);
   cli::add_picture_verbs(program);
   cli::add_mesh_verbs(program);

@@ -8,7 +8,7 @@
 #include "brep/read_mesh.h"
 #include "convert/isosurface.h"
 #include "planner/answer.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/scan_in.h"
 #include "planner/figures.h"
 #include "voxel/cell_counts.h"
 #include "voxel/combine.h"
@@ -16,7 +16,6 @@
 #include "voxel/measure.h"
 #include "voxel/octree_file.h"
 #include "voxel/partial_volume.h"
-#include "voxel/read_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -25,6 +24,7 @@ struct MeasureText {
   std::filesystem::path file;
   std::string window;
   std::optional<double> voxel_mm;
+  ScanIn scan;
 };
 
 int say(const Program& program, const Json& json) {
@@ -136,11 +136,7 @@ int measure_octree(const Program& program, const MeasureText& text) {
 
 int measure_scan(const Program& program, const MeasureText& text) {
   Timings timings;
-  voxel::Scene scene;
-  {
-    const Stopwatch watch(timings, "read");
-    scene = voxel::read_scene(text.file);
-  }
+  const voxel::Scene scene = read_scan(program, text.file, text.scan, timings);
   std::optional<voxel::GreyOctree> grey;
   {
     const Stopwatch watch(timings, "octree");
@@ -186,11 +182,12 @@ void add_measure(Program& program) {
       });
   verb.add_option("file", text->file, "A scan or grey octree (with --window), an octree, a mesh")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(scan_path());
   verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units");
   verb.add_option("--voxel", text->voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
       ->check(CLI::PositiveNumber);
+  add_scan_options(verb, text->scan);
 }
 
 }  // namespace octotomy::planner::cli

@@ -11,9 +11,8 @@
 #include "convert/isosurface.h"
 #include "convert/tetrahedralise.h"
 #include "planner/answer.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/scan_in.h"
 #include "planner/figures.h"
-#include "voxel/read_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -39,6 +38,7 @@ void check_mesh_extension(const std::filesystem::path& path) {
 struct MeshText {
   std::filesystem::path scan, out;
   std::string window = "300:";
+  ScanIn in;
 };
 
 int mesh(const Program& program, const MeshText& text) {
@@ -46,11 +46,7 @@ int mesh(const Program& program, const MeshText& text) {
   need_folder_of(text.out);
   const WindowText window = parse_window(text.window);
   Timings timings;
-  voxel::Scene scene;
-  {
-    const Stopwatch watch(timings, "read");
-    scene = voxel::read_scene(text.scan);
-  }
+  const voxel::Scene scene = read_scan(program, text.scan, text.in, timings);
   brep::Mesh surface;
   {
     const Stopwatch watch(timings, "isosurface");
@@ -180,7 +176,8 @@ void add_mesh_verbs(Program& program) {
                                      [&program, to_mesh] { return mesh(program, *to_mesh); });
   mesh_verb.add_option("scan", to_mesh->scan, "A DICOM folder or file, NIfTI, NRRD or MetaImage")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(scan_path());
+  add_scan_options(mesh_verb, to_mesh->in);
   mesh_verb.add_option("-o,--out", to_mesh->out, "A .stl, .ply, .obj or .off file")->required();
   mesh_verb.add_option("--window", to_mesh->window, "LOW:HIGH or LOW: in sample units")
       ->capture_default_str();

@@ -5,11 +5,11 @@
 #include <fstream>
 
 #include "planner/cli/octree_out.h"
+#include "planner/cli/scan_in.h"
 #include "planner/octree_answer.h"
 #include "planner/representation.h"
 #include "voxel/combine.h"
 #include "voxel/expression.h"
-#include "voxel/read_scene.h"
 #include "voxel/staging.h"
 
 namespace octotomy::planner::cli {
@@ -34,6 +34,7 @@ struct OctreeText {
   bool grey = false;
   std::optional<int> depth;
   std::optional<double> voxel_mm;
+  ScanIn scan;
 };
 
 voxel::Octree windowed(const voxel::GreyOctree& grey, const WindowText& window) {
@@ -81,7 +82,7 @@ voxel::OctreeFile from_octree(const OctreeText& text, Timings& timings) {
   return {windowed(*grey, parse_window(text.window)), file.name, file.metadata};
 }
 
-voxel::OctreeFile from_scan(const OctreeText& text, Timings& timings) {
+voxel::OctreeFile from_scan(const Program& program, const OctreeText& text, Timings& timings) {
   if (is_mesh(text.in))
     throw std::runtime_error(text.in.string() + ": is a mesh: octotomy voxelise makes an octree of one");
   if (text.window.empty() && !text.grey)
@@ -90,11 +91,7 @@ voxel::OctreeFile from_scan(const OctreeText& text, Timings& timings) {
                              "--window 300:, or --grey for all samples");
   std::optional<WindowText> window;
   if (!text.window.empty()) window = parse_window(text.window);
-  voxel::Scene scene;
-  {
-    const Stopwatch watch(timings, "read");
-    scene = voxel::read_scene(text.in);
-  }
+  const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   const Stopwatch watch(timings, "octree");
   const voxel::Universe universe = universe_of(scene.lattice, text.voxel_mm);
   const voxel::GreyOctree grey = voxel::grey_octree_of(universe, scene);
@@ -145,7 +142,7 @@ int octree(const Program& program, const OctreeText& text) {
   Timings timings;
   const voxel::OctreeFile file = !text.from.empty()   ? from_representation(text, timings)
                                  : is_octree(text.in) ? from_octree(text, timings)
-                                                      : from_scan(text, timings);
+                                                      : from_scan(program, text, timings);
   return text.as.empty() ? write_and_say(program, file, text.out, timings)
                          : export_as(program, text, file, timings);
 }
@@ -162,7 +159,7 @@ void add_octree(Program& program) {
       [&program, to_build] { return octree(program, *to_build); });
   build.add_option("file", to_build->in, "A scan, an .octree file, or with --from a representation")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(scan_path());
   build.add_option("-o,--out", to_build->out, "An .octree file, or with --as the representation's")
       ->required();
   build.add_option("--window", to_build->window, "LOW:HIGH or LOW: in sample units: a binary octree");
@@ -182,6 +179,7 @@ void add_octree(Program& program) {
   build.add_option("--depth", to_build->depth, "With --from: the universe has 2^N voxels a side")
       ->check(CLI::Range(2, voxel::Universe::max_depth))
       ->type_name("N");
+  add_scan_options(build, to_build->scan);
 }
 
 }  // namespace octotomy::planner::cli

@@ -42,6 +42,7 @@ struct Program {
 void warn(const std::string& line);
 
 void add_info(Program& program);
+void add_convert(Program& program);
 void add_phantom(Program& program);
 void add_plan_verbs(Program& program);
 void add_look(Program& program);

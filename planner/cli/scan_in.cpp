@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/scan_in.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace octotomy::planner::cli {
+namespace {
+
+glm::dvec3 spacing_of(const std::string& text) {
+  glm::dvec3 spacing_mm(0.0);
+  const char* at = text.c_str();
+  for (int axis = 0; axis < 3; ++axis) {
+    char* end = nullptr;
+    spacing_mm[axis] = std::strtod(at, &end);
+    const bool read = end != at && spacing_mm[axis] > 0.0 && std::isfinite(spacing_mm[axis]);
+    if (!read || *end != (axis < 2 ? ',' : '\0'))
+      throw CLI::ValidationError("--spacing",
+                                 "'" + text + "' is no spacing: give X,Y,Z in mm, for example 0.5,0.5,1");
+    at = end + 1;
+  }
+  return spacing_mm;
+}
+
+voxel::RawLayout layout_of(const ScanIn& in) {
+  voxel::RawLayout layout;
+  char rest = 0;
+  if (std::sscanf(in.raw[0].c_str(), "%dx%dx%d%c", &layout.dims.x, &layout.dims.y, &layout.dims.z, &rest) !=
+          3 ||
+      layout.dims.x < 1 || layout.dims.y < 1 || layout.dims.z < 1)
+    throw CLI::ValidationError("--raw",
+                               "'" + in.raw[0] + "' are no dims: give XxYxZ, for example 512x512x300");
+  const std::optional<voxel::SampleType> type = voxel::sample_type(in.raw[1]);
+  if (!type)
+    throw CLI::ValidationError("--raw", "'" + in.raw[1] +
+                                            "' is no type of samples: int8, uint8, int16, uint16, int32, "
+                                            "uint32, int64, uint64, float or double");
+  layout.type = *type;
+  layout.big_endian = in.big_endian;
+  layout.offset = in.offset;
+  return layout;
+}
+
+}  // namespace
+
+void add_scan_options(CLI::App& verb, ScanIn& in) {
+  const std::string group = "scan";
+  verb.add_option("--series", in.series,
+                  "Of a folder with several DICOM series: its number, UID or a part of its description")
+      ->group(group);
+  verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, of images and raw files, which do not say it")
+      ->group(group);
+  verb.add_option("--raw", in.raw, "XxYxZ TYPE: the file is raw samples, for example 512x512x300 int16")
+      ->expected(2)
+      ->group(group);
+  verb.add_flag("--big-endian", in.big_endian, "Raw samples have their high bytes first")->group(group);
+  verb.add_option("--offset", in.offset, "Bytes before the first raw sample")->group(group);
+}
+
+CLI::Validator scan_path() {
+  return {[](std::string& text) {
+            const bool pattern =
+                std::filesystem::path(text).filename().string().find_first_of("*?") != std::string::npos;
+            return pattern || std::filesystem::exists(text) ? std::string() : "Path does not exist: " + text;
+          },
+          "SCAN"};
+}
+
+voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
+  voxel::ReadOptions options;
+  options.series = in.series;
+  if (!in.spacing.empty()) options.spacing_mm = spacing_of(in.spacing);
+  if (!in.raw.empty()) options.raw = layout_of(in);
+  if (in.raw.empty() && (in.big_endian || in.offset != 0))
+    throw CLI::ValidationError("--offset", "--offset and --big-endian are of raw files: give --raw too");
+  options.stop = program.stop.get_token();
+  if (const auto progress = program.progress())
+    options.progress = [progress](double fraction) { progress("reading", fraction); };
+  return options;
+}
+
+voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
+                       Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  return voxel::read_scene(path, read_options(program, in));
+}
+
+}  // namespace octotomy::planner::cli

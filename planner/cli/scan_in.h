@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/cli/verb.h"
+#include "voxel/read_scene.h"
+
+// What the verbs that read a scan have in common.
+namespace octotomy::planner::cli {
+
+/// The options about it, as text.
+struct ScanIn {
+  std::string series, spacing;
+  std::vector<std::string> raw;  ///< DIMS TYPE
+  bool big_endian = false;
+  std::uint64_t offset = 0;
+};
+
+/// Adds --series, --spacing, --raw, --big-endian and --offset to a verb's help.
+void add_scan_options(CLI::App& verb, ScanIn& in);
+
+/// A path that is there, or a pattern of image files.
+CLI::Validator scan_path();
+
+/// Throws CLI::ValidationError where an option cannot be understood.
+voxel::ReadOptions read_options(const Program& program, const ScanIn& in);
+
+/// Reads the scan; "read" in the timings, progress on a terminal. Throws as voxel::read_scene().
+voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
+                       Timings& timings);
+
+}  // namespace octotomy::planner::cli

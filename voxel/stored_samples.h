@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "voxel/scene.h"
+
+namespace octotomy::voxel {
+
+/// Types that files hold samples in.
+enum class SampleType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float, Double };
+std::size_t bytes_of(SampleType type);
+/// "int16", "uint8", "float", "double", ...; none where the word is no type.
+std::optional<SampleType> sample_type(std::string_view word);
+
+/// How stored samples become values: slope * stored + intercept.
+struct StoredSamples {
+  SampleType type = SampleType::Int16;
+  bool big_endian = false;
+  double slope = 1.0;
+  double intercept = 0.0;
+};
+/// Reads samples from bytes as take_samples() takes them. Precondition: as many bytes as the scene's lattice
+/// has samples of the type. Throws as take_samples().
+void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene& scene);
+
+/// The samples as int16 where each is an integer of its range, else as float; the audit says what had to be
+/// changed. Throws std::runtime_error, without a path, where no sample is a finite number.
+template <typename Stored>
+void take_samples(const std::vector<Stored>& stored, Scene& scene) {
+  constexpr double int16_low = std::numeric_limits<std::int16_t>::min();
+  constexpr double int16_high = std::numeric_limits<std::int16_t>::max();
+  std::size_t unreal_count = 0;
+  bool fits = true;
+  bool is_exact = true;
+  double low = std::numeric_limits<double>::infinity();
+  for (const Stored value : stored) {
+    const auto real = static_cast<double>(value);
+    if (!std::isfinite(real)) {
+      ++unreal_count;
+      continue;
+    }
+    fits = fits && real >= int16_low && real <= int16_high && real == std::trunc(real);
+    is_exact = is_exact && static_cast<double>(static_cast<float>(real)) == real;
+    low = std::min(low, real);
+  }
+  if (unreal_count == stored.size()) throw std::runtime_error("no sample is a finite number");
+  if (unreal_count > 0)
+    scene.audit.push_back({"finite", Verdict::Warn,
+                           std::to_string(unreal_count) +
+                               " samples are no finite numbers; they take the lowest "
+                               "value, " +
+                               std::to_string(low)});
+  const auto convert = [&](auto& samples) {
+    using Sample = typename std::decay_t<decltype(samples)>::value_type;
+    samples.resize(stored.size());
+    std::transform(stored.begin(), stored.end(), samples.begin(), [&](Stored value) {
+      return static_cast<Sample>(std::isfinite(static_cast<double>(value)) ? static_cast<double>(value)
+                                                                           : low);
+    });
+  };
+  if (fits) {
+    convert(scene.samples.emplace<std::vector<std::int16_t>>());
+    return;
+  }
+  convert(scene.samples.emplace<std::vector<float>>());
+  if (!is_exact)
+    scene.audit.push_back({"precision", Verdict::Warn, "samples are rounded to single precision"});
+}
+
+}  // namespace octotomy::voxel
