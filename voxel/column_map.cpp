@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "voxel/octree_node.h"
@@ -19,7 +20,75 @@ double sample_at(const GreyOctree& grey, const glm::ivec3& voxel) {
               [static_cast<std::size_t>(child_index(bit.x, bit.y, bit.z))];
 }
 
+/// Where a row or column of pixels falls among the map's columns.
+struct Place {
+  int nearest = -1;  ///< -1: outside
+  int low = 0, high = 0;
+  float low_weight = 0.0f, high_weight = 0.0f;
+};
+
+std::vector<Place> places(int pixel_count, double first, double per_px, int side) {
+  std::vector<Place> places(static_cast<std::size_t>(pixel_count));
+  for (int i = 0; i < pixel_count; ++i) {
+    const double at = first + (i + 0.5) * per_px;
+    const double nearest = std::floor(at + 0.5);
+    if (!(nearest >= 0.0 && nearest < side)) continue;
+    const double low = std::floor(at);
+    const auto t = static_cast<float>(at - low);
+    Place& place = places[static_cast<std::size_t>(i)];
+    place.nearest = static_cast<int>(nearest);
+    // Beyond the map there is nothing to weigh.
+    place.low = std::max(0, static_cast<int>(low));
+    place.high = std::min(side - 1, static_cast<int>(low) + 1);
+    place.low_weight = low >= 0.0 ? 1.0f - t : 0.0f;
+    place.high_weight = low + 1.0 < side ? t : 0.0f;
+  }
+  return places;
+}
+
 }  // namespace
+
+DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRays& rays,
+                      const glm::ivec2& size_px) {
+  DepthImage image{size_px, {}};
+  image.pixels.resize(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y));
+  const std::vector<Place> across =
+      places(size_px.x, rays.first[axes.axis[0]], rays.per_px_x[axes.axis[0]], map.side);
+  const std::vector<Place> down =
+      places(size_px.y, rays.first[axes.axis[1]], rays.per_px_y[axes.axis[1]], map.side);
+  const auto limit_mm = static_cast<float>(break_mm(std::max(map.spacing_mm.x, map.spacing_mm.y)));
+  tbb::parallel_for(tbb::blocked_range<int>(0, size_px.y, 8), [&](const tbb::blocked_range<int>& range) {
+    for (int y = range.begin(); y < range.end(); ++y) {
+      const Place& j = down[static_cast<std::size_t>(y)];
+      if (j.nearest < 0) continue;
+      const Seen* const nearest = &map.at(0, j.nearest);
+      const Seen* const low = &map.at(0, j.low);
+      const Seen* const high = &map.at(0, j.high);
+      Seen* const pixel = &image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x)];
+      for (std::size_t x = 0; x < across.size(); ++x) {
+        const Place& i = across[x];
+        if (i.nearest < 0 || !nearest[i.nearest].lit()) continue;
+        const Seen answer = nearest[i.nearest];
+        float sum = 0.0f;
+        float weights = 0.0f;
+        const auto weigh = [&](const Seen& other, float weight) {
+          const bool goes_on =
+              other.object == answer.object && std::abs(other.depth_mm - answer.depth_mm) <= limit_mm;
+          weight = goes_on ? weight : 0.0f;
+          sum += goes_on ? weight * (other.depth_mm - answer.depth_mm) : 0.0f;
+          weights += weight;
+        };
+        weigh(low[i.low], j.low_weight * i.low_weight);
+        weigh(low[i.high], j.low_weight * i.high_weight);
+        weigh(high[i.low], j.high_weight * i.low_weight);
+        weigh(high[i.high], j.high_weight * i.high_weight);
+        // The nearest column itself has a weight of a quarter at least.
+        pixel[x] = {answer.depth_mm + sum / weights, answer.object, answer.stepped};
+      }
+    }
+  });
+  return image;
+}
 
 Seen seen_in_column(const Drawn& object, const AxisView& axes, const glm::ivec2& column, int before) {
   const Universe& universe = object.octree.universe();

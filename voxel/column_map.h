@@ -30,6 +30,11 @@ struct ColumnMap {
   Seen seen(const glm::dvec2& column) const;
 };
 
+/// The picture of a map: what seen() says at every pixel's centre, to the precision of float. Precondition:
+/// rays of the view that the axes are of. Parallel over rows.
+DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRays& rays,
+                      const glm::ivec2& size_px);
+
 /// A column's depth in millimetres where its first voxel lies `before` voxels behind the universe's front
 /// face. With Drawn::grey it is where the threshold is crossed between the centre of the last voxel outside
 /// and the first inside (thesis 5.2.2.2), also where the node before is a partial one, for it is the voxel

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <tbb/parallel_for.h>
 
 #include "voxel/octree_node.h"
@@ -254,31 +255,60 @@ class TileTrace {
   std::array<std::vector<Part>, max_height + 1> parts_;
 };
 
-double sample_at(const GreyOctree& grey, const glm::ivec3& voxel) {
-  const glm::ivec3 leaf = (voxel >> 2) & 3;
-  const glm::ivec3 bit = voxel & 3;
-  return grey.brick(voxel >> 4)
-      .samples[static_cast<std::size_t>(child_index(leaf.x, leaf.y, leaf.z))]
-              [static_cast<std::size_t>(child_index(bit.x, bit.y, bit.z))];
-}
-
-/// Pass 2 for one column: from the number of the first voxel to millimetres.
-void interpolate_depth(Seen& seen, const std::vector<Drawn>& objects, const TracedFrame& frame, int p, int q,
-                       double spacing_mm) {
-  const Drawn& object = objects[static_cast<std::size_t>(seen.object)];
-  const int d = static_cast<int>(seen.depth_mm);
-  double depth_voxels = d;
-  if (object.grey && d > 0) {
-    const double inside = sample_at(*object.grey, frame.voxel(p, q, d));
-    const double outside = sample_at(*object.grey, frame.voxel(p, q, d - 1));
-    if (outside < object.threshold && object.threshold <= inside) {
-      // Voxel centres are half a voxel behind their front faces.
-      depth_voxels = d - 0.5 + (object.threshold - outside) / (inside - outside);
-      seen.stepped = false;
+/// Reads samples of a grey octree, next to each other for the most part.
+class SampleReader {
+ public:
+  explicit SampleReader(const GreyOctree& grey) : grey_(&grey) {}
+  float at(const glm::ivec3& voxel) {
+    const glm::ivec3 block = voxel >> 4;
+    if (block != block_) {
+      block_ = block;
+      brick_ = &grey_->brick(block);
     }
+    const glm::ivec3 leaf = (voxel >> 2) & 3;
+    const glm::ivec3 bit = voxel & 3;
+    return brick_->samples[static_cast<std::size_t>(child_index(leaf.x, leaf.y, leaf.z))]
+                          [static_cast<std::size_t>(child_index(bit.x, bit.y, bit.z))];
   }
-  seen.depth_mm = static_cast<float>(depth_voxels * spacing_mm);
-}
+
+ private:
+  const GreyOctree* grey_;
+  const GreyBrick* brick_ = nullptr;
+  glm::ivec3 block_{-1};
+};
+
+/// Pass 2 for a tile: from the numbers of the first voxels to millimetres.
+class Depths {
+ public:
+  Depths(const std::vector<Drawn>& objects, const TracedFrame& frame, double spacing_mm)
+      : objects_(objects), frame_(frame), spacing_mm_(spacing_mm) {
+    for (const Drawn& object : objects)
+      readers_.push_back(object.grey ? std::optional<SampleReader>(*object.grey) : std::nullopt);
+  }
+
+  void interpolate(Seen& seen, int p, int q) {
+    const auto object = static_cast<std::size_t>(seen.object);
+    const int d = static_cast<int>(seen.depth_mm);
+    double depth_voxels = d;
+    if (readers_[object] && d > 0) {
+      const double threshold = objects_[object].threshold;
+      const double inside = readers_[object]->at(frame_.voxel(p, q, d));
+      const double outside = readers_[object]->at(frame_.voxel(p, q, d - 1));
+      if (outside < threshold && threshold <= inside) {
+        // Voxel centres are half a voxel behind their front faces.
+        depth_voxels = d - 0.5 + (threshold - outside) / (inside - outside);
+        seen.stepped = false;
+      }
+    }
+    seen.depth_mm = static_cast<float>(depth_voxels * spacing_mm_);
+  }
+
+ private:
+  const std::vector<Drawn>& objects_;
+  const TracedFrame& frame_;
+  double spacing_mm_;
+  std::vector<std::optional<SampleReader>> readers_;
+};
 
 }  // namespace
 
@@ -296,6 +326,7 @@ ColumnMap node_trace(const std::vector<Drawn>& objects, const AxisView& axes) {
     // 1. Find the first voxel of every column.
     TileTrace(objects, frame, tile_p, tile_q, map.columns).run();
     // 2. Turn it into a depth, leaf by leaf so that a leaf's samples are met together.
+    Depths depths(objects, frame, spacing_mm[frame.look]);
     const int last_p = std::min(tile_p + tile_side, frame.side);
     const int last_q = std::min(tile_q + tile_side, frame.side);
     for (int leaf_q = tile_q; leaf_q < last_q; leaf_q += 4)
@@ -304,7 +335,7 @@ ColumnMap node_trace(const std::vector<Drawn>& objects, const AxisView& axes) {
           const int p = leaf_p + (column & 3);
           const int q = leaf_q + (column >> 2);
           Seen& seen = map.columns[frame.entry(p, q)];
-          if (seen.lit()) interpolate_depth(seen, objects, frame, p, q, spacing_mm[frame.look]);
+          if (seen.lit()) depths.interpolate(seen, p, q);
         }
   });
   return map;

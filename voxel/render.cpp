@@ -127,7 +127,7 @@ Drawing drawing_of_columns(ColumnMap columns, const AxisView& axes, const VoxelR
     const glm::dvec3 p_voxel = rays.start(p_px);
     return map->seen({p_voxel[axes.axis[0]], p_voxel[axes.axis[1]]});
   };
-  return {sample(size_px, seen_at), seen_at};
+  return {picture_of(*map, axes, rays, size_px), seen_at};
 }
 
 /// The surface that samples show about the voxels' faces that were found.
@@ -251,6 +251,15 @@ float middle_mm(const DepthImage& image) {
   return *middle;
 }
 
+/// Lets the object `number`, seen by itself, be what is seen where it is nearer.
+void take_nearer(const DepthImage& own, std::int16_t number, DepthImage& image) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (!own.pixels[i].lit() || own.pixels[i].depth_mm >= image.pixels[i].depth_mm) continue;
+    image.pixels[i] = own.pixels[i];
+    image.pixels[i].object = number;
+  }
+}
+
 void compose(const std::vector<Drawn>& objects, const ImagePlane& plane, const RenderOptions& options,
              Picture& picture) {
   const Parted parts = parted(objects, options);
@@ -262,8 +271,9 @@ void compose(const std::vector<Drawn>& objects, const ImagePlane& plane, const R
     opaque.rgb = shade(opaque.image, scenery_of(objects, plane, options));
   } else {
     opaque = layer_of(parts.opaque, plane, options, picture.algorithm, visits);
-    for (Seen& seen : opaque.image.pixels)
-      if (seen.lit()) seen.object = parts.opaque_numbers[static_cast<std::size_t>(seen.object)];
+    if (parts.opaque.size() < objects.size())
+      for (Seen& seen : opaque.image.pixels)
+        if (seen.lit()) seen.object = parts.opaque_numbers[static_cast<std::size_t>(seen.object)];
   }
   picture.rgb = std::move(opaque.rgb);
   std::vector<std::pair<Layer, std::int16_t>> layers;
@@ -274,22 +284,20 @@ void compose(const std::vector<Drawn>& objects, const ImagePlane& plane, const R
   std::stable_sort(layers.begin(), layers.end(), [](const auto& a, const auto& b) {
     return middle_mm(a.first.image) > middle_mm(b.first.image);
   });
-  const DepthImage behind = opaque.image;
-  for (const auto& [layer, number] : layers) {
-    const float opacity = objects[static_cast<std::size_t>(number)].opacity;
-    lay_over(layer, opacity, behind, picture.rgb);
-    for (std::size_t i = 0; i < opaque.image.pixels.size(); ++i) {
-      const Seen& seen = layer.image.pixels[i];
-      if (opacity < 0.5f || !seen.lit() || seen.depth_mm >= opaque.image.pixels[i].depth_mm) continue;
-      opaque.image.pixels[i] = seen;
-      opaque.image.pixels[i].object = number;
+  if (!layers.empty()) {
+    const DepthImage behind = opaque.image;
+    for (const auto& [layer, number] : layers) {
+      const float opacity = objects[static_cast<std::size_t>(number)].opacity;
+      lay_over(layer, opacity, behind, picture.rgb);
+      if (opacity >= 0.5f) take_nearer(layer.image, number, opaque.image);
     }
   }
-  picture.depth_mm.reserve(opaque.image.pixels.size());
-  picture.object.reserve(opaque.image.pixels.size());
-  for (const Seen& seen : opaque.image.pixels) {
-    picture.depth_mm.push_back(seen.depth_mm);
-    picture.object.push_back(seen.object);
+  picture.depth_mm.resize(opaque.image.pixels.size());
+  picture.object.resize(opaque.image.pixels.size());
+  for (std::size_t i = 0; i < opaque.image.pixels.size(); ++i) {
+    const Seen& seen = opaque.image.pixels[i];
+    picture.depth_mm[i] = seen.depth_mm;
+    picture.object[i] = seen.object;
     picture.lit_pixels += seen.lit() ? 1 : 0;
   }
 }

@@ -5,341 +5,150 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "voxel/depth_plane.h"
 #include "voxel/surface_break.h"
+#include "voxel/surroundings.h"
+#include "voxel/tone.h"
+#include "voxel/vector_clones.h"
 
 // Passes over flat planes of floats, each in parallel over rows:
-// 1 copy depths into a plane with a margin of background; 2 smooth, steps more than the rest; 3 slopes; 4 the
-// mean depth about every cell of 4 x 4 pixels; 5 light every pixel from slope, depth and mean depth.
+// 1 smoothed depths (depth_plane.h); 2 slopes; 3 the mean depth about every cell of 4 x 4 pixels
+// (surroundings.h); 4 light every pixel from slope, depth and mean depth; 5 tone it.
 //
 // Departures from Gordon and Reynolds: weights fall smoothly to nothing instead of in three pieces, and three
-// parallel differences are averaged. Smoothing keeps planes, since it only ever averages two pixels on
-// opposite sides, and keeps every depth within the voxel that it was found in (after Gibson 1998, constrained
-// elastic surface nets).
+// parallel differences are averaged.
 
 namespace octotomy::voxel {
 namespace {
 
-/// Depth of pixels that see nothing: beyond every universe, small enough for differences to stay exact zeros
-/// when weighted with zero.
-constexpr float beyond_mm = 1e9f;
-constexpr float surely_lit_mm = 0.5f * beyond_mm;
-
-/// A plane of values with a margin on all sides.
-struct Plane {
-  Plane(const glm::ivec2& size, int margin_px, float value)
-      : width(size.x + 2 * margin_px),
-        margin(margin_px),
-        values(static_cast<std::size_t>(width) * static_cast<std::size_t>(size.y + 2 * margin_px), value) {}
-  /// Pixel 0 of a row; rows and pixels may reach into the margin.
-  float* row(int y) { return values.data() + offset(y); }
-  const float* row(int y) const { return values.data() + offset(y); }
-  std::ptrdiff_t offset(int y) const { return static_cast<std::ptrdiff_t>(y + margin) * width + margin; }
-
-  int width;
-  int margin;
-  std::vector<float> values;
-};
-
-/// Pixels between the points of a difference: those to a voxel, one at least. Closer, the difference would
-/// see single facets of the interpolation.
-int stride_px(const Scenery& scenery) {
-  return std::clamp(static_cast<int>(std::lround(scenery.voxel_mm / scenery.pixel_mm)), 1, 64);
-}
-
-/// Taps of smoothing on each side, a voxel apart: so that a slope with a step every four voxels becomes a
-/// plane, and waves as long as slices four voxels thick leave them in interpolated depths are flattened.
-constexpr int smoothing_taps = 4;
-
-/// One pass of smoothing along x or y: the mean over pairs of pixels at equal distance on both sides that
-/// continue the surface, weighted by a triangle.
-class Smoothing {
- public:
-  explicit Smoothing(const Scenery& scenery)
-      : step_(stride_px(scenery)),
-        band_mm_(static_cast<float>(0.5 * scenery.voxel_mm)),
-        limit_mm_(static_cast<float>(break_mm(step_ * scenery.pixel_mm) / 2.0)) {}
-
-  int reach_px() const { return smoothing_taps * step_; }
-
-  /// The depth at `here`, whose neighbours along the line are `stride` values apart and which was found at
-  /// `found_mm`. Values as far as reach_px() must be there on both sides.
-  float depth(const float* here, std::ptrdiff_t stride, float found_mm) const {
-    const float centre = *here;
-    float sum = static_cast<float>(smoothing_taps + 1) * centre;
-    auto weights = static_cast<float>(smoothing_taps + 1);
-    for (int tap = 1; tap <= smoothing_taps; ++tap) {
-      const float one = here[tap * step_ * stride];
-      const float other = here[-tap * step_ * stride];
-      const float limit = limit_mm_ * static_cast<float>(tap);
-      if (std::abs(one - centre) > limit || std::abs(other - centre) > limit) break;
-      const auto weight = static_cast<float>(smoothing_taps + 1 - tap);
-      sum += weight * (one + other);
-      weights += 2.0f * weight;
-    }
-    return std::clamp(sum / weights, found_mm - band_mm_, found_mm + band_mm_);
-  }
-
- private:
-  int step_;       ///< pixels between taps
-  float band_mm_;  ///< how far a depth may be moved
-  float limit_mm_;
-};
-
-/// Passes along x and y, then for what is stepped once more.
-void smooth(const DepthImage& image, const Smoothing& smoothing, bool any_stepped, Plane& depth) {
-  const Plane original = depth;
-  Plane between = depth;
-  for (int pass = 0; pass < (any_stepped ? 4 : 2); ++pass) {
-    const bool along_x = pass % 2 == 0;
-    const Plane& from = along_x ? depth : between;
-    Plane& to = along_x ? between : depth;
-    const std::ptrdiff_t stride = along_x ? 1 : depth.width;
-    tbb::parallel_for(0, image.size_px.y, [&](int y) {
-      const float* here = from.row(y);
-      const float* found = original.row(y);
-      for (int x = 0; x < image.size_px.x; ++x) {
-        const Seen& seen = image.at(x, y);
-        if (!seen.lit()) continue;
-        to.row(y)[x] = seen.stepped || pass < 2 ? smoothing.depth(here + x, stride, found[x]) : here[x];
-      }
-    });
-  }
-}
-
-/// Passes 1 and 2.
-Plane depth_plane(const DepthImage& image, const Scenery& scenery) {
-  const Smoothing smoothing(scenery);
-  Plane depth(image.size_px, smoothing.reach_px(), beyond_mm);
-  std::vector<std::uint8_t> stepped(static_cast<std::size_t>(image.size_px.y), 0);
-  tbb::parallel_for(0, image.size_px.y, [&](int y) {
-    float* row = depth.row(y);
-    bool any = false;
-    for (int x = 0; x < image.size_px.x; ++x) {
-      const Seen& seen = image.at(x, y);
-      row[x] = seen.lit() ? seen.depth_mm : beyond_mm;
-      any = any || seen.stepped;
-    }
-    stepped[static_cast<std::size_t>(y)] = any ? 1 : 0;
-  });
-  smooth(image, smoothing, std::find(stepped.begin(), stepped.end(), 1) != stepped.end(), depth);
-  return depth;
-}
-
-/// A weighted sum of differences.
-struct Mean {
-  float sum = 0.0f;
-  float weights = 0.0f;
-};
-
 /// The weight of a difference of depth, given 1 / limit^2: one for none, next to nothing from the limit on.
 /// Next to nothing still lets a slope steeper than the limit be seen where no other difference is at hand.
-float continuity(float difference, float per_limit2) {
+inline float continuity(float difference, float per_limit2) {
   const float relative = 1.0f - difference * difference * per_limit2;
   const float weight = relative > 1e-4f ? relative : 1e-4f;
   return std::abs(difference) < surely_lit_mm ? weight : 0.0f;
 }
 
-void add(Mean& mean, float difference, float weight, float per_limit2) {
-  const float w = weight * continuity(difference, per_limit2);
-  mean.sum += w * difference;
-  mean.weights += w;
-}
-
-/// Pass 3 for one row, in millimetres of depth for one stride.
-void slope_row(const Plane& depth, int y, int width, int stride, float limit_mm, float* to_right,
-               float* to_top) {
-  const float per_limit2 = 1.0f / (limit_mm * limit_mm);
-  const float* above = depth.row(y - stride);
-  const float* here = depth.row(y);
-  const float* below = depth.row(y + stride);
-  for (int x = 0; x < width; ++x) {
-    const float centre = here[x];
-    const float side_above = continuity(above[x] - centre, per_limit2);
-    const float side_below = continuity(below[x] - centre, per_limit2);
-    const float side_left = continuity(here[x - stride] - centre, per_limit2);
-    const float side_right = continuity(here[x + stride] - centre, per_limit2);
-    Mean right;
-    add(right, here[x + stride] - centre, 2.0f, per_limit2);
-    add(right, centre - here[x - stride], 2.0f, per_limit2);
-    add(right, above[x + stride] - above[x], side_above, per_limit2);
-    add(right, above[x] - above[x - stride], side_above, per_limit2);
-    add(right, below[x + stride] - below[x], side_below, per_limit2);
-    add(right, below[x] - below[x - stride], side_below, per_limit2);
-    Mean top;
-    add(top, above[x] - centre, 2.0f, per_limit2);
-    add(top, centre - below[x], 2.0f, per_limit2);
-    add(top, above[x - stride] - here[x - stride], side_left, per_limit2);
-    add(top, here[x - stride] - below[x - stride], side_left, per_limit2);
-    add(top, above[x + stride] - here[x + stride], side_right, per_limit2);
-    add(top, here[x + stride] - below[x + stride], side_right, per_limit2);
-    to_right[x] = right.sum / (right.weights + 1e-20f);
-    to_top[x] = top.sum / (top.weights + 1e-20f);
-  }
-}
-
-/// Pass 4: mean depth of what is lit about a pixel, on a grid of cells.
-class Surroundings {
- public:
-  static constexpr int cell_px = 4;
-
-  Surroundings(const Plane& depth, const glm::ivec2& size_px)
-      : cells_((size_px + (cell_px - 1)) / cell_px), sums_(count()), lit_(count()) {
-    tbb::parallel_for(0, cells_.y, [&](int cell_y) {
-      for (int y = cell_y * cell_px; y < std::min((cell_y + 1) * cell_px, size_px.y); ++y) {
-        const float* row = depth.row(y);
-        for (int x = 0; x < size_px.x; ++x)
-          if (row[x] < surely_lit_mm) {
-            sums_[index(x / cell_px, cell_y)] += row[x];
-            lit_[index(x / cell_px, cell_y)] += 1.0f;
-          }
-      }
-    });
-    // A fortieth of the picture on each side, twice.
-    const int reach = std::max(1, std::max(size_px.x, size_px.y) / (40 * cell_px));
-    for (int pass = 0; pass < 2; ++pass) {
-      blur(sums_, reach);
-      blur(lit_, reach);
-    }
-    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] = lit_[i] > 0.0f ? sums_[i] / lit_[i] : 0.0f;
-  }
-
-  /// Precondition: the pixel is lit.
-  float mean_mm(int x, int y) const {
-    const auto along = [](int pixel, int cells, int& low, float& t) {
-      const float at = std::clamp((static_cast<float>(pixel) + 0.5f) / static_cast<float>(cell_px) - 0.5f,
-                                  0.0f, static_cast<float>(cells - 1));
-      low = std::min(static_cast<int>(at), std::max(cells - 2, 0));
-      t = at - static_cast<float>(low);
-    };
-    int i = 0;
-    int j = 0;
-    float s = 0.0f;
-    float t = 0.0f;
-    along(x, cells_.x, i, s);
-    along(y, cells_.y, j, t);
-    float sum = 0.0f;
-    float weights = 0.0f;
-    for (int corner = 0; corner < 4; ++corner) {
-      const int ci = std::min(i + (corner & 1), cells_.x - 1);
-      const int cj = std::min(j + (corner >> 1), cells_.y - 1);
-      const float weight = lit_[index(ci, cj)] > 0.0f
-                               ? ((corner & 1) != 0 ? s : 1.0f - s) * ((corner >> 1) != 0 ? t : 1.0f - t)
-                               : 0.0f;
-      sum += weight * sums_[index(ci, cj)];
-      weights += weight;
-    }
-    return sum / weights;
-  }
-
- private:
-  std::size_t count() const {
-    return static_cast<std::size_t>(cells_.x) * static_cast<std::size_t>(cells_.y);
-  }
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(cells_.x) + static_cast<std::size_t>(x);
-  }
-  /// Sums over 2 reach + 1 cells along x, then y.
-  void blur(std::vector<float>& values, int reach) const {
-    std::vector<float> between(values.size());
-    for (int y = 0; y < cells_.y; ++y)
-      for (int x = 0; x < cells_.x; ++x) {
-        float sum = 0.0f;
-        for (int i = std::max(0, x - reach); i <= std::min(cells_.x - 1, x + reach); ++i)
-          sum += values[index(i, y)];
-        between[index(x, y)] = sum;
-      }
-    std::fill(values.begin(), values.end(), 0.0f);
-    for (int y = 0; y < cells_.y; ++y)
-      for (int j = std::max(0, y - reach); j <= std::min(cells_.y - 1, y + reach); ++j)
-        for (int x = 0; x < cells_.x; ++x) values[index(x, y)] += between[index(x, j)];
-  }
-
-  glm::ivec2 cells_;
-  std::vector<float> sums_;
-  std::vector<float> lit_;
+/// Depths of three rows, `stride` apart, and how slopes are made of them.
+struct SlopeRows {
+  const float* above = nullptr;
+  const float* here = nullptr;
+  const float* below = nullptr;
+  int stride = 1;
+  float per_limit2 = 1.0f;
+  float per_mm = 1.0f;  ///< 1 / the length of a stride
 };
 
-float linear_from_srgb(float value) {
-  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-}
-float srgb_from_linear(float value) {
-  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+/// Pass 2 for the pixels of one row from `first` up to `last`, without unit.
+OCTOTOMY_VECTOR_CLONES void slope_row(const SlopeRows& rows, int first, int last, float* __restrict to_right,
+                                      float* __restrict to_top) {
+  const float* const above = rows.above;
+  const float* const here = rows.here;
+  const float* const below = rows.below;
+  const int stride = rows.stride;
+  const float per_limit2 = rows.per_limit2;
+  const float per_mm = rows.per_mm;
+  for (int x = first; x < last; ++x) {
+    const float c = here[x], l = here[x - stride], r = here[x + stride];
+    const float a = above[x], al = above[x - stride], ar = above[x + stride];
+    const float b = below[x], bl = below[x - stride], br = below[x + stride];
+    // Weights of the four differences to the centre serve both directions.
+    const float to_l = continuity(c - l, per_limit2), to_r = continuity(r - c, per_limit2);
+    const float to_a = continuity(a - c, per_limit2), to_b = continuity(c - b, per_limit2);
+    const float r1 = to_a * continuity(ar - a, per_limit2), r2 = to_a * continuity(a - al, per_limit2);
+    const float r3 = to_b * continuity(br - b, per_limit2), r4 = to_b * continuity(b - bl, per_limit2);
+    const float right = 2.0f * to_r * (r - c) + 2.0f * to_l * (c - l) + r1 * (ar - a) + r2 * (a - al) +
+                        r3 * (br - b) + r4 * (b - bl);
+    to_right[x] = per_mm * right / (2.0f * to_r + 2.0f * to_l + r1 + r2 + r3 + r4 + 1e-20f);
+    const float t1 = to_l * continuity(al - l, per_limit2), t2 = to_l * continuity(l - bl, per_limit2);
+    const float t3 = to_r * continuity(ar - r, per_limit2), t4 = to_r * continuity(r - br, per_limit2);
+    const float top = 2.0f * to_a * (a - c) + 2.0f * to_b * (c - b) + t1 * (al - l) + t2 * (l - bl) +
+                      t3 * (ar - r) + t4 * (r - br);
+    to_top[x] = per_mm * top / (2.0f * to_a + 2.0f * to_b + t1 + t2 + t3 + t4 + 1e-20f);
+  }
 }
 
-/// sRGB and linear light by table: IEC 61966-2-1.
-class Tone {
- public:
-  Tone() {
-    for (std::size_t i = 0; i < to_srgb_.size(); ++i) {
-      const float root = static_cast<float>(i) / static_cast<float>(to_srgb_.size() - 1);
-      to_srgb_[i] = static_cast<std::uint8_t>(std::lround(255.0f * srgb_from_linear(root * root)));
+/// The scenery's lights in (right, up, look), flat.
+struct Lighting {
+  static constexpr int most_lights = 8;
+  explicit Lighting(const Scenery& scenery)
+      : count(std::min(static_cast<int>(scenery.lights.size()), most_lights)),
+        ambient(scenery.ambient),
+        gloss(scenery.lights.empty() ? 0.0f : scenery.gloss) {
+    for (int i = 0; i < count; ++i) {
+      const Light& light = scenery.lights[static_cast<std::size_t>(i)];
+      const glm::vec3 towards = glm::normalize(light.towards) * light.strength;
+      x[i] = towards.x;
+      y[i] = towards.y;
+      z[i] = towards.z;
     }
-    for (std::size_t i = 0; i < to_linear_.size(); ++i)
-      to_linear_[i] = linear_from_srgb(static_cast<float>(i) / 255.0f);
+    // Halfway between the first light and the observer: where a surface would mirror it.
+    if (count > 0)
+      halfway = glm::normalize(glm::normalize(scenery.lights.front().towards) + glm::vec3(0.0f, 0.0f, -1.0f));
   }
-  /// The table runs over square roots, in which sRGB is nearly linear: 1024 steps meet all 256 values.
-  std::uint8_t srgb(float linear) const {
-    const float root = std::sqrt(std::clamp(linear, 0.0f, 1.0f));
-    constexpr float to_nearest = 0.5f;
-    return to_srgb_[static_cast<std::size_t>(to_nearest + root * static_cast<float>(to_srgb_.size() - 1))];
-  }
-  float linear(std::uint8_t srgb) const { return to_linear_[srgb]; }
 
- private:
-  std::array<std::uint8_t, 1024> to_srgb_{};
-  std::array<float, 256> to_linear_{};
+  int count = 0;
+  float x[most_lights] = {}, y[most_lights] = {}, z[most_lights] = {};
+  float ambient = 0.0f, gloss = 0.0f;
+  glm::vec3 halfway{0.0f, 0.0f, -1.0f};
 };
 
-const Tone& tone() {
-  static const Tone table;
-  return table;
+/// Pass 4: Phong's model over a row of slopes, into diffuse and mirrored light.
+OCTOTOMY_VECTOR_CLONES void light_row(const Lighting& lighting, const float* __restrict to_right,
+                                      const float* __restrict to_top, int first, int last,
+                                      float* __restrict diffuse, float* __restrict mirrored) {
+  for (int i = first; i < last; ++i) {
+    // Depth grows towards the side that a surface turns away from, so its normal leans there.
+    const float nx = to_right[i], ny = to_top[i];
+    const float per_length = 1.0f / std::sqrt(nx * nx + ny * ny + 1.0f);
+    float light = lighting.ambient;
+    for (int l = 0; l < lighting.count; ++l) {
+      const float facing = (nx * lighting.x[l] + ny * lighting.y[l] - lighting.z[l]) * per_length;
+      light += facing > 0.0f ? facing : 0.0f;
+    }
+    diffuse[i] = light;
+    const float mirror =
+        (nx * lighting.halfway.x + ny * lighting.halfway.y - lighting.halfway.z) * per_length;
+    // The power of 48 by squarings.
+    const float m1 = mirror > 0.0f ? mirror : 0.0f;
+    const float m2 = m1 * m1;
+    const float m8 = m2 * m2 * m2 * m2;
+    const float m16 = m8 * m8;
+    mirrored[i] = lighting.gloss * (m16 * m16 * m16);
+  }
 }
 
-glm::vec3 linear_from_srgb(const glm::vec3& colour) {
-  return {linear_from_srgb(colour.x), linear_from_srgb(colour.y), linear_from_srgb(colour.z)};
-}
-
-void put(std::uint8_t* rgb, const glm::vec3& linear) {
-  for (int channel = 0; channel < 3; ++channel) rgb[channel] = tone().srgb(linear[channel]);
-}
-
-/// Phong's model in (right, up, look).
-class Lighting {
- public:
-  explicit Lighting(const Scenery& scenery) : ambient_(scenery.ambient), gloss_(scenery.gloss) {
-    for (const Light& light : scenery.lights)
-      lights_.push_back({glm::normalize(light.towards), light.strength});
-    // Halfway between the light and the observer: where a surface would mirror it.
-    if (!lights_.empty()) halfway_ = glm::normalize(lights_.front().towards + glm::vec3(0.0f, 0.0f, -1.0f));
-  }
-
-  float diffuse(const glm::vec3& normal) const {
-    float light = ambient_;
-    for (const Light& each : lights_) light += each.strength * std::max(0.0f, glm::dot(normal, each.towards));
-    return light;
-  }
-  /// The power of 48 by squarings.
-  float glossy(const glm::vec3& normal) const {
-    if (lights_.empty()) return 0.0f;
-    const float mirror = std::max(0.0f, glm::dot(normal, halfway_));
-    const float mirror2 = mirror * mirror;
-    const float mirror8 = mirror2 * mirror2 * mirror2 * mirror2;
-    const float mirror16 = mirror8 * mirror8;
-    return gloss_ * mirror16 * mirror16 * mirror16;
-  }
-
- private:
-  std::vector<Light> lights_;
-  glm::vec3 halfway_{0.0f, 0.0f, -1.0f};
-  float ambient_, gloss_;
+/// What darkens a pixel besides its slope: being far, and lying behind its surroundings.
+struct Dimming {
+  float nearest_mm = 0.0f;
+  float per_range = 0.0f;  ///< 0: no depth cue
+  float per_width = 0.0f;  ///< 12 / the picture's width, 0: no occlusion
 };
 
-/// How much of the light reaches a pixel that lies `behind_mm` behind its surroundings, as a part of the
-/// picture's width.
-float openness(float behind_mm, float width_mm) {
-  return 1.0f / (1.0f + 12.0f * std::max(0.0f, behind_mm) / width_mm);
+OCTOTOMY_VECTOR_CLONES void dim_row(const Dimming& dimming, const float* __restrict depth,
+                                    const float* __restrict mean, int first, int last,
+                                    float* __restrict diffuse, float* __restrict mirrored) {
+  for (int i = first; i < last; ++i) {
+    const float far = (depth[i] - dimming.nearest_mm) * dimming.per_range;
+    const float behind = depth[i] - mean[i];
+    const float light = (1.0f - 0.35f * (far < 1.0f ? far : 1.0f)) /
+                        (1.0f + dimming.per_width * (behind > 0.0f ? behind : 0.0f));
+    diffuse[i] *= light;
+    mirrored[i] *= light;
+  }
+}
+
+/// Pass 5 for one channel: places in the table of tones.
+OCTOTOMY_VECTOR_CLONES void root_row(const float* __restrict colour, const float* __restrict diffuse,
+                                     const float* __restrict mirrored, int first, int last,
+                                     int* __restrict root) {
+  for (int i = first; i < last; ++i) {
+    const float light = colour[i] * diffuse[i] + mirrored[i];
+    root[i] = static_cast<int>(0.5f + std::sqrt(light < 1.0f ? light : 1.0f) * Tone::root_steps);
+  }
 }
 
 std::size_t pixel_index(const DepthImage& image, int x, int y) {
@@ -353,39 +162,67 @@ float nearest_mm(const DepthImage& image) {
   return nearest;
 }
 
-/// Calls `row(y, to_right, to_top)` with each row's slopes, without unit.
-template <typename Row>
-void each_slope_row(const DepthImage& image, const Scenery& scenery, const Plane& depth, const Row& row) {
+/// Rows of numbers for one thread.
+struct Rows {
+  explicit Rows(int width)
+      : to_right(static_cast<std::size_t>(width)),
+        to_top(to_right),
+        diffuse(to_right),
+        mirrored(to_right),
+        mean(to_right),
+        colour{to_right, to_right, to_right},
+        root{std::vector<int>(to_right.size()), std::vector<int>(to_right.size()),
+             std::vector<int>(to_right.size())} {}
+  std::vector<float> to_right, to_top, diffuse, mirrored, mean;
+  std::array<std::vector<float>, 3> colour;
+  std::array<std::vector<int>, 3> root;
+};
+
+void slopes_of_row(const Scenery& scenery, const DepthPlane& plane, int y, Rows& rows) {
   const int stride = stride_px(scenery);
   const double stride_mm = stride * scenery.pixel_mm;
-  tbb::parallel_for(0, image.size_px.y, [&](int y) {
-    thread_local std::vector<float> to_right;
-    thread_local std::vector<float> to_top;
-    to_right.resize(static_cast<std::size_t>(image.size_px.x));
-    to_top.resize(to_right.size());
-    slope_row(depth, y, image.size_px.x, stride, static_cast<float>(break_mm(stride_mm)), to_right.data(),
-              to_top.data());
-    const auto per_mm = static_cast<float>(1.0 / stride_mm);
-    for (std::size_t x = 0; x < to_right.size(); ++x) {
-      to_right[x] *= per_mm;
-      to_top[x] *= per_mm;
-    }
-    row(y, to_right, to_top);
-  });
+  const auto limit_mm = static_cast<float>(break_mm(stride_mm));
+  const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
+  slope_row({plane.depth.row(y - stride), plane.depth.row(y), plane.depth.row(y + stride), stride,
+             1.0f / (limit_mm * limit_mm), static_cast<float>(1.0 / stride_mm)},
+            lit.x, lit.y, rows.to_right.data(), rows.to_top.data());
+}
+
+/// Slopes whose normals are the given ones; those that turn away stand edgewise.
+void slopes_of_normals(std::span<const glm::vec3> normals, const glm::ivec2& lit, Rows& rows) {
+  constexpr float edgewise = -1e-3f;
+  for (int x = lit.x; x < lit.y; ++x) {
+    const auto i = static_cast<std::size_t>(x);
+    const float towards = std::min(normals[i].z, edgewise);
+    rows.to_right[i] = normals[i].x / -towards;
+    rows.to_top[i] = normals[i].y / -towards;
+  }
+}
+
+/// Runs `row(y, rows)` for every row, in parallel, with rows of numbers to use.
+template <typename Row>
+void each_row(const glm::ivec2& size_px, const Row& row) {
+  constexpr int rows_a_task = 8;
+  tbb::parallel_for(tbb::blocked_range<int>(0, size_px.y, rows_a_task),
+                    [&](const tbb::blocked_range<int>& range) {
+                      Rows rows(size_px.x);
+                      for (int y = range.begin(); y < range.end(); ++y) row(y, rows);
+                    });
 }
 
 }  // namespace
 
 std::vector<glm::vec2> slopes(const DepthImage& image, const Scenery& scenery) {
-  const Plane depth = depth_plane(image, scenery);
+  const DepthPlane plane = depth_plane(image, scenery);
   std::vector<glm::vec2> result(image.pixels.size());
-  each_slope_row(image, scenery, depth,
-                 [&](int y, const std::vector<float>& to_right, const std::vector<float>& to_top) {
-                   for (int x = 0; x < image.size_px.x; ++x)
-                     if (image.at(x, y).lit())
-                       result[pixel_index(image, x, y)] = {to_right[static_cast<std::size_t>(x)],
-                                                           to_top[static_cast<std::size_t>(x)]};
-                 });
+  each_row(image.size_px, [&](int y, Rows& rows) {
+    slopes_of_row(scenery, plane, y, rows);
+    const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
+    for (int x = lit.x; x < lit.y; ++x)
+      if (image.at(x, y).lit())
+        result[pixel_index(image, x, y)] = {rows.to_right[static_cast<std::size_t>(x)],
+                                            rows.to_top[static_cast<std::size_t>(x)]};
+  });
   return result;
 }
 
@@ -437,45 +274,62 @@ std::vector<std::uint8_t> outline_picture(const DepthImage& image, const Scenery
   return rgb;
 }
 
+/// Linear colours of what a row sees.
+void colours_of_row(const DepthImage& image, const std::vector<glm::vec3>& colours, int y,
+                    const glm::ivec2& lit, Rows& rows) {
+  for (int channel = 0; channel < 3; ++channel) {
+    std::vector<float>& row = rows.colour[static_cast<std::size_t>(channel)];
+    if (colours.size() == 1) {
+      std::fill(row.begin() + lit.x, row.begin() + lit.y, colours.front()[channel]);
+      continue;
+    }
+    for (int x = lit.x; x < lit.y; ++x) {
+      const Seen& seen = image.at(x, y);
+      row[static_cast<std::size_t>(x)] =
+          seen.lit() ? colours[static_cast<std::size_t>(seen.object)][channel] : 0.0f;
+    }
+  }
+}
+
 std::vector<std::uint8_t> shaded_picture(const DepthImage& image, const Scenery& scenery,
                                          std::span<const glm::vec3> normals) {
-  const Plane depth = depth_plane(image, scenery);
+  const DepthPlane plane = depth_plane(image, scenery);
   std::optional<Surroundings> surroundings;
-  if (scenery.occlusion) surroundings.emplace(depth, image.size_px);
+  if (scenery.occlusion) surroundings.emplace(plane, image.size_px);
   const Lighting lighting(scenery);
-  const float nearest = nearest_mm(image);
-  const auto per_range = static_cast<float>(scenery.depth_cue ? 1.0 / scenery.depth_range_mm : 0.0);
   const auto width_mm = static_cast<float>(scenery.pixel_mm * image.size_px.x);
+  const Dimming dimming{plane.nearest_mm,
+                        static_cast<float>(scenery.depth_cue ? 1.0 / scenery.depth_range_mm : 0.0),
+                        scenery.occlusion ? 12.0f / width_mm : 0.0f};
   std::vector<glm::vec3> colours;
   for (const glm::vec3& colour : scenery.colours) colours.push_back(linear_from_srgb(colour));
-  const glm::vec3 background = linear_from_srgb(scenery.background);
+  std::array<std::uint8_t, 3> background{};
+  put(background.data(), linear_from_srgb(scenery.background));
   std::vector<std::uint8_t> rgb(3 * image.pixels.size());
-  each_slope_row(image, scenery, depth,
-                 [&](int y, const std::vector<float>& to_right, const std::vector<float>& to_top) {
-                   const float* depths = depth.row(y);
-                   for (int x = 0; x < image.size_px.x; ++x) {
-                     const std::size_t index = pixel_index(image, x, y);
-                     const Seen& seen = image.pixels[index];
-                     if (!seen.lit()) {
-                       put(&rgb[3 * index], background);
-                       continue;
-                     }
-                     // Depth grows towards the side that a surface turns away from, so its normal leans
-                     // there.
-                     const glm::vec3 normal =
-                         normals.empty()
-                             ? glm::normalize(glm::vec3(to_right[static_cast<std::size_t>(x)],
-                                                        to_top[static_cast<std::size_t>(x)], -1.0f))
-                             : normals[index];
-                     const float cue = 1.0f - 0.35f * std::min(1.0f, (seen.depth_mm - nearest) * per_range);
-                     const float open =
-                         surroundings ? openness(depths[x] - surroundings->mean_mm(x, y), width_mm) : 1.0f;
-                     const float light = cue * open;
-                     put(&rgb[3 * index],
-                         colours[static_cast<std::size_t>(seen.object)] * (light * lighting.diffuse(normal)) +
-                             light * lighting.glossy(normal));
-                   }
-                 });
+  const Tone& tone = Tone::table();
+  each_row(image.size_px, [&](int y, Rows& rows) {
+    const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
+    if (normals.empty())
+      slopes_of_row(scenery, plane, y, rows);
+    else
+      slopes_of_normals(normals.subspan(pixel_index(image, 0, y), rows.to_right.size()), lit, rows);
+    light_row(lighting, rows.to_right.data(), rows.to_top.data(), lit.x, lit.y, rows.diffuse.data(),
+              rows.mirrored.data());
+    if (surroundings) surroundings->mean_row(y, lit, rows.mean);
+    dim_row(dimming, plane.depth.row(y), rows.mean.data(), lit.x, lit.y, rows.diffuse.data(),
+            rows.mirrored.data());
+    colours_of_row(image, colours, y, lit, rows);
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      root_row(rows.colour[channel].data(), rows.diffuse.data(), rows.mirrored.data(), lit.x, lit.y,
+               rows.root[channel].data());
+    std::uint8_t* pixel = &rgb[3 * pixel_index(image, 0, y)];
+    for (int x = 0; x < image.size_px.x; ++x, pixel += 3) {
+      const bool seen = x >= lit.x && x < lit.y && image.at(x, y).lit();
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        pixel[channel] =
+            seen ? tone.srgb_of_root(rows.root[channel][static_cast<std::size_t>(x)]) : background[channel];
+    }
+  });
   return rgb;
 }
 
@@ -536,7 +390,7 @@ std::array<std::uint8_t, 3> blend(const DepthImage& image, const std::vector<std
         nearest = pixel_index(image, i, j);
       }
     for (int channel = 0; channel < 3; ++channel)
-      sum[channel] += tone().linear(rgb[3 * nearest + static_cast<std::size_t>(channel)]);
+      sum[channel] += Tone::table().linear(rgb[3 * nearest + static_cast<std::size_t>(channel)]);
   }
   std::array<std::uint8_t, 3> mean{};
   put(mean.data(), sum / static_cast<float>(parts.size()));

@@ -29,7 +29,7 @@ struct Scenery {
   double voxel_mm = 1.0;        ///< edge of a voxel: the finest detail that depth has
   double depth_range_mm = 1.0;  ///< over which the depth cue takes its full effect
   Style style = Style::Shaded;
-  /// Key light from the upper left, fill light from the lower right.
+  /// At most eight; key light from the upper left, fill light from the lower right.
   std::vector<Light> lights{Light{}, Light{{0.7f, -0.25f, -1.0f}, 0.25f}};
   float ambient = 0.06f;  ///< light from everywhere
   float gloss = 0.06f;    ///< of the first light's mirror image

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/depth_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tbb/parallel_for.h>
+
+#include "voxel/surface_break.h"
+#include "voxel/vector_clones.h"
+
+namespace octotomy::voxel {
+namespace {
+
+/// Taps of smoothing on each side, a voxel apart: so that a slope with a step every four voxels becomes a
+/// plane, and waves as long as slices four voxels thick leave them in interpolated depths are flattened.
+constexpr int smoothing_taps = 4;
+
+/// One pass of smoothing along x or y: the mean over pairs of pixels at equal distance on both sides that
+/// continue the surface, weighted by a triangle.
+struct Smoothing {
+  std::ptrdiff_t tap = 1;  ///< values between taps
+  float limit_mm = 1.0f;   ///< of the difference to the first tap, in proportion for the others
+  float band_mm = 0.5f;    ///< how far a depth may be moved from where it was found
+};
+
+/// Smooths `count` values from `from`, found at `found`, to `to`.
+OCTOTOMY_VECTOR_CLONES void smooth_row(const float* __restrict from, const float* __restrict found,
+                                       float* __restrict to, int count, const Smoothing& smoothing) {
+  const std::ptrdiff_t tap = smoothing.tap;
+  const float limit = smoothing.limit_mm;
+  const float band = smoothing.band_mm;
+  for (int x = 0; x < count; ++x) {
+    const float centre = from[x];
+    float sum = static_cast<float>(smoothing_taps + 1) * centre;
+    float weights = static_cast<float>(smoothing_taps + 1);
+    float going_on = 1.0f;
+    for (int i = 1; i <= smoothing_taps; ++i) {
+      const float one = from[x + i * tap];
+      const float other = from[x - i * tap];
+      const float reach = limit * static_cast<float>(i);
+      const float farther = std::max(std::abs(one - centre), std::abs(other - centre));
+      going_on = farther <= reach ? going_on : 0.0f;
+      const float weight = going_on * static_cast<float>(smoothing_taps + 1 - i);
+      sum += going_on > 0.0f ? weight * (one + other) : 0.0f;
+      weights += 2.0f * weight;
+    }
+    to[x] = std::min(std::max(sum / weights, found[x] - band), found[x] + band);
+  }
+}
+
+/// Copies depths into the plane, and finds where each row is lit and whether voxels' faces are seen.
+struct RowFacts {
+  float nearest_mm = beyond_mm;
+  bool any_stepped = false;
+};
+RowFacts copy_row(const DepthImage& image, int y, float* row, glm::ivec2& lit) {
+  RowFacts facts;
+  lit = glm::ivec2(image.size_px.x, 0);
+  for (int x = 0; x < image.size_px.x; ++x) {
+    const Seen& seen = image.at(x, y);
+    if (!seen.lit()) continue;
+    row[x] = seen.depth_mm;
+    lit.x = std::min(lit.x, x);
+    lit.y = x + 1;
+    facts.nearest_mm = std::min(facts.nearest_mm, seen.depth_mm);
+    facts.any_stepped = facts.any_stepped || seen.stepped;
+  }
+  if (lit.x > lit.y) lit = glm::ivec2(0);
+  return facts;
+}
+
+}  // namespace
+
+int stride_px(const Scenery& scenery) {
+  return std::clamp(static_cast<int>(std::lround(scenery.voxel_mm / scenery.pixel_mm)), 1, 64);
+}
+
+DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
+  const int step = stride_px(scenery);
+  const auto rows = static_cast<std::size_t>(image.size_px.y);
+  DepthPlane plane{Plane(image.size_px, smoothing_taps * step, beyond_mm), std::vector<glm::ivec2>(rows)};
+  std::vector<RowFacts> facts(rows);
+  tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t y) {
+    facts[y] = copy_row(image, static_cast<int>(y), plane.depth.row(static_cast<int>(y)), plane.lit[y]);
+  });
+  bool any_stepped = false;
+  for (const RowFacts& row : facts) {
+    plane.nearest_mm = std::min(plane.nearest_mm, row.nearest_mm);
+    any_stepped = any_stepped || row.any_stepped;
+  }
+  const Plane found = plane.depth;
+  Plane between = plane.depth;
+  Smoothing smoothing;
+  smoothing.limit_mm = static_cast<float>(break_mm(step * scenery.pixel_mm) / 2.0);
+  smoothing.band_mm = static_cast<float>(0.5 * scenery.voxel_mm);
+  for (int pass = 0; pass < (any_stepped ? 4 : 2); ++pass) {
+    const bool along_x = pass % 2 == 0;
+    const Plane& from = along_x ? plane.depth : between;
+    Plane& to = along_x ? between : plane.depth;
+    Smoothing along = smoothing;
+    along.tap = along_x ? step : static_cast<std::ptrdiff_t>(step) * found.width;
+    tbb::parallel_for(0, image.size_px.y, [&](int y) {
+      const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
+      smooth_row(from.row(y) + lit.x, found.row(y) + lit.x, to.row(y) + lit.x, lit.y - lit.x, along);
+      // Only faces are smoothed again.
+      if (pass >= 2)
+        for (int x = lit.x; x < lit.y; ++x)
+          if (!image.at(x, y).stepped) to.row(y)[x] = from.row(y)[x];
+    });
+  }
+  return plane;
+}
+
+}  // namespace octotomy::voxel
