@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tbb/parallel_for.h>
 
 #include "voxel/octree_node.h"
 
@@ -182,19 +183,20 @@ struct Passage {
   int entered_through = 0;  ///< axis
 };
 
-/// A ray's way through one octree.
+/// Rays' ways through one octree. The path to the last voxel is kept: rays close to each other share most of
+/// it.
 class Walk {
  public:
-  Walk(BlockRef root, int height, const Mirror& mirror, const glm::dvec3& start)
-      : mirror_(mirror), start_(start), top_(height), lowest_(height) {
+  Walk(BlockRef root, int height, const Mirror& mirror) : mirror_(mirror), top_(height), lowest_(height) {
     nodes_[static_cast<std::size_t>(height)] = root.node();
     full_root_ = root.is_full();
   }
 
-  /// Offers the object's voxels that the ray passes from one depth until another, in order, to `accept`,
+  /// Offers the object's voxels that a ray passes from one depth until another, in order, to `accept`,
   /// until it accepts one.
   template <typename Accept>
-  void run(double from_mm, double until_mm, const Accept& accept) {
+  void run(const glm::dvec3& start, double from_mm, double until_mm, const Accept& accept) {
+    start_ = start;
     at_mm_ = from_mm;
     for (int axis = 0; axis < 3; ++axis) {
       if (mirror_.still[axis]) {
@@ -204,47 +206,90 @@ class Walk {
       at_mm_ = std::max(at_mm_, -start_[axis] * mirror_.mm_per_voxel[axis]);
       until_mm = std::min(until_mm, (mirror_.side - start_[axis]) * mirror_.mm_per_voxel[axis]);
     }
-    voxel_ = glm::ivec3(glm::clamp(glm::floor(start_ + at_mm_ * mirror_.speed_per_mm), glm::dvec3(0.0),
-                                   glm::dvec3(mirror_.side - 1)));
+    go_to(glm::ivec3(glm::clamp(glm::floor(start_ + at_mm_ * mirror_.speed_per_mm), glm::dvec3(0.0),
+                                glm::dvec3(mirror_.side - 1))));
     while (at_mm_ <= until_mm) {
       const int edge = empty_edge();
-      if (edge == 0 && accept(pass())) return;
-      if (!leave(std::max(edge, 1))) return;
+      if (edge > 1) {
+        if (!leave(edge)) return;
+      } else if (lowest_ == 1) {
+        const LeafWay way = pass_leaf(until_mm, accept);
+        if (way == LeafWay::Accepted || (way == LeafWay::Left && !inside_root())) return;
+      } else {
+        // A Full block: voxel by voxel.
+        if (accept(pass()) || !leave(1)) return;
+      }
     }
   }
 
  private:
-  /// Edge of the largest aligned empty block found about the voxel, 0 where the voxel is the object's.
+  enum class LeafWay { Accepted, Left, Behind };
+
+  /// Walks the voxels of the leaf that holds the voxel; afterwards the voxel is the first behind the leaf.
+  template <typename Accept>
+  LeafWay pass_leaf(double until_mm, const Accept& accept) {
+    const glm::ivec3 first = voxel_;
+    glm::dvec3 time = (glm::dvec3(voxel_ + 1) - start_) * mirror_.mm_per_voxel + mirror_.exit_offset;
+    while (at_mm_ <= until_mm) {
+      const int bit =
+          ((voxel_.x & 3) | ((voxel_.y & 3) << 2) | ((voxel_.z & 3) << 4)) ^ mirror_.flipped_child;
+      if (((word_ >> bit) & 1) != 0 && accept(pass())) return LeafWay::Accepted;
+      const double leave_mm = std::min(time.x, std::min(time.y, time.z));
+      const glm::ivec3 step(time.x <= leave_mm, time.y <= leave_mm, time.z <= leave_mm);
+      const glm::ivec3 next = voxel_ + step;
+      const int changed = (next.x ^ voxel_.x) | (next.y ^ voxel_.y) | (next.z ^ voxel_.z);
+      voxel_ = next;
+      at_mm_ = std::max(at_mm_, leave_mm);
+      if (changed > 3) {
+        forget(first);
+        return LeafWay::Left;
+      }
+      time = (glm::dvec3(voxel_ + 1) - start_) * mirror_.mm_per_voxel + mirror_.exit_offset;
+    }
+    return LeafWay::Behind;
+  }
+
+  bool inside_root() const { return ((voxel_.x | voxel_.y | voxel_.z) & mirror_.side) == 0; }
+
+  /// Keeps of the path what the voxel shares with another one.
+  void forget(const glm::ivec3& other) {
+    const auto changed =
+        static_cast<unsigned>((voxel_.x ^ other.x) | (voxel_.y ^ other.y) | (voxel_.z ^ other.z));
+    lowest_ = std::min(top_, std::max(lowest_, static_cast<int>(std::bit_width(changed) + 1) / 2));
+  }
+  void go_to(const glm::ivec3& voxel) {
+    const glm::ivec3 other = voxel_;
+    voxel_ = voxel;
+    forget(other);
+  }
+
+  /// Edge of the largest aligned empty block found about the voxel; 0 where the voxel is in a Full block, or
+  /// in a leaf, whose word is then at hand.
   int empty_edge() {
     if (nodes_[static_cast<std::size_t>(top_)] == nullptr) return full_root_ ? 0 : mirror_.side;
-    for (;;) {
+    while (lowest_ > 1) {
       const int shift = 2 * (lowest_ - 1);
       const int child =
           (((voxel_.x >> shift) & 3) | (((voxel_.y >> shift) & 3) << 2) | (((voxel_.z >> shift) & 3) << 4)) ^
           mirror_.flipped_child;
       const std::uint64_t bit = std::uint64_t{1} << child;
-      std::uint64_t present = word_;
-      if (lowest_ > 1) {
-        const Node& node = *nodes_[static_cast<std::size_t>(lowest_)];
-        if ((node.partial & bit) != 0) {
-          const int rank = node.rank(child);
-          --lowest_;
-          if (lowest_ == 1) {
-            word_ = node.words()[rank];
-          } else {
-            nodes_[static_cast<std::size_t>(lowest_)] = node.nodes()[rank];
-          }
-          continue;
-        }
+      const Node& node = *nodes_[static_cast<std::size_t>(lowest_)];
+      if ((node.partial & bit) == 0) {
         if ((node.full & bit) != 0) return 0;
-        present = node.full | node.partial;
-      } else if ((present & bit) != 0) {
-        return 0;
+        // The child is empty; so may be the logical octant it is in.
+        const std::uint64_t present = node.full | node.partial;
+        const bool octant_empty = (present & (octant_children << (child & 0b101010))) == 0;
+        return (octant_empty ? 2 : 1) << shift;
       }
-      // The child is empty; so may be the logical octant it is in.
-      const bool octant_empty = (present & (octant_children << (child & 0b101010))) == 0;
-      return (octant_empty ? 2 : 1) << shift;
+      const int rank = node.rank(child);
+      --lowest_;
+      if (lowest_ == 1) {
+        word_ = node.words()[rank];
+      } else {
+        nodes_[static_cast<std::size_t>(lowest_)] = node.nodes()[rank];
+      }
     }
+    return 0;
   }
 
   Passage pass() const {
@@ -277,16 +322,13 @@ class Walk {
                            next(time.z, p.z, voxel_.z, end.z));
     // The root block's edge is a power of two.
     if (((voxel.x | voxel.y | voxel.z) & mirror_.side) != 0) return false;
-    const auto changed =
-        static_cast<unsigned>((voxel.x ^ voxel_.x) | (voxel.y ^ voxel_.y) | (voxel.z ^ voxel_.z));
-    lowest_ = std::max(lowest_, static_cast<int>(std::bit_width(changed) + 1) / 2);
-    voxel_ = voxel;
+    go_to(voxel);
     at_mm_ = std::max(at_mm_, leave_mm);
     return true;
   }
 
   const Mirror& mirror_;
-  glm::dvec3 start_;
+  glm::dvec3 start_{0.0};
   int top_;
   int lowest_;  ///< height of the lowest node known to hold the voxel; 1: word_
   bool full_root_ = false;
@@ -324,20 +366,28 @@ class RaySamples {
   void fetch_corners() {
     // Five cells in six lie within one brick, which is then found once.
     const bool one_brick = (cell_.x & 15) != 15 && (cell_.y & 15) != 15 && (cell_.z & 15) != 15;
-    const GreyBrick& brick = grey_.brick(cell_ >> 4);
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::ivec3 voxel = cell_ + glm::ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
-      corners_[static_cast<std::size_t>(corner)] = one_brick ? in(brick, voxel) : at(voxel);
+    if (!one_brick) {
+      for (int corner = 0; corner < 8; ++corner)
+        corners_[static_cast<std::size_t>(corner)] =
+            at(cell_ + glm::ivec3(corner & 1, (corner >> 1) & 1, corner >> 2));
+      return;
     }
+    const std::int16_t* samples = grey_.brick(cell_ >> 4).samples.front().data();
+    const int x0 = along(cell_.x), x1 = along(cell_.x + 1);
+    const int y0 = along(cell_.y) << 2, y1 = along(cell_.y + 1) << 2;
+    const int z0 = along(cell_.z) << 4, z1 = along(cell_.z + 1) << 4;
+    corners_ = {double(samples[x0 + y0 + z0]), double(samples[x1 + y0 + z0]), double(samples[x0 + y1 + z0]),
+                double(samples[x1 + y1 + z0]), double(samples[x0 + y0 + z1]), double(samples[x1 + y0 + z1]),
+                double(samples[x0 + y1 + z1]), double(samples[x1 + y1 + z1])};
   }
-  static double in(const GreyBrick& brick, const glm::ivec3& voxel) {
-    const glm::ivec3 leaf = (voxel >> 2) & 3;
-    const glm::ivec3 bit = voxel & 3;
-    return brick.samples[static_cast<std::size_t>(child_index(leaf.x, leaf.y, leaf.z))]
-                        [static_cast<std::size_t>(child_index(bit.x, bit.y, bit.z))];
-  }
+  /// A brick's samples are numbered by leaf, then by voxel, each x + 4y + 16z: the part of one coordinate,
+  /// that of x.
+  static int along(int coordinate) { return ((coordinate >> 2) & 3) * 64 + (coordinate & 3); }
   /// Precondition: within the universe.
-  double at(const glm::ivec3& voxel) const { return in(grey_.brick(voxel >> 4), voxel); }
+  double at(const glm::ivec3& voxel) const {
+    const std::int16_t* samples = grey_.brick(voxel >> 4).samples.front().data();
+    return samples[along(voxel.x) + (along(voxel.y) << 2) + (along(voxel.z) << 4)];
+  }
 
   const GreyOctree& grey_;
   glm::dvec3 start_, per_mm_;
@@ -411,59 +461,100 @@ struct RayCast::Prepared {
   VoxelRays rays;
   Mirror mirror;
   TileBounds bounds;
+  glm::ivec2 size_px{0};
+  double voxel_mm = 1.0;  ///< depth of a ray's way of a voxel's edge
 };
 
 RayCast::RayCast(const std::vector<Drawn>& objects, const ImagePlane& plane) {
   const Octree& first = objects.front().octree;
   const VoxelRays rays = voxel_rays(first.universe(), plane);
   const Mirror mirror(rays, 1 << (2 * first.root_height()));
-  auto prepared =
-      std::make_shared<Prepared>(Prepared{objects, rays, mirror, TileBounds(plane, rays, mirror)});
+  auto prepared = std::make_shared<Prepared>(Prepared{objects, rays, mirror, TileBounds(plane, rays, mirror),
+                                                      plane.size_px, 1.0 / glm::length(mirror.speed_per_mm)});
   for (const Drawn& object : objects)
     prepared->bounds.add(object.octree.root(), object.octree.root_height(), glm::ivec3(0));
   prepared_ = std::move(prepared);
 }
+
+namespace {
+
+/// Casts rays close to each other, one after the other.
+class Caster {
+ public:
+  explicit Caster(const RayCast::Prepared& prepared) : prepared_(prepared) {
+    walks_.reserve(prepared.objects.size());
+    for (const Drawn& object : prepared.objects)
+      walks_.emplace_back(object.octree.root(), object.octree.root_height(), prepared.mirror);
+  }
+
+  Seen seen(const glm::dvec2& p_px, double near_mm, double far_mm) {
+    DepthBounds bounds = prepared_.bounds.at(p_px);
+    bounds.near_mm = std::max(bounds.near_mm, static_cast<float>(near_mm));
+    bounds.far_mm = std::min(bounds.far_mm, static_cast<float>(far_mm));
+    Seen nearest;
+    if (bounds.near_mm > bounds.far_mm) return nearest;
+    const glm::dvec3 start = prepared_.rays.start(p_px);
+    const glm::dvec3 mirrored = prepared_.mirror.mirrored(start);
+    double until_mm = bounds.far_mm;
+    for (std::size_t i = 0; i < prepared_.objects.size(); ++i) {
+      const Drawn& object = prepared_.objects[i];
+      const int universe_side = object.octree.universe().side();
+      // A voxel behind what was found may still have its grey surface before it.
+      const double reach_mm = object.grey ? 2.0 * prepared_.voxel_mm : 0.0;
+      const auto found = [&](Seen seen) {
+        seen.object = static_cast<std::int16_t>(i);
+        if (seen.depth_mm < nearest.depth_mm) nearest = seen;
+        until_mm = std::min(until_mm, static_cast<double>(nearest.depth_mm));
+        return true;
+      };
+      if (object.grey) {
+        RaySamples samples(*object.grey, start, prepared_.rays.per_mm);
+        walks_[i].run(mirrored, bounds.near_mm, until_mm + reach_mm, [&](const Passage& passage) {
+          const std::optional<Seen> seen =
+              grey_surface(samples, object.threshold, prepared_.mirror, passage, universe_side);
+          return seen ? found(*seen) : false;
+        });
+      } else {
+        walks_[i].run(mirrored, bounds.near_mm, until_mm + reach_mm, [&](const Passage& passage) {
+          return found({static_cast<float>(passage.enter_mm), 0, true});
+        });
+      }
+    }
+    return nearest;
+  }
+
+ private:
+  const RayCast::Prepared& prepared_;
+  std::vector<Walk> walks_;
+};
+
+}  // namespace
 
 Seen RayCast::seen(const glm::dvec2& p_px) const {
   return seen(p_px, -infinity, infinity);
 }
 
 Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const {
-  const Prepared& prepared = *prepared_;
-  DepthBounds bounds = prepared.bounds.at(p_px);
-  bounds.near_mm = std::max(bounds.near_mm, static_cast<float>(near_mm));
-  bounds.far_mm = std::min(bounds.far_mm, static_cast<float>(far_mm));
-  Seen nearest;
-  if (bounds.near_mm > bounds.far_mm) return nearest;
-  const glm::dvec3 start = prepared.rays.start(p_px);
-  const glm::dvec3 mirrored = prepared.mirror.mirrored(start);
-  double until_mm = bounds.far_mm;
-  for (std::size_t i = 0; i < prepared.objects.size(); ++i) {
-    const Drawn& object = prepared.objects[i];
-    const int universe_side = object.octree.universe().side();
-    // A voxel behind what was found may still have its grey surface before it.
-    const double reach_mm = object.grey ? 2.0 / glm::length(prepared.mirror.speed_per_mm) : 0.0;
-    Walk walk(object.octree.root(), object.octree.root_height(), prepared.mirror, mirrored);
-    const auto found = [&](Seen seen) {
-      seen.object = static_cast<std::int16_t>(i);
-      if (seen.depth_mm < nearest.depth_mm) nearest = seen;
-      until_mm = std::min(until_mm, static_cast<double>(nearest.depth_mm));
-      return true;
-    };
-    if (object.grey) {
-      RaySamples samples(*object.grey, start, prepared.rays.per_mm);
-      walk.run(bounds.near_mm, until_mm + reach_mm, [&](const Passage& passage) {
-        const std::optional<Seen> seen =
-            grey_surface(samples, object.threshold, prepared.mirror, passage, universe_side);
-        return seen ? found(*seen) : false;
-      });
-    } else {
-      walk.run(bounds.near_mm, until_mm + reach_mm, [&](const Passage& passage) {
-        return found({static_cast<float>(passage.enter_mm), 0, true});
-      });
-    }
-  }
-  return nearest;
+  return Caster(*prepared_).seen(p_px, near_mm, far_mm);
+}
+
+DepthImage RayCast::picture() const {
+  // Squares of pixels, so that rays share their ways.
+  constexpr int square_px = 16;
+  const glm::ivec2 size_px = prepared_->size_px;
+  DepthImage image{size_px, {}};
+  image.pixels.resize(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y));
+  const glm::ivec2 squares = (size_px + (square_px - 1)) / square_px;
+  tbb::parallel_for(0, squares.x * squares.y, [&](int square) {
+    Caster caster(*prepared_);
+    const glm::ivec2 first = glm::ivec2(square % squares.x, square / squares.x) * square_px;
+    const glm::ivec2 last = glm::min(first + square_px, size_px);
+    for (int y = first.y; y < last.y; ++y)
+      for (int x = first.x; x < last.x; ++x)
+        image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x) +
+                     static_cast<std::size_t>(x)] = caster.seen({x + 0.5, y + 0.5}, -infinity, infinity);
+  });
+  return image;
 }
 
 }  // namespace octotomy::voxel

@@ -28,6 +28,8 @@ class RayCast {
   Seen seen(const glm::dvec2& p_px) const;
   /// The same between two depths only; what begins before or behind them is passed over.
   Seen seen(const glm::dvec2& p_px, double near_mm, double far_mm) const;
+  /// What the centres of all pixels see. Parallel over squares of pixels; rays within one share their ways.
+  DepthImage picture() const;
 
   struct Prepared;
 

@@ -54,24 +54,6 @@ struct DepthSpan {
   double far_mm = std::numeric_limits<double>::infinity();
 };
 
-/// Fills the depth image by `seen_at`, asked for the centres of all pixels, tile by tile.
-template <typename At>
-DepthImage sample(const glm::ivec2& size_px, const At& seen_at) {
-  constexpr int tile_px = 16;
-  DepthImage image{size_px, {}};
-  image.pixels.resize(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y));
-  const glm::ivec2 tiles = (size_px + (tile_px - 1)) / tile_px;
-  tbb::parallel_for(0, tiles.x * tiles.y, [&](int tile) {
-    const glm::ivec2 first = glm::ivec2(tile % tiles.x, tile / tiles.x) * tile_px;
-    const glm::ivec2 last = glm::min(first + tile_px, size_px);
-    for (int y = first.y; y < last.y; ++y)
-      for (int x = first.x; x < last.x; ++x)
-        image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x) +
-                     static_cast<std::size_t>(x)] = seen_at({x + 0.5, y + 0.5}, DepthSpan());
-  });
-  return image;
-}
-
 /// The span of what a pixel and its neighbours see, as far beyond as a surface may reach within a pixel.
 DepthSpan span_about(const DepthImage& image, const glm::ivec2& pixel, double reach_mm) {
   DepthSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -162,8 +144,7 @@ Drawing drawing_of(const std::vector<Drawn>& objects, const ImagePlane& plane, A
   };
   if (algorithm == Algorithm::RayCast) {
     if (visits != nullptr) count_rays(objects, plane, *visits);
-    return {sample(plane.size_px, [&](const glm::dvec2& p_px, const DepthSpan&) { return cast.seen(p_px); }),
-            seen_at};
+    return {cast.picture(), seen_at};
   }
   DepthImage faces = algorithm == Algorithm::FrontToBack ? front_to_back(objects, plane, visits)
                                                          : back_to_front(objects, plane, visits);

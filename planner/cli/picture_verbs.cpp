@@ -10,6 +10,7 @@
 #include "voxel/combine.h"
 #include "voxel/image_file.h"
 #include "voxel/octree_file.h"
+#include "voxel/radiograph.h"
 #include "voxel/read_scene.h"
 #include "voxel/render.h"
 
@@ -208,8 +209,58 @@ voxel::RenderOptions options_of(const RenderText& text) {
   return options;
 }
 
+/// Pictures of what lies along rays instead of the first surface.
+const std::vector<std::string> ray_sums{"mip", "radiograph"};
+
+bool is_ray_sum(const RenderText& text) {
+  return std::find(ray_sums.begin(), ray_sums.end(), text.shading) != ray_sums.end();
+}
+
+int render_rays(const Program& program, const RenderText& text) {
+  Timings timings;
+  const std::vector<voxel::Drawn> objects = drawn_of_files(text, timings);
+  if (objects.size() != 1 || !objects.front().grey)
+    throw std::runtime_error("--shading " + text.shading +
+                             " needs the samples of one scan or grey octree, and a --window LOW:");
+  const voxel::GreyOctree& grey = *objects.front().grey;
+  const voxel::View view = voxel::parse_view(text.view);
+  const glm::ivec2 size_px = size_of(text.size);
+  voxel::Frame frame = voxel::frame_about(objects, view, size_px);
+  if (text.width_mm) frame.width_mm = *text.width_mm;
+  const voxel::ImagePlane plane = voxel::image_plane(grey.universe(), view, size_px, frame);
+  voxel::RayImage image;
+  {
+    const Stopwatch watch(timings, "render");
+    image = text.shading == "mip" ? voxel::maximum_intensity(grey, plane, program.stop.get_token())
+                                  : voxel::radiograph(grey, plane, program.stop.get_token());
+  }
+  const auto [low, high] = std::minmax_element(image.values.begin(), image.values.end());
+  {
+    const Stopwatch watch(timings, "write");
+    // Bone is white on films.
+    voxel::write_image(text.out, size_px, voxel::grey_tones(image, *low, *high > *low ? *high : *low + 1.0));
+  }
+  Json json = answer(timings);
+  json["path"] = text.out.string();
+  json["view"] = text.view;
+  json["shading"] = text.shading;
+  json["size_px"] = {size_px.x, size_px.y};
+  json["pixel_mm"] = plane.pixel_mm;
+  json["lit_pixels"] = std::count_if(image.values.begin(), image.values.end(),
+                                     [lowest = *low](float value) { return value > lowest; });
+  json["depth_range_mm"] = nullptr;
+  json["values"] = {*low, *high};
+  program.say(json, lines({{"written", text.out.string()}, {"pixel", grouped(plane.pixel_mm, 4) + " mm"}}));
+  return done;
+}
+
 int render(const Program& program, const RenderText& text) {
   need_folder_of(text.out);
+  if (is_ray_sum(text)) {
+    if (text.count || !text.algorithm.empty())
+      throw CLI::ValidationError("--shading", text.shading + " has no --algorithm and no --count");
+    return render_rays(program, text);
+  }
   const voxel::RenderOptions options = options_of(text);
   Timings timings;
   const std::vector<voxel::Drawn> objects = drawn_of_files(text, timings);
@@ -253,6 +304,8 @@ void add_picture_verbs(Program& program) {
       "octotomy render head.nrrd -o skull.png --window 300: --view 35,15 --size 1024x1024\n"
       "  octotomy render rest.octree piece.octree -o plan.png --colour \"#ede3cc\" --colour \"#cc7a29\"",
       [&program, text] { return render(program, *text); });
+  std::vector<std::string> shading_names = names_of(shadings);
+  shading_names.insert(shading_names.end(), ray_sums.begin(), ray_sums.end());
   verb.add_option("files", text->files,
                   "Octrees (.octree), or scans: a DICOM folder or file, NIfTI, NRRD or MetaImage")
       ->required()
@@ -271,8 +324,9 @@ void add_picture_verbs(Program& program) {
                   "default: the fastest for the view")
       ->check(CLI::IsMember(names_of(algorithms)));
   verb.add_option("--shading", text->shading,
-                  "depth, gradient, context, partial_volume, grey_gradient, silhouette or outline")
-      ->check(CLI::IsMember(names_of(shadings)))
+                  "depth, gradient, context, partial_volume, grey_gradient, silhouette or outline; mip "
+                  "(largest sample) or radiograph (X-rays, in true scale)")
+      ->check(CLI::IsMember(shading_names))
       ->capture_default_str();
   verb.add_option("--colour", text->colours, "#RRGGBB, one a file in their order")->expected(1)->take_all();
   verb.add_option("--opacity", text->opacities, "0 (hidden) to 1, one a file in their order")

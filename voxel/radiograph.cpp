@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/radiograph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+
+namespace octotomy::voxel {
+namespace {
+
+constexpr double water_per_mm = 0.0206;
+constexpr double steps_per_voxel = 2.0;
+
+/// Where a ray is among the voxels' centres; beyond the outermost ones there is only the background.
+struct Span {
+  double from_mm = -std::numeric_limits<double>::infinity();
+  double until_mm = std::numeric_limits<double>::infinity();
+};
+std::optional<Span> span_of(const glm::dvec3& start, const glm::dvec3& per_mm, int side) {
+  Span span;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = -start[axis];
+    const double high = side - 1 - start[axis];
+    if (per_mm[axis] == 0.0) {
+      if (low > 0.0 || high < 0.0) return std::nullopt;
+      continue;
+    }
+    span.from_mm = std::max(span.from_mm, std::min(low / per_mm[axis], high / per_mm[axis]));
+    span.until_mm = std::min(span.until_mm, std::max(low / per_mm[axis], high / per_mm[axis]));
+  }
+  if (!(span.from_mm <= span.until_mm)) return std::nullopt;
+  return span;
+}
+
+double trilinear(const GreyOctree& grey, const glm::dvec3& p) {
+  const glm::dvec3 cell = glm::floor(p);
+  const glm::dvec3 t = p - cell;
+  const glm::ivec3 low(cell);
+  const auto along_x = [&](int y, int z) {
+    const double at = grey.sample(low + glm::ivec3(0, y, z));
+    return at + (grey.sample(low + glm::ivec3(1, y, z)) - at) * t.x;
+  };
+  const double below = along_x(0, 0) + (along_x(1, 0) - along_x(0, 0)) * t.y;
+  const double above = along_x(0, 1) + (along_x(1, 1) - along_x(0, 1)) * t.y;
+  return below + (above - below) * t.z;
+}
+
+/// The range of all samples that trilinear samples between the voxel at p and its neighbours are made of.
+MinMax range_about(const GreyOctree& grey, const glm::dvec3& p) {
+  const int last = grey.universe().side() - 1;
+  const glm::ivec3 low = glm::clamp(glm::ivec3(glm::floor(p)), 0, last);
+  const glm::ivec3 high = glm::min(low + 1, last);
+  MinMax range = grey.range(2, low >> 4);
+  if ((low >> 4) != (high >> 4))
+    for (int corner = 1; corner < 8; ++corner) {
+      const glm::ivec3 at = glm::mix(low, high, glm::bvec3(corner & 1, corner & 2, corner & 4));
+      const MinMax& part = grey.range(2, at >> 4);
+      range.low = std::min(range.low, part.low);
+      range.high = std::max(range.high, part.high);
+    }
+  return range;
+}
+
+/// Fills an image by `value(start, span)` of every ray that meets the universe.
+template <typename Value>
+RayImage along_rays(const GreyOctree& grey, const ImagePlane& plane, float missing,
+                    const std::stop_token& stop, const Value& value) {
+  RayImage image{plane.size_px, {}};
+  image.values.assign(static_cast<std::size_t>(plane.size_px.x) * static_cast<std::size_t>(plane.size_px.y),
+                      missing);
+  const VoxelRays rays = voxel_rays(grey.universe(), plane);
+  tbb::parallel_for(0, plane.size_px.y, [&](int y) {
+    if (stop.stop_requested()) return;
+    for (int x = 0; x < plane.size_px.x; ++x) {
+      const glm::dvec3 start = rays.start({x + 0.5, y + 0.5});
+      if (const std::optional<Span> span = span_of(start, rays.per_mm, grey.universe().side()))
+        image.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(plane.size_px.x) +
+                     static_cast<std::size_t>(x)] = static_cast<float>(value(start, rays.per_mm, *span));
+    }
+  });
+  if (stop.stop_requested()) throw std::runtime_error("the picture was stopped before it was finished");
+  return image;
+}
+
+/// Steps of a span, of equal length, at most half a voxel.
+struct Steps {
+  int count = 1;
+  double length_mm = 0.0;
+};
+Steps steps_of(const Span& span, const glm::dvec3& per_mm) {
+  const double length_mm = span.until_mm - span.from_mm;
+  const int count =
+      std::max(1, static_cast<int>(std::ceil(length_mm * glm::length(per_mm) * steps_per_voxel)));
+  return {count, length_mm / count};
+}
+
+}  // namespace
+
+RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const std::stop_token& stop) {
+  return along_rays(grey, plane, grey.background(), stop,
+                    [&](const glm::dvec3& start, const glm::dvec3& per_mm, const Span& span) {
+                      const Steps steps = steps_of(span, per_mm);
+                      double most = grey.background();
+                      for (int i = 0; i <= steps.count; ++i) {
+                        const glm::dvec3 p = start + (span.from_mm + i * steps.length_mm) * per_mm;
+                        if (range_about(grey, p).high > most) most = std::max(most, trilinear(grey, p));
+                      }
+                      return most;
+                    });
+}
+
+RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const std::stop_token& stop) {
+  return along_rays(grey, plane, 0.0f, stop,
+                    [&](const glm::dvec3& start, const glm::dvec3& per_mm, const Span& span) {
+                      const Steps steps = steps_of(span, per_mm);
+                      double sum = 0.0;
+                      for (int i = 0; i <= steps.count; ++i) {
+                        const glm::dvec3 p = start + (span.from_mm + i * steps.length_mm) * per_mm;
+                        const MinMax range = range_about(grey, p);
+                        if (range.high <= -1000) continue;
+                        const double per_water = std::max(0.0, 1.0 + trilinear(grey, p) / 1000.0);
+                        sum += (i == 0 || i == steps.count ? 0.5 : 1.0) * per_water;
+                      }
+                      return water_per_mm * steps.length_mm * sum;
+                    });
+}
+
+std::vector<std::uint8_t> grey_tones(const RayImage& image, double black, double white) {
+  std::vector<std::uint8_t> rgb(3 * image.values.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const double tone = std::clamp((image.values[i] - black) / (white - black), 0.0, 1.0);
+    std::fill_n(rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                static_cast<std::uint8_t>(std::lround(255.0 * tone)));
+  }
+  return rgb;
+}
+
+}  // namespace octotomy::voxel
