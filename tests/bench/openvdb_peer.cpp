@@ -94,8 +94,8 @@ int OpenVdbSurface::draw(const PicturePlane& plane) const {
   camera.lookAt(centre, vec(plane.up));
   const openvdb::tools::DiffuseShader<> shader(openvdb::tools::Film::RGBA(0.9f, 0.9f, 0.9f));
   openvdb::tools::rayTrace(*grid_->level_set, *grid_->intersector, shader, camera, 1, 0, true);
-  int lit = 0;
-  for (std::size_t i = 0; i < side * side; ++i) lit += film.pixels()[i].a > 0.5f;
+  int lit = 0;  // the shader's white is 0.9, the background's 1
+  for (std::size_t i = 0; i < side * side; ++i) lit += film.pixels()[i].r < 0.95f;
   return lit;
 }
 

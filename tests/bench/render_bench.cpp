@@ -2,15 +2,12 @@
 // Whole pictures of the head phantom's skull, partial-volume depth and shading included, and what the same
 // picture takes elsewhere: the isosurface mesh in Embree, its level set in OpenVDB, the scan in VTK. What
 // each builds once is not counted. Peers light a pixel by one head light on the surface they met.
-#include <memory>
-#include <optional>
+#include <limits>
 #include <string>
 #include <tbb/global_control.h>
 
 #include "convert/isosurface.h"
 #include "tests/bench/benchmarks.h"
-#include "tests/bench/dense_bits.h"
-#include "tests/bench/pairs.h"
 #include "tests/bench/picture_plane.h"
 #include "tests/bench/subjects.h"
 #include "voxel/camera.h"
@@ -68,11 +65,12 @@ void run(benchmark::State& state, const Case& the) {
   state.counters["lit"] = static_cast<double>(lit);
 }
 
-Triple triple(const glm::dvec3& p) {
+[[maybe_unused]] Triple triple(const glm::dvec3& p) {
   return {p.x, p.y, p.z};
 }
 
-PicturePlane plane_of(const Case& the) {
+// Where no peer is installed nobody asks for these.
+[[maybe_unused]] PicturePlane plane_of(const Case& the) {
   const std::vector<voxel::Drawn> objects{{"skull", skull(the.side)}};
   const glm::ivec2 size_px(the.side_px);
   const voxel::Frame frame = voxel::frame_about(objects, the.axes(), size_px);
@@ -90,7 +88,7 @@ PicturePlane plane_of(const Case& the) {
   return plane;
 }
 
-FlatMesh mesh_of(int side) {
+[[maybe_unused]] FlatMesh mesh_of(int side) {
   const brep::Triangles triangles =
       convert::isosurface(head(side), bone_hu, std::numeric_limits<double>::infinity());
   FlatMesh mesh;
