@@ -147,7 +147,8 @@ OCTOTOMY_VECTOR_CLONES void root_row(const float* __restrict colour, const float
                                      int* __restrict root) {
   for (int i = first; i < last; ++i) {
     const float light = colour[i] * diffuse[i] + mirrored[i];
-    root[i] = static_cast<int>(0.5f + std::sqrt(light < 1.0f ? light : 1.0f) * Tone::root_steps);
+    constexpr float to_nearest = 0.5f;
+    root[i] = static_cast<int>(to_nearest + std::sqrt(light < 1.0f ? light : 1.0f) * Tone::root_steps);
   }
 }
 
