@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   octotomy::bench::register_build();
   octotomy::bench::register_measure();
   octotomy::bench::register_move();
+  octotomy::bench::register_read();
   octotomy::bench::register_render();
 #ifdef OCTOTOMY_HAS_OPENVDB
   octotomy::bench::register_openvdb();

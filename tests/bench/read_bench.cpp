@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cstdint>
+#include <filesystem>
+#include <unistd.h>
+
+#include "tests/bench/benchmarks.h"
+#ifdef OCTOTOMY_HAS_ITK
+#include "tests/bench/itk_peer.h"
+#endif
+#include "voxel/grey_octree.h"
+#include "voxel/read_scene.h"
+#include "voxel/write_scene.h"
+
+namespace octotomy::bench {
+namespace {
+
+// An uncompressed series of 512 x 512 x 300, written once and removed at the end.
+class Series {
+ public:
+  static const std::filesystem::path& folder() {
+    static const Series series;
+    return series.folder_;
+  }
+
+ private:
+  Series()
+      : folder_(std::filesystem::temp_directory_path() / ("octotomy-bench-" + std::to_string(::getpid()))) {
+    voxel::Scene scene;
+    scene.lattice = voxel::axis_aligned_lattice({512, 512, 300}, {0.5, 0.5, 0.75}, {-128, -128, -100});
+    std::vector<std::int16_t> samples(scene.lattice.sample_count());
+    std::uint32_t noise = 1;
+    for (std::int16_t& sample : samples) {
+      noise = noise * 1664525U + 1013904223U;
+      sample = static_cast<std::int16_t>(static_cast<int>(noise >> 22) - 1000);
+    }
+    scene.samples = std::move(samples);
+    scene.meaning = voxel::Meaning::Hounsfield;
+    scene.modality = "CT";
+    voxel::write_dicom_series(scene, folder_);
+  }
+  ~Series() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
+  std::filesystem::path folder_;
+};
+
+// From a folder to a grey octree, all audits made.
+void run_ours(benchmark::State& state) {
+  const std::filesystem::path& folder = Series::folder();
+  for (auto _ : state) {
+    const voxel::Scene scene = voxel::read_scene(folder);
+    const voxel::Universe universe{9, scene.lattice.lps_from_voxel};
+    benchmark::DoNotOptimize(voxel::grey_octree_of(universe, scene).background());
+  }
+}
+
+#ifdef OCTOTOMY_HAS_ITK
+void run_itk(benchmark::State& state) {
+  const std::filesystem::path& folder = Series::folder();
+  for (auto _ : state) benchmark::DoNotOptimize(read_series_by_itk(folder));
+}
+#endif
+
+}  // namespace
+
+void register_read() {
+  add("read/series_to_grey_octree/512x512x300", run_ours);
+#ifdef OCTOTOMY_HAS_ITK
+  add("peer/itk/read/series_to_grey_octree/512x512x300", run_itk);
+#endif
+}
+
+}  // namespace octotomy::bench
