@@ -93,7 +93,7 @@ void mark_row(const Sample* samples, std::size_t count, const Inside& inside, st
 }
 
 template <typename Sample, typename Inside>
-void mark_all(const std::vector<Sample>& samples, const glm::ivec3& dims, const Inside& inside,
+void mark_all(const voxel::Samples<Sample>& samples, const glm::ivec3& dims, const Inside& inside,
               InsideBits& bits) {
   const auto nx = static_cast<std::size_t>(dims.x);
   const auto ny = static_cast<std::size_t>(dims.y);
@@ -103,7 +103,7 @@ void mark_all(const std::vector<Sample>& samples, const glm::ivec3& dims, const 
   });
 }
 
-void mark(const std::vector<std::int16_t>& samples, const glm::ivec3& dims, double low, double high,
+void mark(const voxel::Int16Samples& samples, const glm::ivec3& dims, double low, double high,
           InsideBits& bits) {
   const double least = std::max(std::ceil(low), -32768.0);
   const double most = std::min(std::floor(high), 32767.0);
@@ -114,7 +114,7 @@ void mark(const std::vector<std::int16_t>& samples, const glm::ivec3& dims, doub
       samples, dims, [=](std::int16_t v) { return (v >= from) & (v <= to); }, bits);
 }
 
-void mark(const std::vector<float>& samples, const glm::ivec3& dims, double low, double high,
+void mark(const voxel::FloatSamples& samples, const glm::ivec3& dims, double low, double high,
           InsideBits& bits) {
   mark_all(
       samples, dims,
@@ -166,7 +166,7 @@ class Extraction {
         cases_(flat_cases(!scene.lattice.right_handed())) {}
 
   template <typename Sample>
-  brep::Triangles run(const std::vector<Sample>& samples) {
+  brep::Triangles run(const voxel::Samples<Sample>& samples) {
     mark(samples, lattice_.dims, low_, high_, bits_);
     count();
     number();
@@ -250,7 +250,7 @@ class Extraction {
   }
 
   template <typename Sample>
-  void write(const std::vector<Sample>& samples) {
+  void write(const voxel::Samples<Sample>& samples) {
     tbb::parallel_for(std::size_t{0}, bits_.planes_z - 1, [&](std::size_t z) {
       for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
         write_vertices(samples, y, z);
@@ -260,7 +260,7 @@ class Extraction {
   }
 
   template <typename Sample>
-  void write_vertices(const std::vector<Sample>& samples, std::size_t y, std::size_t z) {
+  void write_vertices(const voxel::Samples<Sample>& samples, std::size_t y, std::size_t z) {
     const std::uint64_t* here = bits_.row(y, z);
     const std::array<const std::uint64_t*, 3> beyond = {nullptr, bits_.row(y + 1, z), bits_.row(y, z + 1)};
     const RowCount& row = rows_[bits_.row_number(y, z)];
@@ -281,7 +281,7 @@ class Extraction {
   }
 
   template <typename Sample>
-  glm::dvec3 vertex_mm(const std::vector<Sample>& samples, const glm::ivec3& voxel, int axis,
+  glm::dvec3 vertex_mm(const voxel::Samples<Sample>& samples, const glm::ivec3& voxel, int axis,
                        bool inside) const {
     const glm::ivec3& dims = lattice_.dims;
     glm::dvec3 p_voxel(voxel);

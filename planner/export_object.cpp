@@ -131,7 +131,7 @@ void export_label(const Object& object, const std::filesystem::path& path, Expor
   scene.lattice = object.octree.universe().lattice();
   scene.meaning = voxel::Meaning::Label;
   scene.source = object.id;
-  std::vector<std::int16_t> labels(scene.lattice.sample_count(), 0);
+  voxel::Int16Samples labels(scene.lattice.sample_count(), 0);
   std::size_t at = 0;
   const int side = object.octree.universe().side();
   for (int z = 0; z < side; ++z)

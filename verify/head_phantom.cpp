@@ -188,7 +188,7 @@ void check_options(const HeadOptions& options) {
     refuse("more than 2^31 voxels; voxel_mm is too small", options.voxel_mm);
 }
 
-std::vector<float> scanned_samples(const voxel::Lattice& lattice, const HeadTissues& tissues) {
+voxel::FloatSamples scanned_samples(const voxel::Lattice& lattice, const HeadTissues& tissues) {
   std::array<double, tissue_count> hounsfield{};
   hounsfield[AirTissue] = tissues.air;
   hounsfield[HeadrestTissue] = tissues.headrest;
@@ -196,7 +196,7 @@ std::vector<float> scanned_samples(const voxel::Lattice& lattice, const HeadTiss
   hounsfield[BoneTissue] = tissues.bone;
   hounsfield[SoftTissue] = tissues.soft;
   const Scanner scanner(lattice);
-  std::vector<float> samples(lattice.sample_count());
+  voxel::FloatSamples samples(lattice.sample_count());
   const int block = scanner.block_side();
   const glm::ivec3 blocks = (lattice.dims + block - 1) / block;
   tbb::parallel_for(0, blocks.z * blocks.y, [&](int row) {
@@ -220,7 +220,7 @@ std::vector<float> scanned_samples(const voxel::Lattice& lattice, const HeadTiss
 
 // Gaussian along one axis of the lattice, cut off where it has fallen below a thousandth of a Hounsfield
 // unit of a step of 4000 (5 sigma). Beyond the border the border's sample is repeated.
-void blur_axis(std::vector<float>& samples, const glm::ivec3& dims, int axis, double sigma_voxels) {
+void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, double sigma_voxels) {
   const int reach = static_cast<int>(std::ceil(5.0 * sigma_voxels));
   const int tap_count = 2 * reach + 1;
   std::vector<double> weights(static_cast<std::size_t>(tap_count));
@@ -239,7 +239,7 @@ void blur_axis(std::vector<float>& samples, const glm::ivec3& dims, int axis, do
   const std::size_t line_count = samples.size() / length;
   tbb::parallel_for(std::size_t{0}, line_count, [&](std::size_t line) {
     float* const begin = samples.data() + line / stride * stride * length + line % stride;
-    std::vector<float> copy(length);
+    voxel::FloatSamples copy(length);
     for (std::size_t i = 0; i < length; ++i) copy[i] = begin[i * stride];
     for (int i = 0; i < dims[axis]; ++i) {
       double mean = 0.0;
@@ -296,12 +296,12 @@ voxel::Scene head_phantom(const HeadOptions& options) {
   scene.meaning = voxel::Meaning::Hounsfield;
   scene.modality = "CT";
   scene.source = "head phantom";
-  std::vector<float> samples = scanned_samples(scene.lattice, options.tissues);
+  voxel::FloatSamples samples = scanned_samples(scene.lattice, options.tissues);
   if (options.point_spread_sigma_mm > 0.0)
     for (int axis = 0; axis < 3; ++axis)
       blur_axis(samples, scene.lattice.dims, axis,
                 options.point_spread_sigma_mm / scene.lattice.spacing_mm()[axis]);
-  std::vector<std::int16_t> rounded(samples.size());
+  voxel::Int16Samples rounded(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     double sample = samples[i];
     if (options.noise_sigma_hu > 0.0) sample += options.noise_sigma_hu * normal_deviate(options.seed, i);

@@ -116,7 +116,7 @@ Octree octree_of_window(const Universe& universe, const Scene& scene, double low
       });
     });
   };
-  if (const auto* shorts = std::get_if<std::vector<std::int16_t>>(&scene.samples)) {
+  if (const auto* shorts = std::get_if<Int16Samples>(&scene.samples)) {
     const std::optional<Window16> window = window16(low, high);
     if (!window) return Octree::empty(universe);
     return build([&](std::size_t start, int width) -> std::uint64_t {
@@ -129,7 +129,7 @@ Octree octree_of_window(const Universe& universe, const Scene& scene, double low
       return bits;
     });
   }
-  const auto& floats = std::get<std::vector<float>>(scene.samples);
+  const auto& floats = std::get<FloatSamples>(scene.samples);
   return build([&](std::size_t start, int width) {
     std::uint64_t bits = 0;
     for (int x = 0; x < width; ++x) {

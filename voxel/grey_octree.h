@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "voxel/huge_pages.h"
+#include "voxel/large_allocator.h"
 #include "voxel/lattice.h"
 #include "voxel/scene.h"
 
@@ -67,7 +67,7 @@ class GreyOctree {
     std::int16_t background = 0;
     std::vector<Level> levels;                  ///< heights 2, 3, ... up to the root's
     std::vector<std::uint32_t> brick_of_block;  ///< brick 0 is all background
-    std::vector<GreyBrick, HugePageAllocator<GreyBrick>> bricks;
+    std::vector<GreyBrick, LargeAllocator<GreyBrick>> bricks;
   };
   explicit GreyOctree(std::shared_ptr<const Storage> storage) : storage_(std::move(storage)) {}
   std::shared_ptr<const Storage> storage_;

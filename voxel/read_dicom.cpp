@@ -253,7 +253,7 @@ class SeriesReader {
   bool decode_as(const Stack& stack) {
     const glm::ivec2 size_px = stack.first().size_px;
     const std::size_t area = static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
-    std::vector<Sample> samples(area * stack.slices.size());
+    Samples<Sample> samples(area * stack.slices.size());
     std::vector<char> fits(stack.slices.size(), 0);
     for_each_index(stack.slices.size(), options_.stop, [&](std::size_t i) {
       fits[i] = read_dicom_samples(stack.slices[i], std::span<Sample>(samples).subspan(i * area, area));
@@ -315,8 +315,7 @@ class SeriesReader {
   }
 
   template <typename Sample>
-  static std::vector<Sample> resample(const Stack& stack, const Plan& plan,
-                                      const std::vector<Sample>& stored) {
+  static Samples<Sample> resample(const Stack& stack, const Plan& plan, const Samples<Sample>& stored) {
     const glm::ivec2 from_px = stack.first().size_px;
     const std::size_t from_area = static_cast<std::size_t>(from_px.x) * static_cast<std::size_t>(from_px.y);
     const std::size_t width = static_cast<std::size_t>(plan.size_px.x);
@@ -340,7 +339,7 @@ class SeriesReader {
     std::vector<glm::dvec2> aside_px(stack.slices.size(), glm::dvec2(0.0));
     if (plan.leans)
       for (std::size_t i = 0; i < aside_px.size(); ++i) aside_px[i] = stack.aside_px(stack.slices[i]);
-    std::vector<Sample> samples(area * plan.sources.size());
+    Samples<Sample> samples(area * plan.sources.size());
     tbb::parallel_for(std::size_t{0}, plan.sources.size(), [&](std::size_t k) {
       const Plan::Source source = plan.sources[k];
       for (std::size_t i = 0; i < area; ++i) {

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "voxel/large_allocator.h"
 #include "voxel/lattice.h"
 
 namespace octotomy::voxel {
@@ -24,10 +25,15 @@ struct Finding {
   std::string detail;
 };
 
+template <typename Sample>
+using Samples = std::vector<Sample, LargeAllocator<Sample>>;
+using Int16Samples = Samples<std::int16_t>;
+using FloatSamples = Samples<float>;
+
 /// Samples on a lattice, x fastest.
 struct Scene {
   Lattice lattice;
-  std::variant<std::vector<std::int16_t>, std::vector<float>> samples;
+  std::variant<Int16Samples, FloatSamples> samples;
   Meaning meaning = Meaning::Raw;
   std::string modality;  ///< DICOM's two letters ("CT", "MR"), empty where the file does not say
   std::string source;    ///< where it came from, for people

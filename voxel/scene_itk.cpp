@@ -140,7 +140,7 @@ Lattice lattice_of(const itk::ImageIOBase& io, const fs::path& path, std::uintma
 
 template <typename Stored>
 void read_as(itk::ImageIOBase& io, Scene& scene) {
-  std::vector<Stored> stored(scene.lattice.sample_count());
+  Samples<Stored> stored(scene.lattice.sample_count());
   io.Read(stored.data());
   if constexpr (std::is_same_v<Stored, std::int16_t>)
     scene.samples = std::move(stored);
@@ -308,7 +308,7 @@ void write_volume_file(const Scene& scene, const fs::path& path, VolumeFormat fo
   io->SetNumberOfDimensions(3);
   io->SetNumberOfComponents(1);
   io->SetPixelType(itk::IOPixelEnum::SCALAR);
-  const bool is_int16 = std::holds_alternative<std::vector<std::int16_t>>(scene.samples);
+  const bool is_int16 = std::holds_alternative<Int16Samples>(scene.samples);
   io->SetComponentType(is_int16 ? itk::IOComponentEnum::SHORT : itk::IOComponentEnum::FLOAT);
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   itk::ImageIORegion region(3);

@@ -26,7 +26,7 @@ template <typename Stored>
 void take(std::span<const char> bytes, const StoredSamples& how, Scene& scene) {
   const std::size_t count = bytes.size() / sizeof(Stored);
   const bool swap = how.big_endian != (std::endian::native == std::endian::big);
-  std::vector<Stored> stored(count);
+  Samples<Stored> stored(count);
   std::memcpy(stored.data(), bytes.data(), count * sizeof(Stored));
   if (swap)
     for (Stored& value : stored) {
@@ -36,7 +36,7 @@ void take(std::span<const char> bytes, const StoredSamples& how, Scene& scene) {
       std::memcpy(&value, turned.data(), sizeof(Stored));
     }
   if (how.slope == 1.0 && how.intercept == 0.0) return take_samples(stored, scene);
-  std::vector<double> values(count);
+  Samples<double> values(count);
   std::transform(stored.begin(), stored.end(), values.begin(),
                  [&](Stored value) { return how.slope * static_cast<double>(value) + how.intercept; });
   take_samples(values, scene);

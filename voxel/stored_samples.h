@@ -37,8 +37,8 @@ void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene&
 
 /// The samples as int16 where each is an integer of its range, else as float; the audit says what had to be
 /// changed. Throws std::runtime_error, without a path, where no sample is a finite number.
-template <typename Stored>
-void take_samples(const std::vector<Stored>& stored, Scene& scene) {
+template <typename Stored, typename Allocator>
+void take_samples(const std::vector<Stored, Allocator>& stored, Scene& scene) {
   constexpr double int16_low = std::numeric_limits<std::int16_t>::min();
   constexpr double int16_high = std::numeric_limits<std::int16_t>::max();
   std::size_t unreal_count = 0;
@@ -71,10 +71,10 @@ void take_samples(const std::vector<Stored>& stored, Scene& scene) {
     });
   };
   if (fits) {
-    convert(scene.samples.emplace<std::vector<std::int16_t>>());
+    convert(scene.samples.emplace<Int16Samples>());
     return;
   }
-  convert(scene.samples.emplace<std::vector<float>>());
+  convert(scene.samples.emplace<FloatSamples>());
   if (!is_exact)
     scene.audit.push_back({"precision", Verdict::Warn, "samples are rounded to single precision"});
 }

@@ -142,7 +142,7 @@ class SeriesWriter {
 
   /// Writes slice k to `path`; `name` is what errors call it.
   void write(int k, const fs::path& path, const fs::path& name) const {
-    const std::vector<std::int16_t> samples = samples_of(k);
+    const Int16Samples samples = samples_of(k);
     Attributes slice;
     put_patient_and_study(slice);
     put_image(slice, k);
@@ -160,10 +160,10 @@ class SeriesWriter {
                                   "' must have at most 64 characters and no backslash");
   }
 
-  std::vector<std::int16_t> samples_of(int k) const {
+  Int16Samples samples_of(int k) const {
     const std::size_t area =
         static_cast<std::size_t>(scene_.lattice.dims.x) * static_cast<std::size_t>(scene_.lattice.dims.y);
-    std::vector<std::int16_t> slice(area);
+    Int16Samples slice(area);
     std::visit(
         [&](const auto& samples) {
           for (std::size_t i = 0; i < area; ++i) {
@@ -235,7 +235,7 @@ class SeriesWriter {
     slice.text(0x00281054, "LO", scene_.meaning == Meaning::Hounsfield ? "HU" : "US");
   }
 
-  void put_pixels(Attributes& slice, const std::vector<std::int16_t>& samples) const {
+  void put_pixels(Attributes& slice, const Int16Samples& samples) const {
     slice.number(0x00280002, 1);
     slice.text(0x00280004, "CS", "MONOCHROME2");
     slice.number(0x00280010, static_cast<std::uint16_t>(scene_.lattice.dims.y));

@@ -13,7 +13,7 @@ const voxel::Scene& whole_scene(int side) {
     const voxel::GreyOctree grey = grey_skull(side);
     voxel::Scene whole;
     whole.lattice = universe(side).lattice();
-    std::vector<std::int16_t> samples;
+    voxel::Int16Samples samples;
     samples.reserve(whole.lattice.sample_count());
     for (int z = 0; z < side; ++z)
       for (int y = 0; y < side; ++y)

@@ -27,7 +27,7 @@ class Series {
       : folder_(std::filesystem::temp_directory_path() / ("octotomy-bench-" + std::to_string(::getpid()))) {
     voxel::Scene scene;
     scene.lattice = voxel::axis_aligned_lattice({512, 512, 300}, {0.5, 0.5, 0.75}, {-128, -128, -100});
-    std::vector<std::int16_t> samples(scene.lattice.sample_count());
+    voxel::Int16Samples samples(scene.lattice.sample_count());
     std::uint32_t noise = 1;
     for (std::int16_t& sample : samples) {
       noise = noise * 1664525U + 1013904223U;

@@ -126,7 +126,7 @@ void run_vtk(benchmark::State& state, const Case& the) {
   for (int axis = 0; axis < 3; ++axis) scan.dims[static_cast<std::size_t>(axis)] = scene.lattice.dims[axis];
   scan.first_mm = triple(scene.lattice.lps_mm(glm::dvec3(0.0)));
   scan.spacing_mm = triple(scene.lattice.spacing_mm());
-  scan.samples = std::get<std::vector<std::int16_t>>(scene.samples).data();
+  scan.samples = std::get<voxel::Int16Samples>(scene.samples).data();
   const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   const VtkPeer peer(scan, bone_hu, static_cast<int>(threads));
   const PicturePlane plane = plane_of(the);

@@ -22,7 +22,7 @@ using tests::volume_mm3;
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-voxel::Scene scene_of(const voxel::Lattice& lattice, std::vector<std::int16_t> samples) {
+voxel::Scene scene_of(const voxel::Lattice& lattice, voxel::Int16Samples samples) {
   voxel::Scene scene;
   scene.lattice = lattice;
   scene.samples = std::move(samples);
@@ -32,7 +32,7 @@ voxel::Scene scene_of(const voxel::Lattice& lattice, std::vector<std::int16_t> s
 
 voxel::Scene noise(const glm::ivec3& dims, unsigned seed, int part_inside_percent) {
   std::mt19937 random(seed);
-  std::vector<std::int16_t> samples(static_cast<std::size_t>(dims.x * dims.y * dims.z));
+  voxel::Int16Samples samples(static_cast<std::size_t>(dims.x * dims.y * dims.z));
   for (std::int16_t& sample : samples) {
     const int value = static_cast<int>(random() % 1000);
     sample = static_cast<std::int16_t>(static_cast<int>(random() % 100) < part_inside_percent ? 1000 + value
@@ -44,7 +44,7 @@ voxel::Scene noise(const glm::ivec3& dims, unsigned seed, int part_inside_percen
 /// How much of each voxel of the lattice a ball fills, by 8^3 points, as int16 from 0 to 1000.
 voxel::Scene ball_scene(const voxel::Lattice& lattice, const glm::dvec3& centre_mm, double radius_mm) {
   constexpr int cuts = 8;
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   samples.reserve(lattice.sample_count());
   const double reach_mm = 0.5 * glm::length(lattice.spacing_mm()) * 1.8;  // sheared voxels reach further
   for (int z = 0; z < lattice.dims.z; ++z)
@@ -99,7 +99,7 @@ BallErrors partial_volume_errors(const voxel::Lattice& lattice, double radius_mm
 
 /// The samples fall linearly with the distance from the centre: all that is left is the triangles' own error.
 BallErrors distance_errors(const voxel::Lattice& lattice, double radius_mm) {
-  std::vector<float> samples;
+  voxel::FloatSamples samples;
   for (int z = 0; z < lattice.dims.z; ++z)
     for (int y = 0; y < lattice.dims.y; ++y)
       for (int x = 0; x < lattice.dims.x; ++x)
@@ -242,7 +242,7 @@ TEST(Isosurface, BothBoundsOfTheWindowAreInsideAndCrossingsLieAtTheBoundThatIsCr
 TEST(Isosurface, AnObjectThatReachesTheScansBorderIsClosedHalfAVoxelBeyondIt) {
   const voxel::Lattice lattice = voxel::axis_aligned_lattice({5, 4, 3}, {1.0, 0.5, 2.0}, {10, 20, 30});
   const brep::Triangles surface =
-      isosurface(scene_of(lattice, std::vector<std::int16_t>(lattice.sample_count(), 100)), 50, 200);
+      isosurface(scene_of(lattice, voxel::Int16Samples(lattice.sample_count(), 100)), 50, 200);
   EXPECT_EQ(fault_in_closedness(surface), std::nullopt);
   const voxel::Box box = voxel::bounds(lattice);
   glm::dvec3 low(1e9);
@@ -278,7 +278,7 @@ TEST(Isosurface, OfNothingInsideIsEmpty) {
 TEST(Isosurface, SamplesThatAreNoNumbersAreOutside) {
   voxel::Scene scene;
   scene.lattice = voxel::axis_aligned_lattice({3, 3, 3}, {1, 1, 1}, {0, 0, 0});
-  std::vector<float> samples(27, std::numeric_limits<float>::quiet_NaN());
+  voxel::FloatSamples samples(27, std::numeric_limits<float>::quiet_NaN());
   samples[13] = 1.0F;
   samples[12] = -std::numeric_limits<float>::infinity();
   scene.samples = samples;
@@ -295,8 +295,8 @@ TEST(Isosurface, ABoundThatIsNoNumberIsRefused) {
 TEST(Isosurface, IntegerAndFloatSamplesOfOneScanGiveTheSameSurface) {
   const voxel::Scene integers = noise({9, 8, 7}, 11, 50);
   voxel::Scene floats = integers;
-  const auto& samples = std::get<std::vector<std::int16_t>>(integers.samples);
-  floats.samples = std::vector<float>(samples.begin(), samples.end());
+  const auto& samples = std::get<voxel::Int16Samples>(integers.samples);
+  floats.samples = voxel::FloatSamples(samples.begin(), samples.end());
   const brep::Triangles a = isosurface(integers, 999.5, 1700.25);
   const brep::Triangles b = isosurface(floats, 999.5, 1700.25);
   EXPECT_EQ(a.faces, b.faces);

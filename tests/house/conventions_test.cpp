@@ -25,7 +25,7 @@ TEST(Conventions, IntegerIndexIsTheVoxelsCentre) {
 TEST(Conventions, StorageIsXFastest) {
   voxel::Scene scene;
   scene.lattice = voxel::axis_aligned_lattice({2, 3, 4}, {1, 1, 1}, {0, 0, 0});
-  std::vector<std::int16_t> samples(24, 0);
+  voxel::Int16Samples samples(24, 0);
   samples[1] = 100;  // (1, 0, 0)
   samples[2] = 200;  // (0, 1, 0)
   samples[6] = 300;  // (0, 0, 1)
@@ -88,7 +88,7 @@ voxel::Scene box_scene(double x_direction) {
   voxel::Scene scene;
   scene.lattice = voxel::axis_aligned_lattice({20, 20, 20}, {1, 1, 1}, {100, -40, 7});
   scene.lattice.lps_from_voxel[0][0] = x_direction;
-  std::vector<std::int16_t> samples(8000, 0);
+  voxel::Int16Samples samples(8000, 0);
   for (int z = 5; z < 9; ++z)
     for (int y = 4; y < 10; ++y)
       for (int x = 3; x < 15; ++x) samples[static_cast<std::size_t>(x + 20 * (y + 20 * z))] = 1000;

@@ -38,7 +38,7 @@ inline voxel::Scene ball_scene(double radius_mm, int side = 64) {
   voxel::Scene scene;
   const double first_mm = -0.5 * (side - 1);
   scene.lattice = voxel::axis_aligned_lattice(glm::ivec3(side), glm::dvec3(1.0), glm::dvec3(first_mm));
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {

@@ -12,8 +12,8 @@ namespace {
 voxel::Scene raw_head() {
   voxel::Scene scene = tests::ball_scene(13.0, 32);
   const voxel::Scene inner = tests::ball_scene(8.0, 32);
-  auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
-  const auto& bone = std::get<std::vector<std::int16_t>>(inner.samples);
+  auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  const auto& bone = std::get<voxel::Int16Samples>(inner.samples);
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i] = static_cast<std::int16_t>(20 + (samples[i] + 1000) / 2 + (bone[i] + 1000) / 2);
   scene.meaning = voxel::Meaning::Raw;
@@ -32,7 +32,7 @@ TEST(FirstLook, ThresholdsPartThreeClassesOfSamples) {
 TEST(FirstLook, FewBrightSamplesOfMetalDoNotMoveThresholds) {
   voxel::Scene scene = raw_head();
   const Thresholds before = thresholds_of(scene);
-  auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
+  auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   for (std::size_t i = 0; i < 20; ++i) samples[i * 1500] = 30000;
   const Thresholds after = thresholds_of(scene);
   // One bin of 256 over the range of the other samples.
@@ -42,7 +42,7 @@ TEST(FirstLook, FewBrightSamplesOfMetalDoNotMoveThresholds) {
 
 TEST(FirstLook, AScanOfOneValueIsRefused) {
   voxel::Scene scene = tests::ball_scene(13.0, 16);
-  for (auto& sample : std::get<std::vector<std::int16_t>>(scene.samples)) sample = 7;
+  for (auto& sample : std::get<voxel::Int16Samples>(scene.samples)) sample = 7;
   EXPECT_THROW(thresholds_of(scene), std::runtime_error);
 }
 

@@ -45,7 +45,7 @@ voxel::Scene scan_of(const Distance& distance, double spacing_mm, double half_ex
   const int side = static_cast<int>(std::ceil(2.0 * half_extent_mm / spacing_mm));
   scene.lattice = voxel::axis_aligned_lattice(glm::ivec3(side), glm::dvec3(spacing_mm),
                                               glm::dvec3(-0.5 * (side - 1) * spacing_mm));
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {

@@ -11,7 +11,7 @@
 namespace octotomy::verify {
 namespace {
 
-using Samples = std::vector<std::int16_t>;
+using Samples = voxel::Int16Samples;
 using Inside = std::function<bool(const glm::dvec3&)>;
 
 const Samples& samples_of(const voxel::Scene& scene) {

@@ -169,7 +169,7 @@ TEST(Combine, AGreyWindowIsTheOctreeOfItsSamples) {
   const Universe universe = universe_of(6);
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < 64; ++z)
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x)
@@ -188,7 +188,7 @@ TEST(Combine, AMovedWindowIsInterpolatedAtTheCentreMovedBack) {
   const Lattice lattice = universe.lattice();
   Scene scene;
   scene.lattice = lattice;
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < 64; ++z)
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x)

@@ -34,7 +34,7 @@ struct Dense {
 inline voxel::Octree octree_of(const voxel::Universe& universe, const Dense& dense) {
   voxel::Scene scene;
   scene.lattice = universe.lattice();
-  scene.samples = std::vector<std::int16_t>(dense.voxels.begin(), dense.voxels.end());
+  scene.samples = voxel::Int16Samples(dense.voxels.begin(), dense.voxels.end());
   return voxel::octree_of_window(universe, scene, 1, 1);
 }
 

@@ -77,7 +77,7 @@ void expect_ramp(const Scene& scene, const Frames& frames) {
   ASSERT_EQ(scene.lattice.dims, glm::ivec3(frames.columns, frames.rows, frames.count));
   EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.25, 0.5, 2.0));
   EXPECT_EQ(glm::dvec3(scene.lattice.lps_from_voxel[3]), glm::dvec3(-10, -20, 30));
-  const auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
+  const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   std::size_t i = 0;
   for (int z = 0; z < frames.count; ++z)
     for (int y = 0; y < frames.rows; ++y)

@@ -10,7 +10,7 @@ namespace {
 
 struct Grey {
   int side;
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
 };
 
 void count(const Grey& grey, std::int16_t background, const glm::ivec3& origin, int side, int level,

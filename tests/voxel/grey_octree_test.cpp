@@ -13,7 +13,7 @@ namespace {
 Scene ramp_scene(const Lattice& lattice, const glm::dvec4& plane) {
   Scene scene;
   scene.lattice = lattice;
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < lattice.dims.z; ++z)
     for (int y = 0; y < lattice.dims.y; ++y)
       for (int x = 0; x < lattice.dims.x; ++x)
@@ -27,7 +27,7 @@ TEST(GreyOctree, KeepsEverySampleOfACoincidentScan) {
   const Universe universe{6, glm::dmat4(1.0)};
   const Scene scene = ramp_scene({{50, 33, 64}, universe.lps_from_voxel}, {3, -7, 11, 5});
   const GreyOctree grey = grey_octree_of(universe, scene, -1024);
-  const auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
+  const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   for (int z = 0; z < 64; ++z)
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x) {
@@ -117,7 +117,7 @@ TEST(GreyOctree, RefusesFloatsBeyondSixteenBits) {
   const Universe universe{4, glm::dmat4(1.0)};
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<float> samples(4096, 0.0F);
+  voxel::FloatSamples samples(4096, 0.0F);
   samples[100] = 40000.0F;
   scene.samples = samples;
   EXPECT_THROW(grey_octree_of(universe, scene), std::invalid_argument);

@@ -18,7 +18,7 @@ inline voxel::Scene linear_scene(const voxel::Lattice& lattice) {
   voxel::Scene scene;
   scene.lattice = lattice;
   scene.meaning = voxel::Meaning::Hounsfield;
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < lattice.dims.z; ++z)
     for (int y = 0; y < lattice.dims.y; ++y)
       for (int x = 0; x < lattice.dims.x; ++x)

@@ -30,7 +30,7 @@ GreyOctree noisy_grey(int depth, std::uint64_t seed) {
   scene.lattice = universe.lattice();
   const tests::Dense shape = tests::random_dense(universe.side(), seed);
   std::mt19937_64 random(seed);
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (const std::uint8_t voxel : shape.voxels)
     samples.push_back(
         static_cast<std::int16_t>(voxel != 0 ? static_cast<int>(random() % 65536) - 32768 : -1024));
@@ -97,7 +97,7 @@ TEST(OctreeFile, HoldsAGreyOctreeOfMoreBricksThanASection) {
   const Universe universe = universe_of(7);
   Scene scene;
   scene.lattice = {{80, 80, 80}, universe.lps_from_voxel};
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int i = 0; i < 80 * 80 * 80; ++i)
     samples.push_back(static_cast<std::int16_t>(i * 37 - (i % 5 == 0 ? 40000 : 0)));
   scene.samples = samples;

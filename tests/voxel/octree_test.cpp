@@ -92,10 +92,10 @@ TEST(OctreeOfWindow, TakesBothEndsAndKeepsScansThatAreNoMultipleOfABlock) {
   const Universe universe = universe_of(6);
   Scene scene;
   scene.lattice = {{37, 18, 50}, universe.lps_from_voxel};
-  std::vector<std::int16_t> shorts;
+  voxel::Int16Samples shorts;
   for (int i = 0; i < 37 * 18 * 50; ++i)
     shorts.push_back(static_cast<std::int16_t>((i * 7919) % 4001 - 2000));
-  std::vector<float> floats(shorts.begin(), shorts.end());
+  FloatSamples floats(shorts.begin(), shorts.end());
   std::uint64_t expected = 0;
   for (const std::int16_t value : shorts) expected += value >= -5 && value <= 700;
   scene.samples = shorts;

@@ -16,7 +16,7 @@ GreyOctree ball(int side, double radius_mm, const glm::dvec3& centre_mm) {
   const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 32.0 / side);
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x) {
@@ -55,7 +55,7 @@ TEST(PartialVolume, SeesAShiftOfAFifthOfAVoxelAndACountDoesNot) {
     const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
     Scene scene;
     scene.lattice = universe.lattice();
-    std::vector<std::int16_t> samples;
+    voxel::Int16Samples samples;
     for (int z = 0; z < 32; ++z)
       for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x) {

@@ -15,7 +15,7 @@ GreyOctree block_of_water() {
       6, axis_aligned_lattice(glm::ivec3(64), glm::dvec3(0.5), glm::dvec3(10.0, -4.0, 3.0)).lps_from_voxel};
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples(scene.lattice.sample_count(), -1000);
+  Int16Samples samples(scene.lattice.sample_count(), -1000);
   const auto at = [&](int x, int y, int z) -> std::int16_t& {
     return samples[static_cast<std::size_t>(x + 64 * (y + 64 * z))];
   };

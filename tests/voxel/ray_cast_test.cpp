@@ -166,7 +166,7 @@ TEST(RayCast, AlongAnAxisItSeesTheSameVoxelAsNodeTracingDoes) {
 Scene soft_ball(const Universe& universe, const glm::dvec3& centre_mm, double radius_mm, double per_mm) {
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples(scene.lattice.sample_count());
+  voxel::Int16Samples samples(scene.lattice.sample_count());
   std::size_t next = 0;
   for (int z = 0; z < universe.side(); ++z)
     for (int y = 0; y < universe.side(); ++y)

@@ -69,7 +69,7 @@ fs::path slice(int number) {
 /// Greatest difference from the linear field at points at least a voxel inside the scanned lattice.
 double worst_error(const Scene& scene, const Lattice& scanned) {
   double worst = 0.0;
-  const auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
+  const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   std::size_t compared = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto x = static_cast<int>(i % static_cast<std::size_t>(scene.lattice.dims.x));
@@ -242,15 +242,15 @@ TEST(ReadDicom, AppliesEachSlicesOwnRescale) {
   exchange(folder / "series" / slice(2), intercept + "0 ", intercept + "7 ");
   const Scene read = read_scene(folder / "series");
   EXPECT_EQ(verdict(read, "rescale"), Verdict::Warn);
-  const auto& before = std::get<std::vector<std::int16_t>>(written.samples);
-  const auto& after = std::get<std::vector<std::int16_t>>(read.samples);
+  const auto& before = std::get<voxel::Int16Samples>(written.samples);
+  const auto& after = std::get<voxel::Int16Samples>(read.samples);
   EXPECT_EQ(after[0], before[0]);
   EXPECT_EQ(after[40 * 50], before[40 * 50] + 7);
   const std::string slope = "\x28\0\x53\x10"s + "DS\x02\0"s;
   exchange(folder / "series" / slice(1), slope + "1 ", slope + ".5");
   const Scene halved = read_scene(folder / "series");
-  ASSERT_TRUE(std::holds_alternative<std::vector<float>>(halved.samples)) << "halves are no integers";
-  EXPECT_EQ(std::get<std::vector<float>>(halved.samples)[0], 0.5f * static_cast<float>(before[0]));
+  ASSERT_TRUE(std::holds_alternative<voxel::FloatSamples>(halved.samples)) << "halves are no integers";
+  EXPECT_EQ(std::get<voxel::FloatSamples>(halved.samples)[0], 0.5f * static_cast<float>(before[0]));
 }
 
 TEST(ReadDicom, RefusesToCallValuesHounsfieldWhoseAirIsAtZero) {
@@ -258,7 +258,7 @@ TEST(ReadDicom, RefusesToCallValuesHounsfieldWhoseAirIsAtZero) {
   Scene scene = linear_scene(leaning_lattice(0.0));
   write_dicom_series(scene, folder / "hounsfield");
   EXPECT_EQ(read_scene(folder / "hounsfield").meaning, Meaning::Hounsfield);
-  for (std::int16_t& sample : std::get<std::vector<std::int16_t>>(scene.samples))
+  for (std::int16_t& sample : std::get<voxel::Int16Samples>(scene.samples))
     sample = static_cast<std::int16_t>(std::max(0, sample + 1024));
   write_dicom_series(scene, folder / "without_intercept");
   const Scene read = read_scene(folder / "without_intercept");
@@ -352,8 +352,8 @@ TEST(ReadVolumeFile, TurnsOtherFramesIntoLps) {
   const Scene read = read_scene(folder / "ras.nrrd");
   EXPECT_EQ(read.lattice.lps_mm({0, 0, 0}), glm::dvec3(-10, -20, 30));
   EXPECT_EQ(read.lattice.lps_mm({1, 2, 3}), glm::dvec3(-12, -26, 42));
-  ASSERT_TRUE(std::holds_alternative<std::vector<std::int16_t>>(read.samples));
-  EXPECT_EQ(std::get<std::vector<std::int16_t>>(read.samples)[23], 23) << "x fastest, z slowest";
+  ASSERT_TRUE(std::holds_alternative<voxel::Int16Samples>(read.samples));
+  EXPECT_EQ(std::get<voxel::Int16Samples>(read.samples)[23], 23) << "x fastest, z slowest";
   EXPECT_EQ(verdict(read, "orientation"), Verdict::Pass);
   write_bytes(folder / "unnamed.nrrd", nrrd("type: uint8\ndimension: 3\nsizes: 2 3 4\nspacings: 2 3 4\n"));
   EXPECT_EQ(verdict(read_scene(folder / "unnamed.nrrd"), "orientation"), Verdict::Warn);
@@ -362,14 +362,14 @@ TEST(ReadVolumeFile, TurnsOtherFramesIntoLps) {
 TEST(ReadVolumeFile, ReplacesWhatIsNoNumberAndSaysSo) {
   const ScratchFolder folder;
   Scene scene = linear_scene(axis_aligned_lattice({4, 4, 4}, glm::dvec3(1.0), glm::dvec3(0.0)));
-  std::vector<float> samples(64, 2.5f);
+  voxel::FloatSamples samples(64, 2.5f);
   samples[1] = -7.5f;
   samples[5] = std::numeric_limits<float>::quiet_NaN();
   scene.samples = samples;
   write_scene(scene, folder / "nan.nrrd");
   const Scene read = read_scene(folder / "nan.nrrd");
   EXPECT_EQ(verdict(read, "finite"), Verdict::Warn);
-  EXPECT_EQ(std::get<std::vector<float>>(read.samples)[5], -7.5f);
+  EXPECT_EQ(std::get<voxel::FloatSamples>(read.samples)[5], -7.5f);
 }
 
 TEST(ReadVolumeFile, DoesNotAllocateWhatTheFileCannotHold) {
@@ -464,7 +464,7 @@ TEST(ReadVolumeFile, RefusesAHeaderThatMetaIoOverflowsOn) {
 
 template <typename Predicate>
 std::ptrdiff_t count_if(const Scene& scene, const Predicate& predicate) {
-  const auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
+  const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   return std::count_if(samples.begin(), samples.end(), predicate);
 }
 

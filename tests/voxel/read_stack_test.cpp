@@ -50,7 +50,7 @@ void expect_ramp(const Scene& scene, int offset) {
   ASSERT_EQ(scene.lattice.dims, dims);
   EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.5, 0.75, 1.25));
   EXPECT_TRUE(scene.lattice.right_handed());
-  const auto& samples = std::get<std::vector<std::int16_t>>(scene.samples);
+  const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   std::size_t i = 0;
   for (int z = 0; z < dims.z; ++z)
     for (int y = 0; y < dims.y; ++y)
@@ -88,7 +88,7 @@ TEST(ReadImageStack, TakesThePagesOfOneTiffWithTheirSigns) {
   for (int z = 0; z < dims.z; ++z) {
     ASSERT_TRUE(out->open(path.string(), spec,
                           z == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage));
-    const std::vector<std::int16_t> samples = page<std::int16_t>(z, 0);
+    const auto samples = page<std::int16_t>(z, 0);
     ASSERT_TRUE(out->write_image(OIIO::TypeDesc::INT16, samples.data()));
   }
   ASSERT_TRUE(out->close());
@@ -212,7 +212,7 @@ TEST(ReadNifti2, TurnsItsAffinesIntoLpsAndAppliesItsSlope) {
       EXPECT_LT(glm::distance(glm::dvec3(scene.lattice.lps_from_voxel[2]),
                               sform ? glm::dvec3(0, -1.25, 0) : glm::dvec3(0, 0, 1.25)),
                 1e-12);
-      EXPECT_EQ(std::get<std::vector<std::int16_t>>(scene.samples)[8], 2 * ramp(1, 1, 0) + 5);
+      EXPECT_EQ(std::get<voxel::Int16Samples>(scene.samples)[8], 2 * ramp(1, 1, 0) + 5);
     }
 }
 

@@ -13,7 +13,7 @@ namespace {
 Scene three_steps(const Universe& universe) {
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples(scene.lattice.sample_count(), -1000);
+  voxel::Int16Samples samples(scene.lattice.sample_count(), -1000);
   const int side = universe.side();
   const auto at = [&](int x, int y, int z) -> std::int16_t& {
     return samples[static_cast<std::size_t>(x + side * (y + side * z))];

@@ -135,7 +135,7 @@ TEST(Render, BothAlgorithmsAgreeOnPartialVolumePicturesOfABall) {
   const Universe universe = universe_about_origin();
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   for (int z = 0; z < 64; ++z)
     for (int y = 0; y < 64; ++y)
       for (int x = 0; x < 64; ++x)

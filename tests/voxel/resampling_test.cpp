@@ -31,7 +31,7 @@ template <typename Function>
 Scene scene_of(const Universe& universe, const Function& value) {
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples;
+  voxel::Int16Samples samples;
   const int side = universe.side();
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)

@@ -19,7 +19,7 @@ Drawn grey_sphere() {
       8, axis_aligned_lattice(glm::ivec3(256), glm::dvec3(1.0), glm::dvec3(0.0)).lps_from_voxel};
   Scene scene;
   scene.lattice = universe.lattice();
-  std::vector<std::int16_t> samples(scene.lattice.sample_count());
+  Int16Samples samples(scene.lattice.sample_count());
   std::size_t next = 0;
   for (int z = 0; z < 256; ++z)
     for (int y = 0; y < 256; ++y)

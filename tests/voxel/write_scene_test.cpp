@@ -35,8 +35,8 @@ double worst_shift_mm(const Lattice& a, const Lattice& b) {
 
 Scene half_scene(const Lattice& lattice) {
   Scene scene = linear_scene(lattice);
-  std::vector<float> samples;
-  for (const std::int16_t sample : std::get<std::vector<std::int16_t>>(scene.samples))
+  voxel::FloatSamples samples;
+  for (const std::int16_t sample : std::get<voxel::Int16Samples>(scene.samples))
     samples.push_back(0.5f * static_cast<float>(sample));
   scene.samples = samples;
   scene.meaning = Meaning::Raw;
@@ -148,7 +148,7 @@ TEST(WriteDicomSeries, PlacesEverySliceToAMillionthOfAMillimetre) {
 TEST(WriteDicomSeries, SaysWhereValuesAreNotHounsfield) {
   const ScratchFolder folder;
   Scene scene = linear_scene(oblique_lattice());
-  for (std::int16_t& sample : std::get<std::vector<std::int16_t>>(scene.samples))
+  for (std::int16_t& sample : std::get<voxel::Int16Samples>(scene.samples))
     sample = static_cast<std::int16_t>(std::max<int>(sample, -800));  // takes away the air that tells
   write_dicom_series(scene, folder / "hounsfield");
   EXPECT_EQ(read_scene(folder / "hounsfield").meaning, Meaning::Hounsfield);
