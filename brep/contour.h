@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace octotomy::brep {
+
+/// Samples on a rectangle, x-fastest. Sample (i, j) stands at (i, j) * spacing_mm in the slice's own plane.
+struct Slice {
+  std::span<const float> samples;  ///< width * height of them
+  std::uint32_t width = 0, height = 0;
+  glm::dvec2 spacing_mm{1.0, 1.0};
+};
+
+/// A line in a slice's plane; a closed one runs on from its last point to its first. The object is on its
+/// left: with x to the right and y up, outer contours run counter-clockwise and holes clockwise.
+struct Contour {
+  std::vector<glm::dvec2> points_mm;
+  bool closed = true;
+};
+
+enum class Border {
+  close,      ///< the object ends half a sample beyond the outermost samples, where their pixels end
+  leave_open  ///< lines that meet the border end there, with `closed` false
+};
+
+struct FollowOptions {
+  double threshold = 0.0;  ///< samples at or above it are inside
+  Border border = Border::close;
+};
+
+/// All contours of a slice at a threshold, crossings placed by linear interpolation between neighbouring
+/// samples. Contours neither cross nor touch, themselves or each other; where two corners of a cell face each
+/// other diagonally they are joined as the bilinear interpolant joins them. Open lines come first, then
+/// closed ones, each group by its first crossing in storage order. Throws std::invalid_argument where the
+/// size does not fit the samples, the spacing is not positive, or the threshold or a sample is not finite,
+/// naming it. Cost: linear, 9 bytes a sample's edge. Source: Lorensen and Cline 1987 in the plane; Nielson
+/// and Hamann, "The asymptotic decider", Visualization 1991.
+std::vector<Contour> follow(const Slice& slice, const FollowOptions& options);
+
+/// The area a closed contour encloses, positive counter-clockwise. Throws std::invalid_argument where open.
+double signed_area_mm2(const Contour& contour);
+
+/// Length of the line, with the closing piece where it is closed.
+double perimeter_mm(const Contour& contour);
+
+/// For each contour the smallest one around it, by index, or none. Precondition: closed, simple, and apart
+/// from each other, as follow() leaves them. Throws std::invalid_argument where one is open. Cost: contours
+/// times points in the worst case; bounding boxes spare most.
+std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contours);
+
+/// The contour without points that are collinear within max_distance_mm: every point left out lies no further
+/// than that from the piece that stands for it. The first point stays; at least three points of a closed
+/// contour do, two of an open one. At distances above zero a thinned contour may cross itself or another.
+/// Throws std::invalid_argument where the distance is negative or not finite. Cost: n times the longest run.
+Contour thin(const Contour& contour, double max_distance_mm);
+
+struct FourierOptions {
+  std::size_t harmonics = 16;  ///< kept either way round, at least 1: one gives an ellipse
+  std::size_t points = 128;    ///< of the result, evenly in arc length of the original; above 2 * harmonics
+};
+
+/// A closed contour from its lowest Fourier harmonics in arc length, their coefficients integrated exactly
+/// over the polygon. Throws std::invalid_argument where open, of no length, or an option is out of its range.
+/// Cost: harmonics times points. Source: Kuhl and Giardina, "Elliptic Fourier features of a closed contour",
+/// CGIP 18, 1982, in complex numbers.
+Contour fourier_smooth(const Contour& contour, const FourierOptions& options = {});
+
+}  // namespace octotomy::brep
