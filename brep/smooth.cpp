@@ -11,8 +11,7 @@
 namespace octotomy::brep {
 namespace {
 
-/// Taubin's step in, by which no wave of the umbrella operator (0..2) changes its sign by more than its own
-/// size in either step.
+/// Taubin's step in: the largest at which no wave (eigenvalues 0..2 of the umbrella operator) changes sign.
 constexpr double step_in() {
   return 0.5;
 }

@@ -7,7 +7,7 @@ namespace octotomy::brep {
 
 struct SmoothOptions {
   int rounds = 10;         ///< each a step in and a step out, at least 1
-  double pass_band = 0.1;  ///< waves below it stay, 0..1: a tenth keeps those over about 20 edges long
+  double pass_band = 0.1;  ///< waves below it stay, 0..1: a tenth keeps those over about 10 edges long
   double max_volume_share = 0.01;  ///< of the volume that may be gained or lost, above 0
 };
 

@@ -6,6 +6,7 @@
 #include "brep/health.h"
 #include "brep/measure.h"
 #include "brep/read_mesh.h"
+#include "brep/smooth.h"
 #include "brep/write_mesh.h"
 #include "convert/deck.h"
 #include "convert/isosurface.h"
@@ -120,6 +121,40 @@ int boolean(const Program& program, const BooleanText& text) {
   return done;
 }
 
+struct SmoothText {
+  std::filesystem::path mesh, out;
+  brep::SmoothOptions options;
+};
+
+int smooth(const Program& program, const SmoothText& text) {
+  check_mesh_extension(text.out);
+  need_folder_of(text.out);
+  Timings timings;
+  const brep::Mesh solid = read_solid(text.mesh, timings);
+  brep::Mesh smoothed;
+  {
+    const Stopwatch watch(timings, "smooth");
+    smoothed = brep::smooth(solid, text.options);
+  }
+  const brep::Health health = brep::health(smoothed);
+  const brep::Measures measures = brep::measure(smoothed);
+  {
+    const Stopwatch watch(timings, "write");
+    brep::write_mesh(smoothed, text.out);
+  }
+  for (const std::string& finding : health.findings) warn(finding);
+  const double change_mm3 = measures.volume_mm3 - brep::volume_mm3(solid);
+  Json json = answer(timings);
+  json["path"] = text.out.string();
+  json.update(to_json(health));
+  json.update(to_json(measures));
+  json["volume_change_mm3"] = change_mm3;
+  program.say(json, lines({{"written", text.out.string()},
+                           {"volume", grouped(measures.volume_mm3, 3) + " mm\u00b3"},
+                           {"gained", grouped(change_mm3, 3) + " mm\u00b3"}}));
+  return done;
+}
+
 struct TetText {
   std::filesystem::path mesh, out;
   convert::TetOptions options;
@@ -193,6 +228,26 @@ void add_mesh_verbs(Program& program) {
       ->check(CLI::IsMember({"union", "intersection", "difference"}));
   boolean_verb.add_option("b", to_combine->b, "A mesh")->required()->check(CLI::ExistingFile);
   boolean_verb.add_option("-o,--out", to_combine->out, "A .stl, .ply, .obj or .off file")->required();
+
+  const auto to_smooth = std::make_shared<SmoothText>();
+  CLI::App& smooth_verb = program.verb("smooth", "Takes noise off a solid's surface and keeps its volume",
+                                       "octotomy smooth skull.stl -o smooth.stl --rounds 10 --json",
+                                       [&program, to_smooth] { return smooth(program, *to_smooth); });
+  smooth_verb.add_option("mesh", to_smooth->mesh, "A closed mesh")->required()->check(CLI::ExistingFile);
+  smooth_verb.add_option("-o,--out", to_smooth->out, "A .stl, .ply, .obj or .off file")->required();
+  smooth_verb.add_option("--rounds", to_smooth->options.rounds, "Steps in and out again")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  smooth_verb
+      .add_option("--pass-band", to_smooth->options.pass_band,
+                  "Waves below it stay: 0.1 keeps those over about 10 edges long")
+      ->check(CLI::Range(0.001, 0.999))
+      ->capture_default_str();
+  smooth_verb
+      .add_option("--max-volume-share", to_smooth->options.max_volume_share,
+                  "Share of the volume that may be gained or lost; above it nothing is written")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
 
   const auto to_fill = std::make_shared<TetText>();
   CLI::App& tet_verb = program.verb("tet", "Fills a solid with quality tetrahedra for finite elements",

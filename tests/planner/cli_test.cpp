@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // The program as scripts see it: exit status, standard output, what is left on disk.
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -65,8 +66,8 @@ class CommandLine : public testing::Test {
 TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
-  for (const char* verb : {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "tet",
-                           "phantom", "octree", "eval", "mask"}) {
+  for (const char* verb : {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "smooth",
+                           "tet", "phantom", "octree", "eval", "mask"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const Answer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
@@ -300,6 +301,19 @@ TEST_F(CommandLine, AReaderThatGoesAwayIsNoError) {
   const std::string command = "bash -c \"set -o pipefail; '" + std::string(OCTOTOMY_BINARY_DIR) +
                               "/octotomy' info " + (folder_ / "ball.nrrd").string() + " --json | true\"";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+}
+
+TEST_F(CommandLine, SmoothKeepsTheVolumeWithinItsShareAndWritesNothingWhereItDoesNot) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.stl")).status, 0);
+  const Answer good = run("smooth " + at("ball.stl") + " -o " + at("smooth.stl") + " --json");
+  ASSERT_EQ(good.status, 0) << good.errors;
+  const Json json = Json::parse(good.out);
+  EXPECT_TRUE(json.at("closed").get<bool>());
+  EXPECT_LT(std::abs(json.at("volume_change_mm3").get<double>()), 0.01 * json.at("volume_mm3").get<double>());
+  expect_refused(
+      run("smooth " + at("ball.stl") + " -o " + at("none.stl") + " --rounds 1000 --max-volume-share 1e-9"),
+      "volume");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none.stl"));
 }
 
 }  // namespace
