@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/mesh_file.h"
+
+#include "brep/health.h"
+#include "brep/read_mesh.h"
+
+namespace octotomy::planner::cli {
+
+brep::Mesh read_solid(const std::filesystem::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  const brep::Triangles triangles = brep::read_triangles(path);
+  const brep::Health health = brep::health(triangles);
+  if (!health.solid())
+    throw std::runtime_error(path.string() + ": is not a solid: " + health.findings.front() +
+                             "; mend it first, octotomy info tells all");
+  return brep::mesh_of(triangles);
+}
+
+void need_mesh_extension(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  for (const char* known : {".stl", ".ply", ".obj", ".off"})
+    if (extension == known) return;
+  throw std::runtime_error(path.string() + ": a mesh is written as .stl, .ply, .obj or .off");
+}
+
+}  // namespace octotomy::planner::cli

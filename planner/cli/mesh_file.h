@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "brep/mesh.h"
+#include "planner/answer.h"
+#include "planner/cli/verb.h"
+
+// What the verbs that read or write meshes have in common.
+namespace octotomy::planner::cli {
+
+/// A mesh that Booleans and tetrahedra can be made of; "read" in the timings. Throws std::runtime_error where
+/// it is not closed and oriented.
+brep::Mesh read_solid(const std::filesystem::path& path, Timings& timings);
+
+/// Throws std::runtime_error where no mesh is written with the path's extension.
+void need_mesh_extension(const std::filesystem::path& out);
+
+}  // namespace octotomy::planner::cli
