@@ -16,6 +16,7 @@
 #include "voxel/counted_trace.h"
 #include "voxel/depth_image.h"
 #include "voxel/front_to_back.h"
+#include "voxel/interpolate.h"
 #include "voxel/node_trace.h"
 #include "voxel/object_normals.h"
 #include "voxel/ray_cast.h"
@@ -38,6 +39,11 @@ void check(const std::vector<Drawn>& objects, const RenderOptions& options) {
       throw std::invalid_argument("the grey octree of object '" + object.name +
                                   "' is of another universe than the object: build it for the same");
   }
+  if (options.cut_tones && options.cut_tones->grey.universe() != objects.front().octree.universe())
+    throw std::invalid_argument(
+        "the samples for cut faces are of another universe than the objects: build them for the same");
+  if (options.cut_tones && !(options.cut_tones->white > options.cut_tones->black))
+    throw std::invalid_argument("white must be a larger sample than black on cut faces");
   if (options.size_px.x < 1 || options.size_px.y < 1)
     throw std::invalid_argument("a picture of " + std::to_string(options.size_px.x) + " x " +
                                 std::to_string(options.size_px.y) + " pixels: both must be positive");
@@ -168,6 +174,29 @@ Scenery scenery_of(const std::vector<Drawn>& objects, const ImagePlane& plane, c
   return scenery;
 }
 
+/// Grey tones of samples on the pixels that show cut faces.
+Paint paint_of_cuts(const DepthImage& image, const ImagePlane& plane, const CutTones& tones,
+                    const std::vector<glm::vec3>& cut_normals) {
+  Paint paint;
+  paint.kinds.assign(image.pixels.size(), Paint::Kind::None);
+  paint.colours.resize(image.pixels.size());
+  const glm::dmat4 voxel_from_lps = glm::inverse(tones.grey.universe().lps_from_voxel);
+  tbb::parallel_for(0, image.size_px.y, [&](int y) {
+    for (int x = 0; x < image.size_px.x; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +
+                                static_cast<std::size_t>(x);
+      if (cut_normals[pixel] == glm::vec3(0.0f)) continue;
+      const glm::dvec3 p_mm = plane.lps_mm({x + 0.5, y + 0.5}, image.pixels[pixel].depth_mm);
+      const glm::dvec3 p_voxel(voxel_from_lps * glm::dvec4(p_mm, 1.0));
+      const double sample = interpolate(tones.grey, p_voxel, Interpolation::Linear);
+      const double tone = std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0);
+      paint.kinds[pixel] = Paint::Kind::Tone;
+      paint.colours[pixel] = glm::vec3(static_cast<float>(tone));
+    }
+  });
+  return paint;
+}
+
 /// Finds and shades one set of objects.
 struct Layer {
   DepthImage image;
@@ -176,12 +205,19 @@ struct Layer {
 Layer layer_of(const std::vector<Drawn>& objects, const ImagePlane& plane, const RenderOptions& options,
                Algorithm algorithm, Visits* visits) {
   Drawing drawing = drawing_of(objects, plane, algorithm, visits);
-  const Scenery scenery = scenery_of(objects, plane, options);
+  const std::vector<glm::vec3> cut_normals =
+      flatten_cuts(drawing.image, plane, objects.front().octree.universe(), options.cuts);
+  Scenery scenery = scenery_of(objects, plane, options);
+  if (options.cut_tones && !options.cuts.empty())
+    scenery.paint = paint_of_cuts(drawing.image, plane, *options.cut_tones, cut_normals);
   std::vector<glm::vec3> normals;
   if (options.shading == Shading::Context || options.shading == Shading::GreyGradient)
     normals =
         object_normals(drawing.image, objects, plane,
                        options.shading == Shading::Context ? ObjectNormals::Context : ObjectNormals::Grey);
+  if (!normals.empty())
+    for (std::size_t i = 0; i < cut_normals.size(); ++i)
+      if (cut_normals[i] != glm::vec3(0.0f)) normals[i] = cut_normals[i];
   Layer layer{std::move(drawing.image), {}};
   layer.rgb = shade(layer.image, scenery, normals);
   if (options.antialias && options.shading != Shading::Outline)
@@ -315,7 +351,7 @@ Picture render(const std::vector<Drawn>& objects, const RenderOptions& options) 
         "node tracing needs a view along the universe's axes: use one of the six named views of an upright "
         "universe, or ray casting");
   if (options.count) picture.visits.emplace();
-  compose(objects, plane, options, picture);
+  compose(options.cuts.empty() ? objects : without(objects, options.cuts), plane, options, picture);
   return picture;
 }
 

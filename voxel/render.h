@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voxel/camera.h"
+#include "voxel/cut.h"
 #include "voxel/drawn.h"
 #include "voxel/shade.h"
 #include "voxel/view.h"
@@ -25,6 +26,13 @@ enum class Algorithm { NodeTrace, RayCast, FrontToBack, BackToFront };
 /// from the gradient of the samples (5.2.1.2). Silhouette, Outline: for print.
 enum class Shading { Depth, Gradient, Context, PartialVolume, GreyGradient, Silhouette, Outline };
 
+/// Samples painted on cut faces as they are, like a slice: from black to white.
+struct CutTones {
+  GreyOctree grey;
+  double black = 0.0;
+  double white = 1.0;  ///< more than black
+};
+
 struct RenderOptions {
   View view;
   glm::ivec2 size_px{512, 512};
@@ -37,6 +45,10 @@ struct RenderOptions {
   std::optional<Algorithm> algorithm;
   Shading shading = Shading::PartialVolume;
   glm::vec3 background{1.0f, 1.0f, 1.0f};  ///< sRGB, 0..1
+  /// Taken out of every object; the picture's frame is that of the whole objects. Cut faces are flat.
+  std::vector<Cut> cuts;
+  /// What cut faces show; none: the object's colour. The samples are of the objects' universe.
+  std::optional<CutTones> cut_tones;
   std::vector<Light> lights;  ///< none: a key light from the upper left, a fill light from the lower right
   bool occlusion = true;      ///< darkens what lies behind its surroundings
   /// Counts what the algorithm visits (appendix A); takes far longer than drawing does.

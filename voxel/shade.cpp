@@ -275,9 +275,22 @@ std::vector<std::uint8_t> outline_picture(const DepthImage& image, const Scenery
   return rgb;
 }
 
-/// Linear colours of what a row sees.
-void colours_of_row(const DepthImage& image, const std::vector<glm::vec3>& colours, int y,
+/// Linear colours of what a row sees: `colours` are the objects'.
+void colours_of_row(const DepthImage& image, const std::vector<glm::vec3>& colours, const Paint& paint, int y,
                     const glm::ivec2& lit, Rows& rows) {
+  if (!paint.kinds.empty()) {
+    for (int x = lit.x; x < lit.y; ++x) {
+      const Seen& seen = image.at(x, y);
+      const std::size_t pixel = pixel_index(image, x, y);
+      glm::vec3 colour(0.0f);
+      if (seen.lit())
+        colour = paint.kinds[pixel] == Paint::Kind::Lit ? linear_from_srgb(paint.colours[pixel])
+                                                        : colours[static_cast<std::size_t>(seen.object)];
+      for (int channel = 0; channel < 3; ++channel)
+        rows.colour[static_cast<std::size_t>(channel)][static_cast<std::size_t>(x)] = colour[channel];
+    }
+    return;
+  }
   for (int channel = 0; channel < 3; ++channel) {
     std::vector<float>& row = rows.colour[static_cast<std::size_t>(channel)];
     if (colours.size() == 1) {
@@ -319,7 +332,7 @@ std::vector<std::uint8_t> shaded_picture(const DepthImage& image, const Scenery&
     if (surroundings) surroundings->mean_row(y, lit, rows.mean);
     dim_row(dimming, plane.depth.row(y), rows.mean.data(), lit.x, lit.y, rows.diffuse.data(),
             rows.mirrored.data());
-    colours_of_row(image, colours, y, lit, rows);
+    colours_of_row(image, colours, scenery.paint, y, lit, rows);
     for (std::size_t channel = 0; channel < 3; ++channel)
       root_row(rows.colour[channel].data(), rows.diffuse.data(), rows.mirrored.data(), lit.x, lit.y,
                rows.root[channel].data());
@@ -331,6 +344,11 @@ std::vector<std::uint8_t> shaded_picture(const DepthImage& image, const Scenery&
             seen ? tone.srgb_of_root(rows.root[channel][static_cast<std::size_t>(x)]) : background[channel];
     }
   });
+  for (std::size_t i = 0; i < scenery.paint.kinds.size(); ++i)
+    if (scenery.paint.kinds[i] == Paint::Kind::Tone)
+      for (int channel = 0; channel < 3; ++channel)
+        rgb[3 * i + static_cast<std::size_t>(channel)] =
+            static_cast<std::uint8_t>(std::lround(255.0f * scenery.paint.colours[i][channel]));
   return rgb;
 }
 

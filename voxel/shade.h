@@ -21,6 +21,14 @@ struct Light {
 /// an object. Outline: dark lines where a surface ends or creases, on white, for print.
 enum class Style { Shaded, Depth, Silhouette, Outline };
 
+/// Colours of pixels that are not those of the objects they show.
+struct Paint {
+  /// Lit: the object's colour is this one instead. Tone: the pixel is this colour, whatever the light.
+  enum class Kind : std::uint8_t { None, Lit, Tone };
+  std::vector<Kind> kinds;         ///< one a pixel; empty: nothing is painted
+  std::vector<glm::vec3> colours;  ///< sRGB 0..1, one a pixel where kinds are
+};
+
 /// What a depth image does not say about its picture.
 struct Scenery {
   std::vector<glm::vec3> colours;  ///< of the objects, sRGB 0..1
@@ -35,6 +43,7 @@ struct Scenery {
   float gloss = 0.06f;    ///< of the first light's mirror image
   bool occlusion = true;  ///< darkens what lies behind its surroundings
   bool depth_cue = true;  ///< darkens the far end by a third
+  Paint paint{};          ///< Style::Shaded only
 };
 
 /// Slopes of the depth image at every pixel, row by row: x is the growth of depth towards the picture's

@@ -5,31 +5,29 @@
 #include <map>
 
 #include "planner/answer.h"
+#include "planner/cli/drawn_files.h"
 #include "planner/cli/verb.h"
 #include "planner/figures.h"
-#include "voxel/combine.h"
 #include "voxel/image_file.h"
-#include "voxel/octree_file.h"
 #include "voxel/radiograph.h"
-#include "voxel/read_scene.h"
 #include "voxel/render.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 struct RenderText {
-  std::vector<std::filesystem::path> files;
+  DrawnText drawn;
   std::filesystem::path out;
-  std::string window = "300:";
   std::string view = "anterior";
   std::string size = "512x512";
   std::string algorithm;
   std::string shading = "partial_volume";
-  std::vector<std::string> colours;
-  std::vector<float> opacities;
   std::optional<double> width_mm;
   bool count = false;
-  std::optional<double> voxel_mm;
+  std::vector<std::string> cut_planes;
+  std::vector<std::string> cut_boxes;
+  std::string cut_face = "plain";
+  std::string tones;
 };
 
 const std::map<std::string, voxel::Algorithm> algorithms{
@@ -63,24 +61,6 @@ std::string name_of(const std::map<std::string, Value>& values, Value value) {
   return {};
 }
 
-/// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
-glm::vec3 colour_of(std::size_t number) {
-  constexpr std::array<glm::vec3, 5> colours{{{0.93f, 0.89f, 0.80f},
-                                              {0.20f, 0.56f, 0.72f},
-                                              {0.87f, 0.49f, 0.20f},
-                                              {0.16f, 0.60f, 0.47f},
-                                              {0.74f, 0.45f, 0.64f}}};
-  return colours[number % colours.size()];
-}
-
-glm::vec3 parse_colour(const std::string& text) {
-  unsigned value = 0;
-  char rest = 0;
-  if (text.size() != 7 || text[0] != '#' || std::sscanf(text.c_str() + 1, "%6x%c", &value, &rest) != 1)
-    throw CLI::ValidationError("--colour", "'" + text + "' is no colour: give #RRGGBB, for example #cc7a29");
-  return glm::vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
-}
-
 glm::ivec2 size_of(const std::string& text) {
   int width = 0, height = 0;
   char cross = 0, rest = 0;
@@ -93,6 +73,62 @@ glm::ivec2 size_of(const std::string& text) {
   return {width, height};
 }
 
+/// Numbers between commas, as many as there are.
+template <std::size_t Count>
+std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
+                                     const std::string& example) {
+  std::array<double, Count> numbers{};
+  const char* at = text.c_str();
+  for (std::size_t i = 0; i < Count; ++i) {
+    char* end = nullptr;
+    numbers[i] = std::strtod(at, &end);
+    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0'))
+      throw CLI::ValidationError(option, "'" + text + "' is not " + std::to_string(Count) +
+                                             " numbers between commas, for example " + example);
+    at = end + 1;
+  }
+  return numbers;
+}
+
+std::vector<voxel::Cut> cuts_of(const RenderText& text) {
+  std::vector<voxel::Cut> cuts;
+  for (const std::string& plane : text.cut_planes) {
+    const auto n = numbers_of<4>("--cut-plane", plane, "1,0,0,12.5");
+    const glm::dvec3 normal(n[0], n[1], n[2]);
+    if (!(glm::length(normal) > 0.0))
+      throw CLI::ValidationError("--cut-plane", "'" + plane + "' has a normal without length");
+    cuts.emplace_back(voxel::HalfSpace{glm::normalize(normal), n[3]});
+  }
+  for (const std::string& box : text.cut_boxes) {
+    const auto n = numbers_of<6>("--cut-box", box, "0,-100,0,80,0,90");
+    const voxel::Box removed{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (!glm::all(glm::lessThan(removed.low_mm, removed.high_mm)))
+      throw CLI::ValidationError("--cut-box", "'" + box + "' holds nothing: give the lower corner first");
+    cuts.emplace_back(removed);
+  }
+  return cuts;
+}
+
+/// The samples that cut faces show, and what is black and white of them.
+voxel::CutTones cut_tones_of(const RenderText& text, const std::vector<voxel::Drawn>& objects) {
+  const auto with_samples = std::find_if(objects.begin(), objects.end(),
+                                         [](const voxel::Drawn& object) { return object.grey.has_value(); });
+  if (with_samples == objects.end())
+    throw std::runtime_error(
+        "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
+  const voxel::GreyOctree& grey = *with_samples->grey;
+  if (text.tones.empty()) {
+    const voxel::MinMax range = grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
+    return {grey, static_cast<double>(range.low), std::max<double>(range.high, range.low + 1.0)};
+  }
+  const auto colon = text.tones.find(':');
+  std::string numbers = text.tones;
+  if (colon != std::string::npos) numbers[colon] = ',';
+  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
+  if (!(n[1] > n[0])) throw CLI::ValidationError("--tones", "'" + text.tones + "' has no room between");
+  return {grey, n[0], n[1]};
+}
+
 /// Nearest and farthest lit depth; null where nothing is lit.
 Json depth_range(const voxel::Picture& picture) {
   float low = 0.0f, high = -1.0f;
@@ -102,80 +138,6 @@ Json depth_range(const voxel::Picture& picture) {
       high = std::max(high, depth);
     }
   return high < low ? Json(nullptr) : Json::array({low, high});
-}
-
-/// The object that a grey octree's window is.
-void set_window(voxel::Drawn& object, const voxel::GreyOctree& grey, const WindowText& window) {
-  voxel::Window leaf{grey, window.low};
-  if (window.high) leaf.high = *window.high;
-  object.octree = voxel::combine(grey.universe(), voxel::Expression(leaf));
-  // Depth is interpolated at the lower bound; an upper bound inside the object breaks that.
-  if (!window.high) object.grey = grey;
-  object.threshold = window.low;
-}
-
-/// What a file holds, as it is to be drawn.
-voxel::Drawn drawn_of_file(const std::filesystem::path& path, const RenderText& text,
-                           const std::optional<voxel::Universe>& universe, Timings& timings) {
-  if (is_mesh(path)) throw std::runtime_error(path.string() + ": meshes are not drawn; voxelise it first");
-  const WindowText window = parse_window(text.window);
-  voxel::Drawn object{path.filename().string(), voxel::Octree::empty({})};
-  if (is_octree(path)) {
-    const voxel::OctreeFile file = [&] {
-      const Stopwatch watch(timings, "read");
-      return voxel::read_octree(path);
-    }();
-    const Stopwatch watch(timings, "octree");
-    if (const auto* octree = std::get_if<voxel::Octree>(&file.tree)) {
-      object.octree = *octree;
-    } else if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
-      set_window(object, *grey, window);
-      object.counted_in_grey = object.grey.has_value();
-    } else {
-      const auto& partial = std::get<voxel::PartialOctree>(file.tree);
-      object.octree = partial.touching;
-      object.inside = partial.inside;
-    }
-  } else {
-    voxel::Scene scene;
-    {
-      const Stopwatch watch(timings, "read");
-      scene = voxel::read_scene(path);
-    }
-    const Stopwatch watch(timings, "octree");
-    set_window(object,
-               voxel::grey_octree_of(universe ? *universe : universe_of(scene.lattice, text.voxel_mm), scene),
-               window);
-    if (object.octree.is_empty()) {
-      const voxel::Range range = voxel::range(scene);
-      throw std::runtime_error(path.string() + ": no voxel is in the window " + text.window +
-                               "; samples are from " + std::to_string(range.low) + " to " +
-                               std::to_string(range.high));
-    }
-  }
-  return object;
-}
-
-std::vector<voxel::Drawn> drawn_of_files(const RenderText& text, Timings& timings) {
-  if (text.colours.size() > text.files.size() || text.opacities.size() > text.files.size())
-    throw CLI::ValidationError("--colour and --opacity", "give at most one of each a file");
-  std::vector<voxel::Drawn> objects;
-  for (std::size_t i = 0; i < text.files.size(); ++i) {
-    std::optional<voxel::Universe> universe;
-    if (i > 0) universe = objects.front().octree.universe();
-    objects.push_back(drawn_of_file(text.files[i], text, universe, timings));
-    voxel::Drawn& object = objects.back();
-    if (universe && object.octree.universe() != *universe) {
-      // Samples of another lattice cannot be followed along this one's columns.
-      object.octree = voxel::combine(*universe, voxel::Expression(object.octree));
-      object.grey.reset();
-      object.counted_in_grey = false;
-      object.inside.reset();
-    }
-    object.colour = i < text.colours.size() ? parse_colour(text.colours[i]) : colour_of(i);
-    if (i < text.opacities.size()) object.opacity = text.opacities[i];
-  }
-  return objects;
 }
 
 /// Average visits to the nodes of one status, level by level; null where a level has none.
@@ -210,6 +172,20 @@ voxel::RenderOptions options_of(const RenderText& text) {
   return options;
 }
 
+/// What was drawn of every object, in their order.
+Json objects_json(const std::vector<voxel::Drawn>& objects, const voxel::Picture& picture) {
+  std::vector<std::uint64_t> lit(objects.size(), 0);
+  for (const std::int16_t object : picture.object)
+    if (object >= 0) ++lit[static_cast<std::size_t>(object)];
+  Json list = Json::array();
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    list.push_back({{"name", objects[i].name},
+                    {"colour", colour_text(objects[i].colour)},
+                    {"opacity", objects[i].opacity},
+                    {"lit_pixels", lit[i]}});
+  return list;
+}
+
 /// Pictures of what lies along rays instead of the first surface.
 const std::vector<std::string> ray_sums{"mip", "radiograph"};
 
@@ -219,7 +195,7 @@ bool is_ray_sum(const RenderText& text) {
 
 int render_rays(const Program& program, const RenderText& text) {
   Timings timings;
-  const std::vector<voxel::Drawn> objects = drawn_of_files(text, timings);
+  const std::vector<voxel::Drawn> objects = drawn_of_files(text.drawn, timings);
   if (objects.size() != 1 || !objects.front().grey)
     throw std::runtime_error("--shading " + text.shading +
                              " needs the samples of one scan or grey octree, and a --window LOW:");
@@ -258,13 +234,18 @@ int render_rays(const Program& program, const RenderText& text) {
 int render(const Program& program, const RenderText& text) {
   need_folder_of(text.out);
   if (is_ray_sum(text)) {
-    if (text.count || !text.algorithm.empty())
-      throw CLI::ValidationError("--shading", text.shading + " has no --algorithm and no --count");
+    if (text.count || !text.algorithm.empty() || !text.cut_planes.empty() || !text.cut_boxes.empty())
+      throw CLI::ValidationError("--shading",
+                                 text.shading + " has no --algorithm, no --count, and is not cut");
     return render_rays(program, text);
   }
-  const voxel::RenderOptions options = options_of(text);
+  voxel::RenderOptions options = options_of(text);
+  options.cuts = cuts_of(text);
+  if (text.cut_face == "grey" && options.cuts.empty())
+    throw CLI::ValidationError("--cut-face", "there is no cut: give --cut-plane or --cut-box");
   Timings timings;
-  const std::vector<voxel::Drawn> objects = drawn_of_files(text, timings);
+  const std::vector<voxel::Drawn> objects = drawn_of_files(text.drawn, timings);
+  if (text.cut_face == "grey") options.cut_tones = cut_tones_of(text, objects);
   voxel::Picture picture;
   {
     const Stopwatch watch(timings, "render");
@@ -283,6 +264,7 @@ int render(const Program& program, const RenderText& text) {
   json["pixel_mm"] = picture.pixel_mm;
   json["lit_pixels"] = picture.lit_pixels;
   json["depth_range_mm"] = depth_range(picture);
+  json["objects"] = objects_json(objects, picture);
   if (picture.visits) {
     const voxel::Visits& visits = *picture.visits;
     json["visits"] = visits_json(visits);
@@ -307,12 +289,13 @@ void add_picture_verbs(Program& program) {
       [&program, text] { return render(program, *text); });
   std::vector<std::string> shading_names = names_of(shadings);
   shading_names.insert(shading_names.end(), ray_sums.begin(), ray_sums.end());
-  verb.add_option("files", text->files,
+  verb.add_option("files", text->drawn.files,
                   "Octrees (.octree), or scans: a DICOM folder or file, NIfTI, NRRD or MetaImage")
       ->required()
       ->check(CLI::ExistingPath);
   verb.add_option("-o,--out", text->out, "A .png, .jpg or .webp file")->required();
-  verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units, for scans and grey octrees")
+  verb.add_option("--window", text->drawn.window,
+                  "LOW:HIGH or LOW: in sample units, for scans and grey octrees")
       ->capture_default_str();
   verb.add_option("--view", text->view,
                   "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees")
@@ -329,13 +312,30 @@ void add_picture_verbs(Program& program) {
                   "(largest sample) or radiograph (X-rays, in true scale)")
       ->check(CLI::IsMember(shading_names))
       ->capture_default_str();
-  verb.add_option("--colour", text->colours, "#RRGGBB, one a file in their order")->expected(1)->take_all();
-  verb.add_option("--opacity", text->opacities, "0 (hidden) to 1, one a file in their order")
+  verb.add_option("--colour", text->drawn.colours, "#RRGGBB, one a file in their order")
+      ->expected(1)
+      ->take_all();
+  verb.add_option("--opacity", text->drawn.opacities, "0 (hidden) to 1, one a file in their order")
       ->expected(1)
       ->take_all()
       ->check(CLI::Range(0.0, 1.0));
+  verb.add_option("--cut-plane", text->cut_planes,
+                  "NX,NY,NZ,OFFSET_MM in LPS: takes away what lies on the normal's side of the plane; "
+                  "the offset is the plane's place along the normal; may be repeated")
+      ->expected(1)
+      ->take_all();
+  verb.add_option("--cut-box", text->cut_boxes,
+                  "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: takes away what lies in the box; may be repeated")
+      ->expected(1)
+      ->take_all();
+  verb.add_option("--cut-face", text->cut_face,
+                  "What cut faces show: plain (the object's colour) or grey (the scan's samples)")
+      ->check(CLI::IsMember({"plain", "grey"}))
+      ->capture_default_str();
+  verb.add_option("--tones", text->tones,
+                  "BLACK:WHITE in sample units of grey cut faces; default: the samples' range");
   verb.add_flag("--count", text->count, "Counts the octree nodes that the algorithm visits");
-  verb.add_option("--voxel", text->voxel_mm,
+  verb.add_option("--voxel", text->drawn.voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
       ->check(CLI::PositiveNumber);
 }

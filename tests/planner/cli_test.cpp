@@ -159,6 +159,26 @@ TEST_F(CommandLine, ARenderedBallCoversItsDisc) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "ball.png"));
 }
 
+TEST_F(CommandLine, ACutPictureKeepsTheHalfThatTheNormalPointsAwayFromAndNamesItsObjects) {
+  // Seen from the patient's left, a ball without its left half shows its flat face, at the ball's middle.
+  const std::string ball = "render " + at("ball.nrrd") + " --window 0: --view left --json -o " + at("p.png");
+  const Json whole = Json::parse(run(ball).out);
+  const Json cut = Json::parse(run(ball + " --cut-plane 2,0,0,0 --cut-face grey --tones=-1000:1000").out);
+  EXPECT_NEAR(cut["depth_range_mm"][0].get<double>() - whole["depth_range_mm"][0].get<double>(), 12.0, 0.1);
+  EXPECT_NEAR(cut["depth_range_mm"][1].get<double>() - cut["depth_range_mm"][0].get<double>(), 0.0, 1.0);
+  EXPECT_EQ(cut["pixel_mm"], whole["pixel_mm"]);
+  ASSERT_EQ(cut["objects"].size(), 1u);
+  EXPECT_EQ(cut["objects"][0]["name"], "ball");
+  EXPECT_EQ(cut["objects"][0]["lit_pixels"], cut["lit_pixels"]);
+  const Json boxed = Json::parse(run(ball + " --cut-box 0,-20,-20,20,20,20").out);
+  EXPECT_EQ(boxed["depth_range_mm"][0], cut["depth_range_mm"][0]);
+  expect_refused(run(ball + " --cut-plane 1,0,0"), "4 numbers");
+  expect_refused(run(ball + " --cut-plane 0,0,0,4"), "without length");
+  expect_refused(run(ball + " --cut-box 0,0,0,-1,1,1"), "lower corner");
+  expect_refused(run(ball + " --cut-face grey"), "--cut-plane");
+  expect_refused(run(ball + " --cut-plane 1,0,0,0 --cut-face grey --tones 5"), "5");
+}
+
 TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   const Json ball =
       Json::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);

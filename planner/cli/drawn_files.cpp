@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/drawn_files.h"
+
+#include <array>
+#include <cstdio>
+#include <variant>
+
+#include "planner/cli/verb.h"
+#include "voxel/combine.h"
+#include "voxel/octree_file.h"
+#include "voxel/read_scene.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+/// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
+glm::vec3 colour_of(std::size_t number) {
+  constexpr std::array<glm::vec3, 5> colours{{{0.93f, 0.89f, 0.80f},
+                                              {0.20f, 0.56f, 0.72f},
+                                              {0.87f, 0.49f, 0.20f},
+                                              {0.16f, 0.60f, 0.47f},
+                                              {0.74f, 0.45f, 0.64f}}};
+  return colours[number % colours.size()];
+}
+
+glm::vec3 parse_colour(const std::string& text) {
+  unsigned value = 0;
+  char rest = 0;
+  if (text.size() != 7 || text[0] != '#' || std::sscanf(text.c_str() + 1, "%6x%c", &value, &rest) != 1)
+    throw CLI::ValidationError("--colour", "'" + text + "' is no colour: give #RRGGBB, for example #cc7a29");
+  return glm::vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
+}
+
+/// The object that a grey octree's window is.
+void set_window(voxel::Drawn& object, const voxel::GreyOctree& grey, const WindowText& window) {
+  voxel::Window leaf{grey, window.low};
+  if (window.high) leaf.high = *window.high;
+  object.octree = voxel::combine(grey.universe(), voxel::Expression(leaf));
+  // Depth is interpolated at the lower bound; an upper bound inside the object breaks that.
+  if (!window.high) object.grey = grey;
+  object.threshold = window.low;
+}
+
+/// A file's name without folder and ending; of a folder, its own name.
+std::string name_of(const std::filesystem::path& path) {
+  const std::filesystem::path last = path.has_filename() ? path.filename() : path.parent_path().filename();
+  const std::filesystem::path stem = last.stem();
+  return stem.extension() == ".nii" ? stem.stem().string() : stem.string();
+}
+
+/// What a file holds, as it is to be drawn.
+voxel::Drawn drawn_of_file(const std::filesystem::path& path, const DrawnText& text,
+                           const std::optional<voxel::Universe>& universe, Timings& timings) {
+  if (is_mesh(path)) throw std::runtime_error(path.string() + ": meshes are not drawn; voxelise it first");
+  const WindowText window = parse_window(text.window);
+  voxel::Drawn object{name_of(path), voxel::Octree::empty({})};
+  if (is_octree(path)) {
+    const voxel::OctreeFile file = [&] {
+      const Stopwatch watch(timings, "read");
+      return voxel::read_octree(path);
+    }();
+    const Stopwatch watch(timings, "octree");
+    if (const auto* octree = std::get_if<voxel::Octree>(&file.tree)) {
+      object.octree = *octree;
+    } else if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+      set_window(object, *grey, window);
+      object.counted_in_grey = object.grey.has_value();
+    } else {
+      const auto& partial = std::get<voxel::PartialOctree>(file.tree);
+      object.octree = partial.touching;
+      object.inside = partial.inside;
+    }
+  } else {
+    voxel::Scene scene;
+    {
+      const Stopwatch watch(timings, "read");
+      scene = voxel::read_scene(path);
+    }
+    const Stopwatch watch(timings, "octree");
+    set_window(object,
+               voxel::grey_octree_of(universe ? *universe : universe_of(scene.lattice, text.voxel_mm), scene),
+               window);
+    if (object.octree.is_empty()) {
+      const voxel::Range range = voxel::range(scene);
+      throw std::runtime_error(path.string() + ": no voxel is in the window " + text.window +
+                               "; samples are from " + std::to_string(range.low) + " to " +
+                               std::to_string(range.high));
+    }
+  }
+  return object;
+}
+
+}  // namespace
+
+std::vector<voxel::Drawn> drawn_of_files(const DrawnText& text, Timings& timings) {
+  if (text.colours.size() > text.files.size() || text.opacities.size() > text.files.size())
+    throw CLI::ValidationError("--colour and --opacity", "give at most one of each a file");
+  std::vector<voxel::Drawn> objects;
+  for (std::size_t i = 0; i < text.files.size(); ++i) {
+    std::optional<voxel::Universe> universe;
+    if (i > 0) universe = objects.front().octree.universe();
+    objects.push_back(drawn_of_file(text.files[i], text, universe, timings));
+    voxel::Drawn& object = objects.back();
+    if (universe && object.octree.universe() != *universe) {
+      // Samples of another lattice cannot be followed along this one's columns.
+      object.octree = voxel::combine(*universe, voxel::Expression(object.octree));
+      object.grey.reset();
+      object.counted_in_grey = false;
+      object.inside.reset();
+    }
+    object.colour = i < text.colours.size() ? parse_colour(text.colours[i]) : colour_of(i);
+    if (i < text.opacities.size()) object.opacity = text.opacities[i];
+  }
+  return objects;
+}
+
+std::string colour_text(const glm::vec3& colour) {
+  const glm::ivec3 bytes(glm::round(255.0f * colour));
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", static_cast<unsigned>(bytes.x & 255),
+                static_cast<unsigned>(bytes.y & 255), static_cast<unsigned>(bytes.z & 255));
+  return text;
+}
+
+}  // namespace octotomy::planner::cli

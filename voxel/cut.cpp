@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/cut.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tbb/parallel_for.h>
+
+#include "voxel/combine.h"
+#include "voxel/surface_break.h"
+
+namespace octotomy::voxel {
+namespace {
+
+/// A line of sight: a point of depth 0, and the way along which depth grows by a millimetre.
+struct Sight {
+  glm::dvec3 start_mm{0.0};
+  glm::dvec3 along{0.0, 1.0, 0.0};
+};
+
+/// Where a line of sight leaves what was cut away, and the outward normal of what is left there.
+struct Leaving {
+  double depth_mm = 0.0;
+  glm::dvec3 normal{0.0};
+};
+
+std::optional<Leaving> leaving(const Sight& sight, const HalfSpace& kept) {
+  const double facing = glm::dot(kept.normal, sight.along);
+  if (facing >= 0.0) return std::nullopt;
+  return Leaving{(kept.offset_mm - glm::dot(kept.normal, sight.start_mm)) / facing, kept.normal};
+}
+
+std::optional<Leaving> leaving(const Sight& sight, const Box& box) {
+  Leaving last{std::numeric_limits<double>::infinity(), {}};
+  double entered_mm = -std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double along = sight.along[axis];
+    const double low = box.low_mm[axis] - sight.start_mm[axis];
+    const double high = box.high_mm[axis] - sight.start_mm[axis];
+    if (along == 0.0) {
+      if (low > 0.0 || high < 0.0) return std::nullopt;
+      continue;
+    }
+    entered_mm = std::max(entered_mm, std::min(low / along, high / along));
+    const double left_mm = std::max(low / along, high / along);
+    if (left_mm >= last.depth_mm) continue;
+    last.depth_mm = left_mm;
+    last.normal = glm::dvec3(0.0);
+    last.normal[axis] = along > 0.0 ? -1.0 : 1.0;
+  }
+  if (entered_mm > last.depth_mm) return std::nullopt;
+  return last;
+}
+
+/// How far from a cut, along its normal, a face between a kept and a removed voxel may lie: their centres are
+/// on different sides, and no point of either is farther from its centre than this.
+double half_voxel_mm(const glm::dmat3& lps_from_voxel, const glm::dvec3& normal) {
+  return 0.5 *
+         (std::abs(glm::dot(lps_from_voxel[0], normal)) + std::abs(glm::dot(lps_from_voxel[1], normal)) +
+          std::abs(glm::dot(lps_from_voxel[2], normal)));
+}
+
+/// The cut whose face a pixel shows, the nearest in depth of several.
+std::optional<Leaving> face_at(const Sight& sight, double depth_mm, const glm::dmat3& lps_from_voxel,
+                               const std::vector<Cut>& cuts) {
+  // Depths are floats of a few hundred millimetres: their last place, as a share of a voxel.
+  constexpr double rounding = 1.0 + 1e-3;
+  std::optional<Leaving> nearest;
+  for (const Cut& cut : cuts) {
+    const std::optional<Leaving> found =
+        std::visit([&](const auto& away) { return leaving(sight, away); }, cut);
+    if (!found) continue;
+    const double facing = -glm::dot(found->normal, sight.along);
+    const double off_mm = std::abs(found->depth_mm - depth_mm);
+    if (facing < 1.0 / break_mm(1.0) ||
+        off_mm * facing > rounding * half_voxel_mm(lps_from_voxel, found->normal))
+      continue;
+    if (!nearest || off_mm < std::abs(nearest->depth_mm - depth_mm)) nearest = found;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Expression without(const Expression& object, const std::vector<Cut>& cuts) {
+  Expression left = object;
+  for (const Cut& cut : cuts) {
+    if (const auto* kept = std::get_if<HalfSpace>(&cut)) left = left & Expression(*kept);
+    if (const auto* box = std::get_if<Box>(&cut)) left = left - Expression(*box);
+  }
+  return left;
+}
+
+std::vector<Drawn> without(const std::vector<Drawn>& objects, const std::vector<Cut>& cuts) {
+  std::vector<Drawn> left = objects;
+  if (cuts.empty()) return left;
+  for (Drawn& object : left) {
+    object.octree = combine(object.octree.universe(), without(Expression(object.octree), cuts));
+    object.counted_in_grey = false;
+    object.inside.reset();
+  }
+  return left;
+}
+
+std::vector<glm::vec3> flatten_cuts(DepthImage& image, const ImagePlane& plane, const Universe& universe,
+                                    const std::vector<Cut>& cuts) {
+  if (cuts.empty()) return {};
+  std::vector<glm::vec3> normals(image.pixels.size(), glm::vec3(0.0f));
+  const glm::dmat3 lps_from_voxel(universe.lps_from_voxel);
+  tbb::parallel_for(0, image.size_px.y, [&](int y) {
+    for (int x = 0; x < image.size_px.x; ++x) {
+      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +
+                                static_cast<std::size_t>(x);
+      Seen& seen = image.pixels[pixel];
+      if (!seen.lit() || !seen.stepped) continue;
+      const glm::dvec2 p_px(x + 0.5, y + 0.5);
+      Sight sight{plane.lps_mm(p_px, 0.0), {}};
+      sight.along = plane.lps_mm(p_px, 1.0) - sight.start_mm;
+      const std::optional<Leaving> face = face_at(sight, seen.depth_mm, lps_from_voxel, cuts);
+      if (!face) continue;
+      seen.depth_mm = static_cast<float>(face->depth_mm);
+      seen.stepped = false;
+      normals[pixel] =
+          glm::vec3(glm::dot(face->normal, plane.view.right), glm::dot(face->normal, plane.view.up),
+                    glm::dot(face->normal, plane.view.look));
+    }
+  });
+  return normals;
+}
+
+}  // namespace octotomy::voxel
