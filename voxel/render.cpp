@@ -325,8 +325,7 @@ std::optional<glm::dvec3> Picture::point_mm(const glm::ivec2& pixel) const {
   const std::size_t index = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(size_px.x) +
                             static_cast<std::size_t>(pixel.x);
   if (object[index] < 0) return std::nullopt;
-  const ImagePlane plane{view, size_px, centre_mm, pixel_mm, nearest_mm, 0.0};
-  return plane.lps_mm(glm::dvec2(pixel) + 0.5, depth_mm[index]);
+  return plane().lps_mm(glm::dvec2(pixel) + 0.5, depth_mm[index]);
 }
 
 Picture render(const std::vector<Drawn>& objects, const RenderOptions& options) {

@@ -74,6 +74,8 @@ struct Picture {
   std::optional<Visits> visits;  ///< where they were to be counted
   View view;
 
+  /// The plane that the picture lies in; the depth of the universe's farthest corner is not known to it.
+  ImagePlane plane() const { return {view, size_px, centre_mm, pixel_mm, nearest_mm, 0.0}; }
   /// The LPS point that a pixel shows; none where it shows the background.
   std::optional<glm::dvec3> point_mm(const glm::ivec2& pixel) const;
 };

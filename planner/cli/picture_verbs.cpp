@@ -8,6 +8,7 @@
 #include "planner/cli/drawn_files.h"
 #include "planner/cli/verb.h"
 #include "planner/figures.h"
+#include "voxel/annotation.h"
 #include "voxel/image_file.h"
 #include "voxel/radiograph.h"
 #include "voxel/render.h"
@@ -28,6 +29,8 @@ struct RenderText {
   std::vector<std::string> cut_boxes;
   std::string cut_face = "plain";
   std::string tones;
+  bool annotate = false;
+  std::string title;
 };
 
 const std::map<std::string, voxel::Algorithm> algorithms{
@@ -186,6 +189,14 @@ Json objects_json(const std::vector<voxel::Drawn>& objects, const voxel::Picture
   return list;
 }
 
+voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::Drawn>& objects) {
+  voxel::Annotation annotation;
+  annotation.title = text.title.empty() ? text.view : text.title;
+  for (const voxel::Drawn& object : objects)
+    if (object.opacity > 0.0f) annotation.legend.push_back({object.name, object.colour});
+  return annotation;
+}
+
 /// Pictures of what lies along rays instead of the first surface.
 const std::vector<std::string> ray_sums{"mip", "radiograph"};
 
@@ -215,7 +226,13 @@ int render_rays(const Program& program, const RenderText& text) {
   {
     const Stopwatch watch(timings, "write");
     // Bone is white on films.
-    voxel::write_image(text.out, size_px, voxel::grey_tones(image, *low, *high > *low ? *high : *low + 1.0));
+    std::vector<std::uint8_t> rgb = voxel::grey_tones(image, *low, *high > *low ? *high : *low + 1.0);
+    if (text.annotate) {
+      voxel::Annotation annotation = annotation_of(text, objects);
+      annotation.legend.clear();
+      voxel::annotate(rgb, plane, annotation);
+    }
+    voxel::write_image(text.out, size_px, rgb);
   }
   Json json = answer(timings);
   json["path"] = text.out.string();
@@ -253,6 +270,7 @@ int render(const Program& program, const RenderText& text) {
   }
   {
     const Stopwatch watch(timings, "write");
+    if (text.annotate) voxel::annotate(picture.rgb, picture.plane(), annotation_of(text, objects));
     voxel::write_image(text.out, picture.size_px, picture.rgb);
   }
   Json json = answer(timings);
@@ -334,6 +352,9 @@ void add_picture_verbs(Program& program) {
       ->capture_default_str();
   verb.add_option("--tones", text->tones,
                   "BLACK:WHITE in sample units of grey cut faces; default: the samples' range");
+  verb.add_flag("--annotate", text->annotate,
+                "Writes a scale, the patient's sides, a legend and a title on the picture");
+  verb.add_option("--title", text->title, "Of an annotated picture; default: the view");
   verb.add_flag("--count", text->count, "Counts the octree nodes that the algorithm visits");
   verb.add_option("--voxel", text->drawn.voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")

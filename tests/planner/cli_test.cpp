@@ -179,6 +179,16 @@ TEST_F(CommandLine, ACutPictureKeepsTheHalfThatTheNormalPointsAwayFromAndNamesIt
   expect_refused(run(ball + " --cut-plane 1,0,0,0 --cut-face grey --tones 5"), "5");
 }
 
+TEST_F(CommandLine, AnAnnotatedPictureIsAnotherPictureOfTheSamePixels) {
+  const std::string ball = "render " + at("ball.nrrd") + " --window 0: --size 200x150 --json";
+  const Json plain = Json::parse(run(ball + " -o " + at("p.png")).out);
+  const Json annotated = Json::parse(run(ball + " --annotate --title truth -o " + at("a.png")).out);
+  EXPECT_EQ(plain["lit_pixels"], annotated["lit_pixels"]);
+  EXPECT_EQ(plain["pixel_mm"], annotated["pixel_mm"]);
+  EXPECT_NE(std::filesystem::file_size(folder_ / "p.png"), std::filesystem::file_size(folder_ / "a.png"));
+  EXPECT_EQ(run(ball + " --shading mip --annotate -o " + at("m.png")).status, 0);
+}
+
 TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   const Json ball =
       Json::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);
