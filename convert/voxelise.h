@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <stop_token>
+
 #include "brep/mesh.h"
 #include "voxel/octree.h"
 
 namespace octotomy::convert {
+
+/// For the ways of voxelising that take their time.
+struct VoxeliseOptions {
+  std::function<void(double share)> progress{};  ///< of the work done; called from any thread, one at a time
+  std::stop_token stop{};                        ///< ends the work with voxel::Stopped
+};
 
 /// The voxels whose centre is inside a closed mesh (D3), by parity along rays parallel to the universe's x
 /// axis. A crossing through an edge or vertex counts once, by the half-open rule, so solids that share a face

@@ -333,6 +333,33 @@ TEST_F(CommandLine, AReaderThatGoesAwayIsNoError) {
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
 }
 
+TEST_F(CommandLine, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
+  const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
+  std::map<std::string, Json> made;
+  for (const std::string how : {"inside", "touching", "centre", "half", "partial"}) {
+    const Answer answer = run("voxelise " + at("ball.off") + " -o " + at(how + ".octree") +
+                              " --voxel 0.5 --digitise " + how + " --json");
+    ASSERT_EQ(answer.status, 0) << answer.errors;
+    made[how] = Json::parse(answer.out);
+    EXPECT_EQ(made[how]["findings"].size(), made["inside"]["findings"].size()) << how;
+  }
+  EXPECT_LT(made["inside"]["voxels"], made["half"]["voxels"]);
+  EXPECT_LT(made["half"]["voxels"], made["touching"]["voxels"]);
+  EXPECT_EQ(made["partial"]["voxels"], made["touching"]["voxels"]);
+  const Json partial = Json::parse(run("measure " + at("partial.octree") + " --json").out);
+  EXPECT_NEAR(partial["volume_partial_mm3"].get<double>() / truth, 1.0, 1e-6);
+
+  write("open.off", "OFF\n4 3 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
+  const Answer open = run("voxelise " + at("open.off") + " -o " + at("open.octree") + " --json");
+  ASSERT_EQ(open.status, 0) << open.errors;
+  EXPECT_NE(open.out.find("winding number"), std::string::npos);
+  EXPECT_GT(Json::parse(open.out)["voxels"], 500);
+  expect_refused(run("voxelise " + at("open.off") + " -o " + at("p.octree") + " --digitise half"),
+                 "not a solid");
+  expect_refused(run("voxelise " + at("open.off") + " -o " + at("p.octree") + " --voxel 0.0001"), "--voxel");
+}
+
 TEST_F(CommandLine, SmoothKeepsTheVolumeWithinItsShareAndWritesNothingWhereItDoesNot) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.stl")).status, 0);
   const Answer good = run("smooth " + at("ball.stl") + " -o " + at("smooth.stl") + " --json");
