@@ -123,6 +123,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_measure(program);
   cli::add_picture_verbs(program);
   cli::add_mesh(program);
+  cli::add_mark(program);
   cli::add_mesh_verbs(program);
   cli::add_tet(program);
   cli::add_voxelise(program);

@@ -6,6 +6,7 @@
 
 #include "planner/answer.h"
 #include "planner/cli/drawn_files.h"
+#include "planner/cli/numbers.h"
 #include "planner/cli/verb.h"
 #include "planner/figures.h"
 #include "voxel/annotation.h"
@@ -31,6 +32,7 @@ struct RenderText {
   std::string tones;
   bool annotate = false;
   std::string title;
+  std::vector<std::string> picks;
 };
 
 const std::map<std::string, voxel::Algorithm> algorithms{
@@ -74,23 +76,6 @@ glm::ivec2 size_of(const std::string& text) {
     throw CLI::ValidationError(
         "--size", "'" + text + "' is no size: give WxH of 1 to 8192 pixels, for example 512x512");
   return {width, height};
-}
-
-/// Numbers between commas, as many as there are.
-template <std::size_t Count>
-std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
-                                     const std::string& example) {
-  std::array<double, Count> numbers{};
-  const char* at = text.c_str();
-  for (std::size_t i = 0; i < Count; ++i) {
-    char* end = nullptr;
-    numbers[i] = std::strtod(at, &end);
-    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0'))
-      throw CLI::ValidationError(option, "'" + text + "' is not " + std::to_string(Count) +
-                                             " numbers between commas, for example " + example);
-    at = end + 1;
-  }
-  return numbers;
 }
 
 std::vector<voxel::Cut> cuts_of(const RenderText& text) {
@@ -175,6 +160,36 @@ voxel::RenderOptions options_of(const RenderText& text) {
   return options;
 }
 
+glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
+  const auto numbers = numbers_of<2>("--pick", text, "256,300");
+  const glm::dvec2 pixel(numbers[0], numbers[1]);
+  if (pixel != glm::floor(pixel) || !glm::all(glm::greaterThanEqual(pixel, glm::dvec2(0.0))) ||
+      !glm::all(glm::lessThan(pixel, glm::dvec2(size_px))))
+    throw CLI::ValidationError("--pick", "'" + text + "' is no pixel of a picture of " +
+                                             std::to_string(size_px.x) + " x " + std::to_string(size_px.y));
+  return glm::ivec2(pixel);
+}
+
+/// What pixels show; null where that is the background.
+Json picks_json(const std::vector<glm::ivec2>& pixels, const std::vector<voxel::Drawn>& objects,
+                const voxel::Picture& picture) {
+  Json list = Json::array();
+  for (const glm::ivec2& pixel : pixels) {
+    const std::size_t index =
+        static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(picture.size_px.x) +
+        static_cast<std::size_t>(pixel.x);
+    const std::optional<glm::dvec3> point_mm = picture.point_mm(pixel);
+    const glm::dvec2 view_mm = picture.plane().view_mm(glm::dvec2(pixel) + 0.5);
+    Json pick{{"pixel", {pixel.x, pixel.y}}, {"view_mm", {view_mm.x, view_mm.y}}};
+    pick["object"] =
+        point_mm ? Json(objects[static_cast<std::size_t>(picture.object[index])].name) : Json(nullptr);
+    pick["point_mm"] = to_json(point_mm);
+    pick["depth_mm"] = point_mm ? Json(picture.depth_mm[index]) : Json(nullptr);
+    list.push_back(std::move(pick));
+  }
+  return list;
+}
+
 /// What was drawn of every object, in their order.
 Json objects_json(const std::vector<voxel::Drawn>& objects, const voxel::Picture& picture) {
   std::vector<std::uint64_t> lit(objects.size(), 0);
@@ -251,15 +266,18 @@ int render_rays(const Program& program, const RenderText& text) {
 int render(const Program& program, const RenderText& text) {
   need_folder_of(text.out);
   if (is_ray_sum(text)) {
-    if (text.count || !text.algorithm.empty() || !text.cut_planes.empty() || !text.cut_boxes.empty())
-      throw CLI::ValidationError("--shading",
-                                 text.shading + " has no --algorithm, no --count, and is not cut");
+    if (text.count || !text.algorithm.empty() || !text.picks.empty() || !text.cut_planes.empty() ||
+        !text.cut_boxes.empty())
+      throw CLI::ValidationError(
+          "--shading", text.shading + " has no --algorithm, no --count and no --pick, and is not cut");
     return render_rays(program, text);
   }
   voxel::RenderOptions options = options_of(text);
   options.cuts = cuts_of(text);
   if (text.cut_face == "grey" && options.cuts.empty())
     throw CLI::ValidationError("--cut-face", "there is no cut: give --cut-plane or --cut-box");
+  std::vector<glm::ivec2> picks;
+  for (const std::string& pick : text.picks) picks.push_back(pixel_of(pick, options.size_px));
   Timings timings;
   const std::vector<voxel::Drawn> objects = drawn_of_files(text.drawn, timings);
   if (text.cut_face == "grey") options.cut_tones = cut_tones_of(text, objects);
@@ -283,6 +301,7 @@ int render(const Program& program, const RenderText& text) {
   json["lit_pixels"] = picture.lit_pixels;
   json["depth_range_mm"] = depth_range(picture);
   json["objects"] = objects_json(objects, picture);
+  if (!picks.empty()) json["picks"] = picks_json(picks, objects, picture);
   if (picture.visits) {
     const voxel::Visits& visits = *picture.visits;
     json["visits"] = visits_json(visits);
@@ -352,6 +371,12 @@ void add_picture_verbs(Program& program) {
       ->capture_default_str();
   verb.add_option("--tones", text->tones,
                   "BLACK:WHITE in sample units of grey cut faces; default: the samples' range");
+  verb.add_option(
+          "--pick", text->picks,
+          "X,Y of a pixel, from the top left: --json then says the object and the point it shows; may "
+          "be repeated")
+      ->expected(1)
+      ->take_all();
   verb.add_flag("--annotate", text->annotate,
                 "Writes a scale, the patient's sides, a legend and a title on the picture");
   verb.add_option("--title", text->title, "Of an annotated picture; default: the view");

@@ -54,6 +54,7 @@ void add_tet(Program& program);
 void add_voxelise(Program& program);
 void add_octree(Program& program);
 void add_eval(Program& program);
+void add_mark(Program& program);
 void add_mask(Program& program);
 
 /// LOW:HIGH, LOW: or LOW in sample units; throws CLI::ValidationError where it is none of these.

@@ -189,6 +189,27 @@ TEST_F(CommandLine, AnAnnotatedPictureIsAnotherPictureOfTheSamePixels) {
   EXPECT_EQ(run(ball + " --shading mip --annotate -o " + at("m.png")).status, 0);
 }
 
+TEST_F(CommandLine, APointPickedInTwoViewsIsMarkedWhereTheyMeet) {
+  const auto picked = [&](const std::string& view) {
+    return Json::parse(run("render " + at("ball.nrrd") + " --window 0: --size 101x101 --view " + view +
+                           " --pick 50,50 --pick 0,0 --json -o " + at("p.png"))
+                           .out)["picks"];
+  };
+  const Json front = picked("anterior");
+  EXPECT_EQ(front[0]["object"], "ball");
+  EXPECT_NEAR(front[0]["point_mm"][1].get<double>(), -12.0, 0.1);
+  EXPECT_NEAR(front[0]["point_mm"][0].get<double>(), front[0]["view_mm"][0].get<double>(), 1e-9);
+  EXPECT_TRUE(front[1]["object"].is_null());
+  EXPECT_TRUE(front[1]["point_mm"].is_null());
+  EXPECT_TRUE(front[1]["depth_mm"].is_null());
+  const Json mark = Json::parse(run("mark --in anterior:3,4 --in left:-5,6 --json").out);
+  EXPECT_EQ(mark["point_mm"], Json::parse("[3.0, -5.0, 5.0]"));
+  EXPECT_NEAR(mark["miss_mm"].get<double>(), 2.0, 1e-12);
+  expect_refused(run("mark --in anterior:3,4 --in posterior:1,2"), "same way");
+  expect_refused(run("mark --in anterior:3,4"), "--in");
+  expect_refused(run("render " + at("ball.nrrd") + " --window 0: --pick 512,0 -o " + at("q.png")), "512,0");
+}
+
 TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   const Json ball =
       Json::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+namespace octotomy::planner::cli {
+
+/// Finite numbers between commas, just as many. Throws CLI::ValidationError naming the option, the text and
+/// the example.
+template <std::size_t Count>
+std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
+                                     const std::string& example) {
+  std::array<double, Count> numbers{};
+  const char* at = text.c_str();
+  for (std::size_t i = 0; i < Count; ++i) {
+    char* end = nullptr;
+    numbers[i] = std::strtod(at, &end);
+    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0'))
+      throw CLI::ValidationError(option, "'" + text + "' is not " + std::to_string(Count) +
+                                             " numbers between commas, for example " + example);
+    at = end + 1;
+  }
+  return numbers;
+}
+
+}  // namespace octotomy::planner::cli
