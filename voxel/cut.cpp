@@ -19,21 +19,19 @@ struct Sight {
   glm::dvec3 along{0.0, 1.0, 0.0};
 };
 
-/// Where a line of sight leaves what was cut away, and the outward normal of what is left there.
-struct Leaving {
-  double depth_mm = 0.0;
-  glm::dvec3 normal{0.0};
-};
+constexpr double endless_mm = std::numeric_limits<double>::infinity();
 
-std::optional<Leaving> leaving(const Sight& sight, const HalfSpace& kept) {
-  const double facing = glm::dot(kept.normal, sight.along);
-  if (facing >= 0.0) return std::nullopt;
-  return Leaving{(kept.offset_mm - glm::dot(kept.normal, sight.start_mm)) / facing, kept.normal};
+std::optional<TakenSpan> taken_of(const Sight& sight, const HalfSpace& kept) {
+  const double beyond_mm = glm::dot(kept.normal, sight.start_mm) - kept.offset_mm;
+  const double along = glm::dot(kept.normal, sight.along);
+  if (along < 0.0) return TakenSpan{-endless_mm, -beyond_mm / along, kept.normal};
+  if (along > 0.0) return TakenSpan{-beyond_mm / along, endless_mm, kept.normal};
+  if (beyond_mm <= 0.0) return std::nullopt;
+  return TakenSpan{-endless_mm, endless_mm, kept.normal};
 }
 
-std::optional<Leaving> leaving(const Sight& sight, const Box& box) {
-  Leaving last{std::numeric_limits<double>::infinity(), {}};
-  double entered_mm = -std::numeric_limits<double>::infinity();
+std::optional<TakenSpan> taken_of(const Sight& sight, const Box& box) {
+  TakenSpan span{-endless_mm, endless_mm, {}};
   for (int axis = 0; axis < 3; ++axis) {
     const double along = sight.along[axis];
     const double low = box.low_mm[axis] - sight.start_mm[axis];
@@ -42,15 +40,15 @@ std::optional<Leaving> leaving(const Sight& sight, const Box& box) {
       if (low > 0.0 || high < 0.0) return std::nullopt;
       continue;
     }
-    entered_mm = std::max(entered_mm, std::min(low / along, high / along));
-    const double left_mm = std::max(low / along, high / along);
-    if (left_mm >= last.depth_mm) continue;
-    last.depth_mm = left_mm;
-    last.normal = glm::dvec3(0.0);
-    last.normal[axis] = along > 0.0 ? -1.0 : 1.0;
+    span.from_mm = std::max(span.from_mm, std::min(low / along, high / along));
+    const double until_mm = std::max(low / along, high / along);
+    if (until_mm >= span.until_mm) continue;
+    span.until_mm = until_mm;
+    span.normal = glm::dvec3(0.0);
+    span.normal[axis] = along > 0.0 ? -1.0 : 1.0;
   }
-  if (entered_mm > last.depth_mm) return std::nullopt;
-  return last;
+  if (span.from_mm > span.until_mm) return std::nullopt;
+  return span;
 }
 
 /// How far from a cut, along its normal, a face between a kept and a removed voxel may lie: their centres are
@@ -62,26 +60,29 @@ double half_voxel_mm(const glm::dmat3& lps_from_voxel, const glm::dvec3& normal)
 }
 
 /// The cut whose face a pixel shows, the nearest in depth of several.
-std::optional<Leaving> face_at(const Sight& sight, double depth_mm, const glm::dmat3& lps_from_voxel,
-                               const std::vector<Cut>& cuts) {
+std::optional<TakenSpan> face_at(const Sight& sight, double depth_mm, const glm::dmat3& lps_from_voxel,
+                                 const std::vector<Cut>& cuts) {
   // Depths are floats of a few hundred millimetres: their last place, as a share of a voxel.
   constexpr double rounding = 1.0 + 1e-3;
-  std::optional<Leaving> nearest;
+  std::optional<TakenSpan> nearest;
   for (const Cut& cut : cuts) {
-    const std::optional<Leaving> found =
-        std::visit([&](const auto& away) { return leaving(sight, away); }, cut);
-    if (!found) continue;
+    const std::optional<TakenSpan> found = taken_span(cut, sight.start_mm, sight.along);
+    if (!found || !std::isfinite(found->until_mm)) continue;
     const double facing = -glm::dot(found->normal, sight.along);
-    const double off_mm = std::abs(found->depth_mm - depth_mm);
+    const double off_mm = std::abs(found->until_mm - depth_mm);
     if (facing < 1.0 / break_mm(1.0) ||
         off_mm * facing > rounding * half_voxel_mm(lps_from_voxel, found->normal))
       continue;
-    if (!nearest || off_mm < std::abs(nearest->depth_mm - depth_mm)) nearest = found;
+    if (!nearest || off_mm < std::abs(nearest->until_mm - depth_mm)) nearest = found;
   }
   return nearest;
 }
 
 }  // namespace
+
+std::optional<TakenSpan> taken_span(const Cut& cut, const glm::dvec3& start_mm, const glm::dvec3& along) {
+  return std::visit([&](const auto& taken) { return taken_of({start_mm, along}, taken); }, cut);
+}
 
 Expression without(const Expression& object, const std::vector<Cut>& cuts) {
   Expression left = object;
@@ -117,9 +118,9 @@ std::vector<glm::vec3> flatten_cuts(DepthImage& image, const ImagePlane& plane, 
       const glm::dvec2 p_px(x + 0.5, y + 0.5);
       Sight sight{plane.lps_mm(p_px, 0.0), {}};
       sight.along = plane.lps_mm(p_px, 1.0) - sight.start_mm;
-      const std::optional<Leaving> face = face_at(sight, seen.depth_mm, lps_from_voxel, cuts);
+      const std::optional<TakenSpan> face = face_at(sight, seen.depth_mm, lps_from_voxel, cuts);
       if (!face) continue;
-      seen.depth_mm = static_cast<float>(face->depth_mm);
+      seen.depth_mm = static_cast<float>(face->until_mm);
       seen.stepped = false;
       normals[pixel] =
           glm::vec3(glm::dot(face->normal, plane.view.right), glm::dot(face->normal, plane.view.up),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -13,6 +14,16 @@ namespace octotomy::voxel {
 /// What is taken out of a picture so that one sees inside: all that a half-space does not hold, or all that
 /// a box holds.
 using Cut = std::variant<HalfSpace, Box>;
+
+/// What a cut takes of a line of sight: depths from and until, either of which may be infinite, and the
+/// outward normal of what is left behind it.
+struct TakenSpan {
+  double from_mm = 0.0;
+  double until_mm = 0.0;
+  glm::dvec3 normal{0.0};
+};
+/// Of the line start_mm + depth * along, LPS; none where the cut takes nothing of it.
+std::optional<TakenSpan> taken_span(const Cut& cut, const glm::dvec3& start_mm, const glm::dvec3& along);
 
 /// The expression without what the cuts take away. Throws std::invalid_argument where a normal is not of
 /// unit length.

@@ -2,10 +2,10 @@
 #include "planner/cli/drawn_files.h"
 
 #include <array>
-#include <cstdio>
 #include <variant>
 
 #include "planner/cli/verb.h"
+#include "planner/colour.h"
 #include "voxel/combine.h"
 #include "voxel/octree_file.h"
 #include "voxel/read_scene.h"
@@ -24,11 +24,10 @@ glm::vec3 colour_of(std::size_t number) {
 }
 
 glm::vec3 parse_colour(const std::string& text) {
-  unsigned value = 0;
-  char rest = 0;
-  if (text.size() != 7 || text[0] != '#' || std::sscanf(text.c_str() + 1, "%6x%c", &value, &rest) != 1)
+  const std::optional<glm::vec3> colour = colour_of_text(text);
+  if (!colour)
     throw CLI::ValidationError("--colour", "'" + text + "' is no colour: give #RRGGBB, for example #cc7a29");
-  return glm::vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
+  return *colour;
 }
 
 /// The object that a grey octree's window is.
@@ -112,14 +111,6 @@ std::vector<voxel::Drawn> drawn_of_files(const DrawnText& text, Timings& timings
     if (i < text.opacities.size()) object.opacity = text.opacities[i];
   }
   return objects;
-}
-
-std::string colour_text(const glm::vec3& colour) {
-  const glm::ivec3 bytes(glm::round(255.0f * colour));
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", static_cast<unsigned>(bytes.x & 255),
-                static_cast<unsigned>(bytes.y & 255), static_cast<unsigned>(bytes.z & 255));
-  return text;
 }
 
 }  // namespace octotomy::planner::cli

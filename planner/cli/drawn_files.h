@@ -25,7 +25,4 @@ struct DrawnText {
 /// std::runtime_error for files that cannot be drawn, with the path.
 std::vector<voxel::Drawn> drawn_of_files(const DrawnText& text, Timings& timings);
 
-/// #RRGGBB.
-std::string colour_text(const glm::vec3& colour);
-
 }  // namespace octotomy::planner::cli

@@ -5,35 +5,16 @@
 #include <map>
 
 #include "planner/answer.h"
-#include "planner/cli/drawn_files.h"
 #include "planner/cli/numbers.h"
+#include "planner/cli/ray_pictures.h"
 #include "planner/cli/verb.h"
+#include "planner/colour.h"
 #include "planner/figures.h"
-#include "voxel/annotation.h"
 #include "voxel/image_file.h"
-#include "voxel/radiograph.h"
 #include "voxel/render.h"
 
 namespace octotomy::planner::cli {
 namespace {
-
-struct RenderText {
-  DrawnText drawn;
-  std::filesystem::path out;
-  std::string view = "anterior";
-  std::string size = "512x512";
-  std::string algorithm;
-  std::string shading = "partial_volume";
-  std::optional<double> width_mm;
-  bool count = false;
-  std::vector<std::string> cut_planes;
-  std::vector<std::string> cut_boxes;
-  std::string cut_face = "plain";
-  std::string tones;
-  bool annotate = false;
-  std::string title;
-  std::vector<std::string> picks;
-};
 
 const std::map<std::string, voxel::Algorithm> algorithms{
     {"node_trace", voxel::Algorithm::NodeTrace},
@@ -64,37 +45,6 @@ std::string name_of(const std::map<std::string, Value>& values, Value value) {
   for (const auto& [name, each] : values)
     if (each == value) return name;
   return {};
-}
-
-glm::ivec2 size_of(const std::string& text) {
-  int width = 0, height = 0;
-  char cross = 0, rest = 0;
-  const bool read =
-      std::sscanf(text.c_str(), "%d%c%d%c", &width, &cross, &height, &rest) == 3 && cross == 'x';
-  constexpr int most = 8192;
-  if (!read || width < 1 || height < 1 || width > most || height > most)
-    throw CLI::ValidationError(
-        "--size", "'" + text + "' is no size: give WxH of 1 to 8192 pixels, for example 512x512");
-  return {width, height};
-}
-
-std::vector<voxel::Cut> cuts_of(const RenderText& text) {
-  std::vector<voxel::Cut> cuts;
-  for (const std::string& plane : text.cut_planes) {
-    const auto n = numbers_of<4>("--cut-plane", plane, "1,0,0,12.5");
-    const glm::dvec3 normal(n[0], n[1], n[2]);
-    if (!(glm::length(normal) > 0.0))
-      throw CLI::ValidationError("--cut-plane", "'" + plane + "' has a normal without length");
-    cuts.emplace_back(voxel::HalfSpace{glm::normalize(normal), n[3]});
-  }
-  for (const std::string& box : text.cut_boxes) {
-    const auto n = numbers_of<6>("--cut-box", box, "0,-100,0,80,0,90");
-    const voxel::Box removed{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-    if (!glm::all(glm::lessThan(removed.low_mm, removed.high_mm)))
-      throw CLI::ValidationError("--cut-box", "'" + box + "' holds nothing: give the lower corner first");
-    cuts.emplace_back(removed);
-  }
-  return cuts;
 }
 
 /// The samples that cut faces show, and what is black and white of them.
@@ -152,7 +102,7 @@ Json visits_json(const voxel::Visits& visits) {
 voxel::RenderOptions options_of(const RenderText& text) {
   voxel::RenderOptions options;
   options.view = voxel::parse_view(text.view);
-  options.size_px = size_of(text.size);
+  options.size_px = size_of(text);
   options.shading = shadings.at(text.shading);
   options.width_mm = text.width_mm;
   options.count = text.count;
@@ -198,80 +148,15 @@ Json objects_json(const std::vector<voxel::Drawn>& objects, const voxel::Picture
   Json list = Json::array();
   for (std::size_t i = 0; i < objects.size(); ++i)
     list.push_back({{"name", objects[i].name},
-                    {"colour", colour_text(objects[i].colour)},
+                    {"colour", text_of_colour(objects[i].colour)},
                     {"opacity", objects[i].opacity},
                     {"lit_pixels", lit[i]}});
   return list;
 }
 
-voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::Drawn>& objects) {
-  voxel::Annotation annotation;
-  annotation.title = text.title.empty() ? text.view : text.title;
-  for (const voxel::Drawn& object : objects)
-    if (object.opacity > 0.0f) annotation.legend.push_back({object.name, object.colour});
-  return annotation;
-}
-
-/// Pictures of what lies along rays instead of the first surface.
-const std::vector<std::string> ray_sums{"mip", "radiograph"};
-
-bool is_ray_sum(const RenderText& text) {
-  return std::find(ray_sums.begin(), ray_sums.end(), text.shading) != ray_sums.end();
-}
-
-int render_rays(const Program& program, const RenderText& text) {
-  Timings timings;
-  const std::vector<voxel::Drawn> objects = drawn_of_files(text.drawn, timings);
-  if (objects.size() != 1 || !objects.front().grey)
-    throw std::runtime_error("--shading " + text.shading +
-                             " needs the samples of one scan or grey octree, and a --window LOW:");
-  const voxel::GreyOctree& grey = *objects.front().grey;
-  const voxel::View view = voxel::parse_view(text.view);
-  const glm::ivec2 size_px = size_of(text.size);
-  voxel::Frame frame = voxel::frame_about(objects, view, size_px);
-  if (text.width_mm) frame.width_mm = *text.width_mm;
-  const voxel::ImagePlane plane = voxel::image_plane(grey.universe(), view, size_px, frame);
-  voxel::RayImage image;
-  {
-    const Stopwatch watch(timings, "render");
-    image = text.shading == "mip" ? voxel::maximum_intensity(grey, plane, program.stop.get_token())
-                                  : voxel::radiograph(grey, plane, program.stop.get_token());
-  }
-  const auto [low, high] = std::minmax_element(image.values.begin(), image.values.end());
-  {
-    const Stopwatch watch(timings, "write");
-    // Bone is white on films.
-    std::vector<std::uint8_t> rgb = voxel::grey_tones(image, *low, *high > *low ? *high : *low + 1.0);
-    if (text.annotate) {
-      voxel::Annotation annotation = annotation_of(text, objects);
-      annotation.legend.clear();
-      voxel::annotate(rgb, plane, annotation);
-    }
-    voxel::write_image(text.out, size_px, rgb);
-  }
-  Json json = answer(timings);
-  json["path"] = text.out.string();
-  json["view"] = text.view;
-  json["shading"] = text.shading;
-  json["size_px"] = {size_px.x, size_px.y};
-  json["pixel_mm"] = plane.pixel_mm;
-  json["lit_pixels"] = std::count_if(image.values.begin(), image.values.end(),
-                                     [lowest = *low](float value) { return value > lowest; });
-  json["depth_range_mm"] = nullptr;
-  json["values"] = {*low, *high};
-  program.say(json, lines({{"written", text.out.string()}, {"pixel", grouped(plane.pixel_mm, 4) + " mm"}}));
-  return done;
-}
-
 int render(const Program& program, const RenderText& text) {
   need_folder_of(text.out);
-  if (is_ray_sum(text)) {
-    if (text.count || !text.algorithm.empty() || !text.picks.empty() || !text.cut_planes.empty() ||
-        !text.cut_boxes.empty())
-      throw CLI::ValidationError(
-          "--shading", text.shading + " has no --algorithm, no --count and no --pick, and is not cut");
-    return render_rays(program, text);
-  }
+  if (is_ray_picture(text)) return render_rays(program, text);
   voxel::RenderOptions options = options_of(text);
   options.cuts = cuts_of(text);
   if (text.cut_face == "grey" && options.cuts.empty())
@@ -325,7 +210,8 @@ void add_picture_verbs(Program& program) {
       "  octotomy render rest.octree piece.octree -o plan.png --colour \"#ede3cc\" --colour \"#cc7a29\"",
       [&program, text] { return render(program, *text); });
   std::vector<std::string> shading_names = names_of(shadings);
-  shading_names.insert(shading_names.end(), ray_sums.begin(), ray_sums.end());
+  const std::vector<std::string> ray_pictures = ray_picture_names();
+  shading_names.insert(shading_names.end(), ray_pictures.begin(), ray_pictures.end());
   verb.add_option("files", text->drawn.files,
                   "Octrees (.octree), or scans: a DICOM folder or file, NIfTI, NRRD or MetaImage")
       ->required()
@@ -346,7 +232,7 @@ void add_picture_verbs(Program& program) {
       ->check(CLI::IsMember(names_of(algorithms)));
   verb.add_option("--shading", text->shading,
                   "depth, gradient, context, partial_volume, grey_gradient, silhouette or outline; mip "
-                  "(largest sample) or radiograph (X-rays, in true scale)")
+                  "(largest sample), radiograph (X-rays, in true scale) or composite (--transfer)")
       ->check(CLI::IsMember(shading_names))
       ->capture_default_str();
   verb.add_option("--colour", text->drawn.colours, "#RRGGBB, one a file in their order")
@@ -371,6 +257,10 @@ void add_picture_verbs(Program& program) {
       ->capture_default_str();
   verb.add_option("--tones", text->tones,
                   "BLACK:WHITE in sample units of grey cut faces; default: the samples' range");
+  verb.add_option("--transfer", text->transfer,
+                  "How samples look in composite pictures: bone, skin, vessels (CT in HU), or a JSON file "
+                  "{\"octotomy_transfer\": 1, \"points\": [{\"sample\", \"colour\", \"per_mm\"}, ...]}")
+      ->capture_default_str();
   verb.add_option(
           "--pick", text->picks,
           "X,Y of a pixel, from the top left: --json then says the object and the point it shows; may "

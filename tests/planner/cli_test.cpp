@@ -210,6 +210,22 @@ TEST_F(CommandLine, APointPickedInTwoViewsIsMarkedWhereTheyMeet) {
   expect_refused(run("render " + at("ball.nrrd") + " --window 0: --pick 512,0 -o " + at("q.png")), "512,0");
 }
 
+TEST_F(CommandLine, ATransferFunctionOfAFileIsDrawnAndOneThatIsNoneIsRefused) {
+  write("t.json", R"({ "octotomy_transfer": 1, "points": [
+      { "sample": 0, "colour": "#cc8c6b", "per_mm": 0 }, { "sample": 400, "colour": "#f0e3c7", "per_mm": 9 } ] })");
+  write("u.json", R"({ "octotomy_transfer": 1, "points": [ { "sampel": 0 } ] })");
+  const std::string ball =
+      "render " + at("ball.nrrd") + " --shading composite --size 256x256 --json -o " + at("c.png");
+  const Json json = Json::parse(run(ball + " --transfer " + at("t.json")).out);
+  const double lit_mm2 = json["lit_pixels"].get<double>() * std::pow(json["pixel_mm"].get<double>(), 2);
+  EXPECT_NEAR(lit_mm2, M_PI * 144.0, 2.0 * M_PI * 12.0);
+  EXPECT_NEAR(json["depth_range_mm"][1].get<double>() - json["depth_range_mm"][0].get<double>(), 12.0, 2.0);
+  EXPECT_EQ(run(ball).status, 0);
+  expect_refused(run(ball + " --transfer " + at("u.json")), "did you mean 'sample'");
+  expect_refused(run(ball + " --transfer hair"), "vessels");
+  expect_refused(run(ball + " --count"), "--count");
+}
+
 TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   const Json ball =
       Json::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/cli/drawn_files.h"
+#include "voxel/annotation.h"
+#include "voxel/cut.h"
+
+namespace octotomy::planner::cli {
+
+/// What the command line says of a picture.
+struct RenderText {
+  DrawnText drawn;
+  std::filesystem::path out;
+  std::string view = "anterior";
+  std::string size = "512x512";
+  std::string algorithm;
+  std::string shading = "partial_volume";
+  std::optional<double> width_mm;
+  bool count = false;
+  std::vector<std::string> cut_planes;
+  std::vector<std::string> cut_boxes;
+  std::string cut_face = "plain";
+  std::string tones;
+  bool annotate = false;
+  std::string title;
+  std::string transfer = "bone";
+  std::vector<std::string> picks;
+};
+
+/// WxH in pixels.
+glm::ivec2 size_of(const RenderText& text);
+/// Normals are made unit.
+std::vector<voxel::Cut> cuts_of(const RenderText& text);
+/// Title, sides, scale, and a legend of the objects that are not hidden.
+voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::Drawn>& objects);
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+
+namespace octotomy::planner {
+
+/// The sRGB colour, 0..1, that #RRGGBB names; none where the text is anything else.
+std::optional<glm::vec3> colour_of_text(const std::string& text);
+/// #rrggbb.
+std::string text_of_colour(const glm::vec3& colour);
+
+}  // namespace octotomy::planner
