@@ -81,14 +81,8 @@ struct TracedFrame {
     p_stride = stride(p_axis);
     q_stride = stride(q_axis);
   }
-  /// The voxel at depth number `d` behind the universe's front face.
-  glm::ivec3 voxel(int p, int q, int d) const {
-    glm::ivec3 at;
-    at[p_axis] = p;
-    at[q_axis] = q;
-    at[look] = reversed ? side - 1 - d : d;
-    return at;
-  }
+  /// The index along the look axis at depth number `d` behind the universe's front face.
+  int index(int d) const { return reversed ? side - 1 - d : d; }
   std::size_t entry(int p, int q) const {
     return static_cast<std::size_t>(p) * p_stride + static_cast<std::size_t>(q) * q_stride;
   }
@@ -255,25 +249,36 @@ class TileTrace {
   std::array<std::vector<Part>, max_height + 1> parts_;
 };
 
-/// Reads samples of a grey octree, next to each other for the most part.
-class SampleReader {
+/// Reads samples of a grey octree column by column along the look axis; the last brick is kept.
+class ColumnSamples {
  public:
-  explicit SampleReader(const GreyOctree& grey) : grey_(&grey) {}
-  float at(const glm::ivec3& voxel) {
-    const glm::ivec3 block = voxel >> 4;
-    if (block != block_) {
-      block_ = block;
-      brick_ = &grey_->brick(block);
+  ColumnSamples(const GreyOctree& grey, const TracedFrame& frame) : grey_(&grey), frame_(&frame) {}
+
+  void go_to_column(int p, int q) {
+    offset_ = part(frame_->p_axis, p) + part(frame_->q_axis, q);
+    if (p >> 4 == block_[frame_->p_axis] && q >> 4 == block_[frame_->q_axis]) return;
+    block_[frame_->p_axis] = p >> 4;
+    block_[frame_->q_axis] = q >> 4;
+    block_[frame_->look] = -1;
+  }
+  /// The sample at an index along the look axis.
+  float at(int r) {
+    if (r >> 4 != block_[frame_->look]) {
+      block_[frame_->look] = r >> 4;
+      samples_ = grey_->brick(block_).samples.front().data();
     }
-    const glm::ivec3 leaf = (voxel >> 2) & 3;
-    const glm::ivec3 bit = voxel & 3;
-    return brick_->samples[static_cast<std::size_t>(child_index(leaf.x, leaf.y, leaf.z))]
-                          [static_cast<std::size_t>(child_index(bit.x, bit.y, bit.z))];
+    return samples_[offset_ + part(frame_->look, r)];
   }
 
  private:
+  /// What an index along an axis adds to the number of a sample in its brick: leaves are numbered, and the
+  /// samples in each, x + 4y + 16z.
+  static int part(int axis, int index) { return (((index >> 2) & 3) * 64 + (index & 3)) << (2 * axis); }
+
   const GreyOctree* grey_;
-  const GreyBrick* brick_ = nullptr;
+  const TracedFrame* frame_;
+  const std::int16_t* samples_ = nullptr;
+  int offset_ = 0;
   glm::ivec3 block_{-1};
 };
 
@@ -283,7 +288,8 @@ class Depths {
   Depths(const std::vector<Drawn>& objects, const TracedFrame& frame, double spacing_mm)
       : objects_(objects), frame_(frame), spacing_mm_(spacing_mm) {
     for (const Drawn& object : objects)
-      readers_.push_back(object.grey ? std::optional<SampleReader>(*object.grey) : std::nullopt);
+      readers_.push_back(object.grey ? std::optional<ColumnSamples>(std::in_place, *object.grey, frame)
+                                     : std::nullopt);
   }
 
   void interpolate(Seen& seen, int p, int q) {
@@ -292,8 +298,10 @@ class Depths {
     double depth_voxels = d;
     if (readers_[object] && d > 0) {
       const double threshold = objects_[object].threshold;
-      const double inside = readers_[object]->at(frame_.voxel(p, q, d));
-      const double outside = readers_[object]->at(frame_.voxel(p, q, d - 1));
+      ColumnSamples& samples = *readers_[object];
+      samples.go_to_column(p, q);
+      const double inside = samples.at(frame_.index(d));
+      const double outside = samples.at(frame_.index(d - 1));
       if (outside < threshold && threshold <= inside) {
         // Voxel centres are half a voxel behind their front faces.
         depth_voxels = d - 0.5 + (threshold - outside) / (inside - outside);
@@ -307,7 +315,7 @@ class Depths {
   const std::vector<Drawn>& objects_;
   const TracedFrame& frame_;
   double spacing_mm_;
-  std::vector<std::optional<SampleReader>> readers_;
+  std::vector<std::optional<ColumnSamples>> readers_;
 };
 
 }  // namespace
