@@ -3,18 +3,20 @@
 
 #include <gtest/gtest.h>
 #include <set>
+#include <string>
 
 namespace octotomy::voxel {
 namespace {
 
-std::vector<std::uint8_t> written(const std::string& text, int width = 40) {
+/// The picture's bytes.
+std::string written(const std::string& text, int width = 40) {
   std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3 * width * 40), 255);
   draw_lines({{width, 40}, &rgb}, strokes_of_text(text, {8.0, 28.0}, 18.0), {1.5, {}, 0.0, {}});
-  return rgb;
+  return {rgb.begin(), rgb.end()};
 }
 
 TEST(Lettering, EveryPrintableLetterHasAGlyphOfItsOwnInsideItsWidth) {
-  std::set<std::vector<std::uint8_t>> pictures;
+  std::set<std::string> pictures;
   for (char letter = '!'; letter <= '~'; ++letter) {
     const std::string text(1, letter);
     pictures.insert(written(text));
