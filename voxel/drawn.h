@@ -2,11 +2,13 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "voxel/grey_octree.h"
 #include "voxel/octree.h"
+#include "voxel/surface_scalar.h"
 
 namespace octotomy::voxel {
 
@@ -28,6 +30,8 @@ struct Drawn {
   /// Visits are then counted in the thesis's tree of it (table 3.1), where a node is Full only if wholly
   /// inside and boundary voxels are Full without being merged.
   std::optional<Octree> inside{};
+  /// What colours the surface instead of `colour`, where shading knows paint (shade.h); none: nothing does.
+  std::shared_ptr<const SurfaceScalar> scalar{};
 };
 
 }  // namespace octotomy::voxel

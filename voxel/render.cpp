@@ -35,6 +35,9 @@ void check(const std::vector<Drawn>& objects, const RenderOptions& options) {
     if (object.octree.universe() != objects.front().octree.universe())
       throw std::invalid_argument("object '" + object.name + "' is of another universe than '" +
                                   objects.front().name + "': combine it into that universe first");
+    if (object.scalar && object.scalar->universe != object.octree.universe())
+      throw std::invalid_argument("the scalar that colours object '" + object.name +
+                                  "' is of another universe than the object: make it for the same");
     if (object.grey && object.grey->universe() != object.octree.universe())
       throw std::invalid_argument("the grey octree of object '" + object.name +
                                   "' is of another universe than the object: build it for the same");
@@ -174,24 +177,38 @@ Scenery scenery_of(const std::vector<Drawn>& objects, const ImagePlane& plane, c
   return scenery;
 }
 
-/// Grey tones of samples on the pixels that show cut faces.
-Paint paint_of_cuts(const DepthImage& image, const ImagePlane& plane, const CutTones& tones,
-                    const std::vector<glm::vec3>& cut_normals) {
+/// What colours a pixel besides its object: samples on cut faces, scalars on surfaces.
+Paint paint_of(const DepthImage& image, const std::vector<Drawn>& objects, const ImagePlane& plane,
+               const RenderOptions& options, const std::vector<glm::vec3>& cut_normals) {
   Paint paint;
+  const bool cuts_painted = options.cut_tones && !cut_normals.empty();
+  if (!cuts_painted && std::none_of(objects.begin(), objects.end(),
+                                    [](const Drawn& object) { return object.scalar != nullptr; }))
+    return paint;
   paint.kinds.assign(image.pixels.size(), Paint::Kind::None);
   paint.colours.resize(image.pixels.size());
-  const glm::dmat4 voxel_from_lps = glm::inverse(tones.grey.universe().lps_from_voxel);
+  const glm::dmat4 voxel_from_lps = glm::inverse(objects.front().octree.universe().lps_from_voxel);
   tbb::parallel_for(0, image.size_px.y, [&](int y) {
     for (int x = 0; x < image.size_px.x; ++x) {
       const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +
                                 static_cast<std::size_t>(x);
-      if (cut_normals[pixel] == glm::vec3(0.0f)) continue;
-      const glm::dvec3 p_mm = plane.lps_mm({x + 0.5, y + 0.5}, image.pixels[pixel].depth_mm);
+      const Seen& seen = image.pixels[pixel];
+      if (!seen.lit()) continue;
+      const bool on_cut = cuts_painted && cut_normals[pixel] != glm::vec3(0.0f);
+      const auto& scalar = objects[static_cast<std::size_t>(seen.object)].scalar;
+      if (!on_cut && scalar == nullptr) continue;
+      const glm::dvec3 p_mm = plane.lps_mm({x + 0.5, y + 0.5}, seen.depth_mm);
       const glm::dvec3 p_voxel(voxel_from_lps * glm::dvec4(p_mm, 1.0));
-      const double sample = interpolate(tones.grey, p_voxel, Interpolation::Linear);
-      const double tone = std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0);
-      paint.kinds[pixel] = Paint::Kind::Tone;
-      paint.colours[pixel] = glm::vec3(static_cast<float>(tone));
+      if (on_cut) {
+        const CutTones& tones = *options.cut_tones;
+        const double sample = interpolate(tones.grey, p_voxel, Interpolation::Linear);
+        paint.kinds[pixel] = Paint::Kind::Tone;
+        paint.colours[pixel] = glm::vec3(
+            static_cast<float>(std::clamp((sample - tones.black) / (tones.white - tones.black), 0.0, 1.0)));
+      } else {
+        paint.kinds[pixel] = Paint::Kind::Lit;
+        paint.colours[pixel] = diverging_colour(scalar->at(p_voxel) / scalar->most);
+      }
     }
   });
   return paint;
@@ -208,8 +225,7 @@ Layer layer_of(const std::vector<Drawn>& objects, const ImagePlane& plane, const
   const std::vector<glm::vec3> cut_normals =
       flatten_cuts(drawing.image, plane, objects.front().octree.universe(), options.cuts);
   Scenery scenery = scenery_of(objects, plane, options);
-  if (options.cut_tones && !options.cuts.empty())
-    scenery.paint = paint_of_cuts(drawing.image, plane, *options.cut_tones, cut_normals);
+  scenery.paint = paint_of(drawing.image, objects, plane, options, cut_normals);
   std::vector<glm::vec3> normals;
   if (options.shading == Shading::Context || options.shading == Shading::GreyGradient)
     normals =

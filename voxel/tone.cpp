@@ -10,11 +10,12 @@ namespace {
 float linear_from_srgb(float value) {
   return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
 }
-float srgb_from_linear(float value) {
-  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
-}
 
 }  // namespace
+
+float srgb_from_linear(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
 
 Tone::Tone() {
   for (std::size_t i = 0; i < to_srgb_.size(); ++i) {

@@ -25,6 +25,9 @@ class Tone {
   std::array<float, 256> to_linear_{};
 };
 
+/// The sRGB value, 0..1, of linear light from 0 to 1.
+float srgb_from_linear(float linear);
+
 /// Linear light of an sRGB colour, 0..1.
 glm::vec3 linear_from_srgb(const glm::vec3& colour);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "planner/answer.h"
@@ -110,6 +111,59 @@ voxel::RenderOptions options_of(const RenderText& text) {
   return options;
 }
 
+/// The file of `distance:FILE`.
+std::filesystem::path other_of(const std::string& text) {
+  const std::string kind = "distance:";
+  if (!text.starts_with(kind) || text.size() == kind.size())
+    throw CLI::ValidationError("--colour-by",
+                               "'" + text +
+                                   "' is nothing to colour by: give distance:FILE, for example "
+                                   "distance:before.octree");
+  if (!std::filesystem::exists(text.substr(kind.size())))
+    throw CLI::ValidationError("--colour-by", text.substr(kind.size()) + ": there is no such file");
+  return text.substr(kind.size());
+}
+
+/// The objects of the files; the first one coloured by its distance to another file's, where that is asked
+/// for.
+struct Scene {
+  std::vector<voxel::Drawn> objects;
+  std::string coloured_by;  ///< the other one's name
+};
+Scene scene_of(const RenderText& text, Timings& timings) {
+  if (text.colour_by.empty()) return {drawn_of_files(text.drawn, timings), {}};
+  DrawnText all = text.drawn;
+  all.files.push_back(other_of(text.colour_by));
+  Scene scene{drawn_of_files(all, timings), {}};
+  const voxel::Drawn other = scene.objects.back();
+  scene.objects.pop_back();
+  scene.coloured_by = other.name;
+  const Stopwatch watch(timings, "distance");
+  voxel::Drawn& object = scene.objects.front();
+  object.scalar = std::make_shared<const voxel::SurfaceScalar>(
+      voxel::distance_to(other.octree, object.octree, text.range_mm.value_or(5.0)));
+  return scene;
+}
+
+/// The distances that the picture shows.
+Json colour_by_json(const Scene& scene, const voxel::Picture& picture) {
+  const voxel::Drawn& object = scene.objects.front();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int y = 0; y < picture.size_px.y; ++y)
+    for (int x = 0; x < picture.size_px.x; ++x) {
+      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.size_px.x) +
+                         static_cast<std::size_t>(x);
+      if (picture.object[pixel] != 0) continue;
+      const double distance_mm =
+          object.scalar->at(object.scalar->universe.lattice().voxel(*picture.point_mm({x, y})));
+      low = std::min(low, distance_mm);
+      high = std::max(high, distance_mm);
+    }
+  Json json{{"object", object.name}, {"distance_to", scene.coloured_by}, {"range_mm", object.scalar->most}};
+  json["seen_mm"] = low <= high ? Json::array({low, high}) : Json(nullptr);
+  return json;
+}
+
 glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   const auto numbers = numbers_of<2>("--pick", text, "256,300");
   const glm::dvec2 pixel(numbers[0], numbers[1]);
@@ -164,7 +218,8 @@ int render(const Program& program, const RenderText& text) {
   std::vector<glm::ivec2> picks;
   for (const std::string& pick : text.picks) picks.push_back(pixel_of(pick, options.size_px));
   Timings timings;
-  const std::vector<voxel::Drawn> objects = drawn_of_files(text.drawn, timings);
+  const Scene scene = scene_of(text, timings);
+  const std::vector<voxel::Drawn>& objects = scene.objects;
   if (text.cut_face == "grey") options.cut_tones = cut_tones_of(text, objects);
   voxel::Picture picture;
   {
@@ -173,7 +228,15 @@ int render(const Program& program, const RenderText& text) {
   }
   {
     const Stopwatch watch(timings, "write");
-    if (text.annotate) voxel::annotate(picture.rgb, picture.plane(), annotation_of(text, objects));
+    if (text.annotate) {
+      voxel::Annotation annotation = annotation_of(text, objects);
+      if (const auto& scalar = objects.front().scalar) {
+        annotation.legend.erase(annotation.legend.begin());
+        annotation.bar = voxel::ColourBar{"mm from " + scene.coloured_by, -scalar->most, scalar->most,
+                                          voxel::diverging_colours(128)};
+      }
+      voxel::annotate(picture.rgb, picture.plane(), annotation);
+    }
     voxel::write_image(text.out, picture.size_px, picture.rgb);
   }
   Json json = answer(timings);
@@ -186,6 +249,7 @@ int render(const Program& program, const RenderText& text) {
   json["lit_pixels"] = picture.lit_pixels;
   json["depth_range_mm"] = depth_range(picture);
   json["objects"] = objects_json(objects, picture);
+  if (!text.colour_by.empty()) json["colour_by"] = colour_by_json(scene, picture);
   if (!picks.empty()) json["picks"] = picks_json(picks, objects, picture);
   if (picture.visits) {
     const voxel::Visits& visits = *picture.visits;
@@ -238,6 +302,12 @@ void add_picture_verbs(Program& program) {
   verb.add_option("--colour", text->drawn.colours, "#RRGGBB, one a file in their order")
       ->expected(1)
       ->take_all();
+  verb.add_option(
+      "--colour-by", text->colour_by,
+      "distance:FILE colours the first object by its surface's distance outside (orange) or inside "
+      "(blue) another file's object");
+  verb.add_option("--range", text->range_mm, "Distance of the last colours of --colour-by, mm; default 5")
+      ->check(CLI::PositiveNumber);
   verb.add_option("--opacity", text->drawn.opacities, "0 (hidden) to 1, one a file in their order")
       ->expected(1)
       ->take_all()

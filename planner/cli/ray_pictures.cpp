@@ -15,9 +15,10 @@ namespace octotomy::planner::cli {
 namespace {
 
 void refuse_what_there_is_not(const RenderText& text) {
-  if (text.count || !text.algorithm.empty() || !text.picks.empty() || text.cut_face != "plain")
-    throw CLI::ValidationError("--shading",
-                               text.shading + " has no --algorithm, --count, --pick or --cut-face");
+  if (text.count || !text.algorithm.empty() || !text.picks.empty() || text.cut_face != "plain" ||
+      !text.colour_by.empty())
+    throw CLI::ValidationError(
+        "--shading", text.shading + " has no --algorithm, --count, --pick, --cut-face or --colour-by");
   if (text.shading != "composite" && !(text.cut_planes.empty() && text.cut_boxes.empty()))
     throw CLI::ValidationError("--shading", text.shading + " is not cut; composite is");
 }

@@ -24,6 +24,8 @@ struct RenderText {
   bool annotate = false;
   std::string title;
   std::string transfer = "bone";
+  std::string colour_by;
+  std::optional<double> range_mm;
   std::vector<std::string> picks;
 };
 

@@ -226,6 +226,19 @@ TEST_F(CommandLine, ATransferFunctionOfAFileIsDrawnAndOneThatIsNoneIsRefused) {
   expect_refused(run(ball + " --count"), "--count");
 }
 
+TEST_F(CommandLine, ABallColouredByAnotherInsideItIsAsFarOutsideAsTheirRadiiDiffer) {
+  voxel::write_scene(tests::ball_scene(9.0, 32), folder_ / "core.nrrd");
+  const std::string ball = "render " + at("ball.nrrd") + " --window 0: --json --annotate -o " + at("p.png");
+  const Json json = Json::parse(run(ball + " --range 4 --colour-by distance:" + at("core.nrrd")).out);
+  EXPECT_EQ(json["colour_by"]["distance_to"], "core");
+  EXPECT_EQ(json["colour_by"]["range_mm"], 4.0);
+  EXPECT_NEAR(json["colour_by"]["seen_mm"][0].get<double>(), 3.0, 0.87);
+  EXPECT_NEAR(json["colour_by"]["seen_mm"][1].get<double>(), 3.0, 0.87);
+  ASSERT_EQ(json["objects"].size(), 1u);
+  expect_refused(run(ball + " --colour-by distance:nowhere.octree"), "nowhere.octree");
+  expect_refused(run(ball + " --colour-by height"), "distance:FILE");
+}
+
 TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   const Json ball =
       Json::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);
