@@ -15,6 +15,7 @@
 #include "voxel/camera.h"
 #include "voxel/counted_trace.h"
 #include "voxel/depth_image.h"
+#include "voxel/depth_plane.h"
 #include "voxel/front_to_back.h"
 #include "voxel/interpolate.h"
 #include "voxel/node_trace.h"
@@ -179,7 +180,8 @@ Scenery scenery_of(const std::vector<Drawn>& objects, const ImagePlane& plane, c
 
 /// What colours a pixel besides its object: samples on cut faces, scalars on surfaces.
 Paint paint_of(const DepthImage& image, const std::vector<Drawn>& objects, const ImagePlane& plane,
-               const RenderOptions& options, const std::vector<glm::vec3>& cut_normals) {
+               const RenderOptions& options, const Scenery& scenery,
+               const std::vector<glm::vec3>& cut_normals) {
   Paint paint;
   const bool cuts_painted = options.cut_tones && !cut_normals.empty();
   if (!cuts_painted && std::none_of(objects.begin(), objects.end(),
@@ -188,6 +190,9 @@ Paint paint_of(const DepthImage& image, const std::vector<Drawn>& objects, const
   paint.kinds.assign(image.pixels.size(), Paint::Kind::None);
   paint.colours.resize(image.pixels.size());
   const glm::dmat4 voxel_from_lps = glm::inverse(objects.front().octree.universe().lps_from_voxel);
+  // Voxels' faces step by up to a voxel, and scalars along them: they are taken where shading sees the
+  // surface.
+  const DepthPlane smooth = depth_plane(image, scenery);
   tbb::parallel_for(0, image.size_px.y, [&](int y) {
     for (int x = 0; x < image.size_px.x; ++x) {
       const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +
@@ -197,7 +202,8 @@ Paint paint_of(const DepthImage& image, const std::vector<Drawn>& objects, const
       const bool on_cut = cuts_painted && cut_normals[pixel] != glm::vec3(0.0f);
       const auto& scalar = objects[static_cast<std::size_t>(seen.object)].scalar;
       if (!on_cut && scalar == nullptr) continue;
-      const glm::dvec3 p_mm = plane.lps_mm({x + 0.5, y + 0.5}, seen.depth_mm);
+      const double depth_mm = on_cut ? seen.depth_mm : smooth.depth.row(y)[x];
+      const glm::dvec3 p_mm = plane.lps_mm({x + 0.5, y + 0.5}, depth_mm);
       const glm::dvec3 p_voxel(voxel_from_lps * glm::dvec4(p_mm, 1.0));
       if (on_cut) {
         const CutTones& tones = *options.cut_tones;
@@ -225,7 +231,7 @@ Layer layer_of(const std::vector<Drawn>& objects, const ImagePlane& plane, const
   const std::vector<glm::vec3> cut_normals =
       flatten_cuts(drawing.image, plane, objects.front().octree.universe(), options.cuts);
   Scenery scenery = scenery_of(objects, plane, options);
-  scenery.paint = paint_of(drawing.image, objects, plane, options, cut_normals);
+  scenery.paint = paint_of(drawing.image, objects, plane, options, scenery, cut_normals);
   std::vector<glm::vec3> normals;
   if (options.shading == Shading::Context || options.shading == Shading::GreyGradient)
     normals =
