@@ -208,7 +208,9 @@ class Evaluator {
         if (source.sha256 && *source.sha256 != record.sha256)
           throw std::runtime_error("scan '" + name + "': " + path.string() + " has SHA-256 " + record.sha256 +
                                    ", the plan wants " + *source.sha256 + ": it is another scan");
-        scene = voxel::read_scene(path);
+        voxel::ReadOptions read = source.read;
+        read.stop = options_.stop;
+        scene = voxel::read_scene(path, read);
         voxel::check(scene);
       }
       record.name = name;

@@ -17,6 +17,19 @@ namespace {
 constexpr int bins = 256;
 constexpr int picture_px = 400;
 
+/// A scan as a plan names it.
+Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
+  Json entry{{"path", std::filesystem::absolute(scan).lexically_normal().string()}};
+  if (!read.series.empty()) entry["series"] = read.series;
+  if (read.spacing_mm) entry["spacing_mm"] = to_json(*read.spacing_mm);
+  if (read.raw)
+    entry["raw"] = {{"dims", {read.raw->dims.x, read.raw->dims.y, read.raw->dims.z}},
+                    {"type", voxel::name_of(read.raw->type)},
+                    {"big_endian", read.raw->big_endian},
+                    {"offset", read.raw->offset}};
+  return entry;
+}
+
 double sample_at(const voxel::Scene& scene, std::size_t i) {
   return std::visit([i](const auto& samples) { return static_cast<double>(samples[i]); }, scene.samples);
 }
@@ -77,7 +90,7 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
   Result result;
   double bone_low = options.bone_low.value_or(300.0), skin_low = options.skin_low.value_or(-300.0);
   if (!options.bone_low || !options.skin_low) {
-    const voxel::Scene scene = voxel::read_scene(scan);
+    const voxel::Scene scene = voxel::read_scene(scan, options.read);
     if (scene.meaning != voxel::Meaning::Hounsfield) {
       const Thresholds thresholds = thresholds_of(scene);
       bone_low = options.bone_low.value_or(thresholds.upper);
@@ -95,7 +108,7 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
       scan.filename().empty() ? scan.parent_path().filename().string() : scan.filename().string();
   Json plan{{"octotomy_plan", 1},
             {"name", "First look at " + (name.empty() ? scan.string() : name)},
-            {"scans", {{"scan", {{"path", std::filesystem::absolute(scan).lexically_normal().string()}}}}},
+            {"scans", {{"scan", scan_entry(scan, options.read)}}},
             {"steps", Json::array()}};
   plan["steps"].push_back({{"id", "bone"}, {"do", "window"}, {"scan", "scan"}, {"low", bone_low}});
   plan["steps"].push_back({{"id", "skin"}, {"do", "window"}, {"scan", "scan"}, {"low", skin_low}});

@@ -13,6 +13,7 @@ struct LookOptions {
   /// Lower bounds of bone and of everything within the skin, in sample units. Default: 300 and -300 for
   /// Hounsfield units; otherwise thresholds_of() the scan's own samples, with a finding that says so.
   std::optional<double> bone_low, skin_low;
+  voxel::ReadOptions read;  ///< the series, and what the file does not say of itself
   EvaluateOptions evaluation;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -264,14 +265,50 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
   return step;
 }
 
+int whole_number(const Json& value, const std::string& where) {
+  const double number = Keys::number(value, where);
+  if (number != std::trunc(number) || std::abs(number) > std::numeric_limits<int>::max())
+    refuse(where, "must be a whole number");
+  return static_cast<int>(number);
+}
+
+/// How a scan is read: its series, and what images and raw files do not say of themselves.
+voxel::ReadOptions read_options_of(const Keys& scan) {
+  voxel::ReadOptions read;
+  if (scan.find("series") != nullptr) read.series = scan.text("series");
+  if (scan.find("spacing_mm") != nullptr) read.spacing_mm = scan.point("spacing_mm");
+  if (const Json* value = scan.find("raw")) {
+    const Keys keys(*value, scan.at("raw"), {"dims", "type", "big_endian", "offset"});
+    voxel::RawLayout raw;
+    const Json& dims = keys.need("dims");
+    if (!dims.is_array() || dims.size() != 3) refuse(keys.at("dims"), "must be three numbers [x, y, z]");
+    for (int axis = 0; axis < 3; ++axis)
+      raw.dims[axis] = whole_number(dims[static_cast<std::size_t>(axis)], keys.at("dims"));
+    const std::optional<voxel::SampleType> type = voxel::sample_type(keys.text("type"));
+    if (!type) refuse(keys.at("type"), "'" + keys.text("type") + "' is no type: use for example int16");
+    raw.type = *type;
+    if (const Json* big_endian = keys.find("big_endian")) {
+      if (!big_endian->is_boolean()) refuse(keys.at("big_endian"), "must be true or false");
+      raw.big_endian = big_endian->get<bool>();
+    }
+    if (const Json* offset = keys.find("offset")) {
+      const int bytes = whole_number(*offset, keys.at("offset"));
+      if (bytes < 0) refuse(keys.at("offset"), "must not be negative");
+      raw.offset = static_cast<std::uint64_t>(bytes);
+    }
+    read.raw = raw;
+  }
+  return read;
+}
+
 std::map<std::string, ScanSource> scans_of(const Keys& top) {
   const Json& value = top.need("scans");
   if (!value.is_object() || value.empty())
     refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
   std::map<std::string, ScanSource> scans;
   for (const auto& [name, entry] : value.items()) {
-    const Keys keys(entry, "scans, " + name, {"path", "sha256"});
-    ScanSource source{keys.text("path"), std::nullopt};
+    const Keys keys(entry, "scans, " + name, {"path", "sha256", "series", "spacing_mm", "raw"});
+    ScanSource source{keys.text("path"), std::nullopt, read_options_of(keys)};
     if (keys.find("sha256") != nullptr) {
       source.sha256 = keys.text("sha256");
       const bool hex = source.sha256->size() == 64 &&

@@ -173,6 +173,7 @@ std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::fi
   if (!is_sound(slice.pixels))
     return NoSlice{"pixels of " + std::to_string(slice.pixels.allocated) + " bits"};
   slice.inverted = file.text(0x00280004) == "MONOCHROME1";
+  slice.class_uid = file.text(0x00080016);
   slice.instance_uid = file.text(0x00080018);
   slice.series_uid = file.text(0x0020000e);
   slice.series_description = file.readable_text(0x0008103e);

@@ -34,6 +34,7 @@ struct DicomSlice {
   std::filesystem::path path;
   int frame = 0;
   DicomPixels pixels;
+  std::string class_uid;  ///< of the storage, (0008,0016)
   std::string instance_uid;
   std::string series_uid;
   std::string series_description;  ///< UTF-8

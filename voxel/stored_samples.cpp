@@ -67,6 +67,12 @@ std::optional<SampleType> sample_type(std::string_view word) {
   return std::nullopt;
 }
 
+std::string name_of(SampleType type) {
+  for (const auto& [name, known] : words)
+    if (known == type) return std::string(name);
+  throw std::invalid_argument("no type of samples");
+}
+
 void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene& scene) {
   switch (stored.type) {
     case SampleType::Int8:

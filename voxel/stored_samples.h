@@ -23,6 +23,8 @@ enum class SampleType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64
 std::size_t bytes_of(SampleType type);
 /// "int16", "uint8", "float", "double", ...; none where the word is no type.
 std::optional<SampleType> sample_type(std::string_view word);
+/// The first of its words.
+std::string name_of(SampleType type);
 
 /// How stored samples become values: slope * stored + intercept.
 struct StoredSamples {

@@ -8,7 +8,6 @@
 #include "planner/colour.h"
 #include "voxel/combine.h"
 #include "voxel/octree_file.h"
-#include "voxel/read_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -73,7 +72,7 @@ voxel::Drawn drawn_of_file(const std::filesystem::path& path, const DrawnText& t
     voxel::Scene scene;
     {
       const Stopwatch watch(timings, "read");
-      scene = voxel::read_scene(path);
+      scene = voxel::read_scene(path, text.read);
     }
     const Stopwatch watch(timings, "octree");
     set_window(object,

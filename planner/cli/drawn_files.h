@@ -8,6 +8,7 @@
 
 #include "planner/evaluate.h"
 #include "voxel/drawn.h"
+#include "voxel/read_scene.h"
 
 namespace octotomy::planner::cli {
 
@@ -18,6 +19,7 @@ struct DrawnText {
   std::vector<std::string> colours;  ///< #RRGGBB, of the first files
   std::vector<float> opacities;      ///< 0..1, of the first files
   std::optional<double> voxel_mm;    ///< edge of a scan's voxels; none: as fine as the scan
+  voxel::ReadOptions read;           ///< of scans
 };
 
 /// What the files hold, all in the first one's universe, named as the files are, without folder and ending.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/verb.h"
+#include "planner/cli/scan_in.h"
 #include "planner/figures.h"
 #include "planner/first_look.h"
 
@@ -10,10 +10,12 @@ struct LookText {
   std::filesystem::path scan;
   std::filesystem::path out;
   LookOptions options;
+  ScanIn in;
 };
 
 int look(Program& program, LookText& text) {
   text.options.evaluation = {program.stop.get_token(), program.progress(), true};
+  text.options.read = read_options(program, text.in);
   Result result = first_look(text.scan, text.options);
   for (const voxel::Finding& finding : result.findings) warn(finding.detail);
   for (const ScanRecord& scan : result.evaluation.scans)
@@ -45,7 +47,7 @@ void add_look(Program& program) {
   CLI::App& verb =
       program.verb("look", "A first look at a scan: audit, bone and skin in pictures, certified measures",
                    "octotomy look head.nrrd -o look", [&program, text] { return look(program, *text); });
-  verb.add_option("scan", text->scan, "A DICOM folder or file, NIfTI, NRRD or MetaImage")
+  verb.add_option("scan", text->scan, "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, or a raw file")
       ->required()
       ->check(CLI::ExistingPath);
   verb.add_option("-o,--out", text->out, "The result's folder: new, empty, or an earlier result")->required();
@@ -53,6 +55,7 @@ void add_look(Program& program) {
       ->type_name("LOW");
   verb.add_option("--skin", text->options.skin_low, "Lower bound of all within the skin; default -300 HU")
       ->type_name("LOW");
+  add_scan_options(verb, text->in);
 }
 
 }  // namespace octotomy::planner::cli

@@ -8,7 +8,7 @@
 #include "planner/answer.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/ray_pictures.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/scan_in.h"
 #include "planner/colour.h"
 #include "planner/figures.h"
 #include "voxel/image_file.h"
@@ -272,14 +272,18 @@ void add_picture_verbs(Program& program) {
       "render", "Draws scans' windows and octrees as shaded surfaces",
       "octotomy render head.nrrd -o skull.png --window 300: --view 35,15 --size 1024x1024\n"
       "  octotomy render rest.octree piece.octree -o plan.png --colour \"#ede3cc\" --colour \"#cc7a29\"",
-      [&program, text] { return render(program, *text); });
+      [&program, text] {
+        text->drawn.read = read_options(program, text->scan);
+        return render(program, *text);
+      });
   std::vector<std::string> shading_names = names_of(shadings);
   const std::vector<std::string> ray_pictures = ray_picture_names();
   shading_names.insert(shading_names.end(), ray_pictures.begin(), ray_pictures.end());
   verb.add_option("files", text->drawn.files,
-                  "Octrees (.octree), or scans: a DICOM folder or file, NIfTI, NRRD or MetaImage")
+                  "Octrees (.octree), or scans: a DICOM folder or file, NIfTI, NRRD, MetaImage, images, or a "
+                  "raw file")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(scan_path());
   verb.add_option("-o,--out", text->out, "A .png, .jpg or .webp file")->required();
   verb.add_option("--window", text->drawn.window,
                   "LOW:HIGH or LOW: in sample units, for scans and grey octrees")
@@ -344,6 +348,7 @@ void add_picture_verbs(Program& program) {
   verb.add_option("--voxel", text->drawn.voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
       ->check(CLI::PositiveNumber);
+  add_scan_options(verb, text->scan);
 }
 
 }  // namespace octotomy::planner::cli

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "planner/answer.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/scan_in.h"
 #include "planner/figures.h"
 #include "planner/nearest_name.h"
 #include "planner/report.h"
@@ -14,10 +14,11 @@ struct PlanText {
   std::filesystem::path plan;
   std::filesystem::path out;
   std::vector<std::string> scans;
+  ScanIn in;
 };
 
 /// Reads the plan and puts NAME=PATH in the place of its scans' paths; those are relative to where we are.
-Plan plan_of(const PlanText& text) {
+Plan plan_of(const Program& program, const PlanText& text) {
   Plan plan = read_plan(text.plan);
   std::vector<std::string> names;
   for (const auto& [name, unused] : plan.scans) names.push_back(name);
@@ -31,6 +32,14 @@ Plan plan_of(const PlanText& text) {
       throw std::runtime_error("--scan: the plan has no scan called '" + name + "'" +
                                suggestion(name, names));
     found->second.path = std::filesystem::absolute(scan.substr(equals + 1)).lexically_normal();
+  }
+  if (const voxel::ReadOptions read = read_options(program, text.in);
+      !read.series.empty() || read.spacing_mm || read.raw) {
+    if (plan.scans.size() != 1)
+      throw std::runtime_error(
+          "--series, --spacing and --raw are of one scan, the plan has several: say series, spacing_mm or "
+          "raw beside their paths in the plan");
+    plan.scans.begin()->second.read = read;
   }
   return plan;
 }
@@ -66,7 +75,7 @@ EvaluateOptions options_of(Program& program) {
 
 int run(Program& program, const PlanText& text) {
   Result result;
-  result.plan = plan_of(text);
+  result.plan = plan_of(program, text);
   result.evaluation = evaluate(result.plan, options_of(program));
   result.pictures = plan_pictures(result.plan, result.evaluation);
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
@@ -80,7 +89,7 @@ int run(Program& program, const PlanText& text) {
 
 int verify_plan(Program& program, const PlanText& text) {
   Result result;
-  result.plan = plan_of(text);
+  result.plan = plan_of(program, text);
   result.evaluation = evaluate(result.plan, options_of(program));
   const Json whole = result_json(result);
   Json json = answer(result.evaluation.timings);
@@ -94,6 +103,7 @@ void add_plan_options(CLI::App& verb, PlanText& text) {
   verb.add_option("plan", text.plan, "A .plan.json")->required()->check(CLI::ExistingFile);
   verb.add_option("--scan", text.scans, "NAME=PATH: reads the plan's scan NAME from PATH")
       ->type_name("NAME=PATH");
+  add_scan_options(verb, text.in);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "planner/cli/drawn_files.h"
+#include "planner/cli/scan_in.h"
 #include "voxel/annotation.h"
 #include "voxel/cut.h"
 
@@ -10,6 +11,7 @@ namespace octotomy::planner::cli {
 /// What the command line says of a picture.
 struct RenderText {
   DrawnText drawn;
+  ScanIn scan;
   std::filesystem::path out;
   std::string view = "anterior";
   std::string size = "512x512";
