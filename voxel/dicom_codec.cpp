@@ -33,7 +33,9 @@ class CodecProcess {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, sockets[1], STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    // One of GDCM's codecs talks on both while it decodes.
+    for (const int spoken : {STDOUT_FILENO, STDERR_FILENO})
+      posix_spawn_file_actions_addopen(&actions, spoken, "/dev/null", O_WRONLY, 0);
     std::string name = path;
     char* arguments[] = {name.data(), nullptr};
     const int error = posix_spawn(&process_, path.c_str(), &actions, nullptr, arguments, environ);

@@ -26,6 +26,13 @@ bool has_prefix(std::string_view bytes) {
   return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM";
 }
 
+/// Whether the first attribute of a file without a prefix is written with its value representation. Implicit,
+/// two capital letters would be a first value of 16 kilobytes.
+bool spells_vr(std::string_view bytes) {
+  const auto is_capital = [&](std::size_t i) { return bytes[i] >= 'A' && bytes[i] <= 'Z'; };
+  return bytes.size() >= 8 && is_capital(4) && is_capital(5);
+}
+
 /// Value representations whose length has four bytes.
 bool is_wide(std::string_view vr) {
   constexpr std::array<std::string_view, 13> wide = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
@@ -54,7 +61,7 @@ DicomFile::DicomFile(std::string_view bytes, std::size_t file_bytes, bool inflat
       file_bytes_(file_bytes),
       at_(has_prefix(bytes) ? 132 : 0),
       inflated_(inflated),
-      explicit_(at_ > 0) {
+      explicit_(at_ > 0 || spells_vr(bytes)) {
   walk();
 }
 
@@ -145,7 +152,7 @@ void DicomFile::walk() {
   std::vector<bool> explicit_outside;
   DicomTag open_tag = 0;       // the outermost of them
   std::size_t open_start = 0;  // and where its items begin
-  bool in_meta = at_ > 0;
+  bool in_meta = !is_item_ && (at_ > 0 || (left() >= 8 && u16(at_) == 2));
   while (left() >= 8) {
     if (in_meta && u16(at_) != 2) {
       in_meta = false;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "voxel/dicom_series.h"
+#include "voxel/inflate.h"
 
 namespace octotomy::voxel {
 
@@ -15,13 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct SharedAttribute {
+  DicomTag tag;
+  const char* vr;
+};
 /// What the images of one patient, study and frame of reference share (DICOM PS3.3, C.7.1 to C.7.4), and what
 /// an MR image must say of its acquisition (C.8.3.1).
-constexpr std::array<DicomTag, 28> shared_tags{
-    0x00080005, 0x00080020, 0x00080030, 0x00080050, 0x00080090, 0x00081030, 0x00100010,
-    0x00100020, 0x00100030, 0x00100040, 0x00101010, 0x00101020, 0x00101030, 0x00180020,
-    0x00180021, 0x00180022, 0x00180023, 0x00180080, 0x00180081, 0x00180083, 0x00180091,
-    0x00185100, 0x0020000d, 0x00200010, 0x00200052, 0x00201040, 0x00080060, 0x00200011};
+constexpr std::array<SharedAttribute, 28> shared_attributes{
+    {{0x00080005, "CS"}, {0x00080020, "DA"}, {0x00080030, "TM"}, {0x00080050, "SH"}, {0x00080090, "PN"},
+     {0x00081030, "LO"}, {0x00100010, "PN"}, {0x00100020, "LO"}, {0x00100030, "DA"}, {0x00100040, "CS"},
+     {0x00101010, "AS"}, {0x00101020, "DS"}, {0x00101030, "DS"}, {0x00180015, "CS"}, {0x00180020, "CS"},
+     {0x00180021, "CS"}, {0x00180022, "CS"}, {0x00180023, "CS"}, {0x00180080, "DS"}, {0x00180081, "DS"},
+     {0x00180083, "DS"}, {0x00180091, "IS"}, {0x00185100, "CS"}, {0x0020000d, "UI"}, {0x00200010, "SH"},
+     {0x00200052, "UI"}, {0x00200060, "CS"}, {0x00201040, "LO"}}};
 
 /// Positions are printed to a hundredth of a millimetre at worst; nearer is the same plane.
 constexpr double same_plane_mm() {
@@ -46,16 +53,25 @@ DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
   DicomSource source;
   source.normal = stack.normal;
   source.series_uid = stack.first().series_uid;
+  source.series_number = stack.first().series_number;
   source.modality = stack.first().modality;
   for (const DicomSlice& slice : stack.slices)
     source.images.push_back(
         {slice.class_uid, file_uid(slice.instance_uid), glm::dot(slice.first_mm, stack.normal)});
   const std::string bytes = bytes_of(stack.first().path);
   const auto take = [&](const DicomFile& file) {
-    for (const DicomTag tag : shared_tags)
-      if (std::string text = file.text(tag); !text.empty()) source.attributes.emplace(tag, std::move(text));
+    for (const auto& [tag, vr] : shared_attributes)
+      if (std::string value = file.text(tag); !value.empty())
+        source.attributes.emplace(tag, DicomSource::Text{vr, std::move(value)});
   };
-  with_dicom_file(bytes, take);
+  try {
+    take(DicomFile(bytes, bytes.size()));
+  } catch (const DicomFile::Deflated& from) {
+    const std::string whole = bytes.substr(0, from.at) + inflate_raw(std::string_view(bytes).substr(from.at));
+    take(DicomFile(whole, whole.size(), true));
+  } catch (const DicomFile::NeedsMore&) {
+    throw std::runtime_error(stack.first().path.string() + ": changed while it was read");
+  }
   return source;
 }
 

@@ -15,6 +15,10 @@ namespace octotomy::voxel {
 
 /// The DICOM series that something is made from: whose it is, and its images, for what is made to refer to.
 struct DicomSource {
+  struct Text {
+    std::string vr;  ///< its value representation
+    std::string value;
+  };
   struct Image {
     std::string class_uid;
     std::string instance_uid;
@@ -23,8 +27,9 @@ struct DicomSource {
 
   /// Patient, study, frame of reference and acquisition by tag, as the first image's file has them, in its
   /// character set; those that the file has and that what is made from it takes over.
-  std::map<DicomTag, std::string> attributes;
+  std::map<DicomTag, Text> attributes;
   std::string series_uid;
+  int series_number = 0;
   std::string modality;
   std::vector<Image> images;  ///< along the normal; frames of one file are one image each
   glm::dvec3 normal{0, 0, 1};

@@ -2,7 +2,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "voxel/dicom_file.h"
+#include "voxel/dicom_values.h"
 #include "voxel/staging.h"
 #include "voxel/write_scene.h"
 
@@ -21,56 +21,8 @@ namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little, "values are written as they stand in memory");
 
-/// A decimal string: the most digits that its 16 characters hold.
-std::string decimal(double number) {
-  char text[40];
-  for (int digits = 17; digits > 0; --digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, number);
-    if (std::strlen(text) <= 16) break;
-  }
-  return text;
-}
-
-std::string decimals(const glm::dvec3& p) {
-  return decimal(p.x) + "\\" + decimal(p.y) + "\\" + decimal(p.z);
-}
-
-/// 128 bits that follow from what is put in: two FNV-1a sums with different beginnings. Not for secrets.
-class Digest {
- public:
-  void add(const void* bytes, std::size_t count) {
-    const auto* byte = static_cast<const unsigned char*>(bytes);
-    for (std::size_t i = 0; i < count; ++i) {
-      high_ = (high_ ^ byte[i]) * prime;
-      low_ = (low_ ^ byte[i]) * prime;
-      low_ ^= low_ >> 29;  // sets the second sum apart from the first
-    }
-  }
-  void add(const std::string& text) { add(text.data(), text.size() + 1); }
-
-  /// An identifier of the form 2.25.<UUID as an integer>, a UUID of version 8 (RFC 9562).
-  std::string uid() const {
-    __extension__ using Wide = unsigned __int128;
-    const std::uint64_t high = (high_ & ~std::uint64_t{0xf000}) | 0x8000;
-    const std::uint64_t low = (low_ & ~(std::uint64_t{3} << 62)) | (std::uint64_t{2} << 62);
-    std::string digits;
-    for (Wide rest = (Wide{high} << 64) | low; rest != 0; rest /= 10)
-      digits.insert(digits.begin(), static_cast<char>('0' + static_cast<int>(rest % 10)));
-    return "2.25." + digits;
-  }
-  std::string uid(const std::string& of) const {
-    Digest with = *this;
-    with.add(of);
-    return with.uid();
-  }
-
- private:
-  static constexpr std::uint64_t prime = 0x100000001b3;
-  std::uint64_t high_ = 0xcbf29ce484222325;
-  std::uint64_t low_ = 0x84222325cbf29ce4;
-};
-
 constexpr const char* ct_image_storage = "1.2.840.10008.5.1.4.1.1.2";
+constexpr const char* mr_image_storage = "1.2.840.10008.5.1.4.1.1.4";
 
 /// Attributes in ascending order, encoded with explicit VR, little-endian (DICOM PS3.5, 7.1).
 class Attributes {
@@ -88,6 +40,17 @@ class Attributes {
   void number(DicomTag tag, std::uint16_t value) {
     put(tag, "US", {reinterpret_cast<const char*>(&value), sizeof value});
   }
+  void sequence(DicomTag tag, const std::vector<Attributes>& items) {
+    std::string bytes;
+    for (const Attributes& item : items) {
+      const std::string inside = item.encoded();
+      const auto length = static_cast<std::uint32_t>(inside.size());
+      bytes += std::string("\xfe\xff\x00\xe0", 4);
+      bytes.append(reinterpret_cast<const char*>(&length), sizeof length);
+      bytes += inside;
+    }
+    put(tag, "SQ", bytes);
+  }
 
   std::string encoded() const {
     std::string bytes;
@@ -98,7 +61,7 @@ class Attributes {
       append(tag >> 16, 2);
       append(tag & 0xffffu, 2);
       bytes += value.vr;
-      const bool is_wide = value.vr == "OB" || value.vr == "OW";
+      const bool is_wide = value.vr == "OB" || value.vr == "OW" || value.vr == "SQ";
       if (is_wide) append(0, 2);
       append(static_cast<std::uint32_t>(value.bytes.size()), is_wide ? 4 : 2);
       bytes += value.bytes;
@@ -138,6 +101,8 @@ class SeriesWriter {
                scene.samples);
     digest_.add(options.patient_name);
     digest_.add(options.series_description);
+    if (options.source) digest_.add(options.source->series_uid);
+    is_mr_ = scene.modality == "MR";
   }
 
   /// Writes slice k to `path`; `name` is what errors call it.
@@ -145,6 +110,8 @@ class SeriesWriter {
     const Int16Samples samples = samples_of(k);
     Attributes slice;
     put_patient_and_study(slice);
+    if (is_mr_) put_acquisition(slice);
+    if (options_.source) put_source(slice, *options_.source, k);
     put_image(slice, k);
     put_pixels(slice, samples);
     std::ofstream out(path, std::ios::binary);
@@ -180,16 +147,17 @@ class SeriesWriter {
     return slice;
   }
 
+  const char* storage() const { return is_mr_ ? mr_image_storage : ct_image_storage; }
   std::string instance_uid(int k) const { return digest_.uid("slice " + std::to_string(k)); }
 
   /// The attributes about the file itself, which stand before the slice's.
   Attributes meta_of(int k) const {
     Attributes meta;
     meta.put(0x00020001, "OB", std::string_view("\0\1", 2));
-    meta.text(0x00020002, "UI", ct_image_storage);
+    meta.text(0x00020002, "UI", storage());
     meta.text(0x00020003, "UI", instance_uid(k));
     meta.text(0x00020010, "UI", "1.2.840.10008.1.2.1");  // explicit VR, little-endian
-    meta.text(0x00020012, "UI", Digest().uid("octotomy"));
+    meta.text(0x00020012, "UI", DicomDigest().uid("octotomy"));
     meta.text(0x00020013, "SH", "OCTOTOMY");
     const auto length = static_cast<std::uint32_t>(meta.encoded().size());
     meta.put(0x00020000, "UL", {reinterpret_cast<const char*>(&length), sizeof length});
@@ -201,7 +169,7 @@ class SeriesWriter {
     slice.text(0x00080020, "DA", "20000101");  // a date of its own would break byte equality
     slice.text(0x00080030, "TM", "000000");
     slice.text(0x00080050, "SH", "");
-    slice.text(0x00080060, "CS", "CT");
+    slice.text(0x00080060, "CS", is_mr_ ? "MR" : "CT");
     slice.text(0x00080070, "LO", "Octotomy");
     slice.text(0x00080090, "PN", "");
     slice.text(0x0008103e, "LO", options_.series_description);
@@ -219,17 +187,61 @@ class SeriesWriter {
     slice.text(0x00201040, "LO", "");
   }
 
+  /// What an MR image must say: that nothing is known of how it was acquired.
+  static void put_acquisition(Attributes& slice) {
+    slice.text(0x00180020, "CS", "RM");
+    slice.text(0x00180021, "CS", "NONE");
+    for (const auto& [tag, vr] :
+         {std::pair{DicomTag{0x00180022}, "CS"}, std::pair{DicomTag{0x00180023}, "CS"},
+          std::pair{DicomTag{0x00180080}, "DS"}, std::pair{DicomTag{0x00180081}, "DS"},
+          std::pair{DicomTag{0x00180091}, "IS"}})
+      slice.text(tag, vr, "");
+  }
+
+  /// Takes the source's attributes over and refers to the images behind the slice (PS3.3, C.7.6.1, C.12.2).
+  void put_source(Attributes& slice, const DicomSource& source, int k) const {
+    constexpr DicomTag first_of_acquisition = 0x00180020;
+    constexpr DicomTag last_of_acquisition = 0x00180fff;
+    for (const auto& [tag, text] : source.attributes)
+      if (is_mr_ || tag < first_of_acquisition || tag > last_of_acquisition)
+        slice.text(tag, text.vr.c_str(), text.value);
+    // Far from the scanner's own numbers, so that viewers list it apart from them.
+    slice.text(0x00200011, "IS", std::to_string(source.series_number + 1000));
+    Attributes purpose;
+    purpose.text(0x00080100, "SH", "121322");
+    purpose.text(0x00080102, "SH", "DCM");
+    purpose.text(0x00080104, "LO", "Source image for image processing operation");
+    std::vector<Attributes> references;
+    std::vector<Attributes> images;
+    for (const DicomSource::Image& image : images_behind(source, scene_.lattice, k)) {
+      Attributes reference;
+      reference.text(0x00081150, "UI", image.class_uid);
+      reference.text(0x00081155, "UI", image.instance_uid);
+      references.push_back(reference);
+      reference.sequence(0x0040a170, {purpose});
+      images.push_back(reference);
+    }
+    if (images.empty()) return;
+    slice.text(0x00082111, "ST", "Resampled to a lattice where the source is not one");
+    slice.sequence(0x00082112, images);
+    Attributes series;
+    series.text(0x0020000e, "UI", source.series_uid);
+    series.sequence(0x0008114a, references);
+    slice.sequence(0x00081115, {series});
+  }
+
   void put_image(Attributes& slice, int k) const {
-    slice.text(0x00080008, "CS", "DERIVED\\SECONDARY\\AXIAL");
-    slice.text(0x00080016, "UI", ct_image_storage);
+    slice.text(0x00080008, "CS", is_mr_ ? "DERIVED\\SECONDARY\\OTHER" : "DERIVED\\SECONDARY\\AXIAL");
+    slice.text(0x00080016, "UI", storage());
     slice.text(0x00080018, "UI", instance_uid(k));
-    slice.text(0x00180050, "DS", decimal(step_mm_));
-    slice.text(0x00180060, "DS", "");
+    slice.text(0x00180050, "DS", dicom_decimal(step_mm_));
+    if (!is_mr_) slice.text(0x00180060, "DS", "");
     slice.text(0x00200012, "IS", "1");
     slice.text(0x00200013, "IS", std::to_string(k + 1));
-    slice.text(0x00200032, "DS", decimals(scene_.lattice.lps_mm({0.0, 0.0, k})));
-    slice.text(0x00200037, "DS", decimals(along_row_) + "\\" + decimals(along_column_));
-    slice.text(0x00280030, "DS", decimal(spacing_mm_.y) + "\\" + decimal(spacing_mm_.x));
+    slice.text(0x00200032, "DS", dicom_decimals(scene_.lattice.lps_mm({0.0, 0.0, k})));
+    slice.text(0x00200037, "DS", dicom_decimals(along_row_) + "\\" + dicom_decimals(along_column_));
+    slice.text(0x00280030, "DS", dicom_decimal(spacing_mm_.y) + "\\" + dicom_decimal(spacing_mm_.x));
+    if (is_mr_) return;
     slice.text(0x00281052, "DS", "0");
     slice.text(0x00281053, "DS", "1");
     slice.text(0x00281054, "LO", scene_.meaning == Meaning::Hounsfield ? "HU" : "US");
@@ -254,7 +266,8 @@ class SeriesWriter {
   glm::dvec3 along_row_{1, 0, 0};
   glm::dvec3 along_column_{0, 1, 0};
   double step_mm_ = 1.0;
-  Digest digest_;
+  bool is_mr_ = false;
+  DicomDigest digest_;
 };
 
 std::string slice_name(int k) {

@@ -3,7 +3,10 @@
 #include <array>
 
 #include "planner/answer.h"
+#include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
+#include "planner/octree_answer.h"
+#include "voxel/write_dicom_seg.h"
 #include "voxel/write_scene.h"
 
 namespace octotomy::planner::cli {
@@ -12,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ConvertText {
-  fs::path in, out;
+  fs::path in, out, source;
+  std::string label;
   ScanIn scan;
   bool dicom = false;
 };
@@ -22,6 +26,50 @@ bool is_volume(const fs::path& path) {
   constexpr std::array<const char*, 6> known{".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd"};
   return std::any_of(known.begin(), known.end(),
                      [&](const char* extension) { return name.ends_with(extension); });
+}
+
+/// The DICOM series that what is written refers to; none where it was made from none.
+std::optional<voxel::DicomSource> source_of(const Program& program, const ConvertText& text,
+                                            bool reads_dicom) {
+  if (text.source.empty() && !reads_dicom) return std::nullopt;
+  return voxel::dicom_source(text.source.empty() ? text.in : text.source, read_options(program, text.scan));
+}
+
+int convert_octree(const Program& program, const ConvertText& text) {
+  if (text.out.extension() != ".dcm")
+    throw std::runtime_error(
+        text.out.string() +
+        ": an octree is converted to a DICOM segmentation, .dcm; octotomy octree --as has "
+        "other forms");
+  need_folder_of(text.out);
+  Timings timings;
+  const voxel::OctreeFile file = read_timed(text.in, timings);
+  const auto* octree = std::get_if<voxel::Octree>(&file.tree);
+  if (octree == nullptr)
+    throw std::runtime_error(text.in.string() +
+                             ": only a binary octree is a segmentation: choose an object of the samples with "
+                             "octotomy octree --window LOW:HIGH");
+  voxel::DicomSegOptions options;
+  options.label = !text.label.empty() ? text.label : file.name.empty() ? "Object" : file.name.substr(0, 64);
+  options.series_description = "Octotomy, segmented";
+  options.stop = program.stop.get_token();
+  {
+    const Stopwatch watch(timings, "source");
+    options.source = source_of(program, text, false);
+  }
+  if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
+  {
+    const Stopwatch watch(timings, "write");
+    voxel::write_dicom_seg(*octree, text.out, options);
+  }
+  Json json = octree_answer(file, fs::file_size(text.in), timings);
+  json["path"] = text.out.string();
+  json["label"] = options.label;
+  json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
+  program.say(json, lines({{"written", text.out.string()},
+                           {"segment", options.label},
+                           {"voxels", std::to_string(octree->voxel_count())}}));
+  return done;
 }
 
 int convert(const Program& program, const ConvertText& text) {
@@ -38,6 +86,7 @@ int convert(const Program& program, const ConvertText& text) {
     if (folder) {
       voxel::DicomOptions options;
       options.series_description = "Octotomy, derived";
+      options.source = source_of(program, text, is_dicom(scene));
       voxel::write_dicom_series(scene, text.out, options);
     } else {
       voxel::write_scene(scene, text.out);
@@ -58,17 +107,29 @@ int convert(const Program& program, const ConvertText& text) {
 
 void add_convert(Program& program) {
   const auto text = std::make_shared<ConvertText>();
-  CLI::App& verb =
-      program.verb("convert", "Writes a scan in another format, straightened to a lattice where it has to be",
-                   "octotomy convert dicom_folder -o head.nii.gz\n"
-                   "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
-                   "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd",
-                   [&program, text] { return convert(program, *text); });
-  verb.add_option("scan", text->in, "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, or a raw file")
+  CLI::App& verb = program.verb(
+      "convert",
+      "Writes a scan in another format, straightened to a lattice where it has to be; an octree as a "
+      "DICOM segmentation",
+      "octotomy convert dicom_folder -o head.nii.gz\n"
+      "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
+      "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd\n"
+      "  octotomy convert skull.octree -o skull.dcm --source dicom_folder --label Skull",
+      [&program, text] {
+        return is_octree(text->in) ? convert_octree(program, *text) : convert(program, *text);
+      });
+  verb.add_option("scan", text->in,
+                  "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, a raw file, or a binary .octree")
       ->required()
       ->check(scan_path());
-  verb.add_option("-o,--out", text->out, "A .nrrd, .nii.gz or .mha file, or a folder for DICOM")->required();
+  verb.add_option("-o,--out", text->out,
+                  "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; of an .octree a .dcm")
+      ->required();
   verb.add_flag("--dicom", text->dicom, "Write a DICOM series into the folder");
+  verb.add_option("--source", text->source,
+                  "The DICOM series that DICOM written here refers to; default: the scan, where it is DICOM")
+      ->check(CLI::ExistingPath);
+  verb.add_option("--label", text->label, "Of a segmentation; default: the octree's name");
   add_scan_options(verb, text->scan);
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include <algorithm>
 
 #include "brep/health.h"
 #include "brep/read_mesh.h"
@@ -42,9 +41,7 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
 
 /// The series of a DICOM folder, as --series counts them; null of what is none.
 Json series_of(const std::filesystem::path& path, const voxel::Scene& scene) {
-  const bool dicom = std::any_of(scene.audit.begin(), scene.audit.end(),
-                                 [](const voxel::Finding& line) { return line.check == "series"; });
-  if (!dicom) return nullptr;
+  if (!is_dicom(scene)) return nullptr;
   Json list = Json::array();
   for (const voxel::SeriesEntry& entry : voxel::list_series(path))
     list.push_back({{"series", list.size() + 1},

@@ -81,6 +81,11 @@ voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
   return options;
 }
 
+bool is_dicom(const voxel::Scene& scene) {
+  return std::any_of(scene.audit.begin(), scene.audit.end(),
+                     [](const voxel::Finding& line) { return line.check == "series"; });
+}
+
 voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
                        Timings& timings) {
   const Stopwatch watch(timings, "read");

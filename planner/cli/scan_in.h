@@ -28,4 +28,7 @@ voxel::ReadOptions read_options(const Program& program, const ScanIn& in);
 voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
                        Timings& timings);
 
+/// Whether a scene was read from DICOM, by its audit.
+bool is_dicom(const voxel::Scene& scene);
+
 }  // namespace octotomy::planner::cli

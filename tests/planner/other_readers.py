@@ -6,6 +6,7 @@ other_readers.py dicom FOLDER [FILE.nii.gz]
 other_readers.py nifti FILE   [FILE.nii.gz]
 other_readers.py raw FILE DIMS TYPE SPACING [FILE.nii.gz]      256x256x113 >u2 1,1,2
 other_readers.py seg FILE
+other_readers.py derived FOLDER SOURCE
 
 Prints one JSON object: dims, spacing_mm, lps_from_voxel, range; with FILE.nii.gz also how many of its samples
 differ ("differing") and by how much its places do ("shift_mm"). Status 77 where a package is missing.
@@ -16,7 +17,7 @@ import sys
 
 try:
     import numpy
-    if sys.argv[1] in ("dicom", "seg"):
+    if sys.argv[1] in ("dicom", "seg", "derived"):
         import pydicom
     import nibabel
 except ImportError as missing:
@@ -114,6 +115,45 @@ def seg(path):
     }
 
 
+def derived(folder, source):
+    """What a series says of the series that it was made from, looked up there."""
+    images = slices_of(folder)
+    originals = {image.SOPInstanceUID: image for image in slices_of(source)}
+    first = next(iter(originals.values()))
+    row, column = numpy.array(first.ImageOrientationPatient, float).reshape(2, 3)
+    normal = numpy.cross(row, column)
+    farthest = 0.0
+    referred = unknown = 0
+    for image in images:
+        height = numpy.dot(normal, numpy.array(image.ImagePositionPatient, float))
+        listed = {item.ReferencedSOPInstanceUID
+                  for series in image.ReferencedSeriesSequence
+                  for item in series.ReferencedInstanceSequence}
+        for item in image.SourceImageSequence:
+            referred += 1
+            original = originals.get(item.ReferencedSOPInstanceUID)
+            if (original is None or original.SOPClassUID != item.ReferencedSOPClassUID
+                    or item.ReferencedSOPInstanceUID not in listed):
+                unknown += 1
+                continue
+            distance = height - numpy.dot(normal, numpy.array(original.ImagePositionPatient, float))
+            farthest = max(farthest, abs(float(distance)))
+    def shared(name):
+        return all(str(image.get(name, "")) == str(first.get(name, "")) for image in images)
+    return {
+        "images": len(images),
+        "references": referred,
+        "unknown": unknown,
+        "farthest_mm": farthest,
+        "modality": images[0].Modality,
+        "same": [name for name in ("PatientName", "PatientID", "StudyInstanceUID", "FrameOfReferenceUID")
+                 if shared(name)],
+        "own_series": images[0].SeriesInstanceUID != first.SeriesInstanceUID,
+        "own_instances": not any(image.SOPInstanceUID in originals for image in images),
+        "image_type": list(images[0].ImageType)[:2],
+    }
+
+
 def compared(samples, places, path):
     other, other_places = nifti(path)
     corners = numpy.array([[x * (samples.shape[0] - 1), y * (samples.shape[1] - 1), z * (samples.shape[2] - 1), 1]
@@ -127,6 +167,9 @@ def main():
     kind, arguments = sys.argv[1], sys.argv[2:]
     if kind == "seg":
         print(json.dumps(seg(arguments[0])))
+        return
+    if kind == "derived":
+        print(json.dumps(derived(*arguments)))
         return
     used = {"dicom": 1, "nifti": 1, "raw": 4}[kind]
     samples, places = {"dicom": dicom, "nifti": nifti, "raw": raw}[kind](*arguments[:used])

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/planner/ball_scan.h"
-#include "tests/planner/run_command.h"
+#include "tests/run_command.h"
 #include "tests/reference_data.h"
 #include "voxel/image_file.h"
 #ifdef OCTOTOMY_HAS_ITK
@@ -34,7 +34,8 @@ std::ostream& operator<<(std::ostream& out, const Subject& subject) {
 /// The scan's name as a test's: letters, digits and underscores.
 std::string word_of(const testing::TestParamInfo<Subject>& subject) {
   std::string name = subject.param.name;
-  std::replace_if(name.begin(), name.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return std::isalnum(c) == 0; }, '_');
   return name;
 }
 
@@ -94,8 +95,7 @@ TEST_P(PythonsReaders, SayTheSame) {
   const std::string converted = quoted(folder_ / "converted.nii.gz");
   const tests::CommandAnswer convert = octotomy("convert " + path + " -o " + converted);
   ASSERT_EQ(convert.status, 0) << convert.errors;
-  const tests::CommandAnswer theirs =
-      python(std::string(GetParam().kind) + " " + path + " " + converted);
+  const tests::CommandAnswer theirs = python(std::string(GetParam().kind) + " " + path + " " + converted);
   NEEDS_PYTHON(theirs);
   ASSERT_EQ(theirs.status, 0) << theirs.errors;
   const Json said = Json::parse(theirs.out);
@@ -130,7 +130,8 @@ TEST_P(ItksReaders, SayTheSame) {
   const bool single_precision = path.extension() == ".gz";
   expect_same(Json::parse(info.out), said, place_tolerance_mm(single_precision));
   for (const char* name : {"converted.nrrd", "converted.mha"}) {
-    const tests::CommandAnswer convert = octotomy("convert " + quoted(path) + " -o " + quoted(folder_ / name));
+    const tests::CommandAnswer convert =
+        octotomy("convert " + quoted(path) + " -o " + quoted(folder_ / name));
     ASSERT_EQ(convert.status, 0) << convert.errors;
     EXPECT_TRUE(tests::read_by_itk(folder_ / name).samples == theirs.samples)
         << "samples that ITK reads of " << name << " differ from what it reads of the original";
@@ -181,14 +182,14 @@ TEST_P(NumpysReader, NumpyReadsTheSameSlicesWithoutAHeader) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ReferenceScans, NumpysReader,
-                         testing::Values(Subject{"ct_unc_cthead_raw_slices.tar.xz", "raw"}),
-                         word_of);
+                         testing::Values(Subject{"ct_unc_cthead_raw_slices.tar.xz", "raw"}), word_of);
 
 class ReferenceAudit : public OtherReaders {};
 
 TEST_P(ReferenceAudit, NamesWhatIsWrongWithTheSeriesAndWithNoOther) {
   OCTOTOMY_NEEDS_DATA(GetParam().name);
-  const Json said = Json::parse(octotomy("info --json " + quoted(tests::reference_data(GetParam().name))).out);
+  const Json said =
+      Json::parse(octotomy("info --json " + quoted(tests::reference_data(GetParam().name))).out);
   std::string failed;
   for (const Json& line : said["audit"])
     if (line["verdict"] == "FAIL") failed += line["check"].get<std::string>();

@@ -62,6 +62,30 @@ TEST(Plan, TheExampleIsReadWithEveryNumberInItsPlace) {
   EXPECT_EQ(verb(plan.steps.back()), "export");
 }
 
+TEST(Plan, AScanSaysItsSeriesAndWhatItsFileDoesNot) {
+  Json plan = le_fort_i();
+  plan["scans"]["ct"] = {{"path", "head.raw"},
+                         {"spacing_mm", {0.5, 0.5, 1.25}},
+                         {"raw", {{"dims", {512, 512, 300}}, {"type", "uint16"}, {"offset", 12}}}};
+  const ScanSource raw = parse_plan(plan.dump(), "/plans").scans.at("ct");
+  EXPECT_EQ(raw.read.spacing_mm, glm::dvec3(0.5, 0.5, 1.25));
+  ASSERT_TRUE(raw.read.raw);
+  EXPECT_EQ(raw.read.raw->dims, glm::ivec3(512, 512, 300));
+  EXPECT_EQ(raw.read.raw->type, voxel::SampleType::UInt16);
+  EXPECT_FALSE(raw.read.raw->big_endian);
+  EXPECT_EQ(raw.read.raw->offset, 12u);
+  plan["scans"]["ct"] = {{"path", "dicom"}, {"series", "bone kernel"}};
+  EXPECT_EQ(parse_plan(plan.dump(), "/plans").scans.at("ct").read.series, "bone kernel");
+  plan["scans"]["ct"] = {{"path", "head.raw"}, {"raw", {{"dims", {512, 512}}, {"type", "int16"}}}};
+  expect_says(refusal(plan), {"scans, ct, raw, dims", "three numbers"});
+  plan["scans"]["ct"]["raw"] = {{"dims", {512, 512, 2.5}}, {"type", "int16"}};
+  expect_says(refusal(plan), {"dims", "whole number"});
+  plan["scans"]["ct"]["raw"] = {{"dims", {5, 5, 5}}, {"type", "short"}};
+  expect_says(refusal(plan), {"type", "'short'"});
+  plan["scans"]["ct"]["raw"] = {{"dims", {5, 5, 5}}, {"type", "int16"}, {"ofset", 1}};
+  expect_says(refusal(plan), {"ofset", "did you mean 'offset'"});
+}
+
 TEST(Plan, AnUnknownKeyIsRefusedWithTheStepAndTheNearestKnownOne) {
   Json plan = le_fort_i();
   step(plan, "advanced")["translate"] = {0, -6, 2};

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include "tests/voxel/dicom_bytes.h"
+#include "tests/voxel/dicom_frames.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/read_scene.h"
@@ -16,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using tests::DicomBytes;
+using Frames = tests::DicomFrames;
 using tests::ScratchFolder;
 using tests::verdict;
 
@@ -25,53 +27,6 @@ constexpr const char* deflated_little = "1.2.840.10008.1.2.1.99";
 void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
-
-// Frame k of a ramp: sample = 100 k + 10 y + x, stored with an intercept.
-struct Frames {
-  int count = 5;
-  int columns = 4, rows = 3;
-  bool open = false;             ///< sequences without lengths
-  bool reversed = false;         ///< the last frame lies lowest
-  bool own_orientation = false;  ///< in every frame's groups instead of the shared ones
-  std::string image_type = "ORIGINAL\\PRIMARY";
-
-  std::string position(int k) const {
-    return "-10\\-20\\" + std::to_string(30 + 2 * (reversed ? count - 1 - k : k));
-  }
-  std::string attributes() const {
-    const bool o = open;
-    const auto seq = [&](std::uint32_t at, const std::string& inner) {
-      return DicomBytes::sequence(at, DicomBytes::item(inner, o), o);
-    };
-    const std::string orientation =
-        seq(0x00209116, DicomBytes::element(0x00200037, "DS", "1\\0\\0\\0\\1\\0"));
-    std::string shared = own_orientation ? "" : orientation;
-    shared += seq(0x00289110, DicomBytes::element(0x00180050, "DS", "2") +
-                                  DicomBytes::element(0x00280030, "DS", "0.5\\0.25"));
-    shared += seq(0x00289145, DicomBytes::element(0x00281052, "DS", "-1000") +
-                                  DicomBytes::element(0x00281053, "DS", "1") +
-                                  DicomBytes::element(0x00281054, "LO", "HU"));
-    std::string frames, pixels;
-    for (int k = 0; k < count; ++k) {
-      frames += DicomBytes::item(seq(0x00209113, DicomBytes::element(0x00200032, "DS", position(k))) +
-                                     (own_orientation ? orientation : ""),
-                                 o);
-      for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < columns; ++x)
-          pixels += DicomBytes::number(static_cast<std::uint32_t>(100 * k + 10 * y + x), 2);
-    }
-    return DicomBytes::element(0x00080008, "CS", image_type) +
-           DicomBytes::element(0x00080018, "UI", "1.2.3.4") + DicomBytes::element(0x00080060, "CS", "CT") +
-           DicomBytes::element(0x0020000e, "UI", "1.2.3") + DicomBytes::us(0x00280002, 1) +
-           DicomBytes::element(0x00280004, "CS", "MONOCHROME2") +
-           DicomBytes::element(0x00280008, "IS", std::to_string(count)) +
-           DicomBytes::us(0x00280010, static_cast<std::uint16_t>(rows)) +
-           DicomBytes::us(0x00280011, static_cast<std::uint16_t>(columns)) + DicomBytes::us(0x00280100, 16) +
-           DicomBytes::us(0x00280101, 16) + DicomBytes::us(0x00280102, 15) + DicomBytes::us(0x00280103, 1) +
-           DicomBytes::sequence(0x52009229, DicomBytes::item(shared, o), o) +
-           DicomBytes::sequence(0x52009230, frames, o) + DicomBytes::element(0x7fe00010, "OW", pixels);
-  }
-};
 
 void expect_ramp(const Scene& scene, const Frames& frames) {
   ASSERT_EQ(scene.lattice.dims, glm::ivec3(frames.columns, frames.rows, frames.count));

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -46,6 +47,6 @@ inline bool has_program(const std::string& name) {
 }  // namespace octotomy::tests
 
 /// Skips the test with a line that says what is missing.
-#define OCTOTOMY_NEEDS_PROGRAM(name, package)  \
-  if (!octotomy::tests::has_program(name))     \
+#define OCTOTOMY_NEEDS_PROGRAM(name, package) \
+  if (!octotomy::tests::has_program(name))    \
   GTEST_SKIP() << "'" << (name) << "' is not installed (package " << (package) << ")"

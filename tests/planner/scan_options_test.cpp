@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The options about a scan mean the same to every verb that reads one: a raw file with its layout said is the
+// NRRD of the same samples.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/planner/ball_scan.h"
+#include "tests/run_command.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::json;
+using tests::quoted;
+
+class ScanOptions : public testing::Test {
+ protected:
+  ScanOptions() {
+    const voxel::Scene ball = tests::ball_scene(12.0, 32);
+    voxel::write_scene(ball, folder_ / "ball.nrrd");
+    const auto& samples = std::get<voxel::Int16Samples>(ball.samples);
+    std::ofstream(folder_ / "ball.raw", std::ios::binary)
+        .write(reinterpret_cast<const char*>(samples.data()),
+               static_cast<std::streamsize>(samples.size() * sizeof samples[0]));
+    std::ofstream(folder_ / "ball.plan.json") << R"({ "octotomy_plan": 1, "name": "ball",
+      "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "size", "do": "measure", "object": "ball" } ] })";
+  }
+  tests::CommandAnswer run(const std::string& arguments) const {
+    return tests::run_command(std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments, folder_.path());
+  }
+  Json json(const std::string& arguments) const {
+    const tests::CommandAnswer answer = run(arguments + " --json");
+    EXPECT_EQ(answer.status, 0) << answer.errors;
+    Json said = answer.status == 0 ? Json::parse(answer.out) : Json();
+    return said;
+  }
+  std::string at(const std::string& name) const { return quoted(folder_ / name); }
+
+  tests::TestFolder folder_;
+  const std::string layout_ = " --raw 32x32x32 int16 --spacing 1,1,1";
+};
+
+TEST_F(ScanOptions, RenderDrawsARawFileAsTheNrrdOfTheSameSamples) {
+  const Json nrrd = json("render " + at("ball.nrrd") + " --window 0: -o " + at("a.png"));
+  const Json raw = json("render " + at("ball.raw") + layout_ + " --window 0: -o " + at("b.png"));
+  EXPECT_GT(raw["lit_pixels"], 0);
+  EXPECT_EQ(raw["lit_pixels"], nrrd["lit_pixels"]);
+  EXPECT_EQ(raw["depth_range_mm"], nrrd["depth_range_mm"]);
+}
+
+TEST_F(ScanOptions, RunTakesARawFileInTheScansPlace) {
+  const Json nrrd = json("verify " + at("ball.plan.json"));
+  const Json raw = json("verify " + at("ball.plan.json") + " --scan ct=" + at("ball.raw") + layout_);
+  EXPECT_EQ(raw["certificates"][0]["voxel"]["volume_mm3"], nrrd["certificates"][0]["voxel"]["volume_mm3"]);
+  const tests::CommandAnswer without =
+      run("verify " + at("ball.plan.json") + " --scan ct=" + at("ball.raw") + " --json");
+  EXPECT_EQ(without.status, 2);
+}
+
+TEST_F(ScanOptions, LookAtARawFileLeavesAPlanThatRunReplays) {
+  const Json look = json("look " + at("ball.raw") + layout_ + " --bone 0 --skin -500 -o " + at("look"));
+  const Json replayed = json("run " + at("look/plan.json") + " -o " + at("again"));
+  EXPECT_EQ(replayed["objects"][0]["voxel"], look["objects"][0]["voxel"]);
+  EXPECT_FALSE(look["objects"].empty());
+}
+
+TEST_F(ScanOptions, AreRefusedInOneLineWhereTheyMeanNothing) {
+  for (const std::string& arguments :
+       {std::string("render ") + at("ball.raw") + " --raw 32x32 int16 -o " + at("x.png"),
+        "look " + at("ball.raw") + " --raw 32x32x32 short -o " + at("x"),
+        "render " + at("ball.nrrd") + " --offset 5 -o " + at("x.png")}) {
+    const tests::CommandAnswer answer = run(arguments);
+    EXPECT_EQ(answer.status, 2) << arguments;
+    EXPECT_EQ(std::count(answer.errors.begin(), answer.errors.end(), '\n'), 1) << answer.errors;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.png"));
+}
+
+}  // namespace
+}  // namespace octotomy::planner
