@@ -51,6 +51,8 @@ class CodecProcess {
     close(socket_);
     kill(process_, SIGKILL);
     waitpid(process_, nullptr, 0);
+    std::error_code ignored;
+    std::filesystem::remove_all(codec_folder(process_), ignored);
   }
   CodecProcess(const CodecProcess&) = delete;
   CodecProcess& operator=(const CodecProcess&) = delete;

@@ -2,12 +2,15 @@
 //
 // octotomy_dicom_codec: decompresses the DICOM frames that come over the socket at its standard input until
 // the socket closes. Started by voxel/dicom_codec.cpp, never by people.
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <gdcmImage.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
 #include <string>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -95,6 +98,11 @@ int main() {
   gdcm::Trace::DebugOff();
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
+  // One of GDCM's codecs works on files of the temporary folder, and leaves them there where it fails.
+  const std::filesystem::path folder = octotomy::voxel::codec_folder(getpid());
+  const bool has_folder = mkdir(folder.c_str(), 0700) == 0 && setenv("TMPDIR", folder.c_str(), 1) == 0;
   while (answer_next()) {
   }
+  std::error_code ignored;
+  if (has_folder) std::filesystem::remove_all(folder, ignored);
 }

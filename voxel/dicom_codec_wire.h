@@ -4,7 +4,10 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <string>
 #include <sys/socket.h>
+#include <sys/types.h>
 
 // What goes between decompress() and its process over a socket: a request is a FrameHead, the transfer
 // syntax, and for each fragment its length as std::uint64_t and its bytes; the answer is the length of the
@@ -22,6 +25,12 @@ struct FrameHead {
   std::uint32_t syntax_length = 0;
   std::uint32_t fragment_count = 0;
 };
+
+/// Where the codec process of that number puts its temporary files; it makes and removes the folder, and
+/// where it crashes, decompress() removes it.
+inline std::filesystem::path codec_folder(pid_t process) {
+  return std::filesystem::temp_directory_path() / ("octotomy-codec-" + std::to_string(process));
+}
 
 /// False where the other end is gone or the socket's time limit has passed.
 inline bool send_all(int socket, const void* bytes, std::size_t count) {

@@ -9,6 +9,7 @@
 
 #include "voxel/image_file_oiio.h"
 #include "voxel/program_folder.h"
+#include "voxel/quiet_errors.h"
 #include "voxel/staging.h"
 
 namespace octotomy::voxel {
@@ -59,7 +60,12 @@ std::vector<StoredImage> read_images(const fs::path& path) {
       std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
   std::vector<StoredImage> images;
   std::string error;
-  if (!read(path.c_str(), most_bytes, &images, &error)) {
+  bool is_read = false;
+  {
+    const QuietErrors quiet;  // libpng prints its reasons as well
+    is_read = read(path.c_str(), most_bytes, &images, &error);
+  }
+  if (!is_read) {
     std::replace(error.begin(), error.end(), '\n', ' ');
     throw std::runtime_error(path.string() + ": cannot be read as images: " + error);
   }

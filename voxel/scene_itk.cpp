@@ -32,6 +32,7 @@
 #include <zlib.h>
 
 #include "voxel/air_level.h"
+#include "voxel/quiet_errors.h"
 #include "voxel/stored_samples.h"
 
 namespace octotomy::voxel {
@@ -92,6 +93,7 @@ std::string innermost_cause(const std::string& description) {
 template <typename Call>
 void call_itk(const fs::path& path, VolumeFormat format, const char* what, const Call& call) {
   try {
+    const QuietErrors quiet;  // MetaIO prints its reasons as well
     call();
   } catch (const itk::ExceptionObject& error) {
     refuse(path,

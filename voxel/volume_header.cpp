@@ -186,6 +186,7 @@ class TextHeader {
     for (const char* key : {"transformmatrix", "orientation", "rotation"})
       numbers(key, axis_count * axis_count);
     for (const char* key : {"compresseddatasize", "headersize", "elementnumberofchannels"}) numbers(key, 1);
+    if (!value("dimsize")) refuse(path_, "its MetaImage header is damaged: DimSize is missing");
     for (const double length : numbers("dimsize", axis_count))
       if (!(length >= 1.0 && length <= std::numeric_limits<int>::max()) || length != std::trunc(length))
         refuse(path_, "its MetaImage header is damaged: DimSize");

@@ -40,6 +40,7 @@ class Attributes {
   void number(DicomTag tag, std::uint16_t value) {
     put(tag, "US", {reinterpret_cast<const char*>(&value), sizeof value});
   }
+  void remove(DicomTag tag) { values_.erase(tag); }
   void sequence(DicomTag tag, const std::vector<Attributes>& items) {
     std::string bytes;
     for (const Attributes& item : items) {
@@ -205,6 +206,9 @@ class SeriesWriter {
     for (const auto& [tag, text] : source.attributes)
       if (is_mr_ || tag < first_of_acquisition || tag > last_of_acquisition)
         slice.text(tag, text.vr.c_str(), text.value);
+    // Empty, a laterality says that it is unknown whether the body part is one of a pair (PS3.3, C.7.3.1).
+    if (source.attributes.contains(0x00180015) && !source.attributes.contains(0x00200060))
+      slice.remove(0x00200060);
     // Far from the scanner's own numbers, so that viewers list it apart from them.
     slice.text(0x00200011, "IS", std::to_string(source.series_number + 1000));
     Attributes purpose;
