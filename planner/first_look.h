@@ -13,8 +13,8 @@ struct LookOptions {
   /// Lower bounds of bone and of everything within the skin, in sample units. Default: 300 and -300 for
   /// Hounsfield units; otherwise thresholds_of() the scan's own samples, with a finding that says so.
   std::optional<double> bone_low, skin_low;
-  voxel::ReadOptions read;  ///< the series, and what the file does not say of itself
   EvaluateOptions evaluation;
+  voxel::ReadOptions read = {};  ///< the series, and what the file does not say of itself
 };
 
 /// Two thresholds that part samples into three classes of least variance within each.

@@ -18,7 +18,7 @@ namespace octotomy::planner {
 struct ScanSource {
   std::filesystem::path path;         ///< relative paths are relative to the plan's folder
   std::optional<std::string> sha256;  ///< checked where given
-  voxel::ReadOptions read;            ///< the series, and what the file does not say of itself
+  voxel::ReadOptions read = {};       ///< the series, and what the file does not say of itself
 };
 
 struct WindowStep {

@@ -36,14 +36,15 @@ std::string trimmed(const std::string& text) {
 }
 
 /// Refuses a NIfTI-1 header that holds what cannot be: the library behind ITK trusts it, and never returns
-/// from some of it. Reads the first 348 bytes, unpacked.
+/// from some of it. Reads the first kilobyte, unpacked.
 class NiftiGate {
  public:
   explicit NiftiGate(const fs::path& path) : path_(path) {
     const gzFile in = gzopen(path.c_str(), "rb");  // reads unpacked files as they are
     const int count = in == nullptr ? 0 : gzread(in, bytes_.data(), static_cast<unsigned>(bytes_.size()));
     if (in != nullptr) gzclose(in);
-    if (count != static_cast<int>(bytes_.size())) refuse(path_, "is cut short or damaged within its header");
+    if (count < header_bytes) refuse(path_, "is cut short or damaged within its header");
+    held_ = static_cast<std::size_t>(count);
     swapped_ = number<std::int32_t>(0) != header_bytes;
     if (number<std::int32_t>(0) == 540)
       refuse(path_, "is NIfTI-2, which is not supported; save it as NIfTI-1");
@@ -53,7 +54,36 @@ class NiftiGate {
     check_places();
   }
 
+  /// What an extension of ours says; none where there is none that can be understood.
+  std::optional<glm::dmat4> exact_geometry() const {
+    constexpr std::size_t flag_at = 348;
+    const auto samples_at = static_cast<std::size_t>(number<float>(108));
+    if (held_ <= flag_at || bytes_[flag_at] == 0) return std::nullopt;
+    for (std::size_t at = flag_at + 4; at + 8 <= std::min(held_, samples_at);) {
+      const auto length = static_cast<std::size_t>(std::max(0, number<std::int32_t>(at)));
+      if (length < 16 || length > std::min(held_, samples_at) - at) break;
+      const std::string_view text(bytes_.data() + at + 8, length - 8);
+      if (number<std::int32_t>(at + 4) == nifti_text_extension && text.starts_with(nifti_geometry_mark))
+        return rows_of(text.substr(nifti_geometry_mark.size()));
+      at += length;
+    }
+    return std::nullopt;
+  }
+
  private:
+  static std::optional<glm::dmat4> rows_of(std::string_view text) {
+    glm::dmat4 matrix(1.0);
+    for (int i = 0; i < 12; ++i) {
+      while (text.starts_with(' ')) text.remove_prefix(1);
+      double number = 0.0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+      if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
+      text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+      matrix[i % 4][i / 4] = number;
+    }
+    return matrix;
+  }
+
   void check_dims() const {
     const int axis_count = number<std::int16_t>(40);
     require(axis_count >= 2 && axis_count <= 7, "number of axes");
@@ -98,7 +128,8 @@ class NiftiGate {
 
   static constexpr int header_bytes = 348;
   fs::path path_;
-  std::array<char, header_bytes> bytes_{};
+  std::array<char, 1024> bytes_{};
+  std::size_t held_ = 0;
   bool swapped_ = false;
 };
 
@@ -278,8 +309,8 @@ std::optional<VolumeFormat> volume_format(const fs::path& path) {
 }
 
 VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
-  VolumeHeader header{TextHeader(path, format).values(), 0};
-  if (format == VolumeFormat::Nifti) static_cast<void>(NiftiGate(path));
+  VolumeHeader header{TextHeader(path, format).values(), std::nullopt, 0};
+  if (format == VolumeFormat::Nifti) header.lps_from_voxel = NiftiGate(path).exact_geometry();
   header.most_bytes = most_bytes(path, format, header);
   return header;
 }

@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace octotomy::voxel {
 
@@ -22,11 +24,18 @@ const char* name_of(VolumeFormat format);
 struct VolumeHeader {
   /// Fields of a NRRD or MetaImage by key in lower case; empty for NIfTI.
   std::map<std::string, std::string> fields;
+  /// Of a NIfTI of ours, which adds what single precision rounds off: see nifti_geometry_mark.
+  std::optional<glm::dmat4> lps_from_voxel;
   /// Most bytes of samples that its data can hold: their size where raw, 1100 times that where packed.
   std::uintmax_t most_bytes = 0;
 
   std::optional<std::string> field(const std::string& key) const;
 };
+
+/// NIfTI-1 keeps places in single precision. Ours hold them in double precision as well, in an extension of
+/// plain text (code 6, which others skip): this mark, then the first three rows of lps_from_voxel.
+inline constexpr std::string_view nifti_geometry_mark = "octotomy lps_from_voxel ";
+inline constexpr std::int32_t nifti_text_extension = 6;
 
 /// Reads a header and refuses what the libraries behind ITK never return from or write beyond their buffers
 /// on. Throws std::runtime_error with path and reason.

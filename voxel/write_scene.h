@@ -11,8 +11,8 @@
 namespace octotomy::voxel {
 
 /// Writes a scene as the extension says: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. The samples' type, their
-/// meaning and the modality come back on reading. Geometry is kept in double precision, but for NIfTI, which
-/// holds it in single precision. Written beside and renamed into place, so that a failure leaves what was
+/// meaning and the modality come back on reading. Geometry is kept in double precision; NIfTI's own is single,
+/// and what that rounds off stands in an extension that others skip. Written beside and renamed into place, so that a failure leaves what was
 /// there. Throws std::runtime_error with path and reason; std::invalid_argument for NIfTI and MetaImage where
 /// the lattice's axes are not perpendicular, which those formats cannot say.
 void write_scene(const Scene& scene, const std::filesystem::path& path);

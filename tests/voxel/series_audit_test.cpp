@@ -2,6 +2,8 @@
 //
 // Each doubt that a series can raise has a line in the audit that says what was found and done. The slices
 // are put together attribute by attribute, so that each test spoils one of them.
+#include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <map>
@@ -232,6 +234,57 @@ TEST(SeriesAudit, ReadsFilesOlderThanThePreamble) {
     const Scene scene = read_scene(folder / "old");
     EXPECT_EQ(scene.lattice.dims, glm::ivec3(columns, rows, 1)) << name;
     EXPECT_EQ(sample(scene, 3, 2, 0), 23 - 1000) << name;
+  }
+}
+
+TEST(SeriesAudit, RescalesEveryFormOfStoredPixelsToTheBit) {
+  struct Form {
+    int allocated, stored, high;
+    bool is_signed;
+    double slope, intercept;
+  };
+  for (const Form& form :
+       {Form{16, 12, 11, false, 1, -1024}, Form{16, 12, 11, true, 1, 0}, Form{16, 12, 15, false, 1, -1024},
+        Form{16, 12, 15, true, 2, 7}, Form{16, 16, 15, false, 1, -32768}, Form{16, 16, 15, false, 1, 0},
+        Form{16, 16, 15, true, 0.5, 0.25}, Form{8, 8, 7, false, 4, -1024}, Form{8, 8, 7, true, 1, 0},
+        Form{32, 32, 31, true, 1, 0}, Form{32, 20, 19, false, 0.125, -1000}}) {
+    SCOPED_TRACE(std::to_string(form.allocated) + " bits, " + std::to_string(form.stored) + " stored to " +
+                 std::to_string(form.high) + (form.is_signed ? ", signed" : ", unsigned"));
+    // The lowest, the highest and some in between, stored with foreign bits around them where there is room.
+    const auto range = std::int64_t{1} << form.stored;
+    const std::int64_t low = form.is_signed ? -range / 2 : 0;
+    std::vector<double> expected;
+    std::string pixels;
+    for (int i = 0; i < columns * rows; ++i) {
+      const std::int64_t value = i == 0 ? low : i == 1 ? low + range - 1 : low + (i * 7919) % range;
+      expected.push_back(form.slope * static_cast<double>(value) + form.intercept);
+      const auto bits = static_cast<std::uint64_t>(value) & static_cast<std::uint64_t>(range - 1);
+      const std::uint64_t foreign = ~(static_cast<std::uint64_t>(range - 1) << (form.high + 1 - form.stored));
+      const std::uint64_t word = (bits << (form.high + 1 - form.stored)) | (i % 2 == 0 ? foreign : 0);
+      pixels += DicomBytes::number(static_cast<std::uint32_t>(word), form.allocated / 8);
+    }
+    const auto us = [](int value) { return DicomBytes::number(static_cast<std::uint32_t>(value), 2); };
+    const ScratchFolder folder;
+    const Scene scene = read_spoiled(
+        folder,
+        [&](Slice& slice, int) {
+          slice.set(0x00280100, "US", us(form.allocated)).set(0x00280101, "US", us(form.stored));
+          slice.set(0x00280102, "US", us(form.high)).set(0x00280103, "US", us(form.is_signed ? 1 : 0));
+          slice.set(0x00281052, "DS", std::to_string(form.intercept));
+          slice.set(0x00281053, "DS", std::to_string(form.slope)).set(0x7fe00010, "OW", pixels);
+        },
+        1);
+    bool whole = true;
+    for (double& value : expected) {
+      whole = whole && value == std::trunc(value) && value >= -32768 && value <= 32767;
+      value = static_cast<double>(static_cast<float>(value));
+    }
+    std::visit(
+        [&](const auto& samples) {
+          EXPECT_EQ(std::vector<double>(samples.begin(), samples.end()), expected);
+        },
+        scene.samples);
+    EXPECT_EQ(std::holds_alternative<Int16Samples>(scene.samples), whole);
   }
 }
 
