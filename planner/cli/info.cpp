@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-
 #include "brep/health.h"
 #include "brep/read_mesh.h"
 #include "planner/answer.h"

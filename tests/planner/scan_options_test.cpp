@@ -62,7 +62,8 @@ TEST_F(ScanOptions, RunTakesARawFileInTheScansPlace) {
 
 TEST_F(ScanOptions, LookAtARawFileLeavesAPlanThatRunReplays) {
   const Json look = json("look " + at("ball.raw") + layout_ + " --bone 0 --skin -500 -o " + at("look"));
-  const Json replayed = json("run " + at("look/plan.json") + " -o " + at("again"));
+  std::ofstream(folder_ / "look.plan.json") << look["plan"];
+  const Json replayed = json("run " + at("look.plan.json") + " -o " + at("again"));
   EXPECT_EQ(replayed["objects"][0]["voxel"], look["objects"][0]["voxel"]);
   EXPECT_FALSE(look["objects"].empty());
 }
