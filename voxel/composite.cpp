@@ -10,7 +10,6 @@
 #include <tbb/parallel_for.h>
 #include <tuple>
 
-#include "voxel/object_normals.h"
 #include "voxel/tone.h"
 
 // 1 mark the leaves and blocks near which anything is visible; 2 march every ray: find the next marked leaf,
@@ -97,32 +96,67 @@ class VisibleCells {
   std::vector<Level> levels_;
 };
 
-/// Trilinear samples; the eight about a position are kept, since a ray takes several steps in a cell.
+/// Trilinear samples and differences; those of a cell are kept, since a ray takes several steps in it.
 class CellSamples {
  public:
   explicit CellSamples(const GreyOctree& grey) : grey_(grey) {}
 
   double at(const glm::dvec3& p) {
-    const glm::ivec3 cell(glm::floor(p));
-    if (cell != cell_) {
-      for (std::size_t corner = 0; corner < 8; ++corner)
-        corners_[corner] =
-            grey_.sample(cell + glm::ivec3(corner & 1, (corner >> 1) & 1, static_cast<int>(corner >> 2)));
-      cell_ = cell;
+    enter(p);
+    return trilinear(corners_, p - glm::dvec3(cell_));
+  }
+
+  /// What grey_normal() is: central differences, falling samples positive.
+  glm::dvec3 outward(const glm::dvec3& p) {
+    enter(p);
+    if (!differences_known_) {
+      for (std::size_t corner = 0; corner < 8; ++corner) differences_[corner] = difference(corner);
+      differences_known_ = true;
     }
-    const glm::dvec3 t = p - glm::dvec3(cell);
-    const auto along_x = [&](std::size_t low) {
-      return corners_[low] + (corners_[low + 1] - corners_[low]) * t.x;
-    };
-    const double below = along_x(0) + (along_x(2) - along_x(0)) * t.y;
-    const double above = along_x(4) + (along_x(6) - along_x(4)) * t.y;
-    return below + (above - below) * t.z;
+    return trilinear(differences_, p - glm::dvec3(cell_));
   }
 
  private:
+  static glm::ivec3 offset(std::size_t corner) {
+    return {static_cast<int>(corner & 1), static_cast<int>((corner >> 1) & 1), static_cast<int>(corner >> 2)};
+  }
+
+  void enter(const glm::dvec3& p) {
+    const glm::ivec3 cell(glm::floor(p));
+    if (cell == cell_) return;
+    cell_ = cell;
+    differences_known_ = false;
+    for (std::size_t corner = 0; corner < 8; ++corner) corners_[corner] = grey_.sample(cell + offset(corner));
+  }
+
+  /// At a corner; along every axis one of its two neighbours is another corner.
+  glm::dvec3 difference(std::size_t corner) const {
+    glm::dvec3 falling;
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool upper = ((corner >> axis) & 1) != 0;
+      glm::ivec3 beyond = cell_ + offset(corner);
+      beyond[axis] += upper ? 1 : -1;
+      const double inner = corners_[corner ^ (std::size_t{1} << axis)], outer = grey_.sample(beyond);
+      falling[axis] = upper ? inner - outer : outer - inner;
+    }
+    return falling;
+  }
+
+  template <typename Value>
+  static Value trilinear(const std::array<Value, 8>& corners, const glm::dvec3& t) {
+    const auto along_x = [&](std::size_t low) -> Value {
+      return corners[low] + (corners[low + 1] - corners[low]) * t.x;
+    };
+    const Value below = along_x(0) + (along_x(2) - along_x(0)) * t.y;
+    const Value above = along_x(4) + (along_x(6) - along_x(4)) * t.y;
+    return below + (above - below) * t.z;
+  }
+
   const GreyOctree& grey_;
   glm::ivec3 cell_{std::numeric_limits<int>::min()};
   std::array<double, 8> corners_{};
+  std::array<glm::dvec3, 8> differences_{};
+  bool differences_known_ = false;
 };
 
 struct Span {
@@ -238,7 +272,7 @@ class March {
       if (entry.per_mm <= 0.0f) continue;
       const auto through = static_cast<float>(std::exp(-static_cast<double>(entry.per_mm) * length_mm));
       const float share = behind * (1.0f - through);
-      light += share * lit(entry.light, p, cut_face(taken, depth_mm));
+      light += share * lit(entry.light, samples, p, cut_face(taken, depth_mm));
       behind *= through;
       if (behind <= 0.5f && half_mm == nothing) half_mm = static_cast<float>(depth_mm);
     }
@@ -253,10 +287,11 @@ class March {
   }
 
   /// Light of a place that samples or a cut shape, Phong's model without gloss; as it is where neither does.
-  glm::vec3 lit(const glm::vec3& light, const glm::dvec3& p, const TakenSpan* cut) const {
+  glm::vec3 lit(const glm::vec3& light, CellSamples& samples, const glm::dvec3& p,
+                const TakenSpan* cut) const {
     if (cut != nullptr) return light * static_cast<float>(facing(cut->normal));
     // Differences over two voxels; carried by the inverse transpose, they are per millimetre.
-    const glm::dvec3 outward = lps_from_normal_ * (0.5 * grey_normal(grey_, p));
+    const glm::dvec3 outward = lps_from_normal_ * (0.5 * samples.outward(p));
     const double slope = glm::length(outward);
     if (!(slope > 0.0)) return light;
     const glm::dvec3 normal = outward / slope;
