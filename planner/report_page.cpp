@@ -6,12 +6,12 @@
 #include "planner/report_page.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 
 #include "planner/answer.h"
 #include "planner/figures.h"
+#include "voxel/annotation.h"
 
 namespace octotomy::planner {
 namespace {
@@ -196,15 +196,6 @@ std::string tiles(const Result& result) {
 
 // ---- pictures ----
 
-/// The letter of the patient's side that a direction in LPS points to; empty for oblique ones.
-std::string letter(const glm::dvec3& direction) {
-  const std::array<const char*, 3> low{"R", "A", "I"}, high{"L", "P", "S"};
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::abs(direction[axis]) > 0.99)
-      return (direction[axis] > 0.0 ? high : low)[static_cast<std::size_t>(axis)];
-  return "";
-}
-
 /// Text over a picture; `size` is in the picture's pixels.
 std::string svg_text(const glm::dvec2& at, double size, const std::string& anchor, const std::string& text) {
   return "<text x=\"" + fixed(at.x) + "\" y=\"" + fixed(at.y) + "\" text-anchor=\"" + anchor +
@@ -215,15 +206,14 @@ std::string svg_text(const glm::dvec2& at, double size, const std::string& ancho
 
 /// A bar of a round number of millimetres, at most a third of the picture.
 std::string scale_bar(const ScenePicture& picture, double letters) {
-  double bar_mm = 1.0;
-  for (const double mm : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0})
-    if (mm <= picture.width_mm / 3.0) bar_mm = mm;
+  const double bar_mm = voxel::round_length(picture.width_mm / 3.0);
   const double size = picture.size_px;
   const std::string line =
       "M" + fixed(letters) + " " + fixed(size - letters) + "h" + fixed(bar_mm * size / picture.width_mm);
   return "<path d=\"" + line + "\" stroke=\"#fff\" stroke-width=\"" + fixed(letters / 2.6) +
          "\"/><path d=\"" + line + "\" stroke=\"#44525a\" stroke-width=\"" + fixed(letters / 6.5) + "\"/>" +
-         svg_text({letters, size - 1.6 * letters}, letters, "start", grouped(bar_mm, 0) + " mm");
+         svg_text({letters, size - 1.6 * letters}, letters, "start",
+                  grouped(bar_mm, bar_mm < 1.0 ? 1 : 0) + " mm");
 }
 
 /// The outlines of the plan's mask regions that were drawn in this picture's view.
@@ -272,10 +262,12 @@ std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& 
                     "\" href=\"data:image/png;base64," + base64(picture.png) + "\"/>";
   if (placed.outlined) svg += outlines(plan, picture, size);
   svg += scale_bar(picture, letters);
-  svg += svg_text({0.6 * letters, 0.5 * size}, letters, "start", letter(-picture.axes.right));
-  svg += svg_text({size - 0.6 * letters, 0.5 * size}, letters, "end", letter(picture.axes.right));
-  svg += svg_text({0.5 * size, 1.3 * letters}, letters, "middle", letter(picture.axes.up));
-  svg += svg_text({0.5 * size, size - 0.6 * letters}, letters, "middle", letter(-picture.axes.up));
+  svg += svg_text({0.6 * letters, 0.5 * size}, letters, "start", voxel::patient_side(-picture.axes.right));
+  svg +=
+      svg_text({size - 0.6 * letters, 0.5 * size}, letters, "end", voxel::patient_side(picture.axes.right));
+  svg += svg_text({0.5 * size, 1.3 * letters}, letters, "middle", voxel::patient_side(picture.axes.up));
+  svg +=
+      svg_text({0.5 * size, size - 0.6 * letters}, letters, "middle", voxel::patient_side(-picture.axes.up));
   return element("figure", svg + "</svg>" + element("figcaption", placed.title));
 }
 

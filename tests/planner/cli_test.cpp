@@ -67,7 +67,7 @@ TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
   for (const char* verb : {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "smooth",
-                           "tet", "phantom", "octree", "eval", "mask"}) {
+                           "tet", "phantom", "octree", "eval", "mark", "mask"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const Answer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
