@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/air_level.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <span>
 #include <string>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+
+#include "voxel/vector_clones.h"
 
 namespace octotomy::voxel {
 
@@ -22,20 +28,55 @@ struct Counts {
   }
 };
 
+Counts counts_of(std::span<const float> samples) {
+  Counts counts;
+  counts.samples = samples.size();
+  for (const float value : samples) {
+    counts.air += value >= -1100 && value <= -900;
+    counts.above += value > -900 && value <= -700;
+    counts.soft += value > -900 && value < -20;
+  }
+  return counts;
+}
+
+/// As many samples as 16 bits count.
+constexpr std::size_t short_run = 1 << 15;
+
+/// The same of at most short_run samples; all in 16 bits, so that vectors hold most.
+OCTOTOMY_VECTOR_CLONES void count_run(const std::int16_t* __restrict samples, std::size_t count,
+                                      std::uint16_t* __restrict found) {
+  std::uint16_t air = 0, above = 0, soft = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    // Unsigned, what lies below a band wraps to beyond it.
+    const auto from_air = static_cast<std::uint16_t>(samples[i] + 1100);
+    const auto from_above = static_cast<std::uint16_t>(samples[i] + 899);
+    air = static_cast<std::uint16_t>(air + (from_air <= 200));
+    above = static_cast<std::uint16_t>(above + (from_above <= 199));
+    soft = static_cast<std::uint16_t>(soft + (from_above <= 878));
+  }
+  found[0] = air;
+  found[1] = above;
+  found[2] = soft;
+}
+
+Counts counts_of(std::span<const std::int16_t> samples) {
+  Counts counts;
+  counts.samples = samples.size();
+  for (std::size_t at = 0; at < samples.size(); at += short_run) {
+    std::array<std::uint16_t, 3> found{};
+    count_run(samples.data() + at, std::min(short_run, samples.size() - at), found.data());
+    counts = counts + Counts{0, found[0], found[1], found[2]};
+  }
+  return counts;
+}
+
 Counts count(const Scene& scene) {
   return std::visit(
       [](const auto& samples) {
         return tbb::parallel_reduce(
-            tbb::blocked_range<std::size_t>(0, samples.size(), 1 << 16), Counts{},
-            [&](const tbb::blocked_range<std::size_t>& part, Counts counts) {
-              for (std::size_t i = part.begin(); i < part.end(); ++i) {
-                const auto value = samples[i];
-                counts.air += value >= -1100 && value <= -900;
-                counts.above += value > -900 && value <= -700;
-                counts.soft += value > -900 && value < -20;
-              }
-              counts.samples += part.size();
-              return counts;
+            tbb::blocked_range<std::size_t>(0, samples.size(), std::size_t{1} << 16), Counts{},
+            [&](const tbb::blocked_range<std::size_t>& part, const Counts& counts) {
+              return counts + counts_of(std::span(samples).subspan(part.begin(), part.size()));
             },
             std::plus<>());
       },

@@ -322,22 +322,20 @@ double value_of(std::uint32_t word, const DicomPixels& pixels) {
                                                 : static_cast<double>(word);
 }
 
-/// The usual CT: 16 bits, little-endian, slope 1, a whole intercept. Integers that the compiler keeps in
-/// vectors; false where a value leaves int16's range.
-bool rescale_shorts(const char* stored, const DicomPixels& pixels, int intercept,
-                    std::span<std::int16_t> samples) {
+/// The usual CT: 16 bits, little-endian, slope 1, a whole intercept; the stored words stand where the samples
+/// will. Integers that the compiler keeps in vectors; false where a value leaves int16's range.
+bool rescale_shorts(const DicomPixels& pixels, int intercept, std::span<std::int16_t> samples) {
   const int shift = 15 - static_cast<int>(pixels.high);
   const int drop = 16 - static_cast<int>(pixels.stored);
   int low = std::numeric_limits<int>::max();
   int high = std::numeric_limits<int>::min();
   const auto run = [&]<typename Word>(Word) {
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      Word word;
-      std::memcpy(&word, stored + 2 * i, 2);
+    for (std::int16_t& sample : samples) {
+      const auto word = static_cast<Word>(sample);
       const int value = static_cast<Word>(static_cast<Word>(word << shift) >> drop) + intercept;
       low = std::min(low, value);
       high = std::max(high, value);
-      samples[i] = static_cast<std::int16_t>(value);
+      sample = static_cast<std::int16_t>(value);
     }
   };
   if (pixels.is_signed)
@@ -360,7 +358,10 @@ bool rescale(const std::string& stored, const DicomSlice& slice, std::span<Sampl
   const double slope = slice.slope.value_or(1.0);
   const double intercept = slice.intercept.value_or(0.0);
   if constexpr (std::is_same_v<Sample, std::int16_t>)
-    if (is_usual(slice)) return rescale_shorts(stored.data(), pixels, static_cast<int>(intercept), samples);
+    if (is_usual(slice)) {
+      std::memcpy(samples.data(), stored.data(), samples.size_bytes());
+      return rescale_shorts(pixels, static_cast<int>(intercept), samples);
+    }
   const std::size_t width = pixels.allocated / 8;
   bool fits = true;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -385,6 +386,12 @@ bool rescale(const std::string& stored, const DicomSlice& slice, std::span<Sampl
 template <typename Sample>
 bool read_samples(const DicomSlice& slice, std::span<Sample> samples) {
   try {
+    if constexpr (std::is_same_v<Sample, std::int16_t>)
+      if (is_usual(slice) && !slice.pixels.is_compressed && !slice.pixels.is_deflated) {
+        const std::size_t at = slice.pixels.parts.front().at;
+        PlacedReader(slice).read({at, samples.size_bytes()}, reinterpret_cast<char*>(samples.data()));
+        return rescale_shorts(slice.pixels, static_cast<int>(slice.intercept.value_or(0.0)), samples);
+      }
     const std::vector<std::string> parts = stored_parts(slice);
     const std::string decoded = slice.pixels.is_compressed ? decompressed(slice, parts) : std::string();
     const std::string& stored = slice.pixels.is_compressed ? decoded : parts.front();
