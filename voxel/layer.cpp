@@ -232,6 +232,7 @@ Layer nearest_of(const std::vector<const Layer*>& layers) {
     });
   }
   std::vector<SeenAt> all;
+  all.reserve(layers.size());
   for (const Layer* layer : layers) all.push_back(layer->seen_at);
   nearest.seen_at = [all = std::move(all)](const glm::dvec2& p_px, const DepthSpan& span) {
     Seen least;

@@ -51,6 +51,7 @@ glm::vec3 diverging_colour(double share) {
 
 std::vector<glm::vec3> diverging_colours(int count) {
   std::vector<glm::vec3> colours;
+  colours.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) colours.push_back(diverging_colour((2.0 * i + 1.0) / count - 1.0));
   return colours;
 }

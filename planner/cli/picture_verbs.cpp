@@ -2,14 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "planner/answer.h"
 #include "planner/cli/numbers.h"
+#include "planner/cli/picture_json.h"
 #include "planner/cli/ray_pictures.h"
 #include "planner/cli/scan_in.h"
-#include "planner/colour.h"
 #include "planner/figures.h"
 #include "voxel/image_file.h"
 #include "voxel/render.h"
@@ -68,38 +67,6 @@ voxel::CutTones cut_tones_of(const RenderText& text, const std::vector<voxel::Dr
   return {grey, n[0], n[1]};
 }
 
-/// Nearest and farthest lit depth; null where nothing is lit.
-Json depth_range(const voxel::Picture& picture) {
-  float low = 0.0f, high = -1.0f;
-  for (const float depth : picture.depth_mm)
-    if (std::isfinite(depth)) {
-      low = high < low ? depth : std::min(low, depth);
-      high = std::max(high, depth);
-    }
-  return high < low ? Json(nullptr) : Json::array({low, high});
-}
-
-/// Average visits to the nodes of one status, level by level; null where a level has none.
-Json averages(const std::vector<voxel::LevelCount>& visits, const std::vector<voxel::LevelCount>& existing,
-              std::uint64_t voxel::LevelCount::*status) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < existing.size(); ++i)
-    list.push_back(existing[i].*status == 0 ? Json(nullptr)
-                                            : Json(static_cast<double>(visits[i].*status) /
-                                                   static_cast<double>(existing[i].*status)));
-  return list;
-}
-
-Json visits_json(const voxel::Visits& visits) {
-  const auto tally = [&](const voxel::VisitTally& of) {
-    return Json{{"partial", averages(of.octree, visits.existing, &voxel::LevelCount::partial)},
-                {"full", averages(of.octree, visits.existing, &voxel::LevelCount::full)},
-                {"empty", averages(of.octree, visits.existing, &voxel::LevelCount::empty)},
-                {"per_pixel", visits.per_pixel(of)}};
-  };
-  return {{"direct", tally(visits.direct)}, {"all", tally(visits.all)}};
-}
-
 voxel::RenderOptions options_of(const RenderText& text) {
   voxel::RenderOptions options;
   options.view = voxel::parse_view(text.view);
@@ -145,25 +112,6 @@ Scene scene_of(const RenderText& text, Timings& timings) {
   return scene;
 }
 
-/// The distances that the picture shows.
-Json colour_by_json(const Scene& scene, const voxel::Picture& picture) {
-  const voxel::Drawn& object = scene.objects.front();
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (int y = 0; y < picture.size_px.y; ++y)
-    for (int x = 0; x < picture.size_px.x; ++x) {
-      const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.size_px.x) +
-                         static_cast<std::size_t>(x);
-      if (picture.object[pixel] != 0) continue;
-      const double distance_mm =
-          object.scalar->at(object.scalar->universe.lattice().voxel(*picture.point_mm({x, y})));
-      low = std::min(low, distance_mm);
-      high = std::max(high, distance_mm);
-    }
-  Json json{{"object", object.name}, {"distance_to", scene.coloured_by}, {"range_mm", object.scalar->most}};
-  json["seen_mm"] = low <= high ? Json::array({low, high}) : Json(nullptr);
-  return json;
-}
-
 glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   const auto numbers = numbers_of<2>("--pick", text, "256,300");
   const glm::dvec2 pixel(numbers[0], numbers[1]);
@@ -174,45 +122,13 @@ glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   return glm::ivec2(pixel);
 }
 
-/// What pixels show; null where that is the background.
-Json picks_json(const std::vector<glm::ivec2>& pixels, const std::vector<voxel::Drawn>& objects,
-                const voxel::Picture& picture) {
-  Json list = Json::array();
-  for (const glm::ivec2& pixel : pixels) {
-    const std::size_t index =
-        static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(picture.size_px.x) +
-        static_cast<std::size_t>(pixel.x);
-    const std::optional<glm::dvec3> point_mm = picture.point_mm(pixel);
-    const glm::dvec2 view_mm = picture.plane().view_mm(glm::dvec2(pixel) + 0.5);
-    Json pick{{"pixel", {pixel.x, pixel.y}}, {"view_mm", {view_mm.x, view_mm.y}}};
-    pick["object"] =
-        point_mm ? Json(objects[static_cast<std::size_t>(picture.object[index])].name) : Json(nullptr);
-    pick["point_mm"] = to_json(point_mm);
-    pick["depth_mm"] = point_mm ? Json(picture.depth_mm[index]) : Json(nullptr);
-    list.push_back(std::move(pick));
-  }
-  return list;
-}
-
-/// What was drawn of every object, in their order.
-Json objects_json(const std::vector<voxel::Drawn>& objects, const voxel::Picture& picture) {
-  std::vector<std::uint64_t> lit(objects.size(), 0);
-  for (const std::int16_t object : picture.object)
-    if (object >= 0) ++lit[static_cast<std::size_t>(object)];
-  Json list = Json::array();
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    list.push_back({{"name", objects[i].name},
-                    {"colour", text_of_colour(objects[i].colour)},
-                    {"opacity", objects[i].opacity},
-                    {"lit_pixels", lit[i]}});
-  return list;
-}
-
 int render(const Program& program, const RenderText& text) {
   need_folder_of(text.out);
   if (is_ray_picture(text)) return render_rays(program, text);
   voxel::RenderOptions options = options_of(text);
   options.cuts = cuts_of(text);
+  if (!text.transfer.empty())
+    throw CLI::ValidationError("--transfer", "only --shading composite has a transfer function");
   if (text.cut_face == "grey" && options.cuts.empty())
     throw CLI::ValidationError("--cut-face", "there is no cut: give --cut-plane or --cut-box");
   std::vector<glm::ivec2> picks;
@@ -231,7 +147,6 @@ int render(const Program& program, const RenderText& text) {
     if (text.annotate) {
       voxel::Annotation annotation = annotation_of(text, objects);
       if (const auto& scalar = objects.front().scalar) {
-        annotation.legend.erase(annotation.legend.begin());
         annotation.bar = voxel::ColourBar{"mm from " + scene.coloured_by, -scalar->most, scalar->most,
                                           voxel::diverging_colours(128)};
       }
@@ -247,21 +162,72 @@ int render(const Program& program, const RenderText& text) {
   json["size_px"] = {picture.size_px.x, picture.size_px.y};
   json["pixel_mm"] = picture.pixel_mm;
   json["lit_pixels"] = picture.lit_pixels;
-  json["depth_range_mm"] = depth_range(picture);
+  json["depth_range_mm"] = depth_range_json(picture);
   json["objects"] = objects_json(objects, picture);
-  if (!text.colour_by.empty()) json["colour_by"] = colour_by_json(scene, picture);
+  if (!text.colour_by.empty())
+    json["colour_by"] = distances_json(objects.front(), scene.coloured_by, picture);
   if (!picks.empty()) json["picks"] = picks_json(picks, objects, picture);
-  if (picture.visits) {
-    const voxel::Visits& visits = *picture.visits;
-    json["visits"] = visits_json(visits);
-    json["visits_per_pixel"] = visits.per_pixel(visits.all);
-    const std::optional<double> unvisited = visits.unvisited_fraction();
-    json["unvisited_fraction"] = unvisited ? Json(*unvisited) : Json(nullptr);
-  }
+  if (picture.visits) add_visits(json, *picture.visits);
   program.say(json, lines({{"written", text.out.string()},
                            {"lit pixels", std::to_string(picture.lit_pixels)},
                            {"pixel", grouped(picture.pixel_mm, 4) + " mm"}}));
   return done;
+}
+
+/// What objects look like.
+void add_look_options(CLI::App& verb, RenderText& text) {
+  verb.add_option("--colour", text.drawn.colours, "#RRGGBB, one a file in their order")
+      ->expected(1)
+      ->take_all();
+  CLI::Option* colour_by = verb.add_option(
+      "--colour-by", text.colour_by,
+      "distance:FILE colours the first object by its surface's distance outside (orange) or inside "
+      "(blue) another file's object");
+  verb.add_option("--range", text.range_mm, "Distance of the last colours of --colour-by, mm; default 5")
+      ->check(CLI::PositiveNumber)
+      ->needs(colour_by);
+  verb.add_option("--opacity", text.drawn.opacities, "0 (hidden) to 1, one a file in their order")
+      ->expected(1)
+      ->take_all()
+      ->check(CLI::Range(0.0, 1.0));
+  verb.add_option(
+      "--transfer", text.transfer,
+      "How samples look in composite pictures: bone, skin, vessels (CT in HU; default: bone), or a JSON file "
+      "{\"octotomy_transfer\": 1, \"points\": [{\"sample\", \"colour\", \"per_mm\"}, ...]}");
+}
+
+void add_cut_options(CLI::App& verb, RenderText& text) {
+  verb.add_option("--cut-plane", text.cut_planes,
+                  "NX,NY,NZ,OFFSET_MM in LPS: takes away what lies on the normal's side of the plane; "
+                  "the offset is the plane's place along the normal; may be repeated")
+      ->expected(1)
+      ->take_all();
+  verb.add_option("--cut-box", text.cut_boxes,
+                  "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: takes away what lies in the box; may be repeated")
+      ->expected(1)
+      ->take_all();
+  CLI::Option* face =
+      verb.add_option("--cut-face", text.cut_face,
+                      "What cut faces show: plain (the object's colour) or grey (the scan's samples)")
+          ->check(CLI::IsMember({"plain", "grey"}))
+          ->capture_default_str();
+  verb.add_option("--tones", text.tones,
+                  "BLACK:WHITE in sample units of grey cut faces; default: the samples' range")
+      ->needs(face);
+}
+
+/// What is written on and said of the picture.
+void add_print_options(CLI::App& verb, RenderText& text) {
+  verb.add_option(
+          "--pick", text.picks,
+          "X,Y of a pixel, from the top left: --json then says the object and the point it shows; may "
+          "be repeated")
+      ->expected(1)
+      ->take_all();
+  CLI::Option* annotate =
+      verb.add_flag("--annotate", text.annotate,
+                    "Writes a scale, the patient's sides, a legend and a title on the picture");
+  verb.add_option("--title", text.title, "Of an annotated picture; default: the view")->needs(annotate);
 }
 
 }  // namespace
@@ -303,47 +269,9 @@ void add_picture_verbs(Program& program) {
                   "(largest sample), radiograph (X-rays, in true scale) or composite (--transfer)")
       ->check(CLI::IsMember(shading_names))
       ->capture_default_str();
-  verb.add_option("--colour", text->drawn.colours, "#RRGGBB, one a file in their order")
-      ->expected(1)
-      ->take_all();
-  verb.add_option(
-      "--colour-by", text->colour_by,
-      "distance:FILE colours the first object by its surface's distance outside (orange) or inside "
-      "(blue) another file's object");
-  verb.add_option("--range", text->range_mm, "Distance of the last colours of --colour-by, mm; default 5")
-      ->check(CLI::PositiveNumber);
-  verb.add_option("--opacity", text->drawn.opacities, "0 (hidden) to 1, one a file in their order")
-      ->expected(1)
-      ->take_all()
-      ->check(CLI::Range(0.0, 1.0));
-  verb.add_option("--cut-plane", text->cut_planes,
-                  "NX,NY,NZ,OFFSET_MM in LPS: takes away what lies on the normal's side of the plane; "
-                  "the offset is the plane's place along the normal; may be repeated")
-      ->expected(1)
-      ->take_all();
-  verb.add_option("--cut-box", text->cut_boxes,
-                  "X0,Y0,Z0,X1,Y1,Z1 in LPS mm: takes away what lies in the box; may be repeated")
-      ->expected(1)
-      ->take_all();
-  verb.add_option("--cut-face", text->cut_face,
-                  "What cut faces show: plain (the object's colour) or grey (the scan's samples)")
-      ->check(CLI::IsMember({"plain", "grey"}))
-      ->capture_default_str();
-  verb.add_option("--tones", text->tones,
-                  "BLACK:WHITE in sample units of grey cut faces; default: the samples' range");
-  verb.add_option("--transfer", text->transfer,
-                  "How samples look in composite pictures: bone, skin, vessels (CT in HU), or a JSON file "
-                  "{\"octotomy_transfer\": 1, \"points\": [{\"sample\", \"colour\", \"per_mm\"}, ...]}")
-      ->capture_default_str();
-  verb.add_option(
-          "--pick", text->picks,
-          "X,Y of a pixel, from the top left: --json then says the object and the point it shows; may "
-          "be repeated")
-      ->expected(1)
-      ->take_all();
-  verb.add_flag("--annotate", text->annotate,
-                "Writes a scale, the patient's sides, a legend and a title on the picture");
-  verb.add_option("--title", text->title, "Of an annotated picture; default: the view");
+  add_look_options(verb, *text);
+  add_cut_options(verb, *text);
+  add_print_options(verb, *text);
   verb.add_flag("--count", text->count, "Counts the octree nodes that the algorithm visits");
   verb.add_option("--voxel", text->drawn.voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")

@@ -19,11 +19,14 @@ void refuse_what_there_is_not(const RenderText& text) {
       !text.colour_by.empty())
     throw CLI::ValidationError(
         "--shading", text.shading + " has no --algorithm, --count, --pick, --cut-face or --colour-by");
+  if (text.shading != "composite" && !text.transfer.empty())
+    throw CLI::ValidationError("--transfer", "only --shading composite has a transfer function");
   if (text.shading != "composite" && !(text.cut_planes.empty() && text.cut_boxes.empty()))
     throw CLI::ValidationError("--shading", text.shading + " is not cut; composite is");
 }
 
 voxel::TransferFunction transfer_of(const RenderText& text) {
+  if (text.transfer.empty()) return voxel::preset_transfer("bone");
   const std::vector<std::string> presets = voxel::preset_transfers();
   if (std::find(presets.begin(), presets.end(), text.transfer) == presets.end() &&
       std::filesystem::exists(text.transfer))
@@ -122,6 +125,7 @@ int render_rays(const Program& program, const RenderText& text) {
   json["pixel_mm"] = plane.pixel_mm;
   json["lit_pixels"] = picture.lit_pixels;
   json["depth_range_mm"] = picture.depth_range_mm;
+  json["objects"] = {{{"name", objects.front().name}, {"lit_pixels", picture.lit_pixels}}};
   if (!picture.values.is_null()) json["values"] = picture.values;
   program.say(json, lines({{"written", text.out.string()}, {"pixel", grouped(plane.pixel_mm, 4) + " mm"}}));
   return done;

@@ -43,7 +43,7 @@ voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel:
   voxel::Annotation annotation;
   annotation.title = text.title.empty() ? text.view : text.title;
   for (const voxel::Drawn& object : objects)
-    if (object.opacity > 0.0f) annotation.legend.push_back({object.name, object.colour});
+    if (object.opacity > 0.0f && !object.scalar) annotation.legend.push_back({object.name, object.colour});
   return annotation;
 }
 

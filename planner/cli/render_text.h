@@ -25,7 +25,7 @@ struct RenderText {
   std::string tones;
   bool annotate = false;
   std::string title;
-  std::string transfer = "bone";
+  std::string transfer;
   std::string colour_by;
   std::optional<double> range_mm;
   std::vector<std::string> picks;
@@ -35,7 +35,7 @@ struct RenderText {
 glm::ivec2 size_of(const RenderText& text);
 /// Normals are made unit.
 std::vector<voxel::Cut> cuts_of(const RenderText& text);
-/// Title, sides, scale, and a legend of the objects that are not hidden.
+/// Title, sides, scale, and a legend of the objects that are neither hidden nor coloured by a scalar.
 voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::Drawn>& objects);
 
 }  // namespace octotomy::planner::cli

@@ -223,6 +223,9 @@ TEST_F(CommandLine, ATransferFunctionOfAFileIsDrawnAndOneThatIsNoneIsRefused) {
   EXPECT_EQ(run(ball).status, 0);
   expect_refused(run(ball + " --transfer " + at("u.json")), "did you mean 'sample'");
   expect_refused(run(ball + " --transfer hair"), "vessels");
+  expect_refused(run("render " + at("ball.nrrd") + " --transfer bone -o " + at("c.png")), "composite");
+  expect_refused(run("render " + at("ball.nrrd") + " --title x -o " + at("c.png")), "--annotate");
+  expect_refused(run("render " + at("ball.nrrd") + " --range 2 -o " + at("c.png")), "--colour-by");
   expect_refused(run(ball + " --count"), "--count");
 }
 
