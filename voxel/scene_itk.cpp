@@ -343,6 +343,8 @@ Scene read_volume_file(const fs::path& path, VolumeFormat format) {
   call_itk(path, format, "its header cannot be read",
            [&] { scene.lattice = lattice_of(*io, path, header.most_bytes); });
   take_exact_geometry(header, scene);
+  const std::uintmax_t sample_bytes = header.sample_bytes > 0 ? header.sample_bytes : io->GetComponentSize();
+  require_samples(path, format, header, scene.lattice.sample_count() * sample_bytes);
   itk::ImageIORegion region(io->GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis)
     region.SetSize(axis, io->GetDimensions(axis));

@@ -54,6 +54,9 @@ class NiftiGate {
     check_places();
   }
 
+  std::uintmax_t sample_bytes() const { return static_cast<std::uintmax_t>(number<std::int16_t>(72)) / 8; }
+  std::uintmax_t samples_at() const { return static_cast<std::uintmax_t>(number<float>(108)); }
+
   /// What an extension of ours says; none where there is none that can be understood.
   std::optional<glm::dmat4> exact_geometry() const {
     constexpr std::size_t flag_at = 348;
@@ -154,6 +157,8 @@ class TextHeader {
     return found == values_.end() ? std::nullopt : std::optional<std::string>(found->second);
   }
   const std::map<std::string, std::string>& values() const { return values_; }
+  /// Behind MetaImage's last line, or the empty one that ends NRRD's.
+  std::size_t end() const { return end_; }
 
  private:
   void check_magic(const std::string& head, VolumeFormat format) const {
@@ -182,7 +187,10 @@ class TextHeader {
       const std::size_t end = std::min(head.find('\n', at), head.size());
       const std::string line = trimmed(head.substr(at, end - at));
       at = end + 1;
-      if (format == VolumeFormat::Nrrd && line.empty()) break;  // the samples begin
+      if (format == VolumeFormat::Nrrd && line.empty()) {  // the samples begin
+        end_ = at;
+        break;
+      }
       const std::size_t mark = line.find(format == VolumeFormat::Nrrd ? ':' : '=');
       if (format == VolumeFormat::Meta) check_meta_line(line, mark);
       if (mark == std::string::npos || line.front() == '#') continue;
@@ -190,7 +198,10 @@ class TextHeader {
       std::string value = line.substr(mark + 1);
       if (value.starts_with('=')) value.erase(0, 1);  // NRRD's key:=value
       values_[key] = trimmed(value);
-      if (key == "elementdatafile") break;
+      if (key == "elementdatafile") {
+        end_ = at;
+        break;
+      }
     }
   }
 
@@ -247,7 +258,53 @@ class TextHeader {
 
   fs::path path_;
   std::map<std::string, std::string> values_;
+  std::size_t end_ = 0;
 };
+
+bool is_compressed_meta(const VolumeHeader& header) {
+  return lower_case(header.field("compresseddata").value_or("false")) == "true";
+}
+
+/// Bytes that a .gz file holds unpacked; none where it is damaged or cut short.
+std::optional<std::uintmax_t> unpacked_bytes(const fs::path& path) {
+  const gzFile in = gzopen(path.c_str(), "rb");
+  if (in == nullptr) return std::nullopt;
+  std::vector<char> part(std::size_t{1} << 18);
+  std::uintmax_t total = 0;
+  int count = 0;
+  while ((count = gzread(in, part.data(), static_cast<unsigned>(part.size()))) > 0)
+    total += static_cast<std::uintmax_t>(count);
+  const bool sound = count == 0 && gzclose(in) == Z_OK;
+  if (count != 0) gzclose(in);
+  return sound ? std::optional(total) : std::nullopt;
+}
+
+/// Bytes that a zlib or gzip stream holds that begins at a place of a file; none where it is damaged or cut
+/// short.
+std::optional<std::uintmax_t> inflated_bytes(const fs::path& path, std::uintmax_t at) {
+  z_stream stream{};
+  constexpr int either_header = 32 + MAX_WBITS;
+  if (inflateInit2(&stream, either_header) != Z_OK) return std::nullopt;
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(at));
+  std::vector<char> packed(std::size_t{1} << 18), part(std::size_t{1} << 18);
+  std::uintmax_t total = 0;
+  int state = Z_OK;
+  while (state == Z_OK) {
+    if (stream.avail_in == 0) {
+      in.read(packed.data(), static_cast<std::streamsize>(packed.size()));
+      if (in.gcount() == 0) break;
+      stream.next_in = reinterpret_cast<Bytef*>(packed.data());
+      stream.avail_in = static_cast<uInt>(in.gcount());
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(part.data());
+    stream.avail_out = static_cast<uInt>(part.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+    total += part.size() - stream.avail_out;
+  }
+  inflateEnd(&stream);
+  return state == Z_STREAM_END ? std::optional(total) : std::nullopt;
+}
 
 /// Most bytes of samples that the file can hold.
 std::uintmax_t most_bytes(const fs::path& path, VolumeFormat format, const VolumeHeader& header) {
@@ -309,10 +366,56 @@ std::optional<VolumeFormat> volume_format(const fs::path& path) {
 }
 
 VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
-  VolumeHeader header{TextHeader(path, format).values(), std::nullopt, 0};
-  if (format == VolumeFormat::Nifti) header.lps_from_voxel = NiftiGate(path).exact_geometry();
+  const TextHeader text(path, format);
+  VolumeHeader header;
+  header.fields = text.values();
+  if (format == VolumeFormat::Nifti) {
+    const NiftiGate gate(path);
+    header.lps_from_voxel = gate.exact_geometry();
+    header.data_file = path;
+    header.data_at = gate.samples_at();
+    header.sample_bytes = gate.sample_bytes();
+  } else if (format == VolumeFormat::Nrrd) {
+    const std::string data = header.field("data file").value_or(header.field("datafile").value_or(""));
+    // Of skipped bytes and of samples in several files, the library keeps account.
+    const bool is_plain = !data.starts_with("LIST") && data.find('%') == std::string::npos &&
+                          !header.field("byte skip") && !header.field("line skip");
+    if (is_plain) header.data_file = data.empty() ? path : fs::absolute(path).parent_path() / data;
+    if (data.empty()) header.data_at = text.end();
+  } else if (format == VolumeFormat::Meta) {
+    const std::string data = header.field("elementdatafile").value_or("");
+    if (lower_case(data) == "local") {
+      header.data_file = path;
+      header.data_at = text.end();
+    } else if (!data.starts_with("LIST") && data.find('%') == std::string::npos) {
+      header.data_file = fs::absolute(path).parent_path() / data;
+    }
+  }
   header.most_bytes = most_bytes(path, format, header);
   return header;
+}
+
+void require_samples(const fs::path& path, VolumeFormat format, const VolumeHeader& header,
+                     std::uintmax_t bytes) {
+  if (header.data_file.empty()) return;
+  const std::string encoding = lower_case(header.field("encoding").value_or("raw"));
+  const bool is_packed_nrrd = format == VolumeFormat::Nrrd && (encoding == "gzip" || encoding == "gz");
+  const bool is_text = lower_case(header.field("binarydata").value_or("true")) == "false" ||
+                       (encoding != "raw" && !is_packed_nrrd);
+  if (is_text) return;  // its library counts what it parses
+  std::optional<std::uintmax_t> held;
+  if (format == VolumeFormat::Nifti && lower_case(path.extension().string()) == ".gz") {
+    held = unpacked_bytes(path);
+  } else if (is_packed_nrrd || (format == VolumeFormat::Meta && is_compressed_meta(header))) {
+    held = inflated_bytes(header.data_file, header.data_at);
+    if (held) held = *held + header.data_at;
+  } else {
+    held = fs::file_size(header.data_file);
+  }
+  if (!held) refuse(path, "its packed samples are damaged or cut short");
+  if (*held < header.data_at + bytes)
+    refuse(path, "its samples are cut short: " + std::to_string(*held - std::min(*held, header.data_at)) +
+                     " bytes of " + std::to_string(bytes));
 }
 
 }  // namespace octotomy::voxel

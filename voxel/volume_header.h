@@ -28,6 +28,9 @@ struct VolumeHeader {
   std::optional<glm::dmat4> lps_from_voxel;
   /// Most bytes of samples that its data can hold: their size where raw, 1100 times that where packed.
   std::uintmax_t most_bytes = 0;
+  std::filesystem::path data_file;  ///< that holds the samples; empty where they are of several
+  std::uintmax_t sample_bytes = 0;  ///< of a NIfTI as it stands, before its rescale
+  std::uintmax_t data_at = 0;       ///< where samples begin: in the file, of a packed NIfTI when unpacked
 
   std::optional<std::string> field(const std::string& key) const;
 };
@@ -40,5 +43,11 @@ inline constexpr std::int32_t nifti_text_extension = 6;
 /// Reads a header and refuses what the libraries behind ITK never return from or write beyond their buffers
 /// on. Throws std::runtime_error with path and reason.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
+
+/// Refuses a file whose samples are cut short or damaged, which the libraries behind ITK read in part as
+/// whatever memory held before. Throws std::runtime_error with path and reason. Cost: packed
+/// samples are unpacked once, into nothing.
+void require_samples(const std::filesystem::path& path, VolumeFormat format, const VolumeHeader& header,
+                     std::uintmax_t bytes);
 
 }  // namespace octotomy::voxel

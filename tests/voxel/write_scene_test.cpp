@@ -94,6 +94,33 @@ TEST(WriteScene, BelievesANiftisHeaderWhereSomebodyChangedIt) {
   EXPECT_EQ(tests::verdict(read, "geometry"), Verdict::Warn);
 }
 
+TEST_P(EveryFormat, IsRefusedWhereItsSamplesAreCutShortOrDamaged) {
+  const ScratchFolder folder;
+  write_scene(linear_scene(oblique_lattice()), folder / (std::string("scan") + GetParam()));
+  // The file with the samples is the larger one.
+  fs::path data;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
+    if (data.empty() || entry.file_size() > fs::file_size(data)) data = entry.path();
+  const std::string whole = bytes_of(data);
+  const auto is_refused = [&](const std::string& bytes) {
+    std::ofstream(data, std::ios::binary) << bytes;
+    try {
+      read_scene(folder / (std::string("scan") + GetParam()));
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(is_refused(whole));
+  for (const std::size_t keep : {whole.size() / 2, whole.size() - 40})
+    EXPECT_TRUE(is_refused(whole.substr(0, keep))) << keep << " of " << whole.size();
+  if (std::string(GetParam()) == ".nii") return;  // has no checksum to see a changed byte by
+  std::string damaged = whole;
+  damaged[whole.size() * 2 / 3] = static_cast<char>(damaged[whole.size() * 2 / 3] ^ 0x55);
+  EXPECT_TRUE(is_refused(damaged));
+}
+
 INSTANTIATE_TEST_SUITE_P(WriteScene, EveryFormat,
                          testing::Values(".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd"),
                          [](const testing::TestParamInfo<const char*>& format) {
