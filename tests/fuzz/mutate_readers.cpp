@@ -83,6 +83,7 @@ void limit(int resource, rlim_t most) {
 Outcome run(const Options& options, const std::vector<std::string>& arguments, const fs::path& folder) {
   const fs::path out = folder / "stdout.txt", errors = folder / "stderr.txt";
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
   const std::string program = options.program.string();
@@ -365,19 +366,19 @@ int judge_readers(const Options& options) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  Options options;
-  CLI::App app("Damages sound files for every reader and has octotomy info read each in a limited process.",
-               "mutate_readers");
-  app.add_option("--count", options.count, "Mutants a reader")->capture_default_str();
-  app.add_option("--seed", options.first_seed, "Number of the first mutant")->capture_default_str();
-  app.add_option("--reader", options.readers, "Only these, for example nrrd; default: all");
-  app.add_option("--program", options.program, "The octotomy to run")->capture_default_str();
-  app.add_option("--keep", options.keep, "A folder for mutants that show a fault");
-  app.add_option("--seconds", options.seconds, "Time limit of one process")->capture_default_str();
-  app.add_option("--workers", options.workers, "Processes at a time")->capture_default_str();
-  app.footer("Example:\n  build/release/mutate_readers --count 2000 --keep faults");
-  CLI11_PARSE(app, count, arguments);
   try {
+    Options options;
+    CLI::App app("Damages sound files for every reader and has octotomy info read each in a limited process.",
+                 "mutate_readers");
+    app.add_option("--count", options.count, "Mutants a reader")->capture_default_str();
+    app.add_option("--seed", options.first_seed, "Number of the first mutant")->capture_default_str();
+    app.add_option("--reader", options.readers, "Only these, for example nrrd; default: all");
+    app.add_option("--program", options.program, "The octotomy to run")->capture_default_str();
+    app.add_option("--keep", options.keep, "A folder for mutants that show a fault");
+    app.add_option("--seconds", options.seconds, "Time limit of one process")->capture_default_str();
+    app.add_option("--workers", options.workers, "Processes at a time")->capture_default_str();
+    app.footer("Example:\n  build/release/mutate_readers --count 2000 --keep faults");
+    CLI11_PARSE(app, count, arguments);
     return judge_readers(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "mutate_readers: %s\n", error.what());
