@@ -16,9 +16,13 @@ bool same_samples(const std::optional<GreyOctree>& a, const std::optional<GreyOc
   return a.has_value() == b.has_value() && (!a || &a->universe() == &b->universe());
 }
 
+// Values are taken apart where they are compared, so that one more field does not compile until it is decided
+// here what it changes.
+
 /// Whether two objects have the same surface, whatever it looks like.
 bool same_shape(const Drawn& a, const Drawn& b) {
-  return a.octree == b.octree && same_samples(a.grey, b.grey) && a.threshold == b.threshold;
+  const auto& [name, octree, colour, grey, threshold, opacity, counted_in_grey, inside, scalar] = a;
+  return octree == b.octree && same_samples(grey, b.grey) && threshold == b.threshold;
 }
 
 /// Whether two objects of one shape look the same.
@@ -51,16 +55,21 @@ bool same_tones(const std::optional<CutTones>& a, const std::optional<CutTones>&
 
 /// Whether two ways of drawing the same layers give the same picture.
 bool same_style(const RenderOptions& a, const RenderOptions& b) {
-  return a.shading == b.shading && a.background == b.background && a.occlusion == b.occlusion &&
-         a.antialias == b.antialias && same_lights(a.lights, b.lights) &&
-         same_tones(a.cut_tones, b.cut_tones);
+  const auto& [view, size_px, centre_mm, width_mm, algorithm, shading, background, cuts, cut_tones, lights,
+               occlusion, count, antialias] = a;
+  return shading == b.shading && background == b.background && occlusion == b.occlusion &&
+         antialias == b.antialias && same_lights(lights, b.lights) && same_tones(cut_tones, b.cut_tones);
+}
+
+bool same_view(const View& a, const View& b) {
+  const auto& [look, up, right] = a;
+  return look == b.look && up == b.up && right == b.right;
 }
 
 /// Whether two pictures show the same places by the same algorithm.
 bool same_plane(const Picture& a, const Picture& b) {
   return a.size_px == b.size_px && a.pixel_mm == b.pixel_mm && a.centre_mm == b.centre_mm &&
-         a.nearest_mm == b.nearest_mm && a.algorithm == b.algorithm && a.view.look == b.view.look &&
-         a.view.up == b.view.up && a.view.right == b.view.right;
+         a.nearest_mm == b.nearest_mm && a.algorithm == b.algorithm && same_view(a.view, b.view);
 }
 
 }  // namespace

@@ -19,9 +19,11 @@ std::array<double, Count> numbers_of(const std::string& option, const std::strin
   for (std::size_t i = 0; i < Count; ++i) {
     char* end = nullptr;
     numbers[i] = std::strtod(at, &end);
-    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0'))
-      throw CLI::ValidationError(option, "'" + text + "' is not " + std::to_string(Count) +
-                                             " numbers between commas, for example " + example);
+    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0')) {
+      std::string message = "'" + text + "' is not ";
+      message.append(std::to_string(Count)).append(" numbers between commas, for example ").append(example);
+      throw CLI::ValidationError(option, message);
+    }
     at = end + 1;
   }
   return numbers;
