@@ -5,11 +5,14 @@
 #include <cctype>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 #include "convert/deck_format.h"
 
@@ -32,7 +35,7 @@ void check_name(const std::filesystem::path& path, const std::string& what, cons
                "most 80 in all");
 }
 
-void check(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
+void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path) {
   if (tetrahedra.tets.empty()) refuse(path, "there are no tetrahedra to write");
   const auto nodes = tetrahedra.nodes_mm.size();
   for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t)
@@ -45,23 +48,91 @@ void check(const Tetrahedra& tetrahedra, const std::filesystem::path& path, cons
       refuse(path, "the surface names node " + std::to_string(node) + " of " + std::to_string(nodes));
   for (const glm::dvec3& p : tetrahedra.nodes_mm)
     if (!std::isfinite(p.x + p.y + p.z)) refuse(path, "a node is not finite");
+  if (!tetrahedra.region_of_tet.empty() && tetrahedra.region_of_tet.size() != tetrahedra.tets.size())
+    refuse(path, "regions are given of " + std::to_string(tetrahedra.region_of_tet.size()) + " of " +
+                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+}
+
+void check_materials(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
+                     const DeckOptions& options) {
+  if (options.materials.empty()) refuse(path, "there is no material");
+  for (const DeckMaterial& material : options.materials) {
+    check_name(path, "material", material.name);
+    if (!(material.youngs_modulus_mpa > 0.0) || !std::isfinite(material.youngs_modulus_mpa))
+      refuse(path, "Young's modulus of " + material.name + " must be positive");
+    if (!(material.poisson_ratio > -1.0 && material.poisson_ratio < 0.5))
+      refuse(path, "Poisson's ratio of " + material.name + " must lie between -1 and 0.5");
+  }
+  if (!options.material_of_tet.empty() && options.material_of_tet.size() != tetrahedra.tets.size())
+    refuse(path, "materials are given of " + std::to_string(options.material_of_tet.size()) + " of " +
+                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+  for (const std::uint32_t material : options.material_of_tet)
+    if (material >= options.materials.size())
+      refuse(path, "a tetrahedron names a material that is not there");
+}
+
+void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
   check_name(path, "element set", options.element_set);
   check_name(path, "node set", options.surface_node_set);
-  check_name(path, "material", options.material);
-  if (!(options.youngs_modulus_mpa > 0.0) || !std::isfinite(options.youngs_modulus_mpa))
-    refuse(path, "Young's modulus must be positive");
-  if (!(options.poisson_ratio > -1.0 && options.poisson_ratio < 0.5))
-    refuse(path, "Poisson's ratio must lie between -1 and 0.5");
+  for (const NodeSet& set : options.node_sets) {
+    check_name(path, "node set", set.name);
+    for (const std::uint32_t node : set.nodes)
+      if (node >= tetrahedra.nodes_mm.size())
+        refuse(path, "set " + set.name + " names a node that is not there");
+  }
+  for (const DeckSurface& surface : options.surfaces) {
+    check_name(path, "surface", surface.name);
+    for (const ElementFace& face : surface.faces)
+      if (face.tet >= tetrahedra.tets.size() || face.opposite > 3)
+        refuse(path, "surface " + surface.name + " names a face that is not there");
+  }
+  for (const Prescribed& prescribed : options.prescribed) {
+    const auto set = std::find_if(options.node_sets.begin(), options.node_sets.end(),
+                                  [&](const NodeSet& s) { return s.name == prescribed.node_set; });
+    if (set == options.node_sets.end())
+      refuse(path, "displacements are prescribed of a set '" + prescribed.node_set + "' that is not there");
+    if (!prescribed.displacement_mm.empty() && prescribed.displacement_mm.size() != set->nodes.size())
+      refuse(path, "set " + set->name + " has " + std::to_string(set->nodes.size()) + " nodes and " +
+                       std::to_string(prescribed.displacement_mm.size()) + " displacements");
+    for (const glm::dvec3& u : prescribed.displacement_mm)
+      if (!std::isfinite(u.x + u.y + u.z))
+        refuse(path, "a displacement of set " + set->name + " is not finite");
+  }
+  for (const ElementField& field : options.fields) {
+    check_name(path, "field", field.name);
+    if (field.values.size() != tetrahedra.tets.size())
+      refuse(path, "field " + field.name + " has " + std::to_string(field.values.size()) + " values for " +
+                       std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+  }
 }
 
 using Writer = void (*)(const Tetrahedra&, const DeckOptions&, std::ostream&);
 
-Writer writer_of(const std::filesystem::path& path) {
+/// The files that make a deck.
+struct Part {
+  std::filesystem::path path;
+  Writer write;
+};
+
+std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension == ".inp") return write_inp;
-  if (extension == ".vtu") return write_vtu;
-  refuse(path, "'" + extension + "' is no deck this program writes: .inp or .vtu");
+  return extension;
+}
+
+std::vector<Part> parts_of(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".inp") return {{path, write_inp}};
+  if (extension == ".feb") return {{path, write_feb}};
+  if (extension == ".vtu") return {{path, write_vtu}};
+  if (extension == ".msh") return {{path, write_msh}};
+  if (extension == ".node" || extension == ".ele" || extension == ".face") {
+    const auto with = [&](const char* other) { return std::filesystem::path(path).replace_extension(other); };
+    return {{with(".node"), write_tetgen_node},
+            {with(".ele"), write_tetgen_ele},
+            {with(".face"), write_tetgen_face}};
+  }
+  refuse(path, "'" + extension + "' is no deck this program writes: " + deck_extensions());
 }
 
 /// Removes the unfinished file unless it was renamed.
@@ -89,16 +160,121 @@ class Unfinished {
 
 }  // namespace
 
+const std::string& deck_extensions() {
+  static const std::string extensions = ".inp, .feb, .vtu, .msh or .node";
+  return extensions;
+}
+
+bool is_deck(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".inp" || extension == ".feb" || extension == ".vtu" || extension == ".msh" ||
+         extension == ".node" || extension == ".ele" || extension == ".face";
+}
+
+std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const ElementFace& face) {
+  const auto& [a, b, c, d] = tetrahedra.tets[face.tet];
+  switch (face.opposite) {
+    case 0:
+      return {b, c, d};
+    case 1:
+      return {a, d, c};
+    case 2:
+      return {a, b, d};
+    default:
+      return {a, c, b};
+  }
+}
+
+std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra) {
+  struct Sided {
+    std::array<std::uint32_t, 3> corners;
+    ElementFace face;
+  };
+  std::vector<Sided> all;
+  all.reserve(4 * tetrahedra.tets.size());
+  for (std::uint32_t t = 0; t < tetrahedra.tets.size(); ++t)
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      std::array<std::uint32_t, 3> corners = corners_of(tetrahedra, {t, i});
+      std::sort(corners.begin(), corners.end());
+      all.push_back({corners, {t, i}});
+    }
+  std::sort(all.begin(), all.end(), [](const Sided& a, const Sided& b) { return a.corners < b.corners; });
+  std::vector<ElementFace> faces;
+  for (std::size_t i = 0; i < all.size();) {
+    std::size_t end = i + 1;
+    while (end < all.size() && all[end].corners == all[i].corners) ++end;
+    if (end == i + 1) faces.push_back(all[i].face);
+    i = end;
+  }
+  std::sort(faces.begin(), faces.end(), [](const ElementFace& a, const ElementFace& b) {
+    return std::pair(a.tet, a.opposite) < std::pair(b.tet, b.opposite);
+  });
+  return faces;
+}
+
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
-  const Writer write = writer_of(path);
-  check(tetrahedra, path, options);
-  Unfinished unfinished(path);
-  std::ofstream out(unfinished.path(), std::ios::binary);
-  if (!out) throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
-  write(tetrahedra, options, out);
-  out.close();
-  if (!out) throw std::runtime_error(path.string() + ": cannot be written to its end: is the disk full?");
-  unfinished.rename_to(path);
+  const std::vector<Part> parts = parts_of(path);
+  check_nodes(tetrahedra, path);
+  check_materials(tetrahedra, path, options);
+  check_sets(tetrahedra, path, options);
+  std::vector<std::unique_ptr<Unfinished>> unfinished;
+  for (const Part& part : parts) {
+    unfinished.push_back(std::make_unique<Unfinished>(part.path));
+    std::ofstream out(unfinished.back()->path(), std::ios::binary);
+    if (!out) throw std::runtime_error(part.path.string() + ": cannot be written: " + std::strerror(errno));
+    part.write(tetrahedra, options, out);
+    out.close();
+    if (!out)
+      throw std::runtime_error(part.path.string() + ": cannot be written to its end: is the disk full?");
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) unfinished[i]->rename_to(parts[i].path);
+}
+
+std::array<char, 32> deck_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.12g", value);
+  return text;
+}
+
+std::array<char, 32> full_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text;
+}
+
+std::string region_name(std::uint32_t region) {
+  return "REGION" + std::to_string(region + 1);
+}
+
+std::uint32_t region_count(const Tetrahedra& tetrahedra) {
+  const auto& regions = tetrahedra.region_of_tet;
+  return regions.empty() ? 1 : *std::max_element(regions.begin(), regions.end()) + 1;
+}
+
+std::uint32_t region_of(const Tetrahedra& tetrahedra, std::size_t tet) {
+  return tetrahedra.region_of_tet.empty() ? 0 : tetrahedra.region_of_tet[tet];
+}
+
+std::uint32_t material_of(const DeckOptions& options, std::size_t tet) {
+  return options.material_of_tet.empty() ? 0 : options.material_of_tet[tet];
+}
+
+std::string xml_escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '>') {
+      result += "&gt;";
+    } else if (c == '-') {
+      result += "&#45;";  // "--" would end the comment
+    } else {
+      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+  }
+  return result;
 }
 
 }  // namespace octotomy::convert

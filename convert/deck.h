@@ -2,11 +2,50 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "convert/tetrahedralise.h"
 
 namespace octotomy::convert {
+
+/// Linear elastic and isotropic.
+struct DeckMaterial {
+  std::string name = "BONE";
+  double youngs_modulus_mpa =
+      17000.0;  ///< cortical bone along its long axis; Reilly and Burstein 1975, 17.0 GPa
+  double poisson_ratio = 0.3;
+};
+
+struct NodeSet {
+  std::string name;
+  std::vector<std::uint32_t> nodes;  ///< ascending
+};
+
+/// The face of an element opposite one of its corners, outward where it is on the surface.
+struct ElementFace {
+  std::uint32_t tet = 0;
+  std::uint8_t opposite = 0;  ///< 0..3
+};
+/// A face may be in several surfaces; Gmsh, where elements have one place, then holds it more than once.
+struct DeckSurface {
+  std::string name;
+  std::vector<ElementFace> faces;
+};
+
+/// Displacements that a step prescribes: one of each node of a set, or none at all for every node where the
+/// list is empty, which holds the set fast.
+struct Prescribed {
+  std::string node_set;
+  std::vector<glm::dvec3> displacement_mm;
+};
+
+/// A value an element, "HU" for example.
+struct ElementField {
+  std::string name;
+  std::vector<double> values;
+};
 
 /// What a deck says beside its nodes and elements. Units are mm, N, MPa; frame LPS. The names are letters,
 /// digits, '_' and '-', at most 80, beginning with a letter: what Abaqus and CalculiX both take.
@@ -14,20 +53,40 @@ struct DeckOptions {
   std::string title;
   std::string element_set = "SOLID";
   std::string surface_node_set = "SURFACE";
-  std::string material = "BONE";
-  double youngs_modulus_mpa =
-      17000.0;  ///< cortical bone along its long axis; Reilly and Burstein 1975, 17.0 GPa
-  double poisson_ratio = 0.3;
+  std::vector<DeckMaterial> materials{DeckMaterial{}};
+  std::vector<std::uint32_t> material_of_tet;  ///< by number in `materials`; empty: all are the first
+  std::vector<NodeSet> node_sets;
+  std::vector<DeckSurface> surfaces;
+  /// Where there are any, the deck ends in a linear static step.
+  std::vector<Prescribed> prescribed;
+  std::vector<ElementField> fields;  ///< written where the format has a place for them
+  std::vector<std::string> notes;    ///< lines of the header: versions, plan, quality
+  bool msh_2_2 = false;              ///< .msh in Gmsh's version 2.2 instead of 4.1
 };
 
 /// Writes a deck as its extension says, beside and renamed into place:
-/// .inp  Abaqus and CalculiX: C3D4 elements and their set, the surface's nodes as a set, an elastic material,
-///       a solid section. No step: loads and supports are the analyst's.
+/// .inp  Abaqus and CalculiX: C3D4 elements, sets of elements by region and material, sets of nodes,
+/// surfaces,
+///       materials with their sections, and the static step of what is prescribed.
+/// .feb  FEBio 4: the same, prescribed displacements as maps over node sets.
 /// .vtu  VTK unstructured grid of tetrahedra, appended raw data; points in double precision, the nodes of the
-///       surface marked by the point array `surface`.
+///       surface marked by the point array `surface`, sets by arrays of their own; regions, materials and
+///       fields by elements.
+/// .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a physical surface a surface.
+/// .node TetGen's .node, .ele and .face, the last with the whole surface.
 /// Throws std::runtime_error with path and reason; std::invalid_argument for another extension, no
-/// tetrahedra, an element without a node, or options that a solver would refuse.
+/// tetrahedra, an element without a node, sets and lists that do not fit, or options that a solver would
+/// refuse.
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                 const DeckOptions& options = {});
+
+/// Extensions that write_deck() takes, for a refusal: ".inp, .feb, .vtu, .msh or .node".
+const std::string& deck_extensions();
+bool is_deck(const std::filesystem::path& path);
+
+/// The faces that only one element has, in the elements' order.
+std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
+/// Corners of a face, counter-clockwise seen from outside its element.
+std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const ElementFace& face);
 
 }  // namespace octotomy::convert

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <ostream>
+#include <string>
 
 #include "convert/deck.h"
 
@@ -10,6 +12,26 @@ namespace octotomy::convert {
 // One writer a format, each to a stream that deck.cpp opens, checks and renames into place.
 
 void write_inp(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_feb(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
 void write_vtu(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_msh(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_tetgen_node(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_tetgen_ele(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_tetgen_face(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+
+/// What writers share: numbers as the solvers read them, CalculiX at most 20 characters of a field: 12
+/// digits, sign, point and exponent are 19.
+std::array<char, 32> deck_number(double value);
+/// All digits of a double, for formats that read them.
+std::array<char, 32> full_number(double value);
+
+/// "REGION1", ... by the element's region.
+std::string region_name(std::uint32_t region);
+/// How many regions there are: one more than the largest number.
+std::uint32_t region_count(const Tetrahedra& tetrahedra);
+std::uint32_t region_of(const Tetrahedra& tetrahedra, std::size_t tet);
+std::uint32_t material_of(const DeckOptions& options, std::size_t tet);
+/// Text that cannot end a comment or break a line.
+std::string xml_escaped(const std::string& text);
 
 }  // namespace octotomy::convert

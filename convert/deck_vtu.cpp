@@ -39,24 +39,6 @@ class Appended {
   std::uint64_t bytes_ = 0;
 };
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '>') {
-      result += "&gt;";
-    } else if (c == '-') {
-      result += "&#45;";  // "--" would end the comment
-    } else {
-      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 void write_vtu(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out) {
@@ -69,8 +51,19 @@ void write_vtu(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
     offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
   }
   const std::vector<std::uint8_t> types(tetrahedra.tets.size(), vtk_tetra);
-  std::vector<std::uint8_t> surface(tetrahedra.nodes_mm.size(), 0);
-  for (const std::uint32_t node : tetrahedra.boundary_nodes) surface[node] = 1;
+  const auto marked = [&](const std::vector<std::uint32_t>& nodes) {
+    std::vector<std::uint8_t> marks(tetrahedra.nodes_mm.size(), 0);
+    for (const std::uint32_t node : nodes) marks[node] = 1;
+    return marks;
+  };
+  std::vector<std::vector<std::uint8_t>> marks{marked(tetrahedra.boundary_nodes)};
+  for (const NodeSet& set : options.node_sets) marks.push_back(marked(set.nodes));
+  std::vector<std::int32_t> regions;
+  std::vector<std::int32_t> materials;
+  for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t) {
+    regions.push_back(static_cast<std::int32_t>(region_of(tetrahedra, t)));
+    materials.push_back(static_cast<std::int32_t>(material_of(options, t)));
+  }
 
   static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
   Appended appended;
@@ -81,12 +74,21 @@ void write_vtu(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
            " format=\"appended\" offset=\"" + offset + "\"/>\n";
   };
   out << "<?xml version=\"1.0\"?>\n";
-  if (!options.title.empty()) out << "<!-- " << escaped(options.title) << " -->\n";
+  if (!options.title.empty()) out << "<!-- " << xml_escaped(options.title) << " -->\n";
+  for (const std::string& note : options.notes) out << "<!-- " << xml_escaped(note) << " -->\n";
   out << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" << order
       << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\""
       << tetrahedra.nodes_mm.size() << "\" NumberOfCells=\"" << tetrahedra.tets.size() << "\">\n"
       << "<PointData>\n"
-      << array("UInt8", "surface", appended.add(surface)) << "</PointData>\n<Points>\n"
+      << array("UInt8", "surface", appended.add(marks[0]));
+  for (std::size_t i = 0; i < options.node_sets.size(); ++i)
+    out << array("UInt8", options.node_sets[i].name, appended.add(marks[i + 1]));
+  out << "</PointData>\n<CellData>\n"
+      << array("Int32", "region", appended.add(regions))
+      << array("Int32", "material", appended.add(materials));
+  for (const ElementField& field : options.fields)
+    out << array("Float64", field.name, appended.add(field.values));
+  out << "</CellData>\n<Points>\n"
       << array("Float64", "Points", appended.add(tetrahedra.nodes_mm), " NumberOfComponents=\"3\"")
       << "</Points>\n<Cells>\n"
       << array("Int64", "connectivity", appended.add(connectivity))

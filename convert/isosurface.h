@@ -2,6 +2,7 @@
 #pragma once
 
 #include "brep/triangles.h"
+#include "voxel/grey_octree.h"
 #include "voxel/scene.h"
 
 namespace octotomy::convert {
@@ -25,5 +26,9 @@ namespace octotomy::convert {
 /// a bit a sample, one over the samples; memory one bit a sample beside the surface. Source: Lorensen, Cline
 /// 1987; tables derived by following the loops of each of the 256 cases.
 brep::Triangles isosurface(const voxel::Scene& scene, double low, double high);
+
+/// The same of a grey octree's samples: the same bits as of a scene of them. Blocks wholly in or out of the
+/// window are not opened. Where the window holds the background, the surface closes at the universe's border.
+brep::Triangles isosurface(const voxel::GreyOctree& grey, double low, double high);
 
 }  // namespace octotomy::convert

@@ -364,7 +364,7 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
     result.nodes_mm = std::move(outcome.points_mm);
     result.tets = std::move(outcome.tetrahedra);
     result.boundary_nodes = boundary_nodes(result.tets);
-    result.method = "-" + switches;
+    result.method = "TetGen -" + switches;
     return result;
   }
   std::string message = "tetrahedralise: no tetrahedra of " + std::to_string(surface.triangles.size()) +

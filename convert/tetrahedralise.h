@@ -19,7 +19,8 @@ struct Tetrahedra {
   std::vector<glm::dvec3> nodes_mm;
   std::vector<std::array<std::uint32_t, 4>> tets;
   std::vector<std::uint32_t> boundary_nodes;  ///< nodes on the surface, ascending
-  std::string method;                         ///< TetGen's switches that gave it, "-pYq1.4"
+  std::vector<std::uint32_t> region_of_tet;   ///< from 0; empty: all are one region
+  std::string method;                         ///< what gave it: "TetGen -pYq1.4" or "octree"
   std::vector<std::string> findings;          ///< switches tried before and how they ended
 };
 

@@ -1,82 +1,257 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+
 #include "brep/components.h"
+#include "brep/health.h"
+#include "brep/measure.h"
+#include "brep/read_mesh.h"
 #include "convert/deck.h"
+#include "convert/materials.h"
+#include "convert/octree_tetrahedra.h"
 #include "convert/tetrahedralise.h"
+#include "convert/voxelise.h"
+#include "convert/winding_number.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
+#include "planner/cli/octree_out.h"
+#include "planner/cli/scan_in.h"
 #include "planner/figures.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 struct TetText {
-  std::filesystem::path mesh, out;
+  std::filesystem::path in, out, scan;
   convert::TetOptions options;
-  std::optional<double> max_volume_mm3;
+  convert::MaterialOptions materials;
+  std::optional<double> max_volume_mm3, voxel_mm;
+  std::vector<double> density;
   double seconds = 60.0;
+  bool fallback = false, msh_2_2 = false;
+  ScanIn scan_in;
 };
 
+/// What a deck is made of, and how it came about.
+struct Filled {
+  convert::Tetrahedra tetrahedra;
+  std::size_t regions = 1;
+  bool fallback = false;
+  std::vector<std::string> findings;
+};
+
+/// A voxel's edge with which a solid has about 200 000 voxels.
+double fallback_voxel_mm(double volume_mm3) {
+  return std::cbrt(volume_mm3 / 200000.0);
+}
+
+voxel::Octree voxels_of(const TetText& text, const brep::Triangles& triangles, bool solid) {
+  voxel::Box box{triangles.points_mm.front(), triangles.points_mm.front()};
+  for (const glm::dvec3& p : triangles.points_mm) {
+    box.low_mm = glm::min(box.low_mm, p);
+    box.high_mm = glm::max(box.high_mm, p);
+  }
+  const glm::dvec3 extent = box.high_mm - box.low_mm;
+  const double volume_mm3 =
+      solid ? brep::volume_mm3(brep::mesh_of(triangles)) : extent.x * extent.y * extent.z;
+  const voxel::Universe universe =
+      voxel::universe_around(box, text.voxel_mm.value_or(fallback_voxel_mm(volume_mm3)));
+  return solid ? convert::voxelise(universe, brep::mesh_of(triangles))
+               : convert::voxelise_by_winding_number(universe, triangles);
+}
+
+void mark_fallback(Filled& filled, double voxel_mm, const std::string& why) {
+  filled.fallback = true;
+  filled.findings.push_back("fallback: " + why +
+                            "; the elements are an octree's, whose surface is in steps of " +
+                            grouped(voxel_mm, 3) + " mm: do not read stresses there");
+}
+
+Filled of_mesh(const TetText& text, Timings& timings) {
+  brep::Triangles triangles;
+  {
+    const Stopwatch watch(timings, "read");
+    triangles = brep::read_triangles(text.in);
+  }
+  if (triangles.faces.empty()) throw std::runtime_error(text.in.string() + ": holds no triangles");
+  brep::Health health;
+  {
+    const Stopwatch watch(timings, "health");
+    health = brep::health(triangles);
+  }
+  if (!health.solid() && !text.fallback)
+    throw std::runtime_error(text.in.string() + ": is not a solid: " + health.findings.front() +
+                             "; mend it first, octotomy info tells all; or take an octree's elements by "
+                             "--fallback, which need none");
+  Filled filled;
+  std::string why = health.solid() ? "" : "the mesh is not a solid (" + health.findings.front() + ")";
+  const Stopwatch watch(timings, "tetrahedralise");
+  if (health.solid()) {
+    const brep::Mesh solid = brep::mesh_of(triangles);
+    filled.regions = brep::components(solid).size();
+    try {
+      filled.tetrahedra = convert::tetrahedralise(solid, text.options);
+      filled.findings = filled.tetrahedra.findings;
+      return filled;
+    } catch (const std::runtime_error& error) {
+      if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
+      why = error.what();
+    }
+  }
+  const voxel::Octree octree = voxels_of(text, triangles, health.solid());
+  if (octree.is_empty())
+    throw std::runtime_error(text.in.string() + ": encloses no voxel: take smaller ones by --voxel");
+  filled.tetrahedra = convert::tetrahedra_of(octree);
+  mark_fallback(filled, octree.universe().lattice().spacing_mm().x, why);
+  return filled;
+}
+
+Filled of_octree(const TetText& text, Timings& timings) {
+  const voxel::OctreeFile file = read_timed(text.in, timings);
+  const auto* octree = std::get_if<voxel::Octree>(&file.tree);
+  if (octree == nullptr)
+    throw std::runtime_error(
+        text.in.string() +
+        ": only a binary octree's voxels become elements: make its surface by octotomy mesh "
+        "and fill that");
+  Filled filled;
+  const Stopwatch watch(timings, "tetrahedralise");
+  filled.tetrahedra = convert::tetrahedra_of(*octree);
+  mark_fallback(filled, octree->universe().lattice().spacing_mm().x, "an octree was given");
+  return filled;
+}
+
+convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled& filled,
+                             const convert::TetQuality& quality, Timings& timings) {
+  convert::DeckOptions deck;
+  deck.title = text.in.filename().string();
+  deck.msh_2_2 = text.msh_2_2;
+  deck.surfaces = {{"SKIN", convert::surface_faces(filled.tetrahedra)}};
+  deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION,
+                "dihedral angles " + grouped(quality.min_dihedral_deg, 2) + " to " +
+                    grouped(quality.max_dihedral_deg, 2) + " degrees; radius-edge ratio up to " +
+                    grouped(quality.max_radius_edge, 2) + "; volume " + grouped(quality.volume_mm3, 3) +
+                    " mm3"};
+  for (const std::string& finding : filled.findings) deck.notes.push_back(finding);
+  if (text.scan.empty()) return deck;
+  convert::MaterialOptions options = text.materials;
+  if (!text.density.empty())
+    options.calibration = convert::DensityCalibration{text.density[0], text.density[1]};
+  const voxel::Scene scan = read_scan(program, text.scan, text.scan_in, timings);
+  const Stopwatch watch(timings, "materials");
+  convert::ElementMaterials made = convert::element_materials(filled.tetrahedra, scan, options);
+  deck.materials = std::move(made.materials);
+  deck.material_of_tet = std::move(made.material_of_tet);
+  deck.fields = {{"HU", std::move(made.hu)},
+                 {"density_g_cm3", std::move(made.density_g_cm3)},
+                 {"E_MPa", std::move(made.youngs_modulus_mpa)}};
+  deck.notes.push_back("stiffness: " + convert::stiffness_law(options.law).source);
+  for (const std::string& finding : made.findings) {
+    deck.notes.push_back(finding);
+    filled.findings.push_back(finding);
+  }
+  return deck;
+}
+
 int tet(const Program& program, TetText text) {
-  const std::string extension = text.out.extension().string();
-  if (extension != ".inp" && extension != ".vtu")
-    throw std::runtime_error(text.out.string() + ": a deck is written as .inp or .vtu");
+  if (!convert::is_deck(text.out))
+    throw std::runtime_error(text.out.string() + ": a deck is written as " + convert::deck_extensions());
   need_folder_of(text.out);
-  Timings timings;
-  const brep::Mesh solid = read_solid(text.mesh, timings);
   if (text.max_volume_mm3) {
     text.options.limit_volume = true;
     text.options.max_volume_mm3 = *text.max_volume_mm3;
   }
   text.options.time_limit = std::chrono::seconds(static_cast<long>(text.seconds));
-  convert::Tetrahedra tetrahedra;
-  {
-    const Stopwatch watch(timings, "tetrahedralise");
-    tetrahedra = convert::tetrahedralise(solid, text.options);
-  }
+  text.options.stop = program.stop.get_token();
+  Timings timings;
+  Filled filled = is_octree(text.in) ? of_octree(text, timings) : of_mesh(text, timings);
+  const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
   const convert::TetQuality quality = convert::quality(tetrahedra);
+  const convert::DeckOptions deck = deck_of(program, text, filled, quality, timings);
+  if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
   {
     const Stopwatch watch(timings, "write");
-    convert::write_deck(tetrahedra, text.out, {.title = text.mesh.filename().string()});
+    convert::write_deck(tetrahedra, text.out, deck);
   }
+  for (const std::string& finding : filled.findings) warn(finding);
   Json json = answer(timings);
   json["path"] = text.out.string();
   json["nodes"] = tetrahedra.nodes_mm.size();
   json["tets"] = tetrahedra.tets.size();
-  json["regions"] = brep::components(solid).size();
+  json["regions"] = filled.regions;
   json["volume_mm3"] = quality.volume_mm3;
   json["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
                      {"max_dihedral_deg", quality.max_dihedral_deg},
-                     {"max_radius_edge", quality.max_radius_edge}};
-  json["fallback"] = nullptr;
-  json["findings"] = {"fallback: none was needed"};
+                     {"max_radius_edge", quality.max_radius_edge},
+                     {"min_volume_mm3", quality.min_volume_mm3}};
+  json["method"] = tetrahedra.method;
+  json["fallback"] = filled.fallback;
+  json["materials"] = deck.materials.size();
+  json["findings"] = filled.findings;
   program.say(json, lines({{"written", text.out.string()},
+                           {"made by", tetrahedra.method},
                            {"tetrahedra", grouped(static_cast<double>(tetrahedra.tets.size()), 0)},
                            {"dihedral", grouped(quality.min_dihedral_deg, 1) + " to " +
                                             grouped(quality.max_dihedral_deg, 1) + " degrees"}}));
   return done;
 }
 
+void add_material_options(CLI::App& verb, TetText& text) {
+  const std::string group = "materials";
+  std::vector<std::string> laws;
+  for (const convert::StiffnessLaw& law : convert::stiffness_laws()) laws.push_back(law.name);
+  verb.add_option("--scan", text.scan, "Take each element's stiffness from this scan in HU")->group(group);
+  verb.add_option("--density", text.density,
+                  "SLOPE,INTERCEPT: g/cm3 = intercept + slope HU, as the scan's calibration phantom says")
+      ->delimiter(',')
+      ->expected(2)
+      ->group(group);
+  verb.add_option("--law", text.materials.law, "Stiffness of a density")
+      ->check(CLI::IsMember(laws))
+      ->capture_default_str()
+      ->group(group);
+  verb.add_option("--bins", text.materials.bins, "Materials that elements are gathered into, by stiffness")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->group(group);
+  verb.add_option("--poisson", text.materials.poisson_ratio, "Poisson's ratio of them")
+      ->check(CLI::Range(0.0, 0.499))
+      ->capture_default_str()
+      ->group(group);
+}
+
 }  // namespace
 
 void add_tet(Program& program) {
-  const auto to_fill = std::make_shared<TetText>();
-  CLI::App& tet_verb = program.verb("tet", "Fills a solid with quality tetrahedra for finite elements",
-                                    "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json",
-                                    [&program, to_fill] { return tet(program, *to_fill); });
-  tet_verb.add_option("mesh", to_fill->mesh, "A closed mesh")->required()->check(CLI::ExistingFile);
-  tet_verb.add_option("-o,--out", to_fill->out, "A .inp (Abaqus, CalculiX) or .vtu file")->required();
-  tet_verb
-      .add_option("--radius-edge", to_fill->options.radius_edge,
+  const auto text = std::make_shared<TetText>();
+  CLI::App& verb =
+      program.verb("tet", "Fills a solid with quality tetrahedra for finite elements",
+                   "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
+                   "  octotomy tet maxilla.stl -o maxilla.feb --scan head.nrrd --density 0.0009,0.05",
+                   [&program, text] { return tet(program, *text); });
+  verb.add_option("file", text->in, "A closed mesh, or a binary .octree file")
+      ->required()
+      ->check(CLI::ExistingFile);
+  verb.add_option("-o,--out", text->out,
+                  "A deck: .inp (Abaqus, CalculiX), .feb (FEBio 4), .vtu, .msh (Gmsh 4.1) or .node (TetGen)")
+      ->required();
+  verb.add_option("--radius-edge", text->options.radius_edge,
                   "Largest circumradius by shortest edge; 1.2 is hard, 2 is easy")
       ->check(CLI::Range(1.1, 10.0))
       ->capture_default_str();
-  tet_verb.add_option("--max-volume", to_fill->max_volume_mm3, "Largest tetrahedron, mm3")
+  verb.add_option("--max-volume", text->max_volume_mm3, "Largest tetrahedron, mm3")
       ->check(CLI::PositiveNumber);
-  tet_verb.add_flag("!--refine-boundary", to_fill->options.keep_boundary,
-                    "Let TetGen add points on the surface; by default it is kept as it is");
-  tet_verb.add_option("--seconds", to_fill->seconds, "Time that TetGen may take")
+  verb.add_flag("!--refine-boundary", text->options.keep_boundary,
+                "Let TetGen add points on the surface; by default it is kept as it is");
+  verb.add_option("--seconds", text->seconds, "Time that each run of TetGen may take")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
+  verb.add_flag("--fallback", text->fallback,
+                "Where TetGen fails, or the mesh is no solid, take an octree's elements, marked as such");
+  verb.add_option("--voxel", text->voxel_mm, "Edge of their smallest, mm; default: about 200 000 voxels")
+      ->check(CLI::PositiveNumber);
+  verb.add_flag("--msh2", text->msh_2_2, "Write .msh in Gmsh's version 2.2");
+  add_material_options(verb, *text);
+  add_scan_options(verb, text->scan_in);
 }
 
 }  // namespace octotomy::planner::cli

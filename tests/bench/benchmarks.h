@@ -14,6 +14,7 @@ void add(const std::string& name, const Run& run) {
 
 void register_boolean();
 void register_build();
+void register_doors();
 void register_measure();
 void register_move();
 void register_read();

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   octotomy::bench::add("reference/memcpy", run_memcpy);
   octotomy::bench::register_boolean();
   octotomy::bench::register_build();
+  octotomy::bench::register_doors();
   octotomy::bench::register_measure();
   octotomy::bench::register_move();
   octotomy::bench::register_read();

@@ -82,6 +82,35 @@ OpenVdbSurface::OpenVdbSurface(const FlatMesh& mesh, double voxel_mm) : grid_(st
       std::make_unique<openvdb::tools::LevelSetRayIntersector<openvdb::FloatGrid>>(*grid_->level_set);
 }
 
+struct OpenVdbVoxeliser::Mesh {
+  double voxel_mm = 1.0;
+  std::vector<openvdb::Vec3s> points;  // of voxels, as meshToVolume takes them
+  std::vector<openvdb::Vec3I> triangles;
+};
+
+OpenVdbVoxeliser::OpenVdbVoxeliser(const FlatMesh& mesh, double voxel_mm) : mesh_(std::make_unique<Mesh>()) {
+  openvdb::initialize();
+  mesh_->voxel_mm = voxel_mm;
+  const auto scale = static_cast<float>(1.0 / voxel_mm);
+  for (std::size_t i = 0; i < mesh.points_mm.size(); i += 3)
+    mesh_->points.emplace_back(scale * static_cast<float>(mesh.points_mm[i]),
+                               scale * static_cast<float>(mesh.points_mm[i + 1]),
+                               scale * static_cast<float>(mesh.points_mm[i + 2]));
+  for (std::size_t i = 0; i < mesh.faces.size(); i += 3)
+    mesh_->triangles.emplace_back(mesh.faces[i], mesh.faces[i + 1], mesh.faces[i + 2]);
+}
+
+OpenVdbVoxeliser::~OpenVdbVoxeliser() = default;
+
+std::uint64_t OpenVdbVoxeliser::band_voxels() const {
+  const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(mesh_->points,
+                                                                                        mesh_->triangles);
+  // The narrowest band in which its signs are sound.
+  const openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+      mesh, *openvdb::math::Transform::createLinearTransform(mesh_->voxel_mm), 1.0f, 1.0f);
+  return grid->activeVoxelCount();
+}
+
 OpenVdbSurface::~OpenVdbSurface() = default;
 
 int OpenVdbSurface::draw(const PicturePlane& plane) const {

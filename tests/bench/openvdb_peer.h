@@ -52,4 +52,20 @@ class OpenVdbSurface {
   std::unique_ptr<Grid> grid_;
 };
 
+/// A closed mesh made a level set by meshToVolume, the way into OpenVDB's volumes, and its inside.
+class OpenVdbVoxeliser {
+ public:
+  OpenVdbVoxeliser(const FlatMesh& mesh, double voxel_mm);
+  ~OpenVdbVoxeliser();
+  OpenVdbVoxeliser(const OpenVdbVoxeliser&) = delete;
+  OpenVdbVoxeliser& operator=(const OpenVdbVoxeliser&) = delete;
+
+  /// Voxelises anew and gives back the active voxels of its narrow band.
+  std::uint64_t band_voxels() const;
+
+ private:
+  struct Mesh;
+  std::unique_ptr<Mesh> mesh_;
+};
+
 }  // namespace octotomy::bench

@@ -185,7 +185,7 @@ TEST(Deck, WhatASolverWouldRefuseIsRefusedBeforeAnythingIsWritten) {
   DeckOptions two_words;
   two_words.element_set = "two words";
   DeckOptions incompressible;
-  incompressible.poisson_ratio = 0.5;
+  incompressible.materials[0].poisson_ratio = 0.5;
   EXPECT_THROW(write_deck({}, folder / "a.inp"), std::invalid_argument);
   EXPECT_THROW(write_deck(cube, folder / "a.stl"), std::invalid_argument);
   EXPECT_THROW(write_deck(cube, folder / "a.inp", two_words), std::invalid_argument);

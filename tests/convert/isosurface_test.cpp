@@ -303,6 +303,21 @@ TEST(Isosurface, IntegerAndFloatSamplesOfOneScanGiveTheSameSurface) {
   EXPECT_EQ(a.points_mm, b.points_mm);
 }
 
+TEST(Isosurface, OfAGreyOctreeHasTheBitsOfItsSamplesScene) {
+  for (const int depth : {2, 4, 5, 6}) {
+    const int side = 1 << depth;
+    voxel::Scene scene = noise(glm::ivec3(side), 17, 30);
+    voxel::Universe universe;
+    universe.depth = depth;
+    const voxel::GreyOctree grey = voxel::grey_octree_of(universe, scene);
+    const brep::Triangles of_scene = isosurface(scene, 1000, no_limit);
+    const brep::Triangles of_octree = isosurface(grey, 1000, no_limit);
+    EXPECT_EQ(of_octree.faces, of_scene.faces) << "depth " << depth;
+    EXPECT_EQ(of_octree.points_mm, of_scene.points_mm) << "depth " << depth;
+    EXPECT_GT(of_octree.faces.size(), 0U);
+  }
+}
+
 TEST(Isosurface, HasTheSameBitsOnOneThreadAndMany) {
   const voxel::Scene scene = noise({40, 30, 20}, 3, 50);
   const brep::Triangles many = isosurface(scene, 1000, no_limit);

@@ -83,7 +83,7 @@ TEST(Tetrahedralise, ACubeIsFilledToItsVolumeWithPositiveQualityTetrahedra) {
   const TetQuality q = quality(t);
   EXPECT_NEAR(q.volume_mm3, 1000.0, 1e-9 * 1000.0);
   EXPECT_GT(q.min_volume_mm3, 0.0);
-  EXPECT_EQ(t.method, "-pYq1.4");
+  EXPECT_EQ(t.method, "TetGen -pYq1.4");
   EXPECT_TRUE(t.findings.empty());
   // The boundary is kept: only the cube's own corners are on it.
   EXPECT_EQ(t.boundary_nodes, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7}));
@@ -105,7 +105,7 @@ TEST(Tetrahedralise, ALimitOnVolumeMakesMoreAndSmallerTetrahedra) {
   options.limit_volume = true;
   options.max_volume_mm3 = 10.0;
   const Tetrahedra fine = tetrahedralise(surface, options);
-  EXPECT_EQ(fine.method, "-pYq1.4a10");
+  EXPECT_EQ(fine.method, "TetGen -pYq1.4a10");
   EXPECT_GT(fine.tets.size(), tetrahedralise(surface).tets.size());
   // Beside triangles that must stay, TetGen gives up on a few.
   std::size_t larger = 0;
@@ -122,7 +122,7 @@ TEST(Tetrahedralise, NewPointsOnTheSurfaceAreMadeWhereTheyAreAllowed) {
   options.limit_volume = true;
   options.max_volume_mm3 = 5.0;
   const Tetrahedra t = tetrahedralise(brep::mesh_of(box({0, 0, 0}, {10, 10, 10})), options);
-  EXPECT_EQ(t.method, "-pq1.4a5");
+  EXPECT_EQ(t.method, "TetGen -pq1.4a5");
   EXPECT_GT(t.boundary_nodes.size(), 8U);
   EXPECT_NEAR(quality(t).volume_mm3, 1000.0, 1e-6);
 }

@@ -386,6 +386,69 @@ TEST_F(CommandLine, AReaderThatGoesAwayIsNoError) {
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
 }
 
+TEST_F(CommandLine, AnOctreeBecomesAMeshByEverySurfaceAndComesBackFromItsCuberille) {
+  ASSERT_EQ(
+      run("phantom sphere -o " + at("share.octree") + " --voxels 64 --radius 24 --digitise partial").status,
+      0);
+  ASSERT_EQ(run("phantom sphere -o " + at("ball.octree") + " --voxels 64 --radius 24").status, 0);
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " -o " + at("grey.octree") + " --grey").status, 0);
+  const Json smooth =
+      Json::parse(run("mesh " + at("share.octree") + " -o " + at("share.ply") + " --json").out);
+  EXPECT_NEAR(smooth["volume_mm3"].get<double>() / (4.0 / 3.0 * M_PI * 13824.0), 1.0, 1e-3);
+  EXPECT_NEAR(smooth["area_mm2"].get<double>() / (4.0 * M_PI * 576.0), 1.0, 5e-3);
+  EXPECT_TRUE(smooth["closed"]);
+  const Json cubes = Json::parse(
+      run("mesh " + at("ball.octree") + " -o " + at("cubes.off") + " --surface cuberille --json").out);
+  const Answer back = run("voxelise " + at("cubes.off") + " -o " + at("back.octree") + " --like " +
+                          at("ball.octree") + " --json");
+  ASSERT_EQ(back.status, 0) << back.errors;
+  EXPECT_EQ(Json::parse(back.out)["voxels"].get<double>(), cubes["volume_mm3"].get<double>());
+  ASSERT_EQ(run("eval \"a ^ b\" --let a=" + at("back.octree") + " --let b=" + at("ball.octree") + " -o " +
+                at("none.octree"))
+                .status,
+            0);
+  EXPECT_EQ(Json::parse(run("info " + at("none.octree") + " --json").out)["voxels"], 0);
+  const Json grey =
+      Json::parse(run("mesh " + at("grey.octree") + " --window 0: -o " + at("grey.ply") + " --json").out);
+  const Json scan =
+      Json::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("scan.ply") + " --json").out);
+  EXPECT_EQ(grey["faces"], scan["faces"]);
+  EXPECT_NEAR(grey["volume_mm3"].get<double>(), scan["volume_mm3"].get<double>(), 1e-6);
+  const Answer fewer =
+      run("mesh " + at("grey.octree") + " --window 0: -o " + at("few.ply") + " --faces 400 --smooth --json");
+  ASSERT_EQ(fewer.status, 0) << fewer.errors;
+  EXPECT_LE(Json::parse(fewer.out)["faces"], 400);
+  expect_refused(run("mesh " + at("ball.octree") + " --window 1: -o " + at("p.ply")), "no samples");
+}
+
+TEST_F(CommandLine, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFallback) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 600").status, 0);
+  const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
+  for (const std::string name : {"ball.inp", "ball.feb", "ball.vtu", "ball.msh", "ball.node"}) {
+    const Answer answer = run("tet " + at("ball.off") + " -o " + at(name) + " --json");
+    ASSERT_EQ(answer.status, 0) << answer.errors;
+    const Json json = Json::parse(answer.out);
+    EXPECT_NEAR(json["volume_mm3"].get<double>() / truth, 1.0, 1e-3) << name;
+    EXPECT_GT(json["quality"]["min_dihedral_deg"].get<double>(), 1.0) << name;
+    EXPECT_EQ(json["fallback"], false) << name;
+    EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "ball.ele"));
+  const Answer stiff = run("tet " + at("ball.off") + " -o " + at("stiff.inp") + " --scan " + at("ball.nrrd") +
+                           " --bins 7 --json");
+  ASSERT_EQ(stiff.status, 0) << stiff.errors;
+  EXPECT_NE(stiff.errors.find("NOT CALIBRATED"), std::string::npos);
+  EXPECT_GE(Json::parse(stiff.out)["materials"], 1);
+  write("open.off", "OFF\n4 3 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
+  expect_refused(run("tet " + at("open.off") + " -o " + at("p.inp")), "--fallback");
+  const Answer marked =
+      run("tet " + at("open.off") + " -o " + at("open.inp") + " --fallback --voxel 1 --json");
+  ASSERT_EQ(marked.status, 0) << marked.errors;
+  EXPECT_EQ(Json::parse(marked.out)["fallback"], true);
+  EXPECT_NE(marked.out.find("fallback: "), std::string::npos);
+  expect_refused(run("tet " + at("ball.off") + " -o " + at("p.stp")), ".feb");
+}
+
 TEST_F(CommandLine, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
   const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];

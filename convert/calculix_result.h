@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+namespace octotomy::convert {
+
+/// The displacements of the last step in CalculiX's .frd result, by node of the deck that write_deck() made
+/// (its node 1 is the first); none for nodes that the result does not hold. Millimetres, LPS. Throws
+/// std::runtime_error with path and line where the file cannot be read, holds no displacements, or a line is
+/// none of such a result; a node number beyond `node_count` is one. Memory: 32 bytes a node.
+std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,
+                                                          std::size_t node_count);
+
+}  // namespace octotomy::convert

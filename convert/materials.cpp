@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/materials.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+
+namespace octotomy::convert {
+namespace {
+
+/// Points along an edge of an element at most.
+constexpr int most_points_an_edge = 9;
+
+/// The trilinear interpolant of a scene; none outside its samples' voxels. Between the outermost samples and
+/// the voxels' ends it is constant.
+class Sampler {
+ public:
+  explicit Sampler(const voxel::Scene& scan)
+      : scan_(scan), voxel_from_lps_(glm::inverse(scan.lattice.lps_from_voxel)) {}
+
+  glm::dvec3 voxel(const glm::dvec3& p_mm) const { return voxel_from_lps_ * glm::dvec4(p_mm, 1.0); }
+  bool holds(const glm::dvec3& v) const {
+    return glm::all(glm::greaterThanEqual(v, glm::dvec3(-0.5))) &&
+           glm::all(glm::lessThanEqual(v, glm::dvec3(scan_.lattice.dims) - 0.5));
+  }
+  double at(const glm::dvec3& v) const {
+    const glm::dvec3 most(scan_.lattice.dims - 1);
+    const glm::dvec3 inside = glm::clamp(v, glm::dvec3(0.0), most);
+    const glm::ivec3 low = glm::min(glm::ivec3(inside), glm::max(scan_.lattice.dims - 2, glm::ivec3(0)));
+    const glm::dvec3 t = inside - glm::dvec3(low);
+    double sum = 0.0;
+    for (int k = 0; k < 8; ++k) {
+      const glm::ivec3 step(k & 1, (k >> 1) & 1, k >> 2);
+      const double weight =
+          (step.x != 0 ? t.x : 1.0 - t.x) * (step.y != 0 ? t.y : 1.0 - t.y) * (step.z != 0 ? t.z : 1.0 - t.z);
+      if (weight > 0.0) sum += weight * sample(low + step);
+    }
+    return sum;
+  }
+
+ private:
+  double sample(const glm::ivec3& v) const {
+    const auto nx = static_cast<std::size_t>(scan_.lattice.dims.x);
+    const auto ny = static_cast<std::size_t>(scan_.lattice.dims.y);
+    const std::size_t index = static_cast<std::size_t>(v.x) +
+                              nx * (static_cast<std::size_t>(v.y) + ny * static_cast<std::size_t>(v.z));
+    return std::visit([&](const auto& samples) { return static_cast<double>(samples[index]); },
+                      scan_.samples);
+  }
+
+  const voxel::Scene& scan_;
+  glm::dmat4 voxel_from_lps_;
+};
+
+/// The mean over an element; none where no point of it is in the scan. Points are the middles of the corners'
+/// lattice: with n an edge, barycentric coordinates (i + 1/4) / n that sum to 1, each as good as the others.
+std::optional<double> mean_over(const std::array<glm::dvec3, 4>& v, const Sampler& scan) {
+  double longest = 0.0;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, glm::distance(v[i], v[j]));
+  const int n = std::clamp(static_cast<int>(std::ceil(2.0 * longest)), 1, most_points_an_edge);
+  double sum = 0.0;
+  int count = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; i + j < n; ++j)
+      for (int k = 0; i + j + k < n; ++k) {
+        const int l = n - 1 - i - j - k;
+        const glm::dvec3 p = ((i + 0.25) * v[0] + (j + 0.25) * v[1] + (k + 0.25) * v[2] + (l + 0.25) * v[3]) /
+                             static_cast<double>(n);
+        if (!scan.holds(p)) continue;
+        sum += scan.at(p);
+        ++count;
+      }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+void check(const Tetrahedra& tetrahedra, const MaterialOptions& options) {
+  if (tetrahedra.tets.empty()) throw std::invalid_argument("materials: there are no tetrahedra");
+  if (options.bins < 1 || options.bins > 1000)
+    throw std::invalid_argument("materials: bins must be 1 to 1000, not " + std::to_string(options.bins));
+  if (!(options.least_mpa > 0.0) || !std::isfinite(options.least_mpa))
+    throw std::invalid_argument("materials: the least Young's modulus must be positive");
+  if (options.calibration && (!std::isfinite(options.calibration->slope_g_cm3_per_hu) ||
+                              !std::isfinite(options.calibration->intercept_g_cm3) ||
+                              options.calibration->slope_g_cm3_per_hu <= 0.0))
+    throw std::invalid_argument("materials: a calibration's slope must be positive");
+}
+
+/// Bins of equal width in Young's modulus; those that hold no element are left out.
+void gather(const MaterialOptions& options, ElementMaterials& result) {
+  const auto [low, high] =
+      std::minmax_element(result.youngs_modulus_mpa.begin(), result.youngs_modulus_mpa.end());
+  const double width = (*high - *low) / options.bins;
+  struct Bin {
+    double sum = 0.0;
+    std::size_t count = 0;
+  };
+  std::map<int, Bin> bins;
+  const auto bin_of = [&](double e) {
+    return width > 0.0 ? std::min(static_cast<int>((e - *low) / width), options.bins - 1) : 0;
+  };
+  for (const double e : result.youngs_modulus_mpa) {
+    Bin& bin = bins[bin_of(e)];
+    bin.sum += e;
+    ++bin.count;
+  }
+  std::map<int, std::uint32_t> number;
+  for (const auto& [bin, content] : bins) {
+    number[bin] = static_cast<std::uint32_t>(result.materials.size());
+    result.materials.push_back({"BONE" + std::to_string(result.materials.size() + 1),
+                                content.sum / static_cast<double>(content.count), options.poisson_ratio});
+  }
+  for (const double e : result.youngs_modulus_mpa) result.material_of_tet.push_back(number.at(bin_of(e)));
+}
+
+}  // namespace
+
+const std::vector<StiffnessLaw>& stiffness_laws() {
+  // Keyak's middle piece does not meet its neighbours exactly; it is as printed.
+  static const std::vector<StiffnessLaw> laws = {
+      {"morgan2003-femoral-neck",
+       "Morgan, Bayraktar, Keaveny, J. Biomech. 36, 2003: E = 6850 rho_app^1.49",
+       DensityKind::Apparent,
+       {{0.0, 0.0, 6850.0, 1.49}}},
+      {"morgan2003-pooled",
+       "Morgan, Bayraktar, Keaveny, J. Biomech. 36, 2003: E = 8920 rho_app^1.83",
+       DensityKind::Apparent,
+       {{0.0, 0.0, 8920.0, 1.83}}},
+      {"carter-hayes1977",
+       "Carter, Hayes, J. Bone Joint Surg. 59-A, 1977: E = 3790 strain_rate^0.06 rho_app^3, at 0.01 / s",
+       DensityKind::Apparent,
+       {{0.0, 0.0, 3790.0 * 0.758577575, 3.0}}},
+      {"keller1994",
+       "Keller, J. Biomech. 27, 1994: E = 10500 rho_ash^2.29",
+       DensityKind::Ash,
+       {{0.0, 0.0, 10500.0, 2.29}}},
+      {"keyak1998",
+       "Keyak et al., J. Biomech. 31, 1998: E = 33900 rho_ash^2.20 to 0.27, 5307 rho_ash + 469 to 0.6, then "
+       "10200 rho_ash^2.01",
+       DensityKind::Ash,
+       {{0.0, 0.0, 33900.0, 2.20}, {0.27, 469.0, 5307.0, 1.0}, {0.6, 0.0, 10200.0, 2.01}}},
+  };
+  return laws;
+}
+
+const StiffnessLaw& stiffness_law(const std::string& name) {
+  std::string known;
+  for (const StiffnessLaw& law : stiffness_laws()) {
+    if (law.name == name) return law;
+    known += (known.empty() ? "" : ", ") + law.name;
+  }
+  throw std::invalid_argument("materials: no law is called '" + name + "'; there are " + known);
+}
+
+double youngs_modulus_mpa(const StiffnessLaw& law, double rho_g_cm3) {
+  auto piece = law.pieces.begin();
+  while (piece + 1 != law.pieces.end() && (piece + 1)->from_g_cm3 <= rho_g_cm3) ++piece;
+  return piece->a_mpa + piece->b * std::pow(rho_g_cm3, piece->c);
+}
+
+ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Scene& scan,
+                                   const MaterialOptions& options) {
+  check(tetrahedra, options);
+  voxel::check(scan);
+  const StiffnessLaw& law = stiffness_law(options.law);
+  const DensityCalibration calibration = options.calibration.value_or(DensityCalibration{});
+  const Sampler sampler(scan);
+  ElementMaterials result;
+  const std::size_t count = tetrahedra.tets.size();
+  result.hu.resize(count);
+  result.density_g_cm3.resize(count);
+  result.youngs_modulus_mpa.resize(count);
+  std::atomic<std::size_t> outside{0};
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t t) {
+    std::array<glm::dvec3, 4> v;
+    for (std::size_t i = 0; i < 4; ++i) v[i] = sampler.voxel(tetrahedra.nodes_mm.at(tetrahedra.tets[t][i]));
+    const std::optional<double> mean = mean_over(v, sampler);
+    if (!mean) ++outside;
+    result.hu[t] = mean ? *mean : sampler.at(0.25 * (v[0] + v[1] + v[2] + v[3]));
+    result.density_g_cm3[t] =
+        std::max(0.0, calibration.intercept_g_cm3 + calibration.slope_g_cm3_per_hu * result.hu[t]);
+    result.youngs_modulus_mpa[t] =
+        std::max(options.least_mpa, youngs_modulus_mpa(law, result.density_g_cm3[t]));
+  });
+  if (!options.calibration)
+    result.findings.push_back(
+        "NOT CALIBRATED: densities are guessed as 0.0008 g/cm3 a HU, which no phantom confirms for this "
+        "scanner; "
+        "stiffness may be wrong by a factor of two: give the calibration of the scan");
+  if (outside > 0)
+    result.findings.push_back(std::to_string(outside) +
+                              " elements lie outside the scan and have the nearest sample's stiffness");
+  const auto least = static_cast<std::size_t>(
+      std::count(result.youngs_modulus_mpa.begin(), result.youngs_modulus_mpa.end(), options.least_mpa));
+  if (least > 0)
+    result.findings.push_back(std::to_string(least) + " elements have the least Young's modulus allowed");
+  gather(options, result);
+  return result;
+}
+
+}  // namespace octotomy::convert

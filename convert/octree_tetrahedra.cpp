@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/octree_tetrahedra.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "voxel/slice_bits.h"
+#include "voxel/slice_build.h"
+
+// 1 Voxels become cells, and eight cells of one parent that are all there become one, as long as any are.
+// 2 A cell with a neighbour, across a face, edge or corner, of less than half its side is divided, from the
+//   smallest cells upward.
+// 3 A cell's faces become triangles: where smaller cells stand on a face or touch its edges, a fan about its
+//   middle that takes in their corners on the edges; else two, along the diagonal that ends in the middle of
+//   the face of twice the side. So both sides of a face see the same triangles: of a smaller cell's face, a
+//   fan's two triangles are its own two. Each triangle, with the cell's middle, is an element.
+//
+// Places are whole numbers in half voxel edges: corners of voxels are even.
+
+namespace octotomy::convert {
+namespace {
+
+using Place = glm::ivec3;
+
+std::uint64_t key_of(const Place& p) {
+  return (static_cast<std::uint64_t>(p.z) << 42) | (static_cast<std::uint64_t>(p.y) << 21) |
+         static_cast<std::uint64_t>(p.x);
+}
+
+/// Cells by side and first voxel.
+class Cells {
+ public:
+  explicit Cells(const voxel::Octree& octree)
+      : of_side_log2_(static_cast<std::size_t>(octree.universe().depth) + 1) {
+    voxel::for_each_slice(octree, [&](int z, const voxel::SliceBits& slice) {
+      for (int y = 0; y < slice.side; ++y)
+        for (int x = 0, last = -1; voxel::next_run(slice, y, last + 1, x, last);)
+          for (int v = x; v <= last; ++v) of_side_log2_[0].emplace(key_of({v, y, z}), Place(v, y, z));
+    });
+    for (std::size_t level = 0; level + 1 < of_side_log2_.size() && !of_side_log2_[level].empty(); ++level)
+      merge(level);
+  }
+
+  /// The side of the cell that holds a voxel, as a power of two; none where there is no cell.
+  std::optional<int> side_log2_at(const Place& voxel) const {
+    if (voxel.x < 0 || voxel.y < 0 || voxel.z < 0) return std::nullopt;
+    for (std::size_t level = 0; level < of_side_log2_.size(); ++level)
+      if (of_side_log2_[level].contains(key_of(first_of(voxel, static_cast<int>(level)))))
+        return static_cast<int>(level);
+    return std::nullopt;
+  }
+
+  /// Pass 2.
+  void balance() {
+    for (std::size_t level = 0; level + 2 < of_side_log2_.size(); ++level) {
+      std::vector<Place> open = sorted(level);
+      while (!open.empty()) {
+        const Place cell = open.back();
+        open.pop_back();
+        const int side = 1 << level;
+        for (int n = 0; n < 27; ++n) {
+          const Place beside = cell + side * (Place(n % 3, (n / 3) % 3, n / 9) - 1);
+          for (std::optional<int> found = side_log2_at(beside); found && *found > static_cast<int>(level) + 1;
+               found = side_log2_at(beside))
+            divide(first_of(beside, *found), static_cast<std::size_t>(*found));
+        }
+      }
+    }
+  }
+
+  std::vector<Place> sorted(std::size_t level) const {
+    std::vector<Place> cells;
+    for (const auto& [key, cell] : of_side_log2_[level]) cells.push_back(cell);
+    std::sort(cells.begin(), cells.end(),
+              [](const Place& a, const Place& b) { return key_of(a) < key_of(b); });
+    return cells;
+  }
+  std::size_t levels() const { return of_side_log2_.size(); }
+
+ private:
+  static Place first_of(const Place& voxel, int level) { return (voxel >> level) << level; }
+  static Place child(const Place& first, int number, int side) {
+    return first + side * Place(number & 1, (number >> 1) & 1, number >> 2);
+  }
+
+  void merge(std::size_t level) {
+    auto& cells = of_side_log2_[level];
+    const int side = 1 << level;
+    for (const Place& cell : sorted(level)) {
+      const Place parent = first_of(cell, static_cast<int>(level) + 1);
+      if (parent != cell) continue;
+      bool all = true;
+      for (int k = 0; k < 8 && all; ++k) all = cells.contains(key_of(child(parent, k, side)));
+      if (!all) continue;
+      for (int k = 0; k < 8; ++k) cells.erase(key_of(child(parent, k, side)));
+      of_side_log2_[level + 1].emplace(key_of(parent), parent);
+    }
+  }
+
+  void divide(const Place& first, std::size_t level) {
+    of_side_log2_[level].erase(key_of(first));
+    for (int k = 0; k < 8; ++k) {
+      const Place cell = child(first, k, 1 << (level - 1));
+      of_side_log2_[level - 1].emplace(key_of(cell), cell);
+    }
+  }
+
+  std::vector<std::unordered_map<std::uint64_t, Place>> of_side_log2_;
+};
+
+/// A square of the lattice: its first voxel corner, normal axis, and side as a power of two.
+struct Square {
+  Place first{0};
+  int axis = 0;
+  int side_log2 = 0;
+};
+
+class Filling {
+ public:
+  Filling(const voxel::Octree& octree, const Cells& cells)
+      : lattice_(octree.universe().lattice()), cells_(cells) {}
+
+  Tetrahedra run() {
+    for (std::size_t level = 0; level < cells_.levels(); ++level)
+      for (const Place& cell : cells_.sorted(level)) add_cell(cell, static_cast<int>(level));
+    result_.boundary_nodes = boundary_nodes(result_.tets);
+    result_.method = "octree";
+    return std::move(result_);
+  }
+
+ private:
+  void add_cell(const Place& cell, int level) {
+    const std::uint32_t middle = node(2 * cell + (1 << level));
+    for (int axis = 0; axis < 3; ++axis)
+      for (int upper = 0; upper < 2; ++upper) {
+        Square square{cell, axis, level};
+        square.first[axis] += upper << level;
+        add_face(square, middle);
+      }
+  }
+
+  void add_face(const Square& square, std::uint32_t middle) {
+    const int side = 1 << square.side_log2;
+    std::array<Place, 4> corners;
+    for (int i = 0; i < 4; ++i) {
+      corners[static_cast<std::size_t>(i)] = square.first;
+      corners[static_cast<std::size_t>(i)][(square.axis + 1) % 3] += i == 1 || i == 2 ? side : 0;
+      corners[static_cast<std::size_t>(i)][(square.axis + 2) % 3] += i >= 2 ? side : 0;
+    }
+    std::vector<std::uint32_t> round;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Place& from = corners[i];
+      const Place& to = corners[(i + 1) % 4];
+      round.push_back(node(2 * from));
+      if (is_edge_divided(glm::min(from, to),
+                          from[(square.axis + 1) % 3] != to[(square.axis + 1) % 3] ? (square.axis + 1) % 3
+                                                                                   : (square.axis + 2) % 3,
+                          square.side_log2))
+        round.push_back(node(from + to));
+    }
+    if (round.size() == 4 && !is_divided(square)) {
+      const Place of_side = square.first >> square.side_log2;
+      const std::size_t turn =
+          static_cast<std::size_t>(of_side[(square.axis + 1) % 3] + of_side[(square.axis + 2) % 3]) & 1;
+      add(round[turn], round[turn + 1], round[turn + 2], middle);
+      add(round[turn], round[turn + 2], round[(turn + 3) % 4], middle);
+      return;
+    }
+    const std::uint32_t centre = node(corners[0] + corners[2]);
+    for (std::size_t i = 0; i < round.size(); ++i)
+      add(centre, round[i], round[(i + 1) % round.size()], middle);
+  }
+
+  /// Whether smaller cells stand on the square, on either side.
+  bool is_divided(const Square& square) const {
+    if (square.side_log2 == 0) return false;
+    const int half = 1 << (square.side_log2 - 1);
+    for (int k = 0; k < 8; ++k) {
+      Place voxel = square.first;
+      voxel[(square.axis + 1) % 3] += (k & 1) * half;
+      voxel[(square.axis + 2) % 3] += ((k >> 1) & 1) * half;
+      voxel[square.axis] -= k >> 2;
+      if (const std::optional<int> side = cells_.side_log2_at(voxel); side && *side < square.side_log2)
+        return true;
+    }
+    return false;
+  }
+
+  /// Whether smaller cells touch an edge of the lattice with half of theirs.
+  bool is_edge_divided(const Place& first, int axis, int side_log2) const {
+    if (side_log2 == 0) return false;
+    for (int k = 0; k < 8; ++k) {
+      Place voxel = first;
+      voxel[axis] += (k & 1) << (side_log2 - 1);
+      voxel[(axis + 1) % 3] -= (k >> 1) & 1;
+      voxel[(axis + 2) % 3] -= k >> 2;
+      if (const std::optional<int> side = cells_.side_log2_at(voxel); side && *side < side_log2) return true;
+    }
+    return false;
+  }
+
+  std::uint32_t node(const Place& half) {
+    const auto [at, is_new] =
+        nodes_.try_emplace(key_of(half), static_cast<std::uint32_t>(result_.nodes_mm.size()));
+    if (is_new) {
+      if (result_.nodes_mm.size() == std::numeric_limits<std::uint32_t>::max())
+        throw std::length_error("tetrahedra_of: more nodes than 32-bit numbers can name: take larger voxels");
+      result_.nodes_mm.push_back(lattice_.lps_mm(0.5 * glm::dvec3(half) - 0.5));
+    }
+    return at->second;
+  }
+
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    const auto& p = result_.nodes_mm;
+    if (glm::dot(glm::cross(p[b] - p[a], p[c] - p[a]), p[d] - p[a]) < 0.0) std::swap(b, c);
+    result_.tets.push_back({a, b, c, d});
+  }
+
+  voxel::Lattice lattice_;
+  const Cells& cells_;
+  std::unordered_map<std::uint64_t, std::uint32_t> nodes_;
+  Tetrahedra result_;
+};
+
+}  // namespace
+
+Tetrahedra tetrahedra_of(const voxel::Octree& octree) {
+  if (octree.is_empty())
+    throw std::invalid_argument("tetrahedra_of: the octree is empty: nothing is to be filled");
+  Cells cells(octree);
+  cells.balance();
+  return Filling(octree, cells).run();
+}
+
+}  // namespace octotomy::convert

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+#include "brep/triangles.h"
+#include "voxel/large_allocator.h"
+#include "voxel/octree.h"
+
+namespace octotomy::convert {
+
+// Marching cubes, for the sources that know which samples are inside and where edges are crossed.
+
+/// Bits of the padded lattice by rows along x, whole words each, with `before` outside bits at the start and
+/// at least one at the end.
+struct InsideBits {
+  InsideBits(const glm::ivec3& dims, int before)
+      : padding(before, 1, 1),
+        rows_y(static_cast<std::size_t>(dims.y) + 2),
+        planes_z(static_cast<std::size_t>(dims.z) + 2),
+        words(static_cast<std::size_t>(dims.x + before + 1) / 64 + 1),
+        bits(rows_y * planes_z * words) {
+    tbb::parallel_for(std::size_t{0}, planes_z,
+                      [&](std::size_t z) { std::fill_n(row(0, z), rows_y * words, 0); });
+  }
+
+  std::size_t row_number(std::size_t y, std::size_t z) const { return z * rows_y + y; }
+  const std::uint64_t* row(std::size_t y, std::size_t z) const { return &bits[row_number(y, z) * words]; }
+  std::uint64_t* row(std::size_t y, std::size_t z) { return &bits[row_number(y, z) * words]; }
+
+  glm::ivec3 padding;  ///< of the first sample
+  std::size_t rows_y, planes_z, words;
+  std::vector<std::uint64_t, voxel::LargeAllocator<std::uint64_t>> bits;
+};
+
+/// The voxels of an octree.
+InsideBits inside_bits(const voxel::Octree& octree);
+
+/// Where the edge from a voxel to the next one along an axis is crossed, as a part of the edge, strictly
+/// between 0 and 1; one end is inside, the first where `first_inside`. Called from several threads.
+using Crossing = std::function<double(const glm::ivec3& voxel, int axis, bool first_inside)>;
+
+/// The closed surface about the inside samples of a lattice, in LPS millimetres, turned outward. Where an
+/// edge leaves the lattice it is crossed half way. Throws std::length_error where 32 bits do not number the
+/// triangles. Parallel; same bits on any thread count.
+brep::Triangles extract_surface(const voxel::Lattice& lattice, const InsideBits& inside,
+                                const Crossing& crossing);
+
+}  // namespace octotomy::convert

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "tests/bench/picture_plane.h"
+
+namespace octotomy::bench {
+
+/// A dense scan in VTK's flying edges, on as many threads as given; normals and gradients are not asked for.
+class VtkContour {
+ public:
+  VtkContour(const FlatScan& scan, double value, int threads);
+  ~VtkContour();
+  VtkContour(const VtkContour&) = delete;
+  VtkContour& operator=(const VtkContour&) = delete;
+
+  /// Extracts the surface anew and gives back its number of triangles.
+  std::size_t triangles() const;
+
+ private:
+  struct Pipeline;
+  std::unique_ptr<Pipeline> pipeline_;
+};
+
+}  // namespace octotomy::bench

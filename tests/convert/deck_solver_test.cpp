@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Decks in the programs that they are made for: CalculiX solves them, gmsh and meshio read them.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "convert/calculix_result.h"
+#include "convert/deck.h"
+#include "convert/octree_tetrahedra.h"
+#include "tests/convert/surfaces.h"
+#include "voxel/combine.h"
+
+namespace octotomy::convert {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("octotomy-solver-" + std::to_string(getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Status of a command within a folder; what it says goes to a file there.
+int run_in(const Folder& folder, const std::string& command) {
+  return std::system(("cd '" + folder.path().string() + "' && " + command + " > log 2>&1").c_str());
+}
+
+bool have(const std::string& program) {
+  return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0;
+}
+
+std::string log_of(const Folder& folder) {
+  std::ifstream in(folder / "log");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Elements of graded sizes.
+Tetrahedra graded_block() {
+  voxel::Universe universe;
+  universe.depth = 4;
+  return tetrahedra_of(voxel::combine(universe, voxel::Box{{0.5, 1.5, 0.5}, {12.5, 12.5, 11.5}}));
+}
+
+std::vector<glm::dvec3> displacements_at(const Tetrahedra& t, const std::vector<std::uint32_t>& nodes,
+                                         const std::function<glm::dvec3(const glm::dvec3&)>& field) {
+  std::vector<glm::dvec3> displacements;
+  for (const std::uint32_t node : nodes) displacements.push_back(field(t.nodes_mm[node]));
+  return displacements;
+}
+
+TEST(DeckSolver, ALinearDisplacementOfTheSurfaceIsLinearWithinToABillionthOfAMillimetre) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  const Tetrahedra t = graded_block();
+  const auto field = [](const glm::dvec3& p) {
+    return 1e-6 * glm::dvec3(2.0 * p.x - p.y + 0.5 * p.z, p.x + 3.0 * p.y, -p.y + 1.5 * p.z);
+  };
+  DeckOptions options;
+  options.node_sets = {{"SKIN", t.boundary_nodes}};
+  options.prescribed = {{"SKIN", displacements_at(t, t.boundary_nodes, field)}};
+  write_deck(t, folder / "patch.inp", options);
+  ASSERT_EQ(run_in(folder, "ccx patch"), 0) << log_of(folder);
+  const auto solved = read_displacements(folder / "patch.frd", t.nodes_mm.size());
+  std::size_t within = 0;
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    ASSERT_TRUE(solved[i].has_value()) << "node " << i;
+    EXPECT_LT(glm::distance(*solved[i], field(t.nodes_mm[i])), 1e-9) << "node " << i;
+    within +=
+        !std::binary_search(t.boundary_nodes.begin(), t.boundary_nodes.end(), static_cast<std::uint32_t>(i));
+  }
+  EXPECT_GT(within, 100U);
+}
+
+TEST(DeckSolver, AThickSpheresWallMovesAsTheClosedFormSays) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  const double inner = 10.0;
+  const double outer = 20.0;
+  const brep::Triangles shell =
+      tests::together(tests::ball({0, 0, 0}, outer, 4), tests::inside_out(tests::ball({0, 0, 0}, inner, 4)));
+  TetOptions fine;
+  fine.limit_volume = true;
+  fine.max_volume_mm3 = 2.0;
+  const Tetrahedra t = tetrahedralise(brep::mesh_of(shell), fine);
+  // The wall pushed out from within by 0.1 and held without: u = a r + b / r^2, whatever the stiffness.
+  const double b = 0.1 / (1.0 / (inner * inner) - inner / (outer * outer * outer));
+  const double a = -b / (outer * outer * outer);
+  DeckOptions options;
+  options.node_sets = {{"INNER", {}}, {"OUTER", {}}};
+  for (const std::uint32_t node : t.boundary_nodes)
+    options.node_sets[glm::length(t.nodes_mm[node]) < 15.0 ? 0 : 1].nodes.push_back(node);
+  options.prescribed = {
+      {"INNER", displacements_at(t, options.node_sets[0].nodes,
+                                 [](const glm::dvec3& p) { return 0.1 * glm::normalize(p); })},
+      {"OUTER", {}}};
+  write_deck(t, folder / "sphere.inp", options);
+  ASSERT_EQ(run_in(folder, "ccx sphere"), 0) << log_of(folder);
+  const auto solved = read_displacements(folder / "sphere.frd", t.nodes_mm.size());
+  double worst = 0.0;
+  double mean = 0.0;
+  std::size_t middle = 0;
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    const double r = glm::length(t.nodes_mm[i]);
+    if (r < 12.0 || r > 15.0) continue;
+    const double error = glm::dot(*solved[i], t.nodes_mm[i]) / r / (a * r + b / (r * r)) - 1.0;
+    worst = std::max(worst, std::abs(error));
+    mean += error;
+    ++middle;
+  }
+  ASSERT_GT(middle, 50U);
+  EXPECT_LT(std::abs(mean / static_cast<double>(middle)), 0.025);
+  EXPECT_LT(worst, 0.06);
+}
+
+TEST(DeckSolver, AResultOfAnotherDeckOrOfNoneIsRefused) {
+  const Folder folder;
+  std::ofstream(folder / "a.frd")
+      << "    1C\n -4  DISP        4    1\n -1         9 1.00000E-01 0.00000E+00-2.00000E-01\n -3\n";
+  EXPECT_EQ(read_displacements(folder / "a.frd", 9)[8], glm::dvec3(0.1, 0.0, -0.2));
+  EXPECT_EQ(read_displacements(folder / "a.frd", 9)[3], std::nullopt);
+  EXPECT_THROW(read_displacements(folder / "a.frd", 8), std::runtime_error);
+  std::ofstream(folder / "b.frd") << "    1C\n -4  STRESS      4    1\n -3\n";
+  EXPECT_THROW(read_displacements(folder / "b.frd", 9), std::runtime_error);
+}
+
+/// A deck of two regions, two materials, a set, two surfaces and a field.
+struct Rich {
+  Tetrahedra t = graded_block();
+  DeckOptions options;
+  Rich() {
+    for (const auto& tet : t.tets) t.region_of_tet.push_back(t.nodes_mm[tet[3]].x > 6.0 ? 1 : 0);
+    options.title = "rich -- <deck>";
+    options.materials = {{"HARD", 17000.0, 0.3}, {"SOFT", 300.0, 0.45}};
+    options.material_of_tet = t.region_of_tet;
+    options.node_sets = {{"LOW", {}}, {"HIGH", {}}};
+    for (const std::uint32_t node : t.boundary_nodes) {
+      if (t.nodes_mm[node].z < 0.6) options.node_sets[0].nodes.push_back(node);
+      if (t.nodes_mm[node].z > 11.4) options.node_sets[1].nodes.push_back(node);
+    }
+    options.prescribed = {
+        {"LOW", {}}, {"HIGH", std::vector<glm::dvec3>(options.node_sets[1].nodes.size(), {0.0, 0.0, 0.01})}};
+    DeckSurface all{"ALL", surface_faces(t)};
+    DeckSurface top{"TOP", {}};
+    for (const ElementFace& face : all.faces) {
+      const auto corners = corners_of(t, face);
+      if (std::all_of(corners.begin(), corners.end(),
+                      [&](std::uint32_t c) { return t.nodes_mm[c].z > 11.4; }))
+        top.faces.push_back(face);
+    }
+    options.surfaces = {all, top};
+    options.fields = {{"HU", std::vector<double>(t.tets.size(), 400.0)}};
+  }
+};
+
+TEST(Deck, FacesOfTheSurfaceFaceOutward) {
+  const Rich rich;
+  glm::dvec3 sum(0.0);
+  double six = 0.0;
+  for (const ElementFace& face : rich.options.surfaces[0].faces) {
+    const auto [a, b, c] = corners_of(rich.t, face);
+    const auto& p = rich.t.nodes_mm;
+    sum += glm::cross(p[b] - p[a], p[c] - p[a]);
+    six += glm::dot(p[a], glm::cross(p[b], p[c]));
+  }
+  EXPECT_LT(glm::length(sum), 1e-9);
+  EXPECT_NEAR(six / 6.0, 12.0 * 11.0 * 11.0, 1e-6);
+  for (const ElementFace& face : rich.options.surfaces[1].faces) {
+    const auto [a, b, c] = corners_of(rich.t, face);
+    const auto& p = rich.t.nodes_mm;
+    EXPECT_GT(glm::cross(p[b] - p[a], p[c] - p[a]).z, 0.0);
+  }
+}
+
+TEST(DeckSolver, CalculixTakesRegionsMaterialsSurfacesAndAStep) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  const Rich rich;
+  write_deck(rich.t, folder / "rich.inp", rich.options);
+  ASSERT_EQ(run_in(folder, "ccx rich"), 0) << log_of(folder);
+  const auto solved = read_displacements(folder / "rich.frd", rich.t.nodes_mm.size());
+  for (const std::uint32_t node : rich.options.node_sets[1].nodes)
+    EXPECT_EQ(solved[node], glm::dvec3(0.0, 0.0, 0.01));
+  for (const std::uint32_t node : rich.options.node_sets[0].nodes) EXPECT_EQ(solved[node], glm::dvec3(0.0));
+}
+
+TEST(DeckSolver, GmshFindsNothingWrongWithEitherVersion) {
+  if (!have("gmsh")) GTEST_SKIP() << "gmsh is not installed";
+  const Folder folder;
+  Rich rich;
+  rich.options.surfaces.pop_back();  // its faces would stand there twice
+  for (const bool old : {false, true}) {
+    rich.options.msh_2_2 = old;
+    write_deck(rich.t, folder / "rich.msh", rich.options);
+    ASSERT_EQ(run_in(folder, "gmsh -check rich.msh"), 0) << log_of(folder);
+    EXPECT_EQ(log_of(folder).find("Error"), std::string::npos) << log_of(folder);
+    EXPECT_EQ(log_of(folder).find("Warning"), std::string::npos) << log_of(folder);
+  }
+}
+
+TEST(DeckSolver, MeshioReadsTheSameNodesElementsRegionsAndSets) {
+  if (std::system("/usr/bin/python3 -c 'import meshio' > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "python3-meshio is not installed";
+  const Folder folder;
+  const Rich rich;
+  write_deck(rich.t, folder / "rich.inp", rich.options);
+  write_deck(rich.t, folder / "rich.vtu", rich.options);
+  write_deck(rich.t, folder / "rich.msh", rich.options);
+  write_deck(rich.t, folder / "rich.node", rich.options);
+  const std::string tets = std::to_string(rich.t.tets.size());
+  const std::string nodes = std::to_string(rich.t.nodes_mm.size());
+  std::ofstream(folder / "look.py")
+      << "import meshio, numpy\n"
+         "for name in ('rich.inp', 'rich.vtu', 'rich.msh', 'rich.ele'):\n"
+         "    mesh = meshio.read(name)\n"
+         "    cells = numpy.vstack([c.data for c in mesh.cells if c.type == 'tetra'])\n"
+         "    p = mesh.points[cells]\n"
+         "    six = numpy.einsum('ij,ij->i', numpy.cross(p[:,1]-p[:,0], p[:,2]-p[:,0]), p[:,3]-p[:,0])\n"
+         "    assert six.min() > 0, name\n"
+         "    assert abs(six.sum() / 6 - 12 * 11 * 11) < 1e-6, name\n"
+         "    assert len(cells) == "
+      << tets << " and len(mesh.points) == " << nodes
+      << ", name\n"
+         "mesh = meshio.read('rich.vtu')\n"
+         "assert sorted(set(mesh.cell_data['region'][0])) == [0, 1]\n"
+         "assert set(mesh.cell_data['HU'][0]) == {400.0}\n"
+         "assert mesh.point_data['HIGH'].sum() == "
+      << rich.options.node_sets[1].nodes.size()
+      << "\n"
+         "mesh = meshio.read('rich.inp')\n"
+         "assert len(mesh.point_sets['HIGH']) == "
+      << rich.options.node_sets[1].nodes.size() << "\n";
+  EXPECT_EQ(run_in(folder, "/usr/bin/python3 look.py"), 0) << log_of(folder);
+}
+
+TEST(DeckSolver, AFebioDeckIsWholeXmlWithItsSetsAndMaps) {
+  if (!have("/usr/bin/python3")) GTEST_SKIP() << "python3 is not installed";
+  const Folder folder;
+  const Rich rich;
+  write_deck(rich.t, folder / "rich.feb", rich.options);
+  std::ofstream(folder / "look.py")
+      << "import xml.etree.ElementTree as E\n"
+         "root = E.parse('rich.feb').getroot()\n"
+         "assert root.attrib['version'] == '4.0'\n"
+         "mesh = root.find('Mesh')\n"
+         "assert len(mesh.find('Nodes')) == "
+      << rich.t.nodes_mm.size()
+      << "\n"
+         "blocks = {e.attrib['name']: len(e) for e in mesh.findall('Elements')}\n"
+         "assert sum(blocks.values()) == "
+      << rich.t.tets.size()
+      << " and len(blocks) == 2, blocks\n"
+         "domains = {d.attrib['name']: d.attrib['mat'] for d in root.find('MeshDomains')}\n"
+         "assert domains == {'REGION1_HARD': 'HARD', 'REGION2_SOFT': 'SOFT'}, domains\n"
+         "sets = {s.attrib['name']: len(s.text.split(',')) for s in mesh.findall('NodeSet')}\n"
+         "assert sets['HIGH'] == "
+      << rich.options.node_sets[1].nodes.size()
+      << "\n"
+         "assert len(mesh.findall('Surface')) == 2\n"
+         "maps = [d for d in root.find('MeshData')]\n"
+         "assert len(maps) == 3 and all(len(m) == sets['HIGH'] for m in maps)\n"
+         "assert {n.text for n in maps[2]} == {'0.01'}\n"
+         "assert len(root.find('Boundary')) == 4\n";
+  EXPECT_EQ(run_in(folder, "/usr/bin/python3 look.py"), 0) << log_of(folder);
+}
+
+TEST(Deck, SetsMaterialsAndDisplacementsThatDoNotFitAreRefused) {
+  const Folder folder;
+  const auto refused = [&](const std::function<void(Rich&)>& spoil) {
+    Rich rich;
+    spoil(rich);
+    EXPECT_THROW(write_deck(rich.t, folder / "a.inp", rich.options), std::invalid_argument);
+  };
+  refused([](Rich& r) { r.options.node_sets[0].nodes.push_back(1U << 30); });
+  refused([](Rich& r) { r.options.prescribed[1].displacement_mm.pop_back(); });
+  refused([](Rich& r) { r.options.prescribed[0].node_set = "NONE"; });
+  refused([](Rich& r) { r.options.material_of_tet[5] = 2; });
+  refused([](Rich& r) { r.options.surfaces[0].faces[0].opposite = 4; });
+  refused([](Rich& r) { r.options.fields[0].values.pop_back(); });
+  refused([](Rich& r) { r.t.region_of_tet.pop_back(); });
+  refused([](Rich& r) { r.options.materials[1].youngs_modulus_mpa = 0.0; });
+}
+
+}  // namespace
+}  // namespace octotomy::convert
