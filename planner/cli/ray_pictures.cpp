@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "planner/answer.h"
 #include "planner/figures.h"
@@ -38,8 +39,8 @@ voxel::TransferFunction transfer_of(const RenderText& text) {
 struct RayPicture {
   std::vector<std::uint8_t> rgb;
   std::uint64_t lit_pixels = 0;
-  Json depth_range_mm = nullptr;
-  Json values = nullptr;
+  std::optional<glm::vec2> depth_range_mm;
+  std::optional<glm::vec2> values;
 };
 
 /// Lit pixels are those that let through less than half of the light from behind.
@@ -53,7 +54,7 @@ RayPicture picture_of(const voxel::Composite& composite) {
     high = picture.lit_pixels == 0 ? depth : std::max(high, depth);
     ++picture.lit_pixels;
   }
-  if (picture.lit_pixels > 0) picture.depth_range_mm = {low, high};
+  if (picture.lit_pixels > 0) picture.depth_range_mm = glm::vec2(low, high);
   return picture;
 }
 
@@ -64,7 +65,7 @@ RayPicture picture_of(const voxel::RayImage& image) {
   picture.rgb = voxel::grey_tones(image, *low, *high > *low ? *high : *low + 1.0);
   picture.lit_pixels = static_cast<std::uint64_t>(std::count_if(
       image.values.begin(), image.values.end(), [lowest = *low](float value) { return value > lowest; }));
-  picture.values = {*low, *high};
+  picture.values = glm::vec2(*low, *high);
   return picture;
 }
 
@@ -124,9 +125,10 @@ int render_rays(const Program& program, const RenderText& text) {
   json["size_px"] = {size_px.x, size_px.y};
   json["pixel_mm"] = plane.pixel_mm;
   json["lit_pixels"] = picture.lit_pixels;
-  json["depth_range_mm"] = picture.depth_range_mm;
+  const auto range = [](const glm::vec2& ends) { return Json::array({ends.x, ends.y}); };
+  json["depth_range_mm"] = picture.depth_range_mm ? range(*picture.depth_range_mm) : Json(nullptr);
   json["objects"] = {{{"name", objects.front().name}, {"lit_pixels", picture.lit_pixels}}};
-  if (!picture.values.is_null()) json["values"] = picture.values;
+  if (picture.values) json["values"] = range(*picture.values);
   program.say(json, lines({{"written", text.out.string()}, {"pixel", grouped(plane.pixel_mm, 4) + " mm"}}));
   return done;
 }
