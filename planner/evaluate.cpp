@@ -345,6 +345,8 @@ class Evaluator {
     const Making& still = makings_.at(step.object);
     Making making(moved(still.symbol, motion));
     object.octree = combined(making.symbol);
+    inherit_samples(object, {step.object});
+    object.moved_from_still = motion * object.moved_from_still;
     making.planes = moved_planes(still.planes, motion);
     making.spacing_mm = still.spacing_mm;
     making.voxel_lineage = "octree under a rigid motion, sampled at voxel centres";
@@ -359,7 +361,7 @@ class Evaluator {
 
   void evaluate_step(const std::string&, const ExportStep&) {}
 
-  /// A piece cut from one window shows that window's samples; a merger of several, or with a moved piece,
+  /// A piece cut from one window shows that window's samples; a merger of several, or of pieces moved apart,
   /// does not lie where one scan says.
   void inherit_samples(Object& object, const std::vector<std::string>& names) const {
     const Object* source = nullptr;
@@ -367,7 +369,8 @@ class Evaluator {
       const Object& operand = result_.object(name);
       if (operand.kind == "mask") continue;
       const bool same =
-          source == nullptr || (operand.threshold == source->threshold && operand.scan == source->scan);
+          source == nullptr || (operand.threshold == source->threshold && operand.scan == source->scan &&
+                                operand.moved_from_still == source->moved_from_still);
       if (!operand.grey || !same) return;
       source = &operand;
     }
@@ -375,6 +378,7 @@ class Evaluator {
     object.grey = source->grey;
     object.threshold = source->threshold;
     object.scan = source->scan;
+    object.moved_from_still = source->moved_from_still;
   }
 
   static verify::SharedMesh shared(brep::Mesh mesh) {

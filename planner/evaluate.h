@@ -51,11 +51,13 @@ struct Object {
   std::optional<brep::Measures> mesh_measures;
   std::optional<verify::Certificate> certificate;  ///< none for masks, and where there is no mesh
   std::vector<std::string> findings;
-  /// Where all of its surface that is not a cut is one window's lower bound on a scan as it lies: the samples
-  /// to interpolate that surface from.
+  /// Where all of its surface that is not a cut is one window's lower bound on a scan, as it lies or moved:
+  /// the samples to interpolate that surface from, and the motion, LPS to LPS, of all the steps that moved
+  /// it.
   std::optional<voxel::GreyOctree> grey;
   double threshold = 0.0;
   std::string scan;  ///< that grey is of
+  glm::dmat4 moved_from_still{1.0};
 };
 
 /// A measure step's answer: indices into Evaluation::objects.

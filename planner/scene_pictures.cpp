@@ -116,7 +116,9 @@ Frame frame_of(const std::vector<voxel::Drawn>& objects, const voxel::View& view
 }  // namespace
 
 voxel::Drawn drawn(const Object& object, const glm::vec3& colour) {
-  return {object.id, object.octree, colour, object.grey, object.threshold};
+  voxel::Drawn drawn{object.id, object.octree, colour, object.grey, object.threshold};
+  if (object.moved_from_still != glm::dmat4(1.0)) drawn.moved_from_still = object.moved_from_still;
+  return drawn;
 }
 
 FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {

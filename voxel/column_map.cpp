@@ -90,27 +90,42 @@ DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRay
   return image;
 }
 
-Seen seen_in_column(const Drawn& object, const AxisView& axes, const glm::ivec2& column, int before) {
-  const Universe& universe = object.octree.universe();
-  Seen seen{0.0f, 0, true};
-  double depth_voxels = before;
-  if (object.grey && before > 0) {
-    const auto voxel = [&](int d) {
-      glm::ivec3 at;
-      at[axes.axis[0]] = column.x;
-      at[axes.axis[1]] = column.y;
-      at[axes.axis[2]] = axes.reversed[2] ? universe.side() - 1 - d : d;
-      return at;
-    };
-    const double inside = sample_at(*object.grey, voxel(before));
-    const double outside = sample_at(*object.grey, voxel(before - 1));
-    if (outside < object.threshold && object.threshold <= inside) {
-      // Voxel centres are half a voxel behind their front faces.
-      depth_voxels = before - 0.5 + (object.threshold - outside) / (inside - outside);
-      seen.stepped = false;
-    }
+ColumnSurface::ColumnSurface(const Drawn& object, const AxisView& axes)
+    : object_(object),
+      axes_(axes),
+      spacing_mm_(object.octree.universe().lattice().spacing_mm()[axes.axis[2]]) {
+  if (object.grey && object.moved_from_still) moved_.emplace(object);
+}
+
+glm::ivec3 ColumnSurface::voxel(const glm::ivec2& column, int before) const {
+  glm::ivec3 at;
+  at[axes_.axis[0]] = column.x;
+  at[axes_.axis[1]] = column.y;
+  at[axes_.axis[2]] = axes_.reversed[2] ? object_.octree.universe().side() - 1 - before : before;
+  return at;
+}
+
+std::optional<Seen> ColumnSurface::seen_moved(const glm::ivec2& column, int before) const {
+  // A ray through the column's centre, from the universe's front face.
+  const int look = axes_.axis[2];
+  const double forward = axes_.reversed[2] ? -1.0 : 1.0;
+  VoxelRay ray{glm::dvec3(voxel(column, 0)), glm::dvec3(0.0)};
+  ray.start[look] -= 0.5 * forward;
+  ray.per_mm[look] = forward / spacing_mm_;
+  return moved_->seen_moved(ray, {{}, before * spacing_mm_, (before + 1) * spacing_mm_, look});
+}
+
+Seen ColumnSurface::seen(const glm::ivec2& column, int before) const {
+  Seen seen{static_cast<float>(before * spacing_mm_), 0, true};
+  if (moved_) return seen_moved(column, before).value_or(seen);
+  if (!object_.grey || before == 0) return seen;
+  const double inside = sample_at(*object_.grey, voxel(column, before));
+  const double outside = sample_at(*object_.grey, voxel(column, before - 1));
+  if (outside < object_.threshold && object_.threshold <= inside) {
+    // Voxel centres are half a voxel behind their front faces.
+    const double depth_voxels = before - 0.5 + (object_.threshold - outside) / (inside - outside);
+    seen = {static_cast<float>(depth_voxels * spacing_mm_), 0, false};
   }
-  seen.depth_mm = static_cast<float>(depth_voxels * universe.lattice().spacing_mm()[axes.axis[2]]);
   return seen;
 }
 
@@ -120,6 +135,8 @@ ColumnMap column_map(const std::vector<Drawn>& objects, const AxisView& axes,
   const glm::dvec3 spacing_mm = universe.lattice().spacing_mm();
   ColumnMap map{universe.side(), {spacing_mm[axes.axis[0]], spacing_mm[axes.axis[1]]}, {}};
   map.columns.resize(static_cast<std::size_t>(map.side) * static_cast<std::size_t>(map.side));
+  std::vector<ColumnSurface> surfaces;
+  for (const Drawn& each : objects) surfaces.emplace_back(each, axes);
   tbb::parallel_for(0, map.side, [&](int j) {
     for (int i = 0; i < map.side; ++i) {
       const std::size_t entry =
@@ -132,7 +149,7 @@ ColumnMap column_map(const std::vector<Drawn>& objects, const AxisView& axes,
           object = o;
         }
       if (nearest < 0) continue;
-      map.columns[entry] = seen_in_column(objects[object], axes, {i, j}, nearest);
+      map.columns[entry] = surfaces[object].seen({i, j}, nearest);
       map.columns[entry].object = static_cast<std::int16_t>(object);
     }
   });

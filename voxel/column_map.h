@@ -8,6 +8,7 @@
 #include "voxel/camera.h"
 #include "voxel/depth_image.h"
 #include "voxel/drawn.h"
+#include "voxel/ray_surface.h"
 
 namespace octotomy::voxel {
 
@@ -35,12 +36,27 @@ struct ColumnMap {
 DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRays& rays,
                       const glm::ivec2& size_px);
 
-/// A column's depth in millimetres where its first voxel lies `before` voxels behind the universe's front
-/// face. With Drawn::grey it is where the threshold is crossed between the centre of the last voxel outside
-/// and the first inside (thesis 5.2.2.2), also where the node before is a partial one, for it is the voxel
-/// before that counts; where the samples do not cross the threshold, the object was cut there and the voxel's
-/// face stays.
-Seen seen_in_column(const Drawn& object, const AxisView& axes, const glm::ivec2& column, int before);
+/// Finds an object's surface in columns. Refers to the object.
+class ColumnSurface {
+ public:
+  ColumnSurface(const Drawn& object, const AxisView& axes);
+
+  /// What is seen in a column whose first voxel lies `before` voxels behind the universe's front face. With
+  /// Drawn::grey its depth is where the threshold is crossed between the centre of the last voxel outside and
+  /// the first inside (thesis 5.2.2.2), also where the node before is a partial one, for it is the voxel
+  /// before that counts; where the samples do not cross the threshold, the object was cut there and the
+  /// voxel's face stays.
+  Seen seen(const glm::ivec2& column, int before) const;
+
+ private:
+  glm::ivec3 voxel(const glm::ivec2& column, int before) const;
+  std::optional<Seen> seen_moved(const glm::ivec2& column, int before) const;
+
+  const Drawn& object_;
+  AxisView axes_;
+  double spacing_mm_ = 1.0;           ///< along the look axis
+  std::optional<GreySurface> moved_;  ///< of an object away from its samples
+};
 
 /// The map of several objects' columns: the nearest wins, the first object listed where several are equally
 /// near. `before[o]` are the numbers of voxels before the first one of object o, -1 where there is none, by

@@ -285,8 +285,9 @@ class ColumnSamples {
 /// Pass 2 for a tile: from the numbers of the first voxels to millimetres.
 class Depths {
  public:
-  Depths(const std::vector<Drawn>& objects, const TracedFrame& frame, double spacing_mm)
-      : objects_(objects), frame_(frame), spacing_mm_(spacing_mm) {
+  Depths(const std::vector<Drawn>& objects, const AxisView& axes, const TracedFrame& frame, double spacing_mm)
+      : objects_(objects), axes_(axes), frame_(frame), spacing_mm_(spacing_mm) {
+    for (const Drawn& object : objects) surfaces_.emplace_back(object, axes);
     for (const Drawn& object : objects)
       readers_.push_back(object.grey ? std::optional<ColumnSamples>(std::in_place, *object.grey, frame)
                                      : std::nullopt);
@@ -295,6 +296,15 @@ class Depths {
   void interpolate(Seen& seen, int p, int q) {
     const auto object = static_cast<std::size_t>(seen.object);
     const int d = static_cast<int>(seen.depth_mm);
+    if (objects_[object].moved_from_still) {
+      glm::ivec2 column;
+      column[frame_.p_axis == axes_.axis[0] ? 0 : 1] = p;
+      column[frame_.q_axis == axes_.axis[0] ? 0 : 1] = q;
+      const std::int16_t number = seen.object;
+      seen = surfaces_[object].seen(column, d);
+      seen.object = number;
+      return;
+    }
     double depth_voxels = d;
     if (readers_[object] && d > 0) {
       const double threshold = objects_[object].threshold;
@@ -313,7 +323,9 @@ class Depths {
 
  private:
   const std::vector<Drawn>& objects_;
+  const AxisView& axes_;
   const TracedFrame& frame_;
+  std::vector<ColumnSurface> surfaces_;  ///< of moved objects
   double spacing_mm_;
   std::vector<std::optional<ColumnSamples>> readers_;
 };
@@ -334,7 +346,7 @@ ColumnMap node_trace(const std::vector<Drawn>& objects, const AxisView& axes) {
     // 1. Find the first voxel of every column.
     TileTrace(objects, frame, tile_p, tile_q, map.columns).run();
     // 2. Turn it into a depth, leaf by leaf so that a leaf's samples are met together.
-    Depths depths(objects, frame, spacing_mm[frame.look]);
+    Depths depths(objects, axes, frame, spacing_mm[frame.look]);
     const int last_p = std::min(tile_p + tile_side, frame.side);
     const int last_q = std::min(tile_q + tile_side, frame.side);
     for (int leaf_q = tile_q; leaf_q < last_q; leaf_q += 4)

@@ -103,7 +103,11 @@ std::vector<glm::vec3> object_normals(const DepthImage& image, const std::vector
       const Drawn& object = objects[static_cast<std::size_t>(seen.object)];
       const glm::dvec3 p = rays.start({x + 0.5, y + 0.5}) + double(seen.depth_mm) * rays.per_mm;
       glm::dvec3 normal(0.0);
-      if (kind == ObjectNormals::Grey && object.grey && !seen.stepped) normal = grey_normal(*object.grey, p);
+      if (kind == ObjectNormals::Grey && object.grey && !seen.stepped) {
+        const glm::dmat4 still_from_voxel = object.still_from_voxel().value_or(glm::dmat4(1.0));
+        normal = glm::transpose(glm::dmat3(still_from_voxel)) *
+                 grey_normal(*object.grey, glm::dvec3(still_from_voxel * glm::dvec4(p, 1.0)));
+      }
       if (normal == glm::dvec3(0.0)) {
         const Face face = face_at(object.octree, p, rays.per_mm);
         normal = context_normal(object.octree, face.voxel, face.axis, face.outward);

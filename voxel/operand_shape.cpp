@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <vector>
 
 #include "voxel/operand.h"
 #include "voxel/operand_frame.h"
@@ -18,10 +21,18 @@ bool meets(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& centre, c
   return across <= half.x * std::abs(arm.y) + half.y * std::abs(arm.x);
 }
 
-Status status_in_region(const Region& region, const glm::dvec2& centre, const glm::dvec2& half) {
+template <typename Visit>
+void for_each_edge(const Region& region, const Visit& visit) {
   for (const std::vector<glm::dvec2>& polygon : region.polygons_mm)
     for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
-      if (meets(polygon[last], polygon[i], centre, half)) return Status::Mixed;
+      visit(polygon[last], polygon[i]);
+}
+
+Status status_in_region(const Region& region, const glm::dvec2& centre, const glm::dvec2& half) {
+  bool mixed = false;
+  for_each_edge(
+      region, [&](const glm::dvec2& a, const glm::dvec2& b) { mixed = mixed || meets(a, b, centre, half); });
+  if (mixed) return Status::Mixed;
   return contains(region, centre) ? Status::Full : Status::Empty;
 }
 
@@ -87,10 +98,32 @@ Cover MaskOperand::cover(const TargetBlock& block) const {
 }
 
 void MaskOperand::words(const WantedLeaves& leaves) const {
-  for_each_wanted_voxel(leaves, [&](const glm::dvec3& voxel) {
-    return std::all_of(regions_.begin(), regions_.end(), [&](const Projected& projected) {
-      return contains(*projected.region, {projected.u(voxel), projected.v(voxel)});
-    });
+  // Regions all over the leaf are not asked voxel by voxel, and nor are edges above or below all of it, which
+  // a ray from one of its voxels cannot cross.
+  std::vector<std::array<glm::dvec2, 2>> edges;
+  for_each_wanted(leaves, [&](const glm::ivec3& origin) {
+    std::uint64_t word = all_children;
+    for (const Projected& projected : regions_) {
+      const glm::dvec3 middle = glm::dvec3(origin) + 1.5;
+      const glm::dvec2 centre(projected.u(middle), projected.v(middle));
+      const glm::dvec2 half(reach(projected.u, 4), reach(projected.v, 4));
+      const Status status = status_in_region(*projected.region, centre, half);
+      if (status == Status::Full) continue;
+      if (status == Status::Empty) return std::uint64_t{0};
+      edges.clear();
+      for_each_edge(*projected.region, [&](const glm::dvec2& a, const glm::dvec2& b) {
+        if (std::min(a.y, b.y) <= centre.y + half.y && std::max(a.y, b.y) >= centre.y - half.y)
+          edges.push_back({a, b});
+      });
+      for (std::uint64_t rest = word; rest != 0; rest &= rest - 1) {
+        const glm::dvec3 voxel(origin + child_place(std::countr_zero(rest)));
+        const glm::dvec2 p_mm(projected.u(voxel), projected.v(voxel));
+        bool inside = false;
+        for (const auto& [a, b] : edges) inside ^= crosses_ray_from(a, b, p_mm);
+        if (!inside) word &= ~(rest & (~rest + 1));
+      }
+    }
+    return word;
   });
 }
 

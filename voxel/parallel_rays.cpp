@@ -233,6 +233,12 @@ void ParallelRays::tabulate() {
     }
 }
 
+ParallelRays ParallelRays::through(const Octree& octree) const {
+  ParallelRays others = *this;
+  others.octree_ = octree;
+  return others;
+}
+
 void ParallelRays::cast(const glm::ivec2& first_px, const glm::ivec2& last_px, const Accept& accept,
                         const Announce& announce) const {
   Square(*this, first_px, last_px, accept, announce).run();

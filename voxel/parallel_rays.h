@@ -31,6 +31,8 @@ class ParallelRays {
 
   /// Precondition: rays of an orthographic plane of the octree's universe. Keeps the octree.
   ParallelRays(const Octree& octree, const VoxelRays& rays);
+  /// The same rays through another octree of the same universe.
+  ParallelRays through(const Octree& octree) const;
 
   /// Offers what the rays of a square of pixels pass to `accept`, each ray its voxels from front to back.
   /// Pixels `first_px` to `last_px`, both included and at most square_px apart.

@@ -34,7 +34,8 @@ struct RayCast::Prepared {
   std::vector<Drawn> objects;
   VoxelRays rays;
   Mirror mirror;
-  std::vector<ParallelRays> bundles;  ///< by object
+  std::vector<ParallelRays> bundles;                 ///< by object
+  std::vector<std::optional<GreySurface>> surfaces;  ///< by object, of those that have their samples
   glm::ivec2 size_px{0};
 
   /// Depth by which a surface may lie before the voxel that it was found at.
@@ -48,7 +49,7 @@ struct RayCast::Prepared {
     const Drawn& object = objects[i];
     if (nearest.lit() && passage.enter_mm > nearest.depth_mm + reach_mm(object)) return true;
     std::optional<Seen> seen = Seen{static_cast<float>(passage.enter_mm), 0, true};
-    if (object.grey) seen = grey_surface(object, ray, mirror, passage);
+    if (surfaces[i]) seen = surfaces[i]->seen(ray, mirror, passage);
     if (!seen) return false;
     seen->object = static_cast<std::int16_t>(i);
     if (seen->depth_mm < nearest.depth_mm) nearest = *seen;
@@ -60,8 +61,13 @@ RayCast::RayCast(const std::vector<Drawn>& objects, const ImagePlane& plane) {
   const Octree& first = objects.front().octree;
   const VoxelRays rays = voxel_rays(first.universe(), plane);
   auto prepared = std::make_shared<Prepared>(
-      Prepared{objects, rays, Mirror(rays.per_mm, 1 << (2 * first.root_height())), {}, plane.size_px});
-  for (const Drawn& object : objects) prepared->bundles.emplace_back(object.octree, rays);
+      Prepared{objects, rays, Mirror(rays.per_mm, 1 << (2 * first.root_height())), {}, {}, plane.size_px});
+  for (const Drawn& object : objects) {
+    std::vector<ParallelRays>& bundles = prepared->bundles;
+    bundles.push_back(bundles.empty() ? ParallelRays(object.octree, rays)
+                                      : bundles.front().through(object.octree));
+    prepared->surfaces.push_back(object.grey ? std::optional<GreySurface>(object) : std::nullopt);
+  }
   prepared_ = std::move(prepared);
 }
 
@@ -96,7 +102,7 @@ DepthImage RayCast::picture() const {
     const glm::ivec2 last = glm::min(first + square_px, the.size_px) - 1;
     for (std::size_t i = 0; i < the.objects.size(); ++i) {
       ParallelRays::Announce fetch;
-      if (the.objects[i].grey)
+      if (the.objects[i].grey && !the.objects[i].moved_from_still)
         fetch = [&grey = *the.objects[i].grey](const glm::ivec3& leaf) { prefetch_leaf(grey, leaf); };
       const auto take = [&](const glm::ivec2& pixel, const Passage& passage) {
         const VoxelRay ray{the.rays.start(glm::dvec2(pixel) + 0.5), the.rays.per_mm};

@@ -129,11 +129,22 @@ float crossing(RaySamples& samples, float threshold, Sample below, Sample above)
 
 }  // namespace
 
-std::optional<Seen> grey_surface(const Drawn& object, const VoxelRay& ray, const Mirror& mirror,
-                                 const Passage& passage) {
+GreySurface::GreySurface(const Drawn& object)
+    : grey_(*object.grey),
+      threshold_(static_cast<float>(object.threshold)),
+      side_(object.octree.universe().side()),
+      still_from_voxel_(object.still_from_voxel()) {}
+
+std::optional<Seen> GreySurface::seen(const VoxelRay& ray, const Mirror& mirror,
+                                      const Passage& passage) const {
+  return still_from_voxel_ ? seen_moved(ray, passage) : seen_still(ray, mirror, passage);
+}
+
+std::optional<Seen> GreySurface::seen_still(const VoxelRay& ray, const Mirror& mirror,
+                                            const Passage& passage) const {
   // Distances are from where the ray enters the voxel.
-  RaySamples samples(*object.grey, ray, passage.enter_mm);
-  const auto threshold = static_cast<float>(object.threshold);
+  RaySamples samples(grey_, ray, passage.enter_mm);
+  const float threshold = threshold_;
   const auto face = [&] { return Seen{static_cast<float>(passage.enter_mm), 0, true}; };
   const auto surface = [&](Sample below, Sample above) {
     return Seen{static_cast<float>(passage.enter_mm + double{crossing(samples, threshold, below, above)}), 0,
@@ -154,9 +165,8 @@ std::optional<Seen> grey_surface(const Drawn& object, const VoxelRay& ray, const
   glm::ivec3 before = passage.voxel;
   --before[passage.entered_through];
   before = mirror.native(before);
-  const int side = object.octree.universe().side();
   if (glm::any(glm::lessThan(before, glm::ivec3(0))) ||
-      glm::any(glm::greaterThanEqual(before, glm::ivec3(side))) || samples.voxel(before) >= threshold)
+      glm::any(glm::greaterThanEqual(before, glm::ivec3(side_))) || samples.voxel(before) >= threshold)
     return face();
   // Trilinear surfaces end within a voxel of the object's voxels, along a slanting ray within two.
   const auto half_voxel_mm = static_cast<float>(0.5 / glm::length(ray.per_mm));
@@ -168,6 +178,27 @@ std::optional<Seen> grey_surface(const Drawn& object, const VoxelRay& ray, const
     above = sample;
   }
   return face();
+}
+
+std::optional<Seen> GreySurface::seen_moved(const VoxelRay& ray, const Passage& passage) const {
+  const VoxelRay still{glm::dvec3(*still_from_voxel_ * glm::dvec4(ray.start, 1.0)),
+                       glm::dmat3(*still_from_voxel_) * ray.per_mm};
+  RaySamples samples(grey_, still, passage.enter_mm);
+  const auto half_voxel_mm = static_cast<float>(0.5 / glm::length(ray.per_mm));
+  const auto way_mm = static_cast<float>(passage.leave_mm - passage.enter_mm);
+  Sample below{-4.0f * half_voxel_mm, samples(-4.0f * half_voxel_mm)};
+  // Where there is object all the way, it was cut.
+  const bool cut = below.value >= threshold_;
+  for (const float distance_mm :
+       {-3.0f * half_voxel_mm, -2.0f * half_voxel_mm, -half_voxel_mm, 0.0f, 0.5f * way_mm, way_mm}) {
+    const Sample sample{distance_mm, samples(distance_mm)};
+    if (below.value < threshold_ && sample.value >= threshold_)
+      return Seen{static_cast<float>(passage.enter_mm + double{crossing(samples, threshold_, below, sample)}),
+                  0, false};
+    below = sample;
+  }
+  if (cut) return Seen{static_cast<float>(passage.enter_mm), 0, true};
+  return std::nullopt;
 }
 
 }  // namespace octotomy::voxel

@@ -16,10 +16,27 @@ struct VoxelRay {
   glm::dvec3 per_mm{0.0};
 };
 
-/// The surface of a grey object at a voxel that a ray passes: where trilinear samples cross the threshold
-/// (thesis 5.2.2.2), or the voxel's face where the object was cut there; none where the ray stays outside the
-/// surface. Precondition: the object has its samples; the mirror is that of the ray.
-std::optional<Seen> grey_surface(const Drawn& object, const VoxelRay& ray, const Mirror& mirror,
-                                 const Passage& passage);
+/// Finds the surface of an object at voxels that rays pass. Keeps the object's samples; any number of threads
+/// may ask.
+class GreySurface {
+ public:
+  /// Precondition: the object has its samples.
+  explicit GreySurface(const Drawn& object);
+
+  /// Where trilinear samples cross the threshold (thesis 5.2.2.2), or the voxel's face where the object was
+  /// cut there; none where the ray stays outside the surface. Precondition: the mirror is that of the ray.
+  std::optional<Seen> seen(const VoxelRay& ray, const Mirror& mirror, const Passage& passage) const;
+  /// The same of a moved object: its voxels do not lie on the samples, so that the surface is sought from two
+  /// voxels before the one passed to its far side. Precondition: Drawn::moved_from_still is set.
+  std::optional<Seen> seen_moved(const VoxelRay& ray, const Passage& passage) const;
+
+ private:
+  std::optional<Seen> seen_still(const VoxelRay& ray, const Mirror& mirror, const Passage& passage) const;
+
+  GreyOctree grey_;
+  float threshold_ = 0.0f;
+  int side_ = 0;                                ///< of the object's universe
+  std::optional<glm::dmat4> still_from_voxel_;  ///< Drawn::still_from_voxel()
+};
 
 }  // namespace octotomy::voxel

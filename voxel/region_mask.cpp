@@ -42,13 +42,8 @@ void check(const RegionMask& mask) {
 bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm) {
   bool inside = false;
   for (const std::vector<glm::dvec2>& polygon : polygons_mm)
-    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
-      const glm::dvec2& a = polygon[last];
-      const glm::dvec2& b = polygon[i];
-      // Half open in y, so that a ray through a vertex meets exactly one of its two edges.
-      if ((a.y > p_mm.y) == (b.y > p_mm.y)) continue;
-      if (p_mm.x < (b.x - a.x) * (p_mm.y - a.y) / (b.y - a.y) + a.x) inside = !inside;
-    }
+    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
+      inside ^= crosses_ray_from(polygon[last], polygon[i], p_mm);
   return inside;
 }
 

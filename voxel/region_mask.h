@@ -26,6 +26,12 @@ struct RegionMask {
 /// a coordinate that is not finite, no area.
 void check(const RegionMask& mask);
 
+/// Whether an edge from a to b crosses the ray from p towards growing x: the even-odd rule counts these. Half
+/// open in y, so that a ray through a vertex meets exactly one of its two edges.
+inline bool crosses_ray_from(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p_mm) {
+  return (a.y > p_mm.y) != (b.y > p_mm.y) && p_mm.x < (b.x - a.x) * (p_mm.y - a.y) / (b.y - a.y) + a.x;
+}
+
 /// By the even-odd rule over all polygons.
 bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm);
 bool contains(const Region& region, const glm::dvec2& p_mm);

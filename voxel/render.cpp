@@ -24,7 +24,7 @@ void check(const std::vector<Drawn>& objects, const RenderOptions& options) {
     if (object.scalar && object.scalar->universe != object.octree.universe())
       throw std::invalid_argument("the scalar that colours object '" + object.name +
                                   "' is of another universe than the object: make it for the same");
-    if (object.grey && object.grey->universe() != object.octree.universe())
+    if (object.grey && !object.moved_from_still && object.grey->universe() != object.octree.universe())
       throw std::invalid_argument("the grey octree of object '" + object.name +
                                   "' is of another universe than the object: build it for the same");
   }

@@ -12,6 +12,7 @@
 #include "tests/bench/subjects.h"
 #include "voxel/camera.h"
 #include "voxel/combine.h"
+#include "voxel/expression.h"
 #include "voxel/render.h"
 #ifdef OCTOTOMY_HAS_EMBREE
 #include "tests/bench/embree_peer.h"
@@ -33,9 +34,11 @@ struct Case {
   std::string view;       ///< anterior or oblique
   int side_px = 512;
   int side = 512;
+  bool planned = false;  ///< cut and moved instead of as it is
 
   std::string name() const {
-    return "render/" + algorithm + "/" + view + "/" + std::to_string(side_px) + "px/" + std::to_string(side);
+    return "render/" + algorithm + "/" + view + (planned ? "_planned" : "") + "/" + std::to_string(side_px) +
+           "px/" + std::to_string(side);
   }
   voxel::View axes() const { return voxel::parse_view(view == "oblique" ? "35,15" : view); }
 };
@@ -43,6 +46,24 @@ struct Case {
 voxel::Drawn drawn_skull(int side) {
   const voxel::GreyOctree grey = grey_skull(side);
   return {"skull", voxel::combine(universe(side), voxel::Window{grey, bone_hu, 32767.0}), {}, grey, bone_hu};
+}
+
+/// The skull with its upper jaw cut off by a mask of two regions and moved: made anew for every picture, as
+/// when a piece is under the hand.
+std::vector<voxel::Drawn> planned_skull(const voxel::Drawn& skull) {
+  static const voxel::Expression cut(
+      voxel::RegionMask{{{voxel::parse_view("anterior"), {{{{-40, -60}, {40, -60}, {40, -25}, {-40, -25}}}}},
+                         {voxel::parse_view("left"), {{{{-90, -60}, {-20, -60}, {-20, -25}, {-90, -25}}}}}}});
+  static const glm::dmat4 advance = voxel::moved_from_still({{0, -6, 2}, 5.0, {1, 0, 0}, {0, -40, -30}});
+  const voxel::Universe& universe = skull.octree.universe();
+  const voxel::Expression bone(skull.octree);
+  voxel::Drawn rest = skull;
+  rest.octree = voxel::combine(universe, bone - cut);
+  voxel::Drawn jaw = skull;
+  jaw.name = "jaw";
+  jaw.octree = voxel::combine(universe, voxel::moved(bone & cut, advance));
+  jaw.moved_from_still = advance;
+  return {rest, jaw};
 }
 
 voxel::RenderOptions options_of(const Case& the) {
@@ -61,7 +82,8 @@ void run(benchmark::State& state, const Case& the) {
   options.centre_mm = frame.centre_mm;
   options.width_mm = frame.width_mm;
   std::uint64_t lit = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(lit = voxel::render(objects, options).lit_pixels);
+  for (auto _ : state)
+    lit = voxel::render(the.planned ? planned_skull(objects.front()) : objects, options).lit_pixels;
   state.counters["lit"] = static_cast<double>(lit);
 }
 
@@ -145,7 +167,9 @@ void register_render() {
       if (traces && std::string(view) == "oblique") continue;  // node tracing is for views along the axes
       for (const int side_px : {512, 1024})
         for (const int side : {256, 512}) {
-          const Case the{algorithm, view, side_px, side};
+          Case the{algorithm, view, side_px, side, true};
+          add(the.name(), [=](benchmark::State& state) { run(state, the); });
+          the.planned = false;
           add(the.name(), [=](benchmark::State& state) { run(state, the); });
 #ifdef OCTOTOMY_HAS_EMBREE
           add("peer/embree/" + the.name(), [=](benchmark::State& state) { run_embree(state, the); });
