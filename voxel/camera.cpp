@@ -86,7 +86,7 @@ Frame frame_about(const std::vector<Drawn>& objects, const View& view, const glm
 
 ImagePlane image_plane(const Universe& universe, const View& view, const glm::ivec2& size_px,
                        const Frame& frame) {
-  ImagePlane plane{view, size_px, frame.centre_mm, frame.width_mm / size_px.x};
+  ImagePlane plane{view, size_px, frame.centre_mm, frame.width_mm / size_px.x, 0.0, 0.0, {}};
   const Box box = bounds(universe.lattice());
   double nearest = 0.0;
   double farthest = 0.0;
@@ -101,11 +101,27 @@ ImagePlane image_plane(const Universe& universe, const View& view, const glm::iv
   return plane;
 }
 
+ImagePlane seen_from(ImagePlane plane, double eye_distance_mm) {
+  plane.eye = Eye{eye_distance_mm, 0.5 * plane.depth_range_mm};
+  return plane;
+}
+
 VoxelRays voxel_rays(const Universe& universe, const ImagePlane& plane) {
   const glm::dmat4 voxel_from_lps = glm::inverse(universe.lps_from_voxel);
   const glm::dmat3 turn(voxel_from_lps);
   VoxelRays rays;
   rays.first = glm::dvec3(voxel_from_lps * glm::dvec4(plane.lps_mm({0, 0}, 0.0), 1.0));
+  if (plane.eye) {
+    const auto along = [&](const glm::dvec2& p_px) {
+      return turn * (plane.lps_mm(p_px, 1.0) - plane.lps_mm(p_px, 0.0));
+    };
+    rays.per_px_x = turn * (plane.lps_mm({1, 0}, 0.0) - plane.lps_mm({0, 0}, 0.0));
+    rays.per_px_y = turn * (plane.lps_mm({0, 1}, 0.0) - plane.lps_mm({0, 0}, 0.0));
+    rays.per_mm = along({0, 0});
+    rays.per_mm_px_x = along({1, 0}) - rays.per_mm;
+    rays.per_mm_px_y = along({0, 1}) - rays.per_mm;
+    return rays;
+  }
   rays.per_px_x = turn * (plane.view.right * plane.pixel_mm);
   rays.per_px_y = turn * (plane.view.up * -plane.pixel_mm);
   rays.per_mm = turn * plane.view.look;

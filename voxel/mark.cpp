@@ -16,7 +16,9 @@ SightLine sight_line(const View& view, const glm::dvec2& p_mm) {
 }
 
 glm::dvec2 pixel_position(const ImagePlane& plane, const glm::dvec3& p_mm) {
-  const glm::dvec2 from_centre = (plane.view.project(p_mm) - plane.centre_mm) / plane.pixel_mm;
+  const double depth_mm = glm::dot(p_mm, plane.view.look) - plane.nearest_mm;
+  const double spread = plane.eye ? plane.eye->spread(depth_mm) : 1.0;
+  const glm::dvec2 from_centre = (plane.view.project(p_mm) - plane.centre_mm) / (spread * plane.pixel_mm);
   return glm::dvec2(plane.size_px) * 0.5 + glm::dvec2(from_centre.x, -from_centre.y);
 }
 

@@ -101,7 +101,9 @@ std::vector<glm::vec3> object_normals(const DepthImage& image, const std::vector
       const Seen& seen = image.at(x, y);
       if (!seen.lit()) continue;
       const Drawn& object = objects[static_cast<std::size_t>(seen.object)];
-      const glm::dvec3 p = rays.start({x + 0.5, y + 0.5}) + double(seen.depth_mm) * rays.per_mm;
+      const glm::dvec2 p_px(x + 0.5, y + 0.5);
+      const glm::dvec3 direction = rays.direction(p_px);
+      const glm::dvec3 p = rays.start(p_px) + double(seen.depth_mm) * direction;
       glm::dvec3 normal(0.0);
       if (kind == ObjectNormals::Grey && object.grey && !seen.stepped) {
         const glm::dmat4 still_from_voxel = object.still_from_voxel().value_or(glm::dmat4(1.0));
@@ -109,7 +111,7 @@ std::vector<glm::vec3> object_normals(const DepthImage& image, const std::vector
                  grey_normal(*object.grey, glm::dvec3(still_from_voxel * glm::dvec4(p, 1.0)));
       }
       if (normal == glm::dvec3(0.0)) {
-        const Face face = face_at(object.octree, p, rays.per_mm);
+        const Face face = face_at(object.octree, p, direction);
         normal = context_normal(object.octree, face.voxel, face.axis, face.outward);
       }
       normals[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.size_px.x) +

@@ -33,23 +33,25 @@ void prefetch_leaf(const GreyOctree& grey, const glm::ivec3& leaf) {
 struct RayCast::Prepared {
   std::vector<Drawn> objects;
   VoxelRays rays;
-  Mirror mirror;
+  std::optional<Eye> eye;
+  Mirror mirror;                                     ///< of parallel rays
   std::vector<ParallelRays> bundles;                 ///< by object
   std::vector<std::optional<GreySurface>> surfaces;  ///< by object, of those that have their samples
   glm::ivec2 size_px{0};
 
   /// Depth by which a surface may lie before the voxel that it was found at.
-  double reach_mm(const Drawn& object) const {
-    return object.grey ? 2.0 / glm::length(mirror.speed_per_mm) : 0.0;
+  static double reach_mm(const Drawn& object, const VoxelRay& ray) {
+    return object.grey ? 2.0 / glm::length(ray.per_mm) : 0.0;
   }
 
   /// Takes what object `i` shows at a voxel if that is nearer than what was seen so far; false where it shows
   /// nothing there, and the ray goes on.
-  bool take(std::size_t i, const VoxelRay& ray, const Passage& passage, Seen& nearest) const {
+  bool take(std::size_t i, const VoxelRay& ray, const Mirror& frame, const Passage& passage,
+            Seen& nearest) const {
     const Drawn& object = objects[i];
-    if (nearest.lit() && passage.enter_mm > nearest.depth_mm + reach_mm(object)) return true;
+    if (nearest.lit() && passage.enter_mm > nearest.depth_mm + reach_mm(object, ray)) return true;
     std::optional<Seen> seen = Seen{static_cast<float>(passage.enter_mm), 0, true};
-    if (surfaces[i]) seen = surfaces[i]->seen(ray, mirror, passage);
+    if (surfaces[i]) seen = surfaces[i]->seen(ray, frame, passage);
     if (!seen) return false;
     seen->object = static_cast<std::int16_t>(i);
     if (seen->depth_mm < nearest.depth_mm) nearest = *seen;
@@ -60,12 +62,13 @@ struct RayCast::Prepared {
 RayCast::RayCast(const std::vector<Drawn>& objects, const ImagePlane& plane) {
   const Octree& first = objects.front().octree;
   const VoxelRays rays = voxel_rays(first.universe(), plane);
-  auto prepared = std::make_shared<Prepared>(
-      Prepared{objects, rays, Mirror(rays.per_mm, 1 << (2 * first.root_height())), {}, {}, plane.size_px});
+  auto prepared = std::make_shared<Prepared>(Prepared{
+      objects, rays, plane.eye, Mirror(rays.per_mm, 1 << (2 * first.root_height())), {}, {}, plane.size_px});
   for (const Drawn& object : objects) {
     std::vector<ParallelRays>& bundles = prepared->bundles;
-    bundles.push_back(bundles.empty() ? ParallelRays(object.octree, rays)
-                                      : bundles.front().through(object.octree));
+    if (!plane.eye)
+      bundles.push_back(bundles.empty() ? ParallelRays(object.octree, rays)
+                                        : bundles.front().through(object.octree));
     prepared->surfaces.push_back(object.grey ? std::optional<GreySurface>(object) : std::nullopt);
   }
   prepared_ = std::move(prepared);
@@ -77,16 +80,20 @@ Seen RayCast::seen(const glm::dvec2& p_px) const {
 
 Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const {
   const Prepared& the = *prepared_;
-  const VoxelRay ray{the.rays.start(p_px), the.rays.per_mm};
-  const glm::dvec3 mirrored = the.mirror.mirrored(ray.start);
+  const VoxelRay ray{the.rays.start(p_px), the.rays.direction(p_px)};
+  const Mirror frame = the.eye ? Mirror(ray.per_mm, the.mirror.side) : the.mirror;
+  const glm::dvec3 mirrored = frame.mirrored(ray.start);
+  // Nothing is seen that is not before the eye.
+  if (the.eye) near_mm = std::max(near_mm, the.eye->depth_mm());
   Seen nearest;
   for (std::size_t i = 0; i < the.objects.size(); ++i) {
     const Drawn& object = the.objects[i];
     // A voxel behind what was found may still have its surface before it.
-    const double until_mm = std::min(far_mm, static_cast<double>(nearest.depth_mm)) + the.reach_mm(object);
-    Walk(object.octree.root(), object.octree.root_height(), the.mirror)
+    const double until_mm =
+        std::min(far_mm, static_cast<double>(nearest.depth_mm)) + the.reach_mm(object, ray);
+    Walk(object.octree.root(), object.octree.root_height(), frame)
         .run(mirrored, near_mm, until_mm,
-             [&](const Passage& passage) { return the.take(i, ray, passage, nearest); });
+             [&](const Passage& passage) { return the.take(i, ray, frame, passage, nearest); });
   }
   return nearest;
 }
@@ -97,6 +104,14 @@ DepthImage RayCast::picture() const {
   DepthImage image{the.size_px, {}};
   image.pixels.resize(static_cast<std::size_t>(the.size_px.x) * static_cast<std::size_t>(the.size_px.y));
   const glm::ivec2 squares = (the.size_px + (square_px - 1)) / square_px;
+  if (the.eye) {
+    tbb::parallel_for(0, the.size_px.y, [&](int y) {
+      for (int x = 0; x < the.size_px.x; ++x)
+        image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(the.size_px.x) +
+                     static_cast<std::size_t>(x)] = seen({x + 0.5, y + 0.5});
+    });
+    return image;
+  }
   tbb::parallel_for(0, squares.x * squares.y, [&](int square) {
     const glm::ivec2 first = glm::ivec2(square % squares.x, square / squares.x) * square_px;
     const glm::ivec2 last = glm::min(first + square_px, the.size_px) - 1;
@@ -109,7 +124,7 @@ DepthImage RayCast::picture() const {
         Seen& nearest =
             image.pixels[static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(the.size_px.x) +
                          static_cast<std::size_t>(pixel.x)];
-        return the.take(i, ray, passage, nearest);
+        return the.take(i, ray, the.mirror, passage, nearest);
       };
       the.bundles[i].cast(first, last, take, fetch);
     }

@@ -11,12 +11,11 @@
 
 namespace octotomy::voxel {
 
-/// Casts rays of any orthographic view, made ready for one image plane: near and far bounds of what each
-/// tile of pixels can meet are found once. Copies share; any number of threads may cast.
+/// Casts rays of any view, made ready for one image plane. Copies share; any number of threads may cast.
 class RayCast {
  public:
   /// Precondition: one object at least, all of one universe, that of the plane.
-  /// Cost: the objects' blocks of 16 voxels a side, and the leaves of those not hidden behind others.
+  /// Cost: a table of a thousand words.
   RayCast(const std::vector<Drawn>& objects, const ImagePlane& plane);
 
   /// What the ray through a pixel position meets first: the nearest surface of any object, the first object
@@ -28,7 +27,9 @@ class RayCast {
   Seen seen(const glm::dvec2& p_px) const;
   /// The same between two depths only; what begins before or behind them is passed over.
   Seen seen(const glm::dvec2& p_px, double near_mm, double far_mm) const;
-  /// What the centres of all pixels see. Parallel over squares of pixels; rays within one share their ways.
+  /// What the centres of all pixels see. Parallel over squares of pixels, whose rays pass the octrees
+  /// together; seen by an eye at a finite distance each ray goes its own way, which takes about ten times as
+  /// long.
   DepthImage picture() const;
 
   struct Prepared;

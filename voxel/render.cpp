@@ -39,6 +39,9 @@ void check(const std::vector<Drawn>& objects, const RenderOptions& options) {
   if (options.width_mm && !(std::isfinite(*options.width_mm) && *options.width_mm > 0.0))
     throw std::invalid_argument("a picture " + std::to_string(*options.width_mm) +
                                 " mm wide: the width must be positive");
+  if (options.eye_mm && !(std::isfinite(*options.eye_mm) && *options.eye_mm > 0.0))
+    throw std::invalid_argument("an eye " + std::to_string(*options.eye_mm) +
+                                " mm away: the distance must be positive");
   if (options.centre_mm && !(std::isfinite(options.centre_mm->x) && std::isfinite(options.centre_mm->y)))
     throw std::invalid_argument("the picture's centre is not finite");
 }
@@ -112,15 +115,23 @@ Picture blank_picture(const std::vector<Drawn>& objects, const RenderOptions& op
   if (!options.centre_mm || !options.width_mm) frame = frame_about(objects, options.view, options.size_px);
   if (options.centre_mm) frame.centre_mm = *options.centre_mm;
   if (options.width_mm) frame.width_mm = *options.width_mm;
-  const ImagePlane plane = image_plane(universe, options.view, options.size_px, frame);
-  const std::optional<AxisView> axes = axis_view(universe, options.view);
+  ImagePlane plane = image_plane(universe, options.view, options.size_px, frame);
+  if (options.eye_mm) plane = seen_from(plane, *options.eye_mm);
+  const std::optional<AxisView> axes = plane.eye ? std::nullopt : axis_view(universe, options.view);
+
   Picture picture;
   picture.size_px = options.size_px;
   picture.pixel_mm = plane.pixel_mm;
   picture.centre_mm = plane.centre_mm;
   picture.nearest_mm = plane.nearest_mm;
+  picture.eye = plane.eye;
   picture.view = options.view;
   picture.algorithm = options.algorithm.value_or(axes ? Algorithm::NodeTrace : Algorithm::RayCast);
+  if (plane.eye && (picture.algorithm != Algorithm::RayCast || options.count))
+    throw std::invalid_argument(
+        "pictures from an eye at a finite distance are cast ray by ray, uncounted: ask for ray casting, or "
+        "for "
+        "an orthographic picture");
   if (picture.algorithm == Algorithm::NodeTrace && !axes)
     throw std::invalid_argument(
         "node tracing needs a view along the universe's axes: use one of the six named views of an upright "

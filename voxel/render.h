@@ -39,6 +39,9 @@ struct RenderOptions {
   /// What the picture spans; by default the square about the objects' extents, a twentieth wider.
   std::optional<glm::dvec2> centre_mm;
   std::optional<double> width_mm;
+  /// Distance of the eye from the middle of the universe; none: orthographic, in true scale. Ray casting
+  /// only.
+  std::optional<double> eye_mm;
   /// By default NodeTrace where the view allows it; asking for it elsewhere throws std::invalid_argument. It
   /// shows whole columns of voxels, so that outlines are angular where pixels are much smaller; RayCast
   /// follows the interpolated surface there.
@@ -69,13 +72,14 @@ struct Picture {
   double pixel_mm = 0.0;
   glm::dvec2 centre_mm{0.0};  ///< of the picture, in the view's millimetres
   double nearest_mm = 0.0;    ///< p . look where depth is 0
+  std::optional<Eye> eye;     ///< none: orthographic
   std::uint64_t lit_pixels = 0;
   Algorithm algorithm = Algorithm::NodeTrace;
   std::optional<Visits> visits;  ///< where they were to be counted
   View view;
 
   /// The plane that the picture lies in; the depth of the universe's farthest corner is not known to it.
-  ImagePlane plane() const { return {view, size_px, centre_mm, pixel_mm, nearest_mm, 0.0}; }
+  ImagePlane plane() const { return {view, size_px, centre_mm, pixel_mm, nearest_mm, 0.0, eye}; }
   /// The LPS point that a pixel shows; none where it shows the background.
   std::optional<glm::dvec3> point_mm(const glm::ivec2& pixel) const;
 };

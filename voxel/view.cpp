@@ -51,4 +51,13 @@ View parse_view(const std::string& text) {
   return looking(look, up);
 }
 
+std::array<View, 2> stereo_pair(const View& view, double between_deg) {
+  const double half = 0.5 * between_deg * std::numbers::pi / 180.0;
+  // The left eye stands at the observer's left, so that it looks a little to the right.
+  const auto turned = [&](double angle) {
+    return looking(std::cos(angle) * view.look + std::sin(angle) * view.right, view.up);
+  };
+  return {turned(half), turned(-half)};
+}
+
 }  // namespace octotomy::voxel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <glm/glm.hpp>
 #include <string>
 
@@ -20,5 +21,9 @@ struct View {
 /// azimuth turns the observer towards the patient's left, elevation raises the observer. Throws
 /// std::invalid_argument naming the text and the views there are.
 View parse_view(const std::string& text);
+
+/// What the left and the right eye see of what a view shows: the observer turned about `up`, by half the
+/// angle between the eyes each. Precondition: finite.
+std::array<View, 2> stereo_pair(const View& view, double between_deg);
 
 }  // namespace octotomy::voxel

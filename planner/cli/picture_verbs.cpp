@@ -73,6 +73,7 @@ voxel::RenderOptions options_of(const RenderText& text) {
   options.size_px = size_of(text);
   options.shading = shadings.at(text.shading);
   options.width_mm = text.width_mm;
+  options.eye_mm = text.eye_mm;
   options.count = text.count;
   if (!text.algorithm.empty()) options.algorithm = algorithms.at(text.algorithm);
   return options;
@@ -122,6 +123,26 @@ glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   return glm::ivec2(pixel);
 }
 
+void annotate(voxel::Picture& picture, const RenderText& text, const Scene& scene) {
+  voxel::Annotation annotation = annotation_of(text, scene.objects);
+  if (const auto& scalar = scene.objects.front().scalar) {
+    annotation.bar = voxel::ColourBar{"mm from " + scene.coloured_by, -scalar->most, scalar->most,
+                                      voxel::diverging_colours(128)};
+  }
+  voxel::annotate(picture.rgb, picture.plane(), annotation);
+}
+
+/// Two pictures of one size, the left eye's at the left: for parallel viewing, or a stereoscope.
+std::vector<std::uint8_t> side_by_side(const voxel::Picture& left, const voxel::Picture& right) {
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(left.rgb.size() + right.rgb.size());
+  const std::ptrdiff_t row = 3 * std::ptrdiff_t{left.size_px.x};
+  for (std::ptrdiff_t y = 0; y < left.size_px.y; ++y)
+    for (const voxel::Picture* eye : {&left, &right})
+      rgb.insert(rgb.end(), eye->rgb.begin() + y * row, eye->rgb.begin() + (y + 1) * row);
+  return rgb;
+}
+
 int render(const Program& program, const RenderText& text) {
   need_folder_of(text.out);
   if (is_ray_picture(text)) return render_rays(program, text);
@@ -137,22 +158,27 @@ int render(const Program& program, const RenderText& text) {
   const Scene scene = scene_of(text, timings);
   const std::vector<voxel::Drawn>& objects = scene.objects;
   if (text.cut_face == "grey") options.cut_tones = cut_tones_of(text, objects);
-  voxel::Picture picture;
+  voxel::Picture picture, right_eye;
   {
     const Stopwatch watch(timings, "render");
+    if (text.stereo_deg) {
+      const auto [left, right] = voxel::stereo_pair(options.view, *text.stereo_deg);
+      options.view = right;
+      right_eye = voxel::render(objects, options);
+      options.view = left;
+    }
     picture = voxel::render(objects, options);
   }
   {
     const Stopwatch watch(timings, "write");
-    if (text.annotate) {
-      voxel::Annotation annotation = annotation_of(text, objects);
-      if (const auto& scalar = objects.front().scalar) {
-        annotation.bar = voxel::ColourBar{"mm from " + scene.coloured_by, -scalar->most, scalar->most,
-                                          voxel::diverging_colours(128)};
-      }
-      voxel::annotate(picture.rgb, picture.plane(), annotation);
+    if (text.annotate) annotate(picture, text, scene);
+    if (!text.stereo_deg) {
+      voxel::write_image(text.out, picture.size_px, picture.rgb);
+    } else {
+      if (text.annotate) annotate(right_eye, text, scene);
+      voxel::write_image(text.out, {2 * picture.size_px.x, picture.size_px.y},
+                         side_by_side(picture, right_eye));
     }
-    voxel::write_image(text.out, picture.size_px, picture.rgb);
   }
   Json json = answer(timings);
   json["path"] = text.out.string();
@@ -260,6 +286,15 @@ void add_picture_verbs(Program& program) {
   verb.add_option("--size", text->size, "WxH in pixels")->capture_default_str();
   verb.add_option("--width", text->width_mm, "What the picture spans, mm; default: the objects' extents")
       ->check(CLI::PositiveNumber);
+  verb.add_option(
+          "--eye", text->eye_mm,
+          "Perspective: the eye's distance from the middle of the scan, mm; default: orthographic, in "
+          "true scale")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--stereo", text->stereo_deg,
+                  "Two pictures side by side, the left eye's at the left; the angle between them in degrees, "
+                  "for example 6")
+      ->check(CLI::Range(0.1, 30.0));
   verb.add_option("--algorithm", text->algorithm,
                   "node_trace (views along the axes), ray_cast, front_to_back or back_to_front; "
                   "default: the fastest for the view")

@@ -18,6 +18,7 @@ struct RenderText {
   std::string algorithm;
   std::string shading = "partial_volume";
   std::optional<double> width_mm;
+  std::optional<double> eye_mm, stereo_deg;
   bool count = false;
   std::vector<std::string> cut_planes;
   std::vector<std::string> cut_boxes;
