@@ -129,9 +129,8 @@ Picture blank_picture(const std::vector<Drawn>& objects, const RenderOptions& op
   picture.algorithm = options.algorithm.value_or(axes ? Algorithm::NodeTrace : Algorithm::RayCast);
   if (plane.eye && (picture.algorithm != Algorithm::RayCast || options.count))
     throw std::invalid_argument(
-        "pictures from an eye at a finite distance are cast ray by ray, uncounted: ask for ray casting, or "
-        "for "
-        "an orthographic picture");
+        "pictures from an eye at a finite distance are cast ray by ray, uncounted: ask for ray casting "
+        "or an orthographic picture");
   if (picture.algorithm == Algorithm::NodeTrace && !axes)
     throw std::invalid_argument(
         "node tracing needs a view along the universe's axes: use one of the six named views of an upright "
@@ -144,6 +143,7 @@ ImagePlane plane_of(const std::vector<Drawn>& objects, const Picture& picture) {
   ImagePlane plane = image_plane(objects.front().octree.universe(), picture.view, picture.size_px,
                                  {picture.centre_mm, picture.pixel_mm * picture.size_px.x});
   plane.pixel_mm = picture.pixel_mm;  // to the last place
+  plane.eye = picture.eye;
   return plane;
 }
 
