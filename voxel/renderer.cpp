@@ -21,8 +21,10 @@ bool same_samples(const std::optional<GreyOctree>& a, const std::optional<GreyOc
 
 /// Whether two objects have the same surface, whatever it looks like.
 bool same_shape(const Drawn& a, const Drawn& b) {
-  const auto& [name, octree, colour, grey, threshold, opacity, counted_in_grey, inside, scalar] = a;
-  return octree == b.octree && same_samples(grey, b.grey) && threshold == b.threshold;
+  const auto& [name, octree, colour, grey, threshold, moved_from_still, opacity, counted_in_grey, inside,
+               scalar] = a;
+  return octree == b.octree && same_samples(grey, b.grey) && threshold == b.threshold &&
+         moved_from_still == b.moved_from_still;
 }
 
 /// Whether two objects of one shape look the same.
@@ -55,8 +57,8 @@ bool same_tones(const std::optional<CutTones>& a, const std::optional<CutTones>&
 
 /// Whether two ways of drawing the same layers give the same picture.
 bool same_style(const RenderOptions& a, const RenderOptions& b) {
-  const auto& [view, size_px, centre_mm, width_mm, algorithm, shading, background, cuts, cut_tones, lights,
-               occlusion, count, antialias] = a;
+  const auto& [view, size_px, centre_mm, width_mm, eye_mm, algorithm, shading, background, cuts, cut_tones,
+               lights, occlusion, count, antialias] = a;
   return shading == b.shading && background == b.background && occlusion == b.occlusion &&
          antialias == b.antialias && same_lights(lights, b.lights) && same_tones(cut_tones, b.cut_tones);
 }
@@ -68,8 +70,11 @@ bool same_view(const View& a, const View& b) {
 
 /// Whether two pictures show the same places by the same algorithm.
 bool same_plane(const Picture& a, const Picture& b) {
-  return a.size_px == b.size_px && a.pixel_mm == b.pixel_mm && a.centre_mm == b.centre_mm &&
-         a.nearest_mm == b.nearest_mm && a.algorithm == b.algorithm && same_view(a.view, b.view);
+  // Eyes of one universe and view are the same where their distances are.
+  const auto eye_mm = [](const Picture& picture) { return picture.eye ? picture.eye->distance_mm : 0.0; };
+  return eye_mm(a) == eye_mm(b) && a.size_px == b.size_px && a.pixel_mm == b.pixel_mm &&
+         a.centre_mm == b.centre_mm && a.nearest_mm == b.nearest_mm && a.algorithm == b.algorithm &&
+         same_view(a.view, b.view);
 }
 
 }  // namespace
