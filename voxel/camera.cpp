@@ -86,7 +86,7 @@ Frame frame_about(const std::vector<Drawn>& objects, const View& view, const glm
 
 ImagePlane image_plane(const Universe& universe, const View& view, const glm::ivec2& size_px,
                        const Frame& frame) {
-  ImagePlane plane{view, size_px, frame.centre_mm, frame.width_mm / size_px.x, 0.0, 0.0, {}};
+  ImagePlane plane{view, size_px, frame.centre_mm, frame.width_mm / size_px.x};
   const Box box = bounds(universe.lattice());
   double nearest = 0.0;
   double farthest = 0.0;

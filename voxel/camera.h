@@ -43,7 +43,7 @@ struct ImagePlane {
   double pixel_mm = 1.0;
   double nearest_mm = 0.0;      ///< p . look of the points of depth 0
   double depth_range_mm = 0.0;  ///< depth of the universe's farthest corner
-  std::optional<Eye> eye;       ///< none: orthographic
+  std::optional<Eye> eye{};     ///< none: orthographic
 
   /// Where a pixel position lies in the view's millimetres; seen by an eye, at the eye's plane.
   glm::dvec2 view_mm(const glm::dvec2& p_px) const {
