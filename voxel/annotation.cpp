@@ -69,14 +69,14 @@ class Sheet {
   bool dark_;
 };
 
-void write_sides(const Sheet& sheet, const View& view) {
+void write_sides(const Sheet& sheet, const EdgeLetters& letters) {
   const double cap = sheet.cap_px();
   const glm::dvec2 size = sheet.size_px();
   const double middle = 0.5 * (size.y + cap);
-  sheet.write(patient_side(-view.right), {cap, middle}, Align::Left);
-  sheet.write(patient_side(view.right), {size.x - cap, middle}, Align::Right);
-  sheet.write(patient_side(view.up), {0.5 * size.x, 2.0 * cap}, Align::Middle);
-  sheet.write(patient_side(-view.up), {0.5 * size.x, size.y - cap}, Align::Middle);
+  sheet.write(letters.left, {cap, middle}, Align::Left);
+  sheet.write(letters.right, {size.x - cap, middle}, Align::Right);
+  sheet.write(letters.top, {0.5 * size.x, 2.0 * cap}, Align::Middle);
+  sheet.write(letters.bottom, {0.5 * size.x, size.y - cap}, Align::Middle);
 }
 
 void draw_scale(const Sheet& sheet, double pixel_mm) {
@@ -150,6 +150,10 @@ std::string patient_side(const glm::dvec3& direction) {
   return side;
 }
 
+EdgeLetters edge_letters(const View& view) {
+  return {patient_side(-view.right), patient_side(view.right), patient_side(view.up), patient_side(-view.up)};
+}
+
 double round_length(double most) {
   const double power = std::pow(10.0, std::floor(std::log10(most)));
   // A power of ten is not exact below one; what is a digit within its rounding counts as that digit.
@@ -174,7 +178,7 @@ void annotate(std::vector<std::uint8_t>& rgb, const ImagePlane& plane, const Ann
   const double share = annotation.sides || annotation.bar ? 0.5 : 1.0;
   sheet.write(shortened(annotation.title, share * sheet.size_px().x - 4.0 * cap, cap), {cap, 2.0 * cap},
               Align::Left);
-  if (annotation.sides) write_sides(sheet, plane.view);
+  if (annotation.sides) write_sides(sheet, annotation.letters.value_or(edge_letters(plane.view)));
 }
 
 }  // namespace octotomy::voxel

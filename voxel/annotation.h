@@ -32,13 +32,21 @@ struct ColourBar {
   std::vector<glm::vec3> colours;  ///< sRGB, 0..1; one at least
 };
 
+/// What stands at a picture's four edges.
+struct EdgeLetters {
+  std::string left, right, top, bottom;
+};
+/// The patient's sides in a view.
+EdgeLetters edge_letters(const View& view);
+
 /// What is written on a picture for print.
 struct Annotation {
-  std::string title;                ///< top left
-  bool sides = true;                ///< letters of the patient's sides at the picture's four edges
-  bool scale = true;                ///< a bar of a round length, bottom right
-  std::vector<LegendEntry> legend;  ///< bottom left
-  std::optional<ColourBar> bar;     ///< at the right edge
+  std::string title;                   ///< top left
+  bool sides = true;                   ///< letters of the patient's sides at the picture's four edges
+  std::optional<EdgeLetters> letters;  ///< these instead of the view's, as in a picture that is no plane
+  bool scale = true;                   ///< a bar of a round length, bottom right
+  std::vector<LegendEntry> legend;     ///< bottom left
+  std::optional<ColourBar> bar;        ///< at the right edge
 };
 
 /// Writes an annotation on the pixels of a picture of that plane, dark on light pictures and light on dark

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The one unit that includes ITK's filters. They are given the scene's own samples to read, and worked over
+// slab by slab along z where a filter is local: so the memory beside the result is a slab's, stopping takes
+// no longer than one, and ITK's own way of reporting progress from its threads is not needed.
+#include "voxel/smooth.h"
+
+#if defined(__clang__)
+// Debian's ITK knows only the compiler that it was built with; what it would find out about clang stands
+// here.
+#define ITK_COMPILER_DETECTION_H
+#define ITK_NOEXCEPT noexcept
+#define ITK_ALIGNAS(X) alignas(X)
+#define ITK_CONSTEXPR constexpr
+#define ITK_CONSTEXPR_FUNC constexpr
+#define ITK_CONSTEXPR_VAR constexpr
+#define ITK_NULLPTR nullptr
+#define ITK_THREAD_LOCAL thread_local
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <itkCommand.h>
+#include <itkDiscreteGaussianImageFilter.h>
+#include <itkGradientAnisotropicDiffusionImageFilter.h>
+#include <itkImage.h>
+#include <itkMedianImageFilter.h>
+#include <stdexcept>
+#include <string>
+#include <tbb/task_arena.h>
+
+namespace octotomy::voxel {
+namespace {
+
+template <typename Sample>
+using Image = itk::Image<Sample, 3>;
+
+std::size_t slice_size(const Lattice& lattice) {
+  return static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y);
+}
+
+// Slices from..to, without, of samples as an image that reads them where they are.
+template <typename Sample>
+typename Image<Sample>::Pointer image_of(const Sample* samples, const Lattice& lattice, int from, int to) {
+  auto image = Image<Sample>::New();
+  typename Image<Sample>::RegionType region;
+  region.SetSize({static_cast<itk::SizeValueType>(lattice.dims.x),
+                  static_cast<itk::SizeValueType>(lattice.dims.y),
+                  static_cast<itk::SizeValueType>(to - from)});
+  image->SetRegions(region);
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();
+  const double spacing[3]{spacing_mm.x, spacing_mm.y, spacing_mm.z};
+  image->SetSpacing(spacing);
+  const std::size_t count = slice_size(lattice) * static_cast<std::size_t>(to - from);
+  // The container takes a pointer that it could write through, and is told not to own it; filters that read
+  // from it are not in place.
+  image->GetPixelContainer()->SetImportPointer(
+      const_cast<Sample*>(samples) + slice_size(lattice) * static_cast<std::size_t>(from), count, false);
+  return image;
+}
+
+template <typename Sample>
+Sample rounded(float value) {
+  if constexpr (std::is_same_v<Sample, std::int16_t>)
+    return static_cast<Sample>(std::clamp(std::floor(static_cast<double>(value) + 0.5), -32768.0, 32767.0));
+  else
+    return value;
+}
+
+void need_values(const Scene& scene) {
+  check(scene);
+  if (scene.meaning == Meaning::Label)
+    throw std::invalid_argument("labels are numbers without order: a label map is not smoothed");
+}
+
+template <typename Filter>
+void set_threads(Filter& filter) {
+  filter.SetNumberOfWorkUnits(static_cast<itk::ThreadIdType>(tbb::this_task_arena::max_concurrency()));
+}
+
+// Calls `smooth` with the slices from..to, without, that a slab's own slices first..last, without, depend on:
+// so many more at both ends.
+template <typename Smooth>
+void slab_by_slab(int slices, int reach, const Progress& progress, const Smooth& smooth) {
+  // Thick slabs so that the overlap is a small part of the work.
+  const int thickness = std::max(16, 4 * reach);
+  for (int first = 0; first < slices; first += thickness) {
+    progress.at(static_cast<double>(first) / slices);
+    const int last = std::min(first + thickness, slices);
+    smooth(std::max(0, first - reach), std::min(slices, last + reach), first, last);
+  }
+}
+
+template <typename Sample, typename Out, typename Held>
+void take_slab(const Image<Out>& image, const Lattice& lattice, int from, int first, int last, Held& out) {
+  const std::size_t size = slice_size(lattice);
+  const Out* const made = image.GetBufferPointer() + size * static_cast<std::size_t>(first - from);
+  std::transform(made, made + size * static_cast<std::size_t>(last - first),
+                 out.begin() + static_cast<std::ptrdiff_t>(size * static_cast<std::size_t>(first)),
+                 [](Out value) {
+                   if constexpr (std::is_same_v<Out, Sample>)
+                     return value;
+                   else
+                     return rounded<Sample>(value);
+                 });
+}
+
+Scene with_samples_of(const Scene& scene) {
+  return {scene.lattice, {}, scene.meaning, scene.modality, scene.source, scene.audit};
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+}  // namespace
+
+Scene median(const Scene& scene, const glm::ivec3& radius, const Progress& progress) {
+  need_values(scene);
+  if (glm::any(glm::lessThan(radius, glm::ivec3(0))) || glm::any(glm::greaterThan(radius, glm::ivec3(16))))
+    refuse("a median reaches 0 to 16 samples along each axis");
+  Scene result = with_samples_of(scene);
+  const Lattice& lattice = scene.lattice;
+  std::visit(
+      [&](const auto& samples) {
+        using Sample = typename std::decay_t<decltype(samples)>::value_type;
+        Samples<Sample> made(samples.size());
+        slab_by_slab(lattice.dims.z, radius.z, progress, [&](int from, int to, int first, int last) {
+          auto filter = itk::MedianImageFilter<Image<Sample>, Image<Sample>>::New();
+          set_threads(*filter);
+          filter->SetRadius({static_cast<itk::SizeValueType>(radius.x),
+                             static_cast<itk::SizeValueType>(radius.y),
+                             static_cast<itk::SizeValueType>(radius.z)});
+          filter->SetInput(image_of(samples.data(), lattice, from, to));
+          filter->Update();
+          take_slab<Sample>(*filter->GetOutput(), lattice, from, first, last, made);
+        });
+        result.samples = std::move(made);
+      },
+      scene.samples);
+  return result;
+}
+
+Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
+  need_values(scene);
+  const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
+  const double finest_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  if (!(sigma_mm > 0.0) || !(sigma_mm <= 32.0 * finest_mm))
+    refuse("a Gaussian's sigma is above 0 and at most 32 samples, " + std::to_string(32.0 * finest_mm) +
+           " mm here, not " + std::to_string(sigma_mm) + " mm");
+  Scene result = with_samples_of(scene);
+  const Lattice& lattice = scene.lattice;
+  // The weights beyond four standard deviations and two samples sum to less than the part cut off.
+  const int reach = static_cast<int>(std::ceil(4.0 * sigma_mm / spacing_mm.z)) + 2;
+  std::visit(
+      [&](const auto& samples) {
+        using Sample = typename std::decay_t<decltype(samples)>::value_type;
+        Samples<Sample> made(samples.size());
+        slab_by_slab(lattice.dims.z, reach, progress, [&](int from, int to, int first, int last) {
+          auto filter = itk::DiscreteGaussianImageFilter<Image<Sample>, Image<float>>::New();
+          set_threads(*filter);
+          filter->SetVariance(sigma_mm * sigma_mm);
+          filter->SetMaximumError(0.001);
+          filter->SetMaximumKernelWidth(2 * 4 * 32 + 5);
+          filter->SetUseImageSpacing(true);
+          filter->SetInput(image_of(samples.data(), lattice, from, to));
+          filter->Update();
+          take_slab<Sample>(*filter->GetOutput(), lattice, from, first, last, made);
+        });
+        result.samples = std::move(made);
+      },
+      scene.samples);
+  return result;
+}
+
+Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
+  need_values(scene);
+  if (options.iterations < 1 || options.iterations > 1000)
+    refuse("diffusion takes 1 to 1000 iterations, not " + std::to_string(options.iterations));
+  if (!(options.conductance > 0.0) || !std::isfinite(options.conductance))
+    refuse("diffusion needs a positive conductance, not " + std::to_string(options.conductance));
+  options.progress.at(0.0);
+  Scene result = with_samples_of(scene);
+  const Lattice& lattice = scene.lattice;
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();
+  // Not slab by slab: the conductance is in units of the whole scan's gradient.
+  std::visit(
+      [&](const auto& samples) {
+        using Sample = typename std::decay_t<decltype(samples)>::value_type;
+        auto filter = itk::GradientAnisotropicDiffusionImageFilter<Image<Sample>, Image<float>>::New();
+        set_threads(*filter);
+        filter->SetNumberOfIterations(static_cast<itk::IdentifierType>(options.iterations));
+        filter->SetConductanceParameter(options.conductance);
+        // The longest step that is stable in three dimensions: the smallest spacing over 2^(3 + 1).
+        filter->SetTimeStep(std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z}) / 16.0);
+        filter->SetInput(image_of(samples.data(), lattice, 0, lattice.dims.z));
+        // Between iterations, in this thread. What a command throws goes through ITK unharmed.
+        filter->AddObserver(itk::IterationEvent(), [&, done = 0](const itk::EventObject&) mutable {
+          options.progress.at(static_cast<double>(++done) / (options.iterations + 1));
+        });
+        filter->Update();
+        Samples<Sample> made(samples.size());
+        take_slab<Sample>(*filter->GetOutput(), lattice, 0, 0, lattice.dims.z, made);
+        result.samples = std::move(made);
+      },
+      scene.samples);
+  return result;
+}
+
+}  // namespace octotomy::voxel
