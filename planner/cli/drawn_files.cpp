@@ -1,33 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/drawn_files.h"
 
-#include <array>
 #include <variant>
 
+#include "planner/cli/scan_verbs.h"
 #include "planner/cli/verb.h"
-#include "planner/colour.h"
 #include "voxel/combine.h"
 #include "voxel/octree_file.h"
 
 namespace octotomy::planner::cli {
 namespace {
-
-/// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
-glm::vec3 colour_of(std::size_t number) {
-  constexpr std::array<glm::vec3, 5> colours{{{0.93f, 0.89f, 0.80f},
-                                              {0.20f, 0.56f, 0.72f},
-                                              {0.87f, 0.49f, 0.20f},
-                                              {0.16f, 0.60f, 0.47f},
-                                              {0.74f, 0.45f, 0.64f}}};
-  return colours[number % colours.size()];
-}
-
-glm::vec3 parse_colour(const std::string& text) {
-  const std::optional<glm::vec3> colour = colour_of_text(text);
-  if (!colour)
-    throw CLI::ValidationError("--colour", "'" + text + "' is no colour: give #RRGGBB, for example #cc7a29");
-  return *colour;
-}
 
 /// The object that a grey octree's window is.
 void set_window(voxel::Drawn& object, const voxel::GreyOctree& grey, const WindowText& window) {
@@ -74,6 +56,7 @@ voxel::Drawn drawn_of_file(const std::filesystem::path& path, const DrawnText& t
       const Stopwatch watch(timings, "read");
       scene = voxel::read_scene(path, text.read);
     }
+    need_hounsfield(text.window, scene);
     const Stopwatch watch(timings, "octree");
     set_window(object,
                voxel::grey_octree_of(universe ? *universe : universe_of(scene.lattice, text.voxel_mm), scene),

@@ -191,7 +191,9 @@ void add_eval(Program& program) {
       ->type_name("NAME=FILE")
       ->expected(1)
       ->take_all();
-  evaluate.add_option("--window", to_evaluate->windows, "NAME=LOW:HIGH: which object of a grey octree")
+  evaluate
+      .add_option("--window", to_evaluate->windows,
+                  "NAME=LOW:HIGH or NAME=TISSUE: which object of a grey octree")
       ->type_name("NAME=LOW:HIGH")
       ->expected(1)
       ->take_all();

@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "planner/cli/scan_verbs.h"
 #include "planner/cli/verb.h"
 #include "planner/nearest_name.h"
 
@@ -124,6 +125,9 @@ int parse_and_run(int count, char** arguments) {
   cli::add_picture_verbs(program);
   cli::add_mesh(program);
   cli::add_mark(program);
+  cli::add_prepare(program);
+  cli::add_segment(program);
+  cli::add_slice(program);
   cli::add_mesh_verbs(program);
   cli::add_tet(program);
   cli::add_voxelise(program);

@@ -9,6 +9,7 @@
 #include "convert/isosurface.h"
 #include "planner/answer.h"
 #include "planner/cli/scan_in.h"
+#include "planner/cli/scan_verbs.h"
 #include "planner/figures.h"
 #include "voxel/cell_counts.h"
 #include "voxel/combine.h"
@@ -137,6 +138,7 @@ int measure_octree(const Program& program, const MeasureText& text) {
 int measure_scan(const Program& program, const MeasureText& text) {
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.file, text.scan, timings);
+  need_hounsfield(text.window, scene);
   std::optional<voxel::GreyOctree> grey;
   {
     const Stopwatch watch(timings, "octree");
@@ -183,7 +185,7 @@ void add_measure(Program& program) {
   verb.add_option("file", text->file, "A scan or grey octree (with --window), an octree, a mesh")
       ->required()
       ->check(scan_path());
-  verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units");
+  verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units, or a tissue: bone, skin, ...");
   verb.add_option("--voxel", text->voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
       ->check(CLI::PositiveNumber);

@@ -14,6 +14,7 @@
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
+#include "planner/cli/scan_verbs.h"
 #include "planner/figures.h"
 #include "voxel/combine.h"
 
@@ -77,6 +78,7 @@ brep::Triangles of_scan(const Program& program, const MeshText& text, Timings& t
                         std::vector<std::string>& findings) {
   const WindowText window = window_of(text, findings);
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
+  need_hounsfield(text.window, scene);
   const Stopwatch watch(timings, text.surface);
   if (text.surface == "isosurface") return convert::isosurface(scene, window.low, high_of(window));
   throw std::runtime_error(
@@ -148,7 +150,7 @@ void add_mesh(Program& program) {
                                 [&program, text] { return mesh(program, *text); });
   verb.add_option("file", text->in, "A scan, or an .octree file")->required()->check(scan_path());
   verb.add_option("-o,--out", text->out, "A .stl, .ply, .obj or .off file")->required();
-  verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units, of a scan or a grey octree");
+  verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units, or a tissue (bone, skin, ...)");
   verb.add_option("--surface", text->surface,
                   "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces")
       ->check(CLI::IsMember({"isosurface", "cuberille"}))

@@ -6,6 +6,7 @@
 
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
+#include "planner/cli/scan_verbs.h"
 #include "planner/octree_answer.h"
 #include "planner/representation.h"
 #include "voxel/combine.h"
@@ -92,6 +93,7 @@ voxel::OctreeFile from_scan(const Program& program, const OctreeText& text, Timi
   std::optional<WindowText> window;
   if (!text.window.empty()) window = parse_window(text.window);
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
+  need_hounsfield(text.window, scene);
   const Stopwatch watch(timings, "octree");
   const voxel::Universe universe = universe_of(scene.lattice, text.voxel_mm);
   const voxel::GreyOctree grey = voxel::grey_octree_of(universe, scene);
@@ -162,7 +164,8 @@ void add_octree(Program& program) {
       ->check(scan_path());
   build.add_option("-o,--out", to_build->out, "An .octree file, or with --as the representation's")
       ->required();
-  build.add_option("--window", to_build->window, "LOW:HIGH or LOW: in sample units: a binary octree");
+  build.add_option("--window", to_build->window,
+                   "LOW:HIGH or LOW: in sample units, or a tissue (bone, skin, ...): a binary octree");
   build.add_flag("--grey", to_build->grey, "A min-max octree of all samples");
   build
       .add_option("--voxel", to_build->voxel_mm,

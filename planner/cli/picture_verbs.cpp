@@ -278,7 +278,7 @@ void add_picture_verbs(Program& program) {
       ->check(scan_path());
   verb.add_option("-o,--out", text->out, "A .png, .jpg or .webp file")->required();
   verb.add_option("--window", text->drawn.window,
-                  "LOW:HIGH or LOW: in sample units, for scans and grey octrees")
+                  "LOW:HIGH or LOW: in sample units, or a tissue (bone, skin, ...)")
       ->capture_default_str();
   verb.add_option("--view", text->view,
                   "anterior, posterior, left, right, superior, inferior, or AZ,EL in degrees")

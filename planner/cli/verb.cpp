@@ -6,8 +6,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <system_error>
 #include <unistd.h>
+
+#include "planner/nearest_name.h"
+#include "voxel/tissue.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -25,6 +29,12 @@ std::optional<double> number(const std::string& text) {
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+std::vector<std::string> tissue_names() {
+  std::vector<std::string> names;
+  for (const voxel::Tissue& tissue : voxel::tissues()) names.emplace_back(tissue.name);
+  return names;
 }
 
 }  // namespace
@@ -64,6 +74,11 @@ void warn(const std::string& line) {
 }
 
 WindowText parse_window(const std::string& text) {
+  if (const std::optional<voxel::Tissue> tissue = voxel::tissue(text)) {
+    // Below any sample: what has no lower bound is a window from there.
+    constexpr double lowest = std::numeric_limits<std::int16_t>::min();
+    return {tissue->low.value_or(lowest), tissue->high};
+  }
   const auto colon = text.find(':');
   const std::string low = text.substr(0, colon);
   const std::string high = colon == std::string::npos ? "" : text.substr(colon + 1);
@@ -72,7 +87,8 @@ WindowText parse_window(const std::string& text) {
   const auto high_value = number(high);
   if (!low_value || (!high.empty() && !high_value))
     throw CLI::ValidationError("--window",
-                               "'" + text + "' is no window: give LOW:HIGH or LOW:, for example 300:3000");
+                               "'" + text + "' is no window: give LOW:HIGH or LOW:, for example 300:3000, " +
+                                   "or a tissue" + suggestion(text, tissue_names()));
   window.low = *low_value;
   if (!high.empty()) window.high = high_value;
   if (window.high && *window.high < window.low)

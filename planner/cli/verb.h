@@ -57,7 +57,7 @@ void add_eval(Program& program);
 void add_mark(Program& program);
 void add_mask(Program& program);
 
-/// LOW:HIGH, LOW: or LOW in sample units; throws CLI::ValidationError where it is none of these.
+/// LOW:HIGH, LOW: or LOW in sample units, or a tissue (tissue.h); throws CLI::ValidationError else.
 struct WindowText {
   double low = 0.0;
   std::optional<double> high;

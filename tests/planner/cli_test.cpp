@@ -2,72 +2,22 @@
 //
 // The program as scripts see it: exit status, standard output, what is left on disk.
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
-#include "tests/planner/ball_scan.h"
+#include "tests/planner/command_line.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
-struct Answer {
-  int status = -1;
-  std::string out;
-  std::string errors;
-};
-
-class CommandLine : public testing::Test {
- protected:
-  CommandLine() {
-    voxel::write_scene(tests::ball_scene(12.0, 32), folder_ / "ball.nrrd");
-    write("ball.plan.json",
-          R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
-      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
-                 { "id": "size", "do": "measure", "object": "ball" },
-                 { "id": "mesh", "do": "export", "object": "ball", "path": "ball.stl" } ] })");
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-  std::string at(const std::string& name) const { return "'" + (folder_ / name).string() + "'"; }
-
-  Answer run(const std::string& arguments) const {
-    const std::string errors = (folder_ / "stderr").string();
-    const std::string command =
-        std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments + " 2>'" + errors + "'";
-    std::FILE* pipe = ::popen(command.c_str(), "r");
-    Answer answer;
-    char buffer[4096];
-    for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-      answer.out.append(buffer, got);
-    const int status = ::pclose(pipe);
-    answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    std::ifstream file(errors);
-    answer.errors.assign(std::istreambuf_iterator<char>(file), {});
-    return answer;
-  }
-  /// Exactly one line that says octotomy, and nothing on standard output.
-  void expect_refused(const Answer& answer, const std::string& word) const {
-    EXPECT_EQ(answer.status, 2) << answer.errors;
-    EXPECT_EQ(answer.out, "");
-    EXPECT_EQ(answer.errors.rfind("octotomy: ", 0), 0u) << answer.errors;
-    EXPECT_EQ(std::count(answer.errors.begin(), answer.errors.end(), '\n'), 1) << answer.errors;
-    EXPECT_NE(answer.errors.find(word), std::string::npos) << answer.errors;
-  }
-
-  tests::TestFolder folder_;
-};
+using tests::Answer;
+using tests::CommandLine;
+using tests::Json;
 
 TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
-  for (const char* verb : {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "smooth",
-                           "tet", "phantom", "octree", "eval", "mark", "mask"}) {
+  for (const char* verb :
+       {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "smooth", "tet", "phantom",
+        "octree", "eval", "mark", "mask", "slice", "segment", "prepare"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const Answer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;

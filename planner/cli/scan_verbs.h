@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "planner/cli/verb.h"
+#include "voxel/scene.h"
+
+// The verbs that draw, segment and prepare scans, and what verbs ask of samples and options alike.
+namespace octotomy::planner::cli {
+
+void add_prepare(Program& program);
+void add_segment(Program& program);
+void add_slice(Program& program);
+
+/// Throws std::runtime_error where the window is a tissue's name, which parse_window() takes too (tissue.h),
+/// and the samples are no Hounsfield units.
+void need_hounsfield(const std::string& window, const voxel::Scene& scene);
+
+/// X,Y,Z; throws CLI::ValidationError, naming the option, where it is not that.
+glm::dvec3 parse_point(const std::string& option, const std::string& text);
+/// #RRGGBB, each part 0 to 1; throws CLI::ValidationError where it is not that.
+glm::vec3 parse_colour(const std::string& text);
+/// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
+glm::vec3 colour_of(std::size_t number);
+
+}  // namespace octotomy::planner::cli

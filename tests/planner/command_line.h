@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <sys/wait.h>
+
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::tests {
+
+using Json = nlohmann::json;
+
+/// What a run of the program left behind.
+struct Answer {
+  int status = -1;
+  std::string out;
+  std::string errors;
+};
+
+/// The program in a folder of the test's own, with a ball's scan and plan in it.
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() {
+    voxel::write_scene(ball_scene(12.0, 32), folder_ / "ball.nrrd");
+    write("ball.plan.json",
+          R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "size", "do": "measure", "object": "ball" },
+                 { "id": "mesh", "do": "export", "object": "ball", "path": "ball.stl" } ] })");
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  std::string at(const std::string& name) const { return "'" + (folder_ / name).string() + "'"; }
+
+  Answer run(const std::string& arguments) const {
+    const std::string errors = (folder_ / "stderr").string();
+    const std::string command =
+        std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments + " 2>'" + errors + "'";
+    std::FILE* pipe = ::popen(command.c_str(), "r");
+    Answer answer;
+    char buffer[4096];
+    for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+      answer.out.append(buffer, got);
+    const int status = ::pclose(pipe);
+    answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    std::ifstream file(errors);
+    answer.errors.assign(std::istreambuf_iterator<char>(file), {});
+    return answer;
+  }
+  /// Exactly one line that says octotomy, and nothing on standard output.
+  void expect_refused(const Answer& answer, const std::string& word) const {
+    EXPECT_EQ(answer.status, 2) << answer.errors;
+    EXPECT_EQ(answer.out, "");
+    EXPECT_EQ(answer.errors.rfind("octotomy: ", 0), 0u) << answer.errors;
+    EXPECT_EQ(std::count(answer.errors.begin(), answer.errors.end(), '\n'), 1) << answer.errors;
+    EXPECT_NE(answer.errors.find(word), std::string::npos) << answer.errors;
+  }
+
+  TestFolder folder_;
+};
+
+}  // namespace octotomy::tests
