@@ -22,6 +22,28 @@
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
+
+/// Steps along halfedges that the corefinement under way may still take.
+struct StepBudget {
+  static thread_local std::size_t left;
+};
+thread_local std::size_t StepBudget::left = 0;
+
+// CGAL finds these for our mesh instead of its own. Where surfaces all but coincide it may link halfedges
+// into rings that its walks never leave.
+inline void take_step() {
+  if (StepBudget::left == 0) throw std::runtime_error("its walk along the surface does not end");
+  --StepBudget::left;
+}
+inline OpenMesh::HalfedgeHandle next(OpenMesh::HalfedgeHandle h, const Mesh& mesh) {
+  take_step();
+  return mesh.next_halfedge_handle(h);
+}
+inline OpenMesh::HalfedgeHandle prev(OpenMesh::HalfedgeHandle h, const Mesh& mesh) {
+  take_step();
+  return mesh.prev_halfedge_handle(h);
+}
+
 namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
@@ -139,6 +161,11 @@ Mesh in_order(const Mesh& mesh) {
   return mesh_of(sorted);
 }
 
+/// What a sound corefinement stays far below: it takes some 100 steps a triangle.
+std::size_t step_limit(const Mesh& a, const Mesh& b) {
+  return 10'000 * (a.n_faces() + b.n_faces() + 1000);
+}
+
 /// Corefines copies of the operands.
 Booleans corefine(Mesh a, Mesh b, const BooleansWanted& wanted, bool refuse_self_intersection) {
   std::array<Mesh, 4> meshes;
@@ -151,6 +178,7 @@ Booleans corefine(Mesh a, Mesh b, const BooleansWanted& wanted, bool refuse_self
   want(pmp::Corefinement::TM1_MINUS_TM2, wanted.a_minus_b);
   want(pmp::Corefinement::TM2_MINUS_TM1, wanted.b_minus_a);
   const auto to = [&](std::size_t i) { return CGAL::parameters::vertex_point_map(PointMap{&meshes[i]}); };
+  StepBudget::left = step_limit(a, b);
   const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
       a, b, output,
       CGAL::parameters::vertex_point_map(PointMap{&a}).throw_on_self_intersection(refuse_self_intersection),

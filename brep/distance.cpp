@@ -36,11 +36,15 @@ struct TreeBox {
   }
 };
 
-double squared_distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+/// Share of the way from a to b at which a segment is nearest.
+double share_along(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
   const glm::dvec3 along = b - a;
   const double length2 = glm::dot(along, along);
-  const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
-  const glm::dvec3 d = p - (a + t * along);
+  return length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
+}
+
+double squared_distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 d = p - (a + share_along(p, a, b) * (b - a));
   return glm::dot(d, d);
 }
 
@@ -58,6 +62,27 @@ double squared_distance_to_triangle(const glm::dvec3& p, const Corners& t) {
   }
   return std::min({squared_distance_to_segment(p, t.a, t.b), squared_distance_to_segment(p, t.b, t.c),
                    squared_distance_to_segment(p, t.c, t.a)});
+}
+
+/// Barycentric coordinates of the triangle's nearest point, by the cases of squared_distance_to_triangle().
+glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
+  const glm::dvec3 ab = t.b - t.a, ac = t.c - t.a, normal = glm::cross(ab, ac);
+  const double normal2 = glm::dot(normal, normal);
+  if (normal2 > 0.0) {
+    const glm::dvec3 ap = p - t.a;
+    const double v = glm::dot(glm::cross(ap, ac), normal), w = glm::dot(glm::cross(ab, ap), normal);
+    if (v >= 0.0 && w >= 0.0 && v + w <= normal2)
+      return {(normal2 - v - w) / normal2, v / normal2, w / normal2};
+  }
+  const double sides[] = {squared_distance_to_segment(p, t.a, t.b), squared_distance_to_segment(p, t.b, t.c),
+                          squared_distance_to_segment(p, t.c, t.a)};
+  const auto side = std::min_element(std::begin(sides), std::end(sides)) - std::begin(sides);
+  const glm::dvec3 corners[] = {t.a, t.b, t.c};
+  const double share = share_along(p, corners[side], corners[(side + 1) % 3]);
+  glm::dvec3 weights(0.0);
+  weights[static_cast<int>(side)] = 1.0 - share;
+  weights[static_cast<int>((side + 1) % 3)] = share;
+  return weights;
 }
 
 /// Whether the projected edge, which straddles the point's z by the half-open rule, runs past its larger y.
@@ -164,6 +189,23 @@ struct SurfaceTree::Tree {
     return std::sqrt(nearest);
   }
 
+  /// Calls found(i, distance, triangle) for each point, in parallel.
+  template <typename Found>
+  void search(const std::vector<glm::dvec3>& points_mm, const Found& found) const {
+    if (nodes.empty())
+      throw std::invalid_argument(
+          "there is no distance to a surface without triangles; ask whether it is empty first");
+    // Blocks are fixed, so that where each search starts does not depend on the threads.
+    constexpr std::size_t block = 256;
+    tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
+      std::uint32_t triangle = 0;
+      for (std::size_t i = b * block; i < std::min((b + 1) * block, points_mm.size()); ++i) {
+        const double distance_mm = distance(points_mm[i], triangle);
+        found(i, distance_mm, triangle);
+      }
+    });
+  }
+
   template <typename Visit>
   void visit_crossings(const glm::dvec3& p, Visit visit) const {
     if (nodes.empty()) return;
@@ -194,18 +236,20 @@ SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
 SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
 
 std::vector<double> SurfaceTree::distances_mm(const std::vector<glm::dvec3>& points_mm) const {
-  if (tree_->nodes.empty())
-    throw std::invalid_argument(
-        "there is no distance to a surface without triangles; ask whether it is empty first");
   std::vector<double> distances(points_mm.size());
-  // Blocks are fixed, so that where each search starts does not depend on the threads.
-  constexpr std::size_t block = 256;
-  tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
-    std::uint32_t nearest_triangle = 0;
-    for (std::size_t i = b * block; i < std::min((b + 1) * block, points_mm.size()); ++i)
-      distances[i] = tree_->distance(points_mm[i], nearest_triangle);
-  });
+  tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t) { distances[i] = distance; });
   return distances;
+}
+
+std::vector<Foot> SurfaceTree::feet(const std::vector<glm::dvec3>& points_mm) const {
+  std::vector<Foot> feet(points_mm.size());
+  tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t triangle) {
+    const Corners& t = tree_->triangles[triangle];
+    const glm::dvec3 weights = nearest_weights(points_mm[i], t);
+    feet[i] = {weights.x * t.a + weights.y * t.b + weights.z * t.c, distance, tree_->faces[triangle],
+               weights};
+  });
+  return feet;
 }
 
 std::vector<std::uint8_t> SurfaceTree::inside(const std::vector<glm::dvec3>& points_mm) const {

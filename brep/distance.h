@@ -17,6 +17,15 @@ struct Crossing {
   bool leaving = false;  ///< from the inside out, as the triangle winds
 };
 
+/// The nearest point of a surface to a point.
+struct Foot {
+  glm::dvec3 p_mm{0.0};
+  double distance_mm = 0.0;  ///< unsigned
+  std::uint32_t face = 0;    ///< one of the nearest, where several are equally near
+  glm::dvec3 weights{
+      0.0};  ///< of the face's corners: the foot's barycentric coordinates, exact zeros on sides
+};
+
 /// A tree of boxes over a surface's triangles, copied, that answers questions about points in LPS
 /// millimetres. Answers do not depend on the number of threads. Building: n log n, about 150 bytes a
 /// triangle.
@@ -31,6 +40,9 @@ class SurfaceTree {
   /// The unsigned distance of each point to the nearest point of the surface. Throws std::invalid_argument
   /// where the surface has no triangles. Cost: about log n a point, parallel.
   std::vector<double> distances_mm(const std::vector<glm::dvec3>& points_mm) const;
+
+  /// The foot of each point, by the same search. Throws as distances_mm() and costs as much.
+  std::vector<Foot> feet(const std::vector<glm::dvec3>& points_mm) const;
 
   /// 1 for each point inside, 0 outside, by parity along +x: a ray through an edge or vertex counts once, by
   /// the half-open rule. Precondition: closed. A point within rounding of the surface may be either.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 pair by name; 2 centre both sets; 3 the best turn is the eigenvector of Horn's symmetric 4 x 4 matrix of
-// largest eigenvalue, found by Jacobi's rotations; 4 scale and translation follow. Where the two largest
+// largest eigenvalue, found by Jacobi's rotations, or lays the frames of three points on each other; 4 scale
+// and translation follow. Where the two largest
 // eigenvalues are equal the turn is not determined.
 #include "brep/register_landmarks.h"
 
@@ -85,6 +86,27 @@ bool on_a_line(const std::vector<Pair>& pairs, glm::dvec3 Pair::*which) {
                      [&](const Pair& pair) { return across(pair) <= line_share() * reach; });
 }
 
+/// Columns along the second point and in the plane of the third, seen from the first.
+glm::dmat3 frame_of(const std::vector<Pair>& pairs, glm::dvec3 Pair::*which) {
+  const glm::dvec3 x = glm::normalize(pairs[1].*which);
+  const glm::dvec3 z = glm::normalize(glm::cross(pairs[1].*which, pairs[2].*which));
+  return {x, glm::cross(z, x), z};
+}
+
+/// What is laid on each other first: both sets' weighted centres, or the first pair.
+Pair anchor_of(const std::vector<Pair>& pairs, Motion motion) {
+  if (motion == Motion::three_points) return pairs.front();
+  Pair anchor{glm::dvec3(0.0), glm::dvec3(0.0), 0.0};
+  for (const Pair& pair : pairs) {
+    anchor.weight += pair.weight;
+    anchor.from += pair.weight * pair.from;
+    anchor.to += pair.weight * pair.to;
+  }
+  anchor.from /= anchor.weight;
+  anchor.to /= anchor.weight;
+  return anchor;
+}
+
 glm::dmat3 best_turn(const std::vector<Pair>& pairs) {
   glm::dmat3 s(0.0);  // s[column][row]: sum of weight * from[row] * to[column]
   for (const Pair& pair : pairs) s += glm::outerProduct(pair.weight * pair.from, pair.to);
@@ -126,25 +148,21 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
     throw std::invalid_argument("register: " + std::to_string(pairs.size()) +
                                 " landmarks have names found in both sets, three are needed: check spelling");
 
-  double weight = 0.0;
-  glm::dvec3 from_centre(0.0), to_centre(0.0);
-  for (const Pair& pair : pairs) {
-    weight += pair.weight;
-    from_centre += pair.weight * pair.from;
-    to_centre += pair.weight * pair.to;
-  }
-  from_centre /= weight;
-  to_centre /= weight;
+  const Pair anchor = anchor_of(pairs, motion);
   for (Pair& pair : pairs) {
-    pair.from -= from_centre;
-    pair.to -= to_centre;
+    pair.from -= anchor.from;
+    pair.to -= anchor.to;
   }
-  if (on_a_line(pairs, &Pair::from) || on_a_line(pairs, &Pair::to))
+  const std::vector<Pair> deciding(pairs.begin(),
+                                   motion == Motion::three_points ? pairs.begin() + 3 : pairs.end());
+  if (on_a_line(deciding, &Pair::from) || on_a_line(deciding, &Pair::to))
     throw std::invalid_argument(
         "register: the landmarks found in both sets lie on one line, about which the turn is open: add one "
         "beside it");
 
-  const glm::dmat3 turn = best_turn(pairs);
+  const glm::dmat3 turn = motion == Motion::three_points
+                              ? frame_of(pairs, &Pair::to) * glm::transpose(frame_of(pairs, &Pair::from))
+                              : best_turn(pairs);
   double along = 0.0, spread = 0.0;
   for (const Pair& pair : pairs) {
     along += pair.weight * glm::dot(pair.to, turn * pair.from);
@@ -155,10 +173,11 @@ LandmarkFit register_landmarks(const std::vector<Landmark>& moving, const std::v
     throw std::invalid_argument("register: no positive scale fits these landmarks: are names interchanged?");
   const glm::dmat3 linear = fit.scale * turn;
   fit.fixed_from_moving = glm::dmat4(linear);
-  fit.fixed_from_moving[3] = glm::dvec4(to_centre - linear * from_centre, 1.0);
+  fit.fixed_from_moving[3] = glm::dvec4(anchor.to - linear * anchor.from, 1.0);
 
-  double squares = 0.0;
+  double squares = 0.0, weight = 0.0;
   for (const Pair& pair : pairs) {
+    weight += pair.weight;
     const double residual = glm::distance(linear * pair.from, pair.to);
     fit.residuals_mm.push_back(residual);
     squares += pair.weight * residual * residual;

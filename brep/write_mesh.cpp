@@ -62,15 +62,22 @@ std::string stl_of(const Triangles& triangles) {
   return bytes;
 }
 
-std::string ply_of(const Triangles& triangles) {
+std::string ply_of(const Triangles& triangles, const VertexData& data) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\ncomment octotomy, LPS millimetres\nelement vertex ";
   append_text(bytes, triangles.points_mm.size());
-  bytes += "\nproperty double x\nproperty double y\nproperty double z\nelement face ";
+  bytes += "\nproperty double x\nproperty double y\nproperty double z";
+  if (!data.colours.empty()) bytes += "\nproperty uchar red\nproperty uchar green\nproperty uchar blue";
+  if (!data.scalars.empty()) bytes += "\nproperty double " + data.scalar_name;
+  bytes += "\nelement face ";
   append_text(bytes, triangles.faces.size());
   bytes += "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (const glm::dvec3& p : triangles.points_mm)
-    for (int axis = 0; axis < 3; ++axis) append_little(bytes, p[axis]);
+  for (std::size_t v = 0; v < triangles.points_mm.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis) append_little(bytes, triangles.points_mm[v][axis]);
+    if (!data.colours.empty())
+      for (int channel = 0; channel < 3; ++channel) append_little(bytes, data.colours[v][channel]);
+    if (!data.scalars.empty()) append_little(bytes, data.scalars[v]);
+  }
   for (const auto& face : triangles.faces) {
     append_little(bytes, std::uint8_t{3});
     for (const std::uint32_t corner : face) append_little(bytes, static_cast<std::int32_t>(corner));
@@ -134,15 +141,30 @@ void replace_file(const std::filesystem::path& path, const std::string& bytes) {
   }
 }
 
+void check(const VertexData& data, std::size_t vertex_count) {
+  const auto fits = [&](std::size_t count) { return count == 0 || count == vertex_count; };
+  if (!fits(data.colours.size()) || !fits(data.scalars.size()))
+    throw std::invalid_argument("write_mesh: vertex data are for another number of vertices than " +
+                                std::to_string(vertex_count));
+  const bool is_word = !data.scalar_name.empty() &&
+                       std::all_of(data.scalar_name.begin(), data.scalar_name.end(),
+                                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  if (!data.scalars.empty() && !is_word)
+    throw std::invalid_argument("write_mesh: '" + data.scalar_name + "' is no name for scalars");
+}
+
 }  // namespace
 
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexData& data) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const Triangles triangles = triangles_of(mesh);
+  check(data, triangles.points_mm.size());
+  if (extension == ".ply") return replace_file(path, ply_of(triangles, data));
+  if (!data.colours.empty() || !data.scalars.empty())
+    throw std::runtime_error(path.string() + ": colours and scalars of vertices go into .ply");
   if (extension == ".stl") return replace_file(path, stl_of(triangles));
-  if (extension == ".ply") return replace_file(path, ply_of(triangles));
   if (extension == ".obj") return replace_file(path, obj_of(triangles));
   if (extension == ".off") return replace_file(path, off_of(triangles));
   throw std::runtime_error(path.string() + ": '" + extension +

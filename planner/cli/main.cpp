@@ -131,6 +131,8 @@ int parse_and_run(int count, char** arguments) {
   cli::add_mesh_verbs(program);
   cli::add_tet(program);
   cli::add_voxelise(program);
+  cli::add_register(program);
+  cli::add_compare(program);
   cli::add_octree(program);
   cli::add_eval(program);
   cli::add_mask(program);

@@ -16,6 +16,16 @@ brep::Mesh read_solid(const std::filesystem::path& path, Timings& timings) {
   return brep::mesh_of(triangles);
 }
 
+brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  const brep::Triangles triangles = brep::read_triangles(path);
+  try {
+    return brep::mesh_of(triangles);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
 void need_mesh_extension(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   for (const char* known : {".stl", ".ply", ".obj", ".off"})

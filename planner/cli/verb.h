@@ -52,6 +52,8 @@ void add_mesh(Program& program);
 void add_mesh_verbs(Program& program);
 void add_tet(Program& program);
 void add_voxelise(Program& program);
+void add_register(Program& program);
+void add_compare(Program& program);
 void add_octree(Program& program);
 void add_eval(Program& program);
 void add_mark(Program& program);

@@ -40,6 +40,34 @@ TEST(WriteMesh, StlComesBackWeldedInSinglePrecision) {
                 10 * std::numeric_limits<float>::epsilon());
 }
 
+TEST(WriteMesh, ColoursAndScalarsGoIntoPlyBesideThePlaces) {
+  const Mesh mesh = mesh_of(shapes::box({0, 0, 0}, {1, 2, 3}));
+  VertexData data;
+  data.scalar_name = "distance_mm";
+  for (unsigned v = 0; v < mesh.n_vertices(); ++v) {
+    data.colours.emplace_back(v, 2 * v, 255 - v);
+    data.scalars.push_back(-0.5 * v);
+  }
+  write_mesh(mesh, folder() / "coloured.ply", data);
+  EXPECT_EQ(read_triangles(folder() / "coloured.ply").points_mm, triangles_of(mesh).points_mm);
+  std::ifstream file(folder() / "coloured.ply", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(bytes.find("property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                       "property double distance_mm\nelement face"),
+            std::string::npos);
+  const std::size_t body = bytes.find("end_header\n") + 11, stride = 3 * 8 + 3 + 8;
+  EXPECT_EQ(static_cast<unsigned char>(bytes[body + 5 * stride + 24]), 5);
+  EXPECT_EQ(static_cast<unsigned char>(bytes[body + 5 * stride + 25]), 10);
+  EXPECT_EQ(static_cast<unsigned char>(bytes[body + 5 * stride + 26]), 250);
+
+  EXPECT_THROW(write_mesh(mesh, folder() / "coloured.stl", data), std::runtime_error);
+  data.colours.pop_back();
+  EXPECT_THROW(write_mesh(mesh, folder() / "coloured.ply", data), std::invalid_argument);
+  data.colours.clear();
+  data.scalar_name = "two words";
+  EXPECT_THROW(write_mesh(mesh, folder() / "coloured.ply", data), std::invalid_argument);
+}
+
 TEST(WriteMesh, AFailureLeavesWhatWasThere) {
   const Mesh mesh = mesh_of(shapes::box({0, 0, 0}, {1, 1, 1}));
   EXPECT_THROW(write_mesh(mesh, folder() / "box.xyz"), std::runtime_error);

@@ -15,9 +15,9 @@ using tests::Json;
 TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
-  for (const char* verb :
-       {"look", "run", "verify", "info", "measure", "render", "mesh", "boolean", "smooth", "tet", "phantom",
-        "octree", "eval", "mark", "mask", "slice", "segment", "prepare"}) {
+  for (const char* verb : {"look",    "run",    "verify", "info",     "measure", "render",  "mesh",
+                           "boolean", "smooth", "tet",    "register", "compare", "phantom", "octree",
+                           "eval",    "mark",   "mask",   "slice",    "segment", "prepare"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const Answer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
@@ -437,6 +437,52 @@ TEST_F(CommandLine, SmoothKeepsTheVolumeWithinItsShareAndWritesNothingWhereItDoe
       run("smooth " + at("ball.stl") + " -o " + at("none.stl") + " --rounds 1000 --max-volume-share 1e-9"),
       "volume");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.stl"));
+}
+
+TEST_F(CommandLine, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.stl")).status, 0);
+  write("here.json", R"({"landmarks":[{"name":"a","point_mm":[0,0,0]},{"name":"b","point_mm":[10,0,0]},
+      {"name":"c","point_mm":[0,10,0]},{"name":"only here","point_mm":[1,1,1]}]})");
+  write("there.json", R"({"landmarks":[{"name":"c","point_mm":[-5,2,3]},{"name":"b","point_mm":[5,12,3]},
+      {"name":"a","point_mm":[5,2,3],"weight":2}]})");
+  const Answer points = run("register " + at("here.json") + " " + at("there.json") + " --json");
+  ASSERT_EQ(points.status, 0) << points.errors;
+  const Json of_points = Json::parse(points.out);
+  EXPECT_LT(of_points.at("rms_mm").get<double>(), 1e-12);
+  EXPECT_NEAR(of_points.at("transform")[0][1].get<double>(), -1.0, 1e-12);  // a quarter turn about z
+  EXPECT_NEAR(of_points.at("transform")[2][3].get<double>(), 3.0, 1e-12);
+  EXPECT_EQ(of_points.at("landmarks").at("left_out"), Json::array({"only here"}));
+
+  const std::string landmarks = " --landmarks " + at("here.json") + " " + at("there.json");
+  ASSERT_EQ(run("register " + at("ball.stl") + " " + at("ball.stl") + landmarks + " --landmarks-only -o " +
+                at("moved.ply"))
+                .status,
+            0);
+  const Answer back =
+      run("register " + at("moved.ply") + " " + at("ball.stl") + " --landmarks " + at("there.json") + " " +
+          at("here.json") + " --overlap 1 -o " + at("back.ply") + " --json");
+  ASSERT_EQ(back.status, 0) << back.errors;
+  EXPECT_LT(Json::parse(back.out).at("rms_mm").get<double>(), 1e-5);
+
+  const Answer compared =
+      run("compare " + at("back.ply") + " " + at("ball.stl") + " -o " + at("coloured.ply") + " --json");
+  ASSERT_EQ(compared.status, 0) << compared.errors;
+  const Json json = Json::parse(compared.out);
+  EXPECT_LT(json.at("hausdorff_mm").get<double>(), 1e-4);
+  EXPECT_GT(json.at("dice").get<double>(), 0.9999);
+  EXPECT_TRUE(json.at("definition").contains("hausdorff95_mm"));
+  EXPECT_EQ(run("info " + at("coloured.ply")).status, 0);
+
+  const Answer apart = run("compare " + at("moved.ply") + " " + at("ball.stl") + " --json");
+  ASSERT_EQ(apart.status, 0) << apart.errors;
+  EXPECT_GT(Json::parse(apart.out).at("hausdorff_mm").get<double>(), 3.0);
+  EXPECT_LT(Json::parse(apart.out).at("dice").get<double>(), 0.9);
+
+  write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Answer open = run("compare " + at("open.off") + " " + at("open.off") + " --json");
+  ASSERT_EQ(open.status, 0) << open.errors;
+  EXPECT_TRUE(Json::parse(open.out).at("dice").is_null());
+  expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two of a kind");
 }
 
 }  // namespace
