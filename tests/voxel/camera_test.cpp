@@ -46,7 +46,7 @@ TEST(Camera, RaysOfAnEyePassThePointsThatTheirPixelsShow) {
         image_plane(universe(), axes, {200, 150}, {axes.project(middle_mm()) + glm::dvec2(3, -2), 90.0}),
         150.0);
     const VoxelRays rays = voxel_rays(universe(), plane);
-    for (const glm::dvec2 p_px : {glm::dvec2(0.0), glm::dvec2(13.5, 140.5), glm::dvec2(200.0, 75.0)})
+    for (const glm::dvec2& p_px : {glm::dvec2(0.0), glm::dvec2(13.5, 140.5), glm::dvec2(200.0, 75.0)})
       for (const double depth_mm : {0.0, 17.0, 80.0}) {
         const glm::dvec3 p_mm = plane.lps_mm(p_px, depth_mm);
         const glm::dvec3 p_voxel = rays.start(p_px) + depth_mm * rays.direction(p_px);

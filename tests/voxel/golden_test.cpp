@@ -136,7 +136,7 @@ Pixels draw(const Case& picture) {
   }
   Picture drawn = render(objects, options);
   if (picture.kind == "annotated")
-    annotate(drawn.rgb, drawn.plane(), {"head", true, true, {{"bone", objects[0].colour}}, {}});
+    annotate(drawn.rgb, drawn.plane(), {"head", true, {}, true, {{"bone", objects[0].colour}}, {}});
   return drawn.rgb;
 }
 
