@@ -22,6 +22,17 @@ Json answer_of(const verify::Answer& side) {
           {"centroid_mm", to_json(side.centroid_mm)}};
 }
 
+Json comparison_json(const verify::Comparison& comparison) {
+  return {{"quantity", comparison.quantity},
+          {"unit", comparison.unit},
+          {"voxel", finite(comparison.voxel)},
+          {"mesh", finite(comparison.mesh)},
+          {"difference", finite(comparison.difference)},
+          {"tolerance", finite(comparison.tolerance)},
+          {"formula", comparison.formula},
+          {"verdict", comparison.tolerance ? Json(verify::to_string(comparison.agreement)) : Json(nullptr)}};
+}
+
 }  // namespace
 
 Json answer(const Timings& timings) {
@@ -98,6 +109,9 @@ Json to_json(const verify::Certificate& certificate) {
   Json terms = Json::array();
   for (const verify::ToleranceTerm& term : certificate.terms)
     terms.push_back({{"name", term.name}, {"formula", term.formula}, {"value_mm3", finite(term.value_mm3)}});
+  Json comparisons = Json::array();
+  for (const verify::Comparison& comparison : certificate.comparisons)
+    comparisons.push_back(comparison_json(comparison));
   return {{"operation", certificate.operation},
           {"tier", verify::to_string(certificate.tier)},
           {"verdict", verify::to_string(certificate.agreement)},
@@ -114,6 +128,7 @@ Json to_json(const verify::Certificate& certificate) {
           {"centroid_tolerance_mm", finite(certificate.centroid_tolerance_mm)},
           {"hausdorff_mm", finite(certificate.hausdorff_mm)},
           {"hausdorff95_mm", finite(certificate.hausdorff95_mm)},
+          {"comparisons", comparisons},
           {"timings_ms", {{"certify", certificate.milliseconds}}}};
 }
 

@@ -73,26 +73,35 @@ void write_pictures(const Result& result, const std::filesystem::path& folder) {
 
 }  // namespace
 
+void add(VerdictCounts& counts, verify::Agreement agreement) {
+  switch (agreement) {
+    case verify::Agreement::Pass:
+      ++counts.pass;
+      break;
+    case verify::Agreement::Warn:
+      ++counts.warn;
+      break;
+    case verify::Agreement::Fail:
+      ++counts.fail;
+      break;
+    case verify::Agreement::BelowResolution:
+      ++counts.below_resolution;
+      break;
+  }
+}
+
 VerdictCounts verdict_counts(const Evaluation& evaluation) {
   VerdictCounts counts;
-  for (const Object& object : evaluation.objects) {
-    if (!object.certificate) continue;
-    switch (object.certificate->agreement) {
-      case verify::Agreement::Pass:
-        ++counts.pass;
-        break;
-      case verify::Agreement::Warn:
-        ++counts.warn;
-        break;
-      case verify::Agreement::Fail:
-        ++counts.fail;
-        break;
-      case verify::Agreement::BelowResolution:
-        ++counts.below_resolution;
-        break;
-    }
-  }
+  for (const Object& object : evaluation.objects)
+    if (object.certificate) add(counts, object.certificate->agreement);
   return counts;
+}
+
+Json to_json(const VerdictCounts& counts) {
+  return {{"PASS", counts.pass},
+          {"WARN", counts.warn},
+          {"FAIL", counts.fail},
+          {"BELOW_RESOLUTION", counts.below_resolution}};
 }
 
 Parts parts_of(const Object& object) {
@@ -120,7 +129,6 @@ std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation
 
 Json result_json(const Result& result) {
   const Evaluation& evaluation = result.evaluation;
-  const VerdictCounts counts = verdict_counts(evaluation);
   Json json = answer(evaluation.timings);
   json["plan"] = {{"name", result.plan.name}, {"steps", result.plan.steps.size()}};
   if (!result.plan.text.empty()) json["plan"] = Json::parse(result.plan.text);
@@ -134,10 +142,7 @@ Json result_json(const Result& result) {
   for (const Measured& measured : evaluation.measured)
     json["measurements"].push_back(measurement_json(measured, evaluation.objects[measured.object]));
   json["certificates"] = certificates_json(evaluation);
-  json["counts"] = {{"PASS", counts.pass},
-                    {"WARN", counts.warn},
-                    {"FAIL", counts.fail},
-                    {"BELOW_RESOLUTION", counts.below_resolution}};
+  json["counts"] = to_json(verdict_counts(evaluation));
   for (const Parts& parts : result.parts)
     json["components"].push_back(
         {{"object", parts.object}, {"count", parts.volumes_mm3.size()}, {"volumes_mm3", parts.volumes_mm3}});

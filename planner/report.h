@@ -34,7 +34,11 @@ struct Result {
 struct VerdictCounts {
   int pass = 0, warn = 0, fail = 0, below_resolution = 0;
 };
+/// Counts one more.
+void add(VerdictCounts& counts, verify::Agreement agreement);
 VerdictCounts verdict_counts(const Evaluation& evaluation);
+/// {"PASS": ..., "WARN": ..., "FAIL": ..., "BELOW_RESOLUTION": ...}.
+nlohmann::ordered_json to_json(const VerdictCounts& counts);
 
 /// The connected parts (by faces) of an object in the voxel kernel.
 Parts parts_of(const Object& object);

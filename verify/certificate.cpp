@@ -286,30 +286,6 @@ std::array<Weighted, 2> surface_distances(const voxel::Octree& octree, const bre
   return {std::move(from_voxels), std::move(from_mesh)};
 }
 
-/// Fills the verdict as comparisons come in.
-class Judge {
- public:
-  explicit Judge(Certificate& certificate) : certificate_(certificate) {}
-
-  void compare(const std::string& what, double found, double allowed, const std::string& unit) {
-    if (found <= allowed) return;
-    const bool doubtful = found <= doubt * allowed;
-    lower_to(doubtful ? Agreement::Warn : Agreement::Fail);
-    char text[160];
-    std::snprintf(text, sizeof text, "%s differs by %.6g %s where theory allows %.6g", what.c_str(), found,
-                  unit.c_str(), allowed);
-    certificate_.reasons.emplace_back(text);
-  }
-  void fail(const std::string& reason) {
-    lower_to(Agreement::Fail);
-    certificate_.reasons.push_back(reason);
-  }
-  void lower_to(Agreement agreement) { certificate_.agreement = std::max(certificate_.agreement, agreement); }
-
- private:
-  Certificate& certificate_;
-};
-
 /// The tolerances, from the mesh, the universe's voxels and the scan's samples.
 void derive_tolerances(Certificate& certificate, const brep::Measures& mesh, const Shape& shape,
                        const voxel::Lattice& lattice, const BoundInputs& inputs) {
@@ -350,26 +326,46 @@ void derive_tolerances(Certificate& certificate, const brep::Measures& mesh, con
 
 void judge(Certificate& certificate, const voxel::Measures& voxels, const brep::Measures& mesh,
            const voxel::Lattice& lattice, const BoundInputs& inputs) {
-  Judge verdict(certificate);
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
-  if (mesh.volume_mm3 < 0.0) verdict.fail("the mesh is turned inside out: its volume is negative");
+  if (mesh.volume_mm3 < 0.0)
+    lower(certificate, Agreement::Fail, "the mesh is turned inside out: its volume is negative");
   if ((voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0))
-    verdict.fail(voxels.voxel_count == 0 ? "the octree is empty, the mesh is not"
-                                         : "the mesh is empty, the octree is not");
-  verdict.compare("volume", std::abs(certificate.difference_mm3), certificate.tolerance_mm3, "mm3");
-  verdict.compare("symmetric difference", certificate.symmetric_difference_mm3,
-                  certificate.symmetric_difference_tolerance_mm3, "mm3");
+    lower(certificate, Agreement::Fail,
+          voxels.voxel_count == 0 ? "the octree is empty, the mesh is not"
+                                  : "the mesh is empty, the octree is not");
+  add_comparison(certificate,
+                 {"volume", "mm3", voxels.volume_mm3, mesh.volume_mm3, std::abs(certificate.difference_mm3),
+                  certificate.tolerance_mm3, "sum of the terms"});
+  add_comparison(certificate, {"symmetric difference",
+                               "mm3",
+                               {},
+                               {},
+                               certificate.symmetric_difference_mm3,
+                               certificate.symmetric_difference_tolerance_mm3,
+                               "layers of voxels that may differ"});
   if (certificate.centroid_distance_mm && certificate.centroid_tolerance_mm)
-    verdict.compare("centroid", *certificate.centroid_distance_mm, *certificate.centroid_tolerance_mm, "mm");
+    add_comparison(certificate, {"centroid",
+                                 "mm",
+                                 {},
+                                 {},
+                                 *certificate.centroid_distance_mm,
+                                 certificate.centroid_tolerance_mm,
+                                 "first moment of the terms / volume"});
   // A right boundary face has its centre within half a voxel's diagonal of the surface that was digitised,
   // and that one lies within a cell of samples of the other's.
   const double near_mm = 0.5 * glm::length(spacing_mm) + 0.5 * glm::length(inputs.scan_spacing_mm);
   if (certificate.hausdorff95_mm)
-    verdict.compare("surface (95th percentile)", *certificate.hausdorff95_mm, near_mm, "mm");
+    add_comparison(certificate, {"hausdorff95",
+                                 "mm",
+                                 {},
+                                 {},
+                                 *certificate.hausdorff95_mm,
+                                 near_mm,
+                                 "half a voxel's and half a sample cell's diagonal"});
   if (certificate.hausdorff_mm && *certificate.hausdorff_mm > lost * near_mm) {
-    verdict.lower_to(Agreement::Warn);
-    certificate.reasons.emplace_back("a part of one surface is " + std::to_string(*certificate.hausdorff_mm) +
-                                     " mm from the other: it may be missing there");
+    lower(certificate, Agreement::Warn,
+          "a part of one surface is " + std::to_string(*certificate.hausdorff_mm) +
+              " mm from the other: it may be missing there");
   }
 
   double extent_voxels = std::numeric_limits<double>::infinity();
@@ -387,6 +383,25 @@ void judge(Certificate& certificate, const voxel::Measures& voxels, const brep::
 }
 
 }  // namespace
+
+void add_comparison(Certificate& certificate, Comparison comparison) {
+  // Written so that a difference that is no number fails.
+  const auto within = [&](double allowed) { return comparison.difference <= allowed; };
+  if (comparison.tolerance && !within(*comparison.tolerance)) {
+    comparison.agreement = within(doubt * *comparison.tolerance) ? Agreement::Warn : Agreement::Fail;
+    char text[200];
+    std::snprintf(text, sizeof text, "%s differs by %.6g %s where theory allows %.6g",
+                  comparison.quantity.c_str(), comparison.difference, comparison.unit.c_str(),
+                  *comparison.tolerance);
+    lower(certificate, comparison.agreement, text);
+  }
+  certificate.comparisons.push_back(std::move(comparison));
+}
+
+void lower(Certificate& certificate, Agreement agreement, const std::string& reason) {
+  certificate.agreement = std::max(certificate.agreement, agreement);
+  certificate.reasons.push_back(reason);
+}
 
 Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs) {
   const auto start = std::chrono::steady_clock::now();

@@ -30,6 +30,18 @@ struct ToleranceTerm {
   double value_mm3 = 0.0;
 };
 
+/// One quantity of both answers, with a verdict of its own.
+struct Comparison {
+  std::string quantity;  ///< "volume", "centroid", "euler", ...
+  std::string unit;      ///< "mm3", "mm2", "mm", "mm5"; empty for a count
+  /// Both answers, where the quantity is a number of each; a distance between them has neither.
+  std::optional<double> voxel = {}, mesh = {};
+  double difference = 0.0;               ///< what is held against the tolerance, not negative
+  std::optional<double> tolerance = {};  ///< none: theory gives no bound, the numbers are told and not judged
+  std::string formula = {};              ///< the tolerance's, or why there is none
+  Agreement agreement = Agreement::Pass;
+};
+
 /// Both kernels' answers to one question, the difference, what theory allows, and a verdict.
 struct Certificate {
   std::string operation;
@@ -45,10 +57,17 @@ struct Certificate {
   std::optional<double> centroid_tolerance_mm;
   std::optional<double> hausdorff_mm;    ///< largest, both directions, voxel faces to triangles and back
   std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
+  std::vector<Comparison> comparisons;   ///< every quantity that was looked at
   Agreement agreement = Agreement::Pass;
   std::vector<std::string> reasons;  ///< why not PASS
   double milliseconds = 0.0;
 };
+
+/// Adds a comparison and sets its verdict: PASS up to the tolerance, WARN up to twice that, FAIL beyond and
+/// where the difference is no number. The certificate's verdict becomes the worse of the two, with a reason.
+void add_comparison(Certificate& certificate, Comparison comparison);
+/// Lowers the certificate's verdict, never raises it, and says why.
+void lower(Certificate& certificate, Agreement agreement, const std::string& reason);
 
 /// What the bound is made of beyond what the two objects show themselves.
 struct BoundInputs {

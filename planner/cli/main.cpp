@@ -119,6 +119,7 @@ int parse_and_run(int count, char** arguments) {
   Program program(app);
   cli::add_look(program);
   cli::add_plan_verbs(program);
+  cli::add_verify_verbs(program);
   cli::add_info(program);
   cli::add_convert(program);
   cli::add_measure(program);

@@ -51,6 +51,7 @@ void add_measure(Program& program);
 void add_mesh(Program& program);
 void add_mesh_verbs(Program& program);
 void add_tet(Program& program);
+void add_verify_verbs(Program& program);
 void add_voxelise(Program& program);
 void add_register(Program& program);
 void add_compare(Program& program);

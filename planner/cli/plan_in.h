@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planner/cli/scan_in.h"
+#include "planner/evaluate.h"
+#include "planner/plan.h"
+
+// What the verbs that replay a plan have in common.
+namespace octotomy::planner::cli {
+
+/// A plan as the command line names it, and what it says of the plan's scans.
+struct PlanIn {
+  std::filesystem::path plan;
+  std::vector<std::string> scans;  ///< NAME=PATH each
+  ScanIn in;
+};
+/// Adds --scan and the options that say how a scan is read; the plan itself is the verb's own to name.
+void add_plan_options(CLI::App& verb, PlanIn& text);
+
+/// Reads the plan and puts NAME=PATH in the place of its scans' paths; those are relative to where we are.
+/// Throws as read_plan(), and std::runtime_error where --scan names none of the plan's scans.
+Plan plan_of(const Program& program, const PlanIn& text);
+
+/// Progress and stop as the program has them, certificates wanted.
+EvaluateOptions evaluate_options(Program& program);
+
+/// A line an object for people: its verdict with both answers. Findings go to standard error.
+std::string verdict_text(const Evaluation& evaluation);
+/// The exit status that the verdicts make; says so on standard error where the kernels disagree.
+int status_of(const Evaluation& evaluation);
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/verify_verbs.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+/// The suites there are.
+const std::vector<Suite>& suites() {
+  static const std::vector<Suite> all{};
+  return all;
+}
+
+SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
+  Result result;
+  result.plan = plan_of(program, text);
+  result.evaluation = evaluate(result.plan, evaluate_options(program));
+  SuiteAnswer answer;
+  answer.timings = result.evaluation.timings;
+  answer.certificates = result_json(result)["certificates"];
+  answer.counts = verdict_counts(result.evaluation);
+  answer.text = verdict_text(result.evaluation);
+  return answer;
+}
+
+/// What was named: a suite by its option, or a plan.
+SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
+  const Suite* suite = nullptr;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (named[i]->count() == 0) continue;
+    if (suite != nullptr || !text.subject.empty())
+      throw CLI::ValidationError(named[i]->get_name(), "one thing at a time: a plan or a single suite");
+    suite = &suites()[i];
+  }
+  if (suite != nullptr) return suite->run(program, text);
+  if (text.subject.size() != 1)
+    throw CLI::ValidationError("verify", "name one plan, or a suite; see octotomy verify --help");
+  text.plan = text.subject.front();
+  return verify_plan(program, text);
+}
+
+int verify(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
+  const SuiteAnswer found = chosen(program, text, named);
+  Json json = answer(found.timings);
+  json["certificates"] = found.certificates;
+  json["counts"] = to_json(found.counts);
+  json.update(found.more);
+  program.say(json, found.text);
+  if (found.counts.fail > 0) warn("the kernels disagree (a FAIL verdict)");
+  return found.counts.fail > 0 || !found.held ? disagreement : done;
+}
+
+}  // namespace
+
+void add_verify_verbs(Program& program) {
+  const auto text = std::make_shared<VerifyText>();
+  const auto named = std::make_shared<std::vector<CLI::Option*>>();
+  CLI::App& verb =
+      program.verb("verify", "Replays a plan for its certificates only, or runs a suite; nothing is written",
+                   "octotomy verify planner/le_fort_i.plan.json --scan ct=head.nrrd --json",
+                   [&program, text, named] { return verify(program, *text, *named); });
+  verb.add_option("subject", text->subject, "A .plan.json")->check(CLI::ExistingFile)->type_name("PLAN");
+  add_plan_options(verb, *text);
+  for (const Suite& suite : suites()) named->push_back(suite.add(verb, *text));
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planner/answer.h"
+#include "planner/cli/plan_in.h"
+#include "planner/report.h"
+
+// `octotomy verify`: a plan's certificates, or one of the suites that test the verifier itself.
+namespace octotomy::planner::cli {
+
+/// What the command line says to `verify`. A suite adds the fields of its own options.
+struct VerifyText : PlanIn {
+  std::vector<std::string> subject;  ///< a plan; no suite was named
+};
+
+/// What a suite found. The answer's JSON has its certificates, the counts and whatever keys `more` holds.
+struct SuiteAnswer {
+  Timings timings;
+  Json certificates = Json::array();
+  VerdictCounts counts;
+  Json more = Json::object();
+  std::string text;  ///< for people
+  bool held = true;  ///< false: exit status 1, besides a count of FAIL
+};
+
+/// One suite: what names it on the command line, and what runs it. It looks at program.stop between cases and
+/// throws Stopped, and tells program.progress() of each.
+struct Suite {
+  /// Adds the suite's flag and options to the verb; the option that names the suite is returned.
+  CLI::Option* (*add)(CLI::App& verb, VerifyText& text);
+  SuiteAnswer (*run)(Program& program, const VerifyText& text);
+};
+
+}  // namespace octotomy::planner::cli
