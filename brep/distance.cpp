@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 namespace octotomy::brep {
 namespace {
@@ -103,6 +105,21 @@ bool passes(const glm::dvec3& p, const Corners& t) {
 }
 
 }  // namespace
+
+bool is_inside(const glm::dvec3& p_mm, const Triangles& surface) {
+  const auto passed = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, surface.faces.size(), 4096), std::size_t{0},
+      [&](const auto& range, std::size_t count) {
+        for (std::size_t f = range.begin(); f != range.end(); ++f) {
+          const auto& face = surface.faces[f];
+          count += passes(
+              p_mm, {surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]});
+        }
+        return count;
+      },
+      std::plus<>());
+  return passed % 2 == 1;
+}
 
 struct SurfaceTree::Tree {
   /// A leaf holds `count` triangles from `first`; an inner node's children are the next one and `first`.

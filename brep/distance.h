@@ -11,6 +11,10 @@
 
 namespace octotomy::brep {
 
+/// Whether a point is inside a closed surface, as SurfaceTree::inside() says, but without a tree: linear in
+/// the triangles, parallel, and so the better way for a few points.
+bool is_inside(const glm::dvec3& p_mm, const Triangles& surface);
+
 /// A triangle that a ray towards +x passes.
 struct Crossing {
   std::uint32_t face = 0;

@@ -153,14 +153,43 @@ void count_duplicates(const Triangles& triangles, Health& health) {
   }
 }
 
+/// Marks points that stand where a point of another shell does.
+std::vector<std::uint8_t> mark_touching(const Triangles& triangles, const std::vector<std::uint32_t>& shell) {
+  struct Corner {
+    glm::dvec3 p_mm;
+    std::uint32_t shell, point;
+  };
+  std::vector<Corner> corners;
+  corners.reserve(3 * shell.size());
+  for (std::uint32_t f = 0; f < shell.size(); ++f)
+    for (const std::uint32_t v : triangles.faces[f]) corners.push_back({triangles.points_mm[v], shell[f], v});
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+    return std::tie(a.p_mm.x, a.p_mm.y, a.p_mm.z) < std::tie(b.p_mm.x, b.p_mm.y, b.p_mm.z);
+  });
+  std::vector<std::uint8_t> touching(triangles.points_mm.size(), 0);
+  for (std::size_t i = 0, j; i < corners.size(); i = j) {
+    bool several = false;
+    for (j = i + 1; j < corners.size() && corners[j].p_mm == corners[i].p_mm; ++j)
+      several = several || corners[j].shell != corners[i].shell;
+    if (!several) continue;
+    for (std::size_t k = i; k < j; ++k) touching[corners[k].point] = 1;
+  }
+  return touching;
+}
+
 /// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
 /// turned outward, to one where it is turned inward. Returns the total volume. Needs a closed, manifold,
 /// consistently wound mesh.
 double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& shell, Health& health) {
   struct Probe {
     double volume_mm3 = 0.0;
-    glm::dvec3 p_mm{-std::numeric_limits<double>::infinity()};  ///< the shell's point of largest x
+    /// The shell's point of largest x, one that no other shell shares where there is any.
+    glm::dvec3 p_mm{-std::numeric_limits<double>::infinity()};
+    bool touches = true;
   };
+  const std::vector<std::uint8_t> touching = health.shells > 1
+                                                 ? mark_touching(triangles, shell)
+                                                 : std::vector<std::uint8_t>(triangles.points_mm.size(), 0);
   std::map<std::uint32_t, Probe> probes;
   double volume_mm3 = 0.0;
   for (std::uint32_t f = 0; f < shell.size(); ++f) {
@@ -168,8 +197,14 @@ double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>
     const auto point = [&](int k) {
       return triangles.points_mm[triangles.faces[f][static_cast<std::size_t>(k)]];
     };
-    for (int k = 0; k < 3; ++k)
-      if (point(k).x > probe.p_mm.x) probe.p_mm = point(k);
+    for (const std::uint32_t v : triangles.faces[f]) {
+      const glm::dvec3& p = triangles.points_mm[v];
+      const bool touches = touching[v] != 0;
+      if (touches != probe.touches ? probe.touches : p.x > probe.p_mm.x) {
+        probe.p_mm = p;
+        probe.touches = touches;
+      }
+    }
     // About the shell's first point, which keeps digits far from the origin.
     const glm::dvec3 origin = triangles.points_mm[triangles.faces[shell[f]][0]];
     probe.volume_mm3 += glm::dot(point(0) - origin, glm::cross(point(1) - origin, point(2) - origin)) / 6.0;

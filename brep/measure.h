@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "brep/mesh.h"
+#include "brep/triangles.h"
 
 namespace octotomy::brep {
 
@@ -22,11 +23,20 @@ struct Measures {
 };
 
 /// Volume and centroid mean something for closed meshes only: ask health() where that is in doubt; area, box
-/// and curvature (inner edges) are right for open ones too. Precondition: nothing is
-/// marked as deleted. Cost: linear, 150 bytes a face.
+/// and curvature (inner edges) are right for open ones too. Precondition: nothing is marked as deleted. The
+/// same bits on any number of threads. Cost: linear, parallel, 24 bytes a face.
 Measures measure(const Mesh& mesh);
 
-/// The volume alone, the same bits as measure()'s at a fraction of the cost.
+/// What can be said of triangles without their connection, as in Measures.
+struct Size {
+  double volume_mm3 = 0.0;
+  double area_mm2 = 0.0;
+  glm::dvec3 low_mm{0.0}, high_mm{0.0};
+};
+
+/// The same bits as measure()'s at a fraction of the cost, as no edges are visited.
+Size size_of(const Triangles& triangles);
+Size size_of(const Mesh& mesh);
 double volume_mm3(const Mesh& mesh);
 
 }  // namespace octotomy::brep

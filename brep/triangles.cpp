@@ -8,11 +8,13 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 // The halfedge structure is written directly rather than by add_face, which prints to the standard error,
 // depends on the order of the triangles at vertices where several fans meet, and cannot say what is wrong.
-// 1 refuse triangles that are none; 2 pair halfedges by sorting; 3 tell the fans at each point apart;
-// 4 write edges, faces and the loops along the boundary.
+// 1 refuse triangles that are none; 2 pair halfedges by sorting those of each point; 3 tell the fans at each
+// point apart; 4 write edges, faces and the loops along the boundary.
 
 namespace octotomy::brep {
 namespace {
@@ -21,6 +23,9 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 std::uint32_t next_corner(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+std::uint32_t previous_corner(std::uint32_t corner) {
+  return corner % 3 == 0 ? corner + 2 : corner - 1;
 }
 
 [[noreturn]] void refuse(std::size_t face, const std::string& why, const std::string& advice) {
@@ -54,15 +59,27 @@ std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
     std::uint32_t low, high, corner;
   };
   const auto corner_count = static_cast<std::uint32_t>(3 * triangles.faces.size());
+  const auto side_of = [&](std::uint32_t c) {
+    const std::uint32_t from = triangles.faces[c / 3][c % 3], to = triangles.faces[c / 3][(c + 1) % 3];
+    return Side{std::min(from, to), std::max(from, to), c};
+  };
+  // Sides are laid out by their lower point, then the few of each point are sorted.
+  std::vector<std::uint32_t> begin(triangles.points_mm.size() + 1, 0);
+  for (std::uint32_t c = 0; c < corner_count; ++c) ++begin[side_of(c).low + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
   std::vector<Side> sides(corner_count);
+  std::vector<std::uint32_t> place(begin.begin(), begin.end() - 1);
   for (std::uint32_t c = 0; c < corner_count; ++c) {
-    const std::uint32_t from = triangles.faces[c / 3][c % 3];
-    const std::uint32_t to = triangles.faces[c / 3][(c + 1) % 3];
-    sides[c] = {std::min(from, to), std::max(from, to), c};
+    const Side side = side_of(c);
+    sides[place[side.low]++] = side;
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
-  });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, triangles.points_mm.size(), 4096), [&](const auto& range) {
+        for (std::size_t v = range.begin(); v != range.end(); ++v)
+          std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1], [](const Side& a, const Side& b) {
+            return std::tie(a.high, a.corner) < std::tie(b.high, b.corner);
+          });
+      });
 
   std::vector<std::uint32_t> opposite(corner_count, none);
   std::uint32_t offender = none;
@@ -90,88 +107,79 @@ std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
   return opposite;
 }
 
-/// Joins the corners that lie in one fan about a point.
-class Fans {
- public:
-  explicit Fans(std::size_t corner_count) : parent_(corner_count) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
-  }
-  std::uint32_t fan_of(std::uint32_t corner) {
-    while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-    return corner;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = fan_of(a);
-    b = fan_of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-/// Adds a vertex for each point and for each further fan about it; returns the vertex of each corner.
-std::vector<Mesh::VertexHandle> add_vertices(const Triangles& triangles,
-                                             const std::vector<std::uint32_t>& opposite, Mesh& mesh) {
-  Fans fans(opposite.size());
+/// Adds a vertex for each point and for each further fan about it; returns the vertex of each corner. The fan
+/// whose corner comes first has the point's own.
+std::vector<Mesh::VertexHandle> place_corners(const Triangles& triangles,
+                                              const std::vector<std::uint32_t>& opposite,
+                                              std::vector<glm::dvec3>& copies_mm) {
+  std::vector<std::uint8_t> has_fan(triangles.points_mm.size(), 0);
+  std::vector<Mesh::VertexHandle> of_corner(opposite.size());
   for (std::uint32_t c = 0; c < opposite.size(); ++c) {
-    if (opposite[c] == none) continue;
-    fans.join(c, next_corner(opposite[c]));
-  }
-  for (const glm::dvec3& p : triangles.points_mm) mesh.new_vertex(Mesh::Point(p.x, p.y, p.z));
-  std::vector<std::uint32_t> first_fan(triangles.points_mm.size(), none);
-  std::vector<Mesh::VertexHandle> of_fan(opposite.size()), of_corner(opposite.size());
-  for (std::uint32_t c = 0; c < opposite.size(); ++c) {
-    // The smallest corner of a fan is its name, so a fan is met by its name first.
-    const std::uint32_t fan = fans.fan_of(c), v = triangles.faces[c / 3][c % 3];
-    if (fan == c) {
-      if (first_fan[v] == none) {
-        first_fan[v] = fan;
-        of_fan[fan] = Mesh::VertexHandle(static_cast<int>(v));
-      } else {
-        const glm::dvec3& p = triangles.points_mm[v];
-        of_fan[fan] = mesh.new_vertex(Mesh::Point(p.x, p.y, p.z));
-      }
+    if (of_corner[c].is_valid()) continue;
+    const std::uint32_t v = triangles.faces[c / 3][c % 3];
+    Mesh::VertexHandle vertex(static_cast<int>(v));
+    if (has_fan[v]) {
+      vertex = Mesh::VertexHandle(static_cast<int>(triangles.points_mm.size() + copies_mm.size()));
+      copies_mm.push_back(triangles.points_mm[v]);
     }
-    of_corner[c] = of_fan[fan];
+    has_fan[v] = 1;
+    // All round the point one way; at a boundary the rest of the fan lies the other way.
+    std::uint32_t turning = c;
+    do {
+      of_corner[turning] = vertex;
+      turning = opposite[turning] == none ? none : next_corner(opposite[turning]);
+    } while (turning != none && turning != c);
+    for (turning = turning == none ? opposite[previous_corner(c)] : none; turning != none;
+         turning = opposite[previous_corner(turning)])
+      of_corner[turning] = vertex;
   }
   return of_corner;
 }
 
 }  // namespace
 
+void check_joins(const Triangles& triangles) {
+  check_triangles(triangles);
+  pair_halfedges(triangles);
+}
+
 Mesh mesh_of(const Triangles& triangles) {
   check_triangles(triangles);
   const std::vector<std::uint32_t> opposite = pair_halfedges(triangles);
-  Mesh mesh;
-  mesh.reserve(triangles.points_mm.size(), opposite.size() / 2 + 1, triangles.faces.size());
-  const std::vector<Mesh::VertexHandle> vertex = add_vertices(triangles, opposite, mesh);
+  std::vector<glm::dvec3> copies_mm;
+  const std::vector<Mesh::VertexHandle> vertex = place_corners(triangles, opposite, copies_mm);
 
+  // An edge is numbered by the first of its corners, whose halfedge is the edge's first.
   std::vector<Mesh::HalfedgeHandle> halfedge(opposite.size());
-  for (std::uint32_t c = 0; c < opposite.size(); ++c) {
-    if (opposite[c] != none && opposite[c] < c)
-      halfedge[c] = mesh.opposite_halfedge_handle(halfedge[opposite[c]]);
-    else
-      halfedge[c] = mesh.new_edge(vertex[c], vertex[next_corner(c)]);
+  int edge_count = 0;
+  for (std::uint32_t c = 0; c < opposite.size(); ++c)
+    halfedge[c] = opposite[c] < c ? Mesh::HalfedgeHandle(halfedge[opposite[c]].idx() + 1)
+                                  : Mesh::HalfedgeHandle(2 * edge_count++);
+
+  const std::size_t point_count = triangles.points_mm.size();
+  Mesh mesh;
+  mesh.resize(point_count + copies_mm.size(), static_cast<std::size_t>(edge_count), triangles.faces.size());
+  for (std::size_t v = 0; v < point_count + copies_mm.size(); ++v) {
+    const glm::dvec3& p = v < point_count ? triangles.points_mm[v] : copies_mm[v - point_count];
+    mesh.set_point(Mesh::VertexHandle(static_cast<int>(v)), Mesh::Point(p.x, p.y, p.z));
   }
-  for (std::uint32_t c = 0; c < opposite.size(); c += 3) {
-    const Mesh::FaceHandle face = mesh.new_face();
-    mesh.set_halfedge_handle(face, halfedge[c]);
-    for (std::uint32_t k = c; k < c + 3; ++k) {
-      mesh.set_face_handle(halfedge[k], face);
-      mesh.set_next_halfedge_handle(halfedge[k], halfedge[next_corner(k)]);
-      mesh.set_halfedge_handle(vertex[k], halfedge[k]);
-    }
+  std::vector<Mesh::HalfedgeHandle> boundary;
+  for (std::uint32_t c = 0; c < opposite.size(); ++c) {
+    const Mesh::FaceHandle face(static_cast<int>(c / 3));
+    if (c % 3 == 0) mesh.set_halfedge_handle(face, halfedge[c]);
+    mesh.set_vertex_handle(halfedge[c], vertex[next_corner(c)]);
+    mesh.set_face_handle(halfedge[c], face);
+    mesh.set_next_halfedge_handle(halfedge[c], halfedge[next_corner(c)]);
+    mesh.set_halfedge_handle(vertex[c], halfedge[c]);
+    if (opposite[c] != none) continue;
+    boundary.push_back(mesh.opposite_halfedge_handle(halfedge[c]));
+    mesh.set_vertex_handle(boundary.back(), vertex[c]);
   }
 
   // As every fan has its own vertex, at most one boundary halfedge leaves each; a vertex must point to it.
-  std::vector<Mesh::HalfedgeHandle> boundary;
-  for (std::uint32_t c = 0; c < opposite.size(); ++c) {
-    if (opposite[c] != none) continue;
-    const Mesh::HalfedgeHandle outside = mesh.opposite_halfedge_handle(halfedge[c]);
+  for (const Mesh::HalfedgeHandle outside : boundary) {
     mesh.set_boundary(outside);
     mesh.set_halfedge_handle(mesh.from_vertex_handle(outside), outside);
-    boundary.push_back(outside);
   }
   for (const Mesh::HalfedgeHandle outside : boundary)
     mesh.set_next_halfedge_handle(outside, mesh.halfedge_handle(mesh.to_vertex_handle(outside)));
@@ -180,22 +188,27 @@ Mesh mesh_of(const Triangles& triangles) {
 
 Triangles triangles_of(const Mesh& mesh) {
   Triangles triangles;
-  triangles.points_mm.reserve(mesh.n_vertices());
-  triangles.faces.reserve(mesh.n_faces());
-  for (const auto v : mesh.all_vertices()) {
-    assert(!mesh.status(v).deleted());
-    const Mesh::Point& p = mesh.point(v);
-    triangles.points_mm.emplace_back(p[0], p[1], p[2]);
-  }
-  for (const auto f : mesh.all_faces()) {
-    assert(!mesh.status(f).deleted());
-    const Mesh::HalfedgeHandle h = mesh.halfedge_handle(f);
-    const auto index = [&](Mesh::HalfedgeHandle side) {
-      return static_cast<std::uint32_t>(mesh.from_vertex_handle(side).idx());
-    };
-    triangles.faces.push_back(
-        {index(h), index(mesh.next_halfedge_handle(h)), index(mesh.prev_halfedge_handle(h))});
-  }
+  triangles.points_mm.resize(mesh.n_vertices());
+  triangles.faces.resize(mesh.n_faces());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.n_vertices(), 4096), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      assert(!mesh.status(Mesh::VertexHandle(static_cast<int>(v))).deleted());
+      const Mesh::Point& p = mesh.point(Mesh::VertexHandle(static_cast<int>(v)));
+      triangles.points_mm[v] = {p[0], p[1], p[2]};
+    }
+  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.n_faces(), 4096), [&](const auto& range) {
+    for (std::size_t f = range.begin(); f != range.end(); ++f) {
+      const Mesh::FaceHandle face(static_cast<int>(f));
+      assert(!mesh.status(face).deleted());
+      const Mesh::HalfedgeHandle h = mesh.halfedge_handle(face);
+      const auto number = [&](Mesh::HalfedgeHandle to) {
+        return static_cast<std::uint32_t>(mesh.to_vertex_handle(to).idx());
+      };
+      triangles.faces[f] = {number(mesh.prev_halfedge_handle(h)), number(h),
+                            number(mesh.next_halfedge_handle(h))};
+    }
+  });
   return triangles;
 }
 

@@ -16,6 +16,7 @@ void register_boolean();
 void register_build();
 void register_doors();
 void register_measure();
+void register_mesh_boolean();
 void register_move();
 void register_read();
 void register_render();

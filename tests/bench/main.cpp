@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   octotomy::bench::register_build();
   octotomy::bench::register_doors();
   octotomy::bench::register_measure();
+  octotomy::bench::register_mesh_boolean();
   octotomy::bench::register_move();
   octotomy::bench::register_read();
   octotomy::bench::register_render();

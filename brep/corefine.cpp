@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/corefine.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+#include "brep/triangles.h"
+
+namespace octotomy::brep {
+
+/// Steps along halfedges that the corefinement under way may still take.
+struct StepBudget {
+  static thread_local std::size_t left;
+};
+thread_local std::size_t StepBudget::left = 0;
+
+// CGAL finds these for our mesh instead of its own.
+// Its output builder distrusts open surfaces as operands: it would refuse what it has classified by edges
+// alone, which is all that patches of solids need. Solids are known to be closed and outward before they come
+// here, and patches wind as their solids do.
+inline bool is_closed(const Mesh&) {
+  return true;
+}
+template <typename Parameters>
+bool is_outward_oriented(const Mesh&, const Parameters&) {
+  return true;
+}
+// Where surfaces all but coincide it may link halfedges into rings that its walks never leave.
+inline void take_step() {
+  if (StepBudget::left == 0) throw std::runtime_error("its walk along the surface does not end");
+  --StepBudget::left;
+}
+inline OpenMesh::HalfedgeHandle next(OpenMesh::HalfedgeHandle h, const Mesh& mesh) {
+  take_step();
+  return mesh.next_halfedge_handle(h);
+}
+inline OpenMesh::HalfedgeHandle prev(OpenMesh::HalfedgeHandle h, const Mesh& mesh) {
+  take_step();
+  return mesh.prev_halfedge_handle(h);
+}
+
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// The mesh's points as CGAL's. CGAL's own map of OpenMesh points writes them through float.
+struct PointMap {
+  using category = boost::read_write_property_map_tag;
+  using key_type = boost::graph_traits<Mesh>::vertex_descriptor;
+  using value_type = Kernel::Point_3;
+  using reference = Kernel::Point_3;
+  Mesh* mesh = nullptr;
+
+  friend reference get(const PointMap& map, key_type v) {
+    const Mesh::Point& p = map.mesh->point(v);
+    return {p[0], p[1], p[2]};
+  }
+  friend void put(const PointMap& map, key_type v, const value_type& p) {
+    map.mesh->set_point(v, Mesh::Point(p.x(), p.y(), p.z()));
+  }
+};
+
+/// Edges that lie on the cut, by number; edges come to be while it is made.
+struct CutEdges {
+  using category = boost::read_write_property_map_tag;
+  using key_type = boost::graph_traits<Mesh>::edge_descriptor;
+  using value_type = bool;
+  using reference = bool;
+  std::vector<bool>* on_cut = nullptr;
+
+  friend bool get(const CutEdges& map, key_type e) {
+    const auto i = static_cast<std::size_t>(e.idx());
+    return i < map.on_cut->size() && (*map.on_cut)[i];
+  }
+  friend void put(const CutEdges& map, key_type e, bool is_on_cut) {
+    const auto i = static_cast<std::size_t>(e.idx());
+    if (i >= map.on_cut->size()) map.on_cut->resize(i + 1, false);
+    (*map.on_cut)[i] = is_on_cut;
+  }
+};
+
+/// The same surface with points and triangles in the order of their coordinates. Corefinement leaves them in
+/// an order that hangs on addresses, so that the same operands gave other bits in about one run of ten: sums
+/// over faces in their last places, and all that decimates or fills the surface later on. Points at one place
+/// (rounded together) go by the places of their neighbours. Throws where links are torn, which corefinement
+/// of surfaces that all but coincide may leave.
+Triangles in_order(const Mesh& mesh) {
+  Triangles triangles = triangles_of(mesh);
+  check_joins(triangles);
+  const auto place = [&](std::uint32_t v) {
+    const glm::dvec3& p = triangles.points_mm[v];
+    return std::array<double, 3>{p.x, p.y, p.z};
+  };
+  const auto ring = [&](std::uint32_t v) {
+    std::vector<std::array<double, 3>> places;
+    for (const auto neighbour : mesh.vv_range(Mesh::VertexHandle(static_cast<int>(v))))
+      places.push_back(place(static_cast<std::uint32_t>(neighbour.idx())));
+    std::sort(places.begin(), places.end());
+    return places;
+  };
+  std::vector<std::uint32_t> order(triangles.points_mm.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
+    const auto at_v = place(v), at_w = place(w);
+    return at_v != at_w ? at_v < at_w : v != w && ring(v) < ring(w);
+  });
+
+  Triangles sorted;
+  std::vector<std::uint32_t> rank(order.size());
+  for (const std::uint32_t v : order) {
+    rank[v] = static_cast<std::uint32_t>(sorted.points_mm.size());
+    sorted.points_mm.push_back(triangles.points_mm[v]);
+  }
+  sorted.faces = std::move(triangles.faces);
+  for (auto& face : sorted.faces) {
+    for (std::uint32_t& v : face) v = rank[v];
+    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+  }
+  std::sort(sorted.faces.begin(), sorted.faces.end());
+  return sorted;
+}
+
+/// Deletes the closed shells that are films and says how many. Points are rounded by half a unit of the last
+/// place of their largest coordinate, so two sheets that would coincide lie apart by a few of them, and a
+/// shell whose volume is no more than that over its area is nothing else.
+std::size_t drop_films(Mesh& mesh) {
+  double reach = 0.0;
+  for (const auto v : mesh.vertices()) reach = std::max(reach, mesh.point(v).max_abs());
+  const double thickness = 4.0 * std::numeric_limits<double>::epsilon() * reach;
+  std::vector<bool> seen(mesh.n_faces(), false);
+  std::vector<Mesh::FaceHandle> shell;
+  std::size_t films = 0;
+  for (const auto seed : mesh.faces()) {
+    if (seen[static_cast<std::size_t>(seed.idx())]) continue;
+    seen[static_cast<std::size_t>(seed.idx())] = true;
+    shell.assign(1, seed);
+    const Mesh::Point origin = mesh.point(mesh.to_vertex_handle(mesh.halfedge_handle(seed)));
+    double volume = 0.0, area = 0.0;
+    bool open = false;
+    for (std::size_t next = 0; next < shell.size(); ++next) {
+      Mesh::HalfedgeHandle h = mesh.halfedge_handle(shell[next]);
+      std::array<Mesh::Point, 3> p;
+      for (Mesh::Point& corner : p) {
+        corner = mesh.point(mesh.to_vertex_handle(h)) - origin;
+        const Mesh::FaceHandle beyond = mesh.opposite_face_handle(h);
+        open = open || !beyond.is_valid();
+        if (beyond.is_valid() && !seen[static_cast<std::size_t>(beyond.idx())]) {
+          seen[static_cast<std::size_t>(beyond.idx())] = true;
+          shell.push_back(beyond);
+        }
+        h = mesh.next_halfedge_handle(h);
+      }
+      const Mesh::Point normal = OpenMesh::cross(p[1] - p[0], p[2] - p[0]);
+      volume += OpenMesh::dot(p[0], normal) / 6.0;
+      area += 0.5 * normal.norm();
+    }
+    if (open || std::abs(volume) > thickness * area) continue;
+    ++films;
+    for (const Mesh::FaceHandle face : shell) mesh.delete_face(face, true);
+  }
+  return films;
+}
+
+/// Whether some part connected across edges has none on the cut.
+bool has_uncut_part(const Mesh& mesh, const std::vector<bool>& on_cut) {
+  std::vector<bool> seen(mesh.n_faces(), false);
+  std::vector<Mesh::FaceHandle> flood;
+  for (const auto seed : mesh.faces()) {
+    if (seen[static_cast<std::size_t>(seed.idx())]) continue;
+    seen[static_cast<std::size_t>(seed.idx())] = true;
+    flood.assign(1, seed);
+    bool is_cut = false;
+    while (!flood.empty()) {
+      const Mesh::FaceHandle face = flood.back();
+      flood.pop_back();
+      for (auto side = mesh.cfh_begin(face); side != mesh.cfh_end(face); ++side) {
+        const auto edge = static_cast<std::size_t>(mesh.edge_handle(*side).idx());
+        is_cut = is_cut || (edge < on_cut.size() && on_cut[edge]);
+        const Mesh::FaceHandle beyond = mesh.opposite_face_handle(*side);
+        if (!beyond.is_valid() || seen[static_cast<std::size_t>(beyond.idx())]) continue;
+        seen[static_cast<std::size_t>(beyond.idx())] = true;
+        flood.push_back(beyond);
+      }
+    }
+    if (!is_cut) return true;
+  }
+  return false;
+}
+
+/// What a sound corefinement stays far below: measured are some 100 steps a triangle.
+std::size_t step_limit(const Mesh& a, const Mesh& b) {
+  return 10'000 * (a.n_faces() + b.n_faces() + 1000);
+}
+
+/// Corefines copies of the operands.
+Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_intersection) {
+  static_assert(int{pmp::Corefinement::UNION} == int{of_union} &&
+                int{pmp::Corefinement::INTERSECTION} == int{of_intersection} &&
+                int{pmp::Corefinement::TM1_MINUS_TM2} == int{of_a_minus_b} &&
+                int{pmp::Corefinement::TM2_MINUS_TM1} == int{of_b_minus_a});
+  std::array<Mesh, 4> meshes;
+  std::array<boost::optional<Mesh*>, 4> output;
+  for (std::size_t i = 0; i < output.size(); ++i)
+    if (wanted[i]) output[i] = &meshes[i];
+  const auto to = [&](std::size_t i) { return CGAL::parameters::vertex_point_map(PointMap{&meshes[i]}); };
+  std::vector<bool> cut_a, cut_b;
+  StepBudget::left = step_limit(a, b);
+  const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
+      a, b, output,
+      CGAL::parameters::vertex_point_map(PointMap{&a})
+          .edge_is_constrained_map(CutEdges{&cut_a})
+          .throw_on_self_intersection(refuse_self_intersection),
+      CGAL::parameters::vertex_point_map(PointMap{&b}).edge_is_constrained_map(CutEdges{&cut_b}),
+      std::make_tuple(to(0), to(1), to(2), to(3)));
+
+  Corefined corefined;
+  for (std::size_t i = 0; i < output.size(); ++i) {
+    if (!output[i] || !manifold[i]) continue;
+    meshes[i].garbage_collection();
+    corefined.results[i] = in_order(meshes[i]);
+    corefined.films[i] = drop_films(meshes[i]);
+    if (corefined.films[i] == 0) continue;
+    meshes[i].garbage_collection();
+    corefined.results[i] = in_order(meshes[i]);
+  }
+  corefined.has_uncut_part = has_uncut_part(a, cut_a) || has_uncut_part(b, cut_b);
+  return corefined;
+}
+
+}  // namespace
+
+/// CGAL tells three troubles by exceptions: an operand that meets itself, constraints that cross within a
+/// triangle (the same, seen later), and broken invariants.
+Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted) {
+  Corefined failed;
+  for (const bool strict : {true, false}) {
+    try {
+      Corefined corefined = attempt(a, b, wanted, strict);
+      corefined.meets_itself = !strict;
+      return corefined;
+    } catch (const pmp::Corefinement::Self_intersection_exception&) {
+      failed.failure = "an operand meets itself where the other cuts it";
+    } catch (const std::exception& e) {
+      failed.failure = std::string("corefinement broke off: ") + e.what();
+    }
+  }
+  return failed;
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Booleans and measures of meshes, and the same work in CGAL called plainly.
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "brep/boolean.h"
+#include "brep/measure.h"
+#include "convert/isosurface.h"
+#include "tests/bench/benchmarks.h"
+#include "tests/bench/subjects.h"
+#include "tests/brep/shapes.h"
+#if defined(OCTOTOMY_HAS_CGAL)
+#include "tests/bench/cgal_peer.h"
+#endif
+
+namespace octotomy::bench {
+namespace {
+
+struct Pair {
+  brep::Triangles a, b;
+  brep::Operation operation = brep::Operation::Union;
+};
+
+/// A ball of unit radius of 2 * rings * (rings - 1) triangles, turned so that nothing of it lies along an
+/// axis.
+brep::Triangles ball(const glm::dvec3& centre, std::uint32_t rings) {
+  brep::Triangles t;
+  const glm::dvec3 pole = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
+  const glm::dvec3 side = glm::normalize(glm::cross(pole, glm::dvec3(1, 0, 0))),
+                   third = glm::cross(pole, side);
+  t.points_mm = {centre + pole, centre - pole};
+  for (std::uint32_t ring = 1; ring < rings; ++ring)
+    for (std::uint32_t i = 0; i < rings; ++i) {
+      const double polar = M_PI * ring / rings, around = 2.0 * M_PI * (i + 0.5 * ring) / rings;
+      t.points_mm.push_back(centre + std::cos(polar) * pole +
+                            std::sin(polar) * (std::cos(around) * side + std::sin(around) * third));
+    }
+  const auto point = [&](std::uint32_t ring, std::uint32_t i) { return 2 + (ring - 1) * rings + i % rings; };
+  for (std::uint32_t i = 0; i < rings; ++i) {
+    t.faces.push_back({0, point(1, i), point(1, i + 1)});
+    for (std::uint32_t ring = 1; ring + 1 < rings; ++ring) {
+      t.faces.push_back({point(ring, i), point(ring + 1, i), point(ring, i + 1)});
+      t.faces.push_back({point(ring, i + 1), point(ring + 1, i), point(ring + 1, i + 1)});
+    }
+    t.faces.push_back({1, point(rings - 1, i + 1), point(rings - 1, i)});
+  }
+  return t;
+}
+
+/// Two balls, each cut by the other along a circle; `rings` squared times two triangles each.
+Pair balls(std::uint32_t rings) {
+  return {ball({0, 0, 0}, rings), ball({0.71, 0.33, 0.27}, rings), brep::Operation::Union};
+}
+
+/// The head phantom's bone less a box that holds a piece of its brow.
+Pair bone_box(int side) {
+  return {convert::isosurface(grey_skull(side), 300.0, std::numeric_limits<double>::infinity()),
+          brep::shapes::box({-13.3, -120.1, 11.7}, {31.9, -60.2, 42.3}), brep::Operation::Difference};
+}
+
+/// Two balls that all but coincide: every triangle meets some of the other's.
+Pair twins(std::uint32_t rings) {
+  return {ball({0, 0, 0}, rings), ball({0.3 / rings, 0.2 / rings, 0.4 / rings}, rings),
+          brep::Operation::Union};
+}
+
+void run_ours(benchmark::State& state, const Pair& pair) {
+  const brep::Mesh a = brep::mesh_of(pair.a), b = brep::mesh_of(pair.b);
+  std::size_t faces = 0;
+  for (auto _ : state) faces = brep::boolean(a, pair.operation, b).mesh.n_faces();
+  state.counters["triangles_in"] = static_cast<double>(a.n_faces() + b.n_faces());
+  state.counters["triangles_out"] = static_cast<double>(faces);
+}
+
+void run_size(benchmark::State& state, const brep::Triangles& triangles) {
+  const brep::Mesh mesh = brep::mesh_of(triangles);
+  for (auto _ : state) benchmark::DoNotOptimize(brep::size_of(mesh).volume_mm3);
+  state.counters["triangles"] = static_cast<double>(mesh.n_faces());
+}
+
+#if defined(OCTOTOMY_HAS_CGAL)
+void run_cgal(benchmark::State& state, const Pair& pair) {
+  const CgalSurface a(pair.a), b(pair.b);
+  const auto operation = pair.operation == brep::Operation::Union ? CgalSurface::Operation::Union
+                                                                  : CgalSurface::Operation::Difference;
+  std::size_t faces = 0;
+  for (auto _ : state) {
+    state.PauseTiming();
+    CgalSurface copy_a = a.copy(), copy_b = b.copy();
+    state.ResumeTiming();
+    faces = CgalSurface::boolean(copy_a, copy_b, operation);
+  }
+  state.counters["triangles_out"] = static_cast<double>(faces);
+}
+
+void run_cgal_size(benchmark::State& state, const brep::Triangles& triangles) {
+  const CgalSurface surface(triangles);
+  for (auto _ : state) benchmark::DoNotOptimize(surface.volume_and_area());
+}
+#endif
+
+template <typename Make>
+void add_boolean(const std::string& name, const Make& make) {
+  add(name, [=](benchmark::State& state) { run_ours(state, make()); });
+#if defined(OCTOTOMY_HAS_CGAL)
+  add("peer/cgal/" + name, [=](benchmark::State& state) { run_cgal(state, make()); });
+#endif
+}
+
+}  // namespace
+
+void register_mesh_boolean() {
+  add_boolean("mesh_boolean/spheres/10k", [] { return balls(71); });
+  add_boolean("mesh_boolean/spheres/100k", [] { return balls(224); });
+  add_boolean("mesh_boolean/twin_spheres/10k", [] { return twins(71); });
+  add_boolean("mesh_boolean/bone_box/100k", [] { return bone_box(128); });
+  add_boolean("mesh_boolean/bone_box/500k", [] { return bone_box(256); });
+  add("mesh_measure/size/500k", [](benchmark::State& state) { run_size(state, ball({0, 0, 0}, 500)); });
+#if defined(OCTOTOMY_HAS_CGAL)
+  add("peer/cgal/mesh_measure/size/500k", [](benchmark::State& state) {
+    run_cgal_size(state, ball({0, 0, 0}, 500));
+  });
+#endif
+}
+
+}  // namespace octotomy::bench
