@@ -171,7 +171,7 @@ void annotate(std::vector<std::uint8_t>& rgb, const ImagePlane& plane, const Ann
     throw std::invalid_argument("a colour bar needs colours and a range, low before high");
   const Sheet sheet(Canvas{plane.size_px, &rgb});
   const double cap = sheet.cap_px();
-  if (annotation.scale) draw_scale(sheet, plane.pixel_mm);
+  if (annotation.scale && !plane.eye) draw_scale(sheet, plane.pixel_mm);
   if (annotation.bar) draw_bar(sheet, *annotation.bar);
   write_legend(sheet, annotation.legend);
   // Up to the letter at the middle of the upper edge, or to the bar's title.

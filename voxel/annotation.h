@@ -44,7 +44,7 @@ struct Annotation {
   std::string title;                   ///< top left
   bool sides = true;                   ///< letters of the patient's sides at the picture's four edges
   std::optional<EdgeLetters> letters;  ///< these instead of the view's, as in a picture that is no plane
-  bool scale = true;                   ///< a bar of a round length, bottom right
+  bool scale = true;                   ///< a bar of a round length, bottom right; perspective has no scale
   std::vector<LegendEntry> legend;     ///< bottom left
   std::optional<ColourBar> bar;        ///< at the right edge
 };

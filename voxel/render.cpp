@@ -39,6 +39,8 @@ void check(const std::vector<Drawn>& objects, const RenderOptions& options) {
   if (options.width_mm && !(std::isfinite(*options.width_mm) && *options.width_mm > 0.0))
     throw std::invalid_argument("a picture " + std::to_string(*options.width_mm) +
                                 " mm wide: the width must be positive");
+  if (!is_frame(options.view))
+    throw std::invalid_argument("a view's directions must be unit vectors, perpendicular to each other");
   if (options.eye_mm && !(std::isfinite(*options.eye_mm) && *options.eye_mm > 0.0))
     throw std::invalid_argument("an eye " + std::to_string(*options.eye_mm) +
                                 " mm away: the distance must be positive");

@@ -27,6 +27,14 @@ const std::array<std::pair<std::string_view, View>, 6> named_views{{
 
 }  // namespace
 
+bool is_frame(const View& view) {
+  constexpr double rounding = 1e-6;
+  const auto is = [](double value, double expected) { return std::abs(value - expected) <= rounding; };
+  return is(glm::dot(view.look, view.look), 1.0) && is(glm::dot(view.up, view.up), 1.0) &&
+         is(glm::dot(view.look, view.up), 0.0) &&
+         is(glm::distance(view.right, glm::cross(view.look, view.up)), 0.0);
+}
+
 View parse_view(const std::string& text) {
   for (const auto& [name, view] : named_views)
     if (text == name) return view;

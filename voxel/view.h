@@ -17,6 +17,10 @@ struct View {
   glm::dvec2 project(const glm::dvec3& p_mm) const { return {glm::dot(p_mm, right), glm::dot(p_mm, up)}; }
 };
 
+/// Whether a view's directions are unit vectors, perpendicular to each other, right = look x up, to 1e-6; NaN
+/// is not.
+bool is_frame(const View& view);
+
 /// A named view (anterior, posterior, left, right, superior, inferior) or "AZ,EL" in degrees: from anterior,
 /// azimuth turns the observer towards the patient's left, elevation raises the observer. Throws
 /// std::invalid_argument naming the text and the views there are.

@@ -9,6 +9,7 @@
 #include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
+#include "planner/cli/numbers.h"
 #include "planner/figures.h"
 
 namespace octotomy::planner::cli {
@@ -146,11 +147,11 @@ void add_compare(Program& program) {
                   "A coloured by its distance to B: a .ply file, red outside, blue inside");
   verb.add_option("--range", text->colour_range_mm,
                   "Distance of full colour, mm; the Hausdorff 95 if not given")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--tolerances", text->options.tolerances_mm, "Bands whose share of the area is told, mm")
       ->capture_default_str();
   verb.add_option("--spacing", text->options.spacing_mm, "Of the samples, mm; 200 000 a surface if not given")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--bins", text->options.bins, "Of the histogram")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();

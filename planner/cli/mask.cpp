@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/drawn_regions.h"
 #include "voxel/combine.h"
@@ -159,7 +160,7 @@ void add_mask(Program& program) {
       ->check(CLI::ExistingPath);
   verb.add_option("--voxel", text->voxel_mm,
                   "Edge of a voxel, mm, around a scan or the regions; default: the scan's, or 1")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
 }
 
 }  // namespace octotomy::planner::cli

@@ -8,6 +8,7 @@
 #include "brep/read_mesh.h"
 #include "convert/isosurface.h"
 #include "planner/answer.h"
+#include "planner/cli/numbers.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
 #include "planner/figures.h"
@@ -188,7 +189,7 @@ void add_measure(Program& program) {
   verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units, or a tissue: bone, skin, ...");
   verb.add_option("--voxel", text->voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add_scan_options(verb, text->scan);
 }
 

@@ -150,7 +150,8 @@ void add_mesh(Program& program) {
                                 [&program, text] { return mesh(program, *text); });
   verb.add_option("file", text->in, "A scan, or an .octree file")->required()->check(scan_path());
   verb.add_option("-o,--out", text->out, "A .stl, .ply, .obj or .off file")->required();
-  verb.add_option("--window", text->window, "LOW:HIGH or LOW: in sample units, or a tissue (bone, skin, ...)");
+  verb.add_option("--window", text->window,
+                  "LOW:HIGH or LOW: in sample units, or a tissue (bone, skin, ...)");
   verb.add_option("--surface", text->surface,
                   "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces")
       ->check(CLI::IsMember({"isosurface", "cuberille"}))

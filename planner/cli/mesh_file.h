@@ -12,8 +12,8 @@ namespace octotomy::planner::cli {
 /// it is not closed and oriented.
 brep::Mesh read_solid(const std::filesystem::path& path, Timings& timings);
 
-/// A mesh that need not be closed; "read" in the timings. Throws std::runtime_error where its triangles cannot
-/// be joined.
+/// A mesh that need not be closed; "read" in the timings. Throws std::runtime_error where its triangles
+/// cannot be joined.
 brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings);
 
 /// Throws std::runtime_error where no mesh is written with the path's extension.

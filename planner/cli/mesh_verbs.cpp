@@ -6,6 +6,7 @@
 #include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
+#include "planner/cli/numbers.h"
 #include "planner/figures.h"
 
 namespace octotomy::planner::cli {
@@ -114,12 +115,12 @@ void add_mesh_verbs(Program& program) {
   smooth_verb
       .add_option("--pass-band", to_smooth->options.pass_band,
                   "Waves below it stay: 0.1 keeps those over about 10 edges long")
-      ->check(CLI::Range(0.001, 0.999))
+      ->check(between(0.001, 0.999))
       ->capture_default_str();
   smooth_verb
       .add_option("--max-volume-share", to_smooth->options.max_volume_share,
                   "Share of the volume that may be gained or lost; above it nothing is written")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
 }
 

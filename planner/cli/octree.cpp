@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
@@ -170,7 +171,7 @@ void add_octree(Program& program) {
   build
       .add_option("--voxel", to_build->voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side; with --from 1")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   build
       .add_option(
           "--as", to_build->as,

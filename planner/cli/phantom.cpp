@@ -2,6 +2,7 @@
 #include "verify/phantom.h"
 
 #include "planner/answer.h"
+#include "planner/cli/numbers.h"
 #include "planner/cli/verb.h"
 #include "planner/figures.h"
 #include "planner/octree_answer.h"
@@ -154,20 +155,20 @@ std::vector<std::string> kind_names() {
 
 void add_head_options(CLI::App& verb, PhantomText& text) {
   verb.add_option("--slice", text.head.slice_mm, "Spacing of slices, mm; default: the voxel's edge")
-      ->check(CLI::Range(0.1, 50.0))
+      ->check(between(0.1, 50.0))
       ->group(head_group);
   verb.add_option("--tilt", text.head.gantry_tilt_deg, "Gantry tilt, degrees")
-      ->check(CLI::Range(-45.0, 45.0))
+      ->check(between(-45.0, 45.0))
       ->group(head_group);
   verb.add_option("--noise", text.head.noise_sigma_hu, "Standard deviation of Gaussian noise, HU")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(between(0.0, 1000.0))
       ->group(head_group);
   verb.add_option("--blur", text.head.point_spread_sigma_mm, "Standard deviation of the point spread, mm")
-      ->check(CLI::Range(0.0, 10.0))
+      ->check(between(0.0, 10.0))
       ->group(head_group);
   verb.add_option("--seed", text.head.seed, "Seed of the noise")->group(head_group);
   verb.add_option("--truth-step", text.truth_step_mm, "Step at which the true volume is sampled, mm")
-      ->check(CLI::Range(0.1, 5.0))
+      ->check(between(0.1, 5.0))
       ->capture_default_str()
       ->group(head_group);
   verb.add_flag("--dicom", text.dicom, "Write a DICOM series into the folder")->group(head_group);
@@ -177,7 +178,7 @@ void add_solid_options(CLI::App& verb, PhantomText& text) {
   verb.add_option("--voxels", text.voxels, "Voxels a side of the universe, a power of two; default 256")
       ->group(solid_group);
   verb.add_option("--radius", text.radius_voxels, "R in voxels; default a quarter of the side")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->group(solid_group);
   verb.add_option("--digitise", text.digitise,
                   "Which voxels: inside (D1), touching (D2), centre (D3), half (D4), or partial, with the "
@@ -206,7 +207,7 @@ void add_phantom(Program& program) {
                   "A .octree file; of head a .nrrd, .nii.gz or .mha file, or a folder for DICOM")
       ->required();
   verb.add_option("--voxel", text->head.voxel_mm, "Edge of a voxel, mm")
-      ->check(CLI::Range(0.1, 20.0))
+      ->check(between(0.1, 20.0))
       ->capture_default_str();
   add_head_options(verb, *text);
   add_solid_options(verb, *text);

@@ -210,12 +210,12 @@ void add_look_options(CLI::App& verb, RenderText& text) {
       "distance:FILE colours the first object by its surface's distance outside (orange) or inside "
       "(blue) another file's object");
   verb.add_option("--range", text.range_mm, "Distance of the last colours of --colour-by, mm; default 5")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->needs(colour_by);
   verb.add_option("--opacity", text.drawn.opacities, "0 (hidden) to 1, one a file in their order")
       ->expected(1)
       ->take_all()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(between(0.0, 1.0));
   verb.add_option(
       "--transfer", text.transfer,
       "How samples look in composite pictures: bone, skin, vessels (CT in HU; default: bone), or a JSON file "
@@ -246,8 +246,8 @@ void add_cut_options(CLI::App& verb, RenderText& text) {
 void add_print_options(CLI::App& verb, RenderText& text) {
   verb.add_option(
           "--pick", text.picks,
-          "X,Y of a pixel, from the top left: --json then says the object and the point it shows; may "
-          "be repeated")
+          "X,Y of a pixel, from the top left (of the left eye's picture): --json then says the object "
+          "and the point it shows; may be repeated")
       ->expected(1)
       ->take_all();
   CLI::Option* annotate =
@@ -285,16 +285,16 @@ void add_picture_verbs(Program& program) {
       ->capture_default_str();
   verb.add_option("--size", text->size, "WxH in pixels")->capture_default_str();
   verb.add_option("--width", text->width_mm, "What the picture spans, mm; default: the objects' extents")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option(
           "--eye", text->eye_mm,
           "Perspective: the eye's distance from the middle of the scan, mm; default: orthographic, in "
           "true scale")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--stereo", text->stereo_deg,
                   "Two pictures side by side, the left eye's at the left; the angle between them in degrees, "
                   "for example 6")
-      ->check(CLI::Range(0.1, 30.0));
+      ->check(between(0.1, 30.0));
   verb.add_option("--algorithm", text->algorithm,
                   "node_trace (views along the axes), ray_cast, front_to_back or back_to_front; "
                   "default: the fastest for the view")
@@ -310,7 +310,7 @@ void add_picture_verbs(Program& program) {
   verb.add_flag("--count", text->count, "Counts the octree nodes that the algorithm visits");
   verb.add_option("--voxel", text->drawn.voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add_scan_options(verb, text->scan);
 }
 

@@ -20,6 +20,9 @@ void refuse_what_there_is_not(const RenderText& text) {
       !text.colour_by.empty())
     throw CLI::ValidationError(
         "--shading", text.shading + " has no --algorithm, --count, --pick, --cut-face or --colour-by");
+  if (text.eye_mm || text.stereo_deg)
+    throw CLI::ValidationError(text.eye_mm ? "--eye" : "--stereo",
+                               "--shading " + text.shading + " is drawn orthographic and for one eye only");
   if (text.shading != "composite" && !text.transfer.empty())
     throw CLI::ValidationError("--transfer", "only --shading composite has a transfer function");
   if (text.shading != "composite" && !(text.cut_planes.empty() && text.cut_boxes.empty()))

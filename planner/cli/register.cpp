@@ -7,6 +7,7 @@
 #include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
+#include "planner/cli/numbers.h"
 #include "planner/figures.h"
 #include "planner/landmarks_file.h"
 
@@ -156,7 +157,7 @@ void add_register(Program& program) {
       ->check(CLI::IsMember({"rigid", "similarity", "three_points"}))
       ->capture_default_str();
   verb.add_option("--overlap", text->options.overlap, "Share of A's surface that B has too")
-      ->check(CLI::Range(0.05, 1.0))
+      ->check(between(0.05, 1.0))
       ->capture_default_str();
   verb.add_option("--samples", text->options.samples, "Points of A's surface that are compared")
       ->check(CLI::Range(100, 1'000'000))

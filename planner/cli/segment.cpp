@@ -4,6 +4,7 @@
 #include <fstream>
 #include <limits>
 
+#include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
@@ -404,7 +405,7 @@ void add_segment(Program& program) {
       ->check(CLI::ExistingFile)
       ->group(group);
   verb.add_option("--open", text->open_mm, "Takes away what a ball of that radius, mm, does not reach inside")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->group(group);
   verb.add_option("--seed", text->seeds, "Keeps the parts that hold X,Y,Z in mm, again for more")
       ->expected(1)
@@ -417,10 +418,10 @@ void add_segment(Program& program) {
       ->type_name("N")
       ->group(group);
   verb.add_option("--at-least", text->at_least_mm3, "Keeps the parts of so many mm\u00b3")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->group(group);
   verb.add_option("--close", text->close_mm, "Closes gaps that a ball of that radius, mm, does not pass")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->group(group);
   verb.add_flag("--fill", text->fill, "Fills cavities")->group(group);
   verb.add_option("--neighbours", text->neighbours, "Parts touch by faces (6), edges (18) or corners (26)")
@@ -431,7 +432,7 @@ void add_segment(Program& program) {
       "Writes the contours of the first window's lower bound on every slice, a JSON file of regions");
   verb.add_option("--voxel", text->voxel_mm,
                   "Edge of an octree's voxels, mm; default: as fine as the scan, at most 512 a side")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add_scan_options(verb, text->in);
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
@@ -369,7 +370,7 @@ void add_slice(Program& program) {
                   "X,Y,Z in mm of two or more points, left to right, or a JSON file with them as points_mm")
       ->expected(1, -1);
   verb.add_option("--height", text->height_mm, "Of a curved sheet, mm")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   verb.add_option("--up", text->up,
                   "X,Y,Z that is upwards in an oblique or curved picture; default: the head");
@@ -384,7 +385,7 @@ void add_slice(Program& program) {
       ->expected(1)
       ->take_all();
   verb.add_option("--pixel", text->pixel_mm, "Edge of a pixel, mm; default: the scan's smallest spacing")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--interpolate", text->interpolate, "Between samples")
       ->check(CLI::IsMember({"nearest", "linear", "cubic"}))
       ->capture_default_str();

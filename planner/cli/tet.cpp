@@ -13,6 +13,7 @@
 #include "convert/winding_number.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
+#include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/figures.h"
@@ -214,7 +215,7 @@ void add_material_options(CLI::App& verb, TetText& text) {
       ->capture_default_str()
       ->group(group);
   verb.add_option("--poisson", text.materials.poisson_ratio, "Poisson's ratio of them")
-      ->check(CLI::Range(0.0, 0.499))
+      ->check(between(0.0, 0.499))
       ->capture_default_str()
       ->group(group);
 }
@@ -236,19 +237,18 @@ void add_tet(Program& program) {
       ->required();
   verb.add_option("--radius-edge", text->options.radius_edge,
                   "Largest circumradius by shortest edge; 1.2 is hard, 2 is easy")
-      ->check(CLI::Range(1.1, 10.0))
+      ->check(between(1.1, 10.0))
       ->capture_default_str();
-  verb.add_option("--max-volume", text->max_volume_mm3, "Largest tetrahedron, mm3")
-      ->check(CLI::PositiveNumber);
+  verb.add_option("--max-volume", text->max_volume_mm3, "Largest tetrahedron, mm3")->check(above_zero());
   verb.add_flag("!--refine-boundary", text->options.keep_boundary,
                 "Let TetGen add points on the surface; by default it is kept as it is");
   verb.add_option("--seconds", text->seconds, "Time that each run of TetGen may take")
-      ->check(CLI::Range(1.0, 86400.0))
+      ->check(between(1.0, 86400.0))
       ->capture_default_str();
   verb.add_flag("--fallback", text->fallback,
                 "Where TetGen fails, or the mesh is no solid, take an octree's elements, marked as such");
   verb.add_option("--voxel", text->voxel_mm, "Edge of their smallest, mm; default: about 200 000 voxels")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_flag("--msh2", text->msh_2_2, "Write .msh in Gmsh's version 2.2");
   add_material_options(verb, *text);
   add_scan_options(verb, text->scan_in);

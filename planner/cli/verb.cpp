@@ -10,6 +10,7 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "planner/cli/numbers.h"
 #include "planner/nearest_name.h"
 #include "voxel/tissue.h"
 
@@ -48,7 +49,7 @@ CLI::App& Program::verb(const std::string& name, const std::string& does, const 
       ->type_name("N");
   sub.add_option("--time-limit", time_limit_s,
                  "Give up after so many seconds, with exit status 3 and nothing written")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->type_name("S");
   sub.footer("Example:\n  " + example);
   sub.callback([this, act = std::move(action)] { chosen = act; });

@@ -6,6 +6,7 @@
 #include "convert/voxelise_partial.h"
 #include "convert/winding_number.h"
 #include "planner/answer.h"
+#include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 
 namespace octotomy::planner::cli {
@@ -120,7 +121,7 @@ void add_voxelise(Program& program) {
       ->check(CLI::ExistingFile);
   verb.add_option("-o,--out", text->out, "An .octree file")->required();
   CLI::Option* voxel = verb.add_option("--voxel", text->voxel_mm, "Edge of a voxel, mm")
-                           ->check(CLI::PositiveNumber)
+                           ->check(above_zero())
                            ->capture_default_str();
   verb.add_option("--like", text->like, "Take the universe of this .octree file, to combine with it")
       ->check(CLI::ExistingFile)

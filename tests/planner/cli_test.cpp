@@ -8,7 +8,7 @@
 namespace octotomy::planner {
 namespace {
 
-using tests::Answer;
+using tests::CommandAnswer;
 using tests::CommandLine;
 using tests::Json;
 
@@ -19,7 +19,7 @@ TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
                            "boolean", "smooth", "tet",    "register", "compare", "phantom", "octree",
                            "eval",    "mark",   "mask",   "slice",    "segment", "prepare"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
-    const Answer answer = run(std::string(verb) + " --help");
+    const CommandAnswer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
     EXPECT_NE(answer.out.find("Example:"), std::string::npos) << verb;
     EXPECT_NE(answer.out.find("--json"), std::string::npos) << verb;
@@ -35,6 +35,13 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_refused(run("measure " + at("ball.nrrd") + " --window abc"), "abc");
   expect_refused(run("measure " + at("ball.nrrd") + " --window 5:1"), "5:1");
   expect_refused(run("render " + at("ball.nrrd") + " --window 0: --view front -o " + at("p.png")), "front");
+  for (const char* wrong : {"--stereo nan", "--eye inf", "--eye 0", "--width nan", "--opacity nan"})
+    expect_refused(run("render " + at("ball.nrrd") + " --window 0: -o " + at("p.png") + " " + wrong),
+                   std::string(wrong).substr(std::string(wrong).find(' ') + 1));
+  for (const char* orthographic : {"mip", "radiograph", "composite"})
+    expect_refused(
+        run("render " + at("ball.nrrd") + " --eye 500 -o " + at("p.png") + " --shading " + orthographic),
+        orthographic);
   expect_refused(run("render " + at("ball.nrrd") + " --window 0: --size 0x5 -o " + at("p.png")), "0x5");
   expect_refused(run("render " + at("ball.nrrd") + " --window 0: -o " + at("no/p.png")), "no folder");
   expect_refused(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("p.stp")), ".stl");
@@ -56,7 +63,7 @@ TEST_F(CommandLine, ABrokenPlanLeavesNothing) {
 }
 
 TEST_F(CommandLine, RunAnswersWithTheFileItWrote) {
-  const Answer answer = run("run " + at("ball.plan.json") + " -o " + at("out") + " --json");
+  const CommandAnswer answer = run("run " + at("ball.plan.json") + " -o " + at("out") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
   const Json said = Json::parse(answer.out);
   std::ifstream file(folder_ / "out/result.json");
@@ -67,7 +74,8 @@ TEST_F(CommandLine, RunAnswersWithTheFileItWrote) {
 
 TEST_F(CommandLine, AnotherScanCanTakeTheNamedOnesPlace) {
   voxel::write_scene(tests::ball_scene(9.0, 32), folder_ / "small.nrrd");
-  const Answer answer = run("verify " + at("ball.plan.json") + " --scan ct=" + at("small.nrrd") + " --json");
+  const CommandAnswer answer =
+      run("verify " + at("ball.plan.json") + " --scan ct=" + at("small.nrrd") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
   const Json said = Json::parse(answer.out);
   EXPECT_NEAR(said["certificates"][0]["voxel"]["volume_mm3"].get<double>(), tests::ball_mm3(9.0), 60.0);
@@ -319,7 +327,7 @@ TEST_F(CommandLine, GreyResultsKeepTheirSamplesAndAreMeasured) {
 }
 
 TEST_F(CommandLine, TimeOverIsStatusThreeAndLeavesNothing) {
-  const Answer answer =
+  const CommandAnswer answer =
       run("run " + at("ball.plan.json") + " -o " + at("out") + " --json --time-limit 0.000001");
   EXPECT_TRUE(answer.status == 3 || answer.status == 0) << answer.errors;
   EXPECT_EQ(answer.status == 3, !std::filesystem::exists(folder_ / "out"));
@@ -349,8 +357,8 @@ TEST_F(CommandLine, AnOctreeBecomesAMeshByEverySurfaceAndComesBackFromItsCuberil
   EXPECT_TRUE(smooth["closed"]);
   const Json cubes = Json::parse(
       run("mesh " + at("ball.octree") + " -o " + at("cubes.off") + " --surface cuberille --json").out);
-  const Answer back = run("voxelise " + at("cubes.off") + " -o " + at("back.octree") + " --like " +
-                          at("ball.octree") + " --json");
+  const CommandAnswer back = run("voxelise " + at("cubes.off") + " -o " + at("back.octree") + " --like " +
+                                 at("ball.octree") + " --json");
   ASSERT_EQ(back.status, 0) << back.errors;
   EXPECT_EQ(Json::parse(back.out)["voxels"].get<double>(), cubes["volume_mm3"].get<double>());
   ASSERT_EQ(run("eval \"a ^ b\" --let a=" + at("back.octree") + " --let b=" + at("ball.octree") + " -o " +
@@ -364,7 +372,7 @@ TEST_F(CommandLine, AnOctreeBecomesAMeshByEverySurfaceAndComesBackFromItsCuberil
       Json::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("scan.ply") + " --json").out);
   EXPECT_EQ(grey["faces"], scan["faces"]);
   EXPECT_NEAR(grey["volume_mm3"].get<double>(), scan["volume_mm3"].get<double>(), 1e-6);
-  const Answer fewer =
+  const CommandAnswer fewer =
       run("mesh " + at("grey.octree") + " --window 0: -o " + at("few.ply") + " --faces 400 --smooth --json");
   ASSERT_EQ(fewer.status, 0) << fewer.errors;
   EXPECT_LE(Json::parse(fewer.out)["faces"], 400);
@@ -375,7 +383,7 @@ TEST_F(CommandLine, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFal
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 600").status, 0);
   const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
   for (const std::string name : {"ball.inp", "ball.feb", "ball.vtu", "ball.msh", "ball.node"}) {
-    const Answer answer = run("tet " + at("ball.off") + " -o " + at(name) + " --json");
+    const CommandAnswer answer = run("tet " + at("ball.off") + " -o " + at(name) + " --json");
     ASSERT_EQ(answer.status, 0) << answer.errors;
     const Json json = Json::parse(answer.out);
     EXPECT_NEAR(json["volume_mm3"].get<double>() / truth, 1.0, 1e-3) << name;
@@ -384,14 +392,14 @@ TEST_F(CommandLine, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFal
     EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
   }
   EXPECT_TRUE(std::filesystem::exists(folder_ / "ball.ele"));
-  const Answer stiff = run("tet " + at("ball.off") + " -o " + at("stiff.inp") + " --scan " + at("ball.nrrd") +
-                           " --bins 7 --json");
+  const CommandAnswer stiff = run("tet " + at("ball.off") + " -o " + at("stiff.inp") + " --scan " +
+                                  at("ball.nrrd") + " --bins 7 --json");
   ASSERT_EQ(stiff.status, 0) << stiff.errors;
   EXPECT_NE(stiff.errors.find("NOT CALIBRATED"), std::string::npos);
   EXPECT_GE(Json::parse(stiff.out)["materials"], 1);
   write("open.off", "OFF\n4 3 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
   expect_refused(run("tet " + at("open.off") + " -o " + at("p.inp")), "--fallback");
-  const Answer marked =
+  const CommandAnswer marked =
       run("tet " + at("open.off") + " -o " + at("open.inp") + " --fallback --voxel 1 --json");
   ASSERT_EQ(marked.status, 0) << marked.errors;
   EXPECT_EQ(Json::parse(marked.out)["fallback"], true);
@@ -404,8 +412,8 @@ TEST_F(CommandLine, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {
   const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
   std::map<std::string, Json> made;
   for (const std::string how : {"inside", "touching", "centre", "half", "partial"}) {
-    const Answer answer = run("voxelise " + at("ball.off") + " -o " + at(how + ".octree") +
-                              " --voxel 0.5 --digitise " + how + " --json");
+    const CommandAnswer answer = run("voxelise " + at("ball.off") + " -o " + at(how + ".octree") +
+                                     " --voxel 0.5 --digitise " + how + " --json");
     ASSERT_EQ(answer.status, 0) << answer.errors;
     made[how] = Json::parse(answer.out);
     EXPECT_EQ(made[how]["findings"].size(), made["inside"]["findings"].size()) << how;
@@ -417,7 +425,7 @@ TEST_F(CommandLine, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {
   EXPECT_NEAR(partial["volume_partial_mm3"].get<double>() / truth, 1.0, 1e-6);
 
   write("open.off", "OFF\n4 3 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
-  const Answer open = run("voxelise " + at("open.off") + " -o " + at("open.octree") + " --json");
+  const CommandAnswer open = run("voxelise " + at("open.off") + " -o " + at("open.octree") + " --json");
   ASSERT_EQ(open.status, 0) << open.errors;
   EXPECT_NE(open.out.find("winding number"), std::string::npos);
   EXPECT_GT(Json::parse(open.out)["voxels"], 500);
@@ -428,7 +436,7 @@ TEST_F(CommandLine, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {
 
 TEST_F(CommandLine, SmoothKeepsTheVolumeWithinItsShareAndWritesNothingWhereItDoesNot) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.stl")).status, 0);
-  const Answer good = run("smooth " + at("ball.stl") + " -o " + at("smooth.stl") + " --json");
+  const CommandAnswer good = run("smooth " + at("ball.stl") + " -o " + at("smooth.stl") + " --json");
   ASSERT_EQ(good.status, 0) << good.errors;
   const Json json = Json::parse(good.out);
   EXPECT_TRUE(json.at("closed").get<bool>());
@@ -445,7 +453,7 @@ TEST_F(CommandLine, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
       {"name":"c","point_mm":[0,10,0]},{"name":"only here","point_mm":[1,1,1]}]})");
   write("there.json", R"({"landmarks":[{"name":"c","point_mm":[-5,2,3]},{"name":"b","point_mm":[5,12,3]},
       {"name":"a","point_mm":[5,2,3],"weight":2}]})");
-  const Answer points = run("register " + at("here.json") + " " + at("there.json") + " --json");
+  const CommandAnswer points = run("register " + at("here.json") + " " + at("there.json") + " --json");
   ASSERT_EQ(points.status, 0) << points.errors;
   const Json of_points = Json::parse(points.out);
   EXPECT_LT(of_points.at("rms_mm").get<double>(), 1e-12);
@@ -458,13 +466,13 @@ TEST_F(CommandLine, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
                 at("moved.ply"))
                 .status,
             0);
-  const Answer back =
+  const CommandAnswer back =
       run("register " + at("moved.ply") + " " + at("ball.stl") + " --landmarks " + at("there.json") + " " +
           at("here.json") + " --overlap 1 -o " + at("back.ply") + " --json");
   ASSERT_EQ(back.status, 0) << back.errors;
   EXPECT_LT(Json::parse(back.out).at("rms_mm").get<double>(), 1e-5);
 
-  const Answer compared =
+  const CommandAnswer compared =
       run("compare " + at("back.ply") + " " + at("ball.stl") + " -o " + at("coloured.ply") + " --json");
   ASSERT_EQ(compared.status, 0) << compared.errors;
   const Json json = Json::parse(compared.out);
@@ -473,13 +481,13 @@ TEST_F(CommandLine, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
   EXPECT_TRUE(json.at("definition").contains("hausdorff95_mm"));
   EXPECT_EQ(run("info " + at("coloured.ply")).status, 0);
 
-  const Answer apart = run("compare " + at("moved.ply") + " " + at("ball.stl") + " --json");
+  const CommandAnswer apart = run("compare " + at("moved.ply") + " " + at("ball.stl") + " --json");
   ASSERT_EQ(apart.status, 0) << apart.errors;
   EXPECT_GT(Json::parse(apart.out).at("hausdorff_mm").get<double>(), 3.0);
   EXPECT_LT(Json::parse(apart.out).at("dice").get<double>(), 0.9);
 
   write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  const Answer open = run("compare " + at("open.off") + " " + at("open.off") + " --json");
+  const CommandAnswer open = run("compare " + at("open.off") + " " + at("open.off") + " --json");
   ASSERT_EQ(open.status, 0) << open.errors;
   EXPECT_TRUE(Json::parse(open.out).at("dice").is_null());
   expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two of a kind");

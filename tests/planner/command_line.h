@@ -2,25 +2,17 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <sys/wait.h>
 
 #include "tests/planner/ball_scan.h"
+#include "tests/run_command.h"
 
 namespace octotomy::tests {
 
 using Json = nlohmann::json;
-
-/// What a run of the program left behind.
-struct Answer {
-  int status = -1;
-  std::string out;
-  std::string errors;
-};
 
 /// The program in a folder of the test's own, with a ball's scan and plan in it.
 class CommandLine : public testing::Test {
@@ -38,23 +30,11 @@ class CommandLine : public testing::Test {
   }
   std::string at(const std::string& name) const { return "'" + (folder_ / name).string() + "'"; }
 
-  Answer run(const std::string& arguments) const {
-    const std::string errors = (folder_ / "stderr").string();
-    const std::string command =
-        std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments + " 2>'" + errors + "'";
-    std::FILE* pipe = ::popen(command.c_str(), "r");
-    Answer answer;
-    char buffer[4096];
-    for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-      answer.out.append(buffer, got);
-    const int status = ::pclose(pipe);
-    answer.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    std::ifstream file(errors);
-    answer.errors.assign(std::istreambuf_iterator<char>(file), {});
-    return answer;
+  CommandAnswer run(const std::string& arguments) const {
+    return run_command(std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments, folder_ / "");
   }
   /// Exactly one line that says octotomy, and nothing on standard output.
-  void expect_refused(const Answer& answer, const std::string& word) const {
+  void expect_refused(const CommandAnswer& answer, const std::string& word) const {
     EXPECT_EQ(answer.status, 2) << answer.errors;
     EXPECT_EQ(answer.out, "");
     EXPECT_EQ(answer.errors.rfind("octotomy: ", 0), 0u) << answer.errors;

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/planner/ball_scan.h"
-#include "tests/run_command.h"
 #include "tests/reference_data.h"
+#include "tests/run_command.h"
 #include "voxel/image_file.h"
 #ifdef OCTOTOMY_HAS_ITK
 #include "tests/planner/itk_reader.h"

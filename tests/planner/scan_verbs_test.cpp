@@ -12,7 +12,7 @@ using tests::Json;
 class ScanVerbs : public tests::CommandLine {
  protected:
   Json json(const std::string& arguments) const {
-    const tests::Answer answer = run(arguments + " --json");
+    const tests::CommandAnswer answer = run(arguments + " --json");
     EXPECT_EQ(answer.status, 0) << arguments << '\n' << answer.errors;
     return Json::parse(answer.out, nullptr, false);
   }

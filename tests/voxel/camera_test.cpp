@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "voxel/annotation.h"
 #include "voxel/combine.h"
 #include "voxel/mark.h"
 #include "voxel/render.h"
@@ -105,6 +106,31 @@ TEST(Camera, NodeTracingRefusesAnEye) {
   options.algorithm.reset();
   options.eye_mm = -1.0;
   EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
+}
+
+TEST(Camera, ViewsThatAreNoFrameAreRefused) {
+  RenderOptions options = options_of("20,10", 100.0);
+  EXPECT_TRUE(is_frame(options.view));
+  options.view.right = -options.view.right;
+  EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
+  options.view = stereo_pair(parse_view("anterior"), std::nan(""))[0];
+  EXPECT_FALSE(is_frame(options.view));
+  EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
+}
+
+TEST(Camera, PicturesInPerspectiveBearNoScale) {
+  RenderOptions options = options_of("anterior", 100.0);
+  const auto changed_by_annotation = [&] {
+    Picture picture = render({ball(middle_mm(), 9.0)}, options);
+    const std::vector<std::uint8_t> before = picture.rgb;
+    Annotation scale_only;
+    scale_only.sides = false;
+    annotate(picture.rgb, picture.plane(), scale_only);
+    return picture.rgb != before;
+  };
+  EXPECT_FALSE(changed_by_annotation());
+  options.eye_mm.reset();
+  EXPECT_TRUE(changed_by_annotation());
 }
 
 TEST(Camera, TheLeftEyeSeesWhatIsNearerFartherToTheRight) {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/numbers.h"
+
+#include <functional>
+#include <sstream>
+
+namespace octotomy::planner::cli {
+namespace {
+
+CLI::Validator number_that(const std::string& is, const std::function<bool(double)>& holds) {
+  return {[is, holds](const std::string& text) -> std::string {
+            char* end = nullptr;
+            const double number = std::strtod(text.c_str(), &end);
+            const bool good = end != text.c_str() && *end == '\0' && std::isfinite(number) && holds(number);
+            return good ? std::string() : "'" + text + "' is not a number " + is;
+          },
+          ""};
+}
+
+}  // namespace
+
+CLI::Validator above_zero() {
+  return number_that("above 0", [](double number) { return number > 0.0; });
+}
+
+CLI::Validator between(double low, double high) {
+  std::ostringstream is;
+  is << "from " << low << " to " << high;
+  return number_that(is.str(), [low, high](double number) { return number >= low && number <= high; });
+}
+
+}  // namespace octotomy::planner::cli
