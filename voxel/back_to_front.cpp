@@ -100,18 +100,16 @@ ColumnMap back_to_front(const std::vector<Drawn>& objects, const AxisView& axes,
 
 DepthImage back_to_front(const std::vector<Drawn>& objects, const ImagePlane& plane, Visits* visits) {
   const NodePolygons polygons(objects.front().octree.universe(), plane);
-  DepthImage image{plane.size_px, {}};
-  image.pixels.resize(static_cast<std::size_t>(plane.size_px.x) * static_cast<std::size_t>(plane.size_px.y));
+  DepthImage image = unlit(plane.size_px);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     // Later nodes of one object replace earlier ones, so each object is painted by itself.
-    DepthImage own{plane.size_px, std::vector<Seen>(image.pixels.size())};
+    DepthImage own = unlit(plane.size_px);
     walk_object(objects[i], image.pixels.size(), visits, [&](const auto& root, auto& counter) {
       PolygonPainter<std::decay_t<decltype(root)>, std::decay_t<decltype(counter)>>(
           polygons, counter, own, static_cast<std::int16_t>(i))
           .paint(root, 0, glm::ivec3(0));
     });
-    for (std::size_t pixel = 0; pixel < image.pixels.size(); ++pixel)
-      if (own.pixels[pixel].depth_mm < image.pixels[pixel].depth_mm) image.pixels[pixel] = own.pixels[pixel];
+    take_nearer(own, image);
   }
   return image;
 }

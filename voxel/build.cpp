@@ -7,6 +7,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "voxel/octree_node.h"
 #include "voxel/window_bits.h"
 
 namespace octotomy::voxel {
@@ -42,7 +43,7 @@ BlockGrid parents(const BlockGrid& children, int parent_height) {
     std::uint64_t full = 0;
     std::uint64_t undecided = 0;
     for (int child = 0; child < 64; ++child) {
-      const glm::ivec3 at = parent * 4 + glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
+      const glm::ivec3 at = parent * 4 + child_place(child);
       if (glm::any(glm::greaterThanEqual(at, children.dims))) continue;
       const BlockRef block = children.blocks[children.index(at)];
       if (block.is_full()) full |= std::uint64_t{1} << child;

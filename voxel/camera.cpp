@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "voxel/octree_node.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -26,15 +28,11 @@ struct Extents {
   }
 };
 
-glm::ivec3 child_position(int child) {
-  return {child & 3, (child >> 2) & 3, child >> 4};
-}
-
 void extend(Extents& extents, const Node& node, const glm::ivec3& first) {
   const int edge = 1 << (2 * (node.height - 1));
   for (std::uint64_t children = node.full | node.partial; children != 0; children &= children - 1) {
     const int child = std::countr_zero(children);
-    const glm::ivec3 low = first + child_position(child) * edge;
+    const glm::ivec3 low = first + child_place(child) * edge;
     // What lies within the extents already found can add nothing, so only their boundary is walked.
     if (extents.holds(low, low + (edge - 1))) continue;
     if ((node.full >> child) & 1) {
@@ -43,7 +41,7 @@ void extend(Extents& extents, const Node& node, const glm::ivec3& first) {
       extend(extents, *node.nodes()[node.rank(child)], low);
     } else {
       for (std::uint64_t word = node.words()[node.rank(child)]; word != 0; word &= word - 1) {
-        const glm::ivec3 voxel = low + child_position(std::countr_zero(word));
+        const glm::ivec3 voxel = low + child_place(std::countr_zero(word));
         extents.add(voxel, voxel);
       }
     }

@@ -12,14 +12,6 @@
 namespace octotomy::voxel {
 namespace {
 
-double sample_at(const GreyOctree& grey, const glm::ivec3& voxel) {
-  const glm::ivec3 leaf = (voxel >> 2) & 3;
-  const glm::ivec3 bit = voxel & 3;
-  return grey.brick(voxel >> 4)
-      .samples[static_cast<std::size_t>(child_index(leaf.x, leaf.y, leaf.z))]
-              [static_cast<std::size_t>(child_index(bit.x, bit.y, bit.z))];
-}
-
 /// Where a row or column of pixels falls among the map's columns.
 struct Place {
   int nearest = -1;  ///< -1: outside
@@ -50,8 +42,7 @@ std::vector<Place> places(int pixel_count, double first, double per_px, int side
 
 DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRays& rays,
                       const glm::ivec2& size_px) {
-  DepthImage image{size_px, {}};
-  image.pixels.resize(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y));
+  DepthImage image = unlit(size_px);
   const std::vector<Place> across =
       places(size_px.x, rays.first[axes.axis[0]], rays.per_px_x[axes.axis[0]], map.side);
   const std::vector<Place> down =
@@ -119,8 +110,8 @@ Seen ColumnSurface::seen(const glm::ivec2& column, int before) const {
   Seen seen{static_cast<float>(before * spacing_mm_), 0, true};
   if (moved_) return seen_moved(column, before).value_or(seen);
   if (!object_.grey || before == 0) return seen;
-  const double inside = sample_at(*object_.grey, voxel(column, before));
-  const double outside = sample_at(*object_.grey, voxel(column, before - 1));
+  const double inside = object_.grey->sample(voxel(column, before));
+  const double outside = object_.grey->sample(voxel(column, before - 1));
   if (outside < object_.threshold && object_.threshold <= inside) {
     // Voxel centres are half a voxel behind their front faces.
     const double depth_voxels = before - 0.5 + (object_.threshold - outside) / (inside - outside);

@@ -197,7 +197,7 @@ class Combiner {
       const Reduced reduced = reduce(child, operations, scratch.covers, inner, stack);
       if (reduced.form == Reduced::Form::Operand && inner[reduced.operand].node != nullptr)
         return inner[reduced.operand].node;
-      const glm::ivec3 place(child & 3, (child >> 2) & 3, child >> 4);
+      const glm::ivec3 place = child_place(child);
       children[slot] = evaluate(height - 1, origin + place * child_side, inner.data(), all_children).detach();
       return nullptr;
     };

@@ -108,8 +108,7 @@ void collect(BlockRef block, int height, const glm::ivec3& at, int limit, std::v
   }
   const int side = 1 << (2 * (height - 3));  // of a child, in blocks
   for (int child = 0; child < 64; ++child)
-    collect(block.child(child), height - 1, at + side * glm::ivec3(child & 3, (child >> 2) & 3, child >> 4),
-            limit, into);
+    collect(block.child(child), height - 1, at + side * child_place(child), limit, into);
 }
 
 }  // namespace

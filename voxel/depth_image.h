@@ -28,4 +28,16 @@ struct DepthImage {
   }
 };
 
+/// An image of background.
+inline DepthImage unlit(const glm::ivec2& size_px) {
+  return {size_px,
+          std::vector<Seen>(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y))};
+}
+
+/// Lets what `own` shows be seen where it is nearer. Precondition: images of one size.
+inline void take_nearer(const DepthImage& own, DepthImage& image) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    if (own.pixels[i].depth_mm < image.pixels[i].depth_mm) image.pixels[i] = own.pixels[i];
+}
+
 }  // namespace octotomy::voxel

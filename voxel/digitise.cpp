@@ -36,10 +36,6 @@ Cube cube_at(const glm::ivec3& origin, int side) {
   return {glm::dvec3(origin) + 0.5 * (side - 1), 0.5 * side};
 }
 
-glm::ivec3 place(int child) {
-  return {child & 3, (child >> 2) & 3, child >> 4};
-}
-
 class Walk {
  public:
   /// None: partial.
@@ -53,7 +49,7 @@ class Walk {
     std::uint64_t undecided = 0;
     for (std::uint64_t rest = within; rest != 0; rest &= rest - 1) {
       const int child = std::countr_zero(rest);
-      const Meets meets = shape_.meets(cube_at(origin + place(child) * child_side, child_side));
+      const Meets meets = shape_.meets(cube_at(origin + child_place(child) * child_side, child_side));
       const std::uint64_t bit = rest & (~rest + 1);
       if (!meets.out) full |= bit;
       if (meets.in && meets.out) undecided |= bit;
@@ -71,7 +67,7 @@ class Walk {
       child_numbers[static_cast<std::size_t>(next++)] = std::countr_zero(rest);
     std::vector<Built> children(static_cast<std::size_t>(count));
     tbb::parallel_for(0, count, [&](int i) {
-      const glm::ivec3 at = origin + place(child_numbers[static_cast<std::size_t>(i)]) * child_side;
+      const glm::ivec3 at = origin + child_place(child_numbers[static_cast<std::size_t>(i)]) * child_side;
       children[static_cast<std::size_t>(i)] = block(at, height - 1, all_children);
     });
     Built built;
@@ -94,7 +90,7 @@ class Walk {
     std::array<std::uint64_t, 64> touching;
     std::size_t count = 0;
     for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1) {
-      const Leaf words = leaf(origin + place(std::countr_zero(rest)) * 4, built.fractions);
+      const Leaf words = leaf(origin + child_place(std::countr_zero(rest)) * 4, built.fractions);
       inside[count] = words.inside;
       touching[count++] = words.touching;
     }
@@ -115,14 +111,14 @@ class Walk {
     leaf.touching |= leaf.inside;
     if (!digitisation_)
       for (std::uint64_t rest = leaf.touching & ~leaf.inside; rest != 0; rest &= rest - 1)
-        fractions.push_back(fraction(origin + place(std::countr_zero(rest))));
+        fractions.push_back(fraction(origin + child_place(std::countr_zero(rest))));
     return leaf;
   }
 
   // The voxels of a leaf's bits, one by one.
   void mixed_voxels(const glm::ivec3& origin, std::uint64_t bits, Leaf& leaf) const {
     for (std::uint64_t rest = bits; rest != 0; rest &= rest - 1) {
-      const glm::ivec3 voxel = origin + place(std::countr_zero(rest));
+      const glm::ivec3 voxel = origin + child_place(std::countr_zero(rest));
       const std::uint64_t bit = rest & (~rest + 1);
       bool in = false;
       bool out = true;

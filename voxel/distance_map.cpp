@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "voxel/build.h"
+#include "voxel/octree_node.h"
 #include "voxel/slice_bits.h"
 
 // One axis after the other: along x, two sweeps give the distance to the row's nearest voxel; along y and z,
@@ -179,7 +180,7 @@ void widen(BlockRef block, int height, const glm::ivec3& origin, VoxelRange& ran
     return;
   }
   for (int child = 0; child < 64; ++child) {
-    const glm::ivec3 at = origin + side / 4 * glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
+    const glm::ivec3 at = origin + side / 4 * child_place(child);
     if (height > 2) {
       widen(block.child(child), height - 1, at, range);
       continue;

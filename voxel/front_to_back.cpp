@@ -199,18 +199,16 @@ ColumnMap front_to_back(const std::vector<Drawn>& objects, const AxisView& axes,
 DepthImage front_to_back(const std::vector<Drawn>& objects, const ImagePlane& plane, Visits* visits) {
   const Universe& universe = objects.front().octree.universe();
   const NodePolygons polygons(universe, plane);
-  DepthImage image{plane.size_px, {}};
-  image.pixels.resize(static_cast<std::size_t>(plane.size_px.x) * static_cast<std::size_t>(plane.size_px.y));
+  DepthImage image = unlit(plane.size_px);
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    DepthImage own{plane.size_px, std::vector<Seen>(image.pixels.size())};
+    DepthImage own = unlit(plane.size_px);
     Screen screen(polygons.of(glm::ivec3(0), universe.side()), own);
     walk_object(objects[i], image.pixels.size(), visits, [&](const auto& root, auto& counter) {
       PolygonWalk<std::decay_t<decltype(root)>, std::decay_t<decltype(counter)>>(polygons, counter, screen,
                                                                                  static_cast<std::int16_t>(i))
           .walk(root, 0, glm::ivec3(0));
     });
-    for (std::size_t pixel = 0; pixel < image.pixels.size(); ++pixel)
-      if (own.pixels[pixel].depth_mm < image.pixels[pixel].depth_mm) image.pixels[pixel] = own.pixels[pixel];
+    take_nearer(own, image);
   }
   return image;
 }

@@ -186,7 +186,7 @@ void join_ranges(std::vector<Level>& levels, int depth) {
           const glm::ivec3 parent(x, y, z);
           MinMax range = below.ranges[below.index(parent * 4)];
           for (int child = 1; child < 64; ++child) {
-            const glm::ivec3 at = parent * 4 + glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
+            const glm::ivec3 at = parent * 4 + child_place(child);
             if (glm::all(glm::lessThan(at, glm::ivec3(below.side))))
               widen(range, below.ranges[below.index(at)]);
           }

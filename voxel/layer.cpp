@@ -203,9 +203,7 @@ std::vector<std::uint8_t> shade_layer(const Layer& layer, const std::vector<Draw
 }
 
 Layer empty_layer(const glm::ivec2& size_px) {
-  Layer layer{{size_px, {}}, {}, [](const glm::dvec2&, const DepthSpan&) { return Seen{}; }};
-  layer.image.pixels.resize(static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y));
-  return layer;
+  return {unlit(size_px), {}, [](const glm::dvec2&, const DepthSpan&) { return Seen{}; }};
 }
 
 Drawn as_shaded(const Drawn& object, Shading shading) {

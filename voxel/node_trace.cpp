@@ -9,6 +9,7 @@
 #include <optional>
 #include <tbb/parallel_for.h>
 
+#include "voxel/octant_order.h"
 #include "voxel/octree_node.h"
 #include "voxel/surface_break.h"
 
@@ -31,27 +32,11 @@ constexpr int tile_height = 3;
 constexpr int tile_side = 64;
 constexpr int max_height = Universe::max_depth / 2;
 
-/// Bit numbers whose binary digit `low` is set and `high` is not.
-constexpr std::uint64_t exchanged(int low, int high) {
-  std::uint64_t mask = 0;
-  for (int bit = 0; bit < 64; ++bit)
-    if (((bit >> low) & 1) == 1 && ((bit >> high) & 1) == 0) mask |= std::uint64_t{1} << bit;
-  return mask;
-}
-
-/// Moves every bit to the number that has the two binary digits exchanged.
-template <int low, int high>
-constexpr std::uint64_t exchange(std::uint64_t word) {
-  constexpr int distance = (1 << high) - (1 << low);
-  const std::uint64_t moved = ((word >> distance) ^ word) & exchanged(low, high);
-  return word ^ moved ^ (moved << distance);
-}
-
 /// Brings a mask of children from number x + 4y + 16z to p + 4q + 16r, where r is along `look_axis` and takes
 /// the place of z. Its own inverse.
 constexpr std::uint64_t traced(std::uint64_t word, int look_axis) {
-  if (look_axis == 0) return exchange<1, 5>(exchange<0, 4>(word));
-  if (look_axis == 1) return exchange<3, 5>(exchange<2, 4>(word));
+  if (look_axis == 0) return exchange_index_bits<1, 5>(exchange_index_bits<0, 4>(word));
+  if (look_axis == 1) return exchange_index_bits<3, 5>(exchange_index_bits<2, 4>(word));
   return word;
 }
 static_assert(traced(std::uint64_t{1} << child_index(1, 2, 3), 0) == std::uint64_t{1}

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <utility>
 
@@ -20,6 +21,11 @@ namespace octotomy::voxel {
 
 constexpr int child_index(int x, int y, int z) {
   return x + 4 * y + 16 * z;
+}
+
+/// (x, y, z) of a child number.
+inline glm::ivec3 child_place(int child) {
+  return {child & 3, (child >> 2) & 3, child >> 4};
 }
 
 /// Height of the root block of a universe of 2^depth voxels a side: the least that holds it, at least 2.

@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "voxel/octree_node.h"
 #include "voxel/operand.h"
 
 // What the operands' sources share: children and voxels of a block, and how far a linear map strays over
@@ -14,10 +15,6 @@
 namespace octotomy::voxel {
 
 enum class Status { Empty, Full, Mixed };
-
-inline glm::ivec3 child_place(int child) {
-  return {child & 3, (child >> 2) & 3, child >> 4};
-}
 
 /// Cover of a block from the status of each child, asked by the child's centre (of its voxels' centres).
 template <typename ChildStatus>

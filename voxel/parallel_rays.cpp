@@ -46,10 +46,6 @@ std::uint64_t mirrored(std::uint64_t mask, const glm::ivec3& flipped) {
   return mask;
 }
 
-glm::ivec3 child_place(int child) {
-  return {child & 3, (child >> 2) & 3, child >> 4};
-}
-
 }  // namespace
 
 /// One square of pixels: which of its rays are still open.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "voxel/combine.h"
+#include "voxel/octree_node.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -91,7 +92,7 @@ void for_each_boundary_leaf(BlockRef inside, BlockRef touching, int height, cons
   if (touching.is_empty() || inside.is_full() || inside == touching) return;
   const int child_side = 1 << (2 * height - 2);
   for (int child = 0; child < 64; ++child) {
-    const glm::ivec3 at = origin + child_side * glm::ivec3(child & 3, (child >> 2) & 3, child >> 4);
+    const glm::ivec3 at = origin + child_side * child_place(child);
     if (height > 2)
       for_each_boundary_leaf(inside.child(child), touching.child(child), height - 1, at, visit);
     else if (const std::uint64_t word = touching.word(child) & ~inside.word(child); word != 0)

@@ -101,8 +101,7 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
 DepthImage RayCast::picture() const {
   constexpr int square_px = ParallelRays::square_px;
   const Prepared& the = *prepared_;
-  DepthImage image{the.size_px, {}};
-  image.pixels.resize(static_cast<std::size_t>(the.size_px.x) * static_cast<std::size_t>(the.size_px.y));
+  DepthImage image = unlit(the.size_px);
   const glm::ivec2 squares = (the.size_px + (square_px - 1)) / square_px;
   if (the.eye) {
     tbb::parallel_for(0, the.size_px.y, [&](int y) {

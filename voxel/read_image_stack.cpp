@@ -6,7 +6,6 @@
 #include <bit>
 #include <cctype>
 
-#include "voxel/air_level.h"
 #include "voxel/image_file.h"
 #include "voxel/read_raw.h"
 
@@ -139,14 +138,7 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
                              " files in the order of the numbers in their names, from " +
                              files.front().filename().string() + " to " + files.back().filename().string()});
   StoredSamples stored{type, std::endian::native == std::endian::big};
-  try {
-    take_bytes(bytes, stored, scene);
-  } catch (const std::runtime_error& error) {
-    refuse(path, error.what());
-  }
-  const AirLevel air = air_level_of_unnamed(scene);
-  scene.meaning = air.meaning;
-  scene.audit.push_back(air.finding);
+  take_bytes(bytes, stored, scene);
   return scene;
 }
 

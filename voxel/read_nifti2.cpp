@@ -17,7 +17,6 @@
 #include <optional>
 #include <zlib.h>
 
-#include "voxel/air_level.h"
 #include "voxel/inflate.h"
 #include "voxel/stored_samples.h"
 
@@ -179,16 +178,9 @@ Scene read_nifti2(const fs::path& path) {
     stored.slope = slope;
     stored.intercept = intercept;
   }
-  try {
-    take_bytes(std::span(bytes).subspan(static_cast<std::size_t>(offset),
-                                        scene.lattice.sample_count() * bytes_of(type)),
-               stored, scene);
-  } catch (const std::runtime_error& error) {
-    refuse(path, error.what());
-  }
-  const AirLevel air = air_level_of_unnamed(scene);
-  scene.meaning = air.meaning;
-  scene.audit.push_back(air.finding);
+  take_bytes(std::span(bytes).subspan(static_cast<std::size_t>(offset),
+                                      scene.lattice.sample_count() * bytes_of(type)),
+             stored, scene);
   return scene;
 }
 

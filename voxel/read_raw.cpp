@@ -4,8 +4,6 @@
 #include <fstream>
 #include <limits>
 
-#include "voxel/air_level.h"
-
 namespace octotomy::voxel {
 namespace {
 
@@ -63,14 +61,7 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
   scene.source = path.string();
   scene.lattice = lattice_without_frame(path, layout.dims, options);
   scene.audit.push_back(no_frame_finding());
-  try {
-    take_bytes(bytes_of_part(path, layout.offset, bytes), {layout.type, layout.big_endian}, scene);
-  } catch (const std::runtime_error& error) {
-    refuse(path, error.what());
-  }
-  const AirLevel air = air_level_of_unnamed(scene);
-  scene.meaning = air.meaning;
-  scene.audit.push_back(air.finding);
+  take_bytes(bytes_of_part(path, layout.offset, bytes), {layout.type, layout.big_endian}, scene);
   return scene;
 }
 

@@ -4,19 +4,6 @@
 // and pipeline: nothing is registered at start-up and the unit compiles in seconds.
 #include "voxel/scene_itk.h"
 
-#if defined(__clang__)
-// Debian's ITK knows only the compiler that it was built with; what it would find out about clang stands
-// here.
-#define ITK_COMPILER_DETECTION_H
-#define ITK_NOEXCEPT noexcept
-#define ITK_ALIGNAS(X) alignas(X)
-#define ITK_CONSTEXPR constexpr
-#define ITK_CONSTEXPR_FUNC constexpr
-#define ITK_CONSTEXPR_VAR constexpr
-#define ITK_NULLPTR nullptr
-#define ITK_THREAD_LOCAL thread_local
-#endif
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -33,6 +20,7 @@
 #include <zlib.h>
 
 #include "voxel/air_level.h"
+#include "voxel/itk_compiler.h"
 #include "voxel/quiet_errors.h"
 #include "voxel/stored_samples.h"
 

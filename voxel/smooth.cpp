@@ -5,19 +5,6 @@
 // no longer than one, and ITK's own way of reporting progress from its threads is not needed.
 #include "voxel/smooth.h"
 
-#if defined(__clang__)
-// Debian's ITK knows only the compiler that it was built with; what it would find out about clang stands
-// here.
-#define ITK_COMPILER_DETECTION_H
-#define ITK_NOEXCEPT noexcept
-#define ITK_ALIGNAS(X) alignas(X)
-#define ITK_CONSTEXPR constexpr
-#define ITK_CONSTEXPR_FUNC constexpr
-#define ITK_CONSTEXPR_VAR constexpr
-#define ITK_NULLPTR nullptr
-#define ITK_THREAD_LOCAL thread_local
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <itkCommand.h>
@@ -28,6 +15,8 @@
 #include <stdexcept>
 #include <string>
 #include <tbb/task_arena.h>
+
+#include "voxel/itk_compiler.h"
 
 namespace octotomy::voxel {
 namespace {

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "voxel/air_level.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -42,6 +44,31 @@ void take(std::span<const char> bytes, const StoredSamples& how, Scene& scene) {
   take_samples(values, scene);
 }
 
+void take_by_type(std::span<const char> bytes, const StoredSamples& stored, Scene& scene) {
+  switch (stored.type) {
+    case SampleType::Int8:
+      return take<std::int8_t>(bytes, stored, scene);
+    case SampleType::UInt8:
+      return take<std::uint8_t>(bytes, stored, scene);
+    case SampleType::Int16:
+      return take<std::int16_t>(bytes, stored, scene);
+    case SampleType::UInt16:
+      return take<std::uint16_t>(bytes, stored, scene);
+    case SampleType::Int32:
+      return take<std::int32_t>(bytes, stored, scene);
+    case SampleType::UInt32:
+      return take<std::uint32_t>(bytes, stored, scene);
+    case SampleType::Int64:
+      return take<std::int64_t>(bytes, stored, scene);
+    case SampleType::UInt64:
+      return take<std::uint64_t>(bytes, stored, scene);
+    case SampleType::Float:
+      return take<float>(bytes, stored, scene);
+    case SampleType::Double:
+      return take<double>(bytes, stored, scene);
+  }
+}
+
 }  // namespace
 
 std::size_t bytes_of(SampleType type) {
@@ -74,28 +101,14 @@ std::string name_of(SampleType type) {
 }
 
 void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene& scene) {
-  switch (stored.type) {
-    case SampleType::Int8:
-      return take<std::int8_t>(bytes, stored, scene);
-    case SampleType::UInt8:
-      return take<std::uint8_t>(bytes, stored, scene);
-    case SampleType::Int16:
-      return take<std::int16_t>(bytes, stored, scene);
-    case SampleType::UInt16:
-      return take<std::uint16_t>(bytes, stored, scene);
-    case SampleType::Int32:
-      return take<std::int32_t>(bytes, stored, scene);
-    case SampleType::UInt32:
-      return take<std::uint32_t>(bytes, stored, scene);
-    case SampleType::Int64:
-      return take<std::int64_t>(bytes, stored, scene);
-    case SampleType::UInt64:
-      return take<std::uint64_t>(bytes, stored, scene);
-    case SampleType::Float:
-      return take<float>(bytes, stored, scene);
-    case SampleType::Double:
-      return take<double>(bytes, stored, scene);
+  try {
+    take_by_type(bytes, stored, scene);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(scene.source + ": " + error.what());
   }
+  const AirLevel air = air_level_of_unnamed(scene);
+  scene.meaning = air.meaning;
+  scene.audit.push_back(air.finding);
 }
 
 }  // namespace octotomy::voxel

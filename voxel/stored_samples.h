@@ -33,8 +33,9 @@ struct StoredSamples {
   double slope = 1.0;
   double intercept = 0.0;
 };
-/// Reads samples from bytes as take_samples() takes them. Precondition: as many bytes as the scene's lattice
-/// has samples of the type. Throws as take_samples().
+/// Reads the samples of a file that does not say its modality as take_samples() takes them; what they mean is
+/// judged by their air (air_level.h), and said in the audit. Precondition: as many bytes as the scene's
+/// lattice has samples of the type. Throws as take_samples(), naming the scene's source.
 void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene& scene);
 
 /// The samples as int16 where each is an integer of its range, else as float; the audit says what had to be

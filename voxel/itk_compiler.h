@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+// Included before ITK's own headers. Debian's ITK knows only the compiler that it was built with; what it
+// would find out about clang stands here.
+#if defined(__clang__)
+#define ITK_COMPILER_DETECTION_H
+#define ITK_NOEXCEPT noexcept
+#define ITK_ALIGNAS(X) alignas(X)
+#define ITK_CONSTEXPR constexpr
+#define ITK_CONSTEXPR_FUNC constexpr
+#define ITK_CONSTEXPR_VAR constexpr
+#define ITK_NULLPTR nullptr
+#define ITK_THREAD_LOCAL thread_local
+#endif
