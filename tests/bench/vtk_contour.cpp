@@ -8,6 +8,8 @@
 #include <vtkPolyData.h>
 #include <vtkSMPTools.h>
 
+#include "tests/bench/vtk_scan.h"
+
 namespace octotomy::bench {
 
 struct VtkContour::Pipeline {
@@ -19,14 +21,7 @@ VtkContour::VtkContour(const FlatScan& scan, double value, int threads)
     : pipeline_(std::make_unique<Pipeline>()) {
   vtkSMPTools::Initialize(threads);
   Pipeline& p = *pipeline_;
-  p.import->SetDataScalarTypeToShort();
-  p.import->SetNumberOfScalarComponents(1);
-  p.import->SetWholeExtent(0, scan.dims[0] - 1, 0, scan.dims[1] - 1, 0, scan.dims[2] - 1);
-  p.import->SetDataExtentToWholeExtent();
-  p.import->SetDataSpacing(scan.spacing_mm.data());
-  p.import->SetDataOrigin(scan.first_mm.data());
-  p.import->SetImportVoidPointer(const_cast<std::int16_t*>(scan.samples));
-  p.import->Update();
+  import_scan(scan, *p.import);
   p.contour->SetInputConnection(p.import->GetOutputPort());
   p.contour->ComputeNormalsOff();
   p.contour->ComputeGradientsOff();

@@ -14,6 +14,8 @@
 #include <vtkVolume.h>
 #include <vtkVolumeProperty.h>
 
+#include "tests/bench/vtk_scan.h"
+
 namespace octotomy::bench {
 
 struct VtkPeer::Pipeline {
@@ -27,14 +29,7 @@ struct VtkPeer::Pipeline {
 VtkPeer::VtkPeer(const FlatScan& scan, double threshold, int threads)
     : pipeline_(std::make_unique<Pipeline>()) {
   Pipeline& p = *pipeline_;
-  p.import->SetDataScalarTypeToShort();
-  p.import->SetNumberOfScalarComponents(1);
-  p.import->SetWholeExtent(0, scan.dims[0] - 1, 0, scan.dims[1] - 1, 0, scan.dims[2] - 1);
-  p.import->SetDataExtentToWholeExtent();
-  p.import->SetDataSpacing(scan.spacing_mm.data());
-  p.import->SetDataOrigin(scan.first_mm.data());
-  p.import->SetImportVoidPointer(const_cast<std::int16_t*>(scan.samples));
-  p.import->Update();
+  import_scan(scan, *p.import);
   p.mapper->SetInputConnection(p.import->GetOutputPort());
   p.mapper->SetBlendModeToComposite();
   p.mapper->AutoAdjustSampleDistancesOff();

@@ -10,17 +10,14 @@
 #include "brep/health.h"
 #include "convert/voxelise.h"
 #include "tests/convert/surfaces.h"
+#include "tests/unit_universe.h"
 #include "voxel/build.h"
 #include "voxel/cuberille_faces.h"
 
 namespace octotomy::convert {
 namespace {
 
-voxel::Universe unit_universe(int depth) {
-  voxel::Universe universe;
-  universe.depth = depth;
-  return universe;
-}
+using tests::unit_universe;
 
 /// The octree of the voxels that `inside` says.
 template <typename Inside>

@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "tests/unit_universe.h"
 #include "voxel/build.h"
 #include "voxel/combine.h"
 #include "voxel/cuberille_faces.h"
@@ -13,11 +14,7 @@
 namespace octotomy::convert {
 namespace {
 
-voxel::Universe unit_universe(int depth) {
-  voxel::Universe universe;
-  universe.depth = depth;
-  return universe;
-}
+using tests::unit_universe;
 
 /// Random cubes of random sizes: cells of every size beside each other.
 voxel::Octree random_cubes(int depth, unsigned seed) {

@@ -8,22 +8,19 @@
 
 #include "brep/health.h"
 #include "tests/convert/surfaces.h"
+#include "tests/unit_universe.h"
 #include "voxel/digitise.h"
 #include "voxel/shape.h"
 
 namespace octotomy::convert {
 namespace {
 
+using tests::unit_universe;
+
 struct Errors {
   double volume = 0.0;  ///< relative
   double area = 0.0;
 };
-
-voxel::Universe unit_universe(int depth) {
-  voxel::Universe universe;
-  universe.depth = depth;
-  return universe;
-}
 
 Errors ball_errors(int depth, double radius) {
   const voxel::Universe universe = unit_universe(depth);

@@ -10,6 +10,7 @@
 
 #include "convert/voxelise.h"
 #include "tests/convert/surfaces.h"
+#include "tests/unit_universe.h"
 #include "voxel/digitise.h"
 #include "voxel/read_scene.h"
 #include "voxel/shape.h"
@@ -21,12 +22,7 @@ using tests::ball;
 using tests::box;
 using tests::inside_out;
 using tests::together;
-
-voxel::Universe unit_universe(int depth) {
-  voxel::Universe universe;
-  universe.depth = depth;
-  return universe;
-}
+using tests::unit_universe;
 
 std::map<std::array<int, 3>, double> boundary_shares(const voxel::PartialOctree& partial) {
   std::map<std::array<int, 3>, double> shares;

@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "tests/convert/surfaces.h"
+#include "tests/unit_universe.h"
 
 namespace octotomy::convert {
 namespace {
@@ -18,14 +19,9 @@ using tests::box;
 using tests::inside_out;
 using tests::octahedron;
 using tests::together;
+using tests::unit_universe;
 
 /// Voxel (0, 0, 0) at the origin, edges of one millimetre: millimetres are voxel numbers.
-voxel::Universe unit_universe(int depth) {
-  voxel::Universe universe;
-  universe.depth = depth;
-  return universe;
-}
-
 /// How often the surface winds about a point, by solid angles: another method than rays.
 double winding_number(const brep::Triangles& t, const glm::dvec3& p) {
   double angle = 0.0;

@@ -14,6 +14,7 @@
 #include "convert/voxelise.h"
 #include "tests/convert/surfaces.h"
 #include "tests/reference_data.h"
+#include "tests/unit_universe.h"
 #include "voxel/read_scene.h"
 
 namespace octotomy::convert {
@@ -23,12 +24,7 @@ using tests::ball;
 using tests::box;
 using tests::inside_out;
 using tests::together;
-
-voxel::Universe unit_universe(int depth) {
-  voxel::Universe universe;
-  universe.depth = depth;
-  return universe;
-}
+using tests::unit_universe;
 
 /// The universe of a surface with room about it.
 voxel::Universe universe_of(const brep::Triangles& surface, int side) {

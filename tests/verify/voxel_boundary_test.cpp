@@ -3,20 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit_universe.h"
 #include "voxel/combine.h"
 #include "voxel/measure.h"
 
 namespace octotomy::verify {
 namespace {
 
-voxel::Universe universe(int depth) {
-  voxel::Universe result;
-  result.depth = depth;
-  return result;
-}
+using tests::unit_universe;
 
 TEST(VoxelBoundary, ABoxAcrossBlocksHasTheFacesOfItsSixSides) {
-  const voxel::Octree box = voxel::combine(universe(5), voxel::Box{{2.5, 3.5, 0.5}, {18.5, 20.5, 9.5}});
+  const voxel::Octree box = voxel::combine(unit_universe(5), voxel::Box{{2.5, 3.5, 0.5}, {18.5, 20.5, 9.5}});
   ASSERT_EQ(box.voxel_count(), 16u * 17u * 9u);
   glm::ivec3 low(0), high(0);
   for (const VoxelFace& face : voxel_boundary(box)) {
@@ -29,12 +26,12 @@ TEST(VoxelBoundary, ABoxAcrossBlocksHasTheFacesOfItsSixSides) {
 }
 
 TEST(VoxelBoundary, AFullUniverseEndsAtItsOwnSides) {
-  EXPECT_EQ(voxel_boundary(voxel::Octree::full(universe(4))).size(), 6u * 16u * 16u);
-  EXPECT_TRUE(voxel_boundary(voxel::Octree::empty(universe(4))).empty());
+  EXPECT_EQ(voxel_boundary(voxel::Octree::full(unit_universe(4))).size(), 6u * 16u * 16u);
+  EXPECT_TRUE(voxel_boundary(voxel::Octree::empty(unit_universe(4))).empty());
 }
 
 TEST(VoxelBoundary, EveryFaceOfASphereLiesBetweenInsideAndOutsideAndNoneIsMissing) {
-  const voxel::Octree sphere = voxel::combine(universe(6), voxel::Sphere{{30.2, 31.1, 29.7}, 21.3});
+  const voxel::Octree sphere = voxel::combine(unit_universe(6), voxel::Sphere{{30.2, 31.1, 29.7}, 21.3});
   glm::dvec3 faces(0.0);
   for (const VoxelFace& face : voxel_boundary(sphere)) {
     glm::ivec3 beyond = face.voxel;
