@@ -48,10 +48,10 @@ OCTOTOMY_VECTOR_CLONES void smooth_row(const float* __restrict from, const float
   }
 }
 
-/// Copies depths into the plane, and finds where each row is lit and whether voxels' faces are seen.
+/// Copies depths into the plane, and finds where each row is lit and where voxels' faces are seen.
 struct RowFacts {
   float nearest_mm = beyond_mm;
-  bool any_stepped = false;
+  glm::ivec2 stepped{0};  ///< from the first to beyond the last; nothing where both are the same
 };
 RowFacts copy_row(const DepthImage& image, int y, float* row, glm::ivec2& lit) {
   RowFacts facts;
@@ -63,7 +63,7 @@ RowFacts copy_row(const DepthImage& image, int y, float* row, glm::ivec2& lit) {
     lit.x = std::min(lit.x, x);
     lit.y = x + 1;
     facts.nearest_mm = std::min(facts.nearest_mm, seen.depth_mm);
-    facts.any_stepped = facts.any_stepped || seen.stepped;
+    if (seen.stepped) facts.stepped = {facts.stepped.y == 0 ? x : facts.stepped.x, x + 1};
   }
   if (lit.x > lit.y) lit = glm::ivec2(0);
   return facts;
@@ -86,7 +86,7 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
   bool any_stepped = false;
   for (const RowFacts& row : facts) {
     plane.nearest_mm = std::min(plane.nearest_mm, row.nearest_mm);
-    any_stepped = any_stepped || row.any_stepped;
+    any_stepped = any_stepped || row.stepped.y > 0;
   }
   const Plane found = plane.depth;
   Plane between = plane.depth;
@@ -100,12 +100,17 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
     Smoothing along = smoothing;
     along.tap = along_x ? step : static_cast<std::ptrdiff_t>(step) * found.width;
     tbb::parallel_for(0, image.size_px.y, [&](int y) {
+      const auto smooth = [&](const glm::ivec2& x) {
+        smooth_row(from.row(y) + x[0], found.row(y) + x[0], to.row(y) + x[0], x[1] - x[0], along);
+      };
       const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
-      smooth_row(from.row(y) + lit.x, found.row(y) + lit.x, to.row(y) + lit.x, lit.y - lit.x, along);
+      if (pass < 2) return smooth(lit);
       // Only faces are smoothed again.
-      if (pass >= 2)
-        for (int x = lit.x; x < lit.y; ++x)
-          if (!image.at(x, y).stepped) to.row(y)[x] = from.row(y)[x];
+      std::copy(from.row(y) + lit.x, from.row(y) + lit.y, to.row(y) + lit.x);
+      const glm::ivec2& stepped = facts[static_cast<std::size_t>(y)].stepped;
+      smooth(stepped);
+      for (int x = stepped.x; x < stepped.y; ++x)
+        if (!image.at(x, y).stepped) to.row(y)[x] = from.row(y)[x];
     });
   }
   return plane;

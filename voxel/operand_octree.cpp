@@ -7,6 +7,7 @@
 #include "voxel/operand.h"
 #include "voxel/operand_frame.h"
 #include "voxel/status_within.h"
+#include "voxel/vector_clones.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -75,11 +76,30 @@ constexpr int fraction_bits = 24;
 const double fixed_slack = std::ldexp(1.0, 1 - fraction_bits);
 
 std::int32_t fixed(double voxels) {
-  return static_cast<std::int32_t>(std::lround(std::ldexp(voxels, fraction_bits)));
+  constexpr double unit = 1 << fraction_bits;
+  return static_cast<std::int32_t>(std::floor(voxels * unit + 0.5));
 }
 
 glm::ivec3 fixed(const glm::dvec3& p) {
   return {fixed(p.x), fixed(p.y), fixed(p.z)};
+}
+
+/// A leaf's word from the words of a region's leaves: each voxel lies in the region at base and its offset.
+OCTOTOMY_VECTOR_CLONES std::uint64_t looked_up(const std::uint64_t* words, const glm::ivec3& base,
+                                               const std::array<std::array<std::int32_t, 64>, 3>& offsets) {
+  // Places first, by arithmetic that vectorises; then the look-ups.
+  std::array<std::uint64_t, 64> place;
+  for (std::size_t i = 0; i < 64; ++i) {
+    const auto x = static_cast<std::uint32_t>(base.x + offsets[0][i]) >> fraction_bits;
+    const auto y = static_cast<std::uint32_t>(base.y + offsets[1][i]) >> fraction_bits;
+    const auto z = static_cast<std::uint32_t>(base.z + offsets[2][i]) >> fraction_bits;
+    const std::uint32_t leaf_number = (x >> 2) | ((y >> 2) << 3) | ((z >> 2) << 6);
+    const std::uint32_t bit = (x & 3) | ((y & 3) << 2) | ((z & 3) << 4);
+    place[i] = leaf_number << 6 | bit;
+  }
+  std::uint64_t word = 0;
+  for (std::size_t i = 0; i < 64; ++i) word |= ((words[place[i] >> 6] >> (place[i] & 63)) & 1) << i;
+  return word;
 }
 
 }  // namespace
@@ -142,20 +162,7 @@ std::uint64_t SampledOctreeOperand::leaf(const LeafWords& region, const glm::ive
       }
   if (any == 0) return 0;
   if (every == all_children) return all_children;
-
-  // Places first, by arithmetic that vectorises; then the look-ups.
-  std::array<std::uint32_t, 64> place;
-  for (std::size_t i = 0; i < 64; ++i) {
-    const auto x = static_cast<std::uint32_t>(base.x + offsets_[0][i]) >> fraction_bits;
-    const auto y = static_cast<std::uint32_t>(base.y + offsets_[1][i]) >> fraction_bits;
-    const auto z = static_cast<std::uint32_t>(base.z + offsets_[2][i]) >> fraction_bits;
-    const std::uint32_t leaf_number = (x >> 2) | ((y >> 2) << 3) | ((z >> 2) << 6);
-    const std::uint32_t bit = (x & 3) | ((y & 3) << 2) | ((z & 3) << 4);
-    place[i] = leaf_number << 6 | bit;
-  }
-  std::uint64_t word = 0;
-  for (std::size_t i = 0; i < 64; ++i) word |= ((region.words()[place[i] >> 6] >> (place[i] & 63)) & 1) << i;
-  return word;
+  return looked_up(region.words(), base, offsets_);
 }
 
 }  // namespace octotomy::voxel

@@ -127,6 +127,44 @@ float crossing(RaySamples& samples, float threshold, Sample below, Sample above)
   return above.value > below.value ? between() : middle.distance_mm;
 }
 
+Seen face_of(const Passage& passage) {
+  return {static_cast<float>(passage.enter_mm), 0, true};
+}
+
+/// The surface about a voxel that a ray passes: where the ray enters it outside, up to where it leaves it,
+/// none if it stays outside; where it enters inside, up to two voxels before, the voxel's face if it was
+/// inside all the way. Samples are those of the ray from where it enters.
+std::optional<Seen> surface_about(RaySamples& samples, float threshold, const Passage& passage,
+                                  float half_voxel_mm) {
+  const auto surface = [&](Sample below, Sample above) {
+    return Seen{static_cast<float>(passage.enter_mm + double{crossing(samples, threshold, below, above)}), 0,
+                false};
+  };
+  const Sample enter{0.0f, samples(0.0f)};
+  if (enter.value < threshold) {
+    const auto way_mm = static_cast<float>(passage.leave_mm - passage.enter_mm);
+    const Sample middle{0.5f * way_mm, samples(0.5f * way_mm)};
+    if (middle.value >= threshold) return surface(enter, middle);
+    const Sample leave{way_mm, samples(way_mm)};
+    if (leave.value >= threshold) return surface(middle, leave);
+    return std::nullopt;
+  }
+  // Trilinear surfaces end within a voxel of the object's voxels, along a slanting ray within two.
+  Sample above = enter;
+  for (int step = 1; step <= 4; ++step) {
+    const float distance_mm = -static_cast<float>(step) * half_voxel_mm;
+    const Sample sample{distance_mm, samples(distance_mm)};
+    if (sample.value < threshold) return surface(sample, above);
+    above = sample;
+  }
+  return face_of(passage);
+}
+
+/// Half a voxel's way along a ray.
+float half_voxel_mm(const VoxelRay& ray) {
+  return static_cast<float>(0.5 / glm::length(ray.per_mm));
+}
+
 }  // namespace
 
 GreySurface::GreySurface(const Drawn& object)
@@ -142,63 +180,25 @@ std::optional<Seen> GreySurface::seen(const VoxelRay& ray, const Mirror& mirror,
 
 std::optional<Seen> GreySurface::seen_still(const VoxelRay& ray, const Mirror& mirror,
                                             const Passage& passage) const {
-  // Distances are from where the ray enters the voxel.
   RaySamples samples(grey_, ray, passage.enter_mm);
-  const float threshold = threshold_;
-  const auto face = [&] { return Seen{static_cast<float>(passage.enter_mm), 0, true}; };
-  const auto surface = [&](Sample below, Sample above) {
-    return Seen{static_cast<float>(passage.enter_mm + double{crossing(samples, threshold, below, above)}), 0,
-                false};
-  };
   // A voxel below the threshold is not the object's by its sample: its face is all there is.
-  if (samples.voxel(mirror.native(passage.voxel)) < threshold) return face();
-  const Sample enter{0.0f, samples(0.0f)};
-  if (enter.value < threshold) {
-    const auto way_mm = static_cast<float>(passage.leave_mm - passage.enter_mm);
-    const Sample middle{0.5f * way_mm, samples(0.5f * way_mm)};
-    if (middle.value >= threshold) return surface(enter, middle);
-    const Sample leave{way_mm, samples(way_mm)};
-    if (leave.value >= threshold) return surface(middle, leave);
-    return std::nullopt;
-  }
-  // The surface lies before the voxel, unless the voxel before was cut away.
+  if (samples.voxel(mirror.native(passage.voxel)) < threshold_) return face_of(passage);
+  // The surface does not lie before the voxel if the voxel before was cut away.
   glm::ivec3 before = passage.voxel;
   --before[passage.entered_through];
   before = mirror.native(before);
-  if (glm::any(glm::lessThan(before, glm::ivec3(0))) ||
-      glm::any(glm::greaterThanEqual(before, glm::ivec3(side_))) || samples.voxel(before) >= threshold)
-    return face();
-  // Trilinear surfaces end within a voxel of the object's voxels, along a slanting ray within two.
-  const auto half_voxel_mm = static_cast<float>(0.5 / glm::length(ray.per_mm));
-  Sample above = enter;
-  for (int step = 1; step <= 4; ++step) {
-    const float distance_mm = -static_cast<float>(step) * half_voxel_mm;
-    const Sample sample{distance_mm, samples(distance_mm)};
-    if (sample.value < threshold) return surface(sample, above);
-    above = sample;
-  }
-  return face();
+  const bool cut = glm::any(glm::lessThan(before, glm::ivec3(0))) ||
+                   glm::any(glm::greaterThanEqual(before, glm::ivec3(side_))) ||
+                   samples.voxel(before) >= threshold_;
+  if (cut && samples(0.0f) >= threshold_) return face_of(passage);
+  return surface_about(samples, threshold_, passage, half_voxel_mm(ray));
 }
 
 std::optional<Seen> GreySurface::seen_moved(const VoxelRay& ray, const Passage& passage) const {
   const VoxelRay still{glm::dvec3(*still_from_voxel_ * glm::dvec4(ray.start, 1.0)),
                        glm::dmat3(*still_from_voxel_) * ray.per_mm};
   RaySamples samples(grey_, still, passage.enter_mm);
-  const auto half_voxel_mm = static_cast<float>(0.5 / glm::length(ray.per_mm));
-  const auto way_mm = static_cast<float>(passage.leave_mm - passage.enter_mm);
-  Sample below{-4.0f * half_voxel_mm, samples(-4.0f * half_voxel_mm)};
-  // Where there is object all the way, it was cut.
-  const bool cut = below.value >= threshold_;
-  for (const float distance_mm :
-       {-3.0f * half_voxel_mm, -2.0f * half_voxel_mm, -half_voxel_mm, 0.0f, 0.5f * way_mm, way_mm}) {
-    const Sample sample{distance_mm, samples(distance_mm)};
-    if (below.value < threshold_ && sample.value >= threshold_)
-      return Seen{static_cast<float>(passage.enter_mm + double{crossing(samples, threshold_, below, sample)}),
-                  0, false};
-    below = sample;
-  }
-  if (cut) return Seen{static_cast<float>(passage.enter_mm), 0, true};
-  return std::nullopt;
+  return surface_about(samples, threshold_, passage, half_voxel_mm(still));
 }
 
 }  // namespace octotomy::voxel
