@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/random_expression.h"
+
+#include <algorithm>
+#include <functional>
+#include <gtest/gtest.h>
+
+#include "voxel/expression.h"
+
+namespace octotomy::verify {
+namespace {
+
+std::string name_of(int leaf) {
+  return std::string(1, static_cast<char>('a' + leaf));
+}
+
+int count(const Tree& tree, char symbol) {
+  int found = tree.symbol == symbol;
+  for (const Tree& part : tree.parts) found += count(part, symbol);
+  return found;
+}
+
+/// The answer of a formula where leaf i is bit i of `values`.
+bool value(const Tree& tree, unsigned values) {
+  if (tree.parts.empty()) return (values >> tree.leaf) & 1;
+  const bool a = value(tree.parts[0], values);
+  if (tree.symbol == '~') return !a;
+  const bool b = value(tree.parts[1], values);
+  switch (tree.symbol) {
+    case '&':
+      return a && b;
+    case '|':
+      return a || b;
+    case '-':
+      return a && !b;
+    default:
+      return a != b;
+  }
+}
+
+bool value(const voxel::Expression::Term& term, unsigned values) {
+  using Kind = voxel::Expression::Kind;
+  if (term.kind == Kind::Leaf)
+    return (values >> static_cast<int>(std::get<voxel::Sphere>(*term.leaf).radius_mm)) & 1;
+  const bool a = value(*term.left, values);
+  if (term.kind == Kind::Not) return !a;
+  const bool b = value(*term.right, values);
+  return term.kind == Kind::And     ? a && b
+         : term.kind == Kind::Or    ? a || b
+         : term.kind == Kind::Minus ? a && !b
+                                    : a != b;
+}
+
+TEST(RandomTree, KeepsItsLimitsReachesThemAndUsesEveryOperator) {
+  int deepest = 0, most = 0;
+  std::string seen;
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    Random random(seed);
+    const Tree tree = random_tree(random, {.depth = 6, .leaves = 9, .names = 4, .xors = 2});
+    deepest = std::max(deepest, tree.depth());
+    most = std::max(most, tree.leaf_count());
+    EXPECT_LE(count(tree, '^'), 2) << seed;
+    seen += text(tree, name_of);
+  }
+  EXPECT_EQ(most, 9);
+  EXPECT_LE(deepest, 7);  // a complement of a leaf at the end
+  EXPECT_GE(deepest, 6);
+  for (const char symbol : std::string("&|-^~()")) EXPECT_NE(seen.find(symbol), std::string::npos) << symbol;
+}
+
+TEST(RandomTree, AsTextMeansTheSameToTheParser) {
+  voxel::Names names;
+  names.object = [](std::string_view name) { return voxel::Sphere{{}, static_cast<double>(name[0] - 'a')}; };
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Random random(seed);
+    const Tree tree = random_tree(random, {.depth = 6, .leaves = 8, .names = 5, .xors = 3});
+    const std::string words = text(tree, name_of);
+    const voxel::Expression parsed = voxel::parse_expression(words, names);
+    for (unsigned values = 0; values < 32; ++values)
+      ASSERT_EQ(value(tree, values), value(parsed.term(), values)) << "seed " << seed << ": " << words;
+  }
+}
+
+TEST(RandomTree, IsTheSameOfTheSameSeed) {
+  Random one(7), two(7), other(8);
+  EXPECT_EQ(text(random_tree(one), name_of), text(random_tree(two), name_of));
+  EXPECT_NE(one(), other());
+}
+
+TEST(SimplerTrees, HaveFewerLeavesOrOperatorsAndEndInLeaves) {
+  Random random(3);
+  Tree tree = random_tree(random);
+  const std::function<int(const Tree&)> size = [&](const Tree& t) {
+    int sum = 1;
+    for (const Tree& part : t.parts) sum += size(part);
+    return sum;
+  };
+  while (!tree.parts.empty()) {
+    const std::vector<Tree> all = simpler(tree);
+    ASSERT_FALSE(all.empty());
+    for (const Tree& one : all) EXPECT_LT(size(one), size(tree));
+    tree = all.back();
+  }
+  EXPECT_TRUE(simpler(tree).empty());
+}
+
+TEST(RandomSet, IsOfManyKindsWithinItsSideAndNeverEmpty) {
+  voxel::Universe universe;
+  universe.depth = 5;
+  Random random(1);
+  std::string seen;
+  for (int i = 0; i < 60; ++i) {
+    const RandomSet set = random_set(random, universe, i % 2 ? 16 : 24);
+    EXPECT_FALSE(set.octree.is_empty());
+    for (int v = 24; v < 32; ++v) EXPECT_FALSE(set.octree.contains({v, 12, 12}));
+    seen += set.recipe + " ";
+  }
+  for (const char* kind : {"ellipsoid", "box", "ring", "rod", "noise", "blobs", "head"})
+    EXPECT_NE(seen.find(kind), std::string::npos) << kind;
+}
+
+}  // namespace
+}  // namespace octotomy::verify

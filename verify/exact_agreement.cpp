@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Why the surfaces are manifold: each occurrence of a leaf is a set of its own in general position, so a
+// formula of intersections, unions, differences and complements mentions every surface once. Where two
+// surfaces cross, such a formula depends on them as an intersection or a union of the two (or not at all),
+// and neither leaves two wedges that meet at the line only. An exclusive or does exactly that. It is answered
+// by solids with disjoint insides, a - b and b - a, and whatever is then done to it is done to each of them
+// and to what they leave, by cases: see Pieces.
+#include "verify/exact_agreement.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "brep/boolean.h"
+#include "brep/health.h"
+#include "brep/measure.h"
+#include "brep/move.h"
+#include "brep/prism.h"
+#include "convert/voxelise.h"
+#include "voxel/combine.h"
+#include "voxel/cuberille_faces.h"
+#include "voxel/progress.h"
+
+namespace octotomy::verify {
+namespace {
+
+using voxel::Expression;
+using Term = Expression::Term;
+
+/// How far a whole number may be from its double after corefinement: some roundings of coordinates of up to
+/// `reach`. Points that are not whole have denominators below the third power of the lattice's side, hence
+/// lie a thousand times further off.
+double whole_within(double reach) {
+  return 64.0 * std::numeric_limits<double>::epsilon() * std::max(reach, 1.0);
+}
+
+double reach_of(const brep::Mesh& mesh) {
+  double reach = 0.0;
+  for (const auto v : mesh.vertices())
+    for (unsigned axis = 0; axis < 3; ++axis) reach = std::max(reach, std::abs(mesh.point(v)[axis]));
+  return reach;
+}
+
+/// Puts coordinates that are whole but for rounding back, so that faces lie in their planes exactly.
+brep::Mesh with_whole_numbers(brep::Mesh mesh) {
+  const double tolerance = whole_within(reach_of(mesh));
+  for (const auto v : mesh.vertices()) {
+    brep::Mesh::Point p = mesh.point(v);
+    for (unsigned axis = 0; axis < 3; ++axis)
+      if (std::abs(p[axis] - std::round(p[axis])) <= tolerance) p[axis] = std::round(p[axis]);
+    mesh.set_point(v, p);
+  }
+  return mesh;
+}
+
+/// A solid, or all that it leaves.
+struct Piece {
+  std::shared_ptr<const brep::Mesh> mesh;
+  bool complement = false;
+};
+
+/// The leaves of an expression in the order that a walk meets them, and the same expression with others.
+void collect_leaves(const Term& term, std::vector<voxel::Octree>& sets) {
+  if (term.leaf) {
+    const auto* octree = std::get_if<voxel::Octree>(&*term.leaf);
+    if (octree == nullptr)
+      throw std::invalid_argument("exact agreement: leaf " + std::to_string(sets.size() + 1) +
+                                  " is no octree; only sets of voxels are the same in both kernels");
+    sets.push_back(*octree);
+    return;
+  }
+  collect_leaves(*term.left, sets);
+  if (term.right) collect_leaves(*term.right, sets);
+}
+
+/// A motion of the refined lattice.
+glm::dmat4 refined_motion(const Term& term, const voxel::Universe& own, int refinement) {
+  const glm::dmat4 voxels = glm::inverse(own.lps_from_voxel) * term.moved_from_still * own.lps_from_voxel;
+  const glm::dvec3 by = glm::round(glm::dvec3(voxels[3]));
+  glm::dmat4 whole(1.0);
+  whole[3] = glm::dvec4(by, 1.0);
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 3; ++row)
+      if (std::abs(voxels[column][row] - whole[column][row]) > whole_within(own.side()))
+        throw std::invalid_argument("exact agreement: a motion is no translation by whole voxels");
+  whole[3] = glm::dvec4(by * static_cast<double>(refinement), 1.0);
+  return whole;
+}
+
+/// Evaluates an expression over operands in general position, in both kernels.
+class Evaluation {
+ public:
+  Evaluation(const voxel::Universe& own, const GeneralPosition& position, std::stop_token stop)
+      : own_(own), position_(position), stop_(std::move(stop)) {}
+
+  /// The expression with its leaves replaced.
+  Expression on_octrees(const Term& term) {
+    switch (term.kind) {
+      case Expression::Kind::Leaf:
+        return position_.operands[next_++].octree;
+      case Expression::Kind::Moved: {
+        const Expression still = on_octrees(*term.left);
+        return moved(still, refined_motion(term, own_, position_.refinement));
+      }
+      case Expression::Kind::Not:
+        return ~on_octrees(*term.left);
+      default:
+        break;
+    }
+    const Expression left = on_octrees(*term.left), right = on_octrees(*term.right);
+    switch (term.kind) {
+      case Expression::Kind::And:
+        return left & right;
+      case Expression::Kind::Or:
+        return left | right;
+      case Expression::Kind::Minus:
+        return left - right;
+      default:
+        return left ^ right;
+    }
+  }
+
+  /// Both sides of an expression as pieces whose insides do not meet.
+  struct Sides {
+    std::vector<Piece> in, out;
+    bool single() const { return in.size() == 1 && out.size() == 1; }
+  };
+  Sides on_meshes(const Term& term) {
+    switch (term.kind) {
+      case Expression::Kind::Leaf:
+        return both({position_.operands[next_++].solid, false});
+      case Expression::Kind::Moved: {
+        const glm::dmat4 motion = refined_motion(term, own_, position_.refinement);
+        Sides sides = on_meshes(*term.left);
+        for (std::vector<Piece>* side : {&sides.in, &sides.out})
+          for (Piece& piece : *side)
+            if (piece.mesh->n_faces() > 0)
+              piece.mesh = std::make_shared<const brep::Mesh>(brep::moved(*piece.mesh, motion));
+        return sides;
+      }
+      case Expression::Kind::Not:
+        return other(on_meshes(*term.left));
+      default:
+        break;
+    }
+    const Sides left = on_meshes(*term.left), right = on_meshes(*term.right);
+    switch (term.kind) {
+      case Expression::Kind::And:
+        return intersection(left, right);
+      case Expression::Kind::Or:
+        return other(intersection(other(left), other(right)));
+      case Expression::Kind::Minus:
+        return intersection(left, other(right));
+      default:
+        areas_add_up_ = areas_add_up_ && left.single() && right.single();
+        return {joined(pairs(left.in, right.out), pairs(left.out, right.in)),
+                joined(pairs(left.in, right.in), pairs(left.out, right.out))};
+    }
+  }
+
+  void start() { next_ = 0; }
+  bool areas_add_up() const { return areas_add_up_; }
+  std::vector<std::string> findings() { return std::move(findings_); }
+
+  /// What of a piece is in the universe.
+  brep::Mesh within_universe(const Piece& piece) {
+    const double side = position_.universe.side();
+    const Piece world{std::make_shared<const brep::Mesh>(
+                          brep::mesh_of(brep::Prism{{0, 1, 0},
+                                                    {0, 0, 1},
+                                                    {1, 0, 0},
+                                                    {{{0.0, 0.0}, {side, 0.0}, {side, side}, {0.0, side}}},
+                                                    0.0,
+                                                    side})),
+                      false};
+    if (!piece.complement) {
+      const brep::Measures measures = brep::measure(*piece.mesh);
+      if (glm::all(glm::greaterThan(measures.low_mm, glm::dvec3(0.0))) &&
+          glm::all(glm::lessThan(measures.high_mm, glm::dvec3(side))))
+        return *piece.mesh;
+    }
+    return *intersection(world, piece).mesh;
+  }
+
+ private:
+  static Sides both(const Piece& piece) { return {{piece}, {{piece.mesh, !piece.complement}}}; }
+  static Sides other(Sides sides) {
+    std::swap(sides.in, sides.out);
+    return sides;
+  }
+  static std::vector<Piece> joined(std::vector<Piece> a, const std::vector<Piece>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+  std::vector<Piece> pairs(const std::vector<Piece>& a, const std::vector<Piece>& b) {
+    std::vector<Piece> pieces;
+    for (const Piece& left : a)
+      for (const Piece& right : b) {
+        Piece piece = intersection(left, right);
+        if (piece.complement || piece.mesh->n_faces() > 0) pieces.push_back(std::move(piece));
+      }
+    return pieces;
+  }
+  Sides intersection(const Sides& left, const Sides& right) {
+    if (left.single() && right.single()) return both(intersection(left.in.front(), right.in.front()));
+    // The outside: what is out of the left, and what is in the left and out of the right, which share faces.
+    areas_add_up_ = false;
+    return {pairs(left.in, right.in), joined(left.out, pairs(left.in, right.out))};
+  }
+  Piece intersection(const Piece& a, const Piece& b) {
+    using brep::Operation;
+    if (a.complement && b.complement) return {boolean(a.mesh, Operation::Union, b.mesh), true};
+    if (a.complement) return {boolean(b.mesh, Operation::Difference, a.mesh), false};
+    if (b.complement) return {boolean(a.mesh, Operation::Difference, b.mesh), false};
+    return {boolean(a.mesh, Operation::Intersection, b.mesh), false};
+  }
+  std::shared_ptr<const brep::Mesh> boolean(const std::shared_ptr<const brep::Mesh>& a,
+                                            brep::Operation operation,
+                                            const std::shared_ptr<const brep::Mesh>& b) {
+    if (stop_.stop_requested()) throw voxel::Stopped("stopped: the expression is not evaluated");
+    brep::BooleanResult result = brep::boolean(*a, operation, *b);
+    findings_.insert(findings_.end(), result.findings.begin(), result.findings.end());
+    return std::make_shared<const brep::Mesh>(with_whole_numbers(std::move(result.mesh)));
+  }
+
+  const voxel::Universe& own_;
+  const GeneralPosition& position_;
+  std::stop_token stop_;
+  std::size_t next_ = 0;
+  bool areas_add_up_ = true;
+  std::vector<std::string> findings_;
+};
+
+/// Labels every leaf a, b, c, ... in order.
+std::string text_of(const Expression& expression) {
+  std::size_t leaves = 0;
+  voxel::Labels labels;
+  labels.object = [&](const Expression::Leaf&) {
+    const std::size_t i = leaves++;
+    std::string name(1, static_cast<char>('a' + i % 26));
+    if (i >= 26) name += std::to_string(i / 26);
+    return name;
+  };
+  labels.motion = [](const glm::dmat4&) { return std::string("whole_voxels"); };
+  return voxel::print_expression(expression, labels);
+}
+
+}  // namespace
+
+ExactAnswers exact_answers(const Expression& expression, const std::stop_token& stop) {
+  std::vector<voxel::Octree> sets;
+  collect_leaves(expression.term(), sets);
+  const voxel::Universe own = sets.front().universe();
+  const GeneralPosition position = general_position(sets);
+  Evaluation evaluation(own, position, stop);
+  ExactAnswers answers{voxel::combine(position.universe, evaluation.on_octrees(expression.term())),
+                       {},
+                       text_of(expression),
+                       own.lattice().voxel_mm3() / std::pow(position.refinement, 3),
+                       true,
+                       {}};
+  evaluation.start();
+  for (const Piece& piece : evaluation.on_meshes(expression.term()).in) {
+    brep::Mesh solid = evaluation.within_universe(piece);
+    if (solid.n_faces() > 0) answers.solids.push_back(std::move(solid));
+  }
+  answers.areas_add_up = evaluation.areas_add_up();
+  answers.findings = evaluation.findings();
+  return answers;
+}
+
+std::optional<std::int64_t> whole_volume(const std::vector<brep::Mesh>& solids) {
+  using Whole = glm::vec<3, std::int64_t>;
+  std::int64_t six = 0;
+  // Summed in 64 bits of mantissa: a sum of n terms below r^3 is off by less than n^2 r^3 2^-64 / 2, and
+  // rounded points move n triangles of areas below r^2 by r 2^-53.
+  long double rest = 0.0;
+  for (const brep::Mesh& solid : solids)
+    for (const auto face : solid.faces()) {
+      glm::vec<3, long double> p[3];
+      bool whole = true;
+      int corner = 0;
+      for (const auto v : face.vertices()) {
+        const auto& point = solid.point(v);
+        p[corner++] = {point[0], point[1], point[2]};
+        for (unsigned axis = 0; axis < 3; ++axis) whole = whole && point[axis] == std::round(point[axis]);
+      }
+      if (whole) {
+        const Whole a(p[0]), b(p[1]), c(p[2]);
+        six += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+      } else {
+        rest += glm::dot(p[0], glm::cross(p[1], p[2]));
+      }
+    }
+  const long double total = static_cast<long double>(six) + rest;
+  const auto volume = static_cast<std::int64_t>(std::llround(total / 6.0L));
+  // A wrong answer differs by a whole voxel, six of these; nothing that is right leaves even a hundredth.
+  if (std::abs(total - 6.0L * static_cast<long double>(volume)) > 0.01L) return std::nullopt;
+  return volume;
+}
+
+Certificate certify_exact(const ExactAnswers& answers) {
+  const auto start = std::chrono::steady_clock::now();
+  Certificate certificate;
+  certificate.operation = answers.operation;
+  certificate.tier = Tier::Exact;
+  const auto fail = [&](const std::string& reason) {
+    certificate.agreement = Agreement::Fail;
+    certificate.reasons.push_back(reason);
+  };
+  const double unit_mm2 = std::pow(answers.unit_mm3, 2.0 / 3.0);
+  const auto voxels = static_cast<std::int64_t>(answers.octree.voxel_count());
+  const auto faces = static_cast<double>(voxel::cuberille_faces(answers.octree).face_count());
+  certificate.voxel = {"Boolean of octrees in one walk", static_cast<double>(voxels) * answers.unit_mm3,
+                       faces * unit_mm2, std::nullopt};
+  certificate.mesh = {"corefinement of cuberilles", 0.0, 0.0, std::nullopt};
+
+  double area = 0.0, float_volume = 0.0;
+  std::uint64_t filled = 0;
+  Expression either = voxel::Octree::empty(answers.octree.universe());
+  for (const brep::Mesh& solid : answers.solids) {
+    const brep::Health health = brep::health(solid, {.self_intersections = false});
+    if (!health.closed || !health.oriented) {
+      fail("a solid is not closed and oriented" +
+           (health.findings.empty() ? "" : ": " + health.findings.front()));
+      if (!health.closed) continue;
+    }
+    area += brep::measure(solid).area_mm2;
+    float_volume += brep::volume_mm3(solid);
+    const voxel::Octree part = convert::voxelise(answers.octree.universe(), solid);
+    filled += part.voxel_count();
+    either = either | Expression(part);
+  }
+  const voxel::Octree united = voxel::combine(answers.octree.universe(), either);
+  const std::optional<std::int64_t> volume = whole_volume(answers.solids);
+  certificate.mesh.volume_mm3 = (volume ? static_cast<double>(*volume) : float_volume) * answers.unit_mm3;
+  certificate.mesh.area_mm2 = area * unit_mm2;
+  certificate.difference_mm3 = certificate.voxel.volume_mm3 - certificate.mesh.volume_mm3;
+  certificate.symmetric_difference_mm3 =
+      static_cast<double>(
+          voxel::combine(answers.octree.universe(), Expression(answers.octree) ^ Expression(united))
+              .voxel_count()) *
+      answers.unit_mm3;
+
+  if (!volume) fail("the mesh's volume is no whole number of voxels");
+  if (volume && *volume != voxels)
+    fail("the mesh has the volume of " + std::to_string(*volume) + " voxels, the octree has " +
+         std::to_string(voxels));
+  if (certificate.symmetric_difference_mm3 > 0.0)
+    fail("voxelised, the mesh differs by " + std::to_string(certificate.symmetric_difference_mm3) + " mm3");
+  if (filled != united.voxel_count()) fail("solids overlap that should not");
+  // Areas are whole, too; they are summed as square roots, each good to a unit in the last place.
+  if (answers.areas_add_up && std::abs(area - faces) > 1e-9 * (faces + 1.0))
+    fail("the mesh's area is " + std::to_string(area) + " faces of voxels, the octree has " +
+         std::to_string(faces));
+  for (const std::string& finding : answers.findings)
+    if (finding.rfind("shifted", 0) == 0) fail("operands in general position were moved: " + finding);
+  certificate.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return certificate;
+}
+
+}  // namespace octotomy::verify

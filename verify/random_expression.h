@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "voxel/octree.h"
+
+// Random questions for two kernels: Boolean expressions, and sets of voxels to ask them of. The same seed
+// gives the same question on any machine: the standard fixes the generator, and no distribution of the
+// library's is used.
+namespace octotomy::verify {
+
+using Random = std::mt19937_64;
+
+/// A whole number in low..high, both included.
+int random_int(Random& random, int low, int high);
+/// A number in low..high, of 2^53 equally likely ones.
+double random_real(Random& random, double low, double high);
+
+/// A Boolean expression whose leaves are numbered.
+struct Tree {
+  char symbol = 0;  ///< & | - ^ with two parts, ~ with one, 0: a leaf
+  int leaf = 0;
+  std::vector<Tree> parts;
+
+  int depth() const;       ///< 0 for a leaf
+  int leaf_count() const;  ///< occurrences
+};
+
+struct RandomTreeOptions {
+  int depth = 6;   ///< operators from the root to the deepest leaf, at most
+  int leaves = 7;  ///< occurrences at most
+  int names = 7;   ///< a leaf is numbered 0..names-1; a number may occur several times
+  int xors = 2;    ///< at most
+};
+/// Precondition: one leaf and one name at least.
+Tree random_tree(Random& random, const RandomTreeOptions& options = {});
+
+/// As voxel::parse_expression() reads it, with no more parentheses than it takes.
+std::string text(const Tree& tree, const std::function<std::string(int leaf)>& name);
+
+/// All trees with one operator less: an operator replaced by one of its parts.
+std::vector<Tree> simpler(const Tree& tree);
+
+/// A set of voxels, and in words how it was made.
+struct RandomSet {
+  voxel::Octree octree;
+  std::string recipe;
+};
+/// White noise, blobs, balls, boxes, rings, rods and the bone of the head phantom: voxels of the universe
+/// below `side` along each axis. Noise, whose surface is its volume, only up to 16 a side. Never empty.
+RandomSet random_set(Random& random, const voxel::Universe& universe, int side);
+
+}  // namespace octotomy::verify
