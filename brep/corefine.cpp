@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/corefine.h"
 
+// CGAL checks its invariants in every build: where operands are all but degenerate, one without checks goes
+// on with what it broke, to wrong memory. A check that fails is an exception, told and remedied as others.
+#define CGAL_DEBUG
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>

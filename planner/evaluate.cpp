@@ -37,6 +37,8 @@ struct CutPlane {
 struct Making {
   explicit Making(voxel::Expression expression) : symbol(std::move(expression)) {}
 
+  /// Down to windows on samples, so that a motion moves those: an octree that moves by a part of a voxel
+  /// would go by a whole one or none.
   voxel::Expression symbol;
   /// The mesh kernel's answer as it is, wherever it reaches; the object's mesh is what of it is in the
   /// universe.
@@ -108,13 +110,13 @@ std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat
   return planes;
 }
 
-/// A region's prism, from before the nearest to behind the farthest corner of the box by a tenth of its size,
-/// so that no end of a prism meets the universe's edge.
+/// A region's prism, from before the nearest to behind the farthest corner of the box by more than its size,
+/// so that no end of a prism comes into the universe, nor does one of a moved prism.
 brep::Prism prism_of(const voxel::Region& region, const voxel::Box& box) {
   const double size_mm = glm::length(box.high_mm - box.low_mm);
   const double middle_mm = glm::dot(region.view.look, (box.low_mm + box.high_mm) * 0.5);
   return {region.view.look,          region.view.up,           region.view.right, region.polygons_mm,
-          middle_mm - 0.6 * size_mm, middle_mm + 0.6 * size_mm};
+          middle_mm - 1.6 * size_mm, middle_mm + 1.6 * size_mm};
 }
 
 brep::Prism prism_of(const voxel::Box& box) {
@@ -253,9 +255,7 @@ class Evaluator {
         step.scan + " from " + number(step.low) + (step.high ? " to " + number(*step.high) : "") + unit);
     {
       const Stopwatch watch(result_.timings, "octree");
-      voxel::Window window{scan.grey, step.low};
-      if (step.high) window.high = *step.high;
-      object.octree = voxel::combine(result_.universe, voxel::Expression(std::move(window)));
+      object.octree = voxel::combine(result_.universe, voxel::Expression(window_of(step)));
     }
     if (object.octree.is_empty()) {
       const voxel::Range range = voxel::range(scan.scene);
@@ -269,7 +269,7 @@ class Evaluator {
       object.threshold = step.low;
       object.scan = step.scan;
     }
-    Making making{voxel::Expression(object.octree)};
+    Making making{within_universe(voxel::Expression(window_of(step)))};
     making.spacing_mm = scan.scene.lattice.spacing_mm();
     making.voxel_lineage = "window on a grey octree of the scan";
     making.mesh_lineage = "isosurface of the scan's own samples";
@@ -310,14 +310,15 @@ class Evaluator {
 
   void evaluate_step(const std::string& id, const CombineStep& step) {
     Object object = fresh(id, "combine", step.expression);
-    voxel::Names operands;
+    voxel::Names operands, symbols;
     operands.object = [&](std::string_view name) {
       // A mask decides voxels by their centre just as its octree does, and needs no walk over a tree.
       const Object& operand = result_.object(std::string(name));
       return operand.kind == "mask" ? makings_.at(operand.id).symbol : voxel::Expression(operand.octree);
     };
+    symbols.object = [&](std::string_view name) { return makings_.at(std::string(name)).symbol; };
     object.octree = combined(voxel::parse_expression(step.expression, operands));
-    Making making{voxel::Expression(object.octree)};
+    Making making{within_universe(voxel::parse_expression(step.expression, symbols))};
     making.voxel_lineage = "Boolean of octrees";
     making.mesh_lineage = "corefinement of meshes";
     const auto names = voxel::names_in(step.expression);
@@ -349,7 +350,7 @@ class Evaluator {
     object.moved_from_still = motion * object.moved_from_still;
     making.planes = moved_planes(still.planes, motion);
     making.spacing_mm = still.spacing_mm;
-    making.voxel_lineage = "octree under a rigid motion, sampled at voxel centres";
+    making.voxel_lineage = "what the object is made of under a rigid motion, windows on interpolated samples";
     making.mesh_lineage = "vertices of a mesh under a rigid motion";
     mesh_work(object, making, {step.object}, [&] { return shared(brep::moved(*still.solid, motion)); });
     keep(std::move(object), std::move(making));
@@ -360,6 +361,17 @@ class Evaluator {
   }
 
   void evaluate_step(const std::string&, const ExportStep&) {}
+
+  voxel::Window window_of(const WindowStep& step) const {
+    voxel::Window window{loaded_.at(step.scan).grey, step.low};
+    if (step.high) window.high = *step.high;
+    return window;
+  }
+
+  /// What of a symbol is in the universe: an object ends there, also when it moves on.
+  voxel::Expression within_universe(const voxel::Expression& symbol) const {
+    return symbol & voxel::Expression(box_);
+  }
 
   /// A piece cut from one window shows that window's samples; a merger of several, or of pieces moved apart,
   /// does not lie where one scan says.
@@ -448,6 +460,8 @@ class Evaluator {
     object.voxel_measures = voxel::measure(object.octree);
     if (object.mesh) object.mesh_measures = brep::measure(*object.mesh);
     if (object.mesh && options_.certify && object.kind != "mask") certify(object, making);
+    // An expression ends with the universe, in both kernels alike, also when it moves on.
+    if (object.kind == "combine") making.solid = object.mesh;
     index_[object.id] = result_.objects.size();
     makings_.emplace(object.id, std::move(making));
     result_.objects.push_back(std::move(object));

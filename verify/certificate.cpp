@@ -375,6 +375,14 @@ void judge(Certificate& certificate, const voxel::Measures& voxels, const brep::
   };
   if (voxels.extents) shorten(voxels.extents->high_mm - voxels.extents->low_mm);
   if (mesh.area_mm2 > 0.0) shorten(mesh.high_mm - mesh.low_mm);
+  // Twice the volume over the area is a sheet's thickness. Of one thinner than a voxel, chance decides which
+  // voxels are inside, if any. Both kernels must say that it is thin.
+  const double larger_mm3 = std::max(std::abs(mesh.volume_mm3), voxels.volume_mm3);
+  if (mesh.area_mm2 > 0.0 && 2.0 * larger_mm3 < longest(spacing_mm) * mesh.area_mm2) {
+    certificate.agreement = Agreement::BelowResolution;
+    certificate.reasons.emplace_back("it is " + std::to_string(2.0 * larger_mm3 / mesh.area_mm2) +
+                                     " mm thick on average, less than a voxel");
+  }
   if (extent_voxels < resolved_voxels) {
     certificate.agreement = Agreement::BelowResolution;
     certificate.reasons.emplace_back("the smallest extent is " + std::to_string(extent_voxels) +

@@ -1,57 +1,59 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// A recursive descent over the expression's text that answers each rule with a solid or the complement of
-// one. One function a level of precedence, weakest first: union, exclusive or, intersection, minus, and last
-// complement and parentheses, as Python has them.
+// 1 A recursive descent over the expression's text: one function a level of precedence, weakest first: union,
+//   exclusive or, intersection, minus, and last complement and parentheses, as Python has them.
+// 2 An expression that names a solid twice would let its surface meet itself: (a ^ b) & a has all of what
+//   remains of it twice. It is written anew with each name once, where that can be done.
+// 3 Corefinements, from the leaves up, each answer a solid or the complement of one.
 #include "verify/expression_on_meshes.h"
 
+#include <algorithm>
 #include <cctype>
 #include <optional>
 #include <stdexcept>
 
 namespace octotomy::verify {
 
-class MeshExpressions::Parser {
- public:
-  using Names = std::function<SharedMesh(std::string_view)>;
-  Parser(MeshExpressions& owner, std::string_view text, const Names& names)
-      : owner_(owner), text_(text), names_(names) {}
+namespace {
 
-  Signed whole() {
-    Signed answer = either();
+class Parser {
+ public:
+  explicit Parser(std::string_view text) : text_(text) {}
+
+  Tree whole() {
+    Tree answer = either();
     skip_blanks();
     if (at_ < text_.size()) expected("an operator or the end");
     return answer;
   }
+  /// Leaf i is names()[i].
+  const std::vector<std::string>& names() const { return names_; }
 
  private:
-  Signed either() {
-    Signed left = one_of();
-    while (take('|')) left = any(left, one_of());
+  Tree either() {
+    Tree left = one_of();
+    while (take('|')) left = {'|', 0, {left, one_of()}};
     return left;
   }
-  Signed one_of() {
-    Signed left = both();
-    while (take('^')) {
-      const Signed right = both();
-      left = owner_.intersection(any(left, right), complement(owner_.intersection(left, right)));
-    }
+  Tree one_of() {
+    Tree left = both();
+    while (take('^')) left = {'^', 0, {left, both()}};
     return left;
   }
-  Signed both() {
-    Signed left = minus();
-    while (take('&')) left = owner_.intersection(left, minus());
+  Tree both() {
+    Tree left = minus();
+    while (take('&')) left = {'&', 0, {left, minus()}};
     return left;
   }
-  Signed minus() {
-    Signed left = single();
-    while (take('-')) left = owner_.intersection(left, complement(single()));
+  Tree minus() {
+    Tree left = single();
+    while (take('-')) left = {'-', 0, {left, single()}};
     return left;
   }
-  Signed single() {
-    if (take('~')) return complement(single());
+  Tree single() {
+    if (take('~')) return {'~', 0, {single()}};
     if (take('(')) {
-      Signed inner = either();
+      Tree inner = either();
       if (!take(')')) expected("')'");
       return inner;
     }
@@ -60,13 +62,13 @@ class MeshExpressions::Parser {
     while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_'))
       ++at_;
     if (at_ == first) expected("a name, '~' or '('");
-    return {names_(text_.substr(first, at_ - first)), false};
+    const std::string name(text_.substr(first, at_ - first));
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    const auto number = static_cast<int>(found - names_.begin());
+    if (found == names_.end()) names_.push_back(name);
+    return {0, number, {}};
   }
 
-  Signed any(const Signed& a, const Signed& b) {
-    return complement(owner_.intersection(complement(a), complement(b)));
-  }
-  static Signed complement(Signed a) { return {std::move(a.mesh), !a.complement}; }
   void skip_blanks() {
     while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
   }
@@ -81,17 +83,44 @@ class MeshExpressions::Parser {
                                 std::to_string(at_ + 1) + ": " + what + " expected");
   }
 
-  MeshExpressions& owner_;
   std::string_view text_;
-  const Names& names_;
+  std::vector<std::string> names_;
   std::size_t at_ = 0;
 };
+
+}  // namespace
 
 SharedMesh MeshExpressions::evaluate(std::string_view text,
                                      const std::function<SharedMesh(std::string_view)>& lookup) {
   findings_.clear();
-  const Signed answer = Parser(*this, text, lookup).whole();
+  Parser parser(text);
+  Tree tree = parser.whole();
+  std::vector<SharedMesh> leaves;
+  for (const std::string& name : parser.names()) leaves.push_back(lookup(name));
+  // As it stands where no name repeats: earlier answers are used again.
+  if (tree.leaf_count() > static_cast<int>(leaves.size()))
+    if (std::optional<Tree> once = mentioned_once(tree)) tree = std::move(*once);
+  const Signed answer = value(tree, leaves);
   return answer.complement ? boolean(world_, brep::Operation::Difference, answer.mesh) : answer.mesh;
+}
+
+MeshExpressions::Signed MeshExpressions::value(const Tree& tree, const std::vector<SharedMesh>& leaves) {
+  const auto complement = [](Signed a) { return Signed{std::move(a.mesh), !a.complement}; };
+  if (tree.parts.empty()) return {leaves[static_cast<std::size_t>(tree.leaf)], false};
+  const Signed a = value(tree.parts[0], leaves);
+  if (tree.symbol == '~') return complement(a);
+  const Signed b = value(tree.parts[1], leaves);
+  const auto any = [&] { return complement(intersection(complement(a), complement(b))); };
+  switch (tree.symbol) {
+    case '&':
+      return intersection(a, b);
+    case '|':
+      return any();
+    case '-':
+      return intersection(a, complement(b));
+    default:
+      return intersection(any(), complement(intersection(a, b)));
+  }
 }
 
 MeshExpressions::Signed MeshExpressions::intersection(const Signed& a, const Signed& b) {

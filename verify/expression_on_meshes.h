@@ -11,6 +11,7 @@
 
 #include "brep/boolean.h"
 #include "brep/mesh.h"
+#include "verify/formula.h"
 
 namespace octotomy::verify {
 
@@ -21,8 +22,10 @@ using SharedMesh = std::shared_ptr<const brep::Mesh>;
 /// a wrong precedence in one of them shows as disagreement.
 ///
 /// Complements are carried symbolically (a & ~b is a - b, ~a & ~b is ~(a | b)), so no mesh is ever turned
-/// inside out; one that is left at the end is taken within `world`. a ^ b is (a | b) - (a & b). Every operand
-/// pair is corefined once and answers its union, intersection and difference from then on.
+/// inside out; one that is left at the end is taken within `world`. An expression that names a solid several
+/// times is written with each name once where that can be done, so that no surface meets itself. a ^ b is (a
+/// | b) - (a & b). Every operand pair is corefined once and answers its union, intersection and difference
+/// from then on.
 class MeshExpressions {
  public:
   /// `world` is the solid that the complement of everything is taken in: the universe's box.
@@ -40,7 +43,7 @@ class MeshExpressions {
     SharedMesh mesh;
     bool complement = false;
   };
-  class Parser;
+  Signed value(const Tree& tree, const std::vector<SharedMesh>& leaves);
   SharedMesh boolean(const SharedMesh& a, brep::Operation operation, const SharedMesh& b);
   /// Adds what one corefinement answers to what is known of the pair; the operation asked for is among it.
   void corefine(const SharedMesh& a, brep::Operation operation, const SharedMesh& b,

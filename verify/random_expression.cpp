@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 
 #include "verify/form.h"
 #include "verify/phantom.h"
@@ -17,13 +16,6 @@ namespace {
 
 /// Noise of a larger set would be nothing but surface.
 constexpr int largest_noise_side = 16;
-
-constexpr std::string_view weakest_first = "|^&-";
-
-int strength(const Tree& tree) {
-  if (tree.parts.size() != 2) return static_cast<int>(weakest_first.size());
-  return static_cast<int>(weakest_first.find(tree.symbol));
-}
 
 /// A tree of exactly so many leaves, no deeper than that. Precondition: leaves <= 2^depth.
 Tree tree_of(Random& random, int leaves, int depth, int names, int& xors) {
@@ -98,9 +90,9 @@ voxel::Octree solid(Random& random, const voxel::Universe& universe, int side, i
                            random_real(random, 0.2, 0.8) * side});
   };
   const auto length = [&] { return random_real(random, 0.1, 0.45) * side * edge_mm; };
-  const glm::dvec3 turn(random_real(random, 0, 90), random_real(random, 0, 90), random_real(random, 0, 90));
+  const glm::dvec3 turn{random_real(random, 0, 90), random_real(random, 0, 90), random_real(random, 0, 90)};
   const glm::dmat3 axes = random_int(random, 0, 1) == 0 ? glm::dmat3(1.0) : turned(turn);
-  const glm::dvec3 centre = place(), size(length(), length(), length());
+  const glm::dvec3 centre = place(), size{length(), length(), length()};
   switch (kind) {
     case 0:
       return voxel::digitise(universe, voxel::Ellipsoid{centre, size, axes}, voxel::Digitisation::Centre);
@@ -130,8 +122,9 @@ voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
     return inside;
   }();
   const int room = head_side - side;
-  const glm::ivec3 from(random_int(random, 0, room), random_int(random, 0, room),
-                        random_int(random, 0, room));
+  // Braces: in order, whatever the compiler.
+  const glm::ivec3 from{random_int(random, 0, room), random_int(random, 0, room),
+                        random_int(random, 0, room)};
   return where(universe, side, [&](const glm::ivec3& v) { return bone[index_in(v + from, head_side)]; });
 }
 
@@ -145,44 +138,10 @@ double random_real(Random& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-int Tree::depth() const {
-  int deepest = 0;
-  for (const Tree& part : parts) deepest = std::max(deepest, 1 + part.depth());
-  return deepest;
-}
-
-int Tree::leaf_count() const {
-  int count = parts.empty() ? 1 : 0;
-  for (const Tree& part : parts) count += part.leaf_count();
-  return count;
-}
-
 Tree random_tree(Random& random, const RandomTreeOptions& options) {
   int xors = options.xors;
   const int most = std::min(options.leaves, 1 << std::min(options.depth, 20));
   return tree_of(random, random_int(random, std::min(2, most), most), options.depth, options.names, xors);
-}
-
-std::string text(const Tree& tree, const std::function<std::string(int leaf)>& name) {
-  if (tree.parts.empty()) return name(tree.leaf);
-  const auto part = [&](const Tree& inner, int at_least) {
-    const std::string inside = text(inner, name);
-    return strength(inner) < at_least ? "(" + inside + ")" : inside;
-  };
-  const int own = strength(tree);
-  if (tree.symbol == '~') return "~" + part(tree.parts[0], own);
-  return part(tree.parts[0], own) + " " + tree.symbol + " " + part(tree.parts[1], own + 1);
-}
-
-std::vector<Tree> simpler(const Tree& tree) {
-  std::vector<Tree> all = tree.parts;
-  for (std::size_t i = 0; i < tree.parts.size(); ++i)
-    for (Tree& part : simpler(tree.parts[i])) {
-      Tree with = tree;
-      with.parts[i] = std::move(part);
-      all.push_back(std::move(with));
-    }
-  return all;
 }
 
 RandomSet random_set(Random& random, const voxel::Universe& universe, int side) {

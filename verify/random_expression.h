@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <random>
 #include <string>
-#include <vector>
 
+#include "verify/formula.h"
 #include "voxel/octree.h"
 
 // Random questions for two kernels: Boolean expressions, and sets of voxels to ask them of. The same seed
@@ -21,16 +20,6 @@ int random_int(Random& random, int low, int high);
 /// A number in low..high, of 2^53 equally likely ones.
 double random_real(Random& random, double low, double high);
 
-/// A Boolean expression whose leaves are numbered.
-struct Tree {
-  char symbol = 0;  ///< & | - ^ with two parts, ~ with one, 0: a leaf
-  int leaf = 0;
-  std::vector<Tree> parts;
-
-  int depth() const;       ///< 0 for a leaf
-  int leaf_count() const;  ///< occurrences
-};
-
 struct RandomTreeOptions {
   int depth = 6;   ///< operators from the root to the deepest leaf, at most
   int leaves = 7;  ///< occurrences at most
@@ -39,12 +28,6 @@ struct RandomTreeOptions {
 };
 /// Precondition: one leaf and one name at least.
 Tree random_tree(Random& random, const RandomTreeOptions& options = {});
-
-/// As voxel::parse_expression() reads it, with no more parentheses than it takes.
-std::string text(const Tree& tree, const std::function<std::string(int leaf)>& name);
-
-/// All trees with one operator less: an operator replaced by one of its parts.
-std::vector<Tree> simpler(const Tree& tree);
 
 /// A set of voxels, and in words how it was made.
 struct RandomSet {

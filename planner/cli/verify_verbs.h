@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,9 @@ namespace octotomy::planner::cli {
 /// What the command line says to `verify`. A suite adds the fields of its own options.
 struct VerifyText : PlanIn {
   std::vector<std::string> subject;  ///< a plan; no suite was named
+  int random_count = 0;
+  std::uint64_t seed = 1;
+  std::filesystem::path failures = "disagreements";
 };
 
 /// What a suite found. The answer's JSON has its certificates, the counts and whatever keys `more` holds.

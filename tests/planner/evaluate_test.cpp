@@ -215,5 +215,26 @@ TEST(UniverseOf, HasAVoxelOnEverySampleOfACubicScanWhateverItsCounts) {
   }
 }
 
+TEST_F(Evaluate, APartOfAVoxelIsMovedByThatPart) {
+  add({{"id", "moved"}, {"do", "move"}, {"object", "ball"}, {"translate_mm", {2.45, -0.4, 1.3}}});
+  const Evaluation evaluation = evaluated();
+  const glm::dvec3 by = *evaluation.object("moved").voxel_measures.centroid_mm -
+                        *evaluation.object("ball").voxel_measures.centroid_mm;
+  // Each of some 5000 boundary voxels errs by itself; a ball moved by whole voxels would be 0.45 mm off.
+  EXPECT_NEAR(by.x, 2.45, 0.02);
+  EXPECT_NEAR(by.y, -0.4, 0.02);
+  EXPECT_NEAR(by.z, 1.3, 0.02);
+  EXPECT_EQ(evaluation.object("moved").certificate->agreement, verify::Agreement::Pass);
+}
+
+TEST_F(Evaluate, AnExpressionOfMasksEndsWithTheUniverseInBothKernelsAlsoWhenItIsMoved) {
+  add({{"id", "slab"}, {"do", "combine"}, {"expression", "top"}});
+  add({{"id", "moved"}, {"do", "move"}, {"object", "slab"}, {"translate_mm", {9.3, 0, 0}}});
+  add({{"id", "moved_mask"}, {"do", "move"}, {"object", "top"}, {"translate_mm", {0, 60.3, 0}}});
+  const Evaluation evaluation = evaluated();
+  for (const char* id : {"slab", "moved", "moved_mask"})
+    EXPECT_EQ(evaluation.object(id).certificate->agreement, verify::Agreement::Pass) << id;
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -77,6 +77,18 @@ TEST_F(MeshExpression, EqualAndEmptyOperandsNeedNoGeometry) {
   EXPECT_NEAR(volume_mm3("b - (a & far)"), 16.0, rounding_mm3);
 }
 
+TEST_F(MeshExpression, ASolidNamedTwiceLeavesNoSheetOfItself) {
+  const auto area = [this](const std::string& text) {
+    return brep::measure(*meshes_.evaluate(text, [this](std::string_view name) { return solid(name); }))
+        .area_mm2;
+  };
+  // b reaches through one face of a: a - b has a's faces but for a hole of 2 x 2, and a pit of depth 2.
+  EXPECT_NEAR(area("a - b"), 96.0 - 4.0 + 4.0 + 4.0 * 4.0, rounding_mm3);
+  EXPECT_NEAR(area("a & (a ^ b)"), area("a - b"), rounding_mm3);
+  EXPECT_NEAR(area("(a | b) - b"), area("a - b"), rounding_mm3);
+  EXPECT_EQ(area("(a ^ b) & (a & b)"), 0.0);
+}
+
 TEST_F(MeshExpression, APairIsCorefinedOnceForAllItsResults) {
   const auto names = [this](std::string_view name) { return solid(name); };
   const SharedMesh first = meshes_.evaluate("a - b", names);

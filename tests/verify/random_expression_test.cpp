@@ -2,7 +2,6 @@
 #include "verify/random_expression.h"
 
 #include <algorithm>
-#include <functional>
 #include <gtest/gtest.h>
 
 #include "voxel/expression.h"
@@ -85,23 +84,6 @@ TEST(RandomTree, IsTheSameOfTheSameSeed) {
   Random one(7), two(7), other(8);
   EXPECT_EQ(text(random_tree(one), name_of), text(random_tree(two), name_of));
   EXPECT_NE(one(), other());
-}
-
-TEST(SimplerTrees, HaveFewerLeavesOrOperatorsAndEndInLeaves) {
-  Random random(3);
-  Tree tree = random_tree(random);
-  const std::function<int(const Tree&)> size = [&](const Tree& t) {
-    int sum = 1;
-    for (const Tree& part : t.parts) sum += size(part);
-    return sum;
-  };
-  while (!tree.parts.empty()) {
-    const std::vector<Tree> all = simpler(tree);
-    ASSERT_FALSE(all.empty());
-    for (const Tree& one : all) EXPECT_LT(size(one), size(tree));
-    tree = all.back();
-  }
-  EXPECT_TRUE(simpler(tree).empty());
 }
 
 TEST(RandomSet, IsOfManyKindsWithinItsSideAndNeverEmpty) {

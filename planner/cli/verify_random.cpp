@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/verify_suites.h"
+#include "planner/figures.h"
+#include "planner/random_suite.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+Json to_json(const RandomTier& tier) {
+  return {{"asked", tier.asked},
+          {"verdicts", planner::to_json(tier.verdicts)},
+          {"of_substance", tier.of_substance},
+          {"no_mesh_answer", tier.no_answer},
+          {"refused", tier.refused}};
+}
+
+void append(SuiteAnswer& answer, const RandomTier& tier) {
+  for (const verify::Certificate& certificate : tier.results)
+    answer.certificates.push_back(planner::to_json(certificate));
+  answer.counts.pass += tier.verdicts.pass;
+  answer.counts.warn += tier.verdicts.warn;
+  answer.counts.fail += tier.verdicts.fail;
+  answer.counts.below_resolution += tier.verdicts.below_resolution;
+}
+
+std::string told(const std::string& unit, const RandomTier& tier) {
+  const VerdictCounts& counts = tier.verdicts;
+  return std::to_string(tier.asked) + " asked; " + unit + ": " + std::to_string(counts.pass) + " PASS, " +
+         std::to_string(counts.warn) + " WARN, " + std::to_string(counts.fail) + " FAIL, " +
+         std::to_string(counts.below_resolution) + " BELOW_RESOLUTION; " + std::to_string(tier.no_answer) +
+         " without a mesh";
+}
+
+SuiteAnswer run(Program& program, const VerifyText& text) {
+  RandomSuiteOptions options;
+  options.count = text.random_count;
+  options.seed = text.seed;
+  options.failures = text.failures;
+  options.stop = program.stop.get_token();
+  options.progress = program.progress();
+  SuiteAnswer answer;
+  RandomSuite suite;
+  {
+    const Stopwatch watch(answer.timings, "random");
+    suite = ask_random(options);
+  }
+  append(answer, suite.exact);
+  append(answer, suite.bounded);
+  answer.held = suite.disagreements.empty() && suite.substance() >= least_substance;
+  Json disagreements = Json::array();
+  std::vector<std::pair<std::string, std::string>> rows{
+      {"exact tier", told("questions", suite.exact)},
+      {"bounded tier", told("objects", suite.bounded)},
+      {"of substance", grouped(100.0 * suite.substance(), 1) +
+                           " % of results (neither empty nor an operand), " +
+                           grouped(100.0 * least_substance, 0) + " % are needed"}};
+  for (const Disagreement& found : suite.disagreements) {
+    disagreements.push_back({{"seed", found.seed},
+                             {"tier", found.tier},
+                             {"question", found.question},
+                             {"reasons", found.reasons},
+                             {"plan", found.plan.string()},
+                             {"replay", "octotomy verify --random 1 --seed " + std::to_string(found.seed)}});
+    rows.emplace_back("disagreement", found.tier + ", seed " + std::to_string(found.seed) + ": " +
+                                          found.question + " (" + found.plan.string() + ")");
+  }
+  answer.more = {{"seed", suite.exact.asked > 0 ? Json(options.seed) : Json(nullptr)},
+                 {"exact", to_json(suite.exact)},
+                 {"bounded", to_json(suite.bounded)},
+                 {"substance", suite.substance()},
+                 {"substance_needed", least_substance},
+                 {"disagreements", disagreements}};
+  answer.text = lines(rows);
+  return answer;
+}
+
+CLI::Option* add(CLI::App& verb, VerifyText& text) {
+  CLI::Option* named =
+      verb.add_option("--random", text.random_count,
+                      "A suite: so many random questions to both kernels, in the exact and the bounded tier")
+          ->check(CLI::Range(1, 1000000))
+          ->type_name("N");
+  verb.add_option("--seed", text.seed, "Of the first random question; question i has this seed + i")
+      ->needs(named)
+      ->capture_default_str();
+  verb.add_option("--failures", text.failures,
+                  "Folder for the plans of random questions that the kernels disagree on")
+      ->needs(named)
+      ->capture_default_str();
+  return named;
+}
+
+}  // namespace
+
+const Suite random_suite{add, run};
+
+}  // namespace octotomy::planner::cli
