@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "verify/form.h"
 #include "verify/phantom.h"
@@ -109,7 +110,7 @@ voxel::Octree solid(Random& random, const voxel::Universe& universe, int side, i
 
 /// The head at voxels of six millimetres, by closed form; a part of it where the set has fewer voxels.
 voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
-  constexpr int head_side = 48;
+  constexpr int head_side = largest_random_side;
   static const std::vector<bool> bone = [] {
     std::vector<bool> inside(head_side * head_side * head_side);
     const voxel::Box box = head_bounds();
@@ -145,6 +146,10 @@ Tree random_tree(Random& random, const RandomTreeOptions& options) {
 }
 
 RandomSet random_set(Random& random, const voxel::Universe& universe, int side) {
+  if (side < 1 || side > std::min(universe.side(), largest_random_side))
+    throw std::invalid_argument("random set: a side of " + std::to_string(side) +
+                                " voxels is not within 1.." +
+                                std::to_string(std::min(universe.side(), largest_random_side)));
   static constexpr std::array<const char*, 4> solids{"ellipsoid", "box", "ring", "rod"};
   while (true) {
     const int kind = random_int(random, 0, 9);

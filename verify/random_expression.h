@@ -34,8 +34,10 @@ struct RandomSet {
   voxel::Octree octree;
   std::string recipe;
 };
-/// White noise, blobs, balls, boxes, rings, rods and the bone of the head phantom: voxels of the universe
-/// below `side` along each axis. Noise, whose surface is its volume, only up to 16 a side. Never empty.
+inline constexpr int largest_random_side = 48;
+/// White noise, blobs, ellipsoids, boxes, rings, rods and the bone of the head phantom: voxels of the
+/// universe below `side` along each axis. Noise, whose surface is its volume, only up to 16 a side. Never
+/// empty. Throws std::invalid_argument where the side is beyond the universe's or largest_random_side.
 RandomSet random_set(Random& random, const voxel::Universe& universe, int side);
 
 }  // namespace octotomy::verify

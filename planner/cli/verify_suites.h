@@ -6,6 +6,8 @@
 // The suites that `verify` has besides plans, a source file each.
 namespace octotomy::planner::cli {
 
+/// --faults
+extern const Suite fault_suite;
 /// --random N --seed S --failures FOLDER
 extern const Suite random_suite;
 

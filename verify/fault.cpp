@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 A subject is a scan; the question is (window - box) under a rigid motion. Making holds all that either
+//   kernel is told about it, so that a fault of understanding is a kernel that was told something else.
+// 2 Both kernels answer the clean question. Faults of understanding are answered anew by one of them; faults
+//   of execution are done to the clean mesh or octree.
+// 3 Each pair is certified as any other.
+#include "verify/fault.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+
+#include "brep/boolean.h"
+#include "brep/move.h"
+#include "brep/prism.h"
+#include "brep/triangles.h"
+#include "convert/isosurface.h"
+#include "verify/certify_surface.h"
+#include "verify/exact_agreement.h"
+#include "verify/form.h"
+#include "verify/phantom.h"
+#include "verify/random_expression.h"
+#include "voxel/combine.h"
+#include "voxel/digitise.h"
+#include "voxel/progress.h"
+
+namespace octotomy::verify {
+namespace {
+
+using voxel::Expression;
+
+/// What a kernel is told of the question.
+struct Making {
+  double low = 0.0;           ///< of the window
+  double slices_apart = 1.0;  ///< times the true distance
+  bool swapped = false;       ///< box less window
+  glm::dvec3 box_shift_mm{0.0};
+  bool pivot_forgotten = false;  ///< turned about the origin
+  bool not_moved = false;        ///< as it was before the motion
+};
+
+struct Subject {
+  std::string name;
+  voxel::Scene scan;
+  voxel::Universe universe;
+  voxel::Box box;
+  voxel::Motion motion;
+  double low = 0.0;       ///< half way between outside and inside
+  double contrast = 1.0;  ///< inside less outside
+};
+
+double edge_mm(const Subject& subject) {
+  return subject.universe.lattice().spacing_mm().x;
+}
+
+voxel::Scene scan_of(const Subject& subject, const Making& making) {
+  voxel::Scene scan = subject.scan;
+  scan.lattice.lps_from_voxel[2] *= making.slices_apart;
+  return scan;
+}
+
+glm::dmat4 motion_of(const Subject& subject, const Making& making) {
+  if (making.not_moved) return glm::dmat4(1.0);
+  voxel::Motion motion = subject.motion;
+  if (making.pivot_forgotten) motion.about_mm = glm::dvec3(0.0);
+  return voxel::moved_from_still(motion);
+}
+
+voxel::Octree voxel_answer(const Subject& subject, const Making& making) {
+  const voxel::GreyOctree grey = voxel::grey_octree_of(subject.universe, scan_of(subject, making));
+  const Expression window = voxel::Window{grey, making.low};
+  const Expression box =
+      voxel::Box{subject.box.low_mm + making.box_shift_mm, subject.box.high_mm + making.box_shift_mm};
+  const Expression still = making.swapped ? box - window : window - box;
+  return voxel::combine(subject.universe, voxel::moved(still, motion_of(subject, making)));
+}
+
+brep::Triangles mesh_answer(const Subject& subject, const Making& making) {
+  const brep::Mesh window = brep::mesh_of(
+      convert::isosurface(scan_of(subject, making), making.low, std::numeric_limits<double>::infinity()));
+  const glm::dvec3 a = subject.box.low_mm + making.box_shift_mm,
+                   b = subject.box.high_mm + making.box_shift_mm;
+  const brep::Mesh box = brep::mesh_of(brep::Prism{
+      {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y});
+  const brep::Mesh still = making.swapped ? brep::boolean(box, brep::Operation::Difference, window).mesh
+                                          : brep::boolean(window, brep::Operation::Difference, box).mesh;
+  return brep::triangles_of(brep::moved(still, motion_of(subject, making)));
+}
+
+brep::Triangles with_flipped_triangle(brep::Triangles triangles) {
+  auto& face = triangles.faces[triangles.faces.size() / 2];
+  std::swap(face[0], face[1]);
+  return triangles;
+}
+brep::Triangles turned_inside_out(brep::Triangles triangles) {
+  for (auto& face : triangles.faces) std::swap(face[0], face[1]);
+  return triangles;
+}
+brep::Triangles with_lost_triangle(brep::Triangles triangles) {
+  triangles.faces.erase(triangles.faces.begin() + static_cast<std::ptrdiff_t>(triangles.faces.size() / 2));
+  return triangles;
+}
+brep::Triangles with_shell_twice(brep::Triangles triangles) {
+  const auto points = static_cast<std::uint32_t>(triangles.points_mm.size());
+  const std::size_t faces = triangles.faces.size();
+  triangles.points_mm.insert(triangles.points_mm.end(), triangles.points_mm.begin(),
+                             triangles.points_mm.begin() + points);
+  for (std::size_t i = 0; i < faces; ++i) {
+    std::array<std::uint32_t, 3> face = triangles.faces[i];
+    for (std::uint32_t& corner : face) corner += points;
+    triangles.faces.push_back(face);
+  }
+  return triangles;
+}
+brep::Triangles shifted(brep::Triangles triangles, const glm::dvec3& by_mm) {
+  for (glm::dvec3& p : triangles.points_mm) p += by_mm;
+  return triangles;
+}
+/// Mirrored in x about the universe's middle, still turned outward: as a reader with the wrong axis would.
+brep::Triangles mirrored(brep::Triangles triangles, const voxel::Universe& universe) {
+  const double middle_mm = universe.lattice().lps_mm(glm::dvec3(0.5 * (universe.side() - 1))).x;
+  for (glm::dvec3& p : triangles.points_mm) p.x = 2.0 * middle_mm - p.x;
+  return turned_inside_out(std::move(triangles));
+}
+
+/// The octree as if its lattice were another.
+voxel::Octree on_lattice(const voxel::Octree& octree, const glm::dmat4& index_from_true_index) {
+  voxel::Universe other = octree.universe();
+  other.lps_from_voxel = other.lps_from_voxel * index_from_true_index;
+  return voxel::combine(octree.universe(), voxel::Octree(other, voxel::Block::share(octree.root())));
+}
+voxel::Octree mirrored(const voxel::Octree& octree) {
+  glm::dmat4 mirror(1.0);
+  mirror[0].x = -1.0;
+  mirror[3].x = octree.universe().side() - 1.0;
+  return on_lattice(octree, mirror);
+}
+
+/// Names of the library, where trials are made.
+constexpr const char* flipped_normal = "flipped normal";
+constexpr const char* flipped_shell = "flipped shell";
+constexpr const char* lost_triangle = "lost triangle";
+constexpr const char* duplicated_shell = "duplicated shell";
+constexpr const char* half_voxel = "shift by 1/2 voxel";
+constexpr const char* quarter_voxel = "shift by 1/4 voxel";
+constexpr const char* eighth_voxel = "shift by 1/8 voxel";
+constexpr const char* mirrored_axis = "mirrored axis";
+constexpr const char* swapped_operands = "swapped operands";
+constexpr const char* slice_spacing = "off-by-one slice spacing";
+constexpr const char* window_quarter = "window edge off by 1/4";
+constexpr const char* window_eighth = "window edge off by 1/8";
+constexpr const char* window_sixteenth = "window edge off by 1/16";
+constexpr const char* stale_result = "stale result";
+constexpr const char* stale_box = "stale box, two voxels off";
+constexpr const char* wrong_pivot = "rotation about the wrong point";
+
+/// One clean question's pair, and how to spoil it.
+class Trials {
+ public:
+  Trials(const Subject& subject, int voxels) : subject_(subject), voxels_(voxels) {
+    clean_.low = subject.low;
+  }
+
+  std::vector<FaultTrial> run() {
+    octree_ = voxel_answer(subject_, clean_);
+    triangles_ = mesh_answer(subject_, clean_);
+    certify("", "", *octree_, triangles_);
+    spoil_execution();
+    for (const auto& [name, making] : misunderstandings()) {
+      certify(name, "voxel", voxel_answer(subject_, making), triangles_);
+      certify(name, "mesh", *octree_, mesh_answer(subject_, making));
+    }
+    return std::move(trials_);
+  }
+
+ private:
+  void spoil_execution() {
+    const double h = edge_mm(subject_);
+    certify(flipped_normal, "mesh", *octree_, with_flipped_triangle(triangles_));
+    certify(flipped_shell, "mesh", *octree_, turned_inside_out(triangles_));
+    certify(lost_triangle, "mesh", *octree_, with_lost_triangle(triangles_));
+    certify(duplicated_shell, "mesh", *octree_, with_shell_twice(triangles_));
+    certify(half_voxel, "mesh", *octree_, shifted(triangles_, {0.5 * h, 0.0, 0.0}));
+    certify(quarter_voxel, "mesh", *octree_, shifted(triangles_, {0.0, 0.25 * h, 0.0}));
+    certify(eighth_voxel, "mesh", *octree_, shifted(triangles_, {0.0, 0.0, 0.125 * h}));
+    certify(mirrored_axis, "mesh", *octree_, mirrored(triangles_, subject_.universe));
+    certify(mirrored_axis, "voxel", mirrored(*octree_), triangles_);
+  }
+
+  std::vector<std::pair<std::string, Making>> misunderstandings() const {
+    std::vector<std::pair<std::string, Making>> all;
+    const auto with = [&](const std::string& name, const std::function<void(Making&)>& change) {
+      Making making = clean_;
+      change(making);
+      all.emplace_back(name, making);
+    };
+    const double h = edge_mm(subject_);
+    const double slices = subject_.scan.lattice.dims.z;
+    with(swapped_operands, [](Making& m) { m.swapped = true; });
+    with(slice_spacing, [&](Making& m) { m.slices_apart = (slices - 1.0) / slices; });
+    with(window_quarter, [&](Making& m) { m.low += 0.25 * subject_.contrast; });
+    with(window_eighth, [&](Making& m) { m.low -= 0.125 * subject_.contrast; });
+    with(window_sixteenth, [&](Making& m) { m.low += 0.0625 * subject_.contrast; });
+    with(stale_result, [&](Making& m) { m.not_moved = true; });
+    with(stale_box, [&](Making& m) { m.box_shift_mm = 2.0 * h * glm::dvec3(-1.0, 1.0, -1.0); });
+    with(wrong_pivot, [](Making& m) { m.pivot_forgotten = true; });
+    return all;
+  }
+
+  void certify(const std::string& fault, const std::string& kernel, const voxel::Octree& octree,
+               const brep::Triangles& triangles) {
+    BoundInputs inputs;
+    inputs.operation = subject_.name + ", (window - box) turned" + (fault.empty() ? "" : ", " + fault);
+    inputs.voxel_lineage = "window on a grey octree of the scan, in one walk";
+    inputs.mesh_lineage = "isosurface of the scan's own samples, corefinement";
+    inputs.scan_spacing_mm = subject_.scan.lattice.spacing_mm();
+    trials_.push_back(
+        {fault, kernel, subject_.name, voxels_, false, certify_surface(octree, triangles, inputs)});
+  }
+
+  const Subject& subject_;
+  int voxels_;
+  Making clean_;
+  std::optional<voxel::Octree> octree_;
+  brep::Triangles triangles_;
+  std::vector<FaultTrial> trials_;
+};
+
+/// A scan of a shape: each sample the share of its voxel that is inside, from -1000 to 1000.
+voxel::Scene scan_of(const voxel::Universe& universe, const voxel::Shape& shape) {
+  const voxel::PartialOctree partial = voxel::digitise_partial(universe, shape);
+  const int side = universe.side();
+  const auto at = [&](const glm::ivec3& v) {
+    return static_cast<std::size_t>(v.x) +
+           static_cast<std::size_t>(side) * (static_cast<std::size_t>(v.y) +
+                                             static_cast<std::size_t>(side) * static_cast<std::size_t>(v.z));
+  };
+  voxel::Int16Samples samples(static_cast<std::size_t>(side) * side * side, -1000);
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x)
+        if (partial.inside.contains({x, y, z})) samples[at({x, y, z})] = 1000;
+  voxel::for_each_boundary_voxel(partial, [&](const glm::ivec3& v, std::uint16_t fraction) {
+    samples[at(v)] =
+        static_cast<std::int16_t>(std::lround(2000.0 * fraction / voxel::PartialOctree::whole - 1000.0));
+  });
+  voxel::Scene scan;
+  scan.lattice = universe.lattice();
+  scan.samples = std::move(samples);
+  scan.source = "phantom";
+  return scan;
+}
+
+/// Subjects have no symmetry that would hide a mirrored axis or swapped operands: off the middle, askew, cut.
+Subject shape_subject(const std::string& name, int voxels) {
+  Subject subject;
+  subject.name = name;
+  const double n = voxels;
+  while ((1 << subject.universe.depth) > voxels) --subject.universe.depth;
+  const glm::dvec3 centre = n * glm::dvec3(0.46, 0.52, 0.49);
+  const glm::dmat3 turn = turned({20, -35, 50});
+  subject.scan = name == "ring" ? scan_of(subject.universe, voxel::Torus{centre, turn[2], 0.24 * n, 0.12 * n})
+                                : scan_of(subject.universe,
+                                          voxel::Ellipsoid{centre, n * glm::dvec3(0.33, 0.26, 0.21), turn});
+  subject.box = {centre + n * glm::dvec3(0.051, -0.383, -0.029),
+                 centre + n * glm::dvec3(0.437, 0.043, 0.377)};
+  subject.motion = {
+      n * glm::dvec3(0.021, -0.013, 0.017), 9.0, {0.3, 0.5, 0.8}, n * glm::dvec3(0.31, 0.62, 0.71)};
+  subject.contrast = 2000.0;
+  return subject;
+}
+
+Subject head_subject(int voxels) {
+  Subject subject;
+  subject.name = "head";
+  HeadOptions options;
+  const voxel::Box bounds = head_bounds();
+  const glm::dvec3 extent_mm = bounds.high_mm - bounds.low_mm;
+  options.voxel_mm = 1.02 * std::max({extent_mm.x, extent_mm.y, extent_mm.z}) / voxels;
+  subject.scan = head_phantom(options);
+  subject.universe = voxel::universe_around(voxel::bounds(subject.scan.lattice), options.voxel_mm);
+  subject.box = {{-42.3, -95.1, -57.2}, {11.4, -31.7, -21.9}};
+  subject.motion = {{2.3, -5.1, 1.7}, 7.0, {1.0, 0.2, 0.1}, {3.0, -60.0, -30.0}};
+  subject.low = 0.5 * (options.tissues.soft + options.tissues.bone);
+  subject.contrast = options.tissues.bone - options.tissues.soft;
+  return subject;
+}
+
+/// Faults that make sense in the exact tier, whose answers are whole: a shift is by one refined voxel.
+std::vector<FaultTrial> exact_trials(int voxels) {
+  voxel::Universe universe;
+  while ((1 << universe.depth) > voxels) --universe.depth;
+  Random random(static_cast<std::uint64_t>(voxels));
+  // Not noise, whose surface is its volume. Each must have a part of its own and one in common.
+  const auto drawn = [&] {
+    RandomSet set = random_set(random, universe, std::min(voxels, largest_random_side));
+    while (set.recipe.starts_with("noise") || set.recipe.starts_with("head"))
+      set = random_set(random, universe, std::min(voxels, largest_random_side));
+    return Expression(set.octree);
+  };
+  Expression a = drawn(), b = drawn();
+  const auto is_empty = [&](const Expression& e) { return voxel::combine(universe, e).is_empty(); };
+  while (is_empty(a - b) || is_empty(b - a) || is_empty(a & b)) {
+    a = b;
+    b = drawn();
+  }
+  const ExactAnswers clean = exact_answers(a - b), other = exact_answers(b - a);
+  std::vector<FaultTrial> trials;
+  const auto certify = [&](const std::string& fault, const std::string& kernel, const ExactAnswers& answers) {
+    trials.push_back({fault, kernel, "voxel sets", voxels, false, certify_exact(answers)});
+    trials.back().certificate.operation = "a - b" + (fault.empty() ? "" : ", " + fault);
+  };
+  certify("", "", clean);
+  const auto spoil_mesh = [&](const char* fault,
+                              const std::function<brep::Triangles(brep::Triangles)>& spoil) {
+    ExactAnswers spoiled = clean;
+    try {
+      spoiled.solids[0] = brep::mesh_of(spoil(brep::triangles_of(clean.solids[0])));
+      certify(fault, "mesh", spoiled);
+    } catch (const std::runtime_error& error) {
+      certify(fault, "mesh", clean);
+      lower(trials.back().certificate, Agreement::Fail, std::string("no mesh: ") + error.what());
+    }
+  };
+  spoil_mesh(flipped_normal, with_flipped_triangle);
+  spoil_mesh(flipped_shell, turned_inside_out);
+  spoil_mesh(lost_triangle, with_lost_triangle);
+  spoil_mesh(duplicated_shell, with_shell_twice);
+  spoil_mesh(half_voxel, [](brep::Triangles t) { return shifted(std::move(t), {1.0, 0.0, 0.0}); });
+  spoil_mesh(mirrored_axis,
+             [&](brep::Triangles t) { return mirrored(std::move(t), clean.octree.universe()); });
+  ExactAnswers spoiled = clean;
+  spoiled.octree = mirrored(clean.octree);
+  certify(mirrored_axis, "voxel", spoiled);
+  spoiled.octree = other.octree;
+  certify(swapped_operands, "voxel", spoiled);
+  spoiled = clean;
+  spoiled.solids = other.solids;
+  certify(swapped_operands, "mesh", spoiled);
+  return trials;
+}
+
+}  // namespace
+
+const std::vector<Fault>& faults() {
+  static const std::vector<Fault> all{
+      {flipped_normal, "one triangle of the mesh winds the other way", true},
+      {flipped_shell, "all triangles of the mesh wind the other way", true},
+      {lost_triangle, "one triangle of the mesh is missing", true},
+      {duplicated_shell, "the mesh's surface is there twice", true},
+      {half_voxel, "the mesh is moved along x; in the exact tier by one refined voxel", true},
+      {quarter_voxel, "the mesh is moved along y", false},
+      {eighth_voxel, "the mesh is moved along z", false},
+      {mirrored_axis, "one answer is mirrored in x about the universe's middle", true},
+      {swapped_operands, "one kernel takes b - a for a - b", true},
+      {slice_spacing, "one kernel divides the scan's height by one slice too many", true},
+      {window_quarter, "one kernel's window begins a quarter of the contrast higher", true},
+      {window_eighth, "one kernel's window begins an eighth of the contrast lower", false},
+      {window_sixteenth, "one kernel's window begins a sixteenth of the contrast higher", false},
+      {stale_result, "one kernel has the object as it was before it was turned and moved", true},
+      {stale_box, "one kernel has the box where it was before it moved by two voxels along each axis", false},
+      {wrong_pivot, "one kernel turns about the origin instead of the given point", true}};
+  return all;
+}
+
+std::vector<FaultTrial> try_faults(const FaultOptions& options) {
+  struct Work {
+    std::string subject;
+    int voxels;
+  };
+  std::vector<Work> work;
+  for (const int voxels : options.sizes) {
+    if (voxels < 8 || (voxels & (voxels - 1)) != 0)
+      throw std::invalid_argument("faults are tried at powers of two from 8 on, not at " +
+                                  std::to_string(voxels));
+    for (const char* subject : {"ellipsoid", "ring"}) work.push_back({subject, voxels});
+    if (voxels >= resolved_size) work.push_back({"head", voxels});
+    if (voxels <= resolved_size) work.push_back({"voxel sets", voxels});
+  }
+  std::vector<std::vector<FaultTrial>> parts(work.size());
+  std::mutex reporting;
+  std::size_t done = 0;
+  // The large ones first, or the last would be waited for.
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, work.size(), 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          if (options.stop.stop_requested()) throw voxel::Stopped("stopped between faults");
+          const std::size_t number = work.size() - 1 - i;
+          const auto& [subject, voxels] = work[number];
+          if (subject == "voxel sets")
+            parts[number] = exact_trials(voxels);
+          else
+            parts[number] =
+                Trials(subject == "head" ? head_subject(voxels) : shape_subject(subject, voxels), voxels)
+                    .run();
+          const std::lock_guard lock(reporting);
+          ++done;
+          if (options.progress)
+            options.progress("faults, " + subject + " at " + std::to_string(voxels),
+                             static_cast<double>(done) / static_cast<double>(work.size()));
+        }
+      },
+      tbb::simple_partitioner());
+  std::map<std::string, bool> must;
+  for (const Fault& fault : faults()) must[fault.name] = fault.must_be_caught;
+  std::vector<FaultTrial> trials;
+  for (std::vector<FaultTrial>& part : parts)
+    for (FaultTrial& trial : part) {
+      trial.must_be_caught = !trial.fault.empty() && must.at(trial.fault);
+      trials.push_back(std::move(trial));
+    }
+  return trials;
+}
+
+std::vector<DetectionPower> detection_power(const std::vector<FaultTrial>& trials) {
+  std::vector<DetectionPower> table;
+  std::vector<std::string> names{""};
+  for (const Fault& fault : faults()) names.push_back(fault.name);
+  for (const std::string& name : names) {
+    std::map<int, DetectionPower> by_size;
+    for (const FaultTrial& trial : trials) {
+      if (trial.fault != name) continue;
+      DetectionPower& power = by_size[trial.voxels];
+      power.fault = name.empty() ? "clean" : name;
+      power.voxels = trial.voxels;
+      ++power.trials;
+      power.caught += trial.caught();
+      power.doubted += trial.certificate.agreement == Agreement::Warn;
+    }
+    for (const auto& [voxels, power] : by_size) table.push_back(power);
+  }
+  return table;
+}
+
+bool detection_holds(const std::vector<FaultTrial>& trials) {
+  return !trials.empty() && std::all_of(trials.begin(), trials.end(), [](const FaultTrial& trial) {
+    if (trial.fault.empty())
+      return trial.certificate.agreement == Agreement::Pass ||
+             (trial.certificate.agreement == Agreement::BelowResolution && trial.voxels < resolved_size);
+    return !trial.must_be_caught || trial.voxels < resolved_size || trial.caught();
+  });
+}
+
+}  // namespace octotomy::verify
