@@ -10,5 +10,7 @@ namespace octotomy::planner::cli {
 extern const Suite fault_suite;
 /// --random N --seed S --failures FOLDER
 extern const Suite random_suite;
+/// --thesis
+extern const Suite thesis_suite;
 
 }  // namespace octotomy::planner::cli

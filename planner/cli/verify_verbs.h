@@ -16,7 +16,7 @@ namespace octotomy::planner::cli {
 /// What the command line says to `verify`. A suite adds the fields of its own options.
 struct VerifyText : PlanIn {
   std::vector<std::string> subject;  ///< a plan; no suite was named
-  bool faults = false;
+  bool faults = false, thesis = false;
   int random_count = 0;
   std::uint64_t seed = 1;
   std::filesystem::path failures = "disagreements";

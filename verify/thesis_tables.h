@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace octotomy::verify {
+
+/// One printed value of the thesis and ours.
+struct ThesisEntry {
+  std::string where;    ///< "table 3.1, sphere"
+  std::string item;     ///< "level 4, Partial"
+  std::string printed;  ///< as printed, blanks and commas within numbers taken out
+  std::string ours;
+  std::string note = {};  ///< where the print needs reading
+
+  bool agrees() const { return printed == ours; }
+};
+
+/// What is printed and not recomputed, and why not.
+struct ThesisGap {
+  std::string where;
+  std::string why;
+};
+
+/// Recomputes the tables and worked examples that depend on nothing but what is printed with them: figure
+/// 3.1's object in every representation, the sphere of table 3.1, the octal codes of figure 4.6, the shading
+/// cases of table 5.1 and the Boolean rules of table 7.1. Cost: a second, for the sphere's fractions.
+std::vector<ThesisEntry> thesis_tables();
+const std::vector<ThesisGap>& thesis_gaps();
+
+}  // namespace octotomy::verify
