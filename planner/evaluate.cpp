@@ -20,6 +20,7 @@
 #include "planner/sha256.h"
 #include "verify/expression_on_meshes.h"
 #include "voxel/combine.h"
+#include "voxel/read_image_stack.h"
 #include "voxel/read_scene.h"
 
 namespace octotomy::planner {
@@ -205,7 +206,7 @@ class Evaluator {
       voxel::Scene scene;
       {
         const Stopwatch watch(result_.timings, "read");
-        if (!std::filesystem::exists(path)) refuse_missing(name, path);
+        if (!std::filesystem::exists(path) && voxel::image_files(path).empty()) refuse_missing(name, path);
         record.sha256 = sha256_of_path(path);
         if (source.sha256 && *source.sha256 != record.sha256)
           throw std::runtime_error("scan '" + name + "': " + path.string() + " has SHA-256 " + record.sha256 +

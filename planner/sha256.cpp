@@ -10,8 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "voxel/read_image_stack.h"
+
 namespace octotomy::planner {
 namespace {
+
+namespace fs = std::filesystem;
 
 class Digest {
  public:
@@ -36,7 +40,7 @@ class Digest {
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
-std::string sha256_of_file(const std::filesystem::path& path) {
+std::string sha256_of_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(path.string() + ": cannot be opened for its SHA-256");
   Digest digest;
@@ -55,13 +59,21 @@ std::string sha256_of(std::string_view bytes) {
   return digest.hex();
 }
 
-std::string sha256_of_path(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return sha256_of_file(path);
+std::string sha256_of_path(const fs::path& path) {
+  if (fs::is_regular_file(path)) return sha256_of_file(path);
+  std::vector<fs::path> files;
+  if (fs::is_directory(path)) {
+    for (const auto& entry : fs::recursive_directory_iterator(path))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+  } else {
+    files = voxel::image_files(path);
+  }
+  if (files.empty()) return sha256_of_file(path);
+  const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
   std::vector<std::pair<std::string, std::string>> lines;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
-    if (entry.is_regular_file())
-      lines.emplace_back(std::filesystem::relative(entry.path(), path).generic_string(),
-                         sha256_of_file(entry.path()));
+  lines.reserve(files.size());
+  for (const fs::path& file : files)
+    lines.emplace_back(file.lexically_relative(folder).generic_string(), sha256_of_file(file));
   std::sort(lines.begin(), lines.end());
   Digest digest;
   for (const auto& [name, sum] : lines) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/numbers.h"
 #include "planner/cli/scan_in.h"
 #include "planner/figures.h"
 #include "planner/first_look.h"
@@ -49,11 +50,13 @@ void add_look(Program& program) {
                    "octotomy look head.nrrd -o look", [&program, text] { return look(program, *text); });
   verb.add_option("scan", text->scan, "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, or a raw file")
       ->required()
-      ->check(CLI::ExistingPath);
+      ->check(scan_path());
   verb.add_option("-o,--out", text->out, "The result's folder: new, empty, or an earlier result")->required();
   verb.add_option("--bone", text->options.bone_low, "Lower bound of bone in sample units; default 300 HU")
+      ->check(finite())
       ->type_name("LOW");
   verb.add_option("--skin", text->options.skin_low, "Lower bound of all within the skin; default -300 HU")
+      ->check(finite())
       ->type_name("LOW");
   add_scan_options(verb, text->in);
 }

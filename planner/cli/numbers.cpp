@@ -12,20 +12,24 @@ CLI::Validator number_that(const std::string& is, const std::function<bool(doubl
             char* end = nullptr;
             const double number = std::strtod(text.c_str(), &end);
             const bool good = end != text.c_str() && *end == '\0' && std::isfinite(number) && holds(number);
-            return good ? std::string() : "'" + text + "' is not a number " + is;
+            return good ? std::string() : "'" + text + "' is not a number" + is;
           },
           ""};
 }
 
 }  // namespace
 
+CLI::Validator finite() {
+  return number_that("", [](double) { return true; });
+}
+
 CLI::Validator above_zero() {
-  return number_that("above 0", [](double number) { return number > 0.0; });
+  return number_that(" above 0", [](double number) { return number > 0.0; });
 }
 
 CLI::Validator between(double low, double high) {
   std::ostringstream is;
-  is << "from " << low << " to " << high;
+  is << " from " << low << " to " << high;
   return number_that(is.str(), [low, high](double number) { return number >= low && number <= high; });
 }
 

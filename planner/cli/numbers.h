@@ -30,6 +30,7 @@ std::array<double, Count> numbers_of(const std::string& option, const std::strin
 }
 
 /// Checks of options that are numbers. CLI11's own let NaN through, which is on no side of any bound.
+CLI::Validator finite();
 CLI::Validator above_zero();
 CLI::Validator between(double low, double high);
 

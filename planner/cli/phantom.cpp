@@ -187,6 +187,7 @@ void add_solid_options(CLI::App& verb, PhantomText& text) {
       ->capture_default_str()
       ->group(solid_group);
   verb.add_option("--turn", text.turn_deg, "Degrees about x, then y, then z: turns the solid")
+      ->check(finite())
       ->expected(3)
       ->delimiter(',')
       ->group(solid_group);

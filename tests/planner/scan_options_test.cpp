@@ -68,6 +68,23 @@ TEST_F(ScanOptions, LookAtARawFileLeavesAPlanThatRunReplays) {
   EXPECT_FALSE(look["objects"].empty());
 }
 
+TEST_F(ScanOptions, LookTakesAPatternOfImagesAndRunReplaysItsPlan) {
+  // A bar through nine slices of 24 x 20 pixels.
+  for (int z = 0; z < 9; ++z) {
+    std::ofstream slice(folder_ / ("s" + std::to_string(z) + ".pgm"), std::ios::binary);
+    slice << "P5 24 20 255\n";
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 24; ++x) slice.put(x >= 6 && x < 18 && y >= 5 && y < 15 && z > 0 ? '\xc8' : '\x0a');
+  }
+  const std::string stack = quoted(folder_ / "s*.pgm") + " --spacing 1,1,1";
+  const Json look = json("look " + stack + " --bone 100 --skin 50 -o " + at("look"));
+  EXPECT_EQ(look["scans"][0]["dims"], Json({24, 20, 9}));
+  std::ofstream(folder_ / "look.plan.json") << look["plan"];
+  const Json replayed = json("run " + at("look.plan.json") + " -o " + at("again"));
+  EXPECT_EQ(replayed["objects"][0]["voxel"], look["objects"][0]["voxel"]);
+  EXPECT_EQ(replayed["scans"][0]["sha256"], look["scans"][0]["sha256"]);
+}
+
 TEST_F(ScanOptions, AreRefusedInOneLineWhereTheyMeanNothing) {
   for (const std::string& arguments :
        {std::string("render ") + at("ball.raw") + " --raw 32x32 int16 -o " + at("x.png"),

@@ -32,6 +32,16 @@ TEST_F(Sha256, OfAFileIsThatOfItsBytesAlsoBeyondOneBuffer) {
   EXPECT_EQ(sha256_of_path(folder_ / "a"), sha256_of(bytes));
 }
 
+TEST_F(Sha256, OfAPatternIsThatOfAFolderWithTheImagesAlone) {
+  write("a1.png", "one");
+  write("a2.png", "two");
+  write("a.txt", "none of the pattern's");
+  const std::string zero(1, '\0');
+  const std::string lines = "a1.png" + zero + sha256_of("one") + "\na2.png" + zero + sha256_of("two") + "\n";
+  EXPECT_EQ(sha256_of_path(folder_ / "a*.png"), sha256_of(lines));
+  EXPECT_THROW(sha256_of_path(folder_ / "b*.png"), std::runtime_error);
+}
+
 TEST_F(Sha256, OfAFolderIsTheSumOfItsSortedNamesAndSums) {
   write("b", "two");
   write("a", "one");
