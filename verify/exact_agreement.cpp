@@ -316,9 +316,9 @@ Certificate certify_exact(const ExactAnswers& answers) {
   const double unit_mm2 = std::pow(answers.unit_mm3, 2.0 / 3.0);
   const auto voxels = static_cast<std::int64_t>(answers.octree.voxel_count());
   const auto faces = static_cast<double>(voxel::cuberille_faces(answers.octree).face_count());
-  certificate.voxel = {"Boolean of octrees in one walk", static_cast<double>(voxels) * answers.unit_mm3,
-                       faces * unit_mm2, std::nullopt};
-  certificate.mesh = {"corefinement of cuberilles", 0.0, 0.0, std::nullopt};
+  certificate.voxel = {"Boolean of octrees in one walk, sets refined and parted",
+                       static_cast<double>(voxels) * answers.unit_mm3, faces * unit_mm2, std::nullopt};
+  certificate.mesh = {"corefinement of the same sets' cuberilles", 0.0, 0.0, std::nullopt};
 
   double area = 0.0, float_volume = 0.0;
   std::uint64_t filled = 0;

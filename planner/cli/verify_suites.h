@@ -13,4 +13,11 @@ extern const Suite random_suite;
 /// --thesis
 extern const Suite thesis_suite;
 
+/// Two meshes or two label maps and an operation between them, whatever program made them: text.subject is A,
+/// OP, B. Meshes by the bounded tier, label maps by the exact one. Throws as the readers do, and
+/// CLI::ValidationError where an argument cannot be understood.
+SuiteAnswer verify_operands(Program& program, const VerifyText& text);
+/// --voxel MM
+void add_operand_options(CLI::App& verb, VerifyText& text);
+
 }  // namespace octotomy::planner::cli

@@ -34,8 +34,14 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
     suite = &suites()[i];
   }
   if (suite != nullptr) return suite->run(program, text);
-  if (text.subject.size() != 1)
-    throw CLI::ValidationError("verify", "name one plan, or a suite; see octotomy verify --help");
+  if (text.subject.size() != 1 && text.subject.size() != 3)
+    throw CLI::ValidationError("verify", "name one plan, A OP B, or a suite; see octotomy verify --help");
+  const bool operands = text.subject.size() == 3;
+  for (std::size_t i = 0; i < text.subject.size(); i += 2)
+    if (!std::filesystem::exists(text.subject[i]))
+      throw CLI::ValidationError("subject", "no such file: " + text.subject[i]);
+  if (operands) return verify_operands(program, text);
+  if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "for A OP B of two meshes only");
   text.plan = text.subject.front();
   return verify_plan(program, text);
 }
@@ -56,12 +62,18 @@ int verify(Program& program, VerifyText& text, const std::vector<CLI::Option*>& 
 void add_verify_verbs(Program& program) {
   const auto text = std::make_shared<VerifyText>();
   const auto named = std::make_shared<std::vector<CLI::Option*>>();
-  CLI::App& verb =
-      program.verb("verify", "Replays a plan for its certificates only, or runs a suite; nothing is written",
-                   "octotomy verify planner/le_fort_i.plan.json --scan ct=head.nrrd --json",
-                   [&program, text, named] { return verify(program, *text, *named); });
-  verb.add_option("subject", text->subject, "A .plan.json")->check(CLI::ExistingFile)->type_name("PLAN");
+  CLI::App& verb = program.verb(
+      "verify", "Both kernels on one question: a plan's steps, an operation on two files, or a suite",
+      "octotomy verify planner/le_fort_i.plan.json --scan ct=head.nrrd --json",
+      [&program, text, named] { return verify(program, *text, *named); });
+  verb.add_option(
+          "subject", text->subject,
+          "A .plan.json; or A OP B: two meshes or two label maps of any program, and union, intersection "
+          "or difference")
+      ->expected(1, 3)
+      ->type_name("PLAN | A OP B");
   add_plan_options(verb, *text);
+  add_operand_options(verb, *text);
   for (const Suite& suite : suites()) named->push_back(suite.add(verb, *text));
 }
 

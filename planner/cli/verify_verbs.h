@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace octotomy::planner::cli {
 
 /// What the command line says to `verify`. A suite adds the fields of its own options.
 struct VerifyText : PlanIn {
-  std::vector<std::string> subject;  ///< a plan; no suite was named
+  std::vector<std::string> subject;  ///< a plan, or A OP B; no suite was named
+  std::optional<double> operand_voxel_mm;
   bool faults = false, thesis = false;
   int random_count = 0;
   std::uint64_t seed = 1;

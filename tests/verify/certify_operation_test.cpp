@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/certify_operation.h"
+
+#include <gtest/gtest.h>
+
+#include "brep/triangles.h"
+#include "convert/cuberille.h"
+#include "voxel/digitise.h"
+
+namespace octotomy::verify {
+namespace {
+
+/// An ellipsoid's surface by chords, off any lattice.
+brep::Mesh ellipsoid(const glm::dvec3& centre_mm, const glm::dvec3& radii_mm) {
+  voxel::Universe universe;
+  universe.depth = 5;
+  const voxel::Octree octree =
+      voxel::digitise(universe, voxel::Ellipsoid{centre_mm, radii_mm}, voxel::Digitisation::Centre);
+  return brep::mesh_of(convert::triangles_of(convert::cuberille(octree)));
+}
+
+class Operations : public testing::TestWithParam<brep::Operation> {};
+
+TEST_P(Operations, OfTerracedSolidsAgreeAtEveryCentreWhateverTheVoxels) {
+  const brep::Mesh a = ellipsoid({15, 15, 15}, {11, 8, 6}), b = ellipsoid({19.3, 16, 13}, {6, 7, 9});
+  for (const double voxel_mm : {0.37, 0.8, 1.3}) {
+    const OperationAnswers answers = certify_operation(a, GetParam(), b, {voxel_mm});
+    EXPECT_EQ(answers.certificate.agreement, Agreement::Pass)
+        << voxel_mm << ": "
+        << (answers.certificate.reasons.empty() ? "" : answers.certificate.reasons.front());
+    EXPECT_FALSE(answers.octree->is_empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Operations,
+                         testing::Values(brep::Operation::Union, brep::Operation::Intersection,
+                                         brep::Operation::Difference));
+
+}  // namespace
+}  // namespace octotomy::verify
