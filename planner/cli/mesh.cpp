@@ -10,6 +10,7 @@
 #include "convert/expression_surface.h"
 #include "convert/isosurface.h"
 #include "convert/partial_surface.h"
+#include "convert/trace_contours.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/octree_out.h"
@@ -26,6 +27,7 @@ struct MeshText {
   std::string window;
   std::string surface = "isosurface";
   std::string touching = "apart";
+  std::string tiling = "shortest-span";
   bool smooth = false;
   std::optional<std::size_t> faces;
   ScanIn scan;
@@ -47,7 +49,26 @@ WindowText window_of(const MeshText& text, std::vector<std::string>& findings) {
   return {300.0, std::nullopt};
 }
 
+brep::Triangles tiled_contours(const voxel::Scene& scene, const WindowText& window, const MeshText& text,
+                               std::vector<std::string>& findings) {
+  brep::TileSectionsOptions options;
+  options.cost = text.tiling == "overlay"           ? std::optional<brep::TileCost>()
+                 : text.tiling == "least-area"      ? brep::TileCost::least_area
+                 : text.tiling == "greatest-volume" ? brep::TileCost::greatest_volume
+                 : text.tiling == "least-angle"     ? brep::TileCost::least_angle
+                                                    : brep::TileCost::shortest_span;
+  brep::TiledSections tiled = convert::contour_surface(scene, window.low, high_of(window), options);
+  findings.push_back("contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
+                     std::to_string(tiled.crossed_strips) +
+                     " by overlay as their strips would cross something, " + std::to_string(tiled.overlaid) +
+                     " branchings, ends and lone contours by overlay");
+  return std::move(tiled.surface);
+}
+
 brep::Triangles of_octree(const MeshText& text, Timings& timings, std::vector<std::string>& findings) {
+  if (text.surface == "contours")
+    throw std::runtime_error(text.in.string() +
+                             ": contours are followed on a scan's slices: give the scan the octree is of");
   const voxel::OctreeFile file = read_timed(text.in, timings);
   const bool cubes = text.surface == "cuberille";
   const Stopwatch watch(timings, text.surface);
@@ -81,6 +102,7 @@ brep::Triangles of_scan(const Program& program, const MeshText& text, Timings& t
   need_hounsfield(text.window, scene);
   const Stopwatch watch(timings, text.surface);
   if (text.surface == "isosurface") return convert::isosurface(scene, window.low, high_of(window));
+  if (text.surface == "contours") return tiled_contours(scene, window, text, findings);
   throw std::runtime_error(
       text.in.string() +
       ": a cuberille is of an octree's voxels: make one first with octotomy octree --window " + text.window);
@@ -146,15 +168,23 @@ void add_mesh(Program& program) {
   const auto text = std::make_shared<MeshText>();
   CLI::App& verb = program.verb("mesh", "The surface of a scan's window or of an octree",
                                 "octotomy mesh head.nrrd -o skull.stl --window 300:\n"
-                                "  octotomy mesh maxilla.octree -o maxilla.ply --surface cuberille",
+                                "  octotomy mesh maxilla.octree -o maxilla.ply --surface cuberille\n"
+                                "  octotomy mesh head.nrrd -o skin.stl --window=-200: --surface contours",
                                 [&program, text] { return mesh(program, *text); });
   verb.add_option("file", text->in, "A scan, or an .octree file")->required()->check(scan_path());
   verb.add_option("-o,--out", text->out, "A .stl, .ply, .obj or .off file")->required();
   verb.add_option("--window", text->window,
                   "LOW:HIGH or LOW: in sample units, or a tissue (bone, skin, ...)");
-  verb.add_option("--surface", text->surface,
-                  "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces")
-      ->check(CLI::IsMember({"isosurface", "cuberille"}))
+  verb.add_option(
+          "--surface", text->surface,
+          "isosurface: where samples or shares cross the bound; cuberille: the voxels' own faces; contours: "
+          "followed on a scan's slices and tiled")
+      ->check(CLI::IsMember({"isosurface", "cuberille", "contours"}))
+      ->capture_default_str();
+  verb.add_option("--tiling", text->tiling,
+                  "Of contours, what strips between them are chosen by: shortest-span, least-area, "
+                  "greatest-volume, least-angle; overlay: no strips")
+      ->check(CLI::IsMember({"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"}))
       ->capture_default_str();
   verb.add_option("--touching", text->touching,
                   "Of a cuberille, voxels that meet at an edge or corner only: apart or together")

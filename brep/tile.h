@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace octotomy::brep {
+
+/// What a strip of triangles between two contours is chosen by.
+enum class TileCost {
+  shortest_span,    ///< the nearer of the two next points, step by step (Christiansen and Sederberg 1978)
+  least_area,       ///< the least sum of areas (Fuchs, Kedem and Uselton 1977)
+  greatest_volume,  ///< the most volume on the object's side (Keppel 1975)
+  least_angle       ///< the least sum of angles between successive triangles (Cook et al. 1983)
+};
+
+/// A closed contour at a height. With x to the right and y up, the object is on its left.
+struct Ring {
+  std::vector<glm::dvec2> points_mm;
+  double z_mm = 0.0;
+};
+
+/// The closed strip of triangles between two rings, outward: points 0..m-1 are the lower ring's, the upper's
+/// follow, m + n triangles. It starts at the span that is shortest once both rings' boxes are laid over each
+/// other, so that shifted shapes are matched by shape; of all strips through it, the last three costs give
+/// the one of least cost, in the graph of Fuchs et al. A strip may cross itself where the rings differ much.
+/// Throws std::invalid_argument where a ring has fewer than three points or the lower one is not lower. Cost:
+/// m n time; m n bytes for all but the first, which takes m + n after the start is found.
+/// Source: the papers named above; Fuchs et al. also search over all starts.
+std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
+
+}  // namespace octotomy::brep
