@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "voxel/slice_bits.h"
 #include "voxel/slice_build.h"
@@ -34,15 +35,17 @@ std::uint64_t key_of(const Place& p) {
 /// Cells by side and first voxel.
 class Cells {
  public:
-  explicit Cells(const voxel::Octree& octree)
+  Cells(const voxel::Octree& octree, BoundaryCells boundary)
       : of_side_log2_(static_cast<std::size_t>(octree.universe().depth) + 1) {
     voxel::for_each_slice(octree, [&](int z, const voxel::SliceBits& slice) {
       for (int y = 0; y < slice.side; ++y)
         for (int x = 0, last = -1; voxel::next_run(slice, y, last + 1, x, last);)
           for (int v = x; v <= last; ++v) of_side_log2_[0].emplace(key_of({v, y, z}), Place(v, y, z));
     });
+    if (boundary == BoundaryCells::Voxels) find_boundary();
     for (std::size_t level = 0; level + 1 < of_side_log2_.size() && !of_side_log2_[level].empty(); ++level)
       merge(level);
+    at_boundary_.clear();
   }
 
   /// The side of the cell that holds a voxel, as a power of two; none where there is no cell.
@@ -87,6 +90,18 @@ class Cells {
     return first + side * Place(number & 1, (number >> 1) & 1, number >> 2);
   }
 
+  /// Voxels with a neighbour, across a face, edge or corner, that is none of the octree's.
+  void find_boundary() {
+    const auto& voxels = of_side_log2_[0];
+    for (const auto& [key, voxel] : voxels)
+      for (int n = 0; n < 27; ++n) {
+        const Place beside = voxel + Place(n % 3, (n / 3) % 3, n / 9) - 1;
+        if (glm::all(glm::greaterThanEqual(beside, Place(0))) && voxels.contains(key_of(beside))) continue;
+        at_boundary_.insert(key);
+        break;
+      }
+  }
+
   void merge(std::size_t level) {
     auto& cells = of_side_log2_[level];
     const int side = 1 << level;
@@ -94,7 +109,10 @@ class Cells {
       const Place parent = first_of(cell, static_cast<int>(level) + 1);
       if (parent != cell) continue;
       bool all = true;
-      for (int k = 0; k < 8 && all; ++k) all = cells.contains(key_of(child(parent, k, side)));
+      for (int k = 0; k < 8 && all; ++k) {
+        const std::uint64_t key = key_of(child(parent, k, side));
+        all = cells.contains(key) && (level > 0 || !at_boundary_.contains(key));
+      }
       if (!all) continue;
       for (int k = 0; k < 8; ++k) cells.erase(key_of(child(parent, k, side)));
       of_side_log2_[level + 1].emplace(key_of(parent), parent);
@@ -110,6 +128,7 @@ class Cells {
   }
 
   std::vector<std::unordered_map<std::uint64_t, Place>> of_side_log2_;
+  std::unordered_set<std::uint64_t> at_boundary_;  ///< voxels that are not merged
 };
 
 /// A square of the lattice: its first voxel corner, normal axis, and side as a power of two.
@@ -228,10 +247,10 @@ class Filling {
 
 }  // namespace
 
-Tetrahedra tetrahedra_of(const voxel::Octree& octree) {
+Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary) {
   if (octree.is_empty())
     throw std::invalid_argument("tetrahedra_of: the octree is empty: nothing is to be filled");
-  Cells cells(octree);
+  Cells cells(octree, boundary);
   cells.balance();
   return Filling(octree, cells).run();
 }

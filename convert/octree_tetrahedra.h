@@ -6,6 +6,10 @@
 
 namespace octotomy::convert {
 
+/// How large elements at the boundary may be: as the octree's nodes are, or a voxel each, so that whatever
+/// else ends at the boundary ends at corners of elements.
+enum class BoundaryCells { Nodes, Voxels };
+
 /// Tetrahedra that fill the voxels of an octree exactly: its Full nodes, divided until neighbours differ by
 /// one level at most, each cut from its middle. Always succeeds; large elements within, voxel-sized ones at
 /// the boundary, which stays in steps: displacements and stiffness are useful, stresses at the surface are
@@ -13,6 +17,6 @@ namespace octotomy::convert {
 /// angle is at least 30 degrees where voxels are cubes. `method` says "octree". In LPS millimetres. Throws
 /// std::invalid_argument where the octree is empty, std::length_error where 32 bits do not number the nodes.
 /// Deterministic. Cost: about 12 elements and 300 bytes an element of memory a voxel at the boundary.
-Tetrahedra tetrahedra_of(const voxel::Octree& octree);
+Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary = BoundaryCells::Nodes);
 
 }  // namespace octotomy::convert

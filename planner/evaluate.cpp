@@ -349,6 +349,7 @@ class Evaluator {
     object.octree = combined(making.symbol);
     inherit_samples(object, {step.object});
     object.moved_from_still = motion * object.moved_from_still;
+    object.moved = Object::Moved{step.object, motion};
     making.planes = moved_planes(still.planes, motion);
     making.spacing_mm = still.spacing_mm;
     making.voxel_lineage = "what the object is made of under a rigid motion, windows on interpolated samples";

@@ -58,6 +58,12 @@ struct Object {
   double threshold = 0.0;
   std::string scan;  ///< that grey is of
   glm::dmat4 moved_from_still{1.0};
+  /// Of a move step's result.
+  struct Moved {
+    std::string object;  ///< that was moved
+    glm::dmat4 motion{1.0};
+  };
+  std::optional<Moved> moved;
 };
 
 /// A measure step's answer: indices into Evaluation::objects.

@@ -11,6 +11,7 @@
 #include "brep/write_mesh.h"
 #include "convert/deck.h"
 #include "convert/tetrahedralise.h"
+#include "planner/attach.h"
 #include "planner/figures.h"
 #include "voxel/write_scene.h"
 
@@ -90,6 +91,20 @@ Filling filling_of(const Object& object) {
   return filling;
 }
 
+void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQuality& quality,
+                 Exported& exported) {
+  exported.written = true;
+  exported.content = grouped(static_cast<double>(tetrahedra.tets.size()), 0) +
+                     " tetrahedra, dihedral angles " + grouped(quality.min_dihedral_deg, 1) + "\u00b0 to " +
+                     grouped(quality.max_dihedral_deg, 1) + "\u00b0";
+  exported.details["nodes"] = tetrahedra.nodes_mm.size();
+  exported.details["tets"] = tetrahedra.tets.size();
+  exported.details["volume_mm3"] = quality.volume_mm3;
+  exported.details["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
+                                 {"max_dihedral_deg", quality.max_dihedral_deg},
+                                 {"max_radius_edge", quality.max_radius_edge}};
+}
+
 void export_tetrahedra(const Object& object, const std::filesystem::path& path, Exported& exported,
                        Fillings& fillings, Timings& timings) {
   {
@@ -112,16 +127,31 @@ void export_tetrahedra(const Object& object, const std::filesystem::path& path, 
   convert::DeckOptions options;
   options.title = object.id + " = " + object.definition;
   convert::write_deck(tetrahedra, path, options);
-  exported.written = true;
-  exported.content = grouped(static_cast<double>(tetrahedra.tets.size()), 0) +
-                     " tetrahedra, dihedral angles " + grouped(quality.min_dihedral_deg, 1) + "\u00b0 to " +
-                     grouped(quality.max_dihedral_deg, 1) + "\u00b0";
-  exported.details["nodes"] = tetrahedra.nodes_mm.size();
-  exported.details["tets"] = tetrahedra.tets.size();
-  exported.details["volume_mm3"] = quality.volume_mm3;
-  exported.details["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
-                                 {"max_dihedral_deg", quality.max_dihedral_deg},
-                                 {"max_radius_edge", quality.max_radius_edge}};
+  say_written(tetrahedra, quality, exported);
+}
+
+void export_attached(const Evaluation& evaluation, const Object& object, const ExportStep& step,
+                     const std::filesystem::path& path, Exported& exported, Timings& timings) {
+  Attached attached;
+  try {
+    const Stopwatch watch(timings, "tetrahedralise");
+    attached = attach(evaluation, object, step.attachment);
+  } catch (const std::runtime_error& error) {
+    exported.findings.push_back(std::string("not written: ") + error.what());
+    return;
+  }
+  const Stopwatch watch(timings, "write");
+  exported.findings = attached.findings;
+  for (const convert::NodeSet& set : attached.node_sets)
+    exported.details["node_sets"][set.name] = set.nodes.size();
+  convert::DeckOptions options;
+  options.title = object.id + " = " + object.definition;
+  options.materials = {{"SOFT_TISSUE", step.attachment.youngs_modulus_mpa, step.attachment.poisson_ratio}};
+  options.node_sets = std::move(attached.node_sets);
+  options.surfaces = std::move(attached.surfaces);
+  options.prescribed = std::move(attached.prescribed);
+  convert::write_deck(attached.tetrahedra, path, options);
+  say_written(attached.tetrahedra, convert::quality(attached.tetrahedra), exported);
 }
 
 void export_label(const Object& object, const std::filesystem::path& path, Exported& exported,
@@ -147,15 +177,16 @@ void export_label(const Object& object, const std::filesystem::path& path, Expor
 
 }  // namespace
 
-Exported export_object(const Object& object, const std::string& id, const ExportStep& step,
+Exported export_object(const Evaluation& evaluation, const std::string& id, const ExportStep& step,
                        const std::filesystem::path& folder, Fillings& fillings, Timings& timings) {
+  const Object& object = evaluation.object(step.object);
   Exported exported;
   exported.id = id;
   exported.object = object.id;
   exported.path = step.path.generic_string();
   exported.details = nlohmann::ordered_json::object();
   const std::filesystem::path path = folder / step.path;
-  const bool wants_mesh = step.kind != ExportKind::Label;
+  const bool wants_mesh = step.kind != ExportKind::Label && !step.attachment.any();
   if (wants_mesh && !object.mesh)
     exported.findings.push_back("not written: '" + object.id + "' has no mesh, see its findings");
   else if (wants_mesh ? object.mesh->n_faces() == 0 : object.octree.is_empty())
@@ -164,7 +195,10 @@ Exported export_object(const Object& object, const std::string& id, const Export
 
   std::filesystem::create_directories(path.parent_path());
   if (step.kind == ExportKind::Mesh) export_mesh(object, path, exported, timings);
-  if (step.kind == ExportKind::Tetrahedra) export_tetrahedra(object, path, exported, fillings, timings);
+  if (step.attachment.any())
+    export_attached(evaluation, object, step, path, exported, timings);
+  else if (step.kind == ExportKind::Tetrahedra)
+    export_tetrahedra(object, path, exported, fillings, timings);
   if (step.kind == ExportKind::Label) export_label(object, path, exported, timings);
   if (exported.written) exported.details["bytes"] = std::filesystem::file_size(path);
   return exported;

@@ -39,9 +39,12 @@ using Fillings = std::map<std::string, Filling>;
 /// bodies to load and hold. The surface is simplified before, within a third of a voxel. What is left out is
 /// a finding with its volume, and so are several bodies in one deck.
 ///
+/// Where the step attaches the object to others, tetrahedra are an octree's (attach.h), and the deck ends in
+/// the static step in which those hold and move it.
+///
 /// An object that is empty, has no mesh, or that TetGen cannot fill is not written; a finding says why.
 /// Throws what the writers throw where the disk does not take it.
-Exported export_object(const Object& object, const std::string& id, const ExportStep& step,
+Exported export_object(const Evaluation& evaluation, const std::string& id, const ExportStep& step,
                        const std::filesystem::path& folder, Fillings& fillings, Timings& timings);
 
 }  // namespace octotomy::planner

@@ -113,22 +113,25 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"combine", {"id", "do", "expression"}},
     {"move", {"id", "do", "object", "translate_mm", "rotate"}},
     {"measure", {"id", "do", "object"}},
-    {"export", {"id", "do", "object", "path"}},
+    {"export", {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material"}},
 };
 
 std::vector<std::string> step_words() {
   return names_of(steps_known);
 }
 
-const std::array<std::pair<std::string, ExportKind>, 9> extensions{{{".stl", ExportKind::Mesh},
-                                                                    {".ply", ExportKind::Mesh},
-                                                                    {".obj", ExportKind::Mesh},
-                                                                    {".off", ExportKind::Mesh},
-                                                                    {".inp", ExportKind::Tetrahedra},
-                                                                    {".vtu", ExportKind::Tetrahedra},
-                                                                    {".nrrd", ExportKind::Label},
-                                                                    {".nii.gz", ExportKind::Label},
-                                                                    {".mha", ExportKind::Label}}};
+const std::array<std::pair<std::string, ExportKind>, 12> extensions{{{".stl", ExportKind::Mesh},
+                                                                     {".ply", ExportKind::Mesh},
+                                                                     {".obj", ExportKind::Mesh},
+                                                                     {".off", ExportKind::Mesh},
+                                                                     {".inp", ExportKind::Tetrahedra},
+                                                                     {".vtu", ExportKind::Tetrahedra},
+                                                                     {".feb", ExportKind::Tetrahedra},
+                                                                     {".msh", ExportKind::Tetrahedra},
+                                                                     {".node", ExportKind::Tetrahedra},
+                                                                     {".nrrd", ExportKind::Label},
+                                                                     {".nii.gz", ExportKind::Label},
+                                                                     {".mha", ExportKind::Label}}};
 
 /// Names that steps have bound so far; objects can be computed with, the rest only exists.
 class Bound {
@@ -144,6 +147,12 @@ class Bound {
     if (!words_.emplace(id, word).second)
       refuse(where, "id '" + id + "' is taken by an earlier step: choose another");
     if (word != "measure" && word != "export") objects_.push_back(id);
+  }
+  void need_moved(const std::string& where, const std::string& name) const {
+    need_object(where, name);
+    if (words_.at(name) != "move")
+      refuse(where, "'" + name + "' is a " + words_.at(name) +
+                        " step: name the result of a move step, or list it as fixed");
   }
   void need_object(const std::string& where, const std::string& name) const {
     if (std::find(objects_.begin(), objects_.end(), name) != objects_.end()) return;
@@ -246,6 +255,40 @@ MoveStep move_step(const Keys& keys, const Bound& bound) {
   return step;
 }
 
+std::vector<std::string> names_in(const Keys& keys, const std::string& key) {
+  std::vector<std::string> names;
+  const Json* list = keys.find(key);
+  if (list == nullptr) return names;
+  if (!list->is_array()) refuse(keys.at(key), "must be a list of names of earlier steps");
+  for (const Json& name : *list) {
+    if (!name.is_string()) refuse(keys.at(key), "must hold names of earlier steps, not " + type_of(name));
+    names.push_back(name.get<std::string>());
+  }
+  return names;
+}
+
+Attachment attachment_of(const Keys& keys, const Bound& bound) {
+  Attachment attachment{names_in(keys, "moved"), names_in(keys, "fixed"), keys.number_if("element_mm")};
+  for (const std::string& name : attachment.moved) bound.need_moved(keys.at("moved"), name);
+  for (const std::string& name : attachment.fixed) bound.need_object(keys.at("fixed"), name);
+  if (attachment.element_mm && *attachment.element_mm <= 0.0)
+    refuse(keys.at("element_mm"), "must be above zero, for example 3.0");
+  if (const Json* value = keys.find("material")) {
+    const Keys material(*value, keys.at("material"), {"youngs_modulus_mpa", "poisson_ratio"});
+    attachment.youngs_modulus_mpa = material.number("youngs_modulus_mpa");
+    attachment.poisson_ratio = material.number("poisson_ratio");
+    if (attachment.youngs_modulus_mpa <= 0.0)
+      refuse(material.at("youngs_modulus_mpa"), "must be above zero, for example 0.015");
+    if (attachment.poisson_ratio < 0.0 || attachment.poisson_ratio >= 0.5)
+      refuse(material.at("poisson_ratio"), "must be from 0 to less than 0.5, for example 0.45");
+  }
+  const bool any_text = keys.find("element_mm") != nullptr || keys.find("material") != nullptr;
+  if (any_text && !attachment.any())
+    refuse(keys.where(),
+           "'element_mm' and 'material' are of an object that others hold: add 'moved' or 'fixed'");
+  return attachment;
+}
+
 ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::string>& taken) {
   ExportStep step{keys.text("object"), keys.text("path")};
   bound.need_object(keys.at("object"), step.object);
@@ -262,6 +305,9 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
   if (!taken.insert(name).second)
     refuse(keys.at("path"), "'" + name + "' is written by an earlier step: choose another");
   step.path = name;
+  step.attachment = attachment_of(keys, bound);
+  if (step.attachment.any() && step.kind != ExportKind::Tetrahedra)
+    refuse(keys.at("path"), "only tetrahedra are moved and held by other objects: choose .inp, .feb or .vtu");
   return step;
 }
 

@@ -52,10 +52,23 @@ struct MeasureStep {
 };
 /// What an export writes: the object's surface, tetrahedra that fill it, or its voxels as a label map.
 enum class ExportKind { Mesh, Tetrahedra, Label };
+/// What holds and moves the object of a deck: soft tissue on bone. Nothing where both lists are empty.
+struct Attachment {
+  std::vector<std::string> moved;  ///< results of move steps: the object follows them
+  std::vector<std::string> fixed;
+  std::optional<double> element_mm;  ///< edge of the smallest elements; none: the universe's voxels
+  /// Linear elastic. 15 kPa is Chabanas, Luboz and Payan's for the face (2003); of their Poisson's ratio of
+  /// 0.49 linear tetrahedra would be too stiff.
+  double youngs_modulus_mpa = 0.015;
+  double poisson_ratio = 0.45;
+
+  bool any() const { return !moved.empty() || !fixed.empty(); }
+};
 struct ExportStep {
   std::string object;
   std::filesystem::path path;  ///< within the result folder
   ExportKind kind = ExportKind::Mesh;
+  Attachment attachment{};  ///< of decks
 };
 
 struct Step {

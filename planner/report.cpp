@@ -156,8 +156,8 @@ Json write_result(Result& result, const std::filesystem::path& folder) {
   Fillings fillings;
   for (const Step& step : result.plan.steps)
     if (const auto* to = std::get_if<ExportStep>(&step.action))
-      result.exported.push_back(export_object(result.evaluation.object(to->object), step.id, *to,
-                                              output.path(), fillings, result.evaluation.timings));
+      result.exported.push_back(
+          export_object(result.evaluation, step.id, *to, output.path(), fillings, result.evaluation.timings));
   {
     const Stopwatch watch(result.evaluation.timings, "write");
     write_pictures(result, output.path() / "views");

@@ -4,6 +4,7 @@
 // study of the source, one frame a plane, dimensions segment and position.
 #include "voxel/dicom_seg_dcmtk.h"
 
+#include <algorithm>
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/dcmfg/fgderimg.h>
@@ -44,10 +45,17 @@ OFString decimal(double value) {
   return text(dicom_decimal(value));
 }
 
+/// What DCMTK, which checks for ASCII, takes in a text's place until put_texts() has the last word.
+OFString ascii(std::string value) {
+  for (char& symbol : value)
+    if (static_cast<unsigned char>(symbol) > 127) symbol = '?';
+  return text(value);
+}
+
 std::unique_ptr<DcmSegmentation> new_segmentation(const SegmentFile& file) {
   const IODGeneralEquipmentModule::EquipmentInfo equipment("Octotomy", "octotomy", "0", OCTOTOMY_VERSION);
   ContentIdentificationMacro* content = nullptr;
-  need(ContentIdentificationMacro::create("1", "OCTOTOMY", text(file.label), "Octotomy^Planner", content),
+  need(ContentIdentificationMacro::create("1", "OCTOTOMY", ascii(file.label), "Octotomy^Planner", content),
        "content");
   const std::unique_ptr<ContentIdentificationMacro> owned(content);
   DcmSegmentation* segmentation = nullptr;
@@ -61,7 +69,7 @@ void add_segment(DcmSegmentation& segmentation, const SegmentFile& file) {
   // What the object is nobody says: SNOMED's tissue holds for all.
   const CodeSequenceMacro tissue("85756007", "SCT", "Tissue");
   DcmSegment* segment = nullptr;
-  need(DcmSegment::create(segment, text(file.label), tissue, tissue, DcmSegTypes::SAT_SEMIAUTOMATIC,
+  need(DcmSegment::create(segment, ascii(file.label), tissue, tissue, DcmSegTypes::SAT_SEMIAUTOMATIC,
                           "Octotomy"),
        "segment");
   Uint16 number = 0;
@@ -139,7 +147,7 @@ void add_origin(DcmSegmentation& segmentation, const SegmentFile& file) {
   need(segmentation.getSOPCommon().setSOPInstanceUID(text(file.instance_uid)), "identifier");
   need(segmentation.getSeries().setSeriesInstanceUID(text(file.series_uid)), "identifier");
   need(segmentation.getSeries().setSeriesNumber("1"), "series");
-  need(segmentation.getSeries().setSeriesDescription(text(file.series_description)), "series");
+  need(segmentation.getSeries().setSeriesDescription(ascii(file.series_description)), "series");
   if (file.source_series_uid.empty()) return;
   const auto study = file.attributes.find(0x0020000d);
   IODReferences references;
@@ -151,6 +159,22 @@ void add_origin(DcmSegmentation& segmentation, const SegmentFile& file) {
                                              text(image.instance_uid), text(image.class_uid)));
   if (segmentation.getCommonInstanceReference().addReferences(references) != references.size())
     throw std::runtime_error("references to the source");
+}
+
+bool is_ascii(const std::string& value) {
+  return std::all_of(value.begin(), value.end(), [](unsigned char symbol) { return symbol < 128; });
+}
+
+/// Texts beyond ASCII make the whole file UTF-8, what came from the source included.
+void put_texts(DcmDataset& dataset, const SegmentFile& file) {
+  if (is_ascii(file.label) && is_ascii(file.series_description)) return;
+  need(dataset.convertToUTF8(), "character set");
+  need(dataset.putAndInsertString(DCM_SpecificCharacterSet, "ISO_IR 192"), "character set");
+  need(dataset.putAndInsertString(DCM_ContentDescription, file.label.c_str()), "label");
+  need(dataset.putAndInsertString(DCM_SeriesDescription, file.series_description.c_str()), "series");
+  DcmItem* segment = nullptr;
+  need(dataset.findAndGetSequenceItem(DCM_SegmentSequence, segment, 0), "label");
+  need(segment->putAndInsertString(DCM_SegmentLabel, file.label.c_str()), "label");
 }
 
 void write(const SegmentFile& file, const char* path) {
@@ -168,6 +192,7 @@ void write(const SegmentFile& file, const char* path) {
   DcmFileFormat whole;
   DcmDataset& dataset = *whole.getDataset();
   need(segmentation->writeDataset(dataset), "segmentation");
+  put_texts(dataset, file);
   for (const DcmTagKey& date : {DCM_InstanceCreationDate, DCM_ContentDate, DCM_SeriesDate})
     if (dataset.tagExists(date)) need(dataset.putAndInsertString(date, no_date), "dates");
   for (const DcmTagKey& time : {DCM_InstanceCreationTime, DCM_ContentTime, DCM_SeriesTime})

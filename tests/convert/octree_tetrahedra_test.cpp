@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "convert/deck.h"
 #include "tests/unit_universe.h"
 #include "voxel/build.h"
 #include "voxel/combine.h"
@@ -98,6 +99,22 @@ TEST(OctreeTetrahedra, ABallHasFarFewerElementsThanItsVoxelsWould) {
   EXPECT_LT(t.tets.size(), 6 * ball.voxel_count());
   EXPECT_FALSE(t.boundary_nodes.empty());
   EXPECT_EQ(t.method, "octree");
+}
+
+TEST(OctreeTetrahedra, CellsAtTheBoundaryAreVoxelsWhereAskedFor) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const voxel::Octree octree = random_cubes(4, seed);
+    if (octree.is_empty()) continue;
+    const Tetrahedra t = tetrahedra_of(octree, BoundaryCells::Voxels);
+    EXPECT_EQ(fault_of(octree, t), "") << "seed " << seed;
+    EXPECT_EQ(surface_faces(t).size(), 2 * voxel::cuberille_faces(octree).face_count()) << "seed " << seed;
+  }
+  const voxel::Octree cube =
+      voxel::combine(unit_universe(5), voxel::Box{{7.5, 7.5, 7.5}, {23.5, 23.5, 23.5}});
+  const Tetrahedra t = tetrahedra_of(cube, BoundaryCells::Voxels);
+  EXPECT_EQ(fault_of(cube, t), "");
+  EXPECT_LT(t.tets.size(), 9 * cube.voxel_count());
+  EXPECT_LT(surface_faces(tetrahedra_of(cube)).size(), surface_faces(t).size());
 }
 
 TEST(OctreeTetrahedra, NothingIsRefused) {

@@ -151,6 +151,11 @@ TEST_F(WrittenDicom, ASegmentationHoldsTheOctreesVoxelsWhereTheyAre) {
   EXPECT_GT(said["instances"], 10);
   EXPECT_LE(said["instances"], 40);
 
+  // Labels in any script; pydicom reads them by the file's character set.
+  octotomy("convert " + octree + " --source " + quoted(source) + " --label 'Sch\u00e4del \u03b1' -o " +
+           quoted(folder_ / "umlaut.dcm"));
+  EXPECT_EQ(Json::parse(python("seg " + quoted(folder_ / "umlaut.dcm")).out)["label"], "Sch\u00e4del \u03b1");
+
   // The same bytes again, and a study of its own without a source.
   octotomy("convert " + octree + " --source " + quoted(source) + " --label Ball -o " +
            quoted(folder_ / "again.dcm"));
