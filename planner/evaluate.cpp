@@ -47,6 +47,8 @@ struct Making {
   std::vector<CutPlane> planes;
   glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan it comes from; zero where it comes from none
   std::string voxel_lineage, mesh_lineage;
+  std::optional<voxel::Box> scan_box_mm;  ///< of the scan that it comes from, where it has not moved
+  bool voxels_are_samples = false;
 };
 
 struct LoadedScan {
@@ -142,6 +144,21 @@ std::string place(const voxel::Box& box) {
 [[noreturn]] void refuse_missing(const std::string& name, const std::filesystem::path& path) {
   throw std::runtime_error("scan '" + name + "': " + path.string() +
                            ": no such file or folder; correct the plan or use --scan " + name + "=PATH");
+}
+
+/// Whether every voxel's centre within the scan is one of its samples, to rounding.
+bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe) {
+  const glm::dvec3 first = scan.voxel(universe.lps_mm(glm::dvec3(0.0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 step(0.0);
+    step[axis] = 1.0;
+    const glm::dvec3 next = scan.voxel(universe.lps_mm(step)) - first;
+    // A dot product of three terms, in voxels of the largest universe.
+    constexpr double rounding = 4096.0 * 64.0 * std::numeric_limits<double>::epsilon();
+    if (glm::distance(next, step) > rounding / 4096.0) return false;
+    if (std::abs(first[axis] - std::round(first[axis])) > rounding) return false;
+  }
+  return true;
 }
 
 /// One evaluation in progress.
@@ -272,6 +289,8 @@ class Evaluator {
     }
     Making making{within_universe(voxel::Expression(window_of(step)))};
     making.spacing_mm = scan.scene.lattice.spacing_mm();
+    making.scan_box_mm = voxel::bounds(scan.scene.lattice);
+    making.voxels_are_samples = on_samples(scan.scene.lattice, result_.universe.lattice());
     making.voxel_lineage = "window on a grey octree of the scan";
     making.mesh_lineage = "isosurface of the scan's own samples";
     {
@@ -328,6 +347,7 @@ class Evaluator {
       const Making& from = makings_.at(name);
       making.planes.insert(making.planes.end(), from.planes.begin(), from.planes.end());
       making.spacing_mm = glm::max(making.spacing_mm, from.spacing_mm);
+      if (from.scan_box_mm) making.scan_box_mm = from.scan_box_mm;
     }
     mesh_work(object, making, names, [&] {
       auto solid = meshes_->evaluate(
@@ -454,6 +474,8 @@ class Evaluator {
     inputs.mesh_lineage = making.mesh_lineage;
     inputs.scan_spacing_mm = making.spacing_mm;
     inputs.flat_cut_mm2 = area_on_planes(*object.mesh, making.planes);
+    inputs.scan_box_mm = making.scan_box_mm;
+    inputs.voxels_are_samples = making.voxels_are_samples;
     object.certificate = verify::certify_bounded(object.octree, *object.mesh, inputs);
   }
 

@@ -77,6 +77,10 @@ struct BoundInputs {
   glm::dvec3 scan_spacing_mm{1.0};  ///< of the samples that the isosurface was made from
   /// Area of flat cuts by direction of their normal (x, y, z): only what lies along the universe's planes.
   glm::dvec3 flat_cut_mm2{0.0};
+  /// What the scan's voxels fill, where the solid may end with the scan.
+  std::optional<voxel::Box> scan_box_mm = {};
+  /// Every voxel's centre is a sample, and the object is one window of them: topology must agree then.
+  bool voxels_are_samples = false;
 };
 
 /// Compares an octree with a solid that has another lineage (tier Bounded). Derivation of the terms is in the

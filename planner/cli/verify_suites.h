@@ -8,6 +8,8 @@ namespace octotomy::planner::cli {
 
 /// --faults
 extern const Suite fault_suite;
+/// --phantoms --poses N
+extern const Suite phantoms_suite;
 /// --random N --seed S --failures FOLDER
 extern const Suite random_suite;
 /// --thesis

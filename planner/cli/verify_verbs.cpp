@@ -8,7 +8,7 @@ namespace {
 
 /// The suites there are.
 const std::vector<Suite>& suites() {
-  static const std::vector<Suite> all{fault_suite, random_suite, thesis_suite};
+  static const std::vector<Suite> all{fault_suite, phantoms_suite, random_suite, thesis_suite};
   return all;
 }
 

@@ -18,7 +18,8 @@ namespace octotomy::planner::cli {
 struct VerifyText : PlanIn {
   std::vector<std::string> subject;  ///< a plan, or A OP B; no suite was named
   std::optional<double> operand_voxel_mm;
-  bool faults = false, thesis = false;
+  bool faults = false, phantoms = false, thesis = false;
+  int poses = 6;  ///< of --phantoms
   int random_count = 0;
   std::uint64_t seed = 1;
   std::filesystem::path failures = "disagreements";

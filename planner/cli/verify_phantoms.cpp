@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/verify_suites.h"
+#include "planner/figures.h"
+#include "verify/phantom_suite.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+Json case_json(const verify::PhantomCase& one, const verify::Certificate& certificate) {
+  Json json{{"solid", one.solid}, {"spacing", one.spacing}, {"sampling", one.sampling}, {"seed", one.seed}};
+  json.update(to_json(certificate));
+  return json;
+}
+
+Json study_json(const verify::PhantomSuite& suite) {
+  Json json = Json::object();
+  for (const char* key : {"tightness", "calibration", "convergence", "checks"}) json[key] = Json::array();
+  for (const verify::Tightness& t : suite.tightness)
+    json["tightness"].push_back({{"spacing", t.spacing},
+                                 {"sampling", t.sampling},
+                                 {"cases", t.cases},
+                                 {"worst_share", t.worst_share},
+                                 {"p99_share", t.p99_share}});
+  for (const verify::Calibration& c : suite.calibrations)
+    json["calibration"].push_back({{"constant", c.constant},
+                                   {"in_use", c.in_use},
+                                   {"needed_by_99_percent", c.p99},
+                                   {"poses", c.poses},
+                                   {"seeds", "odd; the cases have even ones"}});
+  for (const verify::Convergence& c : suite.convergences)
+    json["convergence"].push_back({{"quantity", c.quantity},
+                                   {"radii_voxels", c.radii_voxels},
+                                   {"errors_percent", c.errors_percent},
+                                   {"order", c.order},
+                                   {"least_order", c.least_order}});
+  for (const verify::SuiteCheck& c : suite.checks)
+    json["checks"].push_back(
+        {{"statement", c.statement}, {"found", c.found}, {"limit", c.allowed}, {"held", c.held}});
+  json["area_with_edges_percent"] = suite.area_with_edges_percent;
+  return json;
+}
+
+SuiteAnswer run(Program& program, const VerifyText& text) {
+  SuiteAnswer answer;
+  verify::PhantomSuiteOptions options;
+  options.poses = text.poses;
+  options.progress = program.progress();
+  options.stop = program.stop.get_token();
+  verify::PhantomSuite suite;
+  {
+    const Stopwatch watch(answer.timings, "phantoms");
+    suite = verify::phantom_suite(options);
+  }
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const verify::PhantomCase& one : suite.cases)
+    for (const verify::Certificate* certificate : {&one.bounded, &one.closed_form}) {
+      add(answer.counts, certificate->agreement);
+      answer.certificates.push_back(case_json(one, *certificate));
+      if (certificate->agreement != verify::Agreement::Fail) continue;
+      for (const std::string& reason : certificate->reasons)
+        rows.emplace_back("FAIL", certificate->operation + ": " + reason);
+    }
+  for (const verify::Tightness& t : suite.tightness)
+    rows.emplace_back(t.spacing + ", " + t.sampling,
+                      std::to_string(t.cases) + " cases: observed up to " + three_figures(t.worst_share) +
+                          " of the tolerance, 99th percentile " + three_figures(t.p99_share));
+  for (const verify::SuiteCheck& check : suite.checks) {
+    answer.held = answer.held && check.held;
+    rows.emplace_back(
+        check.held ? "holds" : "DOES NOT HOLD",
+        check.statement + ": " + three_figures(check.found) + ", limit " + three_figures(check.allowed));
+  }
+  const VerdictCounts& counts = answer.counts;
+  rows.emplace_back("verdicts", std::to_string(counts.pass) + " PASS, " + std::to_string(counts.warn) +
+                                    " WARN, " + std::to_string(counts.fail) + " FAIL, " +
+                                    std::to_string(counts.below_resolution) + " BELOW_RESOLUTION");
+  answer.more = study_json(suite);
+  answer.text = lines(rows);
+  return answer;
+}
+
+CLI::Option* add_options(CLI::App& verb, VerifyText& text) {
+  verb.add_option("--poses", text.poses,
+                  "Of --phantoms: poses of each solid, spacing and sampling; default 6")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  return verb.add_flag("--phantoms", text.phantoms,
+                       "Both kernels on solids with known volume and area, in all samplings");
+}
+
+}  // namespace
+
+const Suite phantoms_suite{add_options, run};
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,470 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Every case: 1 a solid in a pose by chance; 2 its voxels and its samples; 3 the mesh of the samples; 4 the
+// bounded certificate of voxels and mesh; 5 the closed-form certificate of both against the truth.
+//
+// A Gaussian blur of deviation b moves the half level of a smooth boundary inward by b^2 times its mean
+// curvature, so that both kernels lose b^2 M of volume, M the mean curvature integral, before either has
+// erred.
+#include "verify/phantom_suite.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "brep/measure.h"
+#include "brep/triangles.h"
+#include "convert/isosurface.h"
+#include "convert/partial_surface.h"
+#include "verify/boundary_model.h"
+#include "verify/form.h"
+#include "verify/solid_phantom.h"
+#include "voxel/combine.h"
+#include "voxel/measure.h"
+#include "voxel/read_scene.h"
+
+namespace octotomy::verify {
+namespace {
+
+constexpr double blur_voxels = 0.7;
+constexpr double noise_share = 0.05;  // of the contrast between inside and outside
+constexpr double contrast = 2000.0;
+
+/// Numbers of a seed, the same everywhere (the standard's distributions are not): splitmix64.
+class Chance {
+ public:
+  explicit Chance(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 1) {}
+  /// Evenly in -1/2..1/2.
+  double even() {
+    state_ += 0x9E3779B97F4A7C15ULL;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    z ^= z >> 31;
+    return static_cast<double>(z >> 11) * 0x1.0p-53 - 0.5;
+  }
+  /// Normal of deviation 1 (Box and Muller).
+  double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(even() + 0.5 + 0x1.0p-54));
+    return radius * std::cos(2.0 * std::numbers::pi * even());
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+struct Kind {
+  std::string name;
+  const char* solid;   // of solid_phantom(), or null for a plate
+  double radius;       // in the least spacing
+  bool turned = true;  // by chance; otherwise along the lattice
+  double thickness = 0.0;
+};
+
+const std::vector<Kind>& kinds() {
+  static const std::vector<Kind> all{{"sphere", "sphere", 9.0},
+                                     {"ellipsoid", "ellipsoid", 12.0},
+                                     {"torus", "torus", 10.0},
+                                     {"box", "box", 9.0, false},
+                                     {"box, turned", "box", 9.0},
+                                     {"cylinder", "cylinder", 11.0},
+                                     {"plate, 1 voxel", nullptr, 9.0, true, 1.0},
+                                     {"plate, 2 voxels", nullptr, 9.0, true, 2.0},
+                                     {"plate, 3 voxels", nullptr, 9.0, true, 3.0},
+                                     {"lens", "lens", 12.0},
+                                     {"cut sphere", "cut_sphere", 9.0},
+                                     {"shell", "shell", 12.0}};
+  return all;
+}
+
+/// A solid off the lattice by chance, turned by chance, its size by chance within half a voxel. In spacings
+/// of five it is twice as large, so that it is six voxels across along that axis too.
+Solid posed(const Kind& kind, const glm::dvec3& spacing_mm, Chance& chance) {
+  const bool coarse = spacing_mm.z > 2.0;
+  SolidOptions options;
+  options.voxels = coarse ? 64 : 32;
+  options.radius_voxels = (kind.radius + chance.even()) * (coarse ? 2.0 : 1.0);
+  options.spacing_mm = spacing_mm;
+  options.centre_mm = glm::dvec3(chance.even(), chance.even(), chance.even()) * spacing_mm;
+  if (kind.turned) {
+    const glm::dvec3 degrees = 360.0 * glm::dvec3(chance.even(), chance.even(), chance.even());
+    options.lps_from_axes = turned(degrees);
+  }
+  if (kind.solid != nullptr) return solid_phantom(kind.solid, options);
+  Solid plate = solid_phantom("plate", options);
+  const glm::dvec3 half_mm{*options.radius_voxels, 0.75 * *options.radius_voxels, 0.5 * kind.thickness};
+  plate.shape = voxel::OrientedBox{options.centre_mm, half_mm, options.lps_from_axes};
+  plate.volume_mm3 = 8.0 * half_mm.x * half_mm.y * half_mm.z;
+  plate.area_mm2 = 8.0 * (half_mm.x * half_mm.y + half_mm.y * half_mm.z + half_mm.z * half_mm.x);
+  return plate;
+}
+
+/// The filled share of every voxel, x fastest.
+std::vector<double> shares_of(const voxel::PartialOctree& partial) {
+  const int side = partial.inside.universe().side();
+  std::vector<double> shares;
+  shares.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
+                 static_cast<std::size_t>(side));
+  for (int z = 0; z < side; ++z)
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) shares.push_back(partial.inside.contains({x, y, z}) ? 1.0 : 0.0);
+  voxel::for_each_boundary_voxel(partial, [&](const glm::ivec3& voxel, std::uint16_t fraction) {
+    const auto at = static_cast<std::size_t>((voxel.z * side + voxel.y) * side + voxel.x);
+    shares[at] = static_cast<double>(fraction) / voxel::PartialOctree::whole;
+  });
+  return shares;
+}
+
+void blur(std::vector<double>& shares, int side) {
+  constexpr int reach = 3;
+  std::array<double, 2 * reach + 1> weight{};
+  double sum = 0.0;
+  for (int k = -reach; k <= reach; ++k)
+    sum += weight[static_cast<std::size_t>(k + reach)] = std::exp(-k * k / (2.0 * blur_voxels * blur_voxels));
+  for (int axis = 0; axis < 3; ++axis) {
+    const int stride = axis == 0 ? 1 : axis == 1 ? side : side * side;
+    const std::vector<double> before = shares;
+    for (int i = 0; i < static_cast<int>(shares.size()); ++i) {
+      const int at = i / stride % side;
+      double value = 0.0;
+      for (int k = -reach; k <= reach; ++k)
+        if (at + k >= 0 && at + k < side)
+          value += weight[static_cast<std::size_t>(k + reach)] / sum *
+                   before[static_cast<std::size_t>(i + k * stride)];
+      shares[static_cast<std::size_t>(i)] = value;
+    }
+  }
+}
+
+/// Samples whose half level is 0: shares from -1000 to 1000.
+voxel::Scene scan_of(const Solid& solid, const std::vector<double>& shares) {
+  voxel::Scene scene;
+  scene.lattice = solid.universe.lattice();
+  voxel::Int16Samples samples;
+  for (const double share : shares)
+    samples.push_back(static_cast<std::int16_t>(std::lround(contrast * (share - 0.5))));
+  scene.samples = std::move(samples);
+  scene.source = "phantom";
+  return scene;
+}
+
+enum class Sampling { Binary, Fractions, Blurred };
+struct SamplingName {
+  Sampling sampling;
+  const char* name;
+};
+constexpr std::array<SamplingName, 3> samplings{{{Sampling::Binary, "binary"},
+                                                 {Sampling::Fractions, "fractions"},
+                                                 {Sampling::Blurred, "blurred, noise"}}};
+struct SpacingName {
+  glm::dvec3 mm;
+  const char* name;
+};
+const std::array<SpacingName, 3> spacings{{{{1, 1, 1}, "1:1:1"}, {{1, 1, 2}, "2:1:1"}, {{1, 1, 5}, "5:1:1"}}};
+
+/// Both kernels' answers to one pose.
+struct Answers {
+  voxel::Octree octree;
+  std::optional<double> shares_mm3;  // where the voxels know their shares
+  brep::Mesh mesh;
+  double blur_mm2 = 0.0;  // deviation squared along the coarsest axis
+};
+
+Answers answers_of(const Solid& solid, Sampling sampling, Chance& chance) {
+  const voxel::PartialOctree partial = digitise_partial(solid);
+  std::vector<double> shares = shares_of(partial);
+  if (sampling != Sampling::Blurred) {
+    const voxel::Scene scan = scan_of(solid, shares);
+    Answers answers{voxel::at_least_half(partial), voxel::volume_mm3(partial),
+                    brep::mesh_of(convert::isosurface(scan, 0.0, contrast)), 0.0};
+    if (sampling == Sampling::Binary) {
+      answers.octree = digitise(solid, voxel::Digitisation::Centre);
+      answers.shares_mm3.reset();
+    }
+    return answers;
+  }
+  blur(shares, solid.universe.side());
+  for (double& share : shares) share += noise_share * chance.normal();
+  const voxel::Scene scan = scan_of(solid, shares);
+  const voxel::GreyOctree grey = voxel::grey_octree_of(solid.universe, scan, -1000);
+  const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
+  const double deviation_mm = blur_voxels * std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  return {voxel::combine(solid.universe, voxel::Window{grey, 0.0}), std::nullopt,
+          brep::mesh_of(convert::isosurface(scan, 0.0, 32767.0)), deviation_mm * deviation_mm};
+}
+
+Certificate bounded_of(const Solid& solid, const Answers& answers, const PhantomCase& of) {
+  BoundInputs inputs;
+  inputs.operation = of.solid + ", " + of.spacing + ", " + of.sampling + ", seed " + std::to_string(of.seed);
+  inputs.voxel_lineage = of.sampling == samplings[2].name   ? "window on a grey octree of the scan"
+                         : of.sampling == samplings[1].name ? "voxels at least half in the closed form"
+                                                            : "voxels whose centre is in the closed form";
+  inputs.mesh_lineage = "isosurface of the samples";
+  inputs.scan_spacing_mm = solid.universe.lattice().spacing_mm();
+  return certify_bounded(answers.octree, answers.mesh, inputs);
+}
+
+/// Both answers against the truth. The top difference is the voxels'.
+Certificate closed_form_of(const Solid& solid, const Answers& answers, const Certificate& bounded) {
+  const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
+  const double s = std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  const brep::Measures mesh = brep::measure(answers.mesh);
+  const BoundaryModel model =
+      boundary_model(answers.mesh, {solid.universe.lattice(), spacing_mm, solid.centroid_mm});
+  Certificate certificate;
+  certificate.operation = bounded.operation;
+  certificate.tier = Tier::ClosedForm;
+  certificate.voxel = bounded.voxel;
+  certificate.mesh = bounded.mesh;
+  const double voxel_mm3 = answers.shares_mm3.value_or(bounded.voxel.volume_mm3);
+  certificate.voxel.volume_mm3 = voxel_mm3;
+  certificate.difference_mm3 = voxel_mm3 - solid.volume_mm3;
+  const double blurred = answers.blur_mm2 * model.curvature_mm;
+  const double lattice_step = std::cbrt(solid.universe.lattice().voxel_mm3());
+  if (answers.shares_mm3)
+    certificate.terms = {
+        {"shares", "2^-9 h S + 2^-4 h^2 M",
+         0x1.0p-9 * lattice_step * model.area_mm2 + 0x1.0p-4 * lattice_step * s * model.curvature_mm}};
+  else
+    certificate.terms = {
+        {"count", "3 * sqrt(sum of a(k) / (4 pi^2 |k|^4))", 3.0 * std::sqrt(model.count_mm6)},
+        {"flat", "h/2 * area of planes along the lattice",
+         std::max(std::abs(model.planes.mm3), model.planes_without_sign.mm3) + model.unsure.mm3},
+        {"bent", "0.12 * integral of |s^2 curvature|", 0.12 * model.bent_without_sign.mm3},
+        {"blur", "b^2 M", blurred}};
+  for (const ToleranceTerm& term : certificate.terms) certificate.tolerance_mm3 += term.value_mm3;
+  const double mesh_tolerance_mm3 = 0.33 * std::abs(model.bent.mm3) + 0.12 * model.bent_without_sign.mm3 +
+                                    blurred + model.unsure.mm3 +
+                                    0.06 * s * std::sqrt(model.area_mm2) * lattice_step;
+  add_comparison(certificate,
+                 {"voxel volume", "mm3", voxel_mm3, solid.volume_mm3, std::abs(certificate.difference_mm3),
+                  certificate.tolerance_mm3, "sum of the terms; beside it the truth"});
+  add_comparison(certificate, {"mesh volume", "mm3", mesh.volume_mm3, solid.volume_mm3,
+                               std::abs(mesh.volume_mm3 - solid.volume_mm3), mesh_tolerance_mm3,
+                               "bent + rough + rims + blur + noise; beside it the truth"});
+  add_comparison(certificate,
+                 {"mesh area", "mm2", mesh.area_mm2, solid.area_mm2, std::abs(mesh.area_mm2 - solid.area_mm2),
+                  0.04 * solid.area_mm2 + 0.8 * s * model.curvature_mm,
+                  "0.04 S + 0.8 s M: ripple, and edges cut off; beside it the truth"});
+  if (mesh.centroid_mm && bounded.centroid_tolerance_mm)
+    add_comparison(certificate, {"mesh centroid",
+                                 "mm",
+                                 {},
+                                 {},
+                                 glm::distance(*mesh.centroid_mm, solid.centroid_mm),
+                                 *bounded.centroid_tolerance_mm + blurred / solid.volume_mm3 * s,
+                                 "first moment of the terms / volume"});
+  if (bounded.agreement == Agreement::BelowResolution)
+    lower(certificate, Agreement::BelowResolution, bounded.reasons.back());
+  return certificate;
+}
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const double at = share * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, values.size() - 1);
+  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+/// The suite in progress.
+class Suite {
+ public:
+  explicit Suite(const PhantomSuiteOptions& options) : options_(options) {
+    if (options.poses < 1 || options.poses > 1000)
+      throw std::invalid_argument("a suite takes 1 to 1000 poses, not " + std::to_string(options.poses));
+  }
+
+  PhantomSuite run() {
+    calibrate();
+    run_cases();
+    converge();
+    state_rules();
+    return std::move(suite_);
+  }
+
+ private:
+  void report(const std::string& doing, double fraction) const {
+    if (options_.stop.stop_requested()) throw voxel::Stopped("stopped before '" + doing + "'");
+    if (options_.progress) options_.progress(doing, fraction);
+  }
+  /// Seeds of cases are even, those of the calibration odd.
+  std::uint64_t seed_of(std::size_t kind, std::size_t spacing, std::size_t sampling, int pose,
+                        bool calibration) const {
+    const std::uint64_t place = (kind * spacings.size() + spacing) * samplings.size() + sampling;
+    return 2 * ((options_.seed * 1024 + place) * 1024 + static_cast<std::uint64_t>(pose)) +
+           (calibration ? 1 : 0);
+  }
+
+  void calibrate() {
+    std::vector<double> counts, bends;
+    for (std::size_t k = 0; k < kinds().size(); ++k) {
+      report("calibrate on " + kinds()[k].name,
+             0.2 * static_cast<double>(k) / static_cast<double>(kinds().size()));
+      if (kinds()[k].thickness > 0.0) continue;
+      for (std::size_t s = 0; s < spacings.size(); ++s)
+        for (int pose = 0; pose < options_.poses; ++pose) {
+          Chance chance(seed_of(k, s, 0, pose, true));
+          const Solid solid = posed(kinds()[k], spacings[s].mm, chance);
+          const Answers answers = answers_of(solid, Sampling::Binary, chance);
+          const BoundaryModel model =
+              boundary_model(answers.mesh, {solid.universe.lattice(), spacings[s].mm, solid.centroid_mm});
+          const double voxels_mm3 =
+              static_cast<double>(answers.octree.voxel_count()) * solid.universe.lattice().voxel_mm3();
+          // Along the lattice what the rims hide is not of this kind.
+          if (kinds()[k].turned)
+            counts.push_back(std::abs(voxels_mm3 - solid.volume_mm3) / std::sqrt(model.count_mm6));
+          if (kinds()[k].turned)
+            bends.push_back((solid.volume_mm3 - brep::volume_mm3(answers.mesh)) /
+                            model.bent_without_sign.mm3);
+        }
+    }
+    suite_.calibrations = {
+        {"count: standard deviations", 3.0, percentile(counts, 0.99), static_cast<int>(counts.size())},
+        {"bent and rough: shares of the curvature integral", 0.33 + 0.12, percentile(bends, 0.99),
+         static_cast<int>(bends.size())}};
+    for (const Calibration& c : suite_.calibrations)
+      suite_.checks.push_back(
+          {"the constant in use covers 99 of 100 calibration poses and is at most three times that: " +
+               c.constant,
+           c.p99, c.in_use, c.p99 <= c.in_use && c.in_use <= 3.0 * c.p99});
+  }
+
+  void run_cases() {
+    for (std::size_t s = 0; s < spacings.size(); ++s)
+      for (std::size_t m = 0; m < samplings.size(); ++m) {
+        std::vector<double> shares;
+        for (std::size_t k = 0; k < kinds().size(); ++k) {
+          const auto done = static_cast<double>((s * samplings.size() + m) * kinds().size() + k);
+          report(kinds()[k].name + ", " + spacings[s].name + ", " + samplings[m].name,
+                 0.2 + 0.6 * done / static_cast<double>(kinds().size() * spacings.size() * samplings.size()));
+          for (int pose = 0; pose < options_.poses; ++pose) run_case(k, s, m, pose, shares);
+        }
+        suite_.tightness.push_back({spacings[s].name, samplings[m].name, static_cast<int>(shares.size()),
+                                    percentile(shares, 1.0), percentile(shares, 0.99)});
+        const Tightness& tight = suite_.tightness.back();
+        suite_.checks.push_back({"bounded tolerance at most three times the observed 99th percentile, " +
+                                     tight.spacing + ", " + tight.sampling,
+                                 1.0 / tight.p99_share, 3.0, tight.p99_share >= 1.0 / 3.0});
+      }
+  }
+
+  void run_case(std::size_t k, std::size_t s, std::size_t m, int pose, std::vector<double>& shares) {
+    PhantomCase one;
+    one.solid = kinds()[k].name;
+    one.spacing = spacings[s].name;
+    one.sampling = samplings[m].name;
+    one.seed = seed_of(k, s, m, pose, false);
+    Chance chance(one.seed);
+    const Solid solid = posed(kinds()[k], spacings[s].mm, chance);
+    const Answers answers = answers_of(solid, samplings[m].sampling, chance);
+    one.bounded = bounded_of(solid, answers, one);
+    one.closed_form = closed_form_of(solid, answers, one.bounded);
+    // A box around a plate that is turned does not show how thin it is; the truth is known.
+    if (kinds()[k].thickness > 0.0)
+      for (Certificate* certificate : {&one.bounded, &one.closed_form}) {
+        certificate->agreement = Agreement::BelowResolution;
+        certificate->reasons.push_back("a " + kinds()[k].name +
+                                       ": six are needed for agreement to prove anything");
+      }
+    if (one.bounded.agreement != Agreement::BelowResolution)
+      shares.push_back(std::abs(one.bounded.difference_mm3) / one.bounded.tolerance_mm3);
+    suite_.cases.push_back(std::move(one));
+  }
+
+  /// Errors of one sphere in a pose by chance, in per cent.
+  struct Errors {
+    double voxels = 0.0, shares = 0.0, surface = 0.0, area = 0.0;
+  };
+  Errors errors_of(const char* kind, double radius_voxels, std::uint64_t seed) const {
+    Chance chance(seed);
+    SolidOptions options;
+    options.voxels = 16;
+    while (options.voxels < 2.0 * radius_voxels * 4.0 / 3.0 + 6.0) options.voxels *= 2;
+    options.radius_voxels = radius_voxels;
+    options.centre_mm = {chance.even(), chance.even(), chance.even()};
+    options.lps_from_axes = turned(360.0 * glm::dvec3(chance.even(), chance.even(), chance.even()));
+    const Solid solid = solid_phantom(kind, options);
+    const voxel::PartialOctree partial = digitise_partial(solid);
+    const auto percent = [](double found, double truth) { return 100.0 * (found / truth - 1.0); };
+    const brep::Measures iso =
+        brep::measure(brep::mesh_of(convert::isosurface(scan_of(solid, shares_of(partial)), 0.0, contrast)));
+    const brep::Measures surface = brep::measure(brep::mesh_of(convert::isosurface(partial)));
+    return {percent(static_cast<double>(digitise(solid, voxel::Digitisation::Centre).voxel_count()),
+                    solid.volume_mm3),
+            percent(voxel::volume_mm3(partial), solid.volume_mm3), percent(iso.volume_mm3, solid.volume_mm3),
+            percent(surface.area_mm2, solid.area_mm2)};
+  }
+
+  void converge() {
+    const std::vector<double> radii{4.0, 8.0, 16.0, 32.0};
+    std::array<Convergence, 2> found{{{"voxels counted, volume of a sphere", radii, {}, 0.0, 1.5},
+                                      {"isosurface of shares, volume of a sphere", radii, {}, 0.0, 1.8}}};
+    for (const double radius : radii) {
+      report("converge, radius " + std::to_string(static_cast<int>(radius)), 0.8);
+      std::array<double, 2> squares{};
+      for (int pose = 0; pose < options_.poses; ++pose) {
+        const Errors e = errors_of("sphere", radius, options_.seed * 4096 + static_cast<std::uint64_t>(pose));
+        squares[0] += e.voxels * e.voxels;
+        squares[1] += e.surface * e.surface;
+      }
+      for (std::size_t q = 0; q < found.size(); ++q)
+        found[q].errors_percent.push_back(std::sqrt(squares[q] / options_.poses));
+    }
+    for (Convergence& c : found) {
+      double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+      const auto n = static_cast<double>(radii.size());
+      for (std::size_t i = 0; i < radii.size(); ++i) {
+        const double u = std::log(radii[i]), v = std::log(c.errors_percent[i]);
+        x += u;
+        y += v;
+        xx += u * u;
+        xy += u * v;
+      }
+      c.order = -(n * xy - x * y) / (n * xx - x * x);
+      suite_.checks.push_back(
+          {"order of convergence: " + c.quantity, c.order, c.least_order, c.order >= c.least_order});
+      suite_.convergences.push_back(c);
+    }
+  }
+
+  void state_rules() {
+    report("volume and area from small radii on", 0.9);
+    double voxels = 0.0, shares = 0.0, area = 0.0, flat_area = 0.0;
+    for (const char* kind : {"sphere", "ellipsoid", "shell"})
+      for (int pose = 0; pose < options_.poses; ++pose) {
+        const std::uint64_t seed = options_.seed * 8192 + static_cast<std::uint64_t>(pose);
+        voxels = std::max(voxels, std::abs(errors_of(kind, 12.0, seed).voxels));
+        area = std::max(area, std::abs(errors_of(kind, 6.0, seed).area));
+        shares = std::max(shares, std::abs(errors_of(kind, 3.0, seed).shares));
+      }
+    for (const char* kind : {"box", "cylinder", "cut_sphere"})
+      for (int pose = 0; pose < options_.poses; ++pose)
+        flat_area = std::max(
+            flat_area,
+            std::abs(errors_of(kind, 6.0, options_.seed * 8192 + static_cast<std::uint64_t>(pose)).area));
+    suite_.checks.push_back(
+        {"voxel volume within 1 % from radius 12 voxels (per cent)", voxels, 1.0, voxels <= 1.0});
+    suite_.checks.push_back(
+        {"fraction volume within 0.2 % from radius 3 voxels (per cent)", shares, 0.2, shares <= 0.2});
+    suite_.checks.push_back(
+        {"area within 2 % on smooth phantoms from radius 6 voxels (per cent)", area, 2.0, area <= 2.0});
+    suite_.area_with_edges_percent = flat_area;
+    report("done", 1.0);
+  }
+
+  const PhantomSuiteOptions& options_;
+  PhantomSuite suite_;
+};
+
+}  // namespace
+
+PhantomSuite phantom_suite(const PhantomSuiteOptions& options) {
+  return Suite(options).run();
+}
+
+}  // namespace octotomy::verify
