@@ -33,10 +33,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -249,7 +249,7 @@ class Modeller {
 
   /// A part of a cell's sum.
   struct Bend {
-    std::array<int, 4> cell{};  // of three samples a side; last, the direction of the normal
+    std::uint64_t cell = 0;  // of three samples a side, and the direction of the normal
     double mm = 0.0;
     double mm3 = 0.0;
     glm::dvec3 arm_mm{0.0};
@@ -286,13 +286,19 @@ class Modeller {
     const auto& p = mesh_.point(vertex);
     return {p[0], p[1], p[2]};
   }
-  std::array<int, 4> cell_of(const glm::dvec3& p_mm, const glm::dvec3& normal) const {
+  std::uint64_t cell_of(const glm::dvec3& p_mm, const glm::dvec3& normal) const {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
       if (std::abs(normal[axis]) > std::abs(normal[direction])) direction = axis;
-    const glm::dvec3 cell = glm::floor(p_mm / (3.0 * frame_.sample_spacing_mm));
-    return {static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z),
-            normal[direction] < 0.0 ? direction : direction + 3};
+    // 20 bits an axis hold three million samples about the origin.
+    constexpr std::int64_t middle = 1 << 19;
+    auto key = static_cast<std::uint64_t>(normal[direction] < 0.0 ? direction : direction + 3);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto cell =
+          static_cast<std::int64_t>(std::floor(p_mm[axis] / (3.0 * frame_.sample_spacing_mm[axis])));
+      key = (key << 20) | (static_cast<std::uint64_t>(cell + middle) & 0xFFFFFU);
+    }
+    return key;
   }
 
   void add_bends(std::vector<Bend> bends) {

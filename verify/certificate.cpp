@@ -9,12 +9,12 @@
 // flat       The sum of planes' displacements, as it is.
 // flat_unsure  Planes through centres, rims, cuts that were declared and are not seen (h / 2 each).
 // border     Where the solid ends with the scan the mesh closes half a sample beyond the last, and the voxels
-//            end where their samples, interpolated to air, leave the window: up to a sample apart.
+//            end where their samples leave the window, at the last or after it: up to half a sample apart.
 // bent       A mesh's volume is low by c times the signed curvature integral, c from 0.14 (samples that are
 //            0 or 1) over 0.2 to 0.28 (blurred, fractions) to 0.32 (with edges and corners) where voxels are
 //            samples: 0.33 of it. Between samples further apart than two voxels both kernels follow the same
-//            straight lines along the lattice, so spacings count up to twice a voxel's edge only: with that,
-//            c stays within 0.33 at 5:1:1 too.
+//            straight lines along the lattice, so spacings count up to twice a voxel's edge only; and up to
+//            three times the finest, as the crossings of the finer lattice lines hold the facets.
 // rough      Cells in which samples on both sides meet diagonally: the mesh keeps the inside corners apart,
 // the
 //            interpolant that the octree samples joins some. Up to 0.12 of the curvature without sign on real
@@ -41,6 +41,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <numeric>
@@ -80,9 +81,11 @@ double longest(const glm::dvec3& edges_mm) {
   return std::max({edges_mm.x, edges_mm.y, edges_mm.z});
 }
 
-/// What a voxel lattice cannot tell apart: samples count as no further apart than two voxels.
+/// Spacings as the curvature integral takes them, see above: up to twice a voxel's edge and three times the
+/// finest.
 glm::dvec3 seen_spacing_mm(const glm::dvec3& sample_mm, const glm::dvec3& voxel_mm) {
-  return glm::min(sample_mm, 2.0 * voxel_mm);
+  const double finest_mm = std::min({sample_mm.x, sample_mm.y, sample_mm.z});
+  return glm::min(glm::min(sample_mm, 2.0 * voxel_mm), glm::dvec3(3.0 * finest_mm));
 }
 
 /// Distances with the area that each stands for.
@@ -191,7 +194,7 @@ VolumeSpread border_of(const brep::Mesh& mesh, const BoundInputs& inputs, const 
       };
       if (!on(box.low_mm[axis]) && !on(box.high_mm[axis])) continue;
       const double area_mm2 = 0.5 * glm::length(glm::cross(b - a, c - a));
-      border.add(area_mm2 * inputs.scan_spacing_mm[axis], glm::distance((a + b + c) / 3.0, about_mm));
+      border.add(0.5 * area_mm2 * inputs.scan_spacing_mm[axis], glm::distance((a + b + c) / 3.0, about_mm));
     }
   }
   return border;
@@ -211,7 +214,7 @@ void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence)
       {"flat", "|sum of area * displacement to the nearest voxel face|", std::abs(model.planes.mm3)},
       {"flat_unsure", "h/2 * area of planes through voxel centres or not seen, and rims",
        model.unsure.mm3 + evidence.unseen_mm3},
-      {"border", "s * area where the scan ends", evidence.border.mm3},
+      {"border", "s/2 * area where the scan ends", evidence.border.mm3},
       {"bent", "0.33 |integral of s^2 curvature|", bent_share * std::abs(model.bent.mm3)},
       {"rough", "0.12 * integral of |s^2 curvature|", rough_share * model.bent_without_sign.mm3},
       // Each coordinate is off by half a unit in the last place, some operations each.
@@ -303,23 +306,18 @@ void compare_distances(Certificate& certificate, const Evidence& evidence, doubl
               " mm from the other: it may be missing there");
 }
 
-void compare_topology(Certificate& certificate, const voxel::Octree& octree, const brep::Mesh& solid,
-                      const BoundInputs& inputs) {
-  const brep::Health health = brep::health(brep::triangles_of(solid), {false});
-  const auto twice = 2.0 * static_cast<double>(voxel::euler_numbers(octree).by_faces);
-  const auto surface = static_cast<double>(health.euler);
-  Comparison euler{"euler",
-                   "",
-                   twice,
-                   surface,
-                   std::abs(twice - surface),
-                   {},
-                   "not judged: where voxels are not the samples, details below a voxel join or part"};
-  if (inputs.voxels_are_samples) {
-    euler.tolerance = 0.0;
-    euler.formula = "0: both keep apart what meets at edges and corners; twice the voxels' number";
-  }
-  add_comparison(certificate, euler);
+/// Where voxels are the mesh's samples both must be of one topology: the mesh keeps inside corners apart that
+/// meet at edges and corners, and outside corners that meet at a cell's corners only. The voxels' number by
+/// faces joins those last, a tunnel each.
+void compare_topology(Certificate& certificate, const voxel::Octree& octree, const brep::Mesh& solid) {
+  std::int64_t solid_euler = voxel::euler_numbers(octree).by_faces;
+  const std::array<std::uint64_t, 256> cells = voxel::cell_counts(octree);
+  for (unsigned corner = 0; corner < 4; ++corner)
+    solid_euler += static_cast<std::int64_t>(cells[255U - (1U << corner) - (1U << (7U - corner))]);
+  const auto twice = 2.0 * static_cast<double>(solid_euler);
+  const auto surface = static_cast<double>(brep::health(brep::triangles_of(solid), {false}).euler);
+  add_comparison(certificate, {"euler", "", twice, surface, std::abs(twice - surface), 0.0,
+                               "0: one topology; twice the voxels' number beside the surface's"});
 }
 
 void judge_extent(Certificate& certificate, const Evidence& evidence) {
@@ -434,7 +432,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid
     certificate.hausdorff95_mm = std::max(from_voxels.percentile95(), from_mesh.percentile95());
     compare_moments(certificate, evidence, solid);
     compare_distances(certificate, evidence, std::max(from_voxels.mean(), from_mesh.mean()));
-    compare_topology(certificate, octree, solid, inputs);
+    if (inputs.voxels_are_samples) compare_topology(certificate, octree, solid);
   }
   judge_extent(certificate, evidence);
   certificate.milliseconds =

@@ -277,6 +277,8 @@ class Suite {
   explicit Suite(const PhantomSuiteOptions& options) : options_(options) {
     if (options.poses < 1 || options.poses > 1000)
       throw std::invalid_argument("a suite takes 1 to 1000 poses, not " + std::to_string(options.poses));
+    if (std::none_of(kinds().begin(), kinds().end(), [&](const Kind& kind) { return asked(kind); }))
+      throw std::invalid_argument("the suite has no solid called '" + *options.solid + "': try sphere");
   }
 
   PhantomSuite run() {
@@ -292,6 +294,7 @@ class Suite {
     if (options_.stop.stop_requested()) throw voxel::Stopped("stopped before '" + doing + "'");
     if (options_.progress) options_.progress(doing, fraction);
   }
+  bool asked(const Kind& kind) const { return !options_.solid || *options_.solid == kind.name; }
   /// Seeds of cases are even, those of the calibration odd.
   std::uint64_t seed_of(std::size_t kind, std::size_t spacing, std::size_t sampling, int pose,
                         bool calibration) const {
@@ -305,7 +308,7 @@ class Suite {
     for (std::size_t k = 0; k < kinds().size(); ++k) {
       report("calibrate on " + kinds()[k].name,
              0.2 * static_cast<double>(k) / static_cast<double>(kinds().size()));
-      if (kinds()[k].thickness > 0.0) continue;
+      if (kinds()[k].thickness > 0.0 || !asked(kinds()[k])) continue;
       for (std::size_t s = 0; s < spacings.size(); ++s)
         for (int pose = 0; pose < options_.poses; ++pose) {
           Chance chance(seed_of(k, s, 0, pose, true));
@@ -342,6 +345,7 @@ class Suite {
           const auto done = static_cast<double>((s * samplings.size() + m) * kinds().size() + k);
           report(kinds()[k].name + ", " + spacings[s].name + ", " + samplings[m].name,
                  0.2 + 0.6 * done / static_cast<double>(kinds().size() * spacings.size() * samplings.size()));
+          if (!asked(kinds()[k])) continue;
           for (int pose = 0; pose < options_.poses; ++pose) run_case(k, s, m, pose, shares);
         }
         suite_.tightness.push_back({spacings[s].name, samplings[m].name, static_cast<int>(shares.size()),

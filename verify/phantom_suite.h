@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct PhantomSuiteOptions {
   int poses =
       6;  ///< of each solid at each spacing and sampling, 1..1000; the calibration takes as many others
   std::uint64_t seed = 1;
+  std::optional<std::string> solid = {};  ///< this kind only: "sphere", "box, turned", ...
   std::function<void(const std::string& doing, double fraction)> progress = {};
   std::stop_token stop = {};
 };

@@ -9,7 +9,7 @@
 #include "brep/measure.h"
 #include "brep/move.h"
 #include "brep/prism.h"
-#include "convert/isosurface.h"
+#include "convert/partial_surface.h"
 #include "convert/voxelise.h"
 #include "verify/form.h"
 #include "verify/solid_phantom.h"
@@ -39,8 +39,8 @@ glm::dmat4 shifted(const glm::dvec3& by_mm) {
 TEST(BoundaryModel, ASphereCountsWithKendallsDeviation) {
   const BoundaryModel model = boundary_model(surface_of("sphere", 16, {0.1, 0.2, 0.3}, glm::dmat3(1)),
                                              {unit_lattice(), glm::dvec3(1.0), {}});
-  // 0.0666 S, to what cones about directions make of a surface of triangles.
-  EXPECT_NEAR(model.count_mm6 / model.area_mm2, 0.0666, 0.012);
+  // 0.0666 S; the widest of three cones is taken about each direction, which is more rather than less.
+  EXPECT_NEAR(model.count_mm6 / model.area_mm2, 0.0666, 0.02);
 }
 
 TEST(BoundaryModel, TheDeviationPredictedIsThatOfACountOverManyPlaces) {
@@ -60,7 +60,9 @@ TEST(BoundaryModel, TheDeviationPredictedIsThatOfACountOverManyPlaces) {
       squares += (count - truth_mm3) * (count - truth_mm3);
     }
     const double found = std::sqrt(squares / places), predicted = std::sqrt(model.count_mm6);
-    EXPECT_GT(predicted, 0.7 * found) << kind << ": found " << found << ", predicted " << predicted;
+    // One size of a body interferes with itself: its own deviation is up to sqrt(2) of the mean of sizes.
+    EXPECT_GT(predicted, found / std::sqrt(2.0) / 1.1)
+        << kind << ": found " << found << ", predicted " << predicted;
     EXPECT_LT(predicted, 1.8 * found) << kind << ": found " << found << ", predicted " << predicted;
   }
 }
@@ -83,8 +85,8 @@ TEST(BoundaryModel, APlanesDisplacementIsExactAndASlopesIsNone) {
   const BoundaryModel model = boundary_model(box, {unit_lattice(), glm::dvec3(1.0), {}});
   const voxel::Universe universe{6, unit_lattice().lps_from_voxel};
   const auto count = static_cast<double>(convert::voxelise(universe, box).voxel_count());
-  // To first order: where faces meet, displacements multiply.
-  EXPECT_NEAR(count - brep::volume_mm3(box), model.planes.mm3, 2.0);
+  // To first order: along 100 mm of edges displacements of 0.3 and 0.4 mm multiply.
+  EXPECT_NEAR(count - brep::volume_mm3(box), model.planes.mm3, 15.0);
   EXPECT_DOUBLE_EQ(model.count_mm6, 0.0);
   const glm::dmat4 turn(turned({10, 20, 30}));
   const BoundaryModel oblique = boundary_model(brep::moved(box, turn), {unit_lattice(), glm::dvec3(1.0), {}});
