@@ -132,6 +132,14 @@ Json to_json(const verify::Certificate& certificate) {
           {"timings_ms", {{"certify", certificate.milliseconds}}}};
 }
 
+Json to_json(const HalfWidth& width) {
+  Json terms = Json::array();
+  for (const Doubt& doubt : width.terms)
+    terms.push_back(
+        {{"name", doubt.name}, {"formula", doubt.formula}, {"half_width", finite(doubt.half_width)}});
+  return terms;
+}
+
 Json to_json(const ScanRecord& scan) {
   return {{"name", scan.name},
           {"path", scan.path.generic_string()},

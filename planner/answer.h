@@ -7,6 +7,7 @@
 #include "brep/health.h"
 #include "brep/measure.h"
 #include "planner/evaluate.h"
+#include "planner/half_width.h"
 #include "voxel/measure.h"
 #include "voxel/scene.h"
 
@@ -28,6 +29,7 @@ Json to_json(const voxel::Measures& measures);
 Json to_json(const brep::Measures& measures);
 Json to_json(const brep::Health& health);
 Json to_json(const verify::Certificate& certificate);
+Json to_json(const HalfWidth& width);
 Json to_json(const ScanRecord& scan);
 Json to_json(const Object& object);
 

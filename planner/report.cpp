@@ -14,7 +14,17 @@ namespace {
 
 constexpr int picture_px = 480;
 
-Json measurement_json(const Measured& measured, const Object& object) {
+/// What the object's scan and window make doubtful.
+Digitised digitised_of(const Evaluation& evaluation, const Object& object) {
+  Digitised digitised{evaluation.universe.lattice().spacing_mm()};
+  for (const ScanRecord& scan : evaluation.scans)
+    digitised.sample_mm = glm::max(digitised.sample_mm, scan.lattice.spacing_mm());
+  if (object.grey) digitised.shift_mm = window_shift_mm({*object.grey, object.threshold});
+  return digitised;
+}
+
+Json measurement_json(const Measured& measured, const Evaluation& evaluation) {
+  const Object& object = evaluation.objects[measured.object];
   const double voxels_mm3 = object.voxel_measures.volume_mm3;
   Json json{{"id", measured.id},
             {"object", object.id},
@@ -27,6 +37,14 @@ Json measurement_json(const Measured& measured, const Object& object) {
             {"mesh", nullptr},
             {"difference_mm3", nullptr},
             {"difference_percent", nullptr}};
+  const HalfWidth width = volume_half_width(object.voxel_measures, digitised_of(evaluation, object));
+  json["volume_half_width_mm3"] = width.value;
+  json["volume_half_width_terms"] = to_json(width);
+  json["area_half_width_mm2"] = nullptr;
+  if (object.certificate)
+    for (const verify::Comparison& comparison : object.certificate->comparisons)
+      if (comparison.quantity == "area" && comparison.tolerance)
+        json["area_half_width_mm2"] = *comparison.tolerance;
   if (object.mesh_measures) {
     const double mesh_mm3 = object.mesh_measures->volume_mm3;
     json["area_mm2"] = object.mesh_measures->area_mm2;
@@ -140,7 +158,7 @@ Json result_json(const Result& result) {
   for (const ScanRecord& scan : evaluation.scans) json["scans"].push_back(to_json(scan));
   for (const Object& object : evaluation.objects) json["objects"].push_back(to_json(object));
   for (const Measured& measured : evaluation.measured)
-    json["measurements"].push_back(measurement_json(measured, evaluation.objects[measured.object]));
+    json["measurements"].push_back(measurement_json(measured, evaluation));
   json["certificates"] = certificates_json(evaluation);
   json["counts"] = to_json(verdict_counts(evaluation));
   for (const Parts& parts : result.parts)

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "planner/cli/octree_out.h"
 #include "planner/nearest_name.h"
 #include "voxel/combine.h"
 #include "voxel/combine_grey.h"
+#include "voxel/combine_shares.h"
 #include "voxel/expression.h"
+#include "voxel/measure.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -79,6 +82,7 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
 struct Operand {
   voxel::Expression expression;
   voxel::Universe universe;
+  std::optional<voxel::ShareBracket> shares;  // of a file of filled shares
 };
 
 Operand operand_of(const std::string& name, const fs::path& path,
@@ -95,16 +99,58 @@ Operand operand_of(const std::string& name, const fs::path& path,
     const WindowText range = parse_window(window->second);
     voxel::Window leaf{*grey, range.low};
     if (range.high) leaf.high = *range.high;
-    return {leaf, grey->universe()};
+    return {leaf, grey->universe(), std::nullopt};
   }
   if (window != windows.end())
     throw std::runtime_error(path.string() + ": holds no samples to take a --window of: leave '" + name +
                              "' out");
-  const auto* octree = std::get_if<voxel::Octree>(&file.tree);
-  if (octree == nullptr)
-    throw std::runtime_error(path.string() +
-                             ": holds fractions, which have no Boolean: digitise it as centre or half");
-  return {*octree, octree->universe()};
+  if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree))
+    return {partial->touching, partial->inside.universe(), voxel::bracket_of(*partial)};
+  const auto& octree = std::get<voxel::Octree>(file.tree);
+  return {octree, octree.universe(), std::nullopt};
+}
+
+/// A result of shares and what its bounds make of the volume.
+struct ShareResult {
+  voxel::PartialOctree tree;
+  Json said;
+};
+
+/// Operands that know the shares of their voxels; one of whole voxels among them counts as such.
+ShareResult combine_shares(const voxel::Expression& expression,
+                           const std::map<std::string, Operand>& operands) {
+  std::vector<voxel::ShareOperand> known;
+  for (const auto& [name, operand] : operands) {
+    const auto* octree = operand.expression.term().leaf
+                             ? std::get_if<voxel::Octree>(&*operand.expression.term().leaf)
+                             : nullptr;
+    if (!operand.shares && octree == nullptr)
+      throw std::runtime_error(name +
+                               ": samples have no shares to combine with those of the other operands: "
+                               "make it an octree of its window first");
+    known.push_back({operand.expression,
+                     operand.shares ? *operand.shares : voxel::ShareBracket{*octree, *octree, {}, {}}});
+  }
+  const voxel::ShareBracket bracket = voxel::combine_shares(expression, known);
+  ShareResult result{voxel::middle(bracket), Json::object()};
+  const voxel::VolumeBracket volume = voxel::volume_mm3(bracket);
+  const voxel::Measures counted = voxel::measure(voxel::at_least_half(result.tree));
+  // Three standard deviations of a count on curved or oblique boundary, 0.26 of a voxel's face by the square
+  // root of the boundary's faces (Kendall 1948).
+  const double voxel_mm3 = bracket.inside.universe().lattice().voxel_mm3();
+  const double count_mm3 =
+      3.0 * 0.26 * std::pow(voxel_mm3, 2.0 / 3.0) * std::sqrt(counted.area_crofton13_mm2);
+  result.said = {{"volume_bracket_mm3", {volume.low_mm3, volume.high_mm3}},
+                 {"volume_half_width_mm3", volume.half_width_mm3()},
+                 {"volume_counted_mm3", counted.volume_mm3},
+                 {"volume_counted_half_width_mm3", count_mm3},
+                 {"volume_counted_half_width_of",
+                  "3 * 0.26 h^2 sqrt(S); cuts along the lattice add up to h/2 of their area"},
+                 {"tighter", volume.half_width_mm3() <= count_mm3 ? "shares" : "count"},
+                 {"tighter_by", nullptr}};
+  const double least = std::min(volume.half_width_mm3(), count_mm3);
+  if (least > 0.0) result.said["tighter_by"] = std::max(volume.half_width_mm3(), count_mm3) / least;
+  return result;
 }
 
 int eval(const Program& program, const EvalText& text) {
@@ -157,10 +203,18 @@ int eval(const Program& program, const EvalText& text) {
       findings.push_back(name + ": lives in another universe than " + used.front() +
                          ", whose voxels the result has: it is resampled there");
   voxel::OctreeFile result{voxel::Octree::empty(universe), text.expression, ""};
+  Json more = Json::object();
+  const bool with_shares = std::any_of(operands.begin(), operands.end(),
+                                       [](const auto& operand) { return operand.second.shares.has_value(); });
   {
     const Stopwatch watch(timings, "combine");
     const voxel::Resampling resampling = resampling_of(text);
-    if (text.grey) {
+    if (with_shares) {
+      if (text.grey) throw CLI::ValidationError("--grey", "filled shares are no samples: leave it out");
+      ShareResult combined = combine_shares(expression, operands);
+      result.tree = std::move(combined.tree);
+      more = std::move(combined.said);
+    } else if (text.grey) {
       voxel::GreyResult options;
       options.resampling = resampling;
       result.tree = voxel::combine_grey(universe, expression, options);
@@ -173,7 +227,7 @@ int eval(const Program& program, const EvalText& text) {
   for (const auto& [name, window] : windows) made["window"][name] = window;
   for (const auto& [name, motion] : motions) made["motion"][name] = motion;
   result.metadata = made.dump();
-  return write_and_say(program, result, text.out, timings, findings);
+  return write_and_say(program, result, text.out, timings, findings, more);
 }
 
 }  // namespace
@@ -182,7 +236,8 @@ void add_eval(Program& program) {
   const auto to_evaluate = std::make_shared<EvalText>();
   CLI::App& evaluate = program.verb(
       "eval", "Evaluates a Boolean expression of octrees: & | - ^ ~, parentheses, move(a, m)",
-      "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree",
+      "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"
+      "  Files of filled shares (--digitise partial) give shares again, with bounds of the volume.",
       [&program, to_evaluate] { return eval(program, *to_evaluate); });
   evaluate.add_option("expression", to_evaluate->expression, "For example \"(a | b) - c\"")->required();
   evaluate.add_option("-o,--out", to_evaluate->out, "An .octree file, in the universe of the first name")

@@ -35,7 +35,11 @@ int say(const Program& program, const Json& json) {
   };
   program.say(
       json,
-      lines({{"volume", value("volume_mm3", 1) + " mm\u00b3, " + json["volume_estimator"].get<std::string>()},
+      lines({{"volume", value("volume_mm3", 1) +
+                            (json.contains("volume_half_width_mm3")
+                                 ? " \u00b1 " + three_figures(json["volume_half_width_mm3"].get<double>())
+                                 : std::string()) +
+                            " mm\u00b3, " + json["volume_estimator"].get<std::string>()},
              {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
              {"area", value("area_mm2", 1) + " mm\u00b2, " + json["area_estimator"].get<std::string>()},
              {"components", value("components", 0)},
@@ -81,6 +85,12 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings) {
   return json;
 }
 
+void add_half_width(const voxel::Octree& octree, const Digitised& digitised, Json& json) {
+  const HalfWidth width = volume_half_width(voxel::measure(octree), digitised);
+  json["volume_half_width_mm3"] = width.value;
+  json["volume_half_width_terms"] = to_json(width);
+}
+
 void add_partial_volume(const voxel::Window& window, Timings& timings, Json& json) {
   const Stopwatch watch(timings, "partial volume");
   json["volume_partial_mm3"] = nullptr;
@@ -123,7 +133,9 @@ int measure_octree(const Program& program, const MeasureText& text) {
     json["volume_partial_mm3"] = voxel::volume_mm3(*partial);
     json["volume_partial_estimator"] = "the voxels' filled shares";
   } else {
-    json = of_voxels(std::get<voxel::Octree>(file.tree), timings);
+    const auto& octree = std::get<voxel::Octree>(file.tree);
+    json = of_voxels(octree, timings);
+    add_half_width(octree, {octree.universe().lattice().spacing_mm()}, json);
     json["volume_partial_mm3"] = nullptr;
     json["findings"].push_back(
         "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
@@ -146,8 +158,15 @@ int measure_scan(const Program& program, const MeasureText& text) {
     grey = voxel::grey_octree_of(universe_of(scene.lattice, text.voxel_mm), scene);
   }
   const voxel::Window window = window_of(*grey, text);
-  Json json = of_voxels(voxel::combine(grey->universe(), window), timings);
+  const voxel::Octree inside = voxel::combine(grey->universe(), window);
+  Json json = of_voxels(inside, timings);
   add_partial_volume(window, timings, json);
+  {
+    const Stopwatch watch(timings, "half_width");
+    add_half_width(
+        inside,
+        {grey->universe().lattice().spacing_mm(), scene.lattice.spacing_mm(), window_shift_mm(window)}, json);
+  }
   brep::Measures surface;
   brep::Health health;
   {

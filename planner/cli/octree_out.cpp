@@ -26,7 +26,7 @@ voxel::OctreeFile read_timed(const fs::path& path, Timings& timings) {
 }
 
 int write_and_say(const Program& program, const voxel::OctreeFile& file, const fs::path& out,
-                  Timings& timings, const std::vector<std::string>& findings) {
+                  Timings& timings, const std::vector<std::string>& findings, const Json& more) {
   if (program.stop.stop_requested()) throw Stopped("stopped before " + out.string() + " was written");
   {
     const Stopwatch watch(timings, "write");
@@ -34,6 +34,7 @@ int write_and_say(const Program& program, const voxel::OctreeFile& file, const f
   }
   Json json = octree_answer(file, fs::file_size(out), timings);
   json["path"] = out.string();
+  json.update(more);
   for (const std::string& finding : findings) {
     warn(finding);
     json["findings"].push_back(finding);

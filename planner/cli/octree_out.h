@@ -13,9 +13,10 @@ void need_octree_extension(const std::filesystem::path& out);
 /// Reads the file; "read" in the timings.
 voxel::OctreeFile read_timed(const std::filesystem::path& path, Timings& timings);
 
-/// Writes the file and says of it what info does, and the findings. Throws Stopped before anything is written
-/// where the program is asked to stop.
+/// Writes the file and says of it what info does, the findings, and what else `more` has. Throws Stopped
+/// before anything is written where the program is asked to stop.
 int write_and_say(const Program& program, const voxel::OctreeFile& file, const std::filesystem::path& out,
-                  Timings& timings, const std::vector<std::string>& findings = {});
+                  Timings& timings, const std::vector<std::string>& findings = {},
+                  const Json& more = Json::object());
 
 }  // namespace octotomy::planner::cli
