@@ -147,6 +147,57 @@ TEST(CertifyBounded, AShiftOfHalfAVoxelDoesNotPassOnAnyPhantom) {
   }
 }
 
+Agreement verdict_on(const Certificate& certificate, const std::string& quantity) {
+  for (const Comparison& comparison : certificate.comparisons)
+    if (comparison.quantity == quantity) return comparison.agreement;
+  ADD_FAILURE() << quantity << " was not compared";
+  return Agreement::Fail;
+}
+
+TEST(CertifyBounded, AShiftThatNoVolumeSeesHasVerdictsOfItsOwn) {
+  Pair pair = both_kernels(phantoms()[0].distance, 1.0, 1.0, 18.0);
+  const Certificate right = certify(pair);
+  for (const char* quantity :
+       {"volume", "symmetric difference", "centroid", "area", "inertia", "hausdorff95", "mean distance"})
+    EXPECT_EQ(verdict_on(right, quantity), Agreement::Pass) << quantity;
+  pair.mesh = brep::moved(pair.mesh, shifted({0.5, 0, 0}));
+  const Certificate wrong = certify(pair);
+  EXPECT_EQ(verdict_on(wrong, "volume"), Agreement::Pass);
+  EXPECT_EQ(verdict_on(wrong, "area"), Agreement::Pass);
+  EXPECT_EQ(verdict_on(wrong, "centroid"), Agreement::Fail) << told(wrong);
+}
+
+TEST(CertifyBounded, TheVolumesToleranceIsWithinThreeTimesWhatSpheresShow) {
+  double worst = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    const glm::dvec3 centre =
+        glm::fract(glm::dvec3(i) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
+    const Certificate certificate = certify(both_kernels(ball(centre, 12.0 + 0.09 * i), 1.0, 1.0, 16.0));
+    ASSERT_EQ(certificate.agreement, Agreement::Pass) << told(certificate);
+    worst = std::max(worst, std::abs(certificate.difference_mm3) / certificate.tolerance_mm3);
+  }
+  EXPECT_GT(worst, 1.0 / 3.0);
+}
+
+TEST(CertifyBounded, WhereVoxelsAreTheSamplesTopologyIsCertifiedAndALostHandleFails) {
+  const Distance ring = [](const glm::dvec3& p) {
+    return glm::length(glm::dvec2(glm::length(glm::dvec2(p)) - 10.2, p.z)) - 3.3;
+  };
+  const voxel::Scene scan = scan_of(ring, 1.0, 16.0);
+  const voxel::Universe universe = voxel::universe_around(voxel::bounds(scan.lattice), 1.0);
+  const voxel::GreyOctree grey = voxel::grey_octree_of(universe, scan, -1000);
+  const voxel::Octree octree = voxel::combine(universe, voxel::Window{grey, 0.0, 32767.0});
+  BoundInputs inputs;
+  inputs.voxels_are_samples = true;
+  const Certificate right =
+      certify_bounded(octree, brep::mesh_of(convert::isosurface(scan, 0.0, 32767.0)), inputs);
+  EXPECT_EQ(verdict_on(right, "euler"), Agreement::Pass) << told(right);
+  const voxel::Scene plug = scan_of(either(ring, ball({0, 0, 0}, 8.0)), 1.0, 16.0);
+  const Certificate wrong =
+      certify_bounded(octree, brep::mesh_of(convert::isosurface(plug, 0.0, 32767.0)), inputs);
+  EXPECT_EQ(verdict_on(wrong, "euler"), Agreement::Fail) << told(wrong);
+}
+
 TEST(CertifyBounded, AMeshTurnedInsideOutFails) {
   Pair pair = both_kernels(phantoms()[0].distance, 1.0, 1.0, 18.0);
   brep::Triangles triangles = brep::triangles_of(pair.mesh);
