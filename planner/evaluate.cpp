@@ -32,6 +32,7 @@ struct CutPlane {
   int axis = 0;
   glm::dvec3 normal{1, 0, 0};
   double offset_mm = 0.0;
+  double voxels = 1.0;  ///< how much a piece of it may err, in what a cut's of that area may
 };
 
 /// What an object is made from, beside what a report shows of it.
@@ -62,7 +63,7 @@ double on_plane_mm(double reach_mm) {
   return 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
-/// Area of the mesh's triangles that lie on the planes, by the planes' axes.
+/// Area of the mesh's triangles that lie on the planes, by the planes' axes, each by how much it may err.
 glm::dvec3 area_on_planes(const brep::Mesh& mesh, const std::vector<CutPlane>& planes) {
   glm::dvec3 area_mm2(0.0);
   if (planes.empty()) return area_mm2;
@@ -79,7 +80,8 @@ glm::dvec3 area_on_planes(const brep::Mesh& mesh, const std::vector<CutPlane>& p
         return std::abs(glm::dot(plane.normal, p) - plane.offset_mm);
       };
       if (std::max({off(corner[0]), off(corner[1]), off(corner[2])}) > on_plane_mm(reach_mm)) continue;
-      area_mm2[plane.axis] += 0.5 * glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+      area_mm2[plane.axis] +=
+          plane.voxels * 0.5 * glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
       break;
     }
   }
@@ -101,6 +103,19 @@ std::vector<CutPlane> planes_of(const voxel::RegionMask& mask) {
         for (int axis = 0; axis < 3; ++axis)
           if (std::abs(normal[axis]) >= 1.0 - rounding) planes.push_back({axis, normal, glm::dot(across, a)});
       }
+  return planes;
+}
+
+/// Where a solid ends with its scan, mesh and voxels end up to half a sample apart, not half a voxel.
+std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_mm,
+                              const glm::dvec3& voxel_mm) {
+  std::vector<CutPlane> planes;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double at_mm : {scan.low_mm[axis], scan.high_mm[axis]}) {
+      glm::dvec3 normal(0.0);
+      normal[axis] = 1.0;
+      planes.push_back({axis, normal, at_mm, sample_mm[axis] / voxel_mm[axis]});
+    }
   return planes;
 }
 
@@ -370,7 +385,13 @@ class Evaluator {
     inherit_samples(object, {step.object});
     object.moved_from_still = motion * object.moved_from_still;
     object.moved = Object::Moved{step.object, motion};
-    making.planes = moved_planes(still.planes, motion);
+    making.planes = still.planes;
+    if (still.scan_box_mm) {
+      const auto ends =
+          ends_of(*still.scan_box_mm, still.spacing_mm, result_.universe.lattice().spacing_mm());
+      making.planes.insert(making.planes.end(), ends.begin(), ends.end());
+    }
+    making.planes = moved_planes(std::move(making.planes), motion);
     making.spacing_mm = still.spacing_mm;
     making.voxel_lineage = "what the object is made of under a rigid motion, windows on interpolated samples";
     making.mesh_lineage = "vertices of a mesh under a rigid motion";

@@ -3,9 +3,9 @@
 // Compares an octree with a solid of another lineage, as a metrologist would: what is the largest difference
 // that two right answers may show? boundary_model.h has the theory and its symbols; here are the constants.
 //
-// count      Three standard deviations of a count. Against closed forms 60 seeds each of eight solids,
-// turned,
-//            at spacings 1:1:1 to 5:1:1, showed 0.8 to 1.1 of the deviation predicted.
+// count      Three standard deviations of a count. Against closed forms 60 seeds each of eight solids, turned
+//            by chance, at spacings 1:1:1 to 5:1:1, showed 0.8 to 1.1 of the deviation predicted; along the
+//            lattice, where nearly flat parts err in step, narrow cones predict that.
 // flat       The sum of planes' displacements, as it is.
 // flat_unsure  Planes through centres, rims, cuts that were declared and are not seen (h / 2 each).
 // border     Where the solid ends with the scan the mesh closes half a sample beyond the last, and the voxels
@@ -15,10 +15,9 @@
 //            samples: 0.33 of it. Between samples further apart than two voxels both kernels follow the same
 //            straight lines along the lattice, so spacings count up to twice a voxel's edge only; and up to
 //            three times the finest, as the crossings of the finer lattice lines hold the facets.
-// rough      Cells in which samples on both sides meet diagonally: the mesh keeps the inside corners apart,
-// the
-//            interpolant that the octree samples joins some. Up to 0.12 of the curvature without sign on real
-//            scans.
+// rough      Cells in which samples of both sides meet diagonally: the mesh keeps the inside corners apart,
+//            the interpolant that the octree samples joins some. Not derived: 0.12 of the curvature without
+//            sign is what a CT of a head at 0.7 of its sample spacing showed.
 // rounding   Coordinates are good to a few units in the last place.
 //
 // The symmetric difference counts what cancels in the volume: 0.06 s S on oblique planes between saturated
@@ -236,7 +235,8 @@ void derive_other_tolerances(Certificate& certificate, const Evidence& evidence)
     const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
     const double mm4 = coverage * std::sqrt(model.count_mm8) + glm::length(model.planes.mm4) +
                        model.unsure.mm4 + evidence.unseen_mm3 * arm_mm + evidence.border.mm4 +
-                       bent_share * glm::length(model.bent.mm4) + rough_share * model.bent_without_sign.mm4;
+                       bent_share * glm::length(model.bent.mm4) + rough_share * model.bent_without_sign.mm4 +
+                       certificate.terms.back().value_mm3 * arm_mm;
     certificate.centroid_tolerance_mm = mm4 / evidence.mesh.volume_mm3;
   }
 }
@@ -260,12 +260,22 @@ glm::dmat3 inertia_about(const brep::Triangles& triangles, const glm::dvec3& abo
 /// Where the answers have a part each and the mesh has an inside.
 void compare_moments(Certificate& certificate, const Evidence& evidence, const brep::Mesh& solid) {
   const BoundaryModel& model = evidence.model;
-  add_comparison(certificate,
-                 {"area", "mm2", evidence.voxels.area_crofton13_mm2, model.crofton13_mm2,
-                  std::abs(evidence.voxels.area_crofton13_mm2 - model.crofton13_mm2),
-                  ripple * model.area_mm2 + edge_shift * longest(evidence.voxel_mm) * model.curvature_mm +
-                      model.rims_mm2,
-                  "0.03 S + 0.3 h M + rims; both by the Crofton formula of 13 directions"});
+  Comparison area{
+      "area",
+      "mm2",
+      evidence.voxels.area_crofton13_mm2,
+      model.crofton13_mm2,
+      std::abs(evidence.voxels.area_crofton13_mm2 - model.crofton13_mm2),
+      ripple * model.area_mm2 + edge_shift * longest(evidence.voxel_mm) * model.curvature_mm + model.rims_mm2,
+      "0.03 S + 0.3 h M + rims; both by the Crofton formula of 13 directions"};
+  // Sheets thinner than a voxel lose their area before their volume shows it: a doubt, whatever its size.
+  if (!(area.difference <= *area.tolerance)) {
+    area.agreement = Agreement::Warn;
+    lower(certificate, Agreement::Warn,
+          "area differs by " + std::to_string(area.difference) + " mm2 where theory allows " +
+              std::to_string(*area.tolerance));
+  }
+  certificate.comparisons.push_back(std::move(area));
   if (!evidence.voxels.inertia_mm5 || !(evidence.mesh.volume_mm3 > 0.0)) return;
   const glm::dmat3 inertia = inertia_about(brep::triangles_of(solid), *evidence.mesh.centroid_mm);
   double most = 0.0;
@@ -273,8 +283,12 @@ void compare_moments(Certificate& certificate, const Evidence& evidence, const b
     for (int j = 0; j < 3; ++j)
       most = std::max(most, std::abs((*evidence.voxels.inertia_mm5)[i][j] - inertia[i][j]));
   const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
-  const double tolerance = coverage * std::sqrt(model.count_mm10) + model.planes_without_sign.mm5 +
-                           model.unsure.mm5 + evidence.border.mm5 + evidence.unseen_mm3 * arm_mm * arm_mm +
+  // Displaced planes meet: second order in a voxel over the least extent.
+  const glm::dvec3 extent_mm = evidence.mesh.high_mm - evidence.mesh.low_mm;
+  const double meeting = 1.0 + longest(evidence.voxel_mm) / std::min({extent_mm.x, extent_mm.y, extent_mm.z});
+  const double tolerance = coverage * std::sqrt(model.count_mm10) +
+                           meeting * (model.planes_without_sign.mm5 + model.unsure.mm5) +
+                           evidence.border.mm5 + evidence.unseen_mm3 * arm_mm * arm_mm +
                            (bent_share + rough_share) * model.bent_without_sign.mm5;
   add_comparison(certificate,
                  {"inertia", "mm5", (*evidence.voxels.inertia_mm5)[0][0], inertia[0][0], most, tolerance,
@@ -300,7 +314,8 @@ void compare_distances(Certificate& certificate, const Evidence& evidence, doubl
                                0.25 * longest(evidence.voxel_mm) * (1.0 + free_mm2 / model.area_mm2) / 2.0 +
                                    apart_mm + layers_mm3 / model.area_mm2,
                                "h/4 on curved boundary + displacement of flats + 0.1 s"});
-  if (certificate.hausdorff_mm && *certificate.hausdorff_mm > lost * near_mm)
+  if (certificate.hausdorff_mm &&
+      *certificate.hausdorff_mm > lost * (near_mm + 0.5 * longest(evidence.sample_mm)))
     lower(certificate, Agreement::Warn,
           "a part of one surface is " + std::to_string(*certificate.hausdorff_mm) +
               " mm from the other: it may be missing there");

@@ -16,7 +16,7 @@ voxel::Universe universe_of_64() {
 
 TEST(VolumeHalfWidth, HoldsTheTruthOfBallsWhereverTheyLieAndIsNotIdle) {
   int outside_of_a_tenth = 0;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 1; i <= 40; ++i) {
     const glm::dvec3 centre =
         glm::fract(glm::dvec3(i) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
     const double radius_mm = 9.0 + 0.23 * i;
