@@ -315,7 +315,8 @@ void compare_distances(Certificate& certificate, const Evidence& evidence, doubl
                                    apart_mm + layers_mm3 / model.area_mm2,
                                "h/4 on curved boundary + displacement of flats + 0.1 s"});
   if (certificate.hausdorff_mm &&
-      *certificate.hausdorff_mm > lost * (near_mm + 0.5 * longest(evidence.sample_mm)))
+      *certificate.hausdorff_mm >
+          lost * 0.5 * (glm::length(evidence.voxel_mm) + glm::length(evidence.sample_mm)))
     lower(certificate, Agreement::Warn,
           "a part of one surface is " + std::to_string(*certificate.hausdorff_mm) +
               " mm from the other: it may be missing there");
