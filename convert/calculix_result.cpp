@@ -22,48 +22,124 @@ constexpr std::size_t value_width = 12;
   throw std::runtime_error(path.string() + ", line " + std::to_string(line) + ": " + why);
 }
 
-bool begins(const std::string& line, const std::string& with) {
-  return line.compare(0, with.size(), with) == 0;
+std::ifstream opened(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  if (!in) throw std::runtime_error(path.string() + ": cannot be read");
+  return in;
+}
+
+/// A line of a result that is read, and where it stands.
+struct Line {
+  const std::filesystem::path& path;
+  std::size_t number = 0;
+  std::string text;
+
+  bool next(std::ifstream& in) {
+    ++number;
+    return static_cast<bool>(std::getline(in, text));
+  }
+  bool begins(const char* with) const { return text.rfind(with, 0) == 0; }
+  void need(std::size_t size) const {
+    if (text.size() < size) refuse(path, number, "is cut short");
+  }
+  /// The whole number in a field.
+  long whole(std::size_t at, std::size_t width) const {
+    return std::strtol(text.substr(at, width).c_str(), nullptr, 10);
+  }
+  /// The three values of a node.
+  glm::dvec3 vector() const {
+    need(node_at + node_width + 3 * value_width);
+    glm::dvec3 v(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string field =
+          text.substr(node_at + node_width + static_cast<std::size_t>(axis) * value_width, value_width);
+      char* end = nullptr;
+      v[axis] = std::strtod(field.c_str(), &end);
+      if (end == field.c_str() || !std::isfinite(v[axis]))
+        refuse(path, number, "'" + field + "' is no number");
+    }
+    return v;
+  }
+};
+
+/// The nodes' block: node n is the n-th line, as write_deck() numbers them.
+void read_nodes(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
+  while (line.next(in) && !line.begins(" -3")) {
+    const glm::dvec3 p_mm = line.vector();
+    if (line.whole(node_at, node_width) != static_cast<long>(tetrahedra.nodes_mm.size()) + 1)
+      refuse(line.path, line.number, "nodes are not numbered from 1 on: only decks of octotomy are read");
+    tetrahedra.nodes_mm.push_back(p_mm);
+  }
+}
+
+/// The elements' block: two lines each, of type and nodes.
+void read_elements(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
+  constexpr std::size_t type_at = node_at + node_width, type_width = 5;
+  constexpr long linear_tetrahedron = 3;
+  while (line.next(in) && !line.begins(" -3")) {
+    line.need(type_at + type_width);
+    if (line.whole(type_at, type_width) != linear_tetrahedron)
+      refuse(line.path, line.number, "is no linear tetrahedron");
+    if (!line.next(in)) refuse(line.path, line.number, "ends within an element");
+    line.need(node_at + 4 * node_width);
+    std::array<std::uint32_t, 4> tet{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const long node = line.whole(node_at + i * node_width, node_width);
+      if (node < 1 || static_cast<std::size_t>(node) > tetrahedra.nodes_mm.size())
+        refuse(line.path, line.number, "node " + std::to_string(node) + " is none of the file's");
+      tet[i] = static_cast<std::uint32_t>(node - 1);
+    }
+    tetrahedra.tets.push_back(tet);
+  }
 }
 
 }  // namespace
 
 std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,
                                                           std::size_t node_count) {
-  std::ifstream in(frd);
-  if (!in) throw std::runtime_error(frd.string() + ": cannot be read");
+  std::ifstream in = opened(frd);
   std::vector<std::optional<glm::dvec3>> result(node_count);
   bool within = false;
   bool found = false;
-  std::string line;
-  for (std::size_t number = 1; std::getline(in, line); ++number) {
-    if (begins(line, " -4")) {
-      within = line.find("DISP") != std::string::npos;
+  for (Line line{frd, 0, {}}; line.next(in);) {
+    if (line.begins(" -4")) {
+      within = line.text.find("DISP") != std::string::npos;
       found = found || within;
-    } else if (begins(line, " -3")) {
+    } else if (line.begins(" -3")) {
       within = false;
-    } else if (within && begins(line, " -1")) {
-      if (line.size() < node_at + node_width + 3 * value_width) refuse(frd, number, "is cut short");
-      const long node = std::strtol(line.substr(node_at, node_width).c_str(), nullptr, 10);
+    } else if (within && line.begins(" -1")) {
+      const glm::dvec3 displacement = line.vector();
+      const long node = line.whole(node_at, node_width);
       if (node < 1 || static_cast<std::size_t>(node) > node_count)
-        refuse(frd, number,
+        refuse(frd, line.number,
                "node " + std::to_string(node) + " is none of the deck's " + std::to_string(node_count));
-      glm::dvec3 u(0.0);
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::string text =
-            line.substr(node_at + node_width + static_cast<std::size_t>(axis) * value_width, value_width);
-        char* end = nullptr;
-        u[axis] = std::strtod(text.c_str(), &end);
-        if (end == text.c_str() || !std::isfinite(u[axis]))
-          refuse(frd, number, "'" + text + "' is no displacement");
-      }
-      result[static_cast<std::size_t>(node - 1)] = u;
+      result[static_cast<std::size_t>(node - 1)] = displacement;
     }
   }
   if (!found)
     throw std::runtime_error(frd.string() +
                              ": holds no displacements: did the solver end before its step did?");
   return result;
+}
+
+SolvedDeck read_solved_deck(const std::filesystem::path& frd) {
+  std::ifstream in = opened(frd);
+  SolvedDeck deck;
+  for (Line line{frd, 0, {}}; line.next(in);) {
+    if (line.begins("    2C")) read_nodes(in, line, deck.tetrahedra);
+    if (line.begins("    3C")) read_elements(in, line, deck.tetrahedra);
+    if (line.begins(" -4")) break;
+  }
+  if (deck.tetrahedra.tets.empty()) throw std::runtime_error(frd.string() + ": holds no elements");
+  deck.tetrahedra.boundary_nodes = boundary_nodes(deck.tetrahedra.tets);
+  deck.tetrahedra.method = "CalculiX";
+  const auto displacements = read_displacements(frd, deck.tetrahedra.nodes_mm.size());
+  for (std::size_t node = 0; node < displacements.size(); ++node) {
+    if (!displacements[node])
+      throw std::runtime_error(frd.string() + ": node " + std::to_string(node + 1) + " has no displacement");
+    deck.displacement_mm.push_back(*displacements[node]);
+  }
+  return deck;
 }
 
 }  // namespace octotomy::convert

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "convert/tetrahedralise.h"
+
 namespace octotomy::convert {
 
 /// The displacements of the last step in CalculiX's .frd result, by node of the deck that write_deck() made
@@ -14,5 +16,16 @@ namespace octotomy::convert {
 /// none of such a result; a node number beyond `node_count` is one. Memory: 32 bytes a node.
 std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,
                                                           std::size_t node_count);
+
+/// A deck as CalculiX's .frd result holds it, solved: nodes to the six digits of that file, linear
+/// tetrahedra, and the displacements of the last step.
+struct SolvedDeck {
+  Tetrahedra tetrahedra;
+  std::vector<glm::dvec3> displacement_mm;
+};
+/// Throws std::runtime_error with path and line as read_displacements() does, and where an element is no
+/// linear tetrahedron, stands on a node that the file lacks, or a node has no displacement. Memory: that of
+/// the nodes and elements that the file holds.
+SolvedDeck read_solved_deck(const std::filesystem::path& frd);
 
 }  // namespace octotomy::convert

@@ -8,56 +8,17 @@
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
+#include "convert/scan_sampler.h"
+
 namespace octotomy::convert {
 namespace {
 
 /// Points along an edge of an element at most.
 constexpr int most_points_an_edge = 9;
 
-/// The trilinear interpolant of a scene; none outside its samples' voxels. Between the outermost samples and
-/// the voxels' ends it is constant.
-class Sampler {
- public:
-  explicit Sampler(const voxel::Scene& scan)
-      : scan_(scan), voxel_from_lps_(glm::inverse(scan.lattice.lps_from_voxel)) {}
-
-  glm::dvec3 voxel(const glm::dvec3& p_mm) const { return voxel_from_lps_ * glm::dvec4(p_mm, 1.0); }
-  bool holds(const glm::dvec3& v) const {
-    return glm::all(glm::greaterThanEqual(v, glm::dvec3(-0.5))) &&
-           glm::all(glm::lessThanEqual(v, glm::dvec3(scan_.lattice.dims) - 0.5));
-  }
-  double at(const glm::dvec3& v) const {
-    const glm::dvec3 most(scan_.lattice.dims - 1);
-    const glm::dvec3 inside = glm::clamp(v, glm::dvec3(0.0), most);
-    const glm::ivec3 low = glm::min(glm::ivec3(inside), glm::max(scan_.lattice.dims - 2, glm::ivec3(0)));
-    const glm::dvec3 t = inside - glm::dvec3(low);
-    double sum = 0.0;
-    for (int k = 0; k < 8; ++k) {
-      const glm::ivec3 step(k & 1, (k >> 1) & 1, k >> 2);
-      const double weight =
-          (step.x != 0 ? t.x : 1.0 - t.x) * (step.y != 0 ? t.y : 1.0 - t.y) * (step.z != 0 ? t.z : 1.0 - t.z);
-      if (weight > 0.0) sum += weight * sample(low + step);
-    }
-    return sum;
-  }
-
- private:
-  double sample(const glm::ivec3& v) const {
-    const auto nx = static_cast<std::size_t>(scan_.lattice.dims.x);
-    const auto ny = static_cast<std::size_t>(scan_.lattice.dims.y);
-    const std::size_t index = static_cast<std::size_t>(v.x) +
-                              nx * (static_cast<std::size_t>(v.y) + ny * static_cast<std::size_t>(v.z));
-    return std::visit([&](const auto& samples) { return static_cast<double>(samples[index]); },
-                      scan_.samples);
-  }
-
-  const voxel::Scene& scan_;
-  glm::dmat4 voxel_from_lps_;
-};
-
 /// The mean over an element; none where no point of it is in the scan. Points are the middles of the corners'
 /// lattice: with n an edge, barycentric coordinates (i + 1/4) / n that sum to 1, each as good as the others.
-std::optional<double> mean_over(const std::array<glm::dvec3, 4>& v, const Sampler& scan) {
+std::optional<double> mean_over(const std::array<glm::dvec3, 4>& v, const ScanSampler& scan) {
   double longest = 0.0;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, glm::distance(v[i], v[j]));
@@ -167,7 +128,7 @@ ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Sc
   voxel::check(scan);
   const StiffnessLaw& law = stiffness_law(options.law);
   const DensityCalibration calibration = options.calibration.value_or(DensityCalibration{});
-  const Sampler sampler(scan);
+  const ScanSampler sampler(scan);
   ElementMaterials result;
   const std::size_t count = tetrahedra.tets.size();
   result.hu.resize(count);

@@ -131,6 +131,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_slice(program);
   cli::add_mesh_verbs(program);
   cli::add_tet(program);
+  cli::add_warp(program);
   cli::add_voxelise(program);
   cli::add_register(program);
   cli::add_compare(program);

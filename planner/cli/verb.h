@@ -55,6 +55,7 @@ void add_verify_verbs(Program& program);
 void add_voxelise(Program& program);
 void add_register(Program& program);
 void add_compare(Program& program);
+void add_warp(Program& program);
 void add_octree(Program& program);
 void add_eval(Program& program);
 void add_mark(Program& program);
