@@ -187,13 +187,13 @@ voxel::Scene warped(const voxel::Scene& scan, const DisplacementField& field,
   voxel::Scene result = scan;
   const glm::ivec3& dims = scan.lattice.dims;
   const std::size_t slice = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
-  std::vector<glm::dvec3> points_mm(slice);
+  std::vector<glm::dvec3> points_mm;
+  points_mm.reserve(slice);
   for (int z = 0; z < dims.z; ++z) {
     progress.at(static_cast<double>(z) / dims.z);
-    for (std::size_t i = 0; i < slice; ++i)
-      points_mm[i] =
-          scan.lattice.lps_mm(glm::dvec3(static_cast<double>(i % static_cast<std::size_t>(dims.x)),
-                                         static_cast<double>(i / static_cast<std::size_t>(dims.x)), z));
+    points_mm.clear();
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) points_mm.push_back(scan.lattice.lps_mm({x, y, z}));
     const std::vector<glm::dvec3> from = back.at(points_mm);
     std::visit(
         [&](auto& samples) {

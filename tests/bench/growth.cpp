@@ -62,11 +62,10 @@ const Subject subjects[] = {
 };
 
 void draw(const char* path) {
-  octotomy::bench::LogPlot plot{
-      "Cost of a Boolean: powers up to 2 follow the surface, 3 the volume",
-      "voxels a side of the universe",
-      "microseconds",
-      {}};
+  octotomy::bench::LogPlot plot{"Cost of a Boolean: powers up to 2 follow the surface, 3 the volume",
+                                "voxels a side of the universe",
+                                "microseconds",
+                                {}};
   for (const Subject& subject : subjects) {
     Curve curve{subject.name, {}};
     for (const int side : {64, 128, 256, 512}) {
