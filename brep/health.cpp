@@ -12,12 +12,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tuple>
 
+#include "brep/disjoint_sets.h"
 #include "brep/distance.h"
 
 namespace octotomy::brep {
@@ -41,24 +41,6 @@ void check_points(const Triangles& triangles) {
         throw std::runtime_error("triangle " + std::to_string(f) + " has a point that is not finite");
     }
 }
-
-/// Sets of numbers that joins merge; a set's name is its smallest member.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t set_of(std::uint32_t member) {
-    while (parent_[member] != member) member = parent_[member] = parent_[parent_[member]];
-    return member;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = set_of(a);
-    b = set_of(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Side `corner % 3` of triangle `corner / 3`, from that corner to the next.
 struct Side {
@@ -87,7 +69,7 @@ std::uint32_t next_corner(std::uint32_t corner) {
 /// Counts what edges and vertices tell; returns the shell of each triangle, named by its first triangle.
 std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health& health) {
   const std::vector<Side> sides = sorted_sides(triangles);
-  Sets shells(triangles.faces.size()), fans(sides.size());
+  DisjointSets shells(triangles.faces.size()), fans(sides.size());
   std::size_t edges = 0;
   for (std::size_t i = 0, j; i < sides.size(); i = j) {
     for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high; ++j) {
@@ -111,7 +93,7 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
     if (count == 0) ++health.unused_vertices;
     if (count > 1) ++health.nonmanifold_vertices;
   }
-  Sets bodies(triangles.points_mm.size());
+  DisjointSets bodies(triangles.points_mm.size());
   for (const auto& face : triangles.faces) {
     bodies.join(face[0], face[1]);
     bodies.join(face[1], face[2]);

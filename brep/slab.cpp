@@ -13,9 +13,10 @@
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <unordered_map>
+
+#include "brep/disjoint_sets.h"
 
 namespace octotomy::brep {
 namespace {
@@ -52,13 +53,10 @@ std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
 
 class Overlay {
  public:
-  explicit Overlay(const Slab& slab) : slab_(slab), half_mm_(0.5 * (slab.low_mm + slab.high_mm)) {
-    std::uint32_t contours = 0;
-    for (const auto* section : {&slab.lower, &slab.upper})
-      contours += static_cast<std::uint32_t>(section->size());
-    joined_.resize(contours);
-    std::iota(joined_.begin(), joined_.end(), 0u);
-  }
+  explicit Overlay(const Slab& slab)
+      : slab_(slab),
+        half_mm_(0.5 * (slab.low_mm + slab.high_mm)),
+        joined_(slab.lower.size() + slab.upper.size()) {}
 
   SlabSurface run() {
     insert(slab_.lower, at_lower, 0);
@@ -133,7 +131,7 @@ class Overlay {
       } else if ((mark.contour < slab_.lower.size()) == (contour < slab_.lower.size())) {
         throw ContoursMeet(name(contour) + " and " + name(mark.contour) + " cross");
       } else {
-        join(mark.contour, contour);
+        joined_.join(mark.contour, contour);
       }
     }
     for (std::size_t k = 0; k + 1 < side.chain.size(); ++k)
@@ -188,7 +186,7 @@ class Overlay {
       const auto i = static_cast<std::size_t>(k);
       corner[i] = point_of(from);
       level = level && from->info().level == face->vertex(0)->info().level;
-      if (contour != none) join(contour, from->info().contour);
+      if (contour != none) joined_.join(contour, from->info().contour);
       contour = from->info().contour;
       const bool flat = from->info().level == to->info().level && from->info().level != half_way &&
                         !face->is_constrained(Plane::cw(k));
@@ -236,21 +234,11 @@ class Overlay {
     }
   }
 
-  std::uint32_t root(std::uint32_t contour) {
-    while (joined_[contour] != contour) contour = joined_[contour] = joined_[joined_[contour]];
-    return contour;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    joined_[std::max(a, b)] = std::min(a, b);
-  }
-
   void number_groups() {
-    std::vector<std::uint32_t> number(joined_.size(), none);
+    std::vector<std::uint32_t> number(slab_.lower.size() + slab_.upper.size(), none);
     const auto lower_count = static_cast<std::uint32_t>(slab_.lower.size());
-    for (std::uint32_t c = 0; c < joined_.size(); ++c) {
-      std::uint32_t& group = number[root(c)];
+    for (std::uint32_t c = 0; c < number.size(); ++c) {
+      std::uint32_t& group = number[joined_.set_of(c)];
       if (group == none) {
         group = static_cast<std::uint32_t>(surface_.groups.size());
         surface_.groups.emplace_back();
@@ -260,7 +248,7 @@ class Overlay {
       else
         surface_.groups[group].upper.push_back(c - lower_count);
     }
-    for (std::uint32_t& group : surface_.group) group = number[root(group)];
+    for (std::uint32_t& group : surface_.group) group = number[joined_.set_of(group)];
   }
 
   const Slab& slab_;
@@ -271,7 +259,7 @@ class Overlay {
   std::unordered_map<std::uint64_t, std::uint8_t> bounds_;    ///< sections that a piece of a side bounds
   std::unordered_map<std::uint64_t, std::uint32_t> middles_;  ///< points half way on flat edges
   std::unordered_map<std::uint32_t, int> crossed_;
-  std::vector<std::uint32_t> joined_;
+  DisjointSets joined_;
   SlabSurface surface_;
 };
 

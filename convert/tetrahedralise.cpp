@@ -6,12 +6,12 @@
 #include <iomanip>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <tbb/parallel_sort.h>
 
+#include "brep/disjoint_sets.h"
 #include "convert/tetgen_process.h"
 
 // 1 The surface becomes points and triangles; what TetGen would abort on is refused here.
@@ -105,26 +105,20 @@ struct Part {
   double six_volumes_mm3 = 0.0;
 };
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
 /// Parts in the order of their first triangle. Volumes are taken about the surface's first point.
 std::vector<Part> parts_of(const TetgenInput& surface) {
-  std::vector<std::uint32_t> parent(surface.points_mm.size());
-  std::iota(parent.begin(), parent.end(), 0U);
+  brep::DisjointSets sets(surface.points_mm.size());
   for (const auto& [a, b, c] : surface.triangles) {
-    parent[root_of(parent, b)] = root_of(parent, a);
-    parent[root_of(parent, c)] = root_of(parent, a);
+    sets.join(a, b);
+    sets.join(a, c);
   }
   std::vector<Part> parts;
   constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> part_of_root(surface.points_mm.size(), unknown);
+  std::vector<std::uint32_t> part_of_set(surface.points_mm.size(), unknown);
   const glm::dvec3 origin = surface.points_mm.front();
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const auto& [a, b, c] = surface.triangles[t];
-    std::uint32_t& number = part_of_root[root_of(parent, a)];
+    std::uint32_t& number = part_of_set[sets.set_of(a)];
     if (number == unknown) {
       number = static_cast<std::uint32_t>(parts.size());
       parts.emplace_back();

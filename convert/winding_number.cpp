@@ -6,10 +6,10 @@
 #include <map>
 #include <mutex>
 #include <numbers>
-#include <numeric>
 #include <tbb/parallel_for.h>
 #include <utility>
 
+#include "brep/disjoint_sets.h"
 #include "convert/slab_triangles.h"
 #include "voxel/build.h"
 #include "voxel/read_scene.h"
@@ -76,12 +76,6 @@ std::vector<RimEdge> rim_of(const brep::Triangles& surface) {
   return rim;
 }
 
-std::uint32_t root_of(std::map<std::uint32_t, std::uint32_t>& parent, std::uint32_t v) {
-  parent.try_emplace(v, v);
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
 /// What closes a surface, and the rim it stands on, in LPS millimetres.
 struct Cap {
   std::vector<Triangle> triangles;
@@ -95,17 +89,17 @@ constexpr glm::dvec3 apex_offset_voxels{0.2718281828, 0.3141592653, 0.1414213562
 /// One cone a connected part of the rim, from the middle of its edges.
 Cap cap_of(const voxel::Universe& universe, const brep::Triangles& surface) {
   const std::vector<RimEdge> rim = rim_of(surface);
-  std::map<std::uint32_t, std::uint32_t> parent;
-  for (const RimEdge& edge : rim) parent[root_of(parent, edge.to)] = root_of(parent, edge.from);
+  brep::DisjointSets rims(surface.points_mm.size());
+  for (const RimEdge& edge : rim) rims.join(edge.from, edge.to);
   std::map<std::uint32_t, std::pair<glm::dvec3, double>> sums;
   for (const RimEdge& edge : rim) {
-    auto& [sum, count] = sums[root_of(parent, edge.from)];
+    auto& [sum, count] = sums[rims.set_of(edge.from)];
     sum += surface.points_mm[edge.from] + surface.points_mm[edge.to];
     count += 2.0;
   }
   Cap cap;
   for (const RimEdge& edge : rim) {
-    const auto& [sum, count] = sums[root_of(parent, edge.from)];
+    const auto& [sum, count] = sums[rims.set_of(edge.from)];
     const glm::dvec3 apex = sum / count + glm::dmat3(universe.lps_from_voxel) * apex_offset_voxels;
     const glm::dvec3& from = surface.points_mm[edge.from];
     const glm::dvec3& to = surface.points_mm[edge.to];

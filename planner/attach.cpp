@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
+#include "brep/disjoint_sets.h"
 #include "convert/octree_tetrahedra.h"
 #include "planner/figures.h"
 #include "voxel/combine.h"
@@ -61,11 +61,6 @@ std::vector<int> holders_of(const convert::Tetrahedra& tetrahedra, const std::ve
   return of_node;
 }
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t node) {
-  while (parents[node] != node) node = parents[node] = parents[parents[node]];
-  return node;
-}
-
 double volume_mm3(const convert::Tetrahedra& tetrahedra, const std::array<std::uint32_t, 4>& tet) {
   const auto p = [&](std::size_t i) { return tetrahedra.nodes_mm[tet[i]]; };
   return glm::dot(glm::cross(p(1) - p(0), p(2) - p(0)), p(3) - p(0)) / 6.0;
@@ -74,19 +69,18 @@ double volume_mm3(const convert::Tetrahedra& tetrahedra, const std::array<std::u
 /// Takes away the parts that nothing holds; answers their volume.
 double keep_held(Held& held) {
   convert::Tetrahedra& all = held.tetrahedra;
-  std::vector<std::uint32_t> parents(all.nodes_mm.size());
-  std::iota(parents.begin(), parents.end(), 0u);
+  brep::DisjointSets parts(all.nodes_mm.size());
   for (const auto& tet : all.tets)
-    for (std::size_t i = 1; i < 4; ++i) parents[root_of(parents, tet[i])] = root_of(parents, tet[0]);
-  std::vector<bool> is_held(parents.size(), false);
-  for (std::uint32_t node = 0; node < parents.size(); ++node)
-    if (held.holder_of_node[node] >= 0) is_held[root_of(parents, node)] = true;
+    for (std::size_t i = 1; i < 4; ++i) parts.join(tet[0], tet[i]);
+  std::vector<bool> is_held(all.nodes_mm.size(), false);
+  for (std::uint32_t node = 0; node < is_held.size(); ++node)
+    if (held.holder_of_node[node] >= 0) is_held[parts.set_of(node)] = true;
 
   constexpr std::uint32_t none = ~0u;
-  std::vector<std::uint32_t> renumbered(parents.size(), none);
+  std::vector<std::uint32_t> renumbered(all.nodes_mm.size(), none);
   Held kept;
-  for (std::uint32_t node = 0; node < parents.size(); ++node) {
-    if (!is_held[root_of(parents, node)]) continue;
+  for (std::uint32_t node = 0; node < is_held.size(); ++node) {
+    if (!is_held[parts.set_of(node)]) continue;
     renumbered[node] = static_cast<std::uint32_t>(kept.tetrahedra.nodes_mm.size());
     kept.tetrahedra.nodes_mm.push_back(all.nodes_mm[node]);
     kept.holder_of_node.push_back(held.holder_of_node[node]);

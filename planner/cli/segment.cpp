@@ -392,7 +392,7 @@ void add_segment(Program& program) {
       ->type_name("K");
   verb.add_option("--tolerance", text->tolerance,
                   "Grows from the seeds through samples no farther from theirs")
-      ->check(CLI::NonNegativeNumber);
+      ->check(between(0.0, 65535.0));
   verb.add_option("--label", text->label, "The object of that number in a label map")
       ->check(CLI::Range(1, 32767));
   verb.add_option("--object", text->objects, "An .octree file to be put into the label map, again for more")

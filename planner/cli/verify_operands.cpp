@@ -102,7 +102,7 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
 
 void add_operand_options(CLI::App& verb, VerifyText& text) {
   verb.add_option("--voxel", text.operand_voxel_mm, "Edge of the voxels that two meshes are compared in, mm")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
 }
 
 }  // namespace octotomy::planner::cli
