@@ -129,6 +129,7 @@ struct Attempt {
   Volumes volumes_mm3;
   std::optional<double> disagreement_mm3;
   std::array<std::size_t, 4> films{};
+  std::size_t flat = 0;
   std::vector<std::string> findings;
   std::string failure;  ///< empty where all that was wanted is there and adds up
 };
@@ -153,6 +154,7 @@ Attempt whole_attempt(const Question& question, const Mesh& b) {
     if (corefined.results[r]) attempt.volumes_mm3[r] = size_of(*corefined.results[r]).volume_mm3;
   attempt.results = std::move(corefined.results);
   attempt.films = corefined.films;
+  attempt.flat = corefined.flat;
   if (corefined.meets_itself)
     attempt.findings.emplace_back(
         "an operand meets itself where the other cuts it; the volumes vouch for the result, its health may "
@@ -168,6 +170,7 @@ Attempt near_attempt(const Question& question, const Mesh& b, const Triangles& t
   attempt.results = std::move(answer.results);
   attempt.volumes_mm3 = answer.volumes_mm3;
   attempt.films = answer.films;
+  attempt.flat = answer.flat;
   return attempt;
 }
 
@@ -235,6 +238,13 @@ void tell_films(const Question& question, Attempt& attempt) {
           " thinner than the rounding of points, left where faces coincide but for their last places");
 }
 
+void tell_flat(Attempt& attempt) {
+  if (attempt.flat > 0)
+    attempt.findings.push_back(std::to_string(attempt.flat) +
+                               " triangles without area were taken out of the operands by another diagonal; "
+                               "their surfaces stayed where they were");
+}
+
 /// What was wanted, before meshes are made of it.
 struct Answer {
   Results results;
@@ -245,6 +255,7 @@ struct Answer {
 Answer answer_of(const Question& question, Attempt attempt) {
   tell_touching(question, attempt);
   tell_films(question, attempt);
+  tell_flat(attempt);
   Answer answer;
   const double whole = question.size_a.volume_mm3 + question.size_b.volume_mm3;
   if (attempt.disagreement_mm3) answer.residual = whole > 0.0 ? *attempt.disagreement_mm3 / whole : 0.0;
@@ -331,6 +342,34 @@ BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b) {
   wanted[place] = true;
   Answer found = answer(a, b, wanted);
   return {mesh_of(found.results[place].value()), found.residual, std::move(found.findings)};
+}
+
+BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation) {
+  if (operands.empty()) throw std::invalid_argument("a Boolean needs an operand");
+  BooleanResult all;
+  const auto combine = [&](const Mesh& a, Operation step, const Mesh& b) {
+    BooleanResult result = boolean(a, step, b);
+    if (result.residual) all.residual = std::max(all.residual.value_or(0.0), *result.residual);
+    all.findings.insert(all.findings.end(), result.findings.begin(), result.findings.end());
+    return result.mesh;
+  };
+  const auto in_pairs = [&](std::vector<Mesh> meshes, Operation step) {
+    while (meshes.size() > 1) {
+      std::vector<Mesh> half;
+      for (std::size_t i = 0; i + 1 < meshes.size(); i += 2)
+        half.push_back(combine(meshes[i], step, meshes[i + 1]));
+      if (meshes.size() % 2 == 1) half.push_back(meshes.back());
+      meshes = std::move(half);
+    }
+    return meshes.front();
+  };
+  if (operation != Operation::Difference || operands.size() == 1) {
+    all.mesh = in_pairs(operands, operation);
+  } else {
+    const Mesh others = in_pairs({operands.begin() + 1, operands.end()}, Operation::Union);
+    all.mesh = combine(operands.front(), Operation::Difference, others);
+  }
+  return all;
 }
 
 }  // namespace octotomy::brep

@@ -32,6 +32,12 @@ struct BooleanResult {
 /// near the common lines are given to it, see near_boolean().
 BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b);
 
+/// The Boolean of any number of solids: their union, their intersection, or the first less all others. The
+/// residual is the largest of the steps', and findings are all of them. Throws std::invalid_argument where
+/// there are no operands, else as above. Cost: unions are taken in pairs, so that each triangle passes log n
+/// of them.
+BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation);
+
 /// Which results booleans() must give.
 struct BooleansWanted {
   bool united = true;
@@ -54,7 +60,8 @@ struct Booleans {
   /// told. It is some 4e-6 of the operands' extent, about 1 um for a head; each volume is off by at most that
   /// times its area. "touches itself": sheets of a result share a point, which has a vertex for each of them.
   /// "meets itself": an operand's triangles intersect near the cut, usually by the rounding of an earlier
-  /// one. "film": shells thinner than the rounding of points were left out.
+  /// one. "film": shells thinner than the rounding of points were left out. "without area": such triangles of
+  /// an operand were cut along another diagonal, which leaves its surface where it is.
   std::vector<std::string> findings;
 };
 

@@ -12,11 +12,12 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
 
+#include "brep/coordinate_order.h"
+#include "brep/flat_triangles.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -93,47 +94,6 @@ struct CutEdges {
   }
 };
 
-/// The same surface with points and triangles in the order of their coordinates. Corefinement leaves them in
-/// an order that hangs on addresses, so that the same operands gave other bits in about one run of ten: sums
-/// over faces in their last places, and all that decimates or fills the surface later on. Points at one place
-/// (rounded together) go by the places of their neighbours. Throws where links are torn, which corefinement
-/// of surfaces that all but coincide may leave.
-Triangles in_order(const Mesh& mesh) {
-  Triangles triangles = triangles_of(mesh);
-  check_joins(triangles);
-  const auto place = [&](std::uint32_t v) {
-    const glm::dvec3& p = triangles.points_mm[v];
-    return std::array<double, 3>{p.x, p.y, p.z};
-  };
-  const auto ring = [&](std::uint32_t v) {
-    std::vector<std::array<double, 3>> places;
-    for (const auto neighbour : mesh.vv_range(Mesh::VertexHandle(static_cast<int>(v))))
-      places.push_back(place(static_cast<std::uint32_t>(neighbour.idx())));
-    std::sort(places.begin(), places.end());
-    return places;
-  };
-  std::vector<std::uint32_t> order(triangles.points_mm.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
-    const auto at_v = place(v), at_w = place(w);
-    return at_v != at_w ? at_v < at_w : v != w && ring(v) < ring(w);
-  });
-
-  Triangles sorted;
-  std::vector<std::uint32_t> rank(order.size());
-  for (const std::uint32_t v : order) {
-    rank[v] = static_cast<std::uint32_t>(sorted.points_mm.size());
-    sorted.points_mm.push_back(triangles.points_mm[v]);
-  }
-  sorted.faces = std::move(triangles.faces);
-  for (auto& face : sorted.faces) {
-    for (std::uint32_t& v : face) v = rank[v];
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-  }
-  std::sort(sorted.faces.begin(), sorted.faces.end());
-  return sorted;
-}
-
 /// Deletes the closed shells that are films and says how many. Points are rounded by half a unit of the last
 /// place of their largest coordinate, so two sheets that would coincide lie apart by a few of them, and a
 /// shell whose volume is no more than that over its area is nothing else.
@@ -201,6 +161,16 @@ bool has_uncut_part(const Mesh& mesh, const std::vector<bool>& on_cut) {
   return false;
 }
 
+/// A result in an order of its own, without triangles that rounding left without area: a further Boolean
+/// would break off at them. From the first ordering on, nothing hangs on addresses.
+Triangles finished(const Mesh& mesh) {
+  Triangles triangles = in_coordinate_order(mesh);
+  if (!has_flat_triangles(triangles)) return triangles;
+  Mesh ordered = mesh_of(triangles);
+  take_out_flat_triangles(ordered);
+  return in_coordinate_order(ordered);
+}
+
 /// What a sound corefinement stays far below: measured are some 100 steps a triangle.
 std::size_t step_limit(const Mesh& a, const Mesh& b) {
   return 10'000 * (a.n_faces() + b.n_faces() + 1000);
@@ -212,6 +182,8 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
                 int{pmp::Corefinement::INTERSECTION} == int{of_intersection} &&
                 int{pmp::Corefinement::TM1_MINUS_TM2} == int{of_a_minus_b} &&
                 int{pmp::Corefinement::TM2_MINUS_TM1} == int{of_b_minus_a});
+  Corefined corefined;
+  for (Mesh* operand : {&a, &b}) corefined.flat += take_out_flat_triangles(*operand).taken();
   std::array<Mesh, 4> meshes;
   std::array<boost::optional<Mesh*>, 4> output;
   for (std::size_t i = 0; i < output.size(); ++i)
@@ -227,15 +199,13 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
       CGAL::parameters::vertex_point_map(PointMap{&b}).edge_is_constrained_map(CutEdges{&cut_b}),
       std::make_tuple(to(0), to(1), to(2), to(3)));
 
-  Corefined corefined;
   for (std::size_t i = 0; i < output.size(); ++i) {
     if (!output[i] || !manifold[i]) continue;
     meshes[i].garbage_collection();
-    corefined.results[i] = in_order(meshes[i]);
+    check_joins(triangles_of(meshes[i]));
     corefined.films[i] = drop_films(meshes[i]);
-    if (corefined.films[i] == 0) continue;
-    meshes[i].garbage_collection();
-    corefined.results[i] = in_order(meshes[i]);
+    if (corefined.films[i] > 0) meshes[i].garbage_collection();
+    corefined.results[i] = finished(meshes[i]);
   }
   corefined.has_uncut_part = has_uncut_part(a, cut_a) || has_uncut_part(b, cut_b);
   return corefined;

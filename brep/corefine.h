@@ -24,6 +24,8 @@ struct Corefined {
   /// Some connected part of a surface has no edge on the cut, though its triangles may touch the other
   /// surface: such parts count as outside where the other surface is open.
   bool has_uncut_part = false;
+  /// Triangles of the operands without area that another diagonal took out, see flat_triangles.h.
+  std::size_t flat = 0;
   bool meets_itself = false;  ///< an operand's triangles intersect near the cut; the results are a guess
   std::string failure;        ///< why there are none; empty where there was none
 };

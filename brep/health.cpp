@@ -66,8 +66,18 @@ std::uint32_t next_corner(std::uint32_t corner) {
   return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
 
+/// The first triangle that each of the findings is about.
+struct Offenders {
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t boundary = none, nonmanifold_edge = none, nonmanifold_vertex = none, misoriented = none,
+                degenerate = none, duplicate = none, misplaced = none;
+
+  static void note(std::uint32_t& first, std::uint32_t triangle) { first = std::min(first, triangle); }
+};
+
 /// Counts what edges and vertices tell; returns the shell of each triangle, named by its first triangle.
-std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health& health) {
+std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health& health,
+                                             Offenders& offenders) {
   const std::vector<Side> sides = sorted_sides(triangles);
   DisjointSets shells(triangles.faces.size()), fans(sides.size());
   std::size_t edges = 0;
@@ -80,9 +90,17 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
       fans.join(next_corner(a.corner), same_way ? next_corner(b.corner) : b.corner);
     }
     ++edges;
-    if (j - i == 1) ++health.boundary_edges;
-    if (j - i == 2 && sides[i].upward == sides[i + 1].upward) ++health.misoriented_edges;
-    if (j - i > 2) ++health.nonmanifold_edges;
+    const std::uint32_t first = sides[i].corner / 3;
+    if (j - i == 1) {
+      ++health.boundary_edges;
+      Offenders::note(offenders.boundary, first);
+    } else if (j - i > 2) {
+      ++health.nonmanifold_edges;
+      Offenders::note(offenders.nonmanifold_edge, first);
+    } else if (sides[i].upward == sides[i + 1].upward) {
+      ++health.misoriented_edges;
+      Offenders::note(offenders.misoriented, first);
+    }
   }
 
   std::vector<std::uint32_t> fan_count(triangles.points_mm.size(), 0);
@@ -93,6 +111,8 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
     if (count == 0) ++health.unused_vertices;
     if (count > 1) ++health.nonmanifold_vertices;
   }
+  for (std::uint32_t c = 0; health.nonmanifold_vertices > 0 && c < sides.size(); ++c)
+    if (fan_count[triangles.faces[c / 3][c % 3]] > 1) Offenders::note(offenders.nonmanifold_vertex, c / 3);
   DisjointSets bodies(triangles.points_mm.size());
   for (const auto& face : triangles.faces) {
     bodies.join(face[0], face[1]);
@@ -113,25 +133,32 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
 }
 
 /// Marks triangles without area, exactly.
-std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& health) {
+std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& health, Offenders& offenders) {
   std::vector<std::uint8_t> degenerate(triangles.faces.size(), 0);
   for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
     const auto& v = triangles.faces[f];
     degenerate[f] = CGAL::collinear(exact(triangles.points_mm[v[0]]), exact(triangles.points_mm[v[1]]),
                                     exact(triangles.points_mm[v[2]]));
-    health.degenerate_faces += degenerate[f];
+    if (degenerate[f] == 0) continue;
+    ++health.degenerate_faces;
+    Offenders::note(offenders.degenerate, static_cast<std::uint32_t>(f));
   }
   return degenerate;
 }
 
-void count_duplicates(const Triangles& triangles, Health& health) {
-  std::vector<std::array<std::uint32_t, 3>> faces = triangles.faces;
-  for (auto& face : faces) std::sort(face.begin(), face.end());
+void count_duplicates(const Triangles& triangles, Health& health, Offenders& offenders) {
+  std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> faces;
+  faces.reserve(triangles.faces.size());
+  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f) {
+    faces.emplace_back(triangles.faces[f], f);
+    std::sort(faces.back().first.begin(), faces.back().first.end());
+  }
   std::sort(faces.begin(), faces.end());
   std::size_t earlier = 0;
   for (std::size_t i = 1; i < faces.size(); ++i) {
-    earlier = faces[i] == faces[i - 1] ? earlier + 1 : 0;
+    earlier = faces[i].first == faces[i - 1].first ? earlier + 1 : 0;
     health.duplicate_faces += earlier;
+    if (earlier == 1) Offenders::note(offenders.duplicate, faces[i - 1].second);
   }
 }
 
@@ -162,7 +189,8 @@ std::vector<std::uint8_t> mark_touching(const Triangles& triangles, const std::v
 /// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
 /// turned outward, to one where it is turned inward. Returns the total volume. Needs a closed, manifold,
 /// consistently wound mesh.
-double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& shell, Health& health) {
+double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& shell, Health& health,
+                    Offenders& offenders) {
   struct Probe {
     double volume_mm3 = 0.0;
     /// The shell's point of largest x, one that no other shell shares where there is any.
@@ -197,7 +225,9 @@ double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>
     int winding = 0;
     for (const Crossing& crossing : tree.crossings(probe.p_mm))
       if (shell[crossing.face] != name) winding += crossing.leaving ? 1 : -1;
-    if (winding != (probe.volume_mm3 > 0.0 ? 0 : 1)) ++health.misplaced_shells;
+    if (winding == (probe.volume_mm3 > 0.0 ? 0 : 1)) continue;
+    ++health.misplaced_shells;
+    Offenders::note(offenders.misplaced, name);
   }
   return volume_mm3;
 }
@@ -295,22 +325,28 @@ void test_intersections(const Triangles& triangles, const std::vector<std::uint8
     health.crossing.emplace_back(static_cast<int>(meeting[i].first), static_cast<int>(meeting[i].second));
 }
 
-void tell(Health& health, double volume_mm3) {
-  const auto say = [&](std::size_t count, const std::string& what) {
-    if (count > 0) health.findings.push_back(std::to_string(count) + " " + what);
+void tell(Health& health, const Offenders& offenders, double volume_mm3) {
+  const auto say = [&](std::size_t count, const std::string& what, const std::string& first) {
+    if (count > 0) health.findings.push_back(std::to_string(count) + " " + what + " (first: " + first + ")");
   };
+  const auto at = [](std::uint32_t triangle) { return "triangle " + std::to_string(triangle); };
   if (health.faces == 0) health.findings.emplace_back("no triangles");
-  say(health.boundary_edges, "edges with one triangle: the surface is open");
-  say(health.nonmanifold_edges, "edges with more than two triangles");
-  say(health.nonmanifold_vertices, "vertices where more than one fan of triangles meets");
-  say(health.misoriented_edges, "edges whose triangles wind against each other");
-  say(health.degenerate_faces, "triangles without area");
-  say(health.duplicate_faces, "pairs of triangles with the same points");
-  say(health.misplaced_shells, "shells that face the wrong way for the shells around them");
+  say(health.boundary_edges, "edges with one triangle: the surface is open", at(offenders.boundary));
+  say(health.nonmanifold_edges, "edges with more than two triangles", at(offenders.nonmanifold_edge));
+  say(health.nonmanifold_vertices, "vertices where more than one fan of triangles meets",
+      at(offenders.nonmanifold_vertex));
+  say(health.misoriented_edges, "edges whose triangles wind against each other", at(offenders.misoriented));
+  say(health.degenerate_faces, "triangles without area", at(offenders.degenerate));
+  say(health.duplicate_faces, "pairs of triangles with the same points", at(offenders.duplicate));
+  say(health.misplaced_shells, "shells that face the wrong way for the shells around them",
+      at(offenders.misplaced));
   if (health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0 && !(volume_mm3 > 0.0))
     health.findings.push_back("the volume is " + std::to_string(volume_mm3) +
                               " mm3: the triangles face inward or enclose nothing");
-  say(health.self_intersections, "pairs of triangles that intersect");
+  if (!health.crossing.empty())
+    say(health.self_intersections, "pairs of triangles that intersect",
+        "triangles " + std::to_string(health.crossing.front().first) + " and " +
+            std::to_string(health.crossing.front().second));
 }
 
 }  // namespace
@@ -318,20 +354,21 @@ void tell(Health& health, double volume_mm3) {
 Health health(const Triangles& triangles, const HealthOptions& options) {
   check_points(triangles);
   Health health;
-  const std::vector<std::uint32_t> shell = count_connections(triangles, health);
-  const std::vector<std::uint8_t> degenerate = mark_degenerate(triangles, health);
-  count_duplicates(triangles, health);
+  Offenders offenders;
+  const std::vector<std::uint32_t> shell = count_connections(triangles, health, offenders);
+  const std::vector<std::uint8_t> degenerate = mark_degenerate(triangles, health, offenders);
+  count_duplicates(triangles, health, offenders);
 
   health.closed = health.faces > 0 && health.boundary_edges == 0;
   health.manifold = health.faces > 0 && health.nonmanifold_edges == 0 && health.nonmanifold_vertices == 0;
   health.oriented = health.faces > 0 && health.nonmanifold_edges == 0 && health.misoriented_edges == 0;
   double volume_mm3 = 0.0;
   if (health.closed && health.oriented) {
-    volume_mm3 = place_shells(triangles, shell, health);
+    volume_mm3 = place_shells(triangles, shell, health, offenders);
     health.oriented = health.misplaced_shells == 0 && volume_mm3 > 0.0;
   }
   if (options.self_intersections) test_intersections(triangles, degenerate, health);
-  tell(health, volume_mm3);
+  tell(health, offenders, volume_mm3);
   return health;
 }
 

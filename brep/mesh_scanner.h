@@ -65,8 +65,9 @@ void add_fan(Triangles& triangles, const std::vector<long long>& corners);
 /// Adds a strip of triangles; ones that repeat a point only turn the strip and are left out.
 void add_strip(Triangles& triangles, const std::vector<long long>& corners);
 
-/// The formats that fill a source of their own. Both throw std::runtime_error without the path.
+/// The formats that fill a source of their own. All throw std::runtime_error without the path.
 Triangles read_ply(std::string_view bytes);
 Triangles read_vtk(std::string_view bytes);
+Triangles read_vtp(std::string_view bytes);
 
 }  // namespace octotomy::brep

@@ -12,12 +12,12 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
+#include "brep/disjoint_sets.h"
 #include "brep/distance.h"
 #include "brep/measure.h"
 #include "brep/meeting.h"
@@ -98,32 +98,22 @@ void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting
 /// each is wholly inside or outside, and so are all triangles about it.
 void find_parts(const Operand& operand, Side& side) {
   const auto& faces = operand.triangles.faces;
-  std::vector<std::uint32_t> parent(operand.triangles.points_mm.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  const auto join = [&](std::uint32_t v, std::uint32_t w) {
-    v = root(v);
-    w = root(w);
-    parent[std::max(v, w)] = std::min(v, w);
-  };
-  side.part.assign(parent.size(), none);
+  DisjointSets parts(operand.triangles.points_mm.size());
+  side.part.assign(operand.triangles.points_mm.size(), none);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (side.near[f]) continue;
-    join(faces[f][0], faces[f][1]);
-    join(faces[f][1], faces[f][2]);
+    parts.join(faces[f][0], faces[f][1]);
+    parts.join(faces[f][1], faces[f][2]);
     for (const std::uint32_t v : faces[f]) side.part[v] = 0;
   }
-  // A root is the least point of its part, so it is numbered before the others.
-  for (std::uint32_t v = 0; v < parent.size(); ++v) {
+  // A part is named by its least point, so it is numbered before the others.
+  for (std::uint32_t v = 0; v < side.part.size(); ++v) {
     if (side.part[v] == none) continue;
-    if (parent[v] == v) {
+    if (parts.set_of(v) == v) {
       side.part[v] = static_cast<std::uint32_t>(side.first.size());
       side.first.push_back(v);
     } else {
-      side.part[v] = side.part[root(v)];
+      side.part[v] = side.part[parts.set_of(v)];
     }
   }
   side.inside.assign(side.first.size(), 0);
@@ -339,6 +329,7 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, NearBoolean& 
   const Corefined corefined = corefine_near(a, b, sides, wanted);
   answer.meets_itself = corefined.meets_itself;
   answer.films = corefined.films;
+  answer.flat = corefined.flat;
 
   std::array<std::optional<Seam>, 4> seams;
   for (std::size_t r = 0; r < seams.size(); ++r) {

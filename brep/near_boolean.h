@@ -19,6 +19,7 @@ struct NearBoolean {
   /// Of those, and for witness of all others that are manifold.
   std::array<std::optional<double>, 4> volumes_mm3;
   std::array<std::size_t, 4> films{};  ///< see Corefined
+  std::size_t flat = 0;                ///< see Corefined
   bool meets_itself = false;           ///< see Corefined
   std::string obstacle;
 };

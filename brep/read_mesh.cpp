@@ -202,16 +202,16 @@ Triangles read_triangles(const std::filesystem::path& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   try {
     if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".off" &&
-        extension != ".vtk")
+        extension != ".vtk" && extension != ".vtp")
       throw std::runtime_error("'" + extension +
-                               "' is no mesh format that is read; use .stl, .ply, .obj, .off or .vtk");
+                               "' is no mesh format that is read; use .stl, .ply, .obj, .off, .vtk or .vtp");
     const std::string bytes = bytes_of(path);
     if (bytes.empty()) throw std::runtime_error("the file is empty");
     if (extension == ".stl") return read_stl(bytes);
     if (extension == ".ply") return read_ply(bytes);
     if (extension == ".obj") return read_obj(bytes);
     if (extension == ".off") return read_off(bytes);
-    return read_vtk(bytes);
+    return extension == ".vtk" ? read_vtk(bytes) : read_vtp(bytes);
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(path.string() + ": " + e.what());
   }

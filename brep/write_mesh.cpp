@@ -2,31 +2,21 @@
 #include "brep/write_mesh.h"
 
 #include <algorithm>
-#include <bit>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <unistd.h>
 
+#include "brep/mesh_bytes.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
 namespace {
-
-/// Appends a number's bytes, least significant first.
-template <typename T>
-void append_little(std::string& bytes, T value) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  if constexpr (std::endian::native == std::endian::big) std::reverse(raw, raw + sizeof(T));
-  bytes.append(raw, sizeof(T));
-}
 
 /// Appends the shortest text that reads back to the same number.
 template <typename T>
@@ -162,13 +152,17 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Verte
   const Triangles triangles = triangles_of(mesh);
   check(data, triangles.points_mm.size());
   if (extension == ".ply") return replace_file(path, ply_of(triangles, data));
+  if (extension == ".vtp") return replace_file(path, vtp_of(triangles, data));
+  if (extension == ".glb" && data.scalars.empty()) return replace_file(path, glb_of(triangles, data));
   if (!data.colours.empty() || !data.scalars.empty())
-    throw std::runtime_error(path.string() + ": colours and scalars of vertices go into .ply");
+    throw std::runtime_error(path.string() +
+                             ": colours of vertices go into .ply, .vtp and .glb, scalars into .ply and "
+                             ".vtp");
   if (extension == ".stl") return replace_file(path, stl_of(triangles));
   if (extension == ".obj") return replace_file(path, obj_of(triangles));
   if (extension == ".off") return replace_file(path, off_of(triangles));
   throw std::runtime_error(path.string() + ": '" + extension +
-                           "' is no mesh format that is written; use .stl, .ply, .obj or .off");
+                           "' is no mesh format that is written; use .stl, .ply, .obj, .off, .vtp or .glb");
 }
 
 }  // namespace octotomy::brep

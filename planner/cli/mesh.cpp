@@ -172,7 +172,7 @@ void add_mesh(Program& program) {
                                 "  octotomy mesh head.nrrd -o skin.stl --window=-200: --surface contours",
                                 [&program, text] { return mesh(program, *text); });
   verb.add_option("file", text->in, "A scan, or an .octree file")->required()->check(scan_path());
-  verb.add_option("-o,--out", text->out, "A .stl, .ply, .obj or .off file")->required();
+  verb.add_option("-o,--out", text->out, "A .stl, .ply, .obj, .off, .vtp or .glb file")->required();
   verb.add_option("--window", text->window,
                   "LOW:HIGH or LOW: in sample units, or a tissue (bone, skin, ...)");
   verb.add_option(

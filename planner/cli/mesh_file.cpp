@@ -28,9 +28,9 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings) {
 
 void need_mesh_extension(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
-  for (const char* known : {".stl", ".ply", ".obj", ".off"})
+  for (const char* known : {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"})
     if (extension == known) return;
-  throw std::runtime_error(path.string() + ": a mesh is written as .stl, .ply, .obj or .off");
+  throw std::runtime_error(path.string() + ": a mesh is written as .stl, .ply, .obj, .off, .vtp or .glb");
 }
 
 }  // namespace octotomy::planner::cli

@@ -147,7 +147,7 @@ void add_register(Program& program) {
   verb.add_option("b", text->b, "The mesh that stays, or a .json of landmarks")
       ->required()
       ->check(CLI::ExistingFile);
-  verb.add_option("-o,--out", text->out, "A moved to B: a .stl, .ply, .obj or .off file");
+  verb.add_option("-o,--out", text->out, "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file");
   verb.add_option("--landmarks", text->landmarks, "A's and B's landmarks, where the search begins")
       ->expected(2)
       ->check(CLI::ExistingFile);

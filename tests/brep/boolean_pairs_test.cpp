@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Booleans of pairs made at random and of pairs that only touch, in many poses.
+#include <algorithm>
+#include <array>
 #include <cstdlib>
-#include <functional>
+#include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <random>
@@ -10,7 +12,10 @@
 #include "brep/health.h"
 #include "brep/measure.h"
 #include "brep/move.h"
+#include "brep/read_mesh.h"
+#include "brep/tile_sections.h"
 #include "tests/brep/shapes.h"
+#include "tests/reference_data.h"
 
 namespace octotomy::brep {
 namespace {
@@ -45,9 +50,41 @@ glm::dmat4 any_motion(Random& random, double reach) {
   return glm::rotate(glm::translate(glm::dmat4(1.0), shift), uniform(random, 0, 6.28), glm::normalize(axis));
 }
 
-/// A ball, box, turned box, torus or bumpy blob.
+/// A trunk that forks, each of its sections drawn by wavy contours, tiled by a cost or by overlaying.
+Triangles tiled_contours(Random& random) {
+  const double waves = 2.0 + static_cast<double>(random() % 4), depth = uniform(random, 0.0, 0.3);
+  const double spread = uniform(random, 0.0, 3.5), radius = uniform(random, 1.5, 2.5);
+  const auto contour = [&](double x) {
+    Contour ring;
+    for (int k = 0; k < 24; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 24,
+                   r = radius * (1.0 + depth * std::sin(waves * angle));
+      ring.points_mm.emplace_back(x + r * std::cos(angle), r * std::sin(angle));
+    }
+    return ring;
+  };
+  std::vector<Section> sections;
+  for (int s = 0; s < 6; ++s) {
+    const double apart = spread * s / 5;
+    // Twins that would overlap are one contour still.
+    if (apart <= radius * (1.0 + depth))
+      sections.push_back({-3.0 + 1.2 * s, {contour(0.0)}});
+    else
+      sections.push_back({-3.0 + 1.2 * s, {contour(-apart), contour(apart)}});
+  }
+  TileSectionsOptions options;
+  constexpr std::array costs = {TileCost::shortest_span, TileCost::least_area, TileCost::greatest_volume,
+                                TileCost::least_angle};
+  if (const auto cost = random() % 5; cost < 4)
+    options.cost = costs[cost];
+  else
+    options.cost.reset();
+  return tile_sections(sections, options).surface;
+}
+
+/// A ball, box, turned box, torus, bumpy blob or tiled contours.
 Mesh any_solid(Random& random) {
-  const int kind = static_cast<int>(random() % 5), splits = 2 + static_cast<int>(random() % 2);
+  const int kind = static_cast<int>(random() % 6), splits = 2 + static_cast<int>(random() % 2);
   Triangles t;
   if (kind == 0) t = shapes::sphere({0, 0, 0}, uniform(random, 3, 6), splits);
   if (kind == 1 || kind == 2)
@@ -58,6 +95,7 @@ Mesh any_solid(Random& random) {
     const double a = uniform(random, 0, 3), b = uniform(random, 2, 5);
     for (glm::dvec3& p : t.points_mm) p *= 4.0 + std::sin(b * p.x + a) + 0.8 * std::cos(4 * p.y) * p.z;
   }
+  if (kind == 5) t = tiled_contours(random);
   const glm::dmat4 motion = kind == 1 ? glm::translate(glm::dmat4(1.0), glm::dvec3(uniform(random, -3, 3)))
                                       : any_motion(random, 4.0);
   return moved(mesh_of(t), motion);
@@ -196,6 +234,61 @@ TEST(BooleanPairs, SurfacesARoundingApartEndAndAddUp) {
   } else {
     EXPECT_FALSE(common.findings.empty());
   }
+}
+
+struct ReferenceMesh {
+  std::string name;
+  Triangles triangles;
+};
+
+/// The healthy ones of the reference meshes; of each other it is checked that a refusal can name a triangle.
+std::vector<ReferenceMesh> reference_solids() {
+  std::vector<ReferenceMesh> solids;
+  int refused = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(tests::reference_data("meshes"))) {
+    const Triangles triangles = read_triangles(entry.path());
+    const Health found = health(triangles);
+    if (found.solid()) {
+      solids.push_back({entry.path().filename().string(), triangles});
+      continue;
+    }
+    ++refused;
+    for (const std::string& finding : found.findings)
+      EXPECT_NE(finding.find("(first: triangle"), std::string::npos) << entry.path() << ": " << finding;
+  }
+  EXPECT_EQ(refused, 5);
+  EXPECT_EQ(solids.size(), 5u);
+  std::sort(solids.begin(), solids.end(),
+            [](const ReferenceMesh& a, const ReferenceMesh& b) { return a.name < b.name; });
+  return solids;
+}
+
+/// About the origin and of one size, so that all overlap.
+Triangles centred(Triangles triangles) {
+  const Size size = size_of(triangles);
+  const double extent = glm::length(size.high_mm - size.low_mm);
+  for (glm::dvec3& p : triangles.points_mm) p = 100.0 / extent * (p - 0.5 * (size.high_mm + size.low_mm));
+  return triangles;
+}
+
+TEST(BooleanPairs, EveryPairOfReferenceMeshesGivesSolidsOrIsRefusedByWhatIsWrong) {
+  OCTOTOMY_NEEDS_DATA("meshes/ballA.off");
+  const std::vector<ReferenceMesh> solids = reference_solids();
+  int cutting = 0;
+  for (const auto& [name_a, a] : solids)
+    for (const auto& [name_b, b] : solids)
+      for (const bool as_they_stand : {true, false}) {
+        const std::string what = name_a + " and " + name_b + (as_they_stand ? " as they stand" : " centred");
+        const Booleans results = as_they_stand ? booleans(mesh_of(a), mesh_of(b))
+                                               : booleans(mesh_of(centred(a)), mesh_of(centred(b)));
+        EXPECT_LE(results.residual.value_or(1.0), 1e-9) << what;
+        expect_closed(results.united.value(), what + ", union");
+        expect_closed(results.intersection.value(), what + ", intersection");
+        expect_closed(results.a_minus_b.value(), what + ", a - b");
+        expect_closed(results.b_minus_a.value(), what + ", b - a");
+        cutting += results.intersection->n_faces() > 0 && results.a_minus_b->n_faces() > 0;
+      }
+  EXPECT_GE(cutting, 20);
 }
 
 }  // namespace

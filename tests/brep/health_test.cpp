@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/health.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -46,6 +47,37 @@ TEST(Health, CatchesAFlippedTriangle) {
   EXPECT_FALSE(h.oriented);
   EXPECT_TRUE(h.closed);
   EXPECT_FALSE(h.solid());
+}
+
+TEST(Health, NamesTheFirstTriangleOfEachFinding) {
+  const Triangles ball = shapes::sphere({0, 0, 0}, 1, 2);
+  Triangles flipped = ball, twice = ball, crossed = shapes::together(ball, shapes::sphere({1, 0, 0}, 1, 2));
+  std::swap(flipped.faces[10][0], flipped.faces[10][1]);
+  const std::string flip = told(health(flipped));
+  // Its neighbours across three sides may be numbered lower.
+  EXPECT_NE(flip.find("wind against each other (first: triangle "), flip.npos) << flip;
+  twice.faces.push_back(twice.faces[7]);
+  const std::string twin = told(health(twice));
+  EXPECT_NE(twin.find("same points (first: triangle 7)"), twin.npos) << twin;
+  const Health meeting = health(crossed);
+  EXPECT_NE(told(meeting).find("intersect (first: triangles " + std::to_string(meeting.crossing[0].first) +
+                               " and " + std::to_string(meeting.crossing[0].second)),
+            std::string::npos);
+  Triangles open = ball;
+  open.faces.erase(open.faces.begin());
+  const Health hole = health(open);
+  const auto at = hole.findings.front().find("triangle ");
+  ASSERT_NE(at, std::string::npos);
+  // The first triangle that has a side with the lost one's points.
+  const auto sides_of_lost = [&](const std::array<std::uint32_t, 3>& face) {
+    int common = 0;
+    for (const std::uint32_t v : face)
+      common += std::count(ball.faces[0].begin(), ball.faces[0].end(), v) > 0;
+    return common == 2;
+  };
+  const auto first = std::find_if(open.faces.begin(), open.faces.end(), sides_of_lost) - open.faces.begin();
+  EXPECT_NE(hole.findings.front().find("(first: triangle " + std::to_string(first) + ")"), std::string::npos)
+      << hole.findings.front();
 }
 
 TEST(Health, CatchesALostTriangle) {

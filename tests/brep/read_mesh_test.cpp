@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include "brep/measure.h"
 #include "brep/write_mesh.h"
@@ -161,7 +162,7 @@ TEST(ReadMesh, WhatIsBadIsToldWithPathAndPlace) {
 TEST(ReadMesh, NoPrefixOfAFileCrashesTheReader) {
   // Every cut of a small file either reads as fewer triangles or is refused with the path.
   const Mesh mesh = mesh_of(shapes::box({0, 0, 0}, {1, 2, 3}));
-  for (const char* name : {"cut.ply", "cut.stl", "cut.obj", "cut.off"}) {
+  for (const char* name : {"cut.ply", "cut.stl", "cut.obj", "cut.off", "cut.vtp"}) {
     const auto path = file(name, "");
     write_mesh(mesh, path);
     std::string bytes(std::filesystem::file_size(path), '\0');
@@ -177,6 +178,86 @@ TEST(ReadMesh, NoPrefixOfAFileCrashesTheReader) {
     }
     EXPECT_GT(refused, 0) << name;
   }
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k > bytes.size() ? '=' : letters[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
+template <typename T>
+std::string raw(const std::vector<T>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(T)};
+}
+
+/// A tetrahedron's arrays, each as `array` writes its bytes.
+template <typename Array>
+std::string vtp(const std::string& attributes, const Array& array) {
+  return "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" " + attributes +
+         "><PolyData><Piece NumberOfPoints=\"4\" NumberOfPolys=\"4\"><Points>" +
+         array("type=\"Float32\" Name=\"P\"", raw<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1.5F})) +
+         "</Points><Polys>" +
+         array("type=\"Int32\" Name=\"connectivity\"",
+               raw<std::int32_t>({0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3})) +
+         array("type=\"Int32\" Name=\"offsets\"", raw<std::int32_t>({3, 6, 9, 12})) +
+         "</Polys></Piece></PolyData></VTKFile>";
+}
+
+TEST(ReadMesh, VtpAsTextBase64AndPackedIsTheSameTetrahedron) {
+  const std::string text = vtp("", [](const std::string& names, const std::string& bytes) {
+    std::string numbers;
+    for (std::size_t i = 0; i < bytes.size(); i += 4) {
+      float real;
+      std::int32_t whole;
+      std::memcpy(&real, bytes.data() + i, 4);
+      std::memcpy(&whole, bytes.data() + i, 4);
+      numbers += (names.find("Float") != names.npos ? std::to_string(real) : std::to_string(whole)) + "\n ";
+    }
+    return "<DataArray " + names + " format=\"ascii\">\n" + numbers + "</DataArray>";
+  });
+  const std::string inlined =
+      vtp("header_type=\"UInt64\"", [](const std::string& names, const std::string& bytes) {
+        return "<DataArray " + names + " format=\"binary\">\n  " +
+               base64(raw<std::uint64_t>({bytes.size()}) + bytes) + "\n</DataArray>";
+      });
+  const std::string packed =
+      vtp("compressor=\"vtkZLibDataCompressor\"", [](const std::string& names, const std::string& bytes) {
+        // Two blocks, the last one shorter.
+        std::string blocks;
+        std::vector<std::uint32_t> header = {
+            2, 20, static_cast<std::uint32_t>(bytes.size() > 20 ? bytes.size() - 20 : 0)};
+        if (bytes.size() <= 20) header = {1, static_cast<std::uint32_t>(bytes.size()), 0};
+        for (std::size_t at = 0; at < bytes.size(); at += 20) {
+          const std::string part = bytes.substr(at, header[0] == 1 || at == 0 ? 20 : bytes.npos);
+          std::string small(compressBound(part.size()), ' ');
+          uLongf length = small.size();
+          compress(reinterpret_cast<Bytef*>(small.data()), &length,
+                   reinterpret_cast<const Bytef*>(part.data()), part.size());
+          header.push_back(static_cast<std::uint32_t>(length));
+          blocks += small.substr(0, length);
+          if (at > 0) break;
+        }
+        return "<DataArray " + names + " format=\"binary\">" + base64(raw(header)) + base64(blocks) +
+               "</DataArray>";
+      });
+  for (const std::string& bytes : {text, inlined, packed}) {
+    const Triangles triangles = read("tetrahedron.vtp", bytes);
+    EXPECT_EQ(triangles.points_mm.size(), 4u);
+    EXPECT_NEAR(size_of(triangles).volume_mm3, 0.25, 1e-12);
+  }
+  EXPECT_NE(
+      refusal_of("lz4.vtp", "<VTKFile type=\"PolyData\" compressor=\"vtkLZ4DataCompressor\">").find("LZ4"),
+      std::string::npos);
+  EXPECT_NE(refusal_of("grid.vtp", "<VTKFile type=\"UnstructuredGrid\">").find("PolyData"),
+            std::string::npos);
 }
 
 }  // namespace

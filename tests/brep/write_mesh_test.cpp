@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/write_mesh.h"
 
+#include <cstring>
 #include <fstream>
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ std::filesystem::path folder() {
 TEST(WriteMesh, DoublesComeBackToTheLastBit) {
   const Mesh mesh = mesh_of(shapes::sphere({1e-3, -1e5, 1.0 / 3.0}, 7.0, 2));
   const Triangles wanted = triangles_of(mesh);
-  for (const char* name : {"sphere.ply", "sphere.obj", "sphere.OFF"}) {
+  for (const char* name : {"sphere.ply", "sphere.obj", "sphere.OFF", "sphere.vtp"}) {
     write_mesh(mesh, folder() / name);
     const Triangles back = read_triangles(folder() / name);
     EXPECT_EQ(back.points_mm, wanted.points_mm) << name;
@@ -68,6 +69,44 @@ TEST(WriteMesh, ColoursAndScalarsGoIntoPlyBesideThePlaces) {
   EXPECT_THROW(write_mesh(mesh, folder() / "coloured.ply", data), std::invalid_argument);
 }
 
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+template <typename T>
+T number_at(const std::string& bytes, std::size_t at) {
+  T value;
+  std::memcpy(&value, bytes.data() + at, sizeof(T));
+  return value;
+}
+
+TEST(WriteMesh, AGlbHoldsPlacesNormalsColoursAndCornersAsItsHeaderSays) {
+  const Mesh mesh = mesh_of(shapes::sphere({0, 0, 0}, 10.0, 1));
+  VertexData data;
+  for (std::size_t v = 0; v < mesh.n_vertices(); ++v) data.colours.emplace_back(0, 255, 188);
+  write_mesh(mesh, folder() / "ball.glb", data);
+  const std::string bytes = bytes_of(folder() / "ball.glb");
+  ASSERT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_EQ(number_at<std::uint32_t>(bytes, 4), 2u);
+  EXPECT_EQ(number_at<std::uint32_t>(bytes, 8), bytes.size());
+  const std::size_t json = number_at<std::uint32_t>(bytes, 12), n = mesh.n_vertices();
+  ASSERT_EQ(json % 4, 0u);
+  EXPECT_EQ(bytes.substr(20 + json + 4, 4), std::string("BIN\0", 4));
+  const std::size_t body = 20 + json + 8;
+  ASSERT_EQ(number_at<std::uint32_t>(bytes, 20 + json), n * (12 + 12 + 8) + 12 * mesh.n_faces());
+  for (std::size_t v = 0; v < n; ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      // On a ball about the origin a point's normal is its direction.
+      const auto place = number_at<float>(bytes, body + 12 * v + 4 * axis);
+      EXPECT_NEAR(number_at<float>(bytes, body + 12 * (n + v) + 4 * axis), place / 10.0F, 0.01F);
+    }
+  EXPECT_EQ(number_at<std::uint16_t>(bytes, body + 24 * n), 0);
+  EXPECT_EQ(number_at<std::uint16_t>(bytes, body + 24 * n + 2), 65535);
+  EXPECT_NEAR(number_at<std::uint16_t>(bytes, body + 24 * n + 4), 32768, 700);  // half of the light
+  EXPECT_EQ(number_at<std::uint32_t>(bytes, body + 32 * n), triangles_of(mesh).faces[0][0]);
+}
+
 TEST(WriteMesh, AFailureLeavesWhatWasThere) {
   const Mesh mesh = mesh_of(shapes::box({0, 0, 0}, {1, 1, 1}));
   EXPECT_THROW(write_mesh(mesh, folder() / "box.xyz"), std::runtime_error);
@@ -81,7 +120,7 @@ TEST(WriteMesh, AFailureLeavesWhatWasThere) {
 }
 
 TEST(WriteMesh, AnEmptyMeshIsAFileWithoutTriangles) {
-  for (const char* name : {"none.stl", "none.ply", "none.obj", "none.off"}) {
+  for (const char* name : {"none.stl", "none.ply", "none.obj", "none.off", "none.vtp"}) {
     write_mesh(Mesh(), folder() / name);
     EXPECT_TRUE(read_triangles(folder() / name).faces.empty()) << name;
   }

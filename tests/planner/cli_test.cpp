@@ -17,7 +17,7 @@ TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   const std::string help = run("--help").out;
   for (const char* verb : {"look",    "run",    "verify", "info",     "measure", "render",  "mesh",
                            "boolean", "smooth", "tet",    "register", "compare", "phantom", "octree",
-                           "eval",    "mark",   "mask",   "slice",    "segment", "prepare"}) {
+                           "eval",    "mark",   "mask",   "slice",    "segment", "prepare", "saw"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const CommandAnswer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
@@ -377,6 +377,52 @@ TEST_F(CommandLine, AnOctreeBecomesAMeshByEverySurfaceAndComesBackFromItsCuberil
   ASSERT_EQ(fewer.status, 0) << fewer.errors;
   EXPECT_LE(Json::parse(fewer.out)["faces"], 400);
   expect_refused(run("mesh " + at("ball.octree") + " --window 1: -o " + at("p.ply")), "no samples");
+}
+
+TEST_F(CommandLine, AScansContoursAreTiledToASolidByAnyCost) {
+  const Json iso =
+      Json::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("i.ply") + " --json").out);
+  for (const std::string tiling :
+       {"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"}) {
+    const CommandAnswer tiled = run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("t.vtp") +
+                                    " --surface contours --tiling " + tiling + " --json");
+    ASSERT_EQ(tiled.status, 0) << tiled.errors;
+    const Json json = Json::parse(tiled.out);
+    EXPECT_TRUE(json["closed"] && json["manifold"] && json["oriented"]) << tiling;
+    EXPECT_EQ(json["self_intersections"], 0) << tiling;
+    EXPECT_NEAR(json["volume_mm3"].get<double>() / iso["volume_mm3"].get<double>(), 1.0, 0.03) << tiling;
+  }
+  expect_refused(run("mesh " + at("ball.octree") + " -o " + at("t.ply") + " --surface contours"),
+                 "ball.octree");
+}
+
+TEST_F(CommandLine, ASolidIsSawnAndItsBooleansAreProvenExactly) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 400").status, 0);
+  const Json ball = Json::parse(run("measure " + at("ball.off") + " --json").out);
+  const double x = ball["centroid_mm"][0], y = ball["centroid_mm"][1], z = ball["centroid_mm"][2];
+  const auto point = [](double a, double b, double c) {
+    return std::to_string(a) + "," + std::to_string(b) + "," + std::to_string(c);
+  };
+  const CommandAnswer sawn =
+      run("saw " + at("ball.off") + " --line " + point(x - 90, y - 90, z) + " " + point(x + 90, y - 90, z) +
+          " --direction 0,1,0 --depth 180 --kerf 1 -o " + at("halves.glb") + " --json");
+  ASSERT_EQ(sawn.status, 0) << sawn.errors;
+  const Json halves = Json::parse(sawn.out);
+  EXPECT_EQ(halves["pieces"].size(), 2u);
+  EXPECT_NEAR(halves["sawn_away_mm3"].get<double>() + halves["volume_mm3"].get<double>(),
+              ball["volume_mm3"].get<double>(), 1e-6);
+  expect_refused(run("saw " + at("ball.off") + " --line 0,0 1,1,1 --direction 0,1,0 -o " + at("p.stl")),
+                 "0,0");
+
+  // The same ball smoothed: the surfaces weave through each other.
+  ASSERT_EQ(run("smooth " + at("ball.off") + " -o " + at("rough.off") + " --rounds 3").status, 0);
+  const CommandAnswer exact = run("boolean " + at("ball.off") + " difference " + at("rough.off") +
+                                  " --exact -o " + at("films.ply") + " --json");
+  ASSERT_EQ(exact.status, 0) << exact.errors;
+  const Json proof = Json::parse(exact.out)["exact"];
+  EXPECT_NEAR(proof["a_mm3"].get<double>() + proof["b_mm3"].get<double>(),
+              proof["union_mm3"].get<double>() + proof["intersection_mm3"].get<double>(), 1e-6);
+  EXPECT_GT(proof["rounded_points"], 0);
 }
 
 TEST_F(CommandLine, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFallback) {
