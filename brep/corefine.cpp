@@ -20,6 +20,20 @@
 #include "brep/flat_triangles.h"
 #include "brep/triangles.h"
 
+// One of those checks is not worth its price: after each point on a side of a triangle it asks whether the
+// whole triangulation of that triangle is Delaunay in exact numbers, more than half of all time. What
+// protects memory is that its links are sound; points in a wrong order show in the results' volumes.
+namespace CGAL {
+using CutTraits = Projection_traits_3<Exact_predicates_exact_constructions_kernel>;
+using CutLinks = Triangulation_data_structure_2<Triangulation_vertex_base_with_info_2<std::size_t, CutTraits>,
+                                                Constrained_triangulation_face_base_2<CutTraits>>;
+template <>
+inline bool Constrained_Delaunay_triangulation_2<CutTraits, CutLinks>::is_valid(bool verbose,
+                                                                                int level) const {
+  return this->tds().is_valid(verbose, level);
+}
+}  // namespace CGAL
+
 namespace octotomy::brep {
 
 /// Steps along halfedges that the corefinement under way may still take.
