@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "convert/tetrahedralise.h"
+#include "convert/tetrahedra.h"
 
 namespace octotomy::convert {
 

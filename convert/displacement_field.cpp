@@ -13,23 +13,11 @@
 namespace octotomy::convert {
 namespace {
 
-using Corners = std::array<glm::dvec3, 4>;
-
-Corners corners_of(const Tetrahedra& tetrahedra, std::size_t tet) {
-  Corners corners;
-  for (std::size_t i = 0; i < 4; ++i) corners[i] = tetrahedra.nodes_mm[tetrahedra.tets[tet][i]];
-  return corners;
-}
-
-double six_volumes(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
-  return glm::dot(glm::cross(b - a, c - a), d - a);
-}
-
 brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
   brep::Triangles surface;
   surface.points_mm = tetrahedra.nodes_mm;
   for (const ElementFace& face : surface_faces(tetrahedra))
-    surface.faces.push_back(convert::corners_of(tetrahedra, face));
+    surface.faces.push_back(corners_of(tetrahedra, face));
   return surface;
 }
 
@@ -71,7 +59,7 @@ DisplacementField::Bins DisplacementField::bins_of(const Tetrahedra& tetrahedra)
       longest_mm / most_a_side);
   bins.dims = glm::ivec3(extent_mm / bins.side_mm) + 1;
   const auto for_each_bin = [&](std::size_t tet, const auto& visit) {
-    const Corners p = corners_of(tetrahedra, tet);
+    const TetCorners p = corners_mm(tetrahedra, tet);
     const glm::ivec3 low = bins.bin(glm::min(glm::min(p[0], p[1]), glm::min(p[2], p[3])));
     const glm::ivec3 high = bins.bin(glm::max(glm::max(p[0], p[1]), glm::max(p[2], p[3])));
     for (int z = low.z; z <= high.z; ++z)
@@ -101,11 +89,11 @@ std::optional<glm::dvec3> DisplacementField::within(const glm::dvec3& p_mm) cons
   constexpr double slack = 1e-9;
   const std::size_t bin = bins_.number(bins_.bin(p_mm));
   for (std::uint32_t i = bins_.first[bin]; i < bins_.first[bin + 1]; ++i) {
-    const Corners c = corners_of(tetrahedra_, bins_.tets[i]);
-    const double whole = six_volumes(c[0], c[1], c[2], c[3]);
+    const TetCorners c = corners_mm(tetrahedra_, bins_.tets[i]);
+    const double whole = six_volumes(c);
     const std::array<double, 4> weights{
-        six_volumes(p_mm, c[1], c[2], c[3]) / whole, six_volumes(c[0], p_mm, c[2], c[3]) / whole,
-        six_volumes(c[0], c[1], p_mm, c[3]) / whole, six_volumes(c[0], c[1], c[2], p_mm) / whole};
+        six_volumes({p_mm, c[1], c[2], c[3]}) / whole, six_volumes({c[0], p_mm, c[2], c[3]}) / whole,
+        six_volumes({c[0], c[1], p_mm, c[3]}) / whole, six_volumes({c[0], c[1], c[2], p_mm}) / whole};
     if (!std::all_of(weights.begin(), weights.end(), [](double weight) { return weight >= -slack; }))
       continue;
     glm::dvec3 displacement(0.0);
@@ -155,9 +143,9 @@ DisplacementField DisplacementField::inverse() const {
 std::size_t DisplacementField::turned_over() const {
   std::size_t count = 0;
   for (std::size_t tet = 0; tet < tetrahedra_.tets.size(); ++tet) {
-    Corners c = corners_of(tetrahedra_, tet);
+    TetCorners c = corners_mm(tetrahedra_, tet);
     for (std::size_t k = 0; k < 4; ++k) c[k] += displacement_mm_[tetrahedra_.tets[tet][k]];
-    count += six_volumes(c[0], c[1], c[2], c[3]) <= 0.0 ? 1 : 0;
+    count += six_volumes(c) <= 0.0 ? 1 : 0;
   }
   return count;
 }

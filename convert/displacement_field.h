@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "brep/distance.h"
-#include "convert/tetrahedralise.h"
+#include "convert/tetrahedra.h"
 #include "voxel/progress.h"
 #include "voxel/scene.h"
 

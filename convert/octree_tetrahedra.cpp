@@ -235,7 +235,7 @@ class Filling {
 
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     const auto& p = result_.nodes_mm;
-    if (glm::dot(glm::cross(p[b] - p[a], p[c] - p[a]), p[d] - p[a]) < 0.0) std::swap(b, c);
+    if (six_volumes({p[a], p[b], p[c], p[d]}) < 0.0) std::swap(b, c);
     result_.tets.push_back({a, b, c, d});
   }
 

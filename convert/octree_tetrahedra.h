@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "convert/tetrahedralise.h"
+#include "convert/tetrahedra.h"
 #include "voxel/octree.h"
 
 namespace octotomy::convert {

@@ -5,20 +5,22 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <tbb/parallel_sort.h>
 
 #include "brep/disjoint_sets.h"
-#include "convert/tetgen_process.h"
+#include "convert/improve_tetrahedra.h"
+#include "convert/mesh3_tetrahedra.h"
+#include "convert/mesher_process.h"
 
 // 1 The surface becomes points and triangles; what TetGen would abort on is refused here.
 // 2 A cavity is a connected part of the surface that is inside out. Half way from one of its triangles to
 //   the next surface in front of it lies a point that is in the cavity and in nothing else: the hole point.
 // 3 TetGen runs, with less and less to ask. Its answer is believed only where the volumes are positive and
 //   their sum is the volume that the surface encloses: that shows filled cavities and leaks.
+// 4 Nodes within are moved to make flat elements less so. Where that is not enough and the surface need not
+//   be kept, Mesh_3 makes one of its own.
 
 namespace octotomy::convert {
 namespace {
@@ -65,14 +67,9 @@ struct Bounds {
   }
 };
 
-/// Six times the signed volume of the tetrahedron; positive in the order that Tetrahedra documents.
-double six_volumes(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
-  return glm::dot(glm::cross(b - a, c - a), d - a);
-}
-
 /// The solid's faces as TetGen takes them. Vertices without a face are left out: TetGen would mesh to them.
-TetgenInput surface_of(const brep::Mesh& solid) {
-  TetgenInput input;
+MesherInput surface_of(const brep::Mesh& solid) {
+  MesherInput input;
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> number(solid.n_vertices(), unused);
   for (const auto face : solid.faces()) {
@@ -106,7 +103,7 @@ struct Part {
 };
 
 /// Parts in the order of their first triangle. Volumes are taken about the surface's first point.
-std::vector<Part> parts_of(const TetgenInput& surface) {
+std::vector<Part> parts_of(const MesherInput& surface) {
   brep::DisjointSets sets(surface.points_mm.size());
   for (const auto& [a, b, c] : surface.triangles) {
     sets.join(a, b);
@@ -153,7 +150,7 @@ double distance_along(const glm::dvec3& from, const glm::dvec3& direction, const
   return t > 0.0 ? t : missed;
 }
 
-double nearest_hit(const TetgenInput& surface, const Part& part, std::uint32_t start, const glm::dvec3& from,
+double nearest_hit(const MesherInput& surface, const Part& part, std::uint32_t start, const glm::dvec3& from,
                    const glm::dvec3& direction) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const std::uint32_t t : part.triangles) {
@@ -168,7 +165,7 @@ double nearest_hit(const TetgenInput& surface, const Part& part, std::uint32_t s
 /// A point inside the cavity that a part encloses: from its largest triangle along the normal, which points
 /// out of the solid and into the cavity, half way to the next surface. That is the part itself or an island
 /// in the cavity, whose bounds then meet the way.
-glm::dvec3 hole_point(const TetgenInput& surface, const std::vector<Part>& parts, const Part& cavity) {
+glm::dvec3 hole_point(const MesherInput& surface, const std::vector<Part>& parts, const Part& cavity) {
   const auto normal_of = [&](std::uint32_t t) {
     const auto& [a, b, c] = surface.triangles[t];
     return glm::cross(surface.points_mm[b] - surface.points_mm[a],
@@ -204,34 +201,19 @@ std::vector<std::string> ladder(const TetOptions& options) {
   return {asked, "p"};
 }
 
-/// What is wrong with TetGen's tetrahedra, or nothing.
-std::optional<std::string> fault_of(const TetgenOutcome& outcome, double surface_mm3) {
-  if (outcome.tetrahedra.empty()) return "gave no tetrahedra";
-  double sum = 0.0;
-  for (std::size_t t = 0; t < outcome.tetrahedra.size(); ++t) {
-    std::array<glm::dvec3, 4> p;
-    for (std::size_t i = 0; i < 4; ++i) p.at(i) = outcome.points_mm.at(outcome.tetrahedra[t].at(i));
-    const double six = six_volumes(p[0], p[1], p[2], p[3]);
-    if (!(six > 0.0))
-      return "gave tetrahedron " + std::to_string(t) + " of volume " + text_of(six / 6.0) + " mm3";
-    sum += six;
-  }
-  if (std::abs(sum / 6.0 - surface_mm3) > volume_tolerance() * surface_mm3)
-    return "filled " + text_of(sum / 6.0) + " mm3 of a surface that encloses " + text_of(surface_mm3) +
-           " mm3";
-  return std::nullopt;
-}
-
 void check(const TetOptions& options) {
   // TetGen's bound below which refinement need not end is 2 for surfaces in general; under 1 it never does.
   if (!(options.radius_edge >= 1.0) || !std::isfinite(options.radius_edge))
     refuse("the radius-edge bound must be 1 or more, not " + text_of(options.radius_edge));
+  if (!(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 30.0))
+    refuse("the smallest dihedral angle to reach must be 0 to 30 degrees, not " +
+           text_of(options.min_dihedral_deg));
   if (options.limit_volume && !(options.max_volume_mm3 > 0.0))
     refuse("the largest volume must be positive, not " + text_of(options.max_volume_mm3) + " mm3");
 }
 
 /// Volume of the solid. Throws where it is flat, tiny or inside out.
-double checked_volume_mm3(const TetgenInput& surface, const std::vector<Part>& parts) {
+double checked_volume_mm3(const MesherInput& surface, const std::vector<Part>& parts) {
   Bounds bounds;
   double six = 0.0;
   for (const Part& part : parts) {
@@ -252,87 +234,69 @@ double checked_volume_mm3(const TetgenInput& surface, const std::vector<Part>& p
   return volume;
 }
 
-struct TetMeasures {
-  double volume = 0.0;
-  double min_dihedral = 0.0;  ///< radians
-  double max_dihedral = 0.0;
-  double radius_edge = 0.0;
-};
-
-TetMeasures measures_of(const std::array<glm::dvec3, 4>& p) {
-  TetMeasures m;
-  const double six = six_volumes(p[0], p[1], p[2], p[3]);
-  m.volume = six / 6.0;
-
-  m.min_dihedral = std::numbers::pi;
-  double shortest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t j = i + 1; j < 4; ++j) {
-      const std::size_t k = i == 0 ? (j == 1 ? 2 : 1) : 0;
-      const std::size_t l = 6 - i - j - k;
-      const glm::dvec3 edge = p.at(j) - p.at(i);
-      // The angle between the two faces at the edge, by what is left of them across it.
-      const glm::dvec3 one = glm::cross(edge, p.at(k) - p.at(i));
-      const glm::dvec3 other = glm::cross(edge, p.at(l) - p.at(i));
-      const double angle = std::atan2(glm::length(glm::cross(one, other)), glm::dot(one, other));
-      m.min_dihedral = std::min(m.min_dihedral, angle);
-      m.max_dihedral = std::max(m.max_dihedral, angle);
-      shortest = std::min(shortest, glm::length(edge));
+std::optional<Tetrahedra> by_tetgen(const MesherInput& surface, double surface_mm3, const TetOptions& options,
+                                    std::vector<std::string>& findings) {
+  for (const std::string& switches : ladder(options)) {
+    MesherOutcome outcome =
+        run_tetgen(surface, switches + "Q", {options.time_limit, options.memory_limit_bytes, options.stop});
+    if (!outcome.failure) {
+      Tetrahedra made;
+      made.nodes_mm = std::move(outcome.points_mm);
+      made.tets = std::move(outcome.tetrahedra);
+      made.method = "TetGen -" + switches;
+      const std::optional<std::string> fault = fault_in_filling(made, surface_mm3, volume_tolerance());
+      if (!fault) {
+        made.boundary_nodes = boundary_nodes(made.tets);
+        ImproveOptions improving;
+        improving.min_dihedral_deg = options.min_dihedral_deg;
+        improving.stop = options.stop;
+        improve(made, improving);
+        return made;
+      }
+      outcome.failure = made.method + "Q " + *fault;
+      outcome.worth_another_try = true;
     }
+    findings.push_back(*outcome.failure);
+    if (!outcome.worth_another_try) break;
+  }
+  return std::nullopt;
+}
 
-  const glm::dvec3 a = p[1] - p[0];
-  const glm::dvec3 b = p[2] - p[0];
-  const glm::dvec3 c = p[3] - p[0];
-  const glm::dvec3 numerator = glm::dot(a, a) * glm::cross(b, c) + glm::dot(b, b) * glm::cross(c, a) +
-                               glm::dot(c, c) * glm::cross(a, b);
-  m.radius_edge = glm::length(numerator) / (2.0 * std::abs(six)) / shortest;
-  return m;
+/// The surface with points that Mesh_3 starts from in place of hole points: corners of triangles spread over
+/// every part, at least eight of each and about one of a hundred.
+MesherInput starting(MesherInput surface, const std::vector<Part>& parts) {
+  constexpr std::size_t least = 8, one_of = 100;
+  surface.holes_mm.clear();
+  for (const Part& part : parts) {
+    const std::size_t count = std::max(least, part.triangles.size() / one_of);
+    const std::size_t step = std::max<std::size_t>(1, part.triangles.size() / count);
+    for (std::size_t i = 0; i < part.triangles.size(); i += step)
+      surface.holes_mm.push_back(surface.points_mm[surface.triangles[part.triangles[i]][0]]);
+  }
+  return surface;
 }
 
 }  // namespace
 
-TetQuality quality(const Tetrahedra& tetrahedra) {
-  if (tetrahedra.tets.empty()) refuse("there is no quality of no tetrahedra");
-  TetQuality q;
-  q.min_volume_mm3 = std::numeric_limits<double>::infinity();
-  q.min_dihedral_deg = 180.0;
-  for (const std::array<std::uint32_t, 4>& tet : tetrahedra.tets) {
-    std::array<glm::dvec3, 4> p;
-    for (std::size_t i = 0; i < 4; ++i) p.at(i) = tetrahedra.nodes_mm.at(tet.at(i));
-    const TetMeasures m = measures_of(p);
-    q.volume_mm3 += m.volume;
-    q.min_volume_mm3 = std::min(q.min_volume_mm3, m.volume);
-    q.min_dihedral_deg = std::min(q.min_dihedral_deg, glm::degrees(m.min_dihedral));
-    q.max_dihedral_deg = std::max(q.max_dihedral_deg, glm::degrees(m.max_dihedral));
-    q.max_radius_edge = std::max(q.max_radius_edge, m.radius_edge);
+std::optional<std::string> fault_in_filling(const Tetrahedra& tetrahedra, double surface_mm3,
+                                            double tolerance) {
+  if (tetrahedra.tets.empty()) return "gave no tetrahedra";
+  double sum = 0.0;
+  for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t) {
+    const double six = six_volumes(corners_mm(tetrahedra, t));
+    if (!(six > 0.0))
+      return "gave tetrahedron " + std::to_string(t) + " of volume " + text_of(six / 6.0) + " mm3";
+    sum += six;
   }
-  return q;
-}
-
-std::vector<std::uint32_t> boundary_nodes(const std::vector<std::array<std::uint32_t, 4>>& tets) {
-  std::vector<std::array<std::uint32_t, 3>> faces;
-  faces.reserve(4 * tets.size());
-  for (const auto& [a, b, c, d] : tets)
-    for (std::array<std::uint32_t, 3> face : {std::array{a, b, c}, {a, b, d}, {a, c, d}, {b, c, d}}) {
-      std::sort(face.begin(), face.end());
-      faces.push_back(face);
-    }
-  tbb::parallel_sort(faces.begin(), faces.end());
-  std::vector<std::uint32_t> nodes;
-  for (std::size_t i = 0; i < faces.size();) {
-    std::size_t end = i + 1;
-    while (end < faces.size() && faces[end] == faces[i]) ++end;
-    if (end == i + 1) nodes.insert(nodes.end(), faces[i].begin(), faces[i].end());
-    i = end;
-  }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
+  if (std::abs(sum / 6.0 - surface_mm3) > tolerance * surface_mm3)
+    return "filled " + text_of(sum / 6.0) + " mm3 of a surface that encloses " + text_of(surface_mm3) +
+           " mm3";
+  return std::nullopt;
 }
 
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   check(options);
-  TetgenInput surface = surface_of(solid);
+  MesherInput surface = surface_of(solid);
   if (surface.triangles.size() < 4)
     refuse("a surface of " + std::to_string(surface.triangles.size()) + " triangles encloses nothing");
   const std::vector<Part> parts = parts_of(surface);
@@ -340,30 +304,29 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   for (const Part& part : parts)
     if (part.six_volumes_mm3 < 0.0) surface.holes_mm.push_back(hole_point(surface, parts, part));
 
-  Tetrahedra result;
-  for (const std::string& switches : ladder(options)) {
-    TetgenOutcome outcome =
-        run_tetgen(surface, switches + "Q", {options.time_limit, options.memory_limit_bytes, options.stop});
-    if (!outcome.failure) {
-      if (const std::optional<std::string> fault = fault_of(outcome, surface_mm3)) {
-        outcome.failure = "TetGen -" + switches + "Q " + *fault;
-        outcome.worth_another_try = true;
+  std::optional<Tetrahedra> best;
+  std::vector<std::string> findings;
+  if (options.mesher != Mesher::Mesh3) best = by_tetgen(surface, surface_mm3, options, findings);
+  const bool good = best && quality(*best).min_dihedral_deg >= options.min_dihedral_deg;
+  if (options.mesher != Mesher::TetGen && !good && !options.stop.stop_requested()) {
+    Mesh3Filling filling = fill_by_mesh3(starting(surface, parts), surface_mm3, options);
+    findings.insert(findings.end(), filling.findings.begin(), filling.findings.end());
+    if (filling.tetrahedra) {
+      if (best) {
+        const double kept_deg = quality(*best).min_dihedral_deg;
+        findings.push_back("the kept surface gave dihedral angles down to " + text_of(kept_deg) + " degrees");
+        if (kept_deg < quality(*filling.tetrahedra).min_dihedral_deg) best.reset();
       }
+      if (!best) best = std::move(filling.tetrahedra);
     }
-    if (outcome.failure) {
-      result.findings.push_back(*outcome.failure);
-      if (!outcome.worth_another_try) break;
-      continue;
-    }
-    result.nodes_mm = std::move(outcome.points_mm);
-    result.tets = std::move(outcome.tetrahedra);
-    result.boundary_nodes = boundary_nodes(result.tets);
-    result.method = "TetGen -" + switches;
-    return result;
+  }
+  if (best) {
+    best->findings.insert(best->findings.begin(), findings.begin(), findings.end());
+    return *std::move(best);
   }
   std::string message = "tetrahedralise: no tetrahedra of " + std::to_string(surface.triangles.size()) +
                         " triangles in " + std::to_string(parts.size()) + " parts";
-  for (const std::string& finding : result.findings) message += "; " + finding;
+  for (const std::string& finding : findings) message += "; " + finding;
   throw std::runtime_error(message);
 }
 

@@ -61,11 +61,6 @@ std::vector<int> holders_of(const convert::Tetrahedra& tetrahedra, const std::ve
   return of_node;
 }
 
-double volume_mm3(const convert::Tetrahedra& tetrahedra, const std::array<std::uint32_t, 4>& tet) {
-  const auto p = [&](std::size_t i) { return tetrahedra.nodes_mm[tet[i]]; };
-  return glm::dot(glm::cross(p(1) - p(0), p(2) - p(0)), p(3) - p(0)) / 6.0;
-}
-
 /// Takes away the parts that nothing holds; answers their volume.
 double keep_held(Held& held) {
   convert::Tetrahedra& all = held.tetrahedra;
@@ -86,9 +81,10 @@ double keep_held(Held& held) {
     kept.holder_of_node.push_back(held.holder_of_node[node]);
   }
   double left_out_mm3 = 0.0;
-  for (std::array<std::uint32_t, 4> tet : all.tets) {
+  for (std::size_t t = 0; t < all.tets.size(); ++t) {
+    std::array<std::uint32_t, 4> tet = all.tets[t];
     if (renumbered[tet[0]] == none) {
-      left_out_mm3 += volume_mm3(all, tet);
+      left_out_mm3 += convert::six_volumes(convert::corners_mm(all, t)) / 6.0;
       continue;
     }
     for (std::uint32_t& node : tet) node = renumbered[node];

@@ -86,8 +86,11 @@ brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling)
 Filling filling_of(const Object& object) {
   Filling filling;
   const brep::Mesh bodies = bodies_of(*object.mesh, filling);
-  filling.tetrahedra =
-      convert::tetrahedralise(simplified(bodies, simplification_mm(object.octree.universe()), filling));
+  convert::TetOptions options;
+  options.mesher = convert::Mesher::Best;
+  filling.tetrahedra = convert::tetrahedralise(
+      simplified(bodies, simplification_mm(object.octree.universe()), filling), options);
+  for (const std::string& finding : filling.tetrahedra.findings) filling.findings.push_back(finding);
   return filling;
 }
 

@@ -25,6 +25,7 @@ struct TetText {
   std::filesystem::path in, out, scan;
   convert::TetOptions options;
   convert::MaterialOptions materials;
+  std::string mesher = "best";
   std::optional<double> max_volume_mm3, voxel_mm;
   std::vector<double> density;
   double seconds = 60.0;
@@ -161,6 +162,9 @@ int tet(const Program& program, TetText text) {
     text.options.limit_volume = true;
     text.options.max_volume_mm3 = *text.max_volume_mm3;
   }
+  text.options.mesher = text.mesher == "tetgen"  ? convert::Mesher::TetGen
+                        : text.mesher == "mesh3" ? convert::Mesher::Mesh3
+                                                 : convert::Mesher::Best;
   text.options.time_limit = std::chrono::seconds(static_cast<long>(text.seconds));
   text.options.stop = program.stop.get_token();
   Timings timings;
@@ -235,18 +239,27 @@ void add_tet(Program& program) {
   verb.add_option("-o,--out", text->out,
                   "A deck: .inp (Abaqus, CalculiX), .feb (FEBio 4), .vtu, .msh (Gmsh 4.1) or .node (TetGen)")
       ->required();
+  verb.add_option("--mesher", text->mesher,
+                  "tetgen keeps the surface; mesh3 (CGAL) puts one of its own in place, within a tenth of a "
+                  "triangle's size; best: tetgen, and mesh3 where angles stay under --dihedral")
+      ->check(CLI::IsMember({"tetgen", "mesh3", "best"}))
+      ->capture_default_str();
+  verb.add_option("--dihedral", text->options.min_dihedral_deg,
+                  "Smallest dihedral angle that is aimed at, degrees")
+      ->check(between(0.0, 30.0))
+      ->capture_default_str();
   verb.add_option("--radius-edge", text->options.radius_edge,
-                  "Largest circumradius by shortest edge; 1.2 is hard, 2 is easy")
+                  "TetGen's largest circumradius by shortest edge; 1.2 is hard, 2 is easy")
       ->check(between(1.1, 10.0))
       ->capture_default_str();
   verb.add_option("--max-volume", text->max_volume_mm3, "Largest tetrahedron, mm3")->check(above_zero());
   verb.add_flag("!--refine-boundary", text->options.keep_boundary,
                 "Let TetGen add points on the surface; by default it is kept as it is");
-  verb.add_option("--seconds", text->seconds, "Time that each run of TetGen may take")
+  verb.add_option("--seconds", text->seconds, "Time that each run of a mesher may take")
       ->check(between(1.0, 86400.0))
       ->capture_default_str();
   verb.add_flag("--fallback", text->fallback,
-                "Where TetGen fails, or the mesh is no solid, take an octree's elements, marked as such");
+                "Where the meshers fail, or the mesh is no solid, take an octree's elements, marked as such");
   verb.add_option("--voxel", text->voxel_mm, "Edge of their smallest, mm; default: about 200 000 voxels")
       ->check(above_zero());
   verb.add_flag("--msh2", text->msh_2_2, "Write .msh in Gmsh's version 2.2");

@@ -12,6 +12,7 @@
 #include "convert/calculix_result.h"
 #include "convert/deck.h"
 #include "convert/octree_tetrahedra.h"
+#include "convert/tetrahedralise.h"
 #include "tests/convert/surfaces.h"
 #include "voxel/combine.h"
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "convert/tetgen_process.h"
+#include "convert/mesher_process.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
@@ -84,10 +86,9 @@ class MemoryFile {
   int file_;
 };
 
-/// The executable that lies beside the running one.
-std::filesystem::path tetgen_executable() {
-  std::filesystem::path path =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octotomy-tetgen";
+/// An executable that lies beside the running one.
+std::filesystem::path beside_us(const std::string& name) {
+  std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
   if (!std::filesystem::exists(path))
     throw std::runtime_error("tetrahedralise: " + path.string() +
                              " is missing: it belongs beside the program that uses it");
@@ -130,7 +131,7 @@ struct Ending {
 };
 
 /// Waits for the child within the limits and ends it where they are passed; it is gone on return.
-Ending wait_within(pid_t child, const TetgenLimits& limits) {
+Ending wait_within(pid_t child, const MesherLimits& limits) {
   const Clock::time_point deadline = Clock::now() + limits.time;
   Ending ending;
   for (;;) {
@@ -170,7 +171,7 @@ struct Reason {
 };
 
 /// The numbers are those of TetGen 1.5's terminatetetgen().
-Reason reason_of_status(int status, const TetgenLimits& limits) {
+Reason reason_of_status(int status, const MesherLimits& limits) {
   const std::string memory = std::to_string(limits.memory_bytes >> 20) + " MiB";
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
@@ -181,28 +182,28 @@ Reason reason_of_status(int status, const TetgenLimits& limits) {
     return {"crashed with signal " + std::to_string(signal) + " (SIG" + (name == nullptr ? "?" : name) + ")"};
   }
   switch (WEXITSTATUS(status)) {
-    case tetgen_exit_memory:
+    case mesher_exit_memory:
       return {"needs more than the memory limit of " + memory + ": raise it or coarsen the surface"};
-    case tetgen_exit_protocol:
+    case mesher_exit_protocol:
       return {"did not understand the request: octotomy-tetgen is of another build", false};
-    case tetgen_exit_base + 2:
+    case mesher_exit_base + 2:
       return {"met an internal error"};
-    case tetgen_exit_base + 3:
+    case mesher_exit_base + 3:
       return {"found the surface intersecting itself: look at its health, then smooth or remesh it", false};
-    case tetgen_exit_base + 4:
+    case mesher_exit_base + 4:
       return {"found features too small for its tolerance: remesh the surface"};
-    case tetgen_exit_base + 5:
+    case mesher_exit_base + 5:
       return {"found two triangles too close to each other: remesh the surface"};
-    case tetgen_exit_base + 10:
+    case mesher_exit_base + 10:
       return {"refused the surface as malformed", false};
     default:
       return {"ended with status " + std::to_string(WEXITSTATUS(status))};
   }
 }
 
-void write_request(const MemoryFile& file, const TetgenInput& input, const std::string& switches,
-                   const TetgenLimits& limits) {
-  TetgenRequest request;
+void write_request(const MemoryFile& file, const MesherInput& input, const std::string& switches,
+                   const MesherLimits& limits) {
+  MesherRequest request;
   if (switches.size() >= request.switches.size())
     throw std::invalid_argument("tetrahedralise: switches '" + switches + "' are too long");
   std::copy(switches.begin(), switches.end(), request.switches.begin());
@@ -221,12 +222,12 @@ void write_request(const MemoryFile& file, const TetgenInput& input, const std::
 }
 
 /// False where the answer is not whole.
-bool read_answer(const MemoryFile& file, TetgenOutcome& outcome) {
+bool read_answer(const MemoryFile& file, MesherOutcome& outcome) {
   const std::uint64_t size = file.size();
   file.rewind();
-  TetgenAnswer answer;
+  MesherAnswer answer;
   if (size < sizeof answer || !file.read_all(&answer, sizeof answer)) return false;
-  if (answer.version != TetgenRequest::this_version) return false;
+  if (answer.version != MesherRequest::this_version) return false;
   const std::uint64_t point_bytes = sizeof(glm::dvec3);
   const std::uint64_t tet_bytes = 4 * sizeof(std::uint32_t);
   if (answer.points > size / point_bytes || answer.tetrahedra > size / tet_bytes) return false;
@@ -236,20 +237,25 @@ bool read_answer(const MemoryFile& file, TetgenOutcome& outcome) {
          file.read_all(outcome.tetrahedra.data(), answer.tetrahedra * tet_bytes);
 }
 
-}  // namespace
+/// A mesher in a process of its own: its executable, and what messages call it.
+struct Mesher {
+  std::string executable;
+  std::string said;
+};
 
-TetgenOutcome run_tetgen(const TetgenInput& input, const std::string& switches, const TetgenLimits& limits) {
+MesherOutcome run(const Mesher& mesher, const MesherInput& input, const std::string& switches,
+                  const MesherLimits& limits) {
   const MemoryFile request("tetgen request");
   const MemoryFile answer("tetgen answer");
   const MemoryFile log("tetgen log");
   write_request(request, input, switches, limits);
 
-  const std::filesystem::path executable = tetgen_executable();
+  const std::filesystem::path executable = beside_us(mesher.executable);
   const Clock::time_point started = Clock::now();
   const Ending ending = wait_within(start(executable, request.file(), answer.file(), log.file()), limits);
   const auto ran = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - started);
 
-  TetgenOutcome outcome;
+  MesherOutcome outcome;
   std::string why;
   if (ending.how == Ended::Stopped) {
     why = "was stopped on request";
@@ -270,9 +276,21 @@ TetgenOutcome run_tetgen(const TetgenInput& input, const std::string& switches, 
   const std::string words = last_words(log);
   outcome.points_mm.clear();
   outcome.tetrahedra.clear();
-  outcome.failure = "TetGen -" + switches + " " + why + " (after " + std::to_string(ran.count()) + " ms" +
+  outcome.failure = mesher.said + " " + why + " (after " + std::to_string(ran.count()) + " ms" +
                     (words.empty() ? "" : "; it said: " + words) + ")";
   return outcome;
+}
+
+}  // namespace
+
+MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, const MesherLimits& limits) {
+  return run({"octotomy-tetgen", "TetGen -" + switches}, input, switches, limits);
+}
+
+MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits) {
+  std::array<char, std::tuple_size_v<decltype(MesherRequest::switches)>> text{};
+  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g", sizes.facet_mm, sizes.distance_mm, sizes.cell_mm);
+  return run({"octotomy-mesh3", "CGAL's Mesh_3"}, input, text.data(), limits);
 }
 
 }  // namespace octotomy::convert

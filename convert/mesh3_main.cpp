@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+// octotomy-mesh3: one run of CGAL's Mesh_3, fed and read by mesher_process.cpp. The request's switches are
+// Mesh3Sizes, its hole points are the points of the surface to start from. Nothing ends by the clock, so that
+// the answer is the same on any machine.
+// Source: Alliez, Jamin, Rineau, Tayeb, Tournois, Yvinec, "3D mesh generation", CGAL user and reference
+// manual 5.5; slivers are exuded as Cheng et al. do, "Sliver exudation", JACM 47(5), 2000.
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/Polyhedral_mesh_domain_3.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/make_mesh_3.h>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "convert/mesher_child.h"
+
+using octotomy::convert::Mesh3Sizes;
+using octotomy::convert::MesherAnswer;
+using octotomy::convert::MesherRequest;
+using octotomy::convert::read_all;
+using octotomy::convert::write_all;
+namespace convert = octotomy::convert;
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Surface = CGAL::Surface_mesh<Point>;
+
+/// A polyhedron that is meshed from given points on: CGAL's own choice, where some rays meet the surface,
+/// misses small parts.
+class Domain : public CGAL::Polyhedral_mesh_domain_3<Surface, Kernel> {
+ public:
+  Domain(const Surface& surface, std::vector<Point> start)
+      : CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>(surface), start_(std::move(start)) {}
+
+  struct Construct_initial_points {
+    const Domain& domain;
+    template <typename Out>
+    Out operator()(Out out, int = 0) const {
+      for (const Point& p : domain.start_) *out++ = {p, domain.index_from_surface_patch_index({0, 1})};
+      return out;
+    }
+  };
+  Construct_initial_points construct_initial_points_object() const { return {*this}; }
+
+ private:
+  std::vector<Point> start_;
+};
+
+using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
+using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+
+bool read_points(std::uint64_t count, std::vector<Point>& points) {
+  if (count > std::numeric_limits<std::uint32_t>::max() / 3) return false;
+  std::vector<double> coordinates(3 * count);
+  if (!read_all(coordinates.data(), coordinates.size() * sizeof(double))) return false;
+  for (std::size_t i = 0; i < coordinates.size(); i += 3)
+    points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
+  return true;
+}
+
+bool read_surface(const MesherRequest& request, Surface& surface) {
+  std::vector<Point> points;
+  if (!read_points(request.points, points) ||
+      request.triangles > std::numeric_limits<std::uint32_t>::max() / 3)
+    return false;
+  std::vector<std::uint32_t> corners(3 * request.triangles);
+  if (!read_all(corners.data(), corners.size() * sizeof(std::uint32_t))) return false;
+  for (const Point& p : points) surface.add_vertex(p);
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+    if (surface.add_face(Surface::Vertex_index(corners[i]), Surface::Vertex_index(corners[i + 1]),
+                         Surface::Vertex_index(corners[i + 2])) == Surface::null_face())
+      throw std::runtime_error("triangle " + std::to_string(i / 3) + " does not join the others");
+  return true;
+}
+
+/// Elements and their nodes in the triangulation's order.
+bool write_answer(int file, const Complex& complex) {
+  std::map<Complex::Vertex_handle, std::uint32_t> number;
+  std::vector<double> points;
+  std::vector<std::uint32_t> corners;
+  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell)
+    for (int i = 0; i < 4; ++i) {
+      const auto [at, is_new] =
+          number.try_emplace(cell->vertex(i), static_cast<std::uint32_t>(number.size()));
+      if (is_new) {
+        const auto& p = cell->vertex(i)->point();
+        points.insert(points.end(), {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
+      }
+      corners.push_back(at->second);
+    }
+  MesherAnswer answer;
+  answer.points = points.size() / 3;
+  answer.tetrahedra = corners.size() / 4;
+  return write_all(file, &answer, sizeof answer) &&
+         write_all(file, points.data(), points.size() * sizeof(double)) &&
+         write_all(file, corners.data(), corners.size() * sizeof(std::uint32_t));
+}
+
+Complex mesh(const Surface& surface, const std::vector<Point>& start, const Mesh3Sizes& sizes) {
+  namespace p = CGAL::parameters;
+  // Angles of a facet and radius-edge ratios of a cell that CGAL's manual calls safe to ask for.
+  constexpr double facet_angle_deg = 25.0;
+  constexpr double radius_edge = 2.5;
+  const Domain domain(surface, start);
+  const Criteria criteria(p::facet_angle = facet_angle_deg, p::facet_size = sizes.facet_mm,
+                          p::facet_distance = sizes.distance_mm, p::cell_radius_edge_ratio = radius_edge,
+                          p::cell_size = sizes.cell_mm);
+  // No limit of time, not even CGAL's own. Flatter elements than this are exuded; moving nodes mends the
+  // rest.
+  constexpr double sliver_deg = 10.0;
+  return CGAL::make_mesh_3<Complex>(domain, criteria, p::no_perturb(),
+                                    p::exude(p::time_limit = 0.0, p::sliver_bound = sliver_deg));
+}
+
+}  // namespace
+
+int main() {
+  const convert::MesherTask task = convert::begin_mesher();
+  int status = 0;
+  try {
+    Mesh3Sizes sizes;
+    Surface surface;
+    std::vector<Point> start;
+    if (std::sscanf(task.request.switches.data(), convert::mesh3_switches, &sizes.facet_mm,
+                    &sizes.distance_mm, &sizes.cell_mm) != 3 ||
+        !read_surface(task.request, surface) || !read_points(task.request.holes, start))
+      convert::end_mesher(convert::mesher_exit_protocol);
+    if (!write_answer(task.answer_file, mesh(surface, start, sizes))) status = convert::mesher_exit_protocol;
+  } catch (const std::bad_alloc&) {
+    status = convert::mesher_exit_memory;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    status = convert::mesher_exit_base + 2;
+  }
+  convert::end_mesher(status);
+}

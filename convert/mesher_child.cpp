@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/mesher_child.h"
+
+#include <csignal>
+#include <cstdio>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace octotomy::convert {
+namespace {
+
+void limit(__rlimit_resource resource, std::uint64_t most) {
+  const rlimit both{most, most};
+  setrlimit(resource, &both);
+}
+
+}  // namespace
+
+MesherTask begin_mesher() {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  MesherTask task;
+  task.answer_file = dup(STDOUT_FILENO);
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  if (!read_all(&task.request, sizeof task.request) || task.request.version != MesherRequest::this_version)
+    end_mesher(mesher_exit_protocol);
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_AS, task.request.memory_limit_bytes);
+  limit(RLIMIT_CPU, task.request.cpu_limit_seconds);
+  return task;
+}
+
+bool read_all(void* target, std::size_t bytes) {
+  auto* at = static_cast<std::byte*>(target);
+  while (bytes > 0) {
+    const ssize_t got = read(STDIN_FILENO, at, bytes);
+    if (got <= 0) return false;
+    at += got;
+    bytes -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+bool write_all(int file, const void* source, std::size_t bytes) {
+  const auto* at = static_cast<const std::byte*>(source);
+  while (bytes > 0) {
+    const ssize_t put = write(file, at, bytes);
+    if (put <= 0) return false;
+    at += put;
+    bytes -= static_cast<std::size_t>(put);
+  }
+  return true;
+}
+
+void end_mesher(int status) {
+  std::fflush(stdout);
+  _exit(status);
+}
+
+}  // namespace octotomy::convert

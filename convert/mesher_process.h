@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+namespace octotomy::convert {
+
+// What passes between the library and octotomy-tetgen or octotomy-mesh3, the executables beside it: a
+// MesherRequest, then points, triangles and hole points on its standard input; a MesherAnswer, then points
+// and tetrahedra on its standard output. Both sides are always of one build, so the bytes are the machine's
+// own.
+
+struct MesherRequest {
+  static constexpr std::uint64_t this_version = 0x6f63746f74657431ULL;
+
+  std::uint64_t version = this_version;
+  std::array<char, 64> switches{};
+  std::uint64_t points = 0;     ///< three doubles each
+  std::uint64_t triangles = 0;  ///< three uint32 each
+  std::uint64_t holes = 0;      ///< three doubles each
+  std::uint64_t memory_limit_bytes = 0;
+  std::uint64_t cpu_limit_seconds = 0;
+};
+struct MesherAnswer {
+  std::uint64_t version = MesherRequest::this_version;
+  std::uint64_t points = 0;      ///< three doubles each
+  std::uint64_t tetrahedra = 0;  ///< four uint32 each
+};
+/// The child's exit status is 0, or this plus the number that TetGen ended with, at most 16; 2 is TetGen's
+/// internal error, and whatever CGAL throws.
+inline constexpr int mesher_exit_base = 64;
+/// Its exit status where the memory limit was met.
+inline constexpr int mesher_exit_memory = 90;
+/// Its exit status where the request cannot be read or the answer not be written.
+inline constexpr int mesher_exit_protocol = 91;
+
+/// A piecewise linear complex; Mesh_3 finds cavities without hole points.
+struct MesherInput {
+  std::vector<glm::dvec3> points_mm;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<glm::dvec3> holes_mm;
+};
+struct MesherLimits {
+  std::chrono::milliseconds time{60000};
+  std::uint64_t memory_bytes = 4ull << 30;
+  std::stop_token stop;
+};
+struct MesherOutcome {
+  /// How it ended when it did not do its work; then there are no tetrahedra.
+  std::optional<std::string> failure;
+  /// Whether the same surface may go through with other switches.
+  bool worth_another_try = false;
+  std::vector<glm::dvec3> points_mm;
+  std::vector<std::array<std::uint32_t, 4>> tetrahedra;
+};
+
+/// What Mesh_3 is asked for, in place of switches.
+struct Mesh3Sizes {
+  double facet_mm = 1.0;     ///< radius of the ball about a facet of the surface, at most
+  double distance_mm = 0.1;  ///< of a facet's middle from the surface, at most
+  double cell_mm = 2.0;      ///< circumradius of a tetrahedron, at most
+};
+inline constexpr const char* mesh3_switches = "%lg %lg %lg";
+
+/// Runs TetGen once, in a process of its own. Throws std::runtime_error where that process cannot be started.
+MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, const MesherLimits& limits);
+
+/// The same of CGAL's Mesh_3, which puts points of its own on the surface. In place of hole points, the input
+/// has points of the surface to start from, on each of its parts.
+MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits);
+
+}  // namespace octotomy::convert

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace octotomy::convert {
+
+/// Tetrahedra in LPS millimetres. Corners 0, 1, 2 of each run counter-clockwise seen from corner 3's side, so
+/// that (n1 - n0) x (n2 - n0) . (n3 - n0) is positive: the order of Abaqus and VTK.
+struct Tetrahedra {
+  std::vector<glm::dvec3> nodes_mm;
+  std::vector<std::array<std::uint32_t, 4>> tets;
+  std::vector<std::uint32_t> boundary_nodes;  ///< nodes on the surface, ascending
+  std::vector<std::uint32_t> region_of_tet;   ///< from 0; empty: all are one region
+  std::string method;                         ///< what gave it: "TetGen -pYq1.4" or "octree"
+  std::vector<std::string> findings;          ///< switches tried before and how they ended
+};
+
+/// Where the four corners of one lie.
+using TetCorners = std::array<glm::dvec3, 4>;
+TetCorners corners_mm(const Tetrahedra& tetrahedra, std::size_t tet);
+/// Six times the signed volume; positive in the order that Tetrahedra documents.
+double six_volumes(const TetCorners& corners_mm);
+
+struct TetQuality {
+  double volume_mm3 = 0.0;
+  double min_volume_mm3 = 0.0;
+  double min_dihedral_deg = 0.0;  ///< 70.53 for the regular tetrahedron, 0 for a flat one
+  double max_dihedral_deg = 0.0;
+  double max_radius_edge = 0.0;  ///< circumradius by shortest edge; 0.612 for the regular tetrahedron
+};
+/// Volumes are summed in the tetrahedra's order. Throws std::invalid_argument where there are none.
+TetQuality quality(const Tetrahedra& tetrahedra);
+
+/// Nodes of the faces that only one tetrahedron has, ascending. Cost: n log n.
+std::vector<std::uint32_t> boundary_nodes(const std::vector<std::array<std::uint32_t, 4>>& tets);
+
+}  // namespace octotomy::convert
