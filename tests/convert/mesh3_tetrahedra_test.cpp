@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "convert/mesh3_tetrahedra.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
+#include "brep/components.h"
+#include "brep/decimate.h"
 #include "brep/distance.h"
+#include "brep/measure.h"
 #include "convert/deck.h"
+#include "convert/isosurface.h"
 #include "tests/convert/surfaces.h"
+#include "tests/reference_data.h"
+#include "voxel/read_scene.h"
 
 namespace octotomy::convert {
 namespace {
@@ -105,6 +112,26 @@ TEST(Mesh3Tetrahedra, AThinSpikeThatNoElementStandsInIsToldWithItsLength) {
   ASSERT_GT(away_mm, 0.4) << "the spike was not lost: make it thinner";
   const std::string& said = t.findings.back();
   EXPECT_NEAR(std::stod(said.substr(said.rfind("within ") + 7)), away_mm, 0.01 * away_mm) << said;
+}
+
+TEST(Mesh3Tetrahedra, TheVaultOfARealSkullIn50000TrianglesHasNoAngleUnderFiveDegrees) {
+  OCTOTOMY_NEEDS_DATA("ct_unc_cthead.nrrd");
+  voxel::Scene scan = voxel::read_scene(tests::reference_data("ct_unc_cthead.nrrd"));
+  auto& samples = std::get<voxel::Int16Samples>(scan.samples);
+  // Above 150 mm: the vault, cut flat.
+  const std::ptrdiff_t slice = std::ptrdiff_t{scan.lattice.dims.x} * scan.lattice.dims.y;
+  std::fill(samples.begin(), samples.begin() + 75 * slice, std::int16_t{-1000});
+  const brep::Mesh vault =
+      brep::decimate(brep::largest_component(brep::mesh_of(isosurface(scan, 300.0, 1e6))),
+                     {.max_error_mm = 1.0, .faces = 50000});
+  ASSERT_EQ(vault.n_faces(), 50000U);
+  TetOptions options;
+  options.mesher = Mesher::Best;
+  const Tetrahedra t = tetrahedralise(vault, options);
+  const TetQuality q = quality(t);
+  EXPECT_GT(q.min_dihedral_deg, 5.0);
+  EXPECT_GT(q.min_volume_mm3, 0.0);
+  EXPECT_NEAR(q.volume_mm3, brep::volume_mm3(vault), 1e-3 * brep::volume_mm3(vault));
 }
 
 TEST(Mesh3Tetrahedra, ATimeLimitTooSmallIsNamed) {
