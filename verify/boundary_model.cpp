@@ -3,10 +3,11 @@
 // What counting centres does to a boundary, triangle by triangle, in voxels of the lattice ("index space"):
 //
 // planes   A plane whose normal n is a vector of small integers errs coherently: centres lie on lattice
-// planes
-//          1 / |n| apart, and the digitised plane lies half-way between two of them. Where it lies is known,
-//          so the displacement is exact and has a sign, but for a plane through centres, which may go either
-//          way.
+//          planes 1 / |n| apart, and the digitised plane lies half-way between two of them. Where it lies is
+//          known, so the displacement is exact and has a sign, but for a plane through centres, which may go
+//          either way. Two planes displaced by a and b outward whose normals are an angle t apart gain
+//          (a b - (a^2 + b^2) / 2 cos t) / sin t along each unit of their common edge besides, or lose it
+//          where the edge is an inside corner.
 //
 // count    Elsewhere the error of a count is a sum over the reciprocal lattice (Poisson; Kendall, "On the
 //          number of lattice points inside a random oval", 1948): over all places of the lattice its variance
@@ -18,7 +19,8 @@
 //          which have 65 % of the sum, and as if normals were spread evenly for the rest. So poles that an
 //          anisotropic lattice flattens, and facets nearly along it, count as the more that they err.
 //          Departure: near is within 15, 7 or 3.5 degrees, whichever gives most. The moments take pieces of
-//          equal area as equal and independent parts.
+//          equal area as equal and independent parts. Large flat facets are not curved, and those along the
+//          lattice err in step however far they run: their transform is summed instead (facet_count.h).
 //
 // bent     A polyhedron with its vertices on a surface lies within it where it is convex, and interpolation
 //          between samples a length d apart puts a point off by d^2 / 8 times the curvature along d. So what
@@ -40,7 +42,9 @@
 #include <utility>
 #include <vector>
 
+#include "brep/disjoint_sets.h"
 #include "brep/triangles.h"
+#include "verify/facet_count.h"
 
 namespace octotomy::verify {
 namespace {
@@ -52,6 +56,29 @@ struct Triangle {
   glm::dvec3 centre() const { return (p[0] + p[1] + p[2]) / 3.0; }
   glm::dvec3 area_vector() const { return 0.5 * glm::cross(p[1] - p[0], p[2] - p[0]); }
 };
+
+/// A point and its share of a triangle.
+struct Piece {
+  glm::dvec3 p{0.0};
+  double share = 0.0;
+};
+
+/// Points that stand for a triangle: integrals of polynomials up to the fourth degree are exact (Dunavant,
+/// "High degree efficient symmetrical Gaussian quadrature rules for the triangle", 1985).
+std::array<Piece, 6> pieces_of(const Triangle& triangle) {
+  struct Orbit {
+    double share, corner, side;  // weights of one corner and of the two others
+  };
+  constexpr std::array<Orbit, 2> orbits{{{0.223381589678011, 0.108103018168070, 0.445948490915965},
+                                         {0.109951743655322, 0.816847572980459, 0.091576213509771}}};
+  std::array<Piece, 6> pieces;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Orbit& orbit = orbits[i / 3];
+    const glm::dvec3 sum = triangle.p[0] + triangle.p[1] + triangle.p[2];
+    pieces[i] = {orbit.side * sum + (orbit.corner - orbit.side) * triangle.p[i % 3], orbit.share};
+  }
+  return pieces;
+}
 
 /// A plane n . q = c of index space q whose normal has small integers.
 struct LatticePlane {
@@ -162,17 +189,19 @@ class CountVariance {
   double area_ = 0.0;
 };
 
+/// Flat parts of a boundary are taken by themselves from here on, in voxel faces: smaller ones are many, and
+/// their errors independent.
+constexpr double large_facet = 16.0;
+
 /// The model of one mesh in the making.
 class Modeller {
  public:
   Modeller(const brep::Mesh& mesh, const BoundaryFrame& frame)
-      : mesh_(mesh),
-        frame_(frame),
-        triangles_(brep::triangles_of(mesh)),
-        moved_mm_(triangles_.faces.size()) {}
+      : mesh_(mesh), frame_(frame), triangles_(brep::triangles_of(mesh)), moved_(triangles_.faces.size()) {}
 
   BoundaryModel run() {
     add_faces();
+    add_counts();
     add_edges();
     return model_;
   }
@@ -193,58 +222,146 @@ class Modeller {
     const glm::dmat3 edges(frame_.lattice.lps_from_voxel);
     const std::array<glm::dvec3, 13> lines = units(edges);
     const std::array<double, 13> share = shares_of_space(lines);
-    const double voxel_mm3 = frame_.lattice.voxel_mm3();
-    CountVariance count;
-    double free_mm2 = 0.0, free_mm4 = 0.0, free_mm6 = 0.0;
     for (std::size_t face = 0; face < triangles_.faces.size(); ++face) {
       const Triangle at_mm = triangle(face);
-      Triangle at_voxel;
-      for (std::size_t i = 0; i < 3; ++i) at_voxel.p[i] = frame_.lattice.voxel(at_mm.p[i]);
       const double area_mm2 = glm::length(at_mm.area_vector());
       model_.area_mm2 += area_mm2;
       const glm::dvec3 normal = normal_of(at_mm);
       for (std::size_t d = 0; d < lines.size(); ++d)
         model_.crofton13_mm2 += 2.0 * share[d] * std::abs(glm::dot(normal, lines[d])) * area_mm2;
-      if (const std::optional<LatticePlane> plane = lattice_plane(at_voxel.p)) {
-        moved_mm_[face] = add_plane(*plane, at_mm, area_mm2);
-        continue;
-      }
-      count.add(at_voxel.area_vector());
-      const glm::dvec3 arm_mm = at_mm.centre() - frame_.about_mm;
-      const double square = glm::dot(arm_mm, arm_mm);
-      free_mm2 += area_mm2;
-      free_mm4 += area_mm2 * square;
-      free_mm6 += area_mm2 * square * square;
+      if (const std::optional<LatticePlane> plane = lattice_plane(in_voxels(face).p))
+        moved_[face] = add_plane(*plane, at_mm, area_mm2);
     }
-    if (free_mm2 == 0.0) return;
-    model_.count_mm6 = count.sum() * voxel_mm3 * voxel_mm3;
-    model_.count_mm8 = model_.count_mm6 * free_mm4 / free_mm2;
-    model_.count_mm10 = model_.count_mm6 * free_mm6 / free_mm2;
+  }
+  Triangle in_voxels(std::size_t face) const {
+    Triangle at_voxel = triangle(face);
+    for (glm::dvec3& p : at_voxel.p) p = frame_.lattice.voxel(p);
+    return at_voxel;
   }
 
-  /// How far counting moves the plane outward.
-  double add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
+  /// What of the boundary is in no such plane: flat facets by their transforms, the rest by its normals.
+  void add_counts() {
+    const std::vector<std::uint32_t> set = flat_sets();
+    std::vector<double> area(set.size(), 0.0);
+    for (std::uint32_t face = 0; face < set.size(); ++face)
+      if (!moved_[face]) area[set[face]] += glm::length(in_voxels(face).area_vector());
+    std::vector<Facet> facets;
+    std::vector<std::optional<std::size_t>> facet_of_set(set.size());
+    CountVariance curved;
+    Arms curved_arms, flat_arms;
+    for (std::uint32_t face = 0; face < set.size(); ++face) {
+      if (moved_[face]) continue;
+      const glm::dvec3 across = in_voxels(face).area_vector();
+      if (area[set[face]] < large_facet) {
+        curved.add(across);
+        curved_arms.add(triangle(face), frame_.about_mm);
+        continue;
+      }
+      std::optional<std::size_t>& number = facet_of_set[set[face]];
+      if (!number) {
+        number = facets.size();
+        facets.emplace_back();
+      }
+      facets[*number].area += across;
+      add_rims(facets[*number], face, set);
+      flat_arms.add(triangle(face), frame_.about_mm);
+    }
+    add_variance(curved.sum(), curved_arms);
+    add_variance(count_variance(facets), flat_arms);
+  }
+
+  /// By face, the name of the set of coplanar faces it is in; faces in lattice planes are in none.
+  std::vector<std::uint32_t> flat_sets() const {
+    brep::DisjointSets sets(triangles_.faces.size());
+    for (const auto edge : mesh_.edges()) {
+      if (mesh_.is_boundary(edge)) continue;
+      const auto side = mesh_.halfedge_handle(edge, 0);
+      const auto a = static_cast<std::uint32_t>(mesh_.face_handle(side).idx());
+      const auto b = static_cast<std::uint32_t>(mesh_.opposite_face_handle(side).idx());
+      if (moved_[a] || moved_[b]) continue;
+      const glm::dvec3 from = in_voxels(a).area_vector(), to = in_voxels(b).area_vector();
+      const bool a_larger = glm::dot(from, from) >= glm::dot(to, to);
+      const Triangle large = in_voxels(a_larger ? a : b), small = in_voxels(a_larger ? b : a);
+      const double size = glm::length(large.area_vector());
+      if (!(size > 0.0) || glm::dot(from, to) < 0.0) continue;
+      const glm::dvec3 normal = large.area_vector() / size;
+      const bool flat = std::all_of(small.p.begin(), small.p.end(), [&](const glm::dvec3& p) {
+        return std::abs(glm::dot(p - large.p[0], normal)) < flatness_voxels;
+      });
+      if (flat) sets.join(a, b);
+    }
+    std::vector<std::uint32_t> set(triangles_.faces.size());
+    for (std::uint32_t face = 0; face < set.size(); ++face) set[face] = sets.set_of(face);
+    return set;
+  }
+
+  /// The sides of a face beyond which its facet ends.
+  void add_rims(Facet& facet, std::uint32_t face, const std::vector<std::uint32_t>& set) const {
+    const brep::Mesh::FaceHandle handle(static_cast<int>(face));
+    for (auto side = mesh_.cfh_begin(handle); side != mesh_.cfh_end(handle); ++side) {
+      const auto beyond = mesh_.opposite_face_handle(*side);
+      if (beyond.is_valid() && !moved_[static_cast<std::size_t>(beyond.idx())] &&
+          set[static_cast<std::size_t>(beyond.idx())] == set[face])
+        continue;
+      facet.sides.push_back({frame_.lattice.voxel(point(mesh_.from_vertex_handle(*side))),
+                             frame_.lattice.voxel(point(mesh_.to_vertex_handle(*side)))});
+    }
+  }
+
+  /// Area with the squares of its arms.
+  struct Arms {
+    double mm2 = 0.0, mm4 = 0.0, mm6 = 0.0;
+    void add(const Triangle& triangle, const glm::dvec3& about_mm) {
+      const double area_mm2 = glm::length(triangle.area_vector());
+      mm2 += area_mm2;
+      for (const Piece& piece : pieces_of(triangle)) {
+        const glm::dvec3 arm_mm = piece.p - about_mm;
+        const double square = glm::dot(arm_mm, arm_mm);
+        mm4 += piece.share * area_mm2 * square;
+        mm6 += piece.share * area_mm2 * square * square;
+      }
+    }
+  };
+
+  void add_variance(double voxels, const Arms& arms) {
+    if (!(arms.mm2 > 0.0)) return;
+    const double voxel_mm3 = frame_.lattice.voxel_mm3();
+    const double mm6 = voxels * voxel_mm3 * voxel_mm3;
+    model_.count_mm6 += mm6;
+    model_.count_mm8 += mm6 * arms.mm4 / arms.mm2;
+    model_.count_mm10 += mm6 * arms.mm6 / arms.mm2;
+  }
+
+  /// How far counting moves a plane outward.
+  struct Moved {
+    double mm = 0.0;
+    bool tied = false;  ///< it goes through voxel centres and may as well go the other way
+  };
+
+  Moved add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
     // Moves of one in n . q are moves of 1 / |n'| millimetres, n' the normal in LPS.
     const glm::dmat3 normal_from_voxel =
         glm::transpose(glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel)));
     const glm::dvec3 normal = normal_from_voxel * glm::dvec3(plane.normal);
     const glm::ivec3 index = glm::abs(plane.normal);
-    const glm::dvec3 arm_mm = triangle.centre() - frame_.about_mm;
     model_.coherent_mm2 += area_mm2;
     if (index.x + index.y + index.z == 1) model_.flat_mm2 += area_mm2 * glm::dvec3(index);
     // Centres have whole n . q, so the digitised plane lies half-way between two of them.
     const double shift = std::floor(plane.offset) + 0.5 - plane.offset;
     const double outward = glm::dot(triangle.area_vector(), normal) < 0.0 ? -1.0 : 1.0;
-    const double moved_mm = outward * shift / glm::length(normal);
-    if (0.5 - std::abs(shift) < flatness_voxels * largest_index) {
-      const double mm3 = 0.5 / glm::length(normal) * area_mm2;
-      model_.tied_mm3 += mm3;
-      model_.unsure.add(mm3, glm::length(arm_mm));
-    } else {
-      model_.planes.add(moved_mm * area_mm2, arm_mm);
+    const Moved moved{outward * shift / glm::length(normal),
+                      0.5 - std::abs(shift) < flatness_voxels * largest_index};
+    const double most_mm = moved.tied ? 0.5 / glm::length(normal) : std::abs(moved.mm);
+    for (const Piece& piece : pieces_of(triangle)) {
+      const double arm_mm = glm::distance(piece.p, frame_.about_mm);
+      if (moved.tied) model_.unsure.add(piece.share * most_mm * area_mm2, arm_mm);
+      model_.planes_without_sign.add(piece.share * most_mm * area_mm2, arm_mm);
     }
-    model_.planes_without_sign.add(std::abs(moved_mm) * area_mm2, glm::length(arm_mm));
-    return moved_mm;
+    if (moved.tied)
+      model_.tied_mm3 += most_mm * area_mm2;
+    else
+      model_.planes.add(moved.mm * area_mm2, triangle.centre() - frame_.about_mm);
+    return moved;
   }
 
   /// A part of a cell's sum.
@@ -264,12 +381,14 @@ class Modeller {
       const auto b = static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx());
       const glm::dvec3 from = point(mesh_.from_vertex_handle(side)), to = point(mesh_.to_vertex_handle(side));
       const glm::dvec3 middle = 0.5 * (from + to);
-      if (moved_mm_[a].has_value() != moved_mm_[b].has_value()) {
-        const double mm2 = std::abs(moved_mm_[a] ? *moved_mm_[a] : *moved_mm_[b]) * glm::length(to - from);
+      const double angle = mesh_.calc_dihedral_angle(edge);
+      if (moved_[a] && moved_[b])
+        add_corner(*moved_[a], *moved_[b], angle, glm::length(to - from), middle - frame_.about_mm);
+      else if (moved_[a] || moved_[b]) {
+        const double mm2 = std::abs(moved_[a] ? moved_[a]->mm : moved_[b]->mm) * glm::length(to - from);
         model_.rims_mm2 += mm2;
         model_.unsure.add(mm2 * longest_mm_, glm::length(middle - frame_.about_mm));
       }
-      const double angle = mesh_.calc_dihedral_angle(edge);
       if (!std::isfinite(angle) || angle == 0.0) continue;
       const glm::dvec3 normal = normal_of(triangle(a)) + normal_of(triangle(b));
       const glm::dvec3 across = glm::cross(normal, to - from);
@@ -281,6 +400,16 @@ class Modeller {
           {cell_of(middle, normal), mm, mm * glm::dot(spacing_mm, spacing_mm), middle - frame_.about_mm});
     }
     add_bends(std::move(bends));
+  }
+  /// What two displaced planes gain at their common edge beyond what each gains by itself.
+  void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
+    if (!(std::abs(std::sin(angle)) > flatness_voxels)) return;
+    const double mm2 = (a.mm * b.mm - 0.5 * (a.mm * a.mm + b.mm * b.mm) * std::cos(angle)) / std::sin(angle);
+    if (a.tied || b.tied)
+      model_.unsure.add(std::abs(mm2) * length_mm, glm::length(arm_mm));
+    else
+      model_.planes.add(mm2 * length_mm, arm_mm);
+    model_.planes_without_sign.add(std::abs(mm2) * length_mm, glm::length(arm_mm));
   }
   glm::dvec3 point(const OpenMesh::VertexHandle vertex) const {
     const auto& p = mesh_.point(vertex);
@@ -319,8 +448,7 @@ class Modeller {
   const brep::Mesh& mesh_;
   const BoundaryFrame& frame_;
   brep::Triangles triangles_;
-  /// Displacement of each face in millimetres outward, where it is part of a lattice plane.
-  std::vector<std::optional<double>> moved_mm_;
+  std::vector<std::optional<Moved>> moved_;  ///< of each face that is part of a lattice plane
   const double longest_mm_ =
       std::max({frame_.sample_spacing_mm.x, frame_.sample_spacing_mm.y, frame_.sample_spacing_mm.z});
   BoundaryModel model_;
