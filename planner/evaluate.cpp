@@ -400,7 +400,10 @@ class Evaluator {
   }
 
   void evaluate_step(const std::string& id, const MeasureStep& step) {
-    result_.measured.push_back({id, index_.at(step.object)});
+    Measured measured{id, 0, std::nullopt, step.points_mm};
+    if (step.points_mm.empty()) measured.object = index_.at(step.object);
+    if (step.to) measured.to = index_.at(*step.to);
+    result_.measured.push_back(std::move(measured));
   }
 
   void evaluate_step(const std::string&, const ExportStep&) {}

@@ -66,10 +66,15 @@ struct Object {
   std::optional<Moved> moved;
 };
 
-/// A measure step's answer: indices into Evaluation::objects.
+/// What a measure step asks for: indices into Evaluation::objects, or points.
 struct Measured {
   std::string id;
-  std::size_t object = 0;
+  std::size_t object = 0;  ///< without meaning where there are points
+  std::optional<std::size_t> to;
+  std::vector<glm::dvec3> points_mm;
+
+  /// Neither a gap nor points.
+  bool is_size() const { return !to && points_mm.empty(); }
 };
 
 struct Evaluation {

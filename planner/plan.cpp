@@ -112,7 +112,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"mask", {"id", "do", "regions"}},
     {"combine", {"id", "do", "expression"}},
     {"move", {"id", "do", "object", "translate_mm", "rotate"}},
-    {"measure", {"id", "do", "object"}},
+    {"measure", {"id", "do", "object", "to", "points_mm"}},
     {"export", {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material"}},
 };
 
@@ -368,6 +368,35 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   return scans;
 }
 
+MeasureStep measure_step(const Keys& keys, const Bound& bound) {
+  MeasureStep step;
+  if (const Json* points = keys.find("points_mm")) {
+    const std::string where = keys.at("points_mm");
+    if (keys.find("object") != nullptr || keys.find("to") != nullptr)
+      refuse(where, "stands alone: measure an object or points, in a step each");
+    if (!points->is_array() || (points->size() != 2 && points->size() != 3))
+      refuse(where, "must be two points [x, y, z] for a distance, or three for the angle at the second");
+    for (const Json& point : *points) {
+      const std::string at = where + "[" + std::to_string(step.points_mm.size()) + "]";
+      if (!point.is_array() || point.size() != 3) refuse(at, "must be three numbers [x, y, z]");
+      step.points_mm.emplace_back(Keys::number(point[0], at), Keys::number(point[1], at),
+                                  Keys::number(point[2], at));
+    }
+    if (step.points_mm.size() == 3 &&
+        (step.points_mm[1] == step.points_mm[0] || step.points_mm[1] == step.points_mm[2]))
+      refuse(where, "has its second point twice: an angle needs two legs");
+    return step;
+  }
+  step.object = keys.text("object");
+  bound.need_object(keys.at("object"), step.object);
+  if (keys.find("to") != nullptr) {
+    step.to = keys.text("to");
+    bound.need_object(keys.at("to"), *step.to);
+    if (*step.to == step.object) refuse(keys.at("to"), "is the object itself: name another");
+  }
+  return step;
+}
+
 Step step_of(const Json& value, std::size_t index, const Plan& plan, Bound& bound,
              std::set<std::string>& taken) {
   std::string where = "step " + std::to_string(index + 1);
@@ -391,10 +420,7 @@ Step step_of(const Json& value, std::size_t index, const Plan& plan, Bound& boun
   if (word == "combine") step.action = combine_step(keys, bound);
   if (word == "move") step.action = move_step(keys, bound);
   if (word == "export") step.action = export_step(keys, bound, taken);
-  if (word == "measure") {
-    step.action = MeasureStep{keys.text("object")};
-    bound.need_object(keys.at("object"), keys.text("object"));
-  }
+  if (word == "measure") step.action = measure_step(keys, bound);
   // Bound last, so that no step can name itself.
   bound.bind(where, step.id, word);
   return step;

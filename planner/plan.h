@@ -47,8 +47,12 @@ struct MoveStep {
   glm::dvec3 translate_mm{0.0};
   std::optional<RotateText> rotate;
 };
+/// An object's size; with `to`, the gap between two objects; or the distance of two points, or the angle at
+/// the second of three.
 struct MeasureStep {
-  std::string object;
+  std::string object;  ///< empty where points are measured
+  std::optional<std::string> to;
+  std::vector<glm::dvec3> points_mm;
 };
 /// What an export writes: the object's surface, tetrahedra that fill it, or its voxels as a label map.
 enum class ExportKind { Mesh, Tetrahedra, Label };

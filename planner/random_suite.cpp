@@ -257,6 +257,7 @@ class Asking {
       add(all.bounded, part.bounded);
       std::move(part.disagreements.begin(), part.disagreements.end(), std::back_inserter(all.disagreements));
     }
+    all.worst = std::move(worst_);
     return all;
   }
 
@@ -278,6 +279,18 @@ class Asking {
     const std::lock_guard lock(reporting_);
     options_.progress("random questions, " + std::to_string(done) + " of " + std::to_string(of),
                       static_cast<double>(done) / static_cast<double>(of));
+  }
+
+  /// Objects are large: of all that were found so far one is kept, the first seed's of equals.
+  void contend(std::uint64_t seed, verify::Contested&& found) {
+    const std::lock_guard lock(keeping_);
+    const double now = verify::worst_share(found.certificate);
+    if (worst_) {
+      const double kept = verify::worst_share(worst_->certificate);
+      if (now < kept || (now == kept && seed > worst_seed_)) return;
+    }
+    worst_ = std::move(found);
+    worst_seed_ = seed;
   }
 
   void ask_exact(std::uint64_t seed, RandomSuite& suite) {
@@ -309,8 +322,14 @@ class Asking {
                                    return object.octree == result.octree;
                                  });
     suite.bounded.no_answer = !result.mesh;
-    for (const Object& object : objects)
-      if (object.certificate) count(suite.bounded.verdicts, object.certificate->agreement);
+    std::optional<verify::Contested> worst;
+    for (const Object& object : objects) {
+      if (!object.certificate) continue;
+      count(suite.bounded.verdicts, object.certificate->agreement);
+      if (object.certificate->agreement != Agreement::BelowResolution)
+        verify::keep_worse(worst, {*object.certificate, object.octree, object.mesh});
+    }
+    if (worst) contend(seed, std::move(*worst));
     if (result.certificate) suite.bounded.results.push_back(*result.certificate);
     const Object* failure = answer.first_failure();
     if (failure == nullptr) return;
@@ -335,7 +354,9 @@ class Asking {
   const RandomSuiteOptions& options_;
   TemporaryFolder folder_;
   std::vector<RandomScan> scans_;
-  std::mutex reporting_;
+  std::mutex reporting_, keeping_;
+  std::optional<verify::Contested> worst_;
+  std::uint64_t worst_seed_ = 0;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ struct RandomTier {
 struct RandomSuite {
   RandomTier exact, bounded;
   std::vector<Disagreement> disagreements;
+  std::optional<verify::Contested> worst;  ///< of the bounded tier's resolved objects
 
   /// Results that are neither empty nor equal to an operand, as a share of all.
   double substance() const;

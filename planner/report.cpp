@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "planner/answer.h"
+#include "planner/measurement.h"
 #include "planner/report_page.h"
 #include "planner/result_folder.h"
 #include "voxel/components.h"
@@ -13,50 +14,6 @@ namespace octotomy::planner {
 namespace {
 
 constexpr int picture_px = 480;
-
-/// What the object's scan and window make doubtful.
-Digitised digitised_of(const Evaluation& evaluation, const Object& object) {
-  Digitised digitised{evaluation.universe.lattice().spacing_mm()};
-  for (const ScanRecord& scan : evaluation.scans)
-    digitised.sample_mm = glm::max(digitised.sample_mm, scan.lattice.spacing_mm());
-  if (object.grey) digitised.shift_mm = window_shift_mm({*object.grey, object.threshold});
-  return digitised;
-}
-
-Json measurement_json(const Measured& measured, const Evaluation& evaluation) {
-  const Object& object = evaluation.objects[measured.object];
-  const double voxels_mm3 = object.voxel_measures.volume_mm3;
-  Json json{{"id", measured.id},
-            {"object", object.id},
-            {"volume_mm3", voxels_mm3},
-            {"volume_estimator", "voxels counted"},
-            {"area_mm2", nullptr},
-            {"area_estimator", mesh_area_estimator},
-            {"centroid_mm", to_json(object.voxel_measures.centroid_mm)},
-            {"voxel", to_json(object.voxel_measures)},
-            {"mesh", nullptr},
-            {"difference_mm3", nullptr},
-            {"difference_percent", nullptr}};
-  const HalfWidth width = volume_half_width(object.voxel_measures, digitised_of(evaluation, object));
-  json["volume_half_width_mm3"] = width.value;
-  json["volume_half_width_terms"] = to_json(width);
-  json["area_half_width_mm2"] = nullptr;
-  if (object.certificate)
-    for (const verify::Comparison& comparison : object.certificate->comparisons)
-      if (comparison.quantity == "area" && comparison.tolerance)
-        json["area_half_width_mm2"] = *comparison.tolerance;
-  if (object.mesh_measures) {
-    const double mesh_mm3 = object.mesh_measures->volume_mm3;
-    json["area_mm2"] = object.mesh_measures->area_mm2;
-    json["mesh"] = to_json(*object.mesh_measures);
-    json["difference_mm3"] = voxels_mm3 - mesh_mm3;
-    if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;
-  } else {
-    json["area_mm2"] = object.voxel_measures.area_crofton13_mm2;
-    json["area_estimator"] = voxel_area_estimator;
-  }
-  return json;
-}
 
 Json certificates_json(const Evaluation& evaluation) {
   Json certificates = Json::array();
@@ -153,12 +110,10 @@ Json result_json(const Result& result) {
   json["universe"] = {{"side", evaluation.universe.side()},
                       {"voxel_mm", to_json(evaluation.universe.lattice().spacing_mm())},
                       {"lps_from_voxel", to_json(evaluation.universe.lps_from_voxel)}};
-  for (const char* key : {"scans", "objects", "measurements", "certificates", "components", "exports"})
-    json[key] = Json::array();
+  for (const char* key : {"scans", "objects", "components", "exports"}) json[key] = Json::array();
   for (const ScanRecord& scan : evaluation.scans) json["scans"].push_back(to_json(scan));
   for (const Object& object : evaluation.objects) json["objects"].push_back(to_json(object));
-  for (const Measured& measured : evaluation.measured)
-    json["measurements"].push_back(measurement_json(measured, evaluation));
+  json["measurements"] = result.measurements;
   json["certificates"] = certificates_json(evaluation);
   json["counts"] = to_json(verdict_counts(evaluation));
   for (const Parts& parts : result.parts)
@@ -171,6 +126,10 @@ Json result_json(const Result& result) {
 
 Json write_result(Result& result, const std::filesystem::path& folder) {
   ResultFolder output(folder);
+  {
+    const Stopwatch watch(result.evaluation.timings, "measure");
+    result.measurements = measurements_json(result.evaluation);
+  }
   Fillings fillings;
   for (const Step& step : result.plan.steps)
     if (const auto* to = std::get_if<ExportStep>(&step.action))

@@ -27,6 +27,7 @@ struct Result {
   std::vector<PictureGroup> pictures;
   std::vector<Exported> exported;
   std::vector<Parts> parts;
+  nlohmann::ordered_json measurements = nlohmann::ordered_json::array();  ///< measurement.h
   std::vector<voxel::Finding> findings;  ///< on the plan as a whole, beside those of its parts
 };
 
@@ -52,7 +53,8 @@ std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation
 nlohmann::ordered_json result_json(const Result& result);
 
 /// Writes a result's folder whole or not at all: its exports, views/*.png, report.html and result.json.
-/// Fills `result.exported`; returns what result.json holds. Throws as ResultFolder and the writers do.
+/// Fills `result.exported` and `result.measurements`; returns what result.json holds. Throws as ResultFolder
+/// and the writers do.
 nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder);
 
 }  // namespace octotomy::planner

@@ -10,169 +10,15 @@
 #include <string_view>
 
 #include "planner/answer.h"
+#include "planner/colour.h"
 #include "planner/figures.h"
+#include "planner/html.h"
 #include "voxel/annotation.h"
 
 namespace octotomy::planner {
 namespace {
 
-constexpr std::string_view style = R"css(
-:root{--ink:#1c2327;--soft:#5d6a72;--line:#d9dfe2;--wash:#f5f7f8;--accent:#1f5f7a;
---pass:#1d7a4c;--warn:#a56a00;--fail:#b3261e;--below:#50637a}
-*{box-sizing:border-box}
-body{margin:0;background:#fff;color:var(--ink);font:14px/1.5 "Inter","Segoe UI","Helvetica Neue",Helvetica,Arial,"DejaVu Sans",sans-serif;
--webkit-print-color-adjust:exact;print-color-adjust:exact}
-main{max-width:1080px;margin:0 auto;padding:36px 32px 48px}
-header{display:flex;gap:32px;justify-content:space-between;align-items:flex-start;border-bottom:2px solid var(--ink);padding-bottom:18px}
-h1{font-size:27px;line-height:1.2;font-weight:600;letter-spacing:-.01em;margin:0 0 6px}
-h2{font-size:13px;font-weight:600;letter-spacing:.07em;text-transform:uppercase;color:var(--accent);margin:34px 0 10px}
-h3{font-size:14px;font-weight:600;margin:0 0 8px}
-p{margin:0 0 8px}.soft{color:var(--soft)}.small{font-size:12px}
-.verdict{min-width:250px;border-left:5px solid;padding:3px 0 3px 14px}.verdict b{display:block;font-size:17px}
-.pass{border-color:var(--pass)}.warn{border-color:var(--warn)}.fail{border-color:var(--fail)}.below{border-color:var(--below)}
-.pill{display:inline-block;padding:0 8px;border-radius:3px;color:#fff;font-size:11px;line-height:18px;font-weight:600;letter-spacing:.03em;white-space:nowrap}
-.pill.pass{background:var(--pass)}.pill.warn{background:var(--warn)}.pill.fail{background:var(--fail)}.pill.below{background:var(--below)}
-table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
-th{font-size:12px;font-weight:600;color:var(--soft);text-align:left;vertical-align:bottom;border-bottom:1px solid var(--ink);padding:4px 10px 4px 0}
-td{border-bottom:1px solid var(--line);padding:5px 10px 5px 0;vertical-align:top}
-th.n,td.n{text-align:right}td.n{white-space:nowrap}th:last-child,td:last-child{padding-right:0}
-.group{border-bottom:1px solid var(--line);text-align:center}
-code,pre{font:12px/1.5 "JetBrains Mono","SF Mono",Consolas,"DejaVu Sans Mono",monospace}
-pre{background:var(--wash);padding:12px 14px;overflow:auto;white-space:pre-wrap;margin:8px 0 0}
-.pictures{display:grid;gap:12px}.two{grid-template-columns:1fr 1fr}.four{grid-template-columns:repeat(4,1fr)}
-figure{margin:0;break-inside:avoid}figure svg{display:block;width:100%;height:auto;border:1px solid var(--line);background:#fff}
-figcaption{font-size:12px;color:var(--soft);padding-top:3px}figcaption b{color:var(--ink);font-weight:600}
-.legend{display:flex;gap:18px;flex-wrap:wrap;margin:8px 0 12px;font-size:13px}.legend i{display:inline-block;width:12px;height:12px;border-radius:2px;margin-right:6px;vertical-align:-1px;border:1px solid rgba(0,0,0,.25)}
-.tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:0;margin-top:18px;border-bottom:1px solid var(--line)}
-.tiles div{padding:0 14px 12px 0}.tiles b{display:block;font-size:20px;font-weight:600;white-space:nowrap}.tiles span{font-size:12px;color:var(--soft)}
-.gauge{display:inline-block;width:64px;height:7px;background:#e4e9eb;vertical-align:1px;margin-left:8px}.gauge i{display:block;height:7px;background:var(--pass)}
-.gauge.warn i{background:var(--warn)}.gauge.fail i{background:var(--fail)}.gauge.below i{background:var(--below)}
-details{margin:2px 0 6px}summary code{color:var(--ink)}summary{cursor:pointer;color:var(--accent);font-size:12px}
-details table{margin:4px 0 8px;font-size:12px}
-.findings{margin:6px 0 0;padding-left:18px}.findings li{margin-bottom:4px}
-.facts{display:grid;grid-template-columns:repeat(4,auto);gap:2px 22px;font-size:13px;margin-bottom:12px;justify-content:start}.facts dt{color:var(--soft)}.facts dd{margin:0}
-tr.terms td{padding-top:0;border-bottom:1px solid var(--line)}tr.lead td{border-bottom:0}
-footer{margin-top:36px;padding-top:10px;border-top:1px solid var(--line);color:var(--soft);font-size:12px}
-@media (max-width:760px){.two,.four{grid-template-columns:1fr 1fr}.facts{grid-template-columns:auto auto}header{flex-direction:column}main{padding:20px 16px}}
-@media print{@page{size:A4;margin:14mm 12mm}body{font-size:11px}main{max-width:none;padding:0}h2{margin-top:20px;break-after:avoid}tr,figure,.verdict{break-inside:avoid}h1{font-size:21px}.tiles b{font-size:15px}pre{font-size:9px}}
-)css";
-
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char symbol : text) {
-    switch (symbol) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += symbol;
-    }
-  }
-  return safe;
-}
-
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) three = (three << 8) | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? digits[(three >> (18 - 6 * k)) & 63] : '=';
-  }
-  return text;
-}
-
-std::string element(const std::string& tag, const std::string& inside) {
-  return "<" + tag + ">" + inside + "</" + tag.substr(0, tag.find(' ')) + ">";
-}
-
-std::string cell(const std::string& text) {
-  return element("td", text);
-}
-std::string figure_cell(const std::string& text) {
-  return element("td class=\"n\"", text);
-}
-
-std::string fixed(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
-}
-
-std::string css_class(verify::Agreement agreement) {
-  switch (agreement) {
-    case verify::Agreement::Pass:
-      return "pass";
-    case verify::Agreement::Warn:
-      return "warn";
-    case verify::Agreement::Fail:
-      return "fail";
-    case verify::Agreement::BelowResolution:
-      return "below";
-  }
-  return "fail";
-}
-
-std::string pill(const std::string& css, const std::string& text) {
-  return element("span class=\"pill " + css + "\"", text);
-}
-
-std::string pill(verify::Agreement agreement) {
-  std::string text = verify::to_string(agreement);
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return pill(css_class(agreement), text);
-}
-
-std::string pill(voxel::Verdict verdict) {
-  const char* css = verdict == voxel::Verdict::Pass   ? "pass"
-                    : verdict == voxel::Verdict::Warn ? "warn"
-                                                      : "fail";
-  return pill(css, to_string(verdict));
-}
-
-std::string list(const std::vector<std::string>& lines) {
-  if (lines.empty()) return "";
-  std::string items;
-  for (const std::string& line : lines) items += element("li", escaped(line));
-  return element("ul class=\"findings small\"", items);
-}
-
-std::string plural(int count, const std::string& one) {
-  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
-}
-
 // ---- heading ----
-
-std::string overall_verdict(const Result& result) {
-  const VerdictCounts counts = verdict_counts(result.evaluation);
-  const int all = counts.pass + counts.warn + counts.fail + counts.below_resolution;
-  if (all == 0) return "";
-  const std::string css = counts.fail > 0   ? "fail"
-                          : counts.warn > 0 ? "warn"
-                          : counts.pass > 0 ? "pass"
-                                            : "below";
-  const std::string title = counts.fail > 0   ? "The two kernels disagree"
-                            : counts.warn > 0 ? "The two kernels agree, with doubts"
-                                              : "The two kernels agree";
-  std::string lines = plural(all, "certificate") + ": " + std::to_string(counts.pass) + " pass";
-  if (counts.warn > 0) lines += ", " + std::to_string(counts.warn) + " warn";
-  if (counts.fail > 0) lines += ", " + std::to_string(counts.fail) + " fail";
-  if (counts.below_resolution > 0)
-    lines += ", " + std::to_string(counts.below_resolution) + " below resolution";
-  return element("div class=\"verdict " + css + "\"",
-                 element("b", title) + element("span class=\"soft\"", lines));
-}
 
 std::string heading(const Result& result) {
   std::string scans;
@@ -181,12 +27,13 @@ std::string heading(const Result& result) {
   const std::string left =
       element("div", element("h1", escaped(result.plan.name)) +
                          element("p class=\"soft\"", "Scan " + scans + " \u00b7 Octotomy " OCTOTOMY_VERSION));
-  return element("header", left + overall_verdict(result));
+  return element("header", left + overall_verdict(verdict_counts(result.evaluation)));
 }
 
 std::string tiles(const Result& result) {
   std::string text;
   for (const Measured& measured : result.evaluation.measured) {
+    if (!measured.is_size()) continue;
     const Object& object = result.evaluation.objects[measured.object];
     text += element("div", element("b", grouped(object.voxel_measures.volume_mm3 / 1000.0, 2) + " cm\u00b3") +
                                element("span", escaped(measured.id) + " (" + escaped(object.id) + ")"));
@@ -271,20 +118,11 @@ std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& 
   return element("figure", svg + "</svg>" + element("figcaption", placed.title));
 }
 
-std::string colour_text(const glm::vec3& colour) {
-  char text[16];
-  const auto byte = [](float part) {
-    return static_cast<int>(std::lround(255.0f * std::clamp(part, 0.0f, 1.0f)));
-  };
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", byte(colour.x), byte(colour.y), byte(colour.z));
-  return text;
-}
-
 std::string legend(const PictureGroup& group) {
   std::string items;
   for (const voxel::Drawn& object : group.objects)
     items += element(
-        "span", "<i style=\"background:" + colour_text(object.colour) + "\"></i>" + escaped(object.name));
+        "span", "<i style=\"background:" + text_of_colour(object.colour) + "\"></i>" + escaped(object.name));
   return element("div class=\"legend\"", items);
 }
 
@@ -323,44 +161,77 @@ std::string pictures(const Result& result) {
 
 // ---- tables ----
 
-std::string measurements(const Result& result) {
-  if (result.evaluation.measured.empty()) return "";
-  std::string rows =
-      "<tr><th></th><th></th><th class=\"n group\" colspan=\"4\">Volume, mm\u00b3</th><th class=\"n group\" "
-      "colspan=\"2\">Area, mm\u00b2</th></tr><tr><th>Measurement</th><th>Object</th><th class=\"n\">voxel "
-      "kernel</th><th class=\"n\">mesh kernel</th><th class=\"n\">difference</th><th class=\"n\">%</th>"
-      "<th class=\"n\">Crofton 13</th><th class=\"n\">isosurface</th></tr>";
-  for (const Measured& measured : result.evaluation.measured) {
-    const Object& object = result.evaluation.objects[measured.object];
-    const double voxels_mm3 = object.voxel_measures.volume_mm3;
-    rows +=
-        "<tr>" + cell(escaped(measured.id)) + cell(escaped(object.id)) + figure_cell(grouped(voxels_mm3, 1));
-    if (object.mesh_measures) {
-      const double mesh_mm3 = object.mesh_measures->volume_mm3;
-      const double percent = mesh_mm3 == 0.0 ? 0.0 : 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;
-      rows += figure_cell(grouped(mesh_mm3, 1)) + figure_cell(grouped(voxels_mm3 - mesh_mm3, 1)) +
-              figure_cell(grouped(percent, 2));
-    } else {
-      rows += figure_cell("\u2013") + figure_cell("\u2013") + figure_cell("\u2013");
-    }
-    rows += figure_cell(grouped(object.voxel_measures.area_crofton13_mm2, 0)) +
-            figure_cell(object.mesh_measures ? grouped(object.mesh_measures->area_mm2, 0) : "\u2013") +
-            "</tr>";
-  }
-  return element("h2", "Measurements") + element("table", rows) +
-         element("p class=\"soft small\"",
-                 "Volume: voxels counted, and the mesh's enclosed volume by the divergence theorem. Area: "
-                 "Crofton formula "
-                 "over 13 directions on voxels (up to 9 % low on flat cuts), and the triangles of the "
-                 "isosurface.");
+std::string number_of(const Json& json, const char* key, int decimals) {
+  return json.at(key).is_number() ? grouped(json.at(key).get<double>(), decimals) : "\u2013";
+}
+/// A number with its half-width.
+std::string doubtful(const Json& json, const char* key, const char* half_width, int decimals) {
+  const bool known = json.contains(half_width) && json.at(half_width).is_number();
+  return number_of(json, key, decimals) +
+         (known ? " \u00b1 " + three_figures(json.at(half_width).get<double>()) : std::string());
 }
 
-std::string gauge(double value, double allowed, verify::Agreement agreement) {
-  const double share = allowed > 0.0  ? std::clamp(std::abs(value) / allowed, 0.0, 1.0)
-                       : value == 0.0 ? 0.0
-                                      : 1.0;
-  return "<span class=\"gauge " + css_class(agreement) + "\"><i style=\"width:" + fixed(100.0 * share) +
-         "%\"></i></span>";
+std::string sizes(const Json& measurements) {
+  std::string rows;
+  for (const Json& size : measurements) {
+    if (!size.contains("volume_mm3")) continue;
+    const Json& mesh = size.at("mesh");
+    rows += "<tr>" + cell(escaped(size.at("id").get<std::string>())) +
+            cell(escaped(size.at("object").get<std::string>())) +
+            figure_cell(doubtful(size, "volume_mm3", "volume_half_width_mm3", 1)) +
+            figure_cell(mesh.is_null() ? "\u2013" : number_of(mesh, "volume_mm3", 1)) +
+            figure_cell(number_of(size, "difference_mm3", 1)) +
+            figure_cell(number_of(size, "difference_percent", 2)) +
+            figure_cell(number_of(size.at("voxel"), "area_mm2", 0)) +
+            figure_cell(mesh.is_null() ? "\u2013" : doubtful(size, "area_mm2", "area_half_width_mm2", 0)) +
+            "</tr>";
+  }
+  if (rows.empty()) return "";
+  return element(
+             "table",
+             "<tr><th></th><th></th><th class=\"n group\" colspan=\"4\">Volume, mm\u00b3</th><th class=\"n "
+             "group\" colspan=\"2\">Area, mm\u00b2</th></tr><tr><th>Measurement</th><th>Object</th><th "
+             "class=\"n\">voxel kernel</th><th class=\"n\">mesh kernel</th><th "
+             "class=\"n\">difference</th><th class=\"n\">%</th><th class=\"n\">Crofton 13</th><th "
+             "class=\"n\">isosurface</th></tr>" +
+                 rows) +
+         element("p class=\"soft small\"",
+                 "Volume: voxels counted, and the mesh's enclosed volume by the divergence theorem. Area: "
+                 "Crofton formula over 13 directions on voxels (up to 9 % low on flat cuts), and the "
+                 "triangles of "
+                 "the isosurface. \u00b1 is the half-width that voxels, slice spacing and window leave.");
+}
+
+std::string lengths(const Json& measurements) {
+  std::string rows;
+  for (const Json& one : measurements) {
+    const std::string id = escaped(one.at("id").get<std::string>());
+    if (one.contains("gap_mm"))
+      rows += "<tr>" + cell(id) +
+              cell("gap, " + escaped(one.at("object").get<std::string>()) + " to " +
+                   escaped(one.at("to").get<std::string>())) +
+              figure_cell(doubtful(one, "gap_mm", "gap_half_width_mm", 2) + " mm") +
+              figure_cell(number_of(one, "gap_mesh_mm", 2) + " mm") +
+              figure_cell(number_of(one, "overlap_mm3", 1) + " mm\u00b3") + "</tr>";
+    if (one.contains("distance_mm"))
+      rows += "<tr>" + cell(id) + cell("distance of two points") +
+              figure_cell(doubtful(one, "distance_mm", "distance_half_width_mm", 2) + " mm") + cell("") +
+              cell("") + "</tr>";
+    if (one.contains("angle_deg"))
+      rows += "<tr>" + cell(id) + cell("angle at the second of three points") +
+              figure_cell(doubtful(one, "angle_deg", "angle_half_width_deg", 2) + "\u00b0") + cell("") +
+              cell("") + "</tr>";
+  }
+  if (rows.empty()) return "";
+  return element("table",
+                 "<tr><th>Measurement</th><th></th><th class=\"n\">voxel kernel</th><th class=\"n\">mesh "
+                 "kernel</th><th class=\"n\">overlap</th></tr>" +
+                     rows);
+}
+
+std::string measurements(const Result& result) {
+  if (result.measurements.empty()) return "";
+  return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements);
 }
 
 std::string terms_of(const verify::Certificate& certificate, const std::string& definition) {
@@ -525,12 +396,10 @@ std::string footer(const Result& result) {
 }  // namespace
 
 std::string report_html(const Result& result) {
-  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-         "content=\"width=device-width,initial-scale=1\"><title>" +
-         escaped(result.plan.name) + " \u00b7 Octotomy</title><style>" + std::string(style) +
-         "</style></head><body><main>" + heading(result) + tiles(result) + findings(result) +
-         pictures(result) + measurements(result) + certificates(result) + parts_table(result) +
-         scans(result) + exports(result) + plan_text(result) + footer(result) + "</main></body></html>\n";
+  return html_page(result.plan.name, heading(result) + tiles(result) + findings(result) + pictures(result) +
+                                         measurements(result) + certificates(result) + parts_table(result) +
+                                         scans(result) + exports(result) + plan_text(result) +
+                                         footer(result));
 }
 
 }  // namespace octotomy::planner

@@ -30,8 +30,9 @@
 //
 // Distances: centres of the octree's boundary faces to the triangles, and points spread over the triangles to
 // the boundary faces; each weighted by its area. The 95th percentile is the smallest distance that at least
-// 95 % of that area does not exceed; of the two directions the larger is given. A right face lies evenly within half a voxel of the surface along its axis: at most half a voxel's
-// diagonal, a quarter of an edge in the mean; flats where counting puts them.
+// 95 % of that area does not exceed; of the two directions the larger is given. A right face lies evenly
+// within half a voxel of the surface along its axis: at most half a voxel's diagonal, a quarter of an edge in
+// the mean; flats where counting puts them.
 
 #include "verify/certificate.h"
 
@@ -72,6 +73,8 @@ constexpr double edge_shift = 0.3;
 constexpr double doubt = 2.0;
 /// Fewer voxels across and the boundary's voxels are most of the object.
 constexpr double resolved_voxels = 6.0;
+/// Of sums of many terms of one sign, as a share: some units in the last place of each of both kernels' sums.
+constexpr double rounded_sums = 64.0 * std::numeric_limits<double>::epsilon();
 /// The mesh is sampled this densely: an isosurface's triangles are smaller and have one sample each.
 constexpr double sample_voxels = 2.0;
 /// A surface so many times further away than digitisation explains has no counterpart. What is thinner than a
@@ -308,10 +311,12 @@ void compare_inertia(Certificate& certificate, const Evidence& evidence, const b
   const BoundaryModel& model = evidence.model;
   if (!evidence.voxels.inertia_mm5 || !(evidence.mesh.volume_mm3 > 0.0)) return;
   const glm::dmat3 inertia = inertia_about(brep::triangles_of(solid), *evidence.mesh.centroid_mm);
-  double most = 0.0;
+  double most = 0.0, largest = 0.0;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
+    for (int j = 0; j < 3; ++j) {
       most = std::max(most, std::abs((*evidence.voxels.inertia_mm5)[i][j] - inertia[i][j]));
+      largest = std::max(largest, std::abs(inertia[i][j]));
+    }
   const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
   // Displaced planes meet: second order in a voxel over the least extent.
   const glm::dvec3 extent_mm = evidence.mesh.high_mm - evidence.mesh.low_mm;
@@ -320,11 +325,12 @@ void compare_inertia(Certificate& certificate, const Evidence& evidence, const b
       coverage * std::sqrt(model.count_mm10) + meeting * (model.planes_without_sign.mm5 + model.unsure.mm5) +
       evidence.border.mm5 + evidence.unseen_mm3 * arm_mm * arm_mm +
       (bent_share + rough_share) * model.bent_without_sign.mm5 +
-      evidence.mesh.volume_mm3 * std::pow(certificate.centroid_tolerance_mm.value_or(0.0), 2.0);
-  add_comparison(
-      certificate,
-      {"inertia", "mm5", (*evidence.voxels.inertia_mm5)[0][0], inertia[0][0], most, tolerance,
-       "second moment of the terms, V * centroid's ^ 2; largest component of the tensors' difference"});
+      evidence.mesh.volume_mm3 * std::pow(certificate.centroid_tolerance_mm.value_or(0.0), 2.0) +
+      certificate.terms.back().value_mm3 * arm_mm * arm_mm + rounded_sums * largest;
+  add_comparison(certificate,
+                 {"inertia", "mm5", (*evidence.voxels.inertia_mm5)[0][0], inertia[0][0], most, tolerance,
+                  "second moment of the terms, V * centroid's ^ 2, 64 eps; largest component of the tensors' "
+                  "difference"});
 }
 
 struct DistanceBounds {
@@ -512,6 +518,20 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid
   certificate.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return certificate;
+}
+
+double worst_share(const Certificate& certificate) {
+  double worst = 0.0;
+  for (const Comparison& comparison : certificate.comparisons) {
+    if (!comparison.tolerance || comparison.difference == 0.0) continue;
+    worst = std::max(worst, *comparison.tolerance > 0.0 ? comparison.difference / *comparison.tolerance
+                                                        : std::numeric_limits<double>::infinity());
+  }
+  return worst;
+}
+
+void keep_worse(std::optional<Contested>& kept, const Contested& found) {
+  if (!kept || worst_share(found.certificate) > worst_share(kept->certificate)) kept = found;
 }
 
 std::string to_string(Tier tier) {

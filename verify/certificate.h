@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,6 +87,19 @@ struct BoundInputs {
 /// Compares an octree with a solid that has another lineage (tier Bounded). Derivation of the terms is in the
 /// source. An empty mesh has no faces.
 Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs);
+
+/// The largest share of its tolerance that a quantity takes up: 1 and less is PASS. Where nothing is allowed,
+/// 0 without a difference and infinity with one.
+double worst_share(const Certificate& certificate);
+
+/// A certificate's objects, kept for pictures.
+struct Contested {
+  Certificate certificate;
+  voxel::Octree octree;
+  std::shared_ptr<const brep::Mesh> mesh;
+};
+/// Keeps the one that takes up the larger share, the first of equals, so that the order alone decides.
+void keep_worse(std::optional<Contested>& kept, const Contested& found);
 
 std::string to_string(Tier tier);
 std::string to_string(Agreement agreement);

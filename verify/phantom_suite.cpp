@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -368,6 +369,9 @@ class Suite {
     const Answers answers = answers_of(solid, samplings[m].sampling, chance);
     one.bounded = bounded_of(solid, answers, one);
     one.closed_form = closed_form_of(solid, answers, one.bounded);
+    if (kinds()[k].thickness == 0.0 && one.bounded.agreement != Agreement::BelowResolution)
+      keep_worse(suite_.worst,
+                 {one.bounded, answers.octree, std::make_shared<const brep::Mesh>(answers.mesh)});
     // A box around a plate that is turned does not show how thin it is; the truth is known.
     if (kinds()[k].thickness > 0.0)
       for (Certificate* certificate : {&one.bounded, &one.closed_form}) {

@@ -12,6 +12,7 @@
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
 #include "planner/figures.h"
+#include "verify/boundary_model.h"
 #include "voxel/cell_counts.h"
 #include "voxel/combine.h"
 #include "voxel/components.h"
@@ -33,17 +34,18 @@ int say(const Program& program, const Json& json) {
   const auto value = [&](const char* key, int decimals) {
     return json[key].is_null() ? "none" : grouped(json[key].get<double>(), decimals);
   };
-  program.say(
-      json,
-      lines({{"volume", value("volume_mm3", 1) +
-                            (json.contains("volume_half_width_mm3")
-                                 ? " \u00b1 " + three_figures(json["volume_half_width_mm3"].get<double>())
-                                 : std::string()) +
-                            " mm\u00b3, " + json["volume_estimator"].get<std::string>()},
-             {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
-             {"area", value("area_mm2", 1) + " mm\u00b2, " + json["area_estimator"].get<std::string>()},
-             {"components", value("components", 0)},
-             {"euler", value("euler", 0)}}));
+  const auto doubtful = [&](const char* key, const char* half_width) {
+    return value(key, 1) + (json.contains(half_width)
+                                ? " \u00b1 " + three_figures(json[half_width].get<double>())
+                                : std::string());
+  };
+  program.say(json, lines({{"volume", doubtful("volume_mm3", "volume_half_width_mm3") + " mm\u00b3, " +
+                                          json["volume_estimator"].get<std::string>()},
+                           {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
+                           {"area", doubtful("area_mm2", "area_half_width_mm2") + " mm\u00b2, " +
+                                        json["area_estimator"].get<std::string>()},
+                           {"components", value("components", 0)},
+                           {"euler", value("euler", 0)}}));
   return done;
 }
 
@@ -91,6 +93,15 @@ void add_half_width(const voxel::Octree& octree, const Digitised& digitised, Jso
   json["volume_half_width_terms"] = to_json(width);
 }
 
+void add_area_half_width(const brep::Mesh& surface, const voxel::Lattice& lattice, const Digitised& digitised,
+                         Json& json) {
+  const verify::BoundaryModel model =
+      verify::boundary_model(surface, {lattice, digitised.sample_mm, glm::dvec3(0.0)});
+  const HalfWidth width = area_half_width({model.area_mm2, model.curvature_mm}, digitised);
+  json["area_half_width_mm2"] = width.value;
+  json["area_half_width_terms"] = to_json(width);
+}
+
 void add_partial_volume(const voxel::Window& window, Timings& timings, Json& json) {
   const Stopwatch watch(timings, "partial volume");
   json["volume_partial_mm3"] = nullptr;
@@ -123,12 +134,16 @@ int measure_octree(const Program& program, const MeasureText& text) {
   Json json;
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     const voxel::Window window = window_of(*grey, text);
-    json = of_voxels(voxel::combine(grey->universe(), window), timings);
+    const voxel::Octree inside = voxel::combine(grey->universe(), window);
+    json = of_voxels(inside, timings);
     add_partial_volume(window, timings, json);
+    const Stopwatch watch(timings, "half_width");
+    add_half_width(inside, {grey->universe().lattice().spacing_mm(), {}, window_shift_mm(window)}, json);
   } else if (!text.window.empty()) {
     throw std::runtime_error(text.file.string() + ": holds no samples to take a --window of: leave it out");
   } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
     json = of_voxels(voxel::at_least_half(*partial), timings);
+    add_half_width(voxel::at_least_half(*partial), {partial->inside.universe().lattice().spacing_mm()}, json);
     json["volume_estimator"] = "voxels at least half filled, counted";
     json["volume_partial_mm3"] = voxel::volume_mm3(*partial);
     json["volume_partial_estimator"] = "the voxels' filled shares";
@@ -161,12 +176,13 @@ int measure_scan(const Program& program, const MeasureText& text) {
   const voxel::Octree inside = voxel::combine(grey->universe(), window);
   Json json = of_voxels(inside, timings);
   add_partial_volume(window, timings, json);
+  Digitised digitised{grey->universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
   {
     const Stopwatch watch(timings, "half_width");
-    add_half_width(
-        inside,
-        {grey->universe().lattice().spacing_mm(), scene.lattice.spacing_mm(), window_shift_mm(window)}, json);
+    digitised.shift_mm = window_shift_mm(window);
+    add_half_width(inside, digitised, json);
   }
+  brep::Mesh mesh;
   brep::Measures surface;
   brep::Health health;
   {
@@ -174,8 +190,10 @@ int measure_scan(const Program& program, const MeasureText& text) {
     const double high = parse_window(text.window).high.value_or(std::numeric_limits<double>::infinity());
     const brep::Triangles triangles = convert::isosurface(scene, window.low, high);
     health = brep::health(triangles, {false});
-    surface = brep::measure(brep::mesh_of(triangles));
+    mesh = brep::mesh_of(triangles);
+    surface = brep::measure(mesh);
   }
+  add_area_half_width(mesh, grey->universe().lattice(), digitised, json);
   json["area_crofton13_mm2"] = json["area_mm2"];
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;

@@ -74,6 +74,7 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
   rows.emplace_back("verdicts", std::to_string(counts.pass) + " PASS, " + std::to_string(counts.warn) +
                                     " WARN, " + std::to_string(counts.fail) + " FAIL, " +
                                     std::to_string(counts.below_resolution) + " BELOW_RESOLUTION");
+  answer.worst = std::move(suite.worst);
   answer.more = study_json(suite);
   answer.text = lines(rows);
   return answer;

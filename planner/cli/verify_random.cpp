@@ -70,6 +70,13 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
                  {"substance", suite.substance()},
                  {"substance_needed", least_substance},
                  {"disagreements", disagreements}};
+  answer.worst = std::move(suite.worst);
+  if (suite.bounded.no_answer > 0)
+    answer.not_covered.push_back(std::to_string(suite.bounded.no_answer) +
+                                 " results that the mesh kernel has no answer to, and says so");
+  if (suite.bounded.refused > 0)
+    answer.not_covered.push_back(std::to_string(suite.bounded.refused) +
+                                 " plans that were refused: a window or mask without a voxel");
   answer.text = lines(rows);
   return answer;
 }

@@ -2,6 +2,7 @@
 #include "planner/cli/verify_verbs.h"
 
 #include "planner/cli/verify_suites.h"
+#include "planner/verification.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -21,6 +22,15 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   answer.certificates = result_json(result)["certificates"];
   answer.counts = verdict_counts(result.evaluation);
   answer.text = verdict_text(result.evaluation);
+  for (const Object& object : result.evaluation.objects) {
+    if (object.certificate)
+      verify::keep_worse(answer.worst, {*object.certificate, object.octree, object.mesh});
+    else
+      answer.not_covered.push_back(object.id + ", " + object.definition + ": " +
+                                   (object.kind == "mask"     ? "a mask is certified with what it cuts"
+                                    : object.findings.empty() ? "there is no mesh"
+                                                              : object.findings.front()));
+  }
   return answer;
 }
 
@@ -46,12 +56,33 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
   return verify_plan(program, text);
 }
 
+/// As it was asked for.
+std::string subject_of(const VerifyText& text, const std::vector<CLI::Option*>& named) {
+  std::string subject;
+  for (const std::string& word : text.subject) subject += (subject.empty() ? "" : " ") + word;
+  for (const CLI::Option* option : named) {
+    if (option->count() == 0) continue;
+    subject = option->get_name();
+    if (text.random_count > 0)
+      subject += " " + std::to_string(text.random_count) + " --seed " + std::to_string(text.seed);
+  }
+  return subject;
+}
+
 int verify(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
-  const SuiteAnswer found = chosen(program, text, named);
+  if (text.report) need_folder_of(*text.report);
+  SuiteAnswer found = chosen(program, text, named);
   Json json = answer(found.timings);
   json["certificates"] = found.certificates;
   json["counts"] = to_json(found.counts);
   json.update(found.more);
+  if (text.report) {
+    write_verification(
+        {subject_of(text, named), found.counts, json, std::move(found.not_covered), std::move(found.worst)},
+        *text.report);
+    json["report"] = (*text.report / "report.html").string();
+    found.text += lines({{"report", (*text.report / "report.html").string()}});
+  }
   program.say(json, found.text);
   if (found.counts.fail > 0) warn("the kernels disagree (a FAIL verdict)");
   return found.counts.fail > 0 || !found.held ? disagreement : done;
@@ -74,6 +105,9 @@ void add_verify_verbs(Program& program) {
       ->type_name("PLAN | A OP B");
   add_plan_options(verb, *text);
   add_operand_options(verb, *text);
+  verb.add_option("--report", text->report,
+                  "A folder for report.html, one page with verdicts, plots and pictures, and result.json")
+      ->type_name("FOLDER");
   for (const Suite& suite : suites()) named->push_back(suite.add(verb, *text));
 }
 

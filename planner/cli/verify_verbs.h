@@ -18,6 +18,7 @@ namespace octotomy::planner::cli {
 struct VerifyText : PlanIn {
   std::vector<std::string> subject;  ///< a plan, or A OP B; no suite was named
   std::optional<double> operand_voxel_mm;
+  std::optional<std::filesystem::path> report;  ///< a folder for report.html and result.json
   bool faults = false, phantoms = false, thesis = false;
   int poses = 6;  ///< of --phantoms
   int random_count = 0;
@@ -31,8 +32,10 @@ struct SuiteAnswer {
   Json certificates = Json::array();
   VerdictCounts counts;
   Json more = Json::object();
-  std::string text;  ///< for people
-  bool held = true;  ///< false: exit status 1, besides a count of FAIL
+  std::vector<std::string> not_covered;    ///< what was asked and has no certificate, a sentence each
+  std::optional<verify::Contested> worst;  ///< of the certificates' objects, where they are at hand
+  std::string text;                        ///< for people
+  bool held = true;                        ///< false: exit status 1, besides a count of FAIL
 };
 
 /// One suite: what names it on the command line, and what runs it. It looks at program.stop between cases and

@@ -24,7 +24,11 @@ import tempfile
 SOURCES = {
     "voxel/combine.cpp": [("voxel_tests", "Combine*:Moved*:Octree*"), ("expression_tests", "SetIdentities*:Resampling*")],
     "voxel/combine_grey.cpp": [("voxel_tests", "*Grey*:Combine*"), ("expression_tests", "Resampling*")],
+    "voxel/combine_shares.cpp": [("expression_tests", "CombineShares*")],
     "brep/boolean.cpp": [("brep_tests", "*Boolean*")],
+    "brep/corefine.cpp": [("brep_tests", "*Boolean*")],
+    "brep/meeting.cpp": [("brep_tests", "Meeting*:*Boolean*")],
+    "brep/near_boolean.cpp": [("brep_tests", "*Boolean*")],
 }
 # What is looked for in a line of code, and what it becomes.
 CHANGES = [

@@ -123,6 +123,26 @@ TEST(Plan, AMeasurementIsNoObject) {
   expect_says(refusal(plan), {"step 'again'", "'overlap_size' is a measure step"});
 }
 
+TEST(Plan, AMeasureStepAsksForOneThing) {
+  const auto refused = [](Json measure) {
+    Json plan = le_fort_i();
+    measure["id"] = "asked";
+    measure["do"] = "measure";
+    plan["steps"].push_back(measure);
+    return refusal(plan);
+  };
+  EXPECT_EQ(refused({{"object", "rest"}, {"to", "advanced"}}), "");
+  EXPECT_EQ(refused({{"points_mm", {{0, 0, 0}, {1, 0, 0}}}}), "");
+  EXPECT_EQ(refused({{"points_mm", {{2, 0, 0}, {0, 0, 0}, {1, 0, 0}}}}), "");
+  expect_says(refused({{"object", "rest"}, {"to", "rest"}}), {"step 'asked', to", "the object itself"});
+  expect_says(refused({{"object", "rest"}, {"to", "advance"}}), {"to", "did you mean 'advanced'?"});
+  expect_says(refused({{"to", "rest"}}), {"'object' is missing"});
+  expect_says(refused({{"object", "rest"}, {"points_mm", {{0, 0, 0}, {1, 0, 0}}}}), {"stands alone"});
+  expect_says(refused({{"points_mm", {{0, 0, 0}}}}), {"two points", "three for the angle"});
+  expect_says(refused({{"points_mm", {{0, 0, 0}, {1, 0}}}}), {"points_mm[1]", "three numbers"});
+  expect_says(refused({{"points_mm", {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}}}}), {"two legs"});
+}
+
 TEST(Plan, IdsAreUniqueIdentifiers) {
   for (const char* id : {"two words", "1st", "a-b", "", "\xc3\xa4", "a.b"}) {
     Json plan = le_fort_i();

@@ -42,6 +42,9 @@ class Report : public testing::Test {
         { "id": "all", "do": "combine", "expression": "cup | lifted" },
         { "id": "cap_size", "do": "measure", "object": "cap" },
         { "id": "none_size", "do": "measure", "object": "nothing" },
+        { "id": "lift", "do": "measure", "object": "cup", "to": "lifted" },
+        { "id": "wide", "do": "measure", "points_mm": [[-12, 0, 0], [12, 0, 0]] },
+        { "id": "corner", "do": "measure", "points_mm": [[-12, 0, 0], [0, 0, 0], [0, 5, 5]] },
         { "id": "surface", "do": "export", "object": "lifted", "path": "pieces/cap.stl" },
         { "id": "label", "do": "export", "object": "lifted", "path": "cap.nrrd" },
         { "id": "deck", "do": "export", "object": "lifted", "path": "cap.inp" },
@@ -77,11 +80,19 @@ TEST_F(Report, AnswersHaveTheirKeysAndAMissingOneIsNull) {
   for (const char* stage : {"read", "octree", "isosurface", "boolean_voxel", "boolean_mesh", "certify",
                             "render", "tetrahedralise", "write"})
     EXPECT_TRUE(json_["timings_ms"].contains(stage)) << stage;
-  ASSERT_EQ(json_["measurements"].size(), 2u);
+  ASSERT_EQ(json_["measurements"].size(), 5u);
   EXPECT_NEAR(json_["measurements"][0]["volume_mm3"].get<double>(), tests::cap_mm3(12.0, 3.2), 250.0);
   EXPECT_EQ(json_["measurements"][1]["volume_mm3"], 0.0);
   EXPECT_TRUE(json_["measurements"][1]["centroid_mm"].is_null());
   EXPECT_TRUE(json_["measurements"][1]["difference_percent"].is_null());
+  EXPECT_GT(json_["measurements"][0]["volume_half_width_mm3"], 0.0);
+  // Lifted by two millimetres, two voxels.
+  EXPECT_NEAR(json_["measurements"][2]["gap_mesh_mm"].get<double>(), 2.0, 0.01);
+  EXPECT_NEAR(json_["measurements"][2]["gap_mm"].get<double>(), 2.0,
+              json_["measurements"][2]["gap_half_width_mm"].get<double>());
+  EXPECT_EQ(json_["measurements"][3]["distance_mm"], 24.0);
+  EXPECT_NEAR(json_["measurements"][4]["angle_deg"].get<double>(), 90.0, 1e-12);
+  EXPECT_GT(json_["measurements"][4]["angle_half_width_deg"], 0.0);
   EXPECT_EQ(json_["certificates"].size(), 6u);
   for (const auto& certificate : json_["certificates"])
     for (const char* key :

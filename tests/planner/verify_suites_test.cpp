@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
 #include <gtest/gtest.h>
 
 #include "brep/write_mesh.h"
@@ -60,8 +61,12 @@ TEST_F(Verify, TwoMeshesAndTwoLabelMapsOfAnyProgram) {
     EXPECT_EQ(json["certificates"][0]["tier"], "exact");
     EXPECT_GE(json["volume_mm3"], json["certificates"][0]["voxel"]["volume_mm3"]);
   }
-  const auto meshes = run("verify " + at("a.ply") + " union " + at("b.ply") + " --voxel 0.7 --json");
+  const auto meshes =
+      run("verify " + at("a.ply") + " union " + at("b.ply") + " --voxel 0.7 --json --report " + at("page"));
   EXPECT_EQ(meshes.status, 0) << meshes.errors << meshes.out;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "page" / "report.html"));
+  std::ifstream written(folder_ / "page" / "result.json");
+  EXPECT_EQ(tests::Json::parse(written)["counts"], tests::Json::parse(meshes.out)["counts"]);
 }
 
 TEST_F(Verify, WhatCannotBeUnderstoodIsRefusedByName) {
