@@ -5,14 +5,17 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <variant>
 
 #include "brep/components.h"
 #include "brep/decimate.h"
 #include "brep/write_mesh.h"
 #include "convert/deck.h"
+#include "convert/octree_tetrahedra.h"
 #include "convert/tetrahedralise.h"
 #include "planner/attach.h"
 #include "planner/figures.h"
+#include "voxel/components.h"
 #include "voxel/write_scene.h"
 
 namespace octotomy::planner {
@@ -29,16 +32,20 @@ void export_mesh(const Object& object, const std::filesystem::path& path, Export
                       {"volume_mm3", object.mesh_measures->volume_mm3}};
 }
 
-/// The parts of the mesh that a deck is made of: crumbs that a cut leaves, under a hundredth of the largest
-/// part, are no bodies to load and hold; what is left out is a finding, and so are several bodies.
+/// Of the largest part's volume, what a part has to have to be a body.
+constexpr double crumb() {
+  return 0.01;
+}
+
+/// The parts of the mesh that a deck is made of: crumbs that a cut leaves are no bodies to load and hold;
+/// what is left out is a finding, and so are several bodies.
 brep::Mesh bodies_of(const brep::Mesh& mesh, Filling& filling) {
-  constexpr double crumb = 0.01;
   const auto parts = brep::components(mesh);
   std::vector<std::uint32_t> faces;
   std::size_t bodies = 0;
   double left_out_mm3 = 0.0;
   for (const brep::Component& part : parts) {
-    if (part.volume_mm3 >= crumb * parts.front().volume_mm3) {
+    if (part.volume_mm3 >= crumb() * parts.front().volume_mm3) {
       faces.insert(faces.end(), part.faces.begin(), part.faces.end());
       ++bodies;
     } else {
@@ -83,6 +90,26 @@ brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling)
   return mesh;
 }
 
+/// The voxels' own elements, crumbs left out as of meshes.
+Filling fallback_of(const Object& object, const std::string& why) {
+  Filling filling;
+  const auto parts = voxel::components(object.octree).voxel_counts;
+  const auto least = static_cast<std::uint64_t>(std::ceil(crumb() * static_cast<double>(parts.front())));
+  const voxel::Octree bodies = voxel::components_of_at_least(object.octree, least);
+  filling.tetrahedra = convert::tetrahedra_of(bodies);
+  filling.bodies = static_cast<std::size_t>(
+      std::count_if(parts.begin(), parts.end(), [&](std::uint64_t voxels) { return voxels >= least; }));
+  filling.fallback = true;
+  filling.findings.push_back(
+      "fallback: " + why +
+      "; the elements are the voxels', whose surface is in steps: do not read stresses "
+      "there");
+  if (bodies.voxel_count() < object.octree.voxel_count())
+    filling.findings.push_back(grouped(static_cast<double>(parts.size() - filling.bodies), 0) +
+                               " crumbs, each under a hundredth of the largest body, are left out");
+  return filling;
+}
+
 Filling filling_of(const Object& object) {
   Filling filling;
   const brep::Mesh bodies = bodies_of(*object.mesh, filling);
@@ -105,30 +132,50 @@ void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQualit
   exported.details["volume_mm3"] = quality.volume_mm3;
   exported.details["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
                                  {"max_dihedral_deg", quality.max_dihedral_deg},
-                                 {"max_radius_edge", quality.max_radius_edge}};
+                                 {"max_radius_edge", quality.max_radius_edge},
+                                 {"min_volume_mm3", quality.min_volume_mm3}};
 }
 
-void export_tetrahedra(const Object& object, const std::filesystem::path& path, Exported& exported,
-                       Fillings& fillings, Timings& timings) {
-  {
+/// The object's filling, or why there is none.
+std::variant<Filling, std::string> fill(const Object& object) {
+  if (!object.mesh) return "it has no mesh";
+  if (object.mesh->n_faces() == 0) return "its mesh is empty";
+  try {
+    return filling_of(object);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+}
+
+void export_tetrahedra(const Object& object, const ExportStep& step, const std::filesystem::path& path,
+                       Exported& exported, Fillings& fillings, Timings& timings) {
+  const std::string key = object.id + (step.fallback ? " or its voxels" : "");
+  if (!fillings.contains(key)) {
     const Stopwatch watch(timings, "tetrahedralise");
-    try {
-      if (!fillings.contains(object.id)) fillings.emplace(object.id, filling_of(object));
-    } catch (const std::runtime_error& error) {
-      exported.findings.push_back(std::string("not written: ") + error.what());
-      return;
-    } catch (const std::invalid_argument& error) {
-      exported.findings.push_back(std::string("not written: ") + error.what());
-      return;
+    std::variant<Filling, std::string> filled = fill(object);
+    if (const auto* why = std::get_if<std::string>(&filled)) {
+      if (!step.fallback || object.octree.is_empty()) {
+        exported.findings.push_back(
+            "not written: " + *why +
+            (step.fallback ? "; and it has no voxel" : "; \"fallback\": true takes its voxels' elements"));
+        return;
+      }
+      filled = fallback_of(object, *why);
     }
+    fillings.emplace(key, std::get<Filling>(std::move(filled)));
   }
   const Stopwatch watch(timings, "write");
-  const auto& [tetrahedra, bodies, findings] = fillings.at(object.id);
+  const auto& [tetrahedra, bodies, fallback, findings] = fillings.at(key);
   exported.details["regions"] = bodies;
+  exported.details["fallback"] = fallback;
+  exported.details["method"] = tetrahedra.method;
   exported.findings = findings;
   const convert::TetQuality quality = convert::quality(tetrahedra);
   convert::DeckOptions options;
   options.title = object.id + " = " + object.definition;
+  options.notes = findings;
   convert::write_deck(tetrahedra, path, options);
   say_written(tetrahedra, quality, exported);
 }
@@ -189,10 +236,11 @@ Exported export_object(const Evaluation& evaluation, const std::string& id, cons
   exported.path = step.path.generic_string();
   exported.details = nlohmann::ordered_json::object();
   const std::filesystem::path path = folder / step.path;
-  const bool wants_mesh = step.kind != ExportKind::Label && !step.attachment.any();
+  const bool wants_mesh = step.kind != ExportKind::Label && !step.attachment.any() && !step.fallback;
   if (wants_mesh && !object.mesh)
     exported.findings.push_back("not written: '" + object.id + "' has no mesh, see its findings");
-  else if (wants_mesh ? object.mesh->n_faces() == 0 : object.octree.is_empty())
+  else if (const bool has_faces = object.mesh && object.mesh->n_faces() > 0;
+           wants_mesh ? !has_faces : object.octree.is_empty() && !(step.fallback && has_faces))
     exported.findings.push_back("not written: '" + object.id + "' is empty");
   if (!exported.findings.empty()) return exported;
 
@@ -201,7 +249,7 @@ Exported export_object(const Evaluation& evaluation, const std::string& id, cons
   if (step.attachment.any())
     export_attached(evaluation, object, step, path, exported, timings);
   else if (step.kind == ExportKind::Tetrahedra)
-    export_tetrahedra(object, path, exported, fillings, timings);
+    export_tetrahedra(object, step, path, exported, fillings, timings);
   if (step.kind == ExportKind::Label) export_label(object, path, exported, timings);
   if (exported.written) exported.details["bytes"] = std::filesystem::file_size(path);
   return exported;

@@ -27,9 +27,11 @@ struct Exported {  // NOLINT(bugprone-exception-escape)
 struct Filling {
   convert::Tetrahedra tetrahedra;
   std::size_t bodies = 0;
+  bool fallback = false;  ///< the elements are an octree's
   std::vector<std::string> findings;
 };
-/// Objects that were filled already: several decks of one object are one filling.
+/// Objects that were filled already, by their names and whether the fallback was allowed: several decks of
+/// one object are one filling.
 using Fillings = std::map<std::string, Filling>;
 
 /// Writes an object into a folder as the step's extension says: its mesh; tetrahedra that fill its mesh; its
@@ -42,7 +44,9 @@ using Fillings = std::map<std::string, Filling>;
 /// Where the step attaches the object to others, tetrahedra are an octree's (attach.h), and the deck ends in
 /// the static step in which those hold and move it.
 ///
-/// An object that is empty, has no mesh, or that TetGen cannot fill is not written; a finding says why.
+/// An object that is empty, has no mesh, or that no mesher can fill is not written; a finding says why. Where
+/// the step allows the fallback, its voxels' tetrahedra are written instead, marked by `fallback` in the
+/// details and by a finding.
 /// Throws what the writers throw where the disk does not take it.
 Exported export_object(const Evaluation& evaluation, const std::string& id, const ExportStep& step,
                        const std::filesystem::path& folder, Fillings& fillings, Timings& timings);

@@ -113,7 +113,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"combine", {"id", "do", "expression"}},
     {"move", {"id", "do", "object", "translate_mm", "rotate"}},
     {"measure", {"id", "do", "object", "to", "points_mm"}},
-    {"export", {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material"}},
+    {"export", {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback"}},
 };
 
 std::vector<std::string> step_words() {
@@ -308,6 +308,15 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
   step.attachment = attachment_of(keys, bound);
   if (step.attachment.any() && step.kind != ExportKind::Tetrahedra)
     refuse(keys.at("path"), "only tetrahedra are moved and held by other objects: choose .inp, .feb or .vtu");
+  if (const Json* fallback = keys.find("fallback")) {
+    if (!fallback->is_boolean()) refuse(keys.at("fallback"), "must be true or false");
+    if (step.kind != ExportKind::Tetrahedra)
+      refuse(keys.at("fallback"),
+             "only tetrahedra have a fallback: leave it out, or choose .inp, .feb or .vtu");
+    if (step.attachment.any())
+      refuse(keys.at("fallback"), "what others hold is made of its voxels anyhow: leave it out");
+    step.fallback = fallback->get<bool>();
+  }
   return step;
 }
 

@@ -73,6 +73,8 @@ struct ExportStep {
   std::filesystem::path path;  ///< within the result folder
   ExportKind kind = ExportKind::Mesh;
   Attachment attachment{};  ///< of decks
+  /// Of decks that nothing holds: where the meshers fail, an octree's elements are taken, and marked.
+  bool fallback = false;
 };
 
 struct Step {

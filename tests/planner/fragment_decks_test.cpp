@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Fragments of the head phantom, cut and moved by random plans, as decks.
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "planner/export_object.h"
+#include "planner/random_plan.h"
+#include "tests/planner/ball_scan.h"
+#include "verify/phantom.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// As many as the long run asks for, or a few.
+int wanted_fragments() {
+  const char* asked = std::getenv("OCTOTOMY_FRAGMENTS");
+  return asked == nullptr ? 2 : std::atoi(asked);
+}
+
+Plan with_deck(const RandomPlan& random, const std::filesystem::path& folder) {
+  Json json = Json::parse(text(random));
+  json["steps"].push_back({{"id", "deck"},
+                           {"do", "export"},
+                           {"object", json["steps"].back()["id"]},
+                           {"path", "piece.vtu"},
+                           {"fallback", true}});
+  return parse_plan(json.dump(), folder);
+}
+
+Exported deck_of(const Plan& plan, const Evaluation& evaluation, const std::filesystem::path& folder) {
+  Fillings fillings;
+  Timings timings;
+  return export_object(evaluation, "deck", std::get<ExportStep>(plan.steps.back().action), folder, fillings,
+                       timings);
+}
+
+TEST(FragmentDecks, RandomFragmentsOfTheHeadAllBecomeDecksWithoutAnInvertedElement) {
+  const tests::TestFolder folder;
+  verify::HeadOptions head;
+  head.voxel_mm = std::getenv("OCTOTOMY_FRAGMENTS") == nullptr ? 16.0 : 10.0;
+  voxel::write_scene(verify::head_phantom(head), folder / "head.nrrd");
+  const std::vector<RandomScan> scans{{"head", folder / "head.nrrd", 200.0, 400.0}};
+  EvaluateOptions uncertified;
+  uncertified.certify = false;
+
+  constexpr std::uint64_t least_voxels = 50;  // under which it is no fragment but a crumb
+  int fragments = 0, by_meshers = 0, by_fallback = 0;
+  for (std::uint64_t seed = 0; fragments < wanted_fragments(); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    ASSERT_LT(seed, 20U * static_cast<unsigned>(wanted_fragments()) + 100U) << "plans leave no fragments";
+    verify::Random random(seed);
+    const Plan plan = with_deck(random_plan(random, scans), folder.path());
+    Evaluation evaluation;
+    try {
+      evaluation = evaluate(plan, uncertified);
+    } catch (const std::runtime_error&) {
+      continue;  // a window or mask without a voxel
+    }
+    if (evaluation.objects.back().octree.voxel_count() < least_voxels) continue;
+    ++fragments;
+    const Exported deck = deck_of(plan, evaluation, folder / "out");
+    ASSERT_TRUE(deck.written) << testing::PrintToString(deck.findings);
+    EXPECT_GT(deck.details["quality"]["min_volume_mm3"].get<double>(), 0.0);
+    EXPECT_GT(std::filesystem::file_size(folder / "out" / "piece.vtu"), 0U);
+    const bool fallback = deck.details["fallback"].get<bool>();
+    EXPECT_EQ(fallback, deck.details["method"] == "octree");
+
+    if (fallback) {
+      EXPECT_EQ(deck.findings.front().substr(0, 9), "fallback:");
+    }
+    ++(fallback ? by_fallback : by_meshers);
+    std::cout << "seed " << seed << ": " << deck.content << ", " << deck.details["method"]
+              << (fallback ? ", " + deck.findings.front() : "") << std::endl;
+  }
+  std::cout << fragments << " fragments, " << by_meshers << " by meshers, " << by_fallback
+            << " by the fallback\n";
+  EXPECT_GT(by_meshers, fragments / 2);
+}
+
+TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAllowsIt) {
+  const tests::TestFolder folder;
+  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
+  const auto plan = [&](const std::string& fallback) {
+    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "deck", "do": "export", "object": "ball", "path": "ball.inp")" +
+                          fallback + " } ] }",
+                      folder.path());
+  };
+  const Plan with = plan(R"(, "fallback": true)"), without = plan("");
+  Evaluation evaluation = evaluate(with);
+  EXPECT_FALSE(deck_of(with, evaluation, folder / "out").details["fallback"].get<bool>());
+  evaluation.objects.front().mesh = nullptr;
+  EXPECT_FALSE(deck_of(without, evaluation, folder / "out").written);
+  const Exported deck = deck_of(with, evaluation, folder / "out");
+  ASSERT_TRUE(deck.written);
+  EXPECT_TRUE(deck.details["fallback"].get<bool>());
+  EXPECT_NEAR(deck.details["volume_mm3"].get<double>(),
+              static_cast<double>(evaluation.objects.front().octree.voxel_count()), 1e-6);
+  std::ifstream inp(folder / "out/ball.inp");
+  const std::string header(std::istreambuf_iterator<char>(inp), {});
+  EXPECT_NE(header.find("fallback: it has no mesh"), std::string::npos) << "the deck itself says so";
+}
+
+}  // namespace
+}  // namespace octotomy::planner
