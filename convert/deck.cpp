@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <tuple>
 #include <unistd.h>
 #include <utility>
 
@@ -158,6 +160,32 @@ class Unfinished {
   bool renamed_ = false;
 };
 
+/// A face of an element by its corners, ascending.
+struct Sided {
+  std::array<std::uint32_t, 3> corners;
+  ElementFace face;
+};
+
+/// All elements' faces; those of the same corners stand together, in the elements' order.
+std::vector<Sided> sided_faces(const Tetrahedra& tetrahedra) {
+  std::vector<Sided> all;
+  all.reserve(4 * tetrahedra.tets.size());
+  for (std::uint32_t t = 0; t < tetrahedra.tets.size(); ++t)
+    for (std::uint8_t i = 0; i < 4; ++i) {
+      std::array<std::uint32_t, 3> corners = corners_of(tetrahedra, {t, i});
+      std::sort(corners.begin(), corners.end());
+      all.push_back({corners, {t, i}});
+    }
+  std::sort(all.begin(), all.end(), [](const Sided& a, const Sided& b) {
+    return std::tie(a.corners, a.face.tet) < std::tie(b.corners, b.face.tet);
+  });
+  return all;
+}
+
+bool in_order(const ElementFace& a, const ElementFace& b) {
+  return std::pair(a.tet, a.opposite) < std::pair(b.tet, b.opposite);
+}
+
 }  // namespace
 
 const std::string& deck_extensions() {
@@ -186,19 +214,7 @@ std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const Elem
 }
 
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra) {
-  struct Sided {
-    std::array<std::uint32_t, 3> corners;
-    ElementFace face;
-  };
-  std::vector<Sided> all;
-  all.reserve(4 * tetrahedra.tets.size());
-  for (std::uint32_t t = 0; t < tetrahedra.tets.size(); ++t)
-    for (std::uint8_t i = 0; i < 4; ++i) {
-      std::array<std::uint32_t, 3> corners = corners_of(tetrahedra, {t, i});
-      std::sort(corners.begin(), corners.end());
-      all.push_back({corners, {t, i}});
-    }
-  std::sort(all.begin(), all.end(), [](const Sided& a, const Sided& b) { return a.corners < b.corners; });
+  const std::vector<Sided> all = sided_faces(tetrahedra);
   std::vector<ElementFace> faces;
   for (std::size_t i = 0; i < all.size();) {
     std::size_t end = i + 1;
@@ -206,10 +222,27 @@ std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra) {
     if (end == i + 1) faces.push_back(all[i].face);
     i = end;
   }
-  std::sort(faces.begin(), faces.end(), [](const ElementFace& a, const ElementFace& b) {
-    return std::pair(a.tet, a.opposite) < std::pair(b.tet, b.opposite);
-  });
+  std::sort(faces.begin(), faces.end(), in_order);
   return faces;
+}
+
+std::vector<Interface> interfaces(const Tetrahedra& tetrahedra) {
+  const std::vector<Sided> all = sided_faces(tetrahedra);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<ElementFace>> found;
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    if (all[i].corners != all[i + 1].corners) continue;
+    const std::uint32_t one = region_of(tetrahedra, all[i].face.tet);
+    const std::uint32_t other = region_of(tetrahedra, all[i + 1].face.tet);
+    if (one != other)
+      found[{std::min(one, other), std::max(one, other)}].push_back(one < other ? all[i].face
+                                                                                : all[i + 1].face);
+  }
+  std::vector<Interface> result;
+  for (auto& [regions, faces] : found) {
+    std::sort(faces.begin(), faces.end(), in_order);
+    result.push_back({regions.first, regions.second, std::move(faces)});
+  }
+  return result;
 }
 
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {

@@ -86,6 +86,13 @@ bool is_deck(const std::filesystem::path& path);
 
 /// The faces that only one element has, in the elements' order.
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
+/// The faces between two regions, as those of the first's elements, outward.
+struct Interface {
+  std::uint32_t from = 0, to = 0;  ///< regions, from < to
+  std::vector<ElementFace> faces;
+};
+/// Interfaces that there are, by their regions; faces in the elements' order. Cost: n log n.
+std::vector<Interface> interfaces(const Tetrahedra& tetrahedra);
 /// Corners of a face, counter-clockwise seen from outside its element.
 std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const ElementFace& face);
 

@@ -107,11 +107,12 @@ constexpr double lost_share() {
   return 1e-3;
 }
 
-/// One try: its elements, or what is wrong with them; and points of the given surface that it lost.
+/// One try: its elements, if it came to any, and what is wrong with them; and points of the given surface
+/// that it lost.
 struct Try {
   MesherOutcome outcome;
   Tetrahedra made;
-  std::vector<glm::dvec3> lost_mm;
+  std::vector<glm::dvec3> lost;
 };
 
 /// Passes 2 to 4 over what Mesh_3 made.
@@ -128,18 +129,18 @@ std::optional<std::string> finish(Try& t, const MesherInput& given, double surfa
 
   const std::vector<double> to_own_mm = brep::SurfaceTree(surface_of(t.made)).distances_mm(given.points_mm);
   for (std::size_t i = 0; i < to_own_mm.size(); ++i)
-    if (to_own_mm[i] > lost_mm(sizes)) t.lost_mm.push_back(given.points_mm[i]);
+    if (to_own_mm[i] > lost_mm(sizes)) t.lost.push_back(given.points_mm[i]);
   const Apart own = apart(to_own_mm);
   const Apart nodes = apart(
       brep::SurfaceTree(brep::Triangles{given.points_mm, given.triangles}).distances_mm(boundary_mm(t.made)));
   t.made.findings.push_back("the surface is Mesh_3's own: its nodes are within " + text_of(nodes.max_mm) +
                             " mm of the given one, 95 % of whose points are within " + text_of(own.p95_mm) +
                             " mm of it, all within " + text_of(own.max_mm) + " mm");
-  if (static_cast<double>(t.lost_mm.size()) > lost_share() * static_cast<double>(to_own_mm.size()))
-    return "loses details: " + std::to_string(t.lost_mm.size()) + " of " + std::to_string(to_own_mm.size()) +
+  if (static_cast<double>(t.lost.size()) > lost_share() * static_cast<double>(to_own_mm.size()))
+    return "loses details: " + std::to_string(t.lost.size()) + " of " + std::to_string(to_own_mm.size()) +
            " points of the given surface are over " + text_of(lost_mm(sizes)) +
-           " mm from its own, the first at " + text_of(t.lost_mm.front().x) + ", " +
-           text_of(t.lost_mm.front().y) + ", " + text_of(t.lost_mm.front().z) + " mm";
+           " mm from its own, the first at " + text_of(t.lost.front().x) + ", " + text_of(t.lost.front().y) +
+           ", " + text_of(t.lost.front().z) + " mm";
   return fault_in_filling(t.made, surface_mm3, own_surface_volume_tolerance());
 }
 
@@ -154,10 +155,8 @@ Try try_once(const MesherInput& surface, double surface_mm3, const Mesh3Sizes& s
   t.made.tets = std::move(t.outcome.tetrahedra);
   t.made.boundary_nodes = boundary_nodes(t.made.tets);
   t.made.method = "Mesh_3";
-  if (const std::optional<std::string> fault = finish(t, surface, surface_mm3, sizes, options)) {
+  if (const std::optional<std::string> fault = finish(t, surface, surface_mm3, sizes, options))
     t.outcome.failure = "CGAL's Mesh_3 " + *fault;
-    t.outcome.worth_another_try = true;
-  }
   return t;
 }
 
@@ -175,8 +174,9 @@ Mesh3Filling fill_by_mesh3(const MesherInput& given, double surface_mm3, const T
       return filling;
     }
     filling.findings.push_back(*t.outcome.failure);
-    if (!t.outcome.worth_another_try) break;
-    surface.holes_mm.insert(surface.holes_mm.end(), t.lost_mm.begin(), t.lost_mm.end());
+    // Smaller elements help where something was missed, not where time or memory was short.
+    if (t.made.tets.empty()) break;
+    surface.holes_mm.insert(surface.holes_mm.end(), t.lost.begin(), t.lost.end());
     sizes.distance_mm *= 0.5;
     sizes.facet_mm *= 0.7;
   }

@@ -12,7 +12,9 @@
 #include "voxel/slice_bits.h"
 #include "voxel/slice_build.h"
 
-// 1 Voxels become cells, and eight cells of one parent that are all there become one, as long as any are.
+// 1 Voxels become cells, and eight cells of one parent that are all there and of one region become one, as
+// long
+//   as any are.
 // 2 A cell with a neighbour, across a face, edge or corner, of less than half its side is divided, from the
 //   smallest cells upward.
 // 3 A cell's faces become triangles: where smaller cells stand on a face or touch its edges, a fan about its
@@ -32,16 +34,24 @@ std::uint64_t key_of(const Place& p) {
          static_cast<std::uint64_t>(p.x);
 }
 
+/// A cube of voxels of one region, by its first.
+struct Cell {
+  Place first{0};
+  std::uint32_t region = 0;
+};
+
 /// Cells by side and first voxel.
 class Cells {
  public:
-  Cells(const voxel::Octree& octree, BoundaryCells boundary)
-      : of_side_log2_(static_cast<std::size_t>(octree.universe().depth) + 1) {
-    voxel::for_each_slice(octree, [&](int z, const voxel::SliceBits& slice) {
-      for (int y = 0; y < slice.side; ++y)
-        for (int x = 0, last = -1; voxel::next_run(slice, y, last + 1, x, last);)
-          for (int v = x; v <= last; ++v) of_side_log2_[0].emplace(key_of({v, y, z}), Place(v, y, z));
-    });
+  Cells(const std::vector<voxel::Octree>& regions, BoundaryCells boundary)
+      : of_side_log2_(static_cast<std::size_t>(regions.front().universe().depth) + 1) {
+    for (std::uint32_t region = 0; region < regions.size(); ++region)
+      voxel::for_each_slice(regions[region], [&](int z, const voxel::SliceBits& slice) {
+        for (int y = 0; y < slice.side; ++y)
+          for (int x = 0, last = -1; voxel::next_run(slice, y, last + 1, x, last);)
+            for (int v = x; v <= last; ++v)
+              of_side_log2_[0].try_emplace(key_of({v, y, z}), Cell{{v, y, z}, region});
+      });
     if (boundary == BoundaryCells::Voxels) find_boundary();
     for (std::size_t level = 0; level + 1 < of_side_log2_.size() && !of_side_log2_[level].empty(); ++level)
       merge(level);
@@ -60,9 +70,9 @@ class Cells {
   /// Pass 2.
   void balance() {
     for (std::size_t level = 0; level + 2 < of_side_log2_.size(); ++level) {
-      std::vector<Place> open = sorted(level);
+      std::vector<Cell> open = sorted(level);
       while (!open.empty()) {
-        const Place cell = open.back();
+        const Place cell = open.back().first;
         open.pop_back();
         const int side = 1 << level;
         for (int n = 0; n < 27; ++n) {
@@ -75,11 +85,11 @@ class Cells {
     }
   }
 
-  std::vector<Place> sorted(std::size_t level) const {
-    std::vector<Place> cells;
+  std::vector<Cell> sorted(std::size_t level) const {
+    std::vector<Cell> cells;
     for (const auto& [key, cell] : of_side_log2_[level]) cells.push_back(cell);
     std::sort(cells.begin(), cells.end(),
-              [](const Place& a, const Place& b) { return key_of(a) < key_of(b); });
+              [](const Cell& a, const Cell& b) { return key_of(a.first) < key_of(b.first); });
     return cells;
   }
   std::size_t levels() const { return of_side_log2_.size(); }
@@ -90,13 +100,16 @@ class Cells {
     return first + side * Place(number & 1, (number >> 1) & 1, number >> 2);
   }
 
-  /// Voxels with a neighbour, across a face, edge or corner, that is none of the octree's.
+  /// Voxels with a neighbour, across a face, edge or corner, that is none of their region's.
   void find_boundary() {
     const auto& voxels = of_side_log2_[0];
     for (const auto& [key, voxel] : voxels)
       for (int n = 0; n < 27; ++n) {
-        const Place beside = voxel + Place(n % 3, (n / 3) % 3, n / 9) - 1;
-        if (glm::all(glm::greaterThanEqual(beside, Place(0))) && voxels.contains(key_of(beside))) continue;
+        const Place beside = voxel.first + Place(n % 3, (n / 3) % 3, n / 9) - 1;
+        if (glm::all(glm::greaterThanEqual(beside, Place(0))))
+          if (const auto found = voxels.find(key_of(beside));
+              found != voxels.end() && found->second.region == voxel.region)
+            continue;
         at_boundary_.insert(key);
         break;
       }
@@ -105,29 +118,33 @@ class Cells {
   void merge(std::size_t level) {
     auto& cells = of_side_log2_[level];
     const int side = 1 << level;
-    for (const Place& cell : sorted(level)) {
-      const Place parent = first_of(cell, static_cast<int>(level) + 1);
-      if (parent != cell) continue;
+    for (const Cell& cell : sorted(level)) {
+      const Place parent = first_of(cell.first, static_cast<int>(level) + 1);
+      if (parent != cell.first) continue;
       bool all = true;
       for (int k = 0; k < 8 && all; ++k) {
         const std::uint64_t key = key_of(child(parent, k, side));
-        all = cells.contains(key) && (level > 0 || !at_boundary_.contains(key));
+        const auto found = cells.find(key);
+        all = found != cells.end() && found->second.region == cell.region &&
+              (level > 0 || !at_boundary_.contains(key));
       }
       if (!all) continue;
       for (int k = 0; k < 8; ++k) cells.erase(key_of(child(parent, k, side)));
-      of_side_log2_[level + 1].emplace(key_of(parent), parent);
+      of_side_log2_[level + 1].emplace(key_of(parent), Cell{parent, cell.region});
     }
   }
 
   void divide(const Place& first, std::size_t level) {
-    of_side_log2_[level].erase(key_of(first));
+    const auto whole = of_side_log2_[level].find(key_of(first));
+    const std::uint32_t region = whole->second.region;
+    of_side_log2_[level].erase(whole);
     for (int k = 0; k < 8; ++k) {
       const Place cell = child(first, k, 1 << (level - 1));
-      of_side_log2_[level - 1].emplace(key_of(cell), cell);
+      of_side_log2_[level - 1].emplace(key_of(cell), Cell{cell, region});
     }
   }
 
-  std::vector<std::unordered_map<std::uint64_t, Place>> of_side_log2_;
+  std::vector<std::unordered_map<std::uint64_t, Cell>> of_side_log2_;
   std::unordered_set<std::uint64_t> at_boundary_;  ///< voxels that are not merged
 };
 
@@ -140,12 +157,15 @@ struct Square {
 
 class Filling {
  public:
-  Filling(const voxel::Octree& octree, const Cells& cells)
-      : lattice_(octree.universe().lattice()), cells_(cells) {}
+  Filling(const voxel::Universe& universe, const Cells& cells)
+      : lattice_(universe.lattice()), cells_(cells) {}
 
   Tetrahedra run() {
     for (std::size_t level = 0; level < cells_.levels(); ++level)
-      for (const Place& cell : cells_.sorted(level)) add_cell(cell, static_cast<int>(level));
+      for (const Cell& cell : cells_.sorted(level)) {
+        add_cell(cell.first, static_cast<int>(level));
+        result_.region_of_tet.resize(result_.tets.size(), cell.region);
+      }
     result_.boundary_nodes = boundary_nodes(result_.tets);
     result_.method = "octree";
     return std::move(result_);
@@ -248,11 +268,22 @@ class Filling {
 }  // namespace
 
 Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary) {
-  if (octree.is_empty())
-    throw std::invalid_argument("tetrahedra_of: the octree is empty: nothing is to be filled");
-  Cells cells(octree, boundary);
+  Tetrahedra all = tetrahedra_of(std::vector{octree}, boundary);
+  all.region_of_tet.clear();
+  return all;
+}
+
+Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCells boundary) {
+  if (regions.empty()) throw std::invalid_argument("tetrahedra_of: there is no region");
+  for (const voxel::Octree& region : regions) {
+    if (region.is_empty())
+      throw std::invalid_argument("tetrahedra_of: the octree is empty: nothing is to be filled");
+    if (!(region.universe() == regions.front().universe()))
+      throw std::invalid_argument("tetrahedra_of: regions are of different universes: evaluate them in one");
+  }
+  Cells cells(regions, boundary);
   cells.balance();
-  return Filling(octree, cells).run();
+  return Filling(regions.front().universe(), cells).run();
 }
 
 }  // namespace octotomy::convert

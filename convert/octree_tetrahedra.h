@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "convert/tetrahedra.h"
 #include "voxel/octree.h"
 
@@ -18,5 +20,13 @@ enum class BoundaryCells { Nodes, Voxels };
 /// std::invalid_argument where the octree is empty, std::length_error where 32 bits do not number the nodes.
 /// Deterministic. Cost: about 12 elements and 300 bytes an element of memory a voxel at the boundary.
 Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary = BoundaryCells::Nodes);
+
+/// The same of several regions of one universe, which share the nodes of their interfaces: elements of
+/// touching regions have the same corners there, and none reaches into two regions. A voxel in several
+/// belongs to the first; `region_of_tet` numbers them in the order given. Boundary cells are those at
+/// interfaces, too; boundary nodes are those of the outside alone. Throws std::invalid_argument where there
+/// is no region, one is empty, or their universes differ.
+Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions,
+                         BoundaryCells boundary = BoundaryCells::Nodes);
 
 }  // namespace octotomy::convert

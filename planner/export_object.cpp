@@ -204,6 +204,61 @@ void export_attached(const Evaluation& evaluation, const Object& object, const E
   say_written(attached.tetrahedra, convert::quality(attached.tetrahedra), exported);
 }
 
+/// The object and the step's regions as one deck of voxels' elements: a material a region, a surface where
+/// two touch and one where a region is free.
+void export_regions(const Evaluation& evaluation, const Object& object, const ExportStep& step,
+                    const std::filesystem::path& path, Exported& exported, Timings& timings) {
+  std::vector<std::string> names{object.id};
+  names.insert(names.end(), step.regions.begin(), step.regions.end());
+  std::vector<voxel::Octree> regions;
+  std::uint64_t counted = 0;
+  for (const std::string& name : names) {
+    regions.push_back(evaluation.object(name).octree);
+    counted += regions.back().voxel_count();
+    if (regions.back().is_empty()) {
+      exported.findings.push_back("not written: region '" + name + "' is empty");
+      return;
+    }
+  }
+  convert::Tetrahedra tetrahedra;
+  {
+    const Stopwatch watch(timings, "tetrahedralise");
+    tetrahedra = convert::tetrahedra_of(regions);
+  }
+  const Stopwatch watch(timings, "write");
+  const convert::TetQuality quality = convert::quality(tetrahedra);
+  exported.findings.emplace_back(
+      "the elements are the voxels', whose surface is in steps: do not read stresses there");
+  const glm::dvec3 edge_mm = regions.front().universe().lattice().spacing_mm();
+  const double shared_mm3 =
+      static_cast<double>(counted) * edge_mm.x * edge_mm.y * edge_mm.z - quality.volume_mm3;
+  if (shared_mm3 > 1e-6 * quality.volume_mm3)
+    exported.findings.push_back("regions overlap by " + grouped(shared_mm3, 1) +
+                                " mm\u00b3: what is in several is the first's");
+  convert::DeckOptions options;
+  options.title = object.id + " = " + object.definition;
+  options.notes = exported.findings;
+  options.materials.clear();
+  std::vector<convert::DeckSurface> free;
+  for (const std::string& name : names) {
+    options.materials.push_back({"OF_" + name});
+    free.push_back({"FREE_" + name, {}});
+  }
+  exported.findings.emplace_back("every region has cortical bone's stiffness: write its own into the deck");
+  options.material_of_tet = tetrahedra.region_of_tet;
+  for (const convert::ElementFace& face : convert::surface_faces(tetrahedra))
+    free[tetrahedra.region_of_tet[face.tet]].faces.push_back(face);
+  for (convert::DeckSurface& surface : free)
+    if (!surface.faces.empty()) options.surfaces.push_back(std::move(surface));
+  for (convert::Interface& between : convert::interfaces(tetrahedra))
+    options.surfaces.push_back({names[between.from] + "_TO_" + names[between.to], std::move(between.faces)});
+  for (const convert::DeckSurface& surface : options.surfaces)
+    exported.details["surfaces"][surface.name] = surface.faces.size();
+  exported.details["regions"] = names.size();
+  convert::write_deck(tetrahedra, path, options);
+  say_written(tetrahedra, quality, exported);
+}
+
 void export_label(const Object& object, const std::filesystem::path& path, Exported& exported,
                   Timings& timings) {
   const Stopwatch watch(timings, "write");
@@ -236,7 +291,8 @@ Exported export_object(const Evaluation& evaluation, const std::string& id, cons
   exported.path = step.path.generic_string();
   exported.details = nlohmann::ordered_json::object();
   const std::filesystem::path path = folder / step.path;
-  const bool wants_mesh = step.kind != ExportKind::Label && !step.attachment.any() && !step.fallback;
+  const bool wants_mesh =
+      step.kind != ExportKind::Label && !step.attachment.any() && !step.fallback && step.regions.empty();
   if (wants_mesh && !object.mesh)
     exported.findings.push_back("not written: '" + object.id + "' has no mesh, see its findings");
   else if (const bool has_faces = object.mesh && object.mesh->n_faces() > 0;
@@ -246,7 +302,9 @@ Exported export_object(const Evaluation& evaluation, const std::string& id, cons
 
   std::filesystem::create_directories(path.parent_path());
   if (step.kind == ExportKind::Mesh) export_mesh(object, path, exported, timings);
-  if (step.attachment.any())
+  if (!step.regions.empty())
+    export_regions(evaluation, object, step, path, exported, timings);
+  else if (step.attachment.any())
     export_attached(evaluation, object, step, path, exported, timings);
   else if (step.kind == ExportKind::Tetrahedra)
     export_tetrahedra(object, step, path, exported, fillings, timings);

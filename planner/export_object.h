@@ -44,6 +44,8 @@ using Fillings = std::map<std::string, Filling>;
 /// Where the step attaches the object to others, tetrahedra are an octree's (attach.h), and the deck ends in
 /// the static step in which those hold and move it.
 ///
+/// Where the step names further regions, the deck holds them all as an octree's tetrahedra with shared nodes.
+///
 /// An object that is empty, has no mesh, or that no mesher can fill is not written; a finding says why. Where
 /// the step allows the fallback, its voxels' tetrahedra are written instead, marked by `fallback` in the
 /// details and by a finding.

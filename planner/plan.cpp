@@ -113,7 +113,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"combine", {"id", "do", "expression"}},
     {"move", {"id", "do", "object", "translate_mm", "rotate"}},
     {"measure", {"id", "do", "object", "to", "points_mm"}},
-    {"export", {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback"}},
+    {"export",
+     {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback", "regions"}},
 };
 
 std::vector<std::string> step_words() {
@@ -316,6 +317,16 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
     if (step.attachment.any())
       refuse(keys.at("fallback"), "what others hold is made of its voxels anyhow: leave it out");
     step.fallback = fallback->get<bool>();
+  }
+  step.regions = names_in(keys, "regions");
+  for (const std::string& other : step.regions) bound.need_object(keys.at("regions"), other);
+  if (!step.regions.empty()) {
+    if (step.kind != ExportKind::Tetrahedra)
+      refuse(keys.at("regions"), "only tetrahedra have regions: choose .inp, .feb, .vtu or .msh");
+    if (step.attachment.any() || step.fallback)
+      refuse(keys.at("regions"),
+             "regions are made of voxels, and nothing else holds them: leave out "
+             "'moved', 'fixed' and 'fallback'");
   }
   return step;
 }

@@ -117,8 +117,57 @@ TEST(OctreeTetrahedra, CellsAtTheBoundaryAreVoxelsWhereAskedFor) {
   EXPECT_LT(surface_faces(tetrahedra_of(cube)).size(), surface_faces(t).size());
 }
 
+TEST(OctreeTetrahedra, RegionsOfRandomCubesShareTheirInterfacesAndNoneReachesIntoAnother) {
+  std::size_t touching = 0;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const voxel::Octree a = random_cubes(4, seed);
+    const voxel::Octree b = voxel::combine(a.universe(), voxel::Expression(random_cubes(4, seed + 1000)) - a);
+    if (a.is_empty() || b.is_empty()) continue;
+    const voxel::Octree both = voxel::combine(a.universe(), voxel::Expression(a) | b);
+    for (const BoundaryCells cells : {BoundaryCells::Nodes, BoundaryCells::Voxels}) {
+      const Tetrahedra t = tetrahedra_of({a, b}, cells);
+      EXPECT_EQ(fault_of(both, t), "");
+      std::array<double, 2> volumes{};
+      for (std::size_t i = 0; i < t.tets.size(); ++i)
+        volumes.at(t.region_of_tet[i]) += six_volumes(corners_mm(t, i)) / 6.0;
+      EXPECT_NEAR(volumes[0], static_cast<double>(a.voxel_count()), 1e-6);
+      EXPECT_NEAR(volumes[1], static_cast<double>(b.voxel_count()), 1e-6);
+
+      // The interface's area is what the two have more of surface than both together, halved.
+      double area_mm2 = 0.0;
+      for (const Interface& between : interfaces(t))
+        for (const ElementFace& face : between.faces) {
+          EXPECT_EQ(t.region_of_tet[face.tet], 0U);
+          const auto [p, q, r] = corners_of(t, face);
+          area_mm2 +=
+              0.5 * glm::length(glm::cross(t.nodes_mm[q] - t.nodes_mm[p], t.nodes_mm[r] - t.nodes_mm[p]));
+        }
+      const auto faces = [](const voxel::Octree& o) {
+        return static_cast<double>(voxel::cuberille_faces(o).face_count());
+      };
+      EXPECT_NEAR(area_mm2, 0.5 * (faces(a) + faces(b) - faces(both)), 1e-6);
+      touching += area_mm2 > 0.0;
+    }
+  }
+  EXPECT_GT(touching, 20U);
+}
+
+TEST(OctreeTetrahedra, WhatIsInTwoRegionsIsTheFirsts) {
+  const voxel::Octree a = voxel::combine(unit_universe(3), voxel::Box{{-0.5, -0.5, -0.5}, {3.5, 3.5, 3.5}});
+  const voxel::Octree b = voxel::combine(unit_universe(3), voxel::Box{{-0.5, -0.5, -0.5}, {3.5, 3.5, 5.5}});
+  const Tetrahedra t = tetrahedra_of({a, b});
+  double first = 0.0;
+  for (std::size_t i = 0; i < t.tets.size(); ++i)
+    if (t.region_of_tet[i] == 0) first += six_volumes(corners_mm(t, i)) / 6.0;
+  EXPECT_NEAR(first, 64.0, 1e-9);
+  EXPECT_NEAR(quality(t).volume_mm3, 96.0, 1e-9);
+}
+
 TEST(OctreeTetrahedra, NothingIsRefused) {
   EXPECT_THROW(tetrahedra_of(voxel::Octree::empty(unit_universe(4))), std::invalid_argument);
+  EXPECT_THROW(tetrahedra_of(std::vector<voxel::Octree>{}), std::invalid_argument);
+  EXPECT_THROW(tetrahedra_of({random_cubes(4, 3), random_cubes(3, 3)}), std::invalid_argument);
 }
 
 }  // namespace

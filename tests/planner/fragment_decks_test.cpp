@@ -104,5 +104,38 @@ TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAl
   EXPECT_NE(header.find("fallback: it has no mesh"), std::string::npos) << "the deck itself says so";
 }
 
+TEST(FragmentDecks, RegionsShareTheirNodesAndOverlapsBelongToTheFirst) {
+  const tests::TestFolder folder;
+  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
+  const auto plan = [&](const std::string& keys) {
+    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "cut", "do": "mask", "regions": [ { "view": "anterior",
+                     "polygons_mm": [[[-20, 0], [20, 0], [20, 20], [-20, 20]]] } ] },
+                 { "id": "upper", "do": "combine", "expression": "ball & cut" },
+                 { "id": "lower", "do": "combine", "expression": "ball - cut" },
+                 { "id": "deck", "do": "export", "object": "upper", "path": "ball.inp", )" +
+                          keys + " } ] }",
+                      folder.path());
+  };
+  const Plan halves = plan(R"("regions": ["lower"])");
+  const Evaluation evaluation = evaluate(halves);
+  const Exported deck = deck_of(halves, evaluation, folder / "out");
+  ASSERT_TRUE(deck.written);
+  EXPECT_EQ(deck.details["regions"].get<int>(), 2);
+  EXPECT_GT(deck.details["surfaces"]["upper_TO_lower"].get<int>(), 100);
+  EXPECT_NEAR(deck.details["volume_mm3"].get<double>(),
+              static_cast<double>(evaluation.object("ball").octree.voxel_count()), 1e-6);
+
+  const Plan overlap = plan(R"("regions": ["ball"])");
+  const Exported with_overlap = deck_of(overlap, evaluation, folder / "out");
+  ASSERT_TRUE(with_overlap.written);
+  EXPECT_NE(with_overlap.findings[1].find("overlap"), std::string::npos) << with_overlap.findings[1];
+  EXPECT_EQ(with_overlap.details["volume_mm3"], deck.details["volume_mm3"]);
+
+  EXPECT_THROW(plan(R"("regions": ["nothing"])"), std::runtime_error);
+  EXPECT_THROW(plan(R"("regions": ["lower"], "fallback": true)"), std::runtime_error);
+}
+
 }  // namespace
 }  // namespace octotomy::planner
