@@ -18,6 +18,8 @@ class VtkContour {
 
   /// Extracts the surface anew and gives back its number of triangles.
   std::size_t triangles() const;
+  /// The surface that triangles() extracted last, in LPS millimetres.
+  FlatMesh surface() const;
 
  private:
   struct Pipeline;
