@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "brep/distance.h"
 #include "brep/triangles.h"
@@ -21,7 +22,7 @@ struct Shell {
   std::vector<std::uint32_t> faces;
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;
-  glm::dvec3 probe_mm{0.0};  ///< its vertex of largest x: a ray from there meets no other part of the shell
+  glm::dvec3 probe_mm{0.0};  ///< a vertex, one that no other shell touches where there is any
 };
 
 glm::dvec3 glm_of(const Mesh::Point& p) {
@@ -52,13 +53,38 @@ std::vector<std::uint32_t> label_shells(const Mesh& mesh, std::uint32_t& shell_c
   return label;
 }
 
+/// Marks vertices that stand where one of another shell does: whether they are inside of that is a toss.
+std::vector<std::uint8_t> mark_touching(const Mesh& mesh, const std::vector<std::uint32_t>& label) {
+  std::vector<Mesh::VertexHandle> order;
+  for (const auto v : mesh.vertices())
+    if (!mesh.is_isolated(v)) order.push_back(v);
+  const auto shell_of = [&](Mesh::VertexHandle v) {
+    return label[static_cast<std::size_t>(mesh.face_handle(mesh.halfedge_handle(v)).idx())];
+  };
+  std::sort(order.begin(), order.end(), [&](Mesh::VertexHandle v, Mesh::VertexHandle w) {
+    const Mesh::Point &p = mesh.point(v), &q = mesh.point(w);
+    return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
+  });
+  std::vector<std::uint8_t> touching(mesh.n_vertices(), 0);
+  for (std::size_t i = 0, j; i < order.size(); i = j) {
+    bool several = false;
+    for (j = i + 1; j < order.size() && mesh.point(order[j]) == mesh.point(order[i]); ++j)
+      several = several || shell_of(order[j]) != shell_of(order[i]);
+    for (std::size_t k = i; several && k < j; ++k) touching[static_cast<std::size_t>(order[k].idx())] = 1;
+  }
+  return touching;
+}
+
 /// Shells with their integrals, about the first point of each to keep digits.
 std::vector<Shell> measure_shells(const Mesh& mesh, const std::vector<std::uint32_t>& label,
                                   std::uint32_t shell_count) {
   std::vector<Shell> shells(shell_count);
   for (std::uint32_t f = 0; f < label.size(); ++f) shells[label[f]].faces.push_back(f);
+  const std::vector<std::uint8_t> touching =
+      shell_count > 1 ? mark_touching(mesh, label) : std::vector<std::uint8_t>(mesh.n_vertices(), 0);
   for (Shell& shell : shells) {
     std::optional<glm::dvec3> origin;
+    bool probe_touches = true;
     for (const std::uint32_t f : shell.faces) {
       const Mesh::HalfedgeHandle h = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
       const glm::dvec3 a = glm_of(mesh.point(mesh.from_vertex_handle(h)));
@@ -68,8 +94,11 @@ std::vector<Shell> measure_shells(const Mesh& mesh, const std::vector<std::uint3
         origin = a;
         shell.probe_mm = a;
       }
-      for (const glm::dvec3& p : {a, b, c})
-        if (p.x > shell.probe_mm.x) shell.probe_mm = p;
+      if (const Mesh::VertexHandle v = mesh.from_vertex_handle(h);
+          probe_touches && !touching[static_cast<std::size_t>(v.idx())]) {
+        shell.probe_mm = a;
+        probe_touches = false;
+      }
       const glm::dvec3 normal = glm::cross(b - a, c - a);
       shell.volume_mm3 += glm::dot(a - *origin, normal) / 6.0;
       shell.area_mm2 += 0.5 * glm::length(normal);

@@ -166,6 +166,42 @@ double absolute_mean_curvature_mm(const Mesh& mesh, const std::vector<glm::dvec3
   });
 }
 
+/// Integrals of x x, y y, z z and of y z, z x, x y.
+struct SecondMoments {
+  glm::dvec3 squares, products;
+  explicit SecondMoments(double value = 0.0) : squares(value), products(value) {}
+  SecondMoments& operator+=(const SecondMoments& other) {
+    squares += other.squares;
+    products += other.products;
+    return *this;
+  }
+  friend SecondMoments operator+(SecondMoments a, const SecondMoments& b) { return a += b; }
+};
+
+glm::dvec3 products_of(const glm::dvec3& p, const glm::dvec3& q) {
+  return 0.5 * glm::dvec3(p.y * q.z + p.z * q.y, p.z * q.x + p.x * q.z, p.x * q.y + p.y * q.x);
+}
+
+/// Over the cone from `tip`, about it: a tetrahedron's are V / 20 (sum of p p over its corners + s s), where
+/// s is their sum and the tip's p is zero.
+SecondMoments second_moments(const Corners& t, const glm::dvec3& tip) {
+  const glm::dvec3 a = t.a - tip, b = t.b - tip, c = t.c - tip, sum = a + b + c;
+  const double share = cone_mm3(t, tip) / 20.0;
+  SecondMoments moments;
+  moments.squares = share * (a * a + b * b + c * c + sum * sum);
+  moments.products =
+      share * (products_of(a, a) + products_of(b, b) + products_of(c, c) + products_of(sum, sum));
+  return moments;
+}
+
+/// The tensor about the centroid, which stands at `arm` from where the moments were taken (Steiner).
+glm::dmat3 inertia_of(SecondMoments moments, double volume, const glm::dvec3& arm) {
+  moments.squares -= volume * arm * arm;
+  moments.products -= volume * products_of(arm, arm);
+  const glm::dvec3 &s = moments.squares, &p = moments.products;
+  return {s.y + s.z, -p.z, -p.y, -p.z, s.z + s.x, -p.x, -p.y, -p.x, s.x + s.y};
+}
+
 }  // namespace
 
 Size size_of(const Triangles& triangles) {
@@ -198,7 +234,13 @@ Measures measure(const Mesh& mesh) {
     normals[f] = normal_of(t);
     return 0.25 * cone_mm3(t, centre) * ((t.a - centre) + (t.b - centre) + (t.c - centre));
   });
-  if (measures.volume_mm3 != 0.0) measures.centroid_mm = centre + moments / measures.volume_mm3;
+  if (measures.volume_mm3 != 0.0) {
+    const glm::dvec3 arm = moments / measures.volume_mm3;
+    measures.centroid_mm = centre + arm;
+    const auto second = blockwise_sum<SecondMoments>(
+        source.count(), [&](std::size_t f) { return second_moments(source(f), centre); });
+    measures.inertia_mm5 = inertia_of(second, measures.volume_mm3, arm);
+  }
   measures.absolute_mean_curvature_mm = absolute_mean_curvature_mm(mesh, normals);
   return measures;
 }

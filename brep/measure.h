@@ -15,7 +15,10 @@ struct Measures {
   double volume_mm3 = 0.0;  ///< negative where the triangles wind the wrong way round
   double area_mm2 = 0.0;
   std::optional<glm::dvec3> centroid_mm;  ///< of the inside; none where there is no volume
-  glm::dvec3 low_mm{0.0}, high_mm{0.0};   ///< bounding box of the faces; both zero where there are none
+  /// Inertia tensor about the centroid at a density of 1 per cubic millimetre, along the LPS axes; none where
+  /// there is no volume.
+  std::optional<glm::dmat3> inertia_mm5;
+  glm::dvec3 low_mm{0.0}, high_mm{0.0};  ///< bounding box of the faces; both zero where there are none
   /// Half the sum over edges of length times unsigned angle between the faces' normals: the total absolute
   /// mean curvature, which bounds how much a chordal surface loses. 4 pi r for a sphere in the limit, 3 pi a
   /// for a cube of edge a. Edges at a triangle without area count nothing.

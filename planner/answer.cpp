@@ -94,6 +94,7 @@ Json to_json(const brep::Measures& measures) {
           {"area_mm2", measures.area_mm2},
           {"area_estimator", mesh_area_estimator},
           {"centroid_mm", to_json(measures.centroid_mm)},
+          {"inertia_mm5", measures.inertia_mm5 ? to_json(*measures.inertia_mm5) : Json(nullptr)},
           {"extents_mm", Json::array({to_json(measures.low_mm), to_json(measures.high_mm)})}};
 }
 

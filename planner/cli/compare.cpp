@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
 
 #include "brep/boolean.h"
 #include "brep/difference.h"
@@ -10,13 +8,15 @@
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
+#include "planner/distance_histogram.h"
 #include "planner/figures.h"
+#include "voxel/image_file.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 struct CompareText {
-  std::filesystem::path a, b, out;
+  std::filesystem::path a, b, out, picture;
   std::optional<double> colour_range_mm;
   bool no_dice = false;
   brep::DifferenceOptions options;
@@ -53,20 +53,15 @@ std::optional<double> dice(const brep::Mesh& a, const brep::Mesh& b, std::vector
   }
 }
 
-/// White at zero, red where A lies outside B, blue where inside; full at the range. The ends are of like
-/// lightness, so that neither side looks the larger.
-glm::u8vec3 colour_of(double distance_mm, double range_mm) {
-  const glm::dvec3 white(247.0), outside(178.0, 24.0, 43.0), inside(33.0, 102.0, 172.0);
-  const double share = range_mm > 0.0 ? std::clamp(std::abs(distance_mm) / range_mm, 0.0, 1.0) : 0.0;
-  return glm::u8vec3(glm::round(glm::mix(white, distance_mm > 0.0 ? outside : inside, share)));
-}
-
 void write_coloured(const CompareText& text, const brep::Mesh& a, const brep::Difference& difference,
                     double range_mm) {
   brep::VertexData data;
-  data.scalar_name = "distance_mm";
-  data.scalars = difference.vertex_mm;
-  for (const double distance : difference.vertex_mm) data.colours.push_back(colour_of(distance, range_mm));
+  for (const double distance : difference.vertex_mm)
+    data.colours.push_back(distance_colour(distance, range_mm));
+  if (text.out.extension() != ".glb") {
+    data.scalar_name = "distance_mm";
+    data.scalars = difference.vertex_mm;
+  }
   brep::write_mesh(a, text.out, data);
 }
 
@@ -82,9 +77,15 @@ Json definition(const brep::Difference& difference) {
 
 int compare(const Program& program, const CompareText& text) {
   if (!text.out.empty()) {
-    if (text.out.extension() != ".ply")
-      throw std::runtime_error(text.out.string() + ": the coloured mesh is written as .ply");
+    const auto extension = text.out.extension();
+    if (extension != ".ply" && extension != ".vtp" && extension != ".glb")
+      throw std::runtime_error(text.out.string() + ": the coloured mesh is written as .ply, .vtp or .glb");
     need_folder_of(text.out);
+  }
+  if (!text.picture.empty()) {
+    if (text.picture.extension() != ".png")
+      throw std::runtime_error(text.picture.string() + ": the histogram is drawn as .png");
+    need_folder_of(text.picture);
   }
   Timings timings;
   const brep::Mesh a = read_surface(text.a, timings), b = read_surface(text.b, timings);
@@ -108,6 +109,11 @@ int compare(const Program& program, const CompareText& text) {
     const Stopwatch watch(timings, "write");
     write_coloured(text, a, difference, range_mm);
   }
+  if (!text.picture.empty()) {
+    const Stopwatch watch(timings, "picture");
+    const HistogramPicture picture = draw_histogram(difference, range_mm);
+    voxel::write_image(text.picture, picture.size_px, picture.rgb);
+  }
   for (const std::string& finding : findings) warn(finding);
 
   Json json = answer(timings);
@@ -125,7 +131,8 @@ int compare(const Program& program, const CompareText& text) {
                        {"width_mm", difference.histogram.width_mm},
                        {"shares", difference.histogram.shares}};
   json["path"] = text.out.empty() ? Json(nullptr) : Json(text.out.string());
-  json["colour_range_mm"] = text.out.empty() ? Json(nullptr) : Json(range_mm);
+  json["picture"] = text.picture.empty() ? Json(nullptr) : Json(text.picture.string());
+  json["colour_range_mm"] = text.out.empty() && text.picture.empty() ? Json(nullptr) : Json(range_mm);
   json["findings"] = findings;
   program.say(json, lines({{"mean", grouped(difference.mean_mm, 3) + " mm"},
                            {"Hausdorff 95", grouped(difference.hausdorff95_mm, 3) + " mm"},
@@ -138,13 +145,15 @@ int compare(const Program& program, const CompareText& text) {
 
 void add_compare(Program& program) {
   const auto text = std::make_shared<CompareText>();
-  CLI::App& verb = program.verb("compare", "How far two surfaces lie apart, both ways",
-                                "octotomy compare planned.stl after.stl -o difference.ply --json",
-                                [&program, text] { return compare(program, *text); });
+  CLI::App& verb =
+      program.verb("compare", "How far two surfaces lie apart, both ways",
+                   "octotomy compare planned.stl after.stl -o difference.ply --picture difference.png --json",
+                   [&program, text] { return compare(program, *text); });
   verb.add_option("a", text->a, "A mesh")->required()->check(CLI::ExistingFile);
   verb.add_option("b", text->b, "A mesh in the same frame")->required()->check(CLI::ExistingFile);
   verb.add_option("-o,--out", text->out,
-                  "A coloured by its distance to B: a .ply file, red outside, blue inside");
+                  "A coloured by its distance to B, red outside, blue inside: a .ply, .vtp or .glb file");
+  verb.add_option("--picture", text->picture, "The histogram of distances in those colours: a .png file");
   verb.add_option("--range", text->colour_range_mm,
                   "Distance of full colour, mm; the Hausdorff 95 if not given")
       ->check(above_zero());

@@ -134,6 +134,8 @@ int parse_and_run(int count, char** arguments) {
   cli::add_warp(program);
   cli::add_voxelise(program);
   cli::add_register(program);
+  cli::add_mirror(program);
+  cli::add_repair(program);
   cli::add_saw(program);
   cli::add_compare(program);
   cli::add_octree(program);

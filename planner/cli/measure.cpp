@@ -8,6 +8,7 @@
 #include "brep/read_mesh.h"
 #include "convert/isosurface.h"
 #include "planner/answer.h"
+#include "planner/cli/measure_surface.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
@@ -28,6 +29,7 @@ struct MeasureText {
   std::string window;
   std::optional<double> voxel_mm;
   ScanIn scan;
+  SurfaceQuestions surface;
 };
 
 int say(const Program& program, const Json& json) {
@@ -39,13 +41,17 @@ int say(const Program& program, const Json& json) {
                                 ? " \u00b1 " + three_figures(json[half_width].get<double>())
                                 : std::string());
   };
-  program.say(json, lines({{"volume", doubtful("volume_mm3", "volume_half_width_mm3") + " mm\u00b3, " +
-                                          json["volume_estimator"].get<std::string>()},
-                           {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
-                           {"area", doubtful("area_mm2", "area_half_width_mm2") + " mm\u00b2, " +
-                                        json["area_estimator"].get<std::string>()},
-                           {"components", value("components", 0)},
-                           {"euler", value("euler", 0)}}));
+  std::vector<std::pair<std::string, std::string>> rows = {
+      {"volume", doubtful("volume_mm3", "volume_half_width_mm3") + " mm\u00b3, " +
+                     json["volume_estimator"].get<std::string>()},
+      {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
+      {"area", doubtful("area_mm2", "area_half_width_mm2") + " mm\u00b2, " +
+                   json["area_estimator"].get<std::string>()},
+      {"components", value("components", 0)},
+      {"euler", value("euler", 0)}};
+  const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
+  rows.insert(rows.end(), asked.begin(), asked.end());
+  program.say(json, lines(rows));
   return done;
 }
 
@@ -56,7 +62,7 @@ int measure_mesh(const Program& program, const MeasureText& text) {
     const Stopwatch watch(timings, "read");
     triangles = brep::read_triangles(text.file);
   }
-  const auto start = std::make_unique<Stopwatch>(timings, "measure");
+  auto watch = std::make_unique<Stopwatch>(timings, "measure");
   const brep::Health health = brep::health(triangles, {false});
   if (!health.closed || !health.manifold || !health.oriented)
     throw std::runtime_error(
@@ -65,9 +71,12 @@ int measure_mesh(const Program& program, const MeasureText& text) {
         "), so it has no volume: mend it first, octotomy info tells all");
   const brep::Mesh mesh = brep::mesh_of(triangles);
   const brep::Measures measures = brep::measure(mesh);
+  watch.reset();
+  const Json asked = answer_surface_questions(program, text.surface, mesh, timings);
   Json json = answer(timings);
   json["kind"] = "mesh";
   json.update(to_json(measures));
+  json.update(asked);
   json["area_estimator"] = "triangles";
   json["volume_partial_mm3"] = nullptr;
   json["components"] = health.components;
@@ -215,8 +224,14 @@ void add_measure(Program& program) {
   CLI::App& verb = program.verb(
       "measure", "Volume, area, centroid, inertia, extents, parts of a scan's window, an octree or a mesh",
       "octotomy measure head.nrrd --window 300: --json\n"
-      "  octotomy measure skull.octree",
+      "  octotomy measure skull.octree\n"
+      "  octotomy measure skull.stl --section 0,0,20 0,0,1 --thickness --json",
       [&program, text] {
+        if (text->surface.any() && !is_mesh(text->file))
+          throw std::runtime_error(
+              text->file.string() +
+              ": sections, ways, angles, walls and curvature are asked of a mesh: octotomy "
+              "mesh makes one");
         if (is_octree(text->file)) return measure_octree(program, *text);
         return is_mesh(text->file) ? measure_mesh(program, *text) : measure_scan(program, *text);
       });
@@ -227,6 +242,7 @@ void add_measure(Program& program) {
   verb.add_option("--voxel", text->voxel_mm,
                   "Edge of a voxel, mm; default: as fine as the scan, at most 512 a side")
       ->check(above_zero());
+  add_surface_questions(verb, text->surface);
   add_scan_options(verb, text->scan);
 }
 

@@ -54,6 +54,8 @@ void add_tet(Program& program);
 void add_verify_verbs(Program& program);
 void add_voxelise(Program& program);
 void add_register(Program& program);
+void add_repair(Program& program);
+void add_mirror(Program& program);
 void add_saw(Program& program);
 void add_compare(Program& program);
 void add_warp(Program& program);

@@ -48,5 +48,20 @@ TEST(Components, AnOpenMeshHasNone) {
   EXPECT_EQ(largest_component(Mesh()).n_faces(), 0u);
 }
 
+TEST(Components, ACavityThatTouchesItsShellAtItsLargestXIsStillItsCavity) {
+  // A tetrahedron in a cube, one corner of it a corner of the cube's own; beyond it a smaller cube that the
+  // ray from there passes.
+  const Triangles cube = shapes::box({0, 0, 0}, {4, 4, 4});
+  const Triangles hollow{{{4, 4, 4}, {1, 2, 2}, {2, 1, 2}, {2, 2, 1}},
+                         {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+  Triangles inward = size_of(hollow).volume_mm3 < 0.0 ? hollow : shapes::inside_out(hollow);
+  const auto found = components(
+      mesh_of(shapes::together(shapes::together(cube, inward), shapes::box({6, 3.5, 3.5}, {7, 4.5, 4.5}))));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].cavities, 1u);
+  EXPECT_NEAR(found[0].volume_mm3, 64.0 + size_of(inward).volume_mm3, 1e-12);
+  EXPECT_NEAR(found[1].volume_mm3, 1.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace octotomy::brep

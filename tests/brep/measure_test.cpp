@@ -24,6 +24,23 @@ TEST(Measure, ABoxHasItsClosedForms) {
   EXPECT_NEAR(m.absolute_mean_curvature_mm, pi * (3 + 2 + 4), 1e-12);
 }
 
+TEST(Measure, InertiaOfABoxAndOfATurnedOneHasItsClosedForm) {
+  const glm::dvec3 edges(3, 2, 4);
+  const Mesh box = mesh_of(shapes::box(glm::dvec3(7, -5, 1), glm::dvec3(7, -5, 1) + edges));
+  const glm::dvec3 squares = edges * edges * 24.0 / 12.0;
+  const glm::dmat3 wanted(squares.y + squares.z, 0, 0, 0, squares.z + squares.x, 0, 0, 0,
+                          squares.x + squares.y);
+  const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), 0.9, glm::normalize(glm::dvec3(1, -2, 0.5))));
+  const glm::dmat3 still = measure(box).inertia_mm5.value();
+  const glm::dmat3 turned = measure(moved(box, glm::dmat4(turn))).inertia_mm5.value();
+  const glm::dmat3 wanted_turned = turn * wanted * glm::transpose(turn);
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) {
+      EXPECT_NEAR(still[c][r], wanted[c][r], 1e-11);
+      EXPECT_NEAR(turned[c][r], wanted_turned[c][r], 1e-11);
+    }
+}
+
 TEST(Measure, SpheresConvergeToTheirClosedFormsAtSecondOrder) {
   const double r = 5.0;
   double volume_error = 0, area_error = 0, curvature_error = 0;
@@ -62,6 +79,7 @@ TEST(Measure, NothingHasNoCentroid) {
   const Measures m = measure(Mesh());
   EXPECT_EQ(m.volume_mm3, 0.0);
   EXPECT_FALSE(m.centroid_mm);
+  EXPECT_FALSE(m.inertia_mm5);
 }
 
 TEST(Measure, RigidMotionsChangeNothing) {

@@ -2,6 +2,8 @@
 //
 // The program as scripts see it: exit status, standard output, what is left on disk.
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "tests/planner/command_line.h"
 
@@ -15,9 +17,9 @@ using tests::Json;
 TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
-  for (const char* verb : {"look",    "run",    "verify", "info",     "measure", "render",  "mesh",
-                           "boolean", "smooth", "tet",    "register", "compare", "phantom", "octree",
-                           "eval",    "mark",   "mask",   "slice",    "segment", "prepare", "saw"}) {
+  for (const char* verb : {"look",   "run",   "verify",   "info",    "measure", "render", "mesh",  "boolean",
+                           "smooth", "tet",   "register", "compare", "phantom", "octree", "eval",  "mark",
+                           "mask",   "slice", "segment",  "prepare", "saw",     "repair", "mirror"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const CommandAnswer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;
@@ -396,6 +398,81 @@ TEST_F(CommandLine, AScansContoursAreTiledToASolidByAnyCost) {
                  "ball.octree");
 }
 
+TEST_F(CommandLine, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
+  const Json ball = Json::parse(run("measure " + at("ball.off") + " --json").out);
+  const double x = ball["centroid_mm"][0], y = ball["centroid_mm"][1], z = ball["centroid_mm"][2];
+  const double r = std::cbrt(ball["volume_mm3"].get<double>() * 3.0 / (4.0 * M_PI));
+  const auto point = [](double a, double b, double c) {
+    return " " + std::to_string(a) + "," + std::to_string(b) + "," + std::to_string(c);
+  };
+  const CommandAnswer asked =
+      run("measure " + at("ball.off") + " --section" + point(x, y, z) + " 1,2,3 --distance 0,0,0 3,4,12 " +
+          "--angle 1,0,0 0,0,0 0,2,0 --along" + point(x + r, y, z) + point(x, y + r, z) +
+          " --thickness --curvature " + "--to " + at("ball.off") + " -o " + at("walls.vtp") + " --json");
+  ASSERT_EQ(asked.status, 0) << asked.errors;
+  const Json json = Json::parse(asked.out);
+  EXPECT_NEAR(json["section"]["area_mm2"].get<double>(), M_PI * r * r, 0.03 * M_PI * r * r);
+  EXPECT_EQ(json["distance_mm"], 13.0);
+  EXPECT_EQ(json["angle_deg"], 90.0);
+  EXPECT_NEAR(json["along"]["length_mm"].get<double>(), 0.5 * M_PI * r, 0.05 * r);
+  EXPECT_EQ(json["gap"]["distance_mm"], 0.0);
+  EXPECT_NEAR(json["oriented_box"]["edges_mm"][0].get<double>(), 2 * r, 0.1 * r);
+  EXPECT_NEAR(json["thickness"]["ray"]["median_mm"].get<double>(), 2 * r, 0.1 * r);
+  EXPECT_NEAR(json["curvature"]["mean"]["mean_per_mm"].get<double>() * r, 1.0, 0.1);
+  EXPECT_NEAR(json["inertia_mm5"][0][0].get<double>(), 0.4 * ball["volume_mm3"].get<double>() * r * r,
+              0.03 * ball["volume_mm3"].get<double>() * r * r);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "walls.vtp"));
+  EXPECT_NE(run("measure " + at("ball.off") + " --curvature").out.find("curvature"), std::string::npos);
+  expect_refused(run("measure " + at("ball.nrrd") + " --window 0: --thickness"), "mesh");
+  expect_refused(run("measure " + at("ball.off") + " --angle 0,0,0 0,0,0 1,0,0"), "--angle");
+  expect_refused(run("measure " + at("ball.off") + " -o " + at("p.vtp")), "--thickness");
+}
+
+TEST_F(CommandLine, AMeshIsMendedOnlyAsAskedAndEachChangeIsListed) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 300").status, 0);
+  // A triangle turned round, another lost, as the file's last two lines.
+  std::ifstream whole(folder_ / "ball.off");
+  std::vector<std::string> rows;
+  for (std::string row; std::getline(whole, row);) rows.push_back(row);
+  std::istringstream last(rows[rows.size() - 2]);
+  int sides = 0, a = 0, b = 0, c = 0;
+  last >> sides >> a >> b >> c;
+  rows[rows.size() - 2] = "3 " + std::to_string(a) + " " + std::to_string(c) + " " + std::to_string(b);
+  rows.pop_back();
+  rows[2] = rows[2].substr(0, rows[2].find(' ')) + " " +
+            std::to_string(rows.size() - 3 - std::stoul(rows[2])) + " 0";
+  std::ofstream broken(folder_ / "broken.off");
+  for (const std::string& row : rows) broken << row << "\n";
+  broken.close();
+
+  expect_refused(run("repair " + at("broken.off") + " -o " + at("mended.off")), "--weld");
+  const CommandAnswer mended =
+      run("repair " + at("broken.off") + " --orient --holes -o " + at("mended.off") + " --json");
+  ASSERT_EQ(mended.status, 0) << mended.errors;
+  const Json json = Json::parse(mended.out);
+  EXPECT_FALSE(json["before"]["closed"]);
+  EXPECT_TRUE(json["health"]["findings"].empty()) << json["health"];
+  ASSERT_EQ(json["changes"].size(), 2u) << json["changes"];
+  EXPECT_EQ(json["changes"][0]["step"], "orient");
+  EXPECT_EQ(json["changes"][1]["step"], "holes");
+}
+
+TEST_F(CommandLine, ASurfaceIsMirroredAboutAPlaneGivenOrFitted) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 600").status, 0);
+  const CommandAnswer given =
+      run("mirror " + at("ball.off") + " --plane 5,0,0 1,0,0 --exactly -o " + at("image.off") + " --json");
+  ASSERT_EQ(given.status, 0) << given.errors;
+  const Json ball = Json::parse(run("measure " + at("ball.off") + " --json").out),
+             image = Json::parse(run("measure " + at("image.off") + " --json").out);
+  EXPECT_NEAR(ball["centroid_mm"][0].get<double>() + image["centroid_mm"][0].get<double>(), 10.0, 1e-9);
+  EXPECT_NEAR(ball["volume_mm3"].get<double>(), image["volume_mm3"].get<double>(), 1e-6);
+  const CommandAnswer fitted = run("mirror " + at("ball.off") + " --json");
+  ASSERT_EQ(fitted.status, 0) << fitted.errors;
+  EXPECT_LT(Json::parse(fitted.out)["rms_mm"].get<double>(), 0.5);
+  expect_refused(run("mirror " + at("ball.off") + " --exactly"), "--plane");
+}
+
 TEST_F(CommandLine, ASolidIsSawnAndItsBooleansAreProvenExactly) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 400").status, 0);
   const Json ball = Json::parse(run("measure " + at("ball.off") + " --json").out);
@@ -518,8 +595,8 @@ TEST_F(CommandLine, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
   ASSERT_EQ(back.status, 0) << back.errors;
   EXPECT_LT(Json::parse(back.out).at("rms_mm").get<double>(), 1e-5);
 
-  const CommandAnswer compared =
-      run("compare " + at("back.ply") + " " + at("ball.stl") + " -o " + at("coloured.ply") + " --json");
+  const CommandAnswer compared = run("compare " + at("back.ply") + " " + at("ball.stl") + " -o " +
+                                     at("coloured.ply") + " --picture " + at("difference.png") + " --json");
   ASSERT_EQ(compared.status, 0) << compared.errors;
   const Json json = Json::parse(compared.out);
   EXPECT_LT(json.at("hausdorff_mm").get<double>(), 1e-4);

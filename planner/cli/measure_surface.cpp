@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/measure_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include "brep/cross_section.h"
+#include "brep/curvature.h"
+#include "brep/gap.h"
+#include "brep/measure.h"
+#include "brep/oriented_box.h"
+#include "brep/shortest_path.h"
+#include "brep/thickness.h"
+#include "brep/write_mesh.h"
+#include "planner/cli/mesh_file.h"
+#include "planner/cli/numbers.h"
+#include "planner/figures.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+glm::dvec3 point_of(const std::string& option, const std::string& text) {
+  const auto [x, y, z] = numbers_of<3>(option, text, "-45,-60,12.5");
+  return {x, y, z};
+}
+
+Json section_json(const SurfaceQuestions& questions, const brep::Mesh& mesh) {
+  const brep::Plane plane = brep::plane_through(point_of("--section", questions.section[0]),
+                                                point_of("--section", questions.section[1]));
+  const brep::CrossSection section = brep::cross_section(mesh, plane);
+  Json contours = Json::array();
+  for (const brep::Contour& contour : section.contours)
+    contours.push_back({{"area_mm2", brep::signed_area_mm2(contour)},
+                        {"perimeter_mm", brep::perimeter_mm(contour)},
+                        {"points", contour.points_mm.size()}});
+  return {{"origin_mm", to_json(plane.origin_mm)},
+          {"normal", to_json(plane.normal)},
+          {"right", to_json(plane.right)},
+          {"up", to_json(plane.up)},
+          {"area_mm2", section.area_mm2},
+          {"perimeter_mm", section.perimeter_mm},
+          {"contours", contours}};
+}
+
+Json box_json(const brep::Mesh& mesh) {
+  const brep::OrientedBox box = brep::oriented_box(mesh);
+  Json axes = Json::array();
+  for (const glm::dvec3& axis : box.axes) axes.push_back(to_json(axis));
+  return {{"centre_mm", to_json(box.centre_mm)},
+          {"edges_mm", to_json(box.edges_mm)},
+          {"axes", axes},
+          {"volume_mm3", box.volume_mm3()}};
+}
+
+/// Area-weighted; all null where nothing is known.
+Json summary(std::vector<std::pair<double, double>> value_and_area, const std::string& unit) {
+  const auto key = [&](const char* what) { return std::string(what) + "_" + unit; };
+  Json json;
+  if (value_and_area.empty()) {
+    for (const char* what : {"min", "mean", "median", "max"}) json[key(what)] = nullptr;
+    return json;
+  }
+  std::sort(value_and_area.begin(), value_and_area.end());
+  double area = 0.0, sum = 0.0;
+  for (const auto& [value, part] : value_and_area) {
+    area += part;
+    sum += part * value;
+  }
+  double below = 0.0;
+  const auto median = std::find_if(value_and_area.begin(), value_and_area.end(),
+                                   [&](const auto& entry) { return (below += entry.second) >= 0.5 * area; });
+  json[key("min")] = value_and_area.front().first;
+  json[key("mean")] = sum / area;
+  json[key("median")] = (median == value_and_area.end() ? value_and_area.back() : *median).first;
+  json[key("max")] = value_and_area.back().first;
+  return json;
+}
+
+/// Values at vertices, for the summary and for the file.
+struct AtVertices {
+  std::string name;
+  std::vector<double> values;
+};
+
+Json curvature_json(const brep::Mesh& mesh, AtVertices& shown) {
+  brep::Curvature found = brep::curvature(mesh);
+  std::vector<std::pair<double, double>> mean, gaussian;
+  double total = 0.0;
+  for (std::size_t v = 0; v < found.known.size(); ++v) {
+    if (!found.known[v]) continue;
+    mean.emplace_back(found.mean_per_mm[v], found.areas_mm2[v]);
+    gaussian.emplace_back(found.gaussian_per_mm2[v], found.areas_mm2[v]);
+    total += found.gaussian_per_mm2[v] * found.areas_mm2[v];
+  }
+  shown = {"mean_curvature_per_mm", std::move(found.mean_per_mm)};
+  return {{"estimator", "cotangents and angle defects over mixed Voronoi areas, at vertices"},
+          {"mean", summary(std::move(mean), "per_mm")},
+          {"gaussian", summary(std::move(gaussian), "per_mm2")},
+          {"total_gaussian", total}};
+}
+
+std::vector<brep::Thickness> thickness_of(const Program& program, const brep::Mesh& mesh,
+                                          const std::vector<brep::SurfacePoint>& points) {
+  brep::ThicknessOptions options;
+  const auto progress = program.progress();
+  if (progress) options.progress = [&](double share) { progress("thickness", share); };
+  options.stop = program.stop.get_token();
+  try {
+    return brep::thickness(mesh, points, options);
+  } catch (const std::runtime_error& error) {
+    if (program.stop.stop_requested()) throw Stopped(error.what());
+    throw;
+  }
+}
+
+/// At vertices, where a picture shows it; each with the mean of its triangles' normals weighted by angle.
+Json thickness_json(const Program& program, const brep::Mesh& mesh, AtVertices& shown) {
+  std::vector<brep::SurfacePoint> points;
+  std::vector<std::size_t> vertices;
+  const auto at = [&](brep::Mesh::VertexHandle v) {
+    return glm::dvec3(mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);
+  };
+  for (const auto v : mesh.vertices()) {
+    glm::dvec3 normal(0.0);
+    for (auto h = mesh.cvoh_begin(v); h != mesh.cvoh_end(v); ++h) {
+      if (mesh.is_boundary(*h)) continue;
+      const glm::dvec3 one = at(mesh.to_vertex_handle(*h)) - at(v),
+                       other = at(mesh.from_vertex_handle(mesh.prev_halfedge_handle(*h))) - at(v);
+      const glm::dvec3 square = glm::cross(one, other);
+      const double twice = glm::length(square);
+      if (twice > 0.0) normal += std::atan2(twice, glm::dot(one, other)) / twice * square;
+    }
+    if (!(glm::length(normal) > 0.0)) continue;
+    points.push_back({at(v), glm::normalize(normal)});
+    vertices.push_back(static_cast<std::size_t>(v.idx()));
+  }
+  const std::vector<brep::Thickness> found = thickness_of(program, mesh, points);
+  const std::vector<double> areas = brep::curvature(mesh).areas_mm2;
+  std::vector<std::pair<double, double>> ray, ball;
+  shown = {"thickness_mm", std::vector<double>(mesh.n_vertices(), 0.0)};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ray.emplace_back(found[i].ray_mm, areas[vertices[i]]);
+    ball.emplace_back(found[i].ball_mm, areas[vertices[i]]);
+    shown.values[vertices[i]] = found[i].ball_mm;
+  }
+  return {
+      {"definition",
+       "at vertices, weighted by area; ray: along the inward normal to the surface; ball: diameter of the "
+       "largest ball inside that touches there"},
+      {"ray", summary(std::move(ray), "mm")},
+      {"ball", summary(std::move(ball), "mm")}};
+}
+
+Json along_json(const SurfaceQuestions& questions, const brep::Mesh& mesh) {
+  const brep::SurfacePath path = brep::shortest_path(mesh, point_of("--along", questions.along[0]),
+                                                     point_of("--along", questions.along[1]));
+  Json points = Json::array();
+  for (const glm::dvec3& p : path.points_mm) points.push_back(to_json(p));
+  return {{"length_mm", path.length_mm},
+          {"straight_mm", glm::distance(path.points_mm.front(), path.points_mm.back())},
+          {"points_mm", points}};
+}
+
+Json gap_json(const brep::Mesh& mesh, const brep::Mesh& other) {
+  const brep::Gap gap = brep::gap(mesh, other);
+  return {
+      {"distance_mm", gap.distance_mm}, {"on_a_mm", to_json(gap.on_a_mm)}, {"on_b_mm", to_json(gap.on_b_mm)}};
+}
+
+double angle_deg(const std::vector<std::string>& texts) {
+  const glm::dvec3 at = point_of("--angle", texts[1]), one = point_of("--angle", texts[0]) - at,
+                   other = point_of("--angle", texts[2]) - at;
+  if (!(glm::length(one) > 0.0) || !(glm::length(other) > 0.0))
+    throw std::runtime_error("--angle: a point coincides with the corner, so there is no angle");
+  return std::atan2(glm::length(glm::cross(one, other)), glm::dot(one, other)) * 180.0 / std::numbers::pi;
+}
+
+}  // namespace
+
+void add_surface_questions(CLI::App& verb, SurfaceQuestions& questions) {
+  verb.add_option("--section", questions.section,
+                  "Of a mesh: X,Y,Z and a normal X,Y,Z: area and perimeter where that plane cuts")
+      ->expected(2);
+  verb.add_option("--distance", questions.distance, "Two points X,Y,Z: the straight way between them")
+      ->expected(2);
+  verb.add_option("--angle", questions.angle, "Three points X,Y,Z: the angle at the second, degrees")
+      ->expected(3);
+  verb.add_option("--along", questions.along, "Two points X,Y,Z: the shortest way along a mesh's surface")
+      ->expected(2);
+  verb.add_option("--to", questions.to, "A mesh: the least distance between both surfaces")
+      ->check(CLI::ExistingFile);
+  verb.add_flag("--thickness", questions.thickness, "Of a mesh: walls, by rays and by balls");
+  verb.add_flag("--curvature", questions.curvature, "Of a mesh: mean and Gaussian");
+  verb.add_option("-o,--out", questions.out,
+                  "The mesh with thickness, or curvature, as scalars: a .vtp or .ply file");
+}
+
+Json answer_surface_questions(const Program& program, const SurfaceQuestions& questions,
+                              const brep::Mesh& mesh, Timings& timings) {
+  if (!questions.out.empty()) {
+    need_folder_of(questions.out);
+    if (!questions.thickness && !questions.curvature)
+      throw std::runtime_error(questions.out.string() + ": say what to write, --thickness or --curvature");
+    if (questions.out.extension() != ".vtp" && questions.out.extension() != ".ply")
+      throw std::runtime_error(questions.out.string() + ": scalars are written as .vtp or .ply");
+  }
+  Json json;
+  AtVertices shown;
+  const auto put = [&](const char* key, const auto& make) {
+    const Stopwatch watch(timings, key);
+    json[key] = make();
+  };
+  put("oriented_box", [&] { return box_json(mesh); });
+  if (!questions.section.empty()) put("section", [&] { return section_json(questions, mesh); });
+  if (!questions.distance.empty())
+    json["distance_mm"] = glm::distance(point_of("--distance", questions.distance[0]),
+                                        point_of("--distance", questions.distance[1]));
+  if (!questions.angle.empty()) json["angle_deg"] = angle_deg(questions.angle);
+  if (!questions.along.empty()) put("along", [&] { return along_json(questions, mesh); });
+  if (!questions.to.empty()) {
+    const brep::Mesh other = read_surface(questions.to, timings);
+    put("gap", [&] { return gap_json(mesh, other); });
+  }
+  if (questions.curvature) put("curvature", [&] { return curvature_json(mesh, shown); });
+  if (questions.thickness) put("thickness", [&] { return thickness_json(program, mesh, shown); });
+  if (!questions.out.empty()) {
+    const Stopwatch watch(timings, "write");
+    brep::VertexData data;
+    data.scalar_name = shown.name;
+    data.scalars = std::move(shown.values);
+    brep::write_mesh(mesh, questions.out, data);
+    json["path"] = questions.out.string();
+  }
+  return json;
+}
+
+std::vector<std::pair<std::string, std::string>> surface_rows(const Json& answers) {
+  std::vector<std::pair<std::string, std::string>> rows;
+  const auto number = [](const Json& value, int decimals, const char* unit) {
+    return value.is_null() ? std::string("none") : grouped(value.get<double>(), decimals) + unit;
+  };
+  const auto add = [&](const char* key, const auto& text) {
+    if (answers.contains(key)) rows.emplace_back(key, text(answers[key]));
+  };
+  add("oriented_box", [&](const Json& box) {
+    return number(box["edges_mm"][0], 1, " x ") + number(box["edges_mm"][1], 1, " x ") +
+           number(box["edges_mm"][2], 1, " mm");
+  });
+  add("section", [&](const Json& section) {
+    return number(section["area_mm2"], 1, " mm\u00b2, ") + number(section["perimeter_mm"], 1, " mm round");
+  });
+  add("distance_mm", [&](const Json& distance) { return number(distance, 2, " mm"); });
+  add("angle_deg", [&](const Json& angle) { return number(angle, 2, "\u00b0"); });
+  add("along", [&](const Json& path) { return number(path["length_mm"], 2, " mm"); });
+  add("gap", [&](const Json& gap) { return number(gap["distance_mm"], 3, " mm"); });
+  add("curvature", [&](const Json& curvature) {
+    return number(curvature["mean"]["mean_per_mm"], 4, " /mm, ") +
+           number(curvature["gaussian"]["mean_per_mm2"], 5, " /mm\u00b2");
+  });
+  add("thickness", [&](const Json& thickness) {
+    return number(thickness["ball"]["median_mm"], 2, " mm by balls, ") +
+           number(thickness["ray"]["median_mm"], 2, " mm by rays, medians");
+  });
+  return rows;
+}
+
+}  // namespace octotomy::planner::cli
