@@ -2,6 +2,7 @@
 #include "planner/difference_pictures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "brep/distance.h"
 #include "verify/voxel_boundary.h"
@@ -27,7 +28,8 @@ voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& o
       static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z),
       0.0f);
   std::vector<bool> wanted(scalar.values.size(), false);
-  for (const verify::VoxelFace& face : verify::voxel_boundary(octree))
+  const std::vector<verify::VoxelFace> boundary = verify::voxel_boundary(octree);
+  for (const verify::VoxelFace& face : boundary)
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) wanted[index(face.voxel + glm::ivec3(x, y, z))] = true;
@@ -47,6 +49,9 @@ voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& o
   const std::vector<std::uint8_t> inside = tree.inside(points_mm);
   for (std::size_t i = 0; i < places.size(); ++i)
     scalar.values[places[i]] = static_cast<float>(inside[i] ? -distances_mm[i] : distances_mm[i]);
+  scalar.most = 0.5 * glm::length(lattice.spacing_mm());
+  for (const verify::VoxelFace& face : boundary)
+    scalar.most = std::max(scalar.most, std::abs(static_cast<double>(scalar.values[index(face.voxel)])));
   return scalar;
 }
 
@@ -54,10 +59,8 @@ voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& o
 
 DifferencePictures difference_pictures(const verify::Contested& contested) {
   voxel::SurfaceScalar scalar = distances_to(*contested.mesh, contested.octree);
-  const double half_diagonal_mm = 0.5 * glm::length(contested.octree.universe().lattice().spacing_mm());
   DifferencePictures pictures;
-  pictures.most_mm = scalar.most =
-      std::max(contested.certificate.hausdorff_mm.value_or(half_diagonal_mm), half_diagonal_mm);
+  pictures.most_mm = scalar.most;
   pictures.group.name = "difference";
   pictures.group.title = "Where the kernels differ most";
   voxel::Drawn drawn{contested.certificate.operation, contested.octree};

@@ -13,9 +13,9 @@ struct DifferencePictures {
   double most_mm = 1.0;
 };
 
-/// Preconditions: neither answer is empty. The colours end at the largest distance there is, at least half a
-/// voxel's diagonal. Cost: a search in the mesh for every voxel at the boundary; a float for each voxel of
-/// the object's extents.
+/// Preconditions: neither answer is empty. The colours end at the largest distance of a voxel at the
+/// boundary, at least half a voxel's diagonal. Cost: a search in the mesh for every voxel at the boundary; a
+/// float for each voxel of the object's extents.
 DifferencePictures difference_pictures(const verify::Contested& contested);
 
 }  // namespace octotomy::planner

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "brep/distance.h"
+#include "brep/gap.h"
 #include "brep/triangles.h"
 #include "verify/voxel_boundary.h"
 #include "voxel/combine.h"
@@ -40,13 +41,10 @@ NearestVoxels nearest_voxels(const voxel::Octree& a, const voxel::Octree& b) {
   return nearest;
 }
 
-/// From the vertices of one to the triangles of the other; 0 where one of them is inside.
-double one_way_mm(const brep::Triangles& from, const brep::Triangles& to) {
-  const brep::SurfaceTree tree(to);
-  const std::vector<std::uint8_t> inside = tree.inside(from.points_mm);
-  if (std::find(inside.begin(), inside.end(), 1) != inside.end()) return 0.0;
-  const std::vector<double> distances_mm = tree.distances_mm(from.points_mm);
-  return *std::min_element(distances_mm.begin(), distances_mm.end());
+/// Whether a point of one is inside the other. Where their surfaces do not meet, one decides for all.
+bool is_within(const brep::Mesh& one, const brep::Mesh& other) {
+  const brep::Triangles surface = brep::triangles_of(one);
+  return brep::is_inside(surface.points_mm[surface.faces.front()[0]], brep::triangles_of(other));
 }
 
 }  // namespace
@@ -65,10 +63,10 @@ Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const brep::Mesh
   if (gap.overlap_mm3 == 0.0)
     gap.voxel_mm =
         glm::length(glm::dvec3(glm::max(glm::abs(nearest.b - nearest.a) - 1, 0)) * lattice.spacing_mm());
-  if (mesh_a != nullptr && mesh_b != nullptr && mesh_a->n_faces() > 0 && mesh_b->n_faces() > 0) {
-    const brep::Triangles of_a = brep::triangles_of(*mesh_a), of_b = brep::triangles_of(*mesh_b);
-    gap.mesh_mm = std::min(one_way_mm(of_a, of_b), one_way_mm(of_b, of_a));
-  }
+  if (mesh_a != nullptr && mesh_b != nullptr && mesh_a->n_faces() > 0 && mesh_b->n_faces() > 0)
+    gap.mesh_mm = is_within(*mesh_a, *mesh_b) || is_within(*mesh_b, *mesh_a)
+                      ? 0.0
+                      : brep::gap(*mesh_a, *mesh_b).distance_mm;
   return gap;
 }
 

@@ -284,11 +284,9 @@ class Asking {
   /// Objects are large: of all that were found so far one is kept, the first seed's of equals.
   void contend(std::uint64_t seed, verify::Contested&& found) {
     const std::lock_guard lock(keeping_);
-    const double now = verify::worst_share(found.certificate);
-    if (worst_) {
-      const double kept = verify::worst_share(worst_->certificate);
-      if (now < kept || (now == kept && seed > worst_seed_)) return;
-    }
+    if (worst_ && (verify::is_worse(worst_->certificate, found.certificate) ||
+                   (!verify::is_worse(found.certificate, worst_->certificate) && seed > worst_seed_)))
+      return;
     worst_ = std::move(found);
     worst_seed_ = seed;
   }
@@ -326,8 +324,7 @@ class Asking {
     for (const Object& object : objects) {
       if (!object.certificate) continue;
       count(suite.bounded.verdicts, object.certificate->agreement);
-      if (object.certificate->agreement != Agreement::BelowResolution)
-        verify::keep_worse(worst, {*object.certificate, object.octree, object.mesh});
+      verify::keep_worse(worst, {*object.certificate, object.octree, object.mesh});
     }
     if (worst) contend(seed, std::move(*worst));
     if (result.certificate) suite.bounded.results.push_back(*result.certificate);

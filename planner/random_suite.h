@@ -46,7 +46,7 @@ struct RandomTier {
 struct RandomSuite {
   RandomTier exact, bounded;
   std::vector<Disagreement> disagreements;
-  std::optional<verify::Contested> worst;  ///< of the bounded tier's resolved objects
+  std::optional<verify::Contested> worst;  ///< of the bounded tier's objects
 
   /// Results that are neither empty nor equal to an operand, as a share of all.
   double substance() const;

@@ -47,6 +47,7 @@
 #include <optional>
 #include <utility>
 
+#include "brep/components.h"
 #include "brep/distance.h"
 #include "brep/health.h"
 #include "brep/measure.h"
@@ -57,6 +58,7 @@
 #include "verify/voxel_boundary.h"
 #include "voxel/cell_counts.h"
 #include "voxel/combine.h"
+#include "voxel/components.h"
 #include "voxel/measure.h"
 
 namespace octotomy::verify {
@@ -401,6 +403,12 @@ void compare_topology(Certificate& certificate, const voxel::Octree& octree, con
   const auto surface = static_cast<double>(brep::health(brep::triangles_of(solid), {false}).euler);
   add_comparison(certificate, {"euler", "", twice, surface, std::abs(twice - surface), 0.0,
                                "0: one topology; twice the voxels' number beside the surface's"});
+  const auto parts = static_cast<double>(voxel::components(octree).voxel_counts.size());
+  const std::vector<brep::Component> shells = brep::components(solid);
+  const auto solids = static_cast<double>(std::count_if(
+      shells.begin(), shells.end(), [](const brep::Component& shell) { return shell.volume_mm3 > 0.0; }));
+  add_comparison(certificate, {"components", "", parts, solids, std::abs(parts - solids), 0.0,
+                               "0: voxels that touch by faces beside outer shells"});
 }
 
 void judge_extent(Certificate& certificate, const Evidence& evidence) {
@@ -530,8 +538,16 @@ double worst_share(const Certificate& certificate) {
   return worst;
 }
 
+bool is_worse(const Certificate& a, const Certificate& b) {
+  const auto rank = [](const Certificate& c) {
+    const bool unresolved = c.agreement == Agreement::BelowResolution;
+    return std::pair(unresolved ? -1 : static_cast<int>(c.agreement), worst_share(c));
+  };
+  return rank(a) > rank(b);
+}
+
 void keep_worse(std::optional<Contested>& kept, const Contested& found) {
-  if (!kept || worst_share(found.certificate) > worst_share(kept->certificate)) kept = found;
+  if (!kept || is_worse(found.certificate, kept->certificate)) kept = found;
 }
 
 std::string to_string(Tier tier) {

@@ -92,13 +92,17 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid
 /// 0 without a difference and infinity with one.
 double worst_share(const Certificate& certificate);
 
+/// Whether the verdict is worse or, of the same verdict, the share larger. What is below resolution proves
+/// nothing and is never worse than what is not.
+bool is_worse(const Certificate& a, const Certificate& b);
+
 /// A certificate's objects, kept for pictures.
 struct Contested {
   Certificate certificate;
   voxel::Octree octree;
   std::shared_ptr<const brep::Mesh> mesh;
 };
-/// Keeps the one that takes up the larger share, the first of equals, so that the order alone decides.
+/// Keeps the worse one, the first of equals, so that the order alone decides.
 void keep_worse(std::optional<Contested>& kept, const Contested& found);
 
 std::string to_string(Tier tier);

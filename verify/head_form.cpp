@@ -385,9 +385,12 @@ HeadBricks::HeadBricks() {
     const auto brick = static_cast<int>(i);
     const glm::ivec3 at(brick % dims_.x, brick / dims_.x % dims_.y, brick / (dims_.x * dims_.y));
     const dvec3 centre_mm = low_mm_ + (dvec3(at) + 0.5) * edge_mm;
-    for (std::size_t field = 0; field < field_count; ++field)
-      bricks_[i].places[field] =
-          place(prune(whole_.steps[field], centre_mm, radius_mm, bricks_[i].steps[field]), radius_mm);
+    // Pruning needs room for all steps, of which few are left: what is kept is as large as that.
+    Form::Steps pruned;
+    for (std::size_t field = 0; field < field_count; ++field) {
+      bricks_[i].places[field] = place(prune(whole_.steps[field], centre_mm, radius_mm, pruned), radius_mm);
+      bricks_[i].steps[field] = Form::Steps(pruned.begin(), pruned.end());
+    }
   });
 }
 

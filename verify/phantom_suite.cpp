@@ -369,7 +369,7 @@ class Suite {
     const Answers answers = answers_of(solid, samplings[m].sampling, chance);
     one.bounded = bounded_of(solid, answers, one);
     one.closed_form = closed_form_of(solid, answers, one.bounded);
-    if (kinds()[k].thickness == 0.0 && one.bounded.agreement != Agreement::BelowResolution)
+    if (kinds()[k].thickness == 0.0)
       keep_worse(suite_.worst,
                  {one.bounded, answers.octree, std::make_shared<const brep::Mesh>(answers.mesh)});
     // A box around a plate that is turned does not show how thin it is; the truth is known.

@@ -68,7 +68,7 @@ struct PhantomSuite {
   std::vector<Calibration> calibrations;
   std::vector<Convergence> convergences;
   std::vector<SuiteCheck> checks;
-  std::optional<Contested> worst;  ///< of the resolved cases' bounded certificates
+  std::optional<Contested> worst;  ///< of the bounded certificates
   /// The largest error of area on solids with edges at a radius of six voxels: told, as edges are cut off.
   double area_with_edges_percent = 0.0;
 };

@@ -196,6 +196,11 @@ TEST(CertifyBounded, WhereVoxelsAreTheSamplesTopologyIsCertifiedAndALostHandleFa
   const Certificate wrong =
       certify_bounded(octree, brep::mesh_of(convert::isosurface(plug, 0.0, 32767.0)), inputs);
   EXPECT_EQ(verdict_on(wrong, "euler"), Agreement::Fail) << told(wrong);
+  EXPECT_EQ(verdict_on(right, "components"), Agreement::Pass) << told(right);
+  const voxel::Scene stray = scan_of(either(ring, ball({0, 0, 0}, 3.0)), 1.0, 16.0);
+  const Certificate parted =
+      certify_bounded(octree, brep::mesh_of(convert::isosurface(stray, 0.0, 32767.0)), inputs);
+  EXPECT_EQ(verdict_on(parted, "components"), Agreement::Fail) << told(parted);
 }
 
 TEST(CertifyBounded, AMeshTurnedInsideOutFails) {

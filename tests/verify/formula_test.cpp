@@ -6,27 +6,11 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "tests/verify/truth_value.h"
 #include "verify/random_expression.h"
 
 namespace octotomy::verify {
 namespace {
-
-bool value(const Tree& tree, unsigned values) {
-  if (tree.parts.empty()) return (values >> tree.leaf) & 1;
-  const bool a = value(tree.parts[0], values);
-  if (tree.symbol == '~') return !a;
-  const bool b = value(tree.parts[1], values);
-  switch (tree.symbol) {
-    case '&':
-      return a && b;
-    case '|':
-      return a || b;
-    case '-':
-      return a && !b;
-    default:
-      return a != b;
-  }
-}
 
 Tree leaf(int number) {
   return {0, number, {}};
@@ -86,7 +70,8 @@ TEST(MentionedOnce, IsTheSameFunctionWithEveryLeafOnceForRandomTrees) {
     ++found;
     shorter += once->leaf_count() < tree.leaf_count();
     for (unsigned values = 0; values < 32; ++values)
-      ASSERT_EQ(value(tree, values), value(*once, values)) << "seed " << seed << ": " << words(tree);
+      ASSERT_EQ(tests::truth_value(tree, values), tests::truth_value(*once, values))
+          << "seed " << seed << ": " << words(tree);
     std::multiset<int> leaves;
     leaves_of(*once, leaves);
     const bool constant = words(*once) == "a - a" || words(*once) == "~(a - a)";

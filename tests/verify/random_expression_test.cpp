@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
+#include "tests/verify/truth_value.h"
 #include "voxel/expression.h"
 
 namespace octotomy::verify {
@@ -17,24 +18,6 @@ int count(const Tree& tree, char symbol) {
   int found = tree.symbol == symbol;
   for (const Tree& part : tree.parts) found += count(part, symbol);
   return found;
-}
-
-/// The answer of a formula where leaf i is bit i of `values`.
-bool value(const Tree& tree, unsigned values) {
-  if (tree.parts.empty()) return (values >> tree.leaf) & 1;
-  const bool a = value(tree.parts[0], values);
-  if (tree.symbol == '~') return !a;
-  const bool b = value(tree.parts[1], values);
-  switch (tree.symbol) {
-    case '&':
-      return a && b;
-    case '|':
-      return a || b;
-    case '-':
-      return a && !b;
-    default:
-      return a != b;
-  }
 }
 
 bool value(const voxel::Expression::Term& term, unsigned values) {
@@ -76,7 +59,8 @@ TEST(RandomTree, AsTextMeansTheSameToTheParser) {
     const std::string words = text(tree, name_of);
     const voxel::Expression parsed = voxel::parse_expression(words, names);
     for (unsigned values = 0; values < 32; ++values)
-      ASSERT_EQ(value(tree, values), value(parsed.term(), values)) << "seed " << seed << ": " << words;
+      ASSERT_EQ(tests::truth_value(tree, values), value(parsed.term(), values))
+          << "seed " << seed << ": " << words;
   }
 }
 
