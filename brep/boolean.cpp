@@ -240,9 +240,10 @@ void tell_films(const Question& question, Attempt& attempt) {
 
 void tell_flat(Attempt& attempt) {
   if (attempt.flat > 0)
-    attempt.findings.push_back(std::to_string(attempt.flat) +
-                               " triangles without area were taken out of the operands by another diagonal; "
-                               "their surfaces stayed where they were");
+    attempt.findings.push_back("triangles without area were taken out of the operands by " +
+                               std::to_string(attempt.flat) +
+                               (attempt.flat == 1 ? " other diagonal" : " other diagonals") +
+                               "; their surfaces stayed where they were");
 }
 
 /// What was wanted, before meshes are made of it.

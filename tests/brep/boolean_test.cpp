@@ -185,6 +185,43 @@ TEST(Boolean, ASharedEdgeTakesTheShiftAndTellsIt) {
   EXPECT_EQ(told(common.findings).find("shifted"), std::string::npos) << told(common.findings);
 }
 
+TEST(Boolean, TheShiftThatIsToldIsTheShiftThatWasMadeAndAShareOfTheExtent) {
+  // Far from the origin, so that neither corner stands for the extent.
+  const glm::dvec3 at(100, 200, 300);
+  const Mesh a = box(at, at + glm::dvec3(2, 2, 2)),
+             b = box(at + glm::dvec3(2, 2, 0), at + glm::dvec3(4, 4, 2));
+  const BooleanResult united = boolean(a, Operation::Union, b);
+  const std::string findings = told(united.findings);
+  const std::size_t begin = findings.find("shifted: b was moved by (");
+  ASSERT_NE(begin, std::string::npos) << findings;
+  glm::dvec3 shift(0.0);
+  ASSERT_EQ(std::sscanf(findings.c_str() + begin, "shifted: b was moved by (%lf, %lf, %lf)", &shift.x,
+                        &shift.y, &shift.z),
+            3)
+      << findings;
+  const double step_mm = 0x1p-18 * std::sqrt(4 * 4 + 4 * 4 + 2 * 2);
+  const double steps = glm::length(shift) / step_mm;
+  EXPECT_NEAR(steps, std::round(steps), 0.05);
+  EXPECT_GE(std::round(steps), 1.0);
+  EXPECT_LE(std::round(steps), 3.0);
+  double nearest = std::numeric_limits<double>::infinity();
+  const glm::dvec3 corner = at + glm::dvec3(4, 4, 2) + shift;
+  for (const auto v : united.mesh.vertices()) {
+    const Mesh::Point p = united.mesh.point(v);
+    nearest = std::min(nearest, glm::distance(glm::dvec3(p[0], p[1], p[2]), corner));
+  }
+  EXPECT_LT(nearest, 0.05 * glm::length(shift)) << "no corner of b where the finding says it was moved to";
+}
+
+TEST(Boolean, SheetsThatMeetInOnePointAreOnePointHoweverManyTheyAre) {
+  const Mesh pair = boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4})).mesh;
+  const BooleanResult united = boolean(pair, Operation::Union, box({2, 0, 2}, {3, 2, 3}));
+  // Whatever becomes of the third one's edges, no point is counted for each of its sheets.
+  EXPECT_NEAR(volume(united.mesh), 18, 1e-2);
+  const BooleanResult apart = boolean(pair, Operation::Union, box({10, 0, 0}, {11, 1, 1}));
+  EXPECT_EQ(told(apart.findings).find("touches itself"), std::string::npos) << told(apart.findings);
+}
+
 TEST(Boolean, ASharedVertexIsKeptOnceForEachSheetAndTold) {
   const BooleanResult united =
       boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4}));

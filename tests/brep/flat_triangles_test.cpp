@@ -78,6 +78,23 @@ TEST(FlatTriangles, OneAtABorderIsLeftAndCounted) {
   EXPECT_EQ(done.left, 1u);
 }
 
+TEST(FlatTriangles, ABooleanSaysHowAndNothingWhereThereAreNone) {
+  const Mesh knife = mesh_of(shapes::box({0.3, -1, -1}, {1.7, 1, 1}));
+  for (const int points : {0, 1, 2}) {
+    const Mesh cube =
+        mesh_of(points == 0 ? shapes::box({0, 0, 0}, {2, 2, 2}) : cube_with_flat_triangles(points));
+    std::string told;
+    for (const std::string& finding : boolean(cube, Operation::Difference, knife).findings) told += finding;
+    EXPECT_EQ(told.empty(), points == 0) << told;
+    if (points == 1) {
+      EXPECT_NE(told.find("by 1 other diagonal;"), std::string::npos) << told;
+    }
+    if (points == 2) {
+      EXPECT_NE(told.find("other diagonals;"), std::string::npos) << told;
+    }
+  }
+}
+
 TEST(FlatTriangles, ABooleanTakesAnOperandThatHasThemAndSaysSo) {
   const Mesh cube = mesh_of(cube_with_flat_triangles(3));
   const BooleanResult cut =

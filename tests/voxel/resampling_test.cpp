@@ -219,6 +219,22 @@ TEST(CombineGrey, FillsWhatHasNoSamplesAndKeepsAComplementsOwn) {
   EXPECT_EQ(less.sample({5, 1, 1}), -1024);
 }
 
+TEST(CombineGrey, FindsTheBlocksOfAUniverseOfSeveralLevels) {
+  const Universe universe{7, glm::dmat4(1.0)};  // the root's children are blocks of two levels
+  const GreyOctree a = grey_octree_of(
+      universe, scene_of(universe, [](const glm::dvec3& p) { return p.x + 3 * p.y + 7 * p.z; }), -1024);
+  const Expression expression = Expression(Window{a, 0, 3000}) & Sphere{{63, 70, 58}, 31};
+  const GreyOctree result = combine_grey(universe, expression);
+  const Octree voxels = combine(universe, expression);
+  for (int z = 0; z < 128; z += 3)
+    for (int y = 0; y < 128; y += 3)
+      for (int x = 0; x < 128; x += 3) {
+        const glm::ivec3 v(x, y, z);
+        ASSERT_EQ(result.sample(v), voxels.contains(v) ? a.sample(v) : -1024) << x << ' ' << y << ' ' << z;
+      }
+  EXPECT_TRUE(combine(universe, Window{result, 0, 3000}) == voxels);
+}
+
 TEST(CombineGrey, AMovedWindowIsInterpolatedAndWholeVoxelsAreExact) {
   const Universe universe{5, glm::dmat4(1.0)};
   const GreyOctree a = grey_octree_of(
