@@ -201,9 +201,7 @@ TEST(Boolean, TheShiftThatIsToldIsTheShiftThatWasMadeAndAShareOfTheExtent) {
       << findings;
   const double step_mm = 0x1p-18 * std::sqrt(4 * 4 + 4 * 4 + 2 * 2);
   const double steps = glm::length(shift) / step_mm;
-  EXPECT_NEAR(steps, std::round(steps), 0.05);
-  EXPECT_GE(std::round(steps), 1.0);
-  EXPECT_LE(std::round(steps), 3.0);
+  EXPECT_NEAR(steps, 1.0, 0.05) << "the first shift does";
   double nearest = std::numeric_limits<double>::infinity();
   const glm::dvec3 corner = at + glm::dvec3(4, 4, 2) + shift;
   for (const auto v : united.mesh.vertices()) {

@@ -51,6 +51,13 @@ TEST(CombineShares, EveryOperationBracketsTheClosedFormsShares) {
   }
 }
 
+TEST(CombineShares, WhatNoneTouchesIsNotTouched) {
+  const ShareOperand a = operand(Sphere{{-8.1, 0.2, 0.3}, 5.3}), b = operand(Sphere{{7.7, 1.4, -0.6}, 4.4});
+  EXPECT_TRUE(combine_shares(a.symbol & b.symbol, {a, b}).touching.is_empty());
+  EXPECT_TRUE(combine_shares(a.symbol - b.symbol, {a, b}).touching == a.shares.touching);
+  EXPECT_TRUE(combine_shares(a.symbol - b.symbol, {a, b}).inside == a.shares.inside);
+}
+
 TEST(CombineShares, AnAxisAlignedCutLosesItsCoherentError) {
   // Half a voxel of the cut's area is what a binary count may be off by.
   const ShareOperand ball = operand(Sphere{{0.1, 0.2, 0.3}, 10.2});
