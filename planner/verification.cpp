@@ -113,8 +113,9 @@ std::string quantities(const Shares& shares) {
       "is allowed, red: a failure</th><th class=\"n\">compared</th><th class=\"n\">median</th><th "
       "class=\"n\">99 %</th><th class=\"n\">largest</th><th></th></tr>";
   for (const auto& [quantity, all] : shares) {
-    const auto at = [&](double part) {
-      return share_text(all[static_cast<std::size_t>(part * static_cast<double>(all.size() - 1))].value);
+    const auto at = [&sorted = all](double part) {
+      return share_text(
+          sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))].value);
     };
     const verify::Agreement worst =
         std::max_element(all.begin(), all.end(), [](const Share& a, const Share& b) {
