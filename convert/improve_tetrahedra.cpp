@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace octotomy::convert {
@@ -76,8 +77,10 @@ class Improving {
         goal_(std::cos(glm::radians(options.min_dihedral_deg))),
         stars_(tetrahedra),
         given_mm_(tetrahedra.nodes_mm),
-        on_surface_(tetrahedra.nodes_mm.size(), false) {
-    for (const std::uint32_t v : tetrahedra.boundary_nodes) on_surface_[v] = true;
+        play_mm_(tetrahedra.nodes_mm.size(), std::numeric_limits<double>::infinity()) {
+    for (std::size_t i = 0; i < tetrahedra.boundary_nodes.size(); ++i)
+      play_mm_[tetrahedra.boundary_nodes[i]] =
+          options.surface_play_mm.empty() ? 0.0 : options.surface_play_mm[i];
   }
 
   void run() {
@@ -128,18 +131,17 @@ class Improving {
   }
 
   bool mend(std::uint32_t v) {
-    const bool bound = on_surface_[v];
-    if (bound && options_.surface_play_mm <= 0.0) return false;
+    if (play_mm_[v] <= 0.0) return false;
     glm::dvec3 best_mm = t_.nodes_mm[v];
     double best = flattest(v, best_mm);
     const double before = best;
     const double length = shortest_edge(v);
-    double step = bound ? std::min(0.5 * length, options_.surface_play_mm) : 0.5 * length;
+    double step = std::min(0.5 * length, play_mm_[v]);
     for (int halvings = 0; halvings < 7 && best > goal_;) {
       glm::dvec3 found_mm = best_mm;
       for (const glm::dvec3& direction : directions()) {
         const glm::dvec3 p_mm = best_mm + step * direction;
-        if (bound && glm::distance(p_mm, given_mm_[v]) > options_.surface_play_mm) continue;
+        if (glm::distance(p_mm, given_mm_[v]) > play_mm_[v]) continue;
         if (const double f = flattest(v, p_mm); f < best) {
           best = f;
           found_mm = p_mm;
@@ -160,7 +162,7 @@ class Improving {
   double goal_;
   Stars stars_;
   std::vector<glm::dvec3> given_mm_;
-  std::vector<bool> on_surface_;
+  std::vector<double> play_mm_;  ///< from where it was given; no bound within
 };
 
 }  // namespace
@@ -168,7 +170,11 @@ class Improving {
 void improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
   if (!(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 60.0))
     throw std::invalid_argument("improve: the dihedral angle to reach must be 0 to 60 degrees");
-  if (!(options.surface_play_mm >= 0.0) || options.rounds < 1)
+  if (!options.surface_play_mm.empty() && options.surface_play_mm.size() != tetrahedra.boundary_nodes.size())
+    throw std::invalid_argument("improve: the surface's play is one of each of its nodes, or of none");
+  if (std::any_of(options.surface_play_mm.begin(), options.surface_play_mm.end(),
+                  [](double play_mm) { return !(play_mm >= 0.0); }) ||
+      options.rounds < 1)
     throw std::invalid_argument("improve: the surface's play must not be negative, rounds at least 1");
   Improving(tetrahedra, options).run();
 }

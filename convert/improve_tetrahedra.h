@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stop_token>
+#include <vector>
 
 #include "convert/tetrahedra.h"
 
@@ -9,9 +10,11 @@ namespace octotomy::convert {
 
 struct ImproveOptions {
   double min_dihedral_deg = 8.0;  ///< what every element is to have, 0..60; better ones are left alone
-  double surface_play_mm = 0.0;   ///< how far nodes of the surface may move; 0: they stay, to the bit
-  int rounds = 10;                ///< over all elements that fall short, at least 1
-  std::stop_token stop;           ///< ends it between rounds
+  /// How far each node of the surface may move, in the order of `boundary_nodes`; empty: they stay, to the
+  /// bit.
+  std::vector<double> surface_play_mm{};
+  int rounds = 10;         ///< over all elements that fall short, at least 1
+  std::stop_token stop{};  ///< ends it between rounds
 };
 
 /// Moves nodes so that the flattest elements get larger smallest dihedral angles. No element's

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
 // octotomy-mesh3: one run of CGAL's Mesh_3, fed and read by mesher_process.cpp. The request's switches are
-// Mesh3Sizes, its hole points are the points of the surface to start from. Nothing ends by the clock, so that
-// the answer is the same on any machine.
-// Source: Alliez, Jamin, Rineau, Tayeb, Tournois, Yvinec, "3D mesh generation", CGAL user and reference
-// manual 5.5; slivers are exuded as Cheng et al. do, "Sliver exudation", JACM 47(5), 2000.
+// Mesh3Sizes, its hole points are the points of the surface to start from, its sizes one a point. Nothing
+// ends by the clock, so that the answer is the same on any machine. Source: Alliez, Jamin, Rineau, Tayeb,
+// Tournois, Yvinec, "3D mesh generation", CGAL user and reference manual 5.5; slivers are exuded as Cheng et
+// al. do, "Sliver exudation", JACM 47(5), 2000.
 
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
@@ -61,6 +64,59 @@ using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Se
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
+/// The size at a point: that of the surface's nearest point, between its triangle's corners by the
+/// barycentric coordinates, and more with the way from there.
+class SizeField {
+ public:
+  using FT = Kernel::FT;
+
+  SizeField(const Surface& surface, const std::vector<double>& sizes_mm, double grading)
+      : surface_(surface), sizes_mm_(sizes_mm), grading_(grading) {
+    tree_.insert(faces(surface).first, faces(surface).second, surface);
+    tree_.accelerate_distance_queries();
+  }
+
+  FT operator()(const Point& p) const {
+    const auto [foot, face] = tree_.closest_point_and_primitive(p);
+    double size_mm = 0.0;
+    double weights = 0.0;
+    auto halfedge = surface_.halfedge(face);
+    for (int i = 0; i < 3; ++i, halfedge = surface_.next(halfedge)) {
+      // Of the corner across from the halfedge's side, by the area that the foot leaves of the triangle.
+      const Point& a = surface_.point(surface_.source(halfedge));
+      const Point& b = surface_.point(surface_.target(halfedge));
+      const double weight = std::sqrt(CGAL::squared_area(a, b, foot));
+      size_mm += weight * sizes_mm_[surface_.target(surface_.next(halfedge))];
+      weights += weight;
+    }
+    // Of a triangle without area the corner that it has anyhow.
+    size_mm = weights > 0.0 ? size_mm / weights : sizes_mm_[surface_.target(halfedge)];
+    return size_mm + grading_ * std::sqrt(CGAL::squared_distance(p, foot));
+  }
+
+ private:
+  using Primitive = CGAL::AABB_face_graph_triangle_primitive<Surface>;
+  using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+
+  const Surface& surface_;
+  const std::vector<double>& sizes_mm_;
+  double grading_;
+  Tree tree_;
+};
+
+/// A share of the field, up to a length, as Mesh_3 asks for it.
+struct Sizes {
+  using FT = Kernel::FT;
+  const SizeField& field;
+  double share = 1.0;
+  double most_mm = std::numeric_limits<double>::infinity();
+
+  template <typename Index>
+  FT operator()(const Point& p, int /*dimension*/, const Index& /*index*/) const {
+    return std::min(share * field(p), most_mm);
+  }
+};
+
 bool read_points(std::uint64_t count, std::vector<Point>& points) {
   if (count > std::numeric_limits<std::uint32_t>::max() / 3) return false;
   std::vector<double> coordinates(3 * count);
@@ -108,15 +164,35 @@ bool write_answer(int file, const Complex& complex) {
          write_all(file, corners.data(), corners.size() * sizeof(std::uint32_t));
 }
 
-Complex mesh(const Surface& surface, const std::vector<Point>& start, const Mesh3Sizes& sizes) {
+struct Request {
+  Mesh3Sizes sizes;
+  Surface surface;
+  std::vector<Point> start;
+  std::vector<double> sizes_mm;
+};
+
+bool read(const MesherRequest& request, Request& read) {
+  if (std::sscanf(request.switches.data(), convert::mesh3_switches, &read.sizes.distance, &read.sizes.cell,
+                  &read.sizes.grading, &read.sizes.max_cell_mm) != 4 ||
+      request.sizes != request.points || !read_surface(request, read.surface) ||
+      !read_points(request.holes, read.start))
+    return false;
+  read.sizes_mm.resize(request.sizes);
+  return read_all(read.sizes_mm.data(), read.sizes_mm.size() * sizeof(double));
+}
+
+Complex mesh(const Request& request) {
   namespace p = CGAL::parameters;
   // Angles of a facet and radius-edge ratios of a cell that CGAL's manual calls safe to ask for.
   constexpr double facet_angle_deg = 25.0;
   constexpr double radius_edge = 2.5;
-  const Domain domain(surface, start);
-  const Criteria criteria(p::facet_angle = facet_angle_deg, p::facet_size = sizes.facet_mm,
-                          p::facet_distance = sizes.distance_mm, p::cell_radius_edge_ratio = radius_edge,
-                          p::cell_size = sizes.cell_mm);
+  const Domain domain(request.surface, request.start);
+  const Mesh3Sizes& sizes = request.sizes;
+  const SizeField field(request.surface, request.sizes_mm, sizes.grading);
+  const Criteria criteria(p::facet_angle = facet_angle_deg, p::facet_size = Sizes{field},
+                          p::facet_distance = Sizes{field, sizes.distance},
+                          p::cell_radius_edge_ratio = radius_edge,
+                          p::cell_size = Sizes{field, sizes.cell, sizes.max_cell_mm});
   // No limit of time, not even CGAL's own. Flatter elements than this are exuded; moving nodes mends the
   // rest.
   constexpr double sliver_deg = 10.0;
@@ -130,14 +206,9 @@ int main() {
   const convert::MesherTask task = convert::begin_mesher();
   int status = 0;
   try {
-    Mesh3Sizes sizes;
-    Surface surface;
-    std::vector<Point> start;
-    if (std::sscanf(task.request.switches.data(), convert::mesh3_switches, &sizes.facet_mm,
-                    &sizes.distance_mm, &sizes.cell_mm) != 3 ||
-        !read_surface(task.request, surface) || !read_points(task.request.holes, start))
-      convert::end_mesher(convert::mesher_exit_protocol);
-    if (!write_answer(task.answer_file, mesh(surface, start, sizes))) status = convert::mesher_exit_protocol;
+    Request request;
+    if (!read(task.request, request)) convert::end_mesher(convert::mesher_exit_protocol);
+    if (!write_answer(task.answer_file, mesh(request))) status = convert::mesher_exit_protocol;
   } catch (const std::bad_alloc&) {
     status = convert::mesher_exit_memory;
   } catch (const std::exception& error) {

@@ -9,12 +9,13 @@
 #include "brep/distance.h"
 #include "convert/deck.h"
 #include "convert/improve_tetrahedra.h"
+#include "convert/surface_sizes.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until the surface's facets and the cells are of the sizes asked
 //   for, and exudes slivers.
 // 2 Its surface's nodes lie on the given one, so that its facets are chords of it: it has lost volume where
 //   the surface is convex and won some where it is hollow. Every node of the surface moves along its normal
-//   by the same length, the loss by the area; that is microns, or something else was lost.
+//   by the same share of what a facet's middle may be off by there; no more, or something else was lost.
 // 3 Flat elements are mended by moving nodes (improve_tetrahedra.h).
 // 4 The answer is believed where the volumes are positive and their sum is the surface's, and where each
 //   point of the given surface has the new one near: a thin spike that no cell met would be lost in silence.
@@ -28,27 +29,15 @@ std::string text_of(double value) {
   return text.str();
 }
 
-double length_of_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  return glm::length(glm::cross(b - a, c - a));
+/// The largest tetrahedron in a ball of radius R has a volume of 8 R^3 / (9 sqrt 3).
+double radius_of_volume(double mm3) {
+  return std::cbrt(mm3 * 9.0 * std::sqrt(3.0) / 8.0);
 }
 
-/// The radius of the ball about a triangle of the surface's mean area, were it equilateral.
-double mean_triangle_radius_mm(const MesherInput& surface) {
-  double area_mm2 = 0.0;
-  for (const auto& [a, b, c] : surface.triangles)
-    area_mm2 += 0.5 * length_of_normal(surface.points_mm[a], surface.points_mm[b], surface.points_mm[c]);
-  const double side_mm =
-      std::sqrt(area_mm2 / static_cast<double>(surface.triangles.size()) * 4.0 / std::sqrt(3.0));
-  return side_mm / std::sqrt(3.0);
-}
-
-Mesh3Sizes sizes_of(const MesherInput& surface, const TetOptions& options) {
-  const double radius_mm = mean_triangle_radius_mm(surface);
-  Mesh3Sizes sizes{1.5 * radius_mm, 0.1 * radius_mm, 4.0 * radius_mm};
-  // The largest tetrahedron in a ball of radius R has a volume of 8 R^3 / (9 sqrt 3).
-  if (options.limit_volume)
-    sizes.cell_mm = std::min(sizes.cell_mm, std::cbrt(options.max_volume_mm3 * 9.0 * std::sqrt(3.0) / 8.0));
-  return sizes;
+/// The radius of the ball about a facet, by the side of the given triangles there: half as much again as
+/// that of the ball about an equilateral triangle of that side.
+double facet_radius_by_side() {
+  return 1.5 / std::sqrt(3.0);
 }
 
 brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
@@ -58,27 +47,63 @@ brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
   return surface;
 }
 
-/// Pass 2. Answers the length, positive outward. The volume is the area's integral to first order, so twice
-/// gives it to second.
-double restore_volume(Tetrahedra& tetrahedra, double volume_mm3) {
-  const brep::Triangles surface = surface_of(tetrahedra);
-  double moved_mm = 0.0;
-  for (int i = 0; i < 2; ++i) {
-    std::vector<glm::dvec3> normals(tetrahedra.nodes_mm.size(), glm::dvec3(0.0));
-    double area_mm2 = 0.0;
-    for (const auto& [a, b, c] : surface.faces) {
-      const auto& p = tetrahedra.nodes_mm;
-      const glm::dvec3 normal = glm::cross(p[b] - p[a], p[c] - p[a]);
-      area_mm2 += 0.5 * glm::length(normal);
-      for (const std::uint32_t v : {a, b, c}) normals[v] += normal;
+/// The normals of the surface's nodes, not of unit length, and the areas of their triangles' thirds.
+struct NodeNormals {
+  std::vector<glm::dvec3> normals;
+  std::vector<double> area_mm2;
+};
+NodeNormals node_normals(const Tetrahedra& tetrahedra, const brep::Triangles& surface) {
+  NodeNormals at{std::vector<glm::dvec3>(tetrahedra.nodes_mm.size(), glm::dvec3(0.0)),
+                 std::vector<double>(tetrahedra.nodes_mm.size(), 0.0)};
+  const auto& p = tetrahedra.nodes_mm;
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 normal = glm::cross(p[b] - p[a], p[c] - p[a]);
+    for (const std::uint32_t v : {a, b, c}) {
+      at.normals[v] += normal;
+      at.area_mm2[v] += glm::length(normal) / 6.0;
     }
-    const double by_mm = (volume_mm3 - quality(tetrahedra).volume_mm3) / area_mm2;
-    for (const std::uint32_t v : tetrahedra.boundary_nodes)
-      if (const double length = glm::length(normals[v]); length > 0.0)
-        tetrahedra.nodes_mm[v] += by_mm / length * normals[v];
-    moved_mm += by_mm;
   }
-  return moved_mm;
+  return at;
+}
+
+/// Takes nodes back to where they were, those of elements that are turned over, until none is.
+void take_back(Tetrahedra& tetrahedra, const std::vector<glm::dvec3>& before_mm) {
+  for (bool turned = true; turned;) {
+    turned = false;
+    for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t) {
+      if (six_volumes(corners_mm(tetrahedra, t)) > 0.0) continue;
+      for (const std::uint32_t v : tetrahedra.tets[t]) {
+        turned = turned || tetrahedra.nodes_mm[v] != before_mm[v];
+        tetrahedra.nodes_mm[v] = before_mm[v];
+      }
+    }
+  }
+}
+
+/// Pass 2: moves nodes of the surface, in the order of `boundary_nodes`, by a share of their play. Answers
+/// the share, positive outward. The volume is the area's integral to first order, and some nodes are taken
+/// back, so that it takes some rounds.
+double restore_volume(Tetrahedra& tetrahedra, double volume_mm3, const std::vector<double>& play_mm) {
+  constexpr int rounds = 4;
+  const brep::Triangles surface = surface_of(tetrahedra);
+  double moved = 0.0;
+  for (int i = 0; i < rounds; ++i) {
+    const NodeNormals at = node_normals(tetrahedra, surface);
+    double whole_play_mm3 = 0.0;
+    for (std::size_t k = 0; k < play_mm.size(); ++k)
+      whole_play_mm3 += play_mm[k] * at.area_mm2[tetrahedra.boundary_nodes[k]];
+    const double by = (volume_mm3 - quality(tetrahedra).volume_mm3) / whole_play_mm3;
+    moved += by;
+    if (!(std::abs(moved) <= 1.0)) return moved;
+    const std::vector<glm::dvec3> before_mm = tetrahedra.nodes_mm;
+    for (std::size_t k = 0; k < play_mm.size(); ++k) {
+      const std::uint32_t v = tetrahedra.boundary_nodes[k];
+      if (const double length = glm::length(at.normals[v]); length > 0.0)
+        tetrahedra.nodes_mm[v] += by * play_mm[k] / length * at.normals[v];
+    }
+    take_back(tetrahedra, before_mm);
+  }
+  return moved;
 }
 
 struct Apart {
@@ -96,13 +121,8 @@ std::vector<glm::dvec3> boundary_mm(const Tetrahedra& tetrahedra) {
   return points;
 }
 
-/// A point of the given surface further than this from the new one stands on a detail that was lost: one
-/// smaller than a facet.
-double lost_mm(const Mesh3Sizes& sizes) {
-  return sizes.facet_mm;
-}
-/// The share of the given surface's points that may be lost: thin spikes and needles of noise are, a part of
-/// the bone is not.
+/// The share of the given surface's triangles that may be lost: needles of noise are, a part of the bone is
+/// not.
 constexpr double lost_share() {
   return 1e-3;
 }
@@ -112,40 +132,76 @@ constexpr double lost_share() {
 struct Try {
   MesherOutcome outcome;
   Tetrahedra made;
-  std::vector<glm::dvec3> lost;
+  std::vector<std::uint32_t> lost;
 };
 
+/// What is given, and the sizes of facets at its points that every try is held to.
+struct Given {
+  const MesherInput& surface;
+  double volume_mm3 = 0.0;
+  std::vector<double> facet_mm;
+  brep::SurfaceTree tree;
+};
+
+/// How far each node of the surface may be moved: as far as a facet's middle may lie from the surface there.
+std::vector<double> play_mm(const Given& given, const std::vector<brep::Foot>& feet) {
+  std::vector<double> play;
+  for (const brep::Foot& foot : feet) {
+    double facet_mm = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      facet_mm +=
+          foot.weights[static_cast<int>(i)] * given.facet_mm[given.surface.triangles[foot.face].at(i)];
+    play.push_back(Mesh3Sizes{}.distance * facet_mm);
+  }
+  return play;
+}
+
+/// Points of the given surface further from the new one than a facet is large: they stand on a detail that
+/// is gone. Why that is too much, or none: the tip of a spike or needle may go, triangles may not.
+std::optional<std::string> lost_details(Try& t, const Given& given, const std::vector<double>& to_own_mm) {
+  std::vector<bool> is_lost(to_own_mm.size(), false);
+  for (std::uint32_t i = 0; i < to_own_mm.size(); ++i)
+    if (to_own_mm[i] > given.facet_mm[i]) {
+      t.lost.push_back(i);
+      is_lost[i] = true;
+    }
+  const auto& triangles = given.surface.triangles;
+  const auto gone = std::count_if(triangles.begin(), triangles.end(), [&](const auto& corners) {
+    return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_lost[v]; });
+  });
+  if (static_cast<double>(gone) <= lost_share() * static_cast<double>(triangles.size())) return std::nullopt;
+  const glm::dvec3& first_mm = given.surface.points_mm[t.lost.front()];
+  return "loses details: " + std::to_string(gone) + " of " + std::to_string(triangles.size()) +
+         " triangles of the given surface are further from its own than a facet is large, the first at " +
+         text_of(first_mm.x) + ", " + text_of(first_mm.y) + ", " + text_of(first_mm.z) + " mm";
+}
+
 /// Passes 2 to 4 over what Mesh_3 made.
-std::optional<std::string> finish(Try& t, const MesherInput& given, double surface_mm3,
-                                  const Mesh3Sizes& sizes, const TetOptions& options) {
-  const double moved_mm = restore_volume(t.made, surface_mm3);
-  if (!(std::abs(moved_mm) <= sizes.distance_mm))
-    return "misses the volume by as much as " + text_of(moved_mm) + " mm of the whole surface";
+std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& options) {
   ImproveOptions improving;
+  improving.surface_play_mm = play_mm(given, given.tree.feet(boundary_mm(t.made)));
+  const double moved = restore_volume(t.made, given.volume_mm3, improving.surface_play_mm);
+  if (!(std::abs(moved) <= 1.0))
+    return "misses the volume by " + text_of(std::abs(moved)) +
+           " times what its facets' distances from the surface allow";
   improving.min_dihedral_deg = options.min_dihedral_deg;
-  improving.surface_play_mm = sizes.distance_mm;
   improving.stop = options.stop;
   improve(t.made, improving);
 
-  const std::vector<double> to_own_mm = brep::SurfaceTree(surface_of(t.made)).distances_mm(given.points_mm);
-  for (std::size_t i = 0; i < to_own_mm.size(); ++i)
-    if (to_own_mm[i] > lost_mm(sizes)) t.lost.push_back(given.points_mm[i]);
+  const std::vector<double> to_own_mm =
+      brep::SurfaceTree(surface_of(t.made)).distances_mm(given.surface.points_mm);
   const Apart own = apart(to_own_mm);
-  const Apart nodes = apart(
-      brep::SurfaceTree(brep::Triangles{given.points_mm, given.triangles}).distances_mm(boundary_mm(t.made)));
+  const Apart nodes = apart(given.tree.distances_mm(boundary_mm(t.made)));
   t.made.findings.push_back("the surface is Mesh_3's own: its nodes are within " + text_of(nodes.max_mm) +
                             " mm of the given one, 95 % of whose points are within " + text_of(own.p95_mm) +
                             " mm of it, all within " + text_of(own.max_mm) + " mm");
-  if (static_cast<double>(t.lost.size()) > lost_share() * static_cast<double>(to_own_mm.size()))
-    return "loses details: " + std::to_string(t.lost.size()) + " of " + std::to_string(to_own_mm.size()) +
-           " points of the given surface are over " + text_of(lost_mm(sizes)) +
-           " mm from its own, the first at " + text_of(t.lost.front().x) + ", " + text_of(t.lost.front().y) +
-           ", " + text_of(t.lost.front().z) + " mm";
-  return fault_in_filling(t.made, surface_mm3, own_surface_volume_tolerance());
+  if (std::optional<std::string> lost = lost_details(t, given, to_own_mm)) return lost;
+  return fault_in_filling(t.made, given.volume_mm3, own_surface_volume_tolerance());
 }
 
-Try try_once(const MesherInput& surface, double surface_mm3, const Mesh3Sizes& sizes,
-             const TetOptions& options) {
+Try try_once(const MesherInput& surface, const Given& given, const TetOptions& options) {
+  Mesh3Sizes sizes;
+  if (options.limit_volume) sizes.max_cell_mm = radius_of_volume(options.max_volume_mm3);
   Try t;
   t.outcome = run_mesh3(surface, sizes, {options.time_limit, options.memory_limit_bytes, options.stop});
   if (!t.outcome.failure && t.outcome.tetrahedra.empty())
@@ -155,7 +211,7 @@ Try try_once(const MesherInput& surface, double surface_mm3, const Mesh3Sizes& s
   t.made.tets = std::move(t.outcome.tetrahedra);
   t.made.boundary_nodes = boundary_nodes(t.made.tets);
   t.made.method = "Mesh_3";
-  if (const std::optional<std::string> fault = finish(t, surface, surface_mm3, sizes, options))
+  if (const std::optional<std::string> fault = finish(t, given, options))
     t.outcome.failure = "CGAL's Mesh_3 " + *fault;
   return t;
 }
@@ -163,12 +219,16 @@ Try try_once(const MesherInput& surface, double surface_mm3, const Mesh3Sizes& s
 }  // namespace
 
 Mesh3Filling fill_by_mesh3(const MesherInput& given, double surface_mm3, const TetOptions& options) {
-  constexpr int tries = 3;
+  constexpr int tries = 4;
+  SurfaceSizes sizes(given, Mesh3Sizes{}.grading);
+  sizes.scale(facet_radius_by_side());
+  const Given first{given, surface_mm3, sizes.at_points_mm(),
+                    brep::SurfaceTree(brep::Triangles{given.points_mm, given.triangles})};
   MesherInput surface = given;
-  Mesh3Sizes sizes = sizes_of(surface, options);
   Mesh3Filling filling;
   for (int i = 0; i < tries; ++i) {
-    Try t = try_once(surface, surface_mm3, sizes, options);
+    surface.sizes_mm = sizes.at_points_mm();
+    Try t = try_once(surface, first, options);
     if (!t.outcome.failure) {
       filling.tetrahedra = std::move(t.made);
       return filling;
@@ -176,9 +236,9 @@ Mesh3Filling fill_by_mesh3(const MesherInput& given, double surface_mm3, const T
     filling.findings.push_back(*t.outcome.failure);
     // Smaller elements help where something was missed, not where time or memory was short.
     if (t.made.tets.empty()) break;
-    surface.holes_mm.insert(surface.holes_mm.end(), t.lost.begin(), t.lost.end());
-    sizes.distance_mm *= 0.5;
-    sizes.facet_mm *= 0.7;
+    if (t.lost.empty()) sizes.scale(0.7);
+    sizes.halve(t.lost);
+    for (const std::uint32_t v : sizes.thinned(t.lost)) surface.holes_mm.push_back(given.points_mm[v]);
   }
   return filling;
 }

@@ -13,13 +13,13 @@ constexpr double own_surface_volume_tolerance() {
 }
 
 /// Fills a closed surface by CGAL's Mesh_3, run in a process of its own, which puts a surface of its own in
-/// place: triangles as large as the given ones are on average, within a tenth of their circumradius. Slivers
-/// are mended by moving nodes, those of the surface by no more than that; the volume is made the given one's
-/// by moving the surface along its normals. Points of `surface.holes_mm` are where it starts, some on every
-/// connected part. Tried again finer, and from there, where more
-/// of the surface is lost than thin spikes. Guaranteed of an
-/// answer: all volumes positive, total volume within own_surface_volume_tolerance(). Its findings say how far
-/// the surfaces lie apart. An answer without failure has tetrahedra.
+/// place: triangles as large as the given ones are about there (surface_sizes.h), within a tenth of their
+/// circumradius. Slivers are mended by moving nodes, those of the surface by no more than that; the volume is
+/// made the given one's by moving the surface along its normals. Points of `surface.holes_mm` are where it
+/// starts, some on every connected part. Where more of the surface is lost than thin spikes, it is tried
+/// again with finer elements about there, and from there. Guaranteed of an answer: all volumes positive,
+/// total volume within own_surface_volume_tolerance(). Its findings say how far the surfaces lie apart. An
+/// answer without failure has tetrahedra.
 struct Mesh3Filling {
   std::optional<Tetrahedra> tetrahedra;
   std::vector<std::string> findings;  ///< tries that came to nothing, then what is to be said of the answer

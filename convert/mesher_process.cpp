@@ -210,6 +210,7 @@ void write_request(const MemoryFile& file, const MesherInput& input, const std::
   request.points = input.points_mm.size();
   request.triangles = input.triangles.size();
   request.holes = input.holes_mm.size();
+  request.sizes = input.sizes_mm.size();
   request.memory_limit_bytes = limits.memory_bytes;
   // The clock on the wall decides; processor time is the net below it, should this process be gone by then.
   request.cpu_limit_seconds =
@@ -218,6 +219,7 @@ void write_request(const MemoryFile& file, const MesherInput& input, const std::
   file.write_all(input.points_mm.data(), input.points_mm.size() * sizeof(glm::dvec3));
   file.write_all(input.triangles.data(), input.triangles.size() * sizeof(input.triangles[0]));
   file.write_all(input.holes_mm.data(), input.holes_mm.size() * sizeof(glm::dvec3));
+  file.write_all(input.sizes_mm.data(), input.sizes_mm.size() * sizeof(double));
   file.rewind();
 }
 
@@ -289,7 +291,8 @@ MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, 
 
 MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits) {
   std::array<char, std::tuple_size_v<decltype(MesherRequest::switches)>> text{};
-  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g", sizes.facet_mm, sizes.distance_mm, sizes.cell_mm);
+  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g %.9g", sizes.distance, sizes.cell, sizes.grading,
+                sizes.max_cell_mm);
   return run({"octotomy-mesh3", "CGAL's Mesh_3"}, input, text.data(), limits);
 }
 

@@ -13,18 +13,19 @@
 namespace octotomy::convert {
 
 // What passes between the library and octotomy-tetgen or octotomy-mesh3, the executables beside it: a
-// MesherRequest, then points, triangles and hole points on its standard input; a MesherAnswer, then points
-// and tetrahedra on its standard output. Both sides are always of one build, so the bytes are the machine's
-// own.
+// MesherRequest, then points, triangles, hole points and sizes on its standard input; a MesherAnswer, then
+// points and tetrahedra on its standard output. Both sides are always of one build, so the bytes are the
+// machine's own.
 
 struct MesherRequest {
-  static constexpr std::uint64_t this_version = 0x6f63746f74657431ULL;
+  static constexpr std::uint64_t this_version = 0x6f63746f74657432ULL;
 
   std::uint64_t version = this_version;
   std::array<char, 64> switches{};
   std::uint64_t points = 0;     ///< three doubles each
   std::uint64_t triangles = 0;  ///< three uint32 each
   std::uint64_t holes = 0;      ///< three doubles each
+  std::uint64_t sizes = 0;      ///< a double each
   std::uint64_t memory_limit_bytes = 0;
   std::uint64_t cpu_limit_seconds = 0;
 };
@@ -46,6 +47,7 @@ struct MesherInput {
   std::vector<glm::dvec3> points_mm;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<glm::dvec3> holes_mm;
+  std::vector<double> sizes_mm{};  ///< Mesh_3's alone: at each point, the radius of a facet's ball, at most
 };
 struct MesherLimits {
   std::chrono::milliseconds time{60000};
@@ -61,13 +63,15 @@ struct MesherOutcome {
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;
 };
 
-/// What Mesh_3 is asked for, in place of switches.
+/// What Mesh_3 is asked for, in place of switches: lengths by the size that the input has at the nearest
+/// point of the surface, or interpolates there, and that grows with the way from it.
 struct Mesh3Sizes {
-  double facet_mm = 1.0;     ///< radius of the ball about a facet of the surface, at most
-  double distance_mm = 0.1;  ///< of a facet's middle from the surface, at most
-  double cell_mm = 2.0;      ///< circumradius of a tetrahedron, at most
+  double distance = 1.0 / 15.0;  ///< of a facet's middle from the surface, at most, by the size
+  double cell = 8.0 / 3.0;       ///< circumradius of a tetrahedron, at most, by the size
+  double grading = 0.3;          ///< by which a size grows over a length
+  double max_cell_mm = 1e9;      ///< circumradius of any tetrahedron, at most
 };
-inline constexpr const char* mesh3_switches = "%lg %lg %lg";
+inline constexpr const char* mesh3_switches = "%lg %lg %lg %lg";
 
 /// Runs TetGen once, in a process of its own. Throws std::runtime_error where that process cannot be started.
 MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, const MesherLimits& limits);

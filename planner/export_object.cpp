@@ -11,6 +11,7 @@
 #include "brep/decimate.h"
 #include "brep/write_mesh.h"
 #include "convert/deck.h"
+#include "convert/fill_cavities.h"
 #include "convert/octree_tetrahedra.h"
 #include "convert/tetrahedralise.h"
 #include "planner/attach.h"
@@ -63,6 +64,17 @@ brep::Mesh bodies_of(const brep::Mesh& mesh, Filling& filling) {
   return bodies < parts.size() ? brep::part_of(mesh, faces) : mesh;
 }
 
+/// The mesh without cavities smaller than a voxel, which are noise at the threshold; what is filled is a
+/// finding.
+brep::Mesh filled(const brep::Mesh& mesh, const voxel::Universe& universe, Filling& filling) {
+  const glm::dvec3 edge_mm = universe.lattice().spacing_mm();
+  convert::Filled made = convert::fill_cavities(mesh, edge_mm.x * edge_mm.y * edge_mm.z);
+  if (made.cavities > 0)
+    filling.findings.push_back(std::to_string(made.cavities) + " cavities smaller than a voxel, " +
+                               grouped(made.volume_mm3, 3) + " mm\u00b3 together, are filled");
+  return std::move(made.mesh);
+}
+
 /// A third of the voxel's edge: no more than sampling leaves unknown of a surface anyhow.
 double simplification_mm(const voxel::Universe& universe) {
   const glm::dvec3 edge_mm = universe.lattice().spacing_mm();
@@ -112,11 +124,12 @@ Filling fallback_of(const Object& object, const std::string& why) {
 
 Filling filling_of(const Object& object) {
   Filling filling;
-  const brep::Mesh bodies = bodies_of(*object.mesh, filling);
+  const voxel::Universe& universe = object.octree.universe();
+  const brep::Mesh bodies = filled(bodies_of(*object.mesh, filling), universe, filling);
   convert::TetOptions options;
   options.mesher = convert::Mesher::Best;
-  filling.tetrahedra = convert::tetrahedralise(
-      simplified(bodies, simplification_mm(object.octree.universe()), filling), options);
+  filling.tetrahedra =
+      convert::tetrahedralise(simplified(bodies, simplification_mm(universe), filling), options);
   for (const std::string& finding : filling.tetrahedra.findings) filling.findings.push_back(finding);
   return filling;
 }
@@ -134,6 +147,14 @@ void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQualit
                                  {"max_dihedral_deg", quality.max_dihedral_deg},
                                  {"max_radius_edge", quality.max_radius_edge},
                                  {"min_volume_mm3", quality.min_volume_mm3}};
+}
+
+/// That the flattest element is not fit for a solver; none where it is.
+std::optional<std::string> unfit(const Filling& filling) {
+  const double least_deg = convert::quality(filling.tetrahedra).min_dihedral_deg;
+  if (least_deg >= convert::fit_dihedral_deg()) return std::nullopt;
+  return filling.tetrahedra.method + " left dihedral angles down to " + grouped(least_deg, 2) +
+         " degrees, under the " + grouped(convert::fit_dihedral_deg(), 0) + " that are fit for a solver";
 }
 
 /// The object's filling, or why there is none.
@@ -155,6 +176,13 @@ void export_tetrahedra(const Object& object, const ExportStep& step, const std::
   if (!fillings.contains(key)) {
     const Stopwatch watch(timings, "tetrahedralise");
     std::variant<Filling, std::string> filled = fill(object);
+    if (auto* filling = std::get_if<Filling>(&filled))
+      if (const std::optional<std::string> why = unfit(*filling)) {
+        if (step.fallback && !object.octree.is_empty())
+          filled = *why;
+        else
+          filling->findings.push_back(*why + "; \"fallback\": true takes the voxels' elements");
+      }
     if (const auto* why = std::get_if<std::string>(&filled)) {
       if (!step.fallback || object.octree.is_empty()) {
         exported.findings.push_back(

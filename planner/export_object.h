@@ -38,8 +38,9 @@ using Fillings = std::map<std::string, Filling>;
 /// voxels as a label map of the universe. Times are added to "tetrahedralise" and "write".
 ///
 /// Tetrahedra fill the mesh's parts down to a hundredth of the largest: the crumbs that a cut leaves are no
-/// bodies to load and hold. The surface is simplified before, within a third of a voxel. What is left out is
-/// a finding with its volume, and so are several bodies in one deck.
+/// bodies to load and hold. Cavities smaller than a voxel are filled and the surface is simplified before,
+/// within a third of a voxel. What is left out is a finding with its volume, and so are several bodies in one
+/// deck.
 ///
 /// Where the step attaches the object to others, tetrahedra are an octree's (attach.h), and the deck ends in
 /// the static step in which those hold and move it.
@@ -48,7 +49,8 @@ using Fillings = std::map<std::string, Filling>;
 ///
 /// An object that is empty, has no mesh, or that no mesher can fill is not written; a finding says why. Where
 /// the step allows the fallback, its voxels' tetrahedra are written instead, marked by `fallback` in the
-/// details and by a finding.
+/// details and by a finding; and so they are where the meshers leave dihedral angles that are not fit for a
+/// solver (convert::fit_dihedral_deg()), which else is a finding.
 /// Throws what the writers throw where the disk does not take it.
 Exported export_object(const Evaluation& evaluation, const std::string& id, const ExportStep& step,
                        const std::filesystem::path& folder, Fillings& fillings, Timings& timings);

@@ -93,7 +93,15 @@ Filled of_mesh(const TetText& text, Timings& timings) {
     try {
       filled.tetrahedra = convert::tetrahedralise(solid, text.options);
       filled.findings = filled.tetrahedra.findings;
-      return filled;
+      const double least_deg = convert::quality(filled.tetrahedra).min_dihedral_deg;
+      if (least_deg >= convert::fit_dihedral_deg()) return filled;
+      why = filled.tetrahedra.method + " left dihedral angles down to " + grouped(least_deg, 2) +
+            " degrees, under the " + grouped(convert::fit_dihedral_deg(), 0) + " that are fit for a solver";
+      if (!text.fallback) {
+        filled.findings.push_back(why + ": mend or simplify the surface, or take --fallback");
+        return filled;
+      }
+      filled.findings.clear();
     } catch (const std::runtime_error& error) {
       if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
       why = error.what();
@@ -259,7 +267,8 @@ void add_tet(Program& program) {
       ->check(between(1.0, 86400.0))
       ->capture_default_str();
   verb.add_flag("--fallback", text->fallback,
-                "Where the meshers fail, or the mesh is no solid, take an octree's elements, marked as such");
+                "Where the meshers fail or leave flat elements, or the mesh is no solid, take an octree's "
+                "elements, marked as such");
   verb.add_option("--voxel", text->voxel_mm, "Edge of their smallest, mm; default: about 200 000 voxels")
       ->check(above_zero());
   verb.add_flag("--msh2", text->msh_2_2, "Write .msh in Gmsh's version 2.2");

@@ -37,7 +37,7 @@ TEST(ImproveTetrahedra, NodesMovedNearlyIntoAFaceComeBackAndTheSurfaceStaysToThe
   ASSERT_LT(spoiled_deg, 5.0);
   ASSERT_GT(quality(before).min_volume_mm3, 0.0);
   Tetrahedra after = before;
-  improve(after, {.min_dihedral_deg = 20.0, .surface_play_mm = 0.0, .rounds = 20, .stop = {}});
+  improve(after, {.min_dihedral_deg = 20.0, .rounds = 20});
   EXPECT_GE(quality(after).min_dihedral_deg, 20.0);
   EXPECT_GT(quality(after).min_volume_mm3, 0.0);
   EXPECT_EQ(after.tets, before.tets);
@@ -59,7 +59,7 @@ TEST(ImproveTetrahedra, NodesOfTheSurfaceMoveByNoMoreThanTheirPlay) {
   EXPECT_EQ(held.nodes_mm, sliver.nodes_mm);
 
   Tetrahedra moved = sliver;
-  improve(moved, {.min_dihedral_deg = 10.0, .surface_play_mm = 0.05, .rounds = 10, .stop = {}});
+  improve(moved, {.min_dihedral_deg = 10.0, .surface_play_mm = std::vector<double>(4, 0.05)});
   EXPECT_GT(quality(moved).min_dihedral_deg, 2.0 * quality(sliver).min_dihedral_deg);
   for (std::size_t v = 0; v < 4; ++v) EXPECT_LE(glm::distance(moved.nodes_mm[v], sliver.nodes_mm[v]), 0.05);
 }
@@ -67,7 +67,9 @@ TEST(ImproveTetrahedra, NodesOfTheSurfaceMoveByNoMoreThanTheirPlay) {
 TEST(ImproveTetrahedra, WhatIsGoodEnoughIsLeftAloneToTheBit) {
   const Tetrahedra before = good_ball();
   Tetrahedra after = before;
-  improve(after, {.min_dihedral_deg = 25.0, .surface_play_mm = 1.0, .rounds = 3, .stop = {}});
+  improve(after, {.min_dihedral_deg = 25.0,
+                  .surface_play_mm = std::vector<double>(after.boundary_nodes.size(), 1.0),
+                  .rounds = 3});
   EXPECT_EQ(after.nodes_mm, before.nodes_mm);
 }
 
@@ -87,9 +89,11 @@ TEST(ImproveTetrahedra, AnElementInsideOutIsTurnedRightWhereItsNodesAllowIt) {
 
 TEST(ImproveTetrahedra, RefusesOptionsOutOfRange) {
   Tetrahedra t = good_ball();
-  EXPECT_THROW(improve(t, {.min_dihedral_deg = 61.0, .stop = {}}), std::invalid_argument);
-  EXPECT_THROW(improve(t, {.surface_play_mm = -1.0, .stop = {}}), std::invalid_argument);
-  EXPECT_THROW(improve(t, {.rounds = 0, .stop = {}}), std::invalid_argument);
+  EXPECT_THROW(improve(t, {.min_dihedral_deg = 61.0}), std::invalid_argument);
+  EXPECT_THROW(improve(t, {.surface_play_mm = std::vector<double>(t.boundary_nodes.size(), -1.0)}),
+               std::invalid_argument);
+  EXPECT_THROW(improve(t, {.surface_play_mm = {1.0}}), std::invalid_argument);
+  EXPECT_THROW(improve(t, {.rounds = 0}), std::invalid_argument);
 }
 
 }  // namespace

@@ -76,8 +76,8 @@ TEST(MesherProcess, LeftAloneTheSameWorkIsDone) {
 TEST(MesherProcess, Mesh3OutOfMemorySaysHowMuchItHad) {
   MesherInput input = long_work();
   for (std::size_t i = 0; i < input.points_mm.size(); i += 1000) input.holes_mm.push_back(input.points_mm[i]);
-  const Mesh3Sizes fine{0.3, 0.01, 0.5};
-  const MesherOutcome outcome = run_mesh3(input, fine, {std::chrono::seconds(60), 100ULL << 20, {}});
+  input.sizes_mm.assign(input.points_mm.size(), 0.3);
+  const MesherOutcome outcome = run_mesh3(input, {}, {std::chrono::seconds(60), 100ULL << 20, {}});
   ASSERT_TRUE(outcome.failure);
   EXPECT_NE(outcome.failure->find("memory limit of 100 MiB"), std::string::npos) << *outcome.failure;
 }
@@ -86,6 +86,7 @@ TEST(MesherProcess, Mesh3SaysWhichTriangleItCannotJoin) {
   MesherInput input = long_work();
   input.triangles.push_back(input.triangles.front());
   input.holes_mm = {input.points_mm.front()};
+  input.sizes_mm.assign(input.points_mm.size(), 1.0);
   const MesherOutcome outcome = run_mesh3(input, {}, {});
   ASSERT_TRUE(outcome.failure);
   EXPECT_NE(

@@ -7,6 +7,7 @@
 
 #include "planner/export_object.h"
 #include "planner/random_plan.h"
+#include "tests/convert/surfaces.h"
 #include "tests/planner/ball_scan.h"
 #include "verify/phantom.h"
 
@@ -63,6 +64,7 @@ TEST(FragmentDecks, RandomFragmentsOfTheHeadAllBecomeDecksWithoutAnInvertedEleme
     const Exported deck = deck_of(plan, evaluation, folder / "out");
     ASSERT_TRUE(deck.written) << testing::PrintToString(deck.findings);
     EXPECT_GT(deck.details["quality"]["min_volume_mm3"].get<double>(), 0.0);
+    EXPECT_GE(deck.details["quality"]["min_dihedral_deg"].get<double>(), convert::fit_dihedral_deg());
     EXPECT_GT(std::filesystem::file_size(folder / "out" / "piece.vtu"), 0U);
     const bool fallback = deck.details["fallback"].get<bool>();
     EXPECT_EQ(fallback, deck.details["method"] == "octree");
@@ -102,6 +104,32 @@ TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAl
   std::ifstream inp(folder / "out/ball.inp");
   const std::string header(std::istreambuf_iterator<char>(inp), {});
   EXPECT_NE(header.find("fallback: it has no mesh"), std::string::npos) << "the deck itself says so";
+}
+
+TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
+  const tests::TestFolder folder;
+  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
+  const auto plan = [&](const std::string& fallback) {
+    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "deck", "do": "export", "object": "ball", "path": "ball.inp")" +
+                          fallback + " } ] }",
+                      folder.path());
+  };
+  const Plan with = plan(R"(, "fallback": true)"), without = plan("");
+  Evaluation evaluation = evaluate(with);
+  // A plate of a hundredth of a voxel: no mesher can make good elements of it.
+  brep::Mesh plate = brep::mesh_of(tests::box({-10, -10, 0}, {10, 10, 0.01}));
+  evaluation.objects.front().mesh = std::make_shared<const brep::Mesh>(plate);
+  const Exported kept = deck_of(without, evaluation, folder / "out");
+  ASSERT_TRUE(kept.written) << testing::PrintToString(kept.findings);
+  EXPECT_LT(kept.details["quality"]["min_dihedral_deg"].get<double>(), convert::fit_dihedral_deg());
+  EXPECT_NE(kept.findings.back().find("fit for a solver"), std::string::npos) << kept.findings.back();
+  const Exported deck = deck_of(with, evaluation, folder / "out");
+  ASSERT_TRUE(deck.written);
+  EXPECT_TRUE(deck.details["fallback"].get<bool>());
+  EXPECT_NE(deck.findings.front().find("fit for a solver"), std::string::npos) << deck.findings.front();
+  EXPECT_GT(deck.details["quality"]["min_dihedral_deg"].get<double>(), convert::fit_dihedral_deg());
 }
 
 TEST(FragmentDecks, RegionsShareTheirNodesAndOverlapsBelongToTheFirst) {
