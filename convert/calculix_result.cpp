@@ -72,24 +72,43 @@ void read_nodes(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
   }
 }
 
+/// Eight linear tetrahedra that fill one of second order, by its ten nodes: one at each corner, and four
+/// about the line between the middles of the first and the last side. Neighbours divide their common face
+/// alike.
+constexpr std::array<std::array<std::uint8_t, 4>, 8> linear_parts{{{0, 4, 6, 7},
+                                                                   {1, 5, 4, 8},
+                                                                   {2, 6, 5, 9},
+                                                                   {3, 7, 9, 8},
+                                                                   {4, 9, 5, 6},
+                                                                   {4, 9, 6, 7},
+                                                                   {4, 9, 7, 8},
+                                                                   {4, 9, 8, 5}}};
+
 /// The elements' block: two lines each, of type and nodes.
 void read_elements(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
   constexpr std::size_t type_at = node_at + node_width, type_width = 5;
-  constexpr long linear_tetrahedron = 3;
+  constexpr long linear_tetrahedron = 3, quadratic_tetrahedron = 6;
   while (line.next(in) && !line.begins(" -3")) {
     line.need(type_at + type_width);
-    if (line.whole(type_at, type_width) != linear_tetrahedron)
-      refuse(line.path, line.number, "is no linear tetrahedron");
+    const long type = line.whole(type_at, type_width);
+    if (type != linear_tetrahedron && type != quadratic_tetrahedron)
+      refuse(line.path, line.number, "is no tetrahedron");
+    const std::size_t count = type == linear_tetrahedron ? 4 : 10;
     if (!line.next(in)) refuse(line.path, line.number, "ends within an element");
-    line.need(node_at + 4 * node_width);
-    std::array<std::uint32_t, 4> tet{};
-    for (std::size_t i = 0; i < 4; ++i) {
+    line.need(node_at + count * node_width);
+    std::array<std::uint32_t, 10> nodes{};
+    for (std::size_t i = 0; i < count; ++i) {
       const long node = line.whole(node_at + i * node_width, node_width);
       if (node < 1 || static_cast<std::size_t>(node) > tetrahedra.nodes_mm.size())
         refuse(line.path, line.number, "node " + std::to_string(node) + " is none of the file's");
-      tet[i] = static_cast<std::uint32_t>(node - 1);
+      nodes.at(i) = static_cast<std::uint32_t>(node - 1);
     }
-    tetrahedra.tets.push_back(tet);
+    if (type == linear_tetrahedron) {
+      tetrahedra.tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
+      continue;
+    }
+    for (const auto& [a, b, c, d] : linear_parts)
+      tetrahedra.tets.push_back({nodes.at(a), nodes.at(b), nodes.at(c), nodes.at(d)});
   }
 }
 

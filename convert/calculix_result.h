@@ -18,13 +18,13 @@ std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem:
                                                           std::size_t node_count);
 
 /// A deck as CalculiX's .frd result holds it, solved: nodes to the six digits of that file, linear
-/// tetrahedra, and the displacements of the last step.
+/// tetrahedra, of which eight stand for one of second order, and the displacements of the last step.
 struct SolvedDeck {
   Tetrahedra tetrahedra;
   std::vector<glm::dvec3> displacement_mm;
 };
 /// Throws std::runtime_error with path and line as read_displacements() does, and where an element is no
-/// linear tetrahedron, stands on a node that the file lacks, or a node has no displacement. Memory: that of
+/// tetrahedron, stands on a node that the file lacks, or a node has no displacement. Memory: that of
 /// the nodes and elements that the file holds.
 SolvedDeck read_solved_deck(const std::filesystem::path& frd);
 

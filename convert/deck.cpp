@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "convert/deck_format.h"
+#include "convert/second_order.h"
 
 namespace octotomy::convert {
 namespace {
@@ -50,6 +51,13 @@ void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path
       refuse(path, "the surface names node " + std::to_string(node) + " of " + std::to_string(nodes));
   for (const glm::dvec3& p : tetrahedra.nodes_mm)
     if (!std::isfinite(p.x + p.y + p.z)) refuse(path, "a node is not finite");
+  if (!tetrahedra.mid_nodes.empty() && tetrahedra.mid_nodes.size() != tetrahedra.tets.size())
+    refuse(path, "nodes on sides are given of " + std::to_string(tetrahedra.mid_nodes.size()) + " of " +
+                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+  for (const auto& middles : tetrahedra.mid_nodes)
+    for (const std::uint32_t node : middles)
+      if (node >= nodes)
+        refuse(path, "a side names node " + std::to_string(node) + " of " + std::to_string(nodes));
   if (!tetrahedra.region_of_tet.empty() && tetrahedra.region_of_tet.size() != tetrahedra.tets.size())
     refuse(path, "regions are given of " + std::to_string(tetrahedra.region_of_tet.size()) + " of " +
                      std::to_string(tetrahedra.tets.size()) + " tetrahedra");
@@ -213,6 +221,20 @@ std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const Elem
   }
 }
 
+std::array<std::uint32_t, 3> middles_of(const Tetrahedra& tetrahedra, const ElementFace& face) {
+  const auto& middles = tetrahedra.mid_nodes[face.tet];
+  switch (face.opposite) {
+    case 0:
+      return {middles[1], middles[5], middles[4]};
+    case 1:
+      return {middles[3], middles[5], middles[2]};
+    case 2:
+      return {middles[0], middles[4], middles[3]};
+    default:
+      return {middles[2], middles[1], middles[0]};
+  }
+}
+
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra) {
   const std::vector<Sided> all = sided_faces(tetrahedra);
   std::vector<ElementFace> faces;
@@ -250,6 +272,12 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
   check_nodes(tetrahedra, path);
   check_materials(tetrahedra, path, options);
   check_sets(tetrahedra, path, options);
+  if (options.second_order) {
+    if (parts.size() > 1) refuse(path, "TetGen's files are of linear elements: choose another deck");
+    const SecondOrder made = second_order(tetrahedra, options);
+    write_deck(made.tetrahedra, path, made.options);
+    return;
+  }
   std::vector<std::unique_ptr<Unfinished>> unfinished;
   for (const Part& part : parts) {
     unfinished.push_back(std::make_unique<Unfinished>(part.path));
@@ -286,6 +314,22 @@ std::uint32_t region_count(const Tetrahedra& tetrahedra) {
 
 std::uint32_t region_of(const Tetrahedra& tetrahedra, std::size_t tet) {
   return tetrahedra.region_of_tet.empty() ? 0 : tetrahedra.region_of_tet[tet];
+}
+
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t tet) {
+  std::vector<std::uint32_t> nodes(tetrahedra.tets[tet].begin(), tetrahedra.tets[tet].end());
+  if (!tetrahedra.mid_nodes.empty())
+    nodes.insert(nodes.end(), tetrahedra.mid_nodes[tet].begin(), tetrahedra.mid_nodes[tet].end());
+  return nodes;
+}
+
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementFace& face) {
+  const auto corners = corners_of(tetrahedra, face);
+  std::vector<std::uint32_t> nodes(corners.begin(), corners.end());
+  if (tetrahedra.mid_nodes.empty()) return nodes;
+  const auto middles = middles_of(tetrahedra, face);
+  nodes.insert(nodes.end(), middles.begin(), middles.end());
+  return nodes;
 }
 
 std::uint32_t material_of(const DeckOptions& options, std::size_t tet) {

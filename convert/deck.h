@@ -62,18 +62,20 @@ struct DeckOptions {
   std::vector<ElementField> fields;  ///< written where the format has a place for them
   std::vector<std::string> notes;    ///< lines of the header: versions, plan, quality
   bool msh_2_2 = false;              ///< .msh in Gmsh's version 2.2 instead of 4.1
+  /// Ten-node tetrahedra in place of four-node ones (second_order.h): stiff by far less in bending and near
+  /// incompressibility, with some seven times the nodes.
+  bool second_order = false;
 };
 
 /// Writes a deck as its extension says, beside and renamed into place:
-/// .inp  Abaqus and CalculiX: C3D4 elements, sets of elements by region and material, sets of nodes,
-/// surfaces,
-///       materials with their sections, and the static step of what is prescribed.
+/// .inp  Abaqus and CalculiX: C3D4 or C3D10 elements, sets of elements by region and material, sets of
+///       nodes, surfaces, materials with their sections, and the static step of what is prescribed.
 /// .feb  FEBio 4: the same, prescribed displacements as maps over node sets.
 /// .vtu  VTK unstructured grid of tetrahedra, appended raw data; points in double precision, the nodes of the
 ///       surface marked by the point array `surface`, sets by arrays of their own; regions, materials and
 ///       fields by elements.
 /// .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a physical surface a surface.
-/// .node TetGen's .node, .ele and .face, the last with the whole surface.
+/// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only.
 /// Throws std::runtime_error with path and reason; std::invalid_argument for another extension, no
 /// tetrahedra, an element without a node, sets and lists that do not fit, or options that a solver would
 /// refuse.
@@ -95,5 +97,7 @@ struct Interface {
 std::vector<Interface> interfaces(const Tetrahedra& tetrahedra);
 /// Corners of a face, counter-clockwise seen from outside its element.
 std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const ElementFace& face);
+/// The nodes in the middle of a face's sides, from its first corner on. Precondition: there are such nodes.
+std::array<std::uint32_t, 3> middles_of(const Tetrahedra& tetrahedra, const ElementFace& face);
 
 }  // namespace octotomy::convert

@@ -39,6 +39,10 @@ void write_list(const std::vector<std::uint32_t>& entries, std::ostream& out) {
   }
 }
 
+void write_on_one_line(const std::vector<std::uint32_t>& nodes, std::ostream& out) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) out << (i > 0 ? "," : "") << std::size_t{nodes[i]} + 1;
+}
+
 void write_mesh(const Tetrahedra& tetrahedra, const DeckOptions& options, const std::vector<Block>& blocks,
                 std::ostream& out) {
   out << "<Mesh>\n<Nodes name=\"" << options.element_set << "\">\n";
@@ -49,11 +53,12 @@ void write_mesh(const Tetrahedra& tetrahedra, const DeckOptions& options, const 
   }
   out << "</Nodes>\n";
   for (const Block& block : blocks) {
-    out << "<Elements type=\"tet4\" name=\"" << block.name << "\">\n";
+    out << "<Elements type=\"" << (tetrahedra.mid_nodes.empty() ? "tet4" : "tet10") << "\" name=\""
+        << block.name << "\">\n";
     for (const std::uint32_t t : block.tets) {
-      const auto& [a, b, c, d] = tetrahedra.tets[t];
-      out << "<elem id=\"" << std::size_t{t} + 1 << "\">" << std::size_t{a} + 1 << "," << std::size_t{b} + 1
-          << "," << std::size_t{c} + 1 << "," << std::size_t{d} + 1 << "</elem>\n";
+      out << "<elem id=\"" << std::size_t{t} + 1 << "\">";
+      write_on_one_line(nodes_of(tetrahedra, t), out);
+      out << "</elem>\n";
     }
     out << "</Elements>\n";
   }
@@ -65,12 +70,13 @@ void write_mesh(const Tetrahedra& tetrahedra, const DeckOptions& options, const 
   };
   node_set(options.surface_node_set, tetrahedra.boundary_nodes);
   for (const NodeSet& set : options.node_sets) node_set(set.name, set.nodes);
+  const char* triangle = tetrahedra.mid_nodes.empty() ? "tri3" : "tri6";
   for (const DeckSurface& surface : options.surfaces) {
     out << "<Surface name=\"" << surface.name << "\">\n";
     for (std::size_t i = 0; i < surface.faces.size(); ++i) {
-      const auto [a, b, c] = corners_of(tetrahedra, surface.faces[i]);
-      out << "<tri3 id=\"" << i + 1 << "\">" << std::size_t{a} + 1 << "," << std::size_t{b} + 1 << ","
-          << std::size_t{c} + 1 << "</tri3>\n";
+      out << "<" << triangle << " id=\"" << i + 1 << "\">";
+      write_on_one_line(nodes_of(tetrahedra, surface.faces[i]), out);
+      out << "</" << triangle << ">\n";
     }
     out << "</Surface>\n";
   }

@@ -4,12 +4,14 @@
 #include <array>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "convert/deck.h"
 
 namespace octotomy::convert {
 
-// One writer a format, each to a stream that deck.cpp opens, checks and renames into place.
+// One writer a format, each to a stream that deck.cpp opens, checks and renames into place. Elements are of
+// second order where they have nodes on their sides.
 
 void write_inp(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
 void write_feb(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
@@ -30,6 +32,10 @@ std::string region_name(std::uint32_t region);
 /// How many regions there are: one more than the largest number.
 std::uint32_t region_count(const Tetrahedra& tetrahedra);
 std::uint32_t region_of(const Tetrahedra& tetrahedra, std::size_t tet);
+/// An element's nodes as most formats have them: corners, then the middles of sides, if any.
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t tet);
+/// A face's nodes: corners, then the middles of sides, if any.
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementFace& face);
 std::uint32_t material_of(const DeckOptions& options, std::size_t tet);
 /// Text that cannot end a comment or break a line.
 std::string xml_escaped(const std::string& text);

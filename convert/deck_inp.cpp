@@ -54,13 +54,12 @@ void write_nodes_and_elements(const Tetrahedra& tetrahedra, const DeckOptions& o
                       deck_number(p.y).data(), deck_number(p.z).data());
     out.write(line.data(), length);
   }
-  out << "*ELEMENT, TYPE=C3D4, ELSET=" << options.element_set << "\n";
+  out << "*ELEMENT, TYPE=" << (tetrahedra.mid_nodes.empty() ? "C3D4" : "C3D10")
+      << ", ELSET=" << options.element_set << "\n";
   for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t) {
-    const auto& [a, b, c, d] = tetrahedra.tets[t];
-    const int length =
-        std::snprintf(line.data(), line.size(), "%zu, %zu, %zu, %zu, %zu\n", t + 1, std::size_t{a} + 1,
-                      std::size_t{b} + 1, std::size_t{c} + 1, std::size_t{d} + 1);
-    out.write(line.data(), length);
+    out << t + 1;
+    for (const std::uint32_t node : nodes_of(tetrahedra, t)) out << ", " << std::size_t{node} + 1;
+    out << "\n";
   }
 }
 

@@ -10,8 +10,19 @@
 namespace octotomy::convert {
 namespace {
 
-constexpr int type_triangle = 2;
-constexpr int type_tetrahedron = 4;
+int triangle_type(const Tetrahedra& tetrahedra) {
+  return tetrahedra.mid_nodes.empty() ? 2 : 9;
+}
+int tetrahedron_type(const Tetrahedra& tetrahedra) {
+  return tetrahedra.mid_nodes.empty() ? 4 : 11;
+}
+
+/// Gmsh has the middles of the last two sides the other way round.
+std::vector<std::uint32_t> nodes_by_gmsh(const Tetrahedra& tetrahedra, std::size_t tet) {
+  std::vector<std::uint32_t> nodes = nodes_of(tetrahedra, tet);
+  if (!tetrahedra.mid_nodes.empty()) std::swap(nodes[8], nodes[9]);
+  return nodes;
+}
 
 std::vector<std::vector<std::uint32_t>> tets_by_region(const Tetrahedra& tetrahedra) {
   std::vector<std::vector<std::uint32_t>> regions(region_count(tetrahedra));
@@ -34,8 +45,8 @@ void write_point(const glm::dvec3& p, std::ostream& out) {
   out << full_number(p.x).data() << " " << full_number(p.y).data() << " " << full_number(p.z).data();
 }
 
-void write_corners(const auto& corners, std::ostream& out) {
-  for (const std::uint32_t corner : corners) out << " " << std::size_t{corner} + 1;
+void write_nodes(const std::vector<std::uint32_t>& nodes, std::ostream& out) {
+  for (const std::uint32_t node : nodes) out << " " << std::size_t{node} + 1;
   out << "\n";
 }
 
@@ -86,18 +97,19 @@ void write_4_1(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
   std::size_t number = 0;
   for (std::size_t s = 0; s < options.surfaces.size(); ++s) {
     if (options.surfaces[s].faces.empty()) continue;
-    out << "2 " << s + 1 << " " << type_triangle << " " << options.surfaces[s].faces.size() << "\n";
+    out << "2 " << s + 1 << " " << triangle_type(tetrahedra) << " " << options.surfaces[s].faces.size()
+        << "\n";
     for (const ElementFace& face : options.surfaces[s].faces) {
       out << ++number;
-      write_corners(corners_of(tetrahedra, face), out);
+      write_nodes(nodes_of(tetrahedra, face), out);
     }
   }
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (regions[r].empty()) continue;
-    out << "3 " << r + 1 << " " << type_tetrahedron << " " << regions[r].size() << "\n";
+    out << "3 " << r + 1 << " " << tetrahedron_type(tetrahedra) << " " << regions[r].size() << "\n";
     for (const std::uint32_t t : regions[r]) {
       out << ++number;
-      write_corners(tetrahedra.tets[t], out);
+      write_nodes(nodes_by_gmsh(tetrahedra, t), out);
     }
   }
   out << "$EndElements\n";
@@ -118,13 +130,13 @@ void write_2_2(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
   std::size_t number = 0;
   for (std::size_t s = 0; s < options.surfaces.size(); ++s)
     for (const ElementFace& face : options.surfaces[s].faces) {
-      out << ++number << " " << type_triangle << " 2 " << s + 1 << " " << s + 1;
-      write_corners(corners_of(tetrahedra, face), out);
+      out << ++number << " " << triangle_type(tetrahedra) << " 2 " << s + 1 << " " << s + 1;
+      write_nodes(nodes_of(tetrahedra, face), out);
     }
   for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t) {
     const std::uint32_t region = region_of(tetrahedra, t) + 1;
-    out << ++number << " " << type_tetrahedron << " 2 " << region << " " << region;
-    write_corners(tetrahedra.tets[t], out);
+    out << ++number << " " << tetrahedron_type(tetrahedra) << " 2 " << region << " " << region;
+    write_nodes(nodes_by_gmsh(tetrahedra, t), out);
   }
   out << "$EndElements\n";
 }

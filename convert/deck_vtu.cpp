@@ -11,6 +11,7 @@ namespace octotomy::convert {
 namespace {
 
 constexpr std::uint8_t vtk_tetra = 10;
+constexpr std::uint8_t vtk_quadratic_tetra = 24;
 
 /// Blocks of appended data, each behind its size in bytes; offsets count from behind the '_'.
 class Appended {
@@ -44,13 +45,15 @@ class Appended {
 void write_vtu(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out) {
   std::vector<std::int64_t> connectivity;
   std::vector<std::int64_t> offsets;
-  connectivity.reserve(4 * tetrahedra.tets.size());
+  connectivity.reserve((tetrahedra.mid_nodes.empty() ? 4 : 10) * tetrahedra.tets.size());
   offsets.reserve(tetrahedra.tets.size());
-  for (const std::array<std::uint32_t, 4>& tet : tetrahedra.tets) {
-    connectivity.insert(connectivity.end(), tet.begin(), tet.end());
+  for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t) {
+    const std::vector<std::uint32_t> nodes = nodes_of(tetrahedra, t);
+    connectivity.insert(connectivity.end(), nodes.begin(), nodes.end());
     offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
   }
-  const std::vector<std::uint8_t> types(tetrahedra.tets.size(), vtk_tetra);
+  const std::vector<std::uint8_t> types(tetrahedra.tets.size(),
+                                        tetrahedra.mid_nodes.empty() ? vtk_tetra : vtk_quadratic_tetra);
   const auto marked = [&](const std::vector<std::uint32_t>& nodes) {
     std::vector<std::uint8_t> marks(tetrahedra.nodes_mm.size(), 0);
     for (const std::uint32_t node : nodes) marks[node] = 1;

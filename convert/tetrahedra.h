@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace octotomy::convert {
@@ -14,11 +15,18 @@ namespace octotomy::convert {
 struct Tetrahedra {
   std::vector<glm::dvec3> nodes_mm;
   std::vector<std::array<std::uint32_t, 4>> tets;
+  /// Of elements of second order, the nodes in the middle of their sides, as `sides_of_tet` has them: the
+  /// order of Abaqus, FEBio and VTK. Empty: elements are linear.
+  std::vector<std::array<std::uint32_t, 6>> mid_nodes;
   std::vector<std::uint32_t> boundary_nodes;  ///< nodes on the surface, ascending
   std::vector<std::uint32_t> region_of_tet;   ///< from 0; empty: all are one region
   std::string method;                         ///< what gave it: "TetGen -pYq1.4" or "octree"
   std::vector<std::string> findings;          ///< switches tried before and how they ended
 };
+
+/// The ends of a tetrahedron's sides, by its corners.
+inline constexpr std::array<std::pair<std::uint8_t, std::uint8_t>, 6> sides_of_tet{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// Where the four corners of one lie.
 using TetCorners = std::array<glm::dvec3, 4>;

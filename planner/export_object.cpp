@@ -128,6 +128,8 @@ Filling filling_of(const Object& object) {
   const brep::Mesh bodies = filled(bodies_of(*object.mesh, filling), universe, filling);
   convert::TetOptions options;
   options.mesher = convert::Mesher::Best;
+  // Ten times what a bone of 50 000 triangles takes, as machines are shared and nobody waits for a plan.
+  options.time_limit = std::chrono::minutes(5);
   filling.tetrahedra =
       convert::tetrahedralise(simplified(bodies, simplification_mm(universe), filling), options);
   for (const std::string& finding : filling.tetrahedra.findings) filling.findings.push_back(finding);
@@ -203,6 +205,7 @@ void export_tetrahedra(const Object& object, const ExportStep& step, const std::
   const convert::TetQuality quality = convert::quality(tetrahedra);
   convert::DeckOptions options;
   options.title = object.id + " = " + object.definition;
+  options.second_order = step.second_order;
   options.notes = findings;
   convert::write_deck(tetrahedra, path, options);
   say_written(tetrahedra, quality, exported);
@@ -224,6 +227,7 @@ void export_attached(const Evaluation& evaluation, const Object& object, const E
     exported.details["node_sets"][set.name] = set.nodes.size();
   convert::DeckOptions options;
   options.title = object.id + " = " + object.definition;
+  options.second_order = step.second_order;
   options.materials = {{"SOFT_TISSUE", step.attachment.youngs_modulus_mpa, step.attachment.poisson_ratio}};
   options.node_sets = std::move(attached.node_sets);
   options.surfaces = std::move(attached.surfaces);
@@ -265,6 +269,7 @@ void export_regions(const Evaluation& evaluation, const Object& object, const Ex
                                 " mm\u00b3: what is in several is the first's");
   convert::DeckOptions options;
   options.title = object.id + " = " + object.definition;
+  options.second_order = step.second_order;
   options.notes = exported.findings;
   options.materials.clear();
   std::vector<convert::DeckSurface> free;

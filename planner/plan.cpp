@@ -114,7 +114,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"move", {"id", "do", "object", "translate_mm", "rotate"}},
     {"measure", {"id", "do", "object", "to", "points_mm"}},
     {"export",
-     {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback", "regions"}},
+     {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback", "regions",
+      "order"}},
 };
 
 std::vector<std::string> step_words() {
@@ -317,6 +318,13 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
     if (step.attachment.any())
       refuse(keys.at("fallback"), "what others hold is made of its voxels anyhow: leave it out");
     step.fallback = fallback->get<bool>();
+  }
+  if (const std::optional<double> order = keys.number_if("order")) {
+    if (*order != 1.0 && *order != 2.0)
+      refuse(keys.at("order"), "must be 1, four-node tetrahedra, or 2, ten-node ones");
+    if (step.kind != ExportKind::Tetrahedra || name.ends_with(".node"))
+      refuse(keys.at("order"), "is of tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
+    step.second_order = *order == 2.0;
   }
   step.regions = names_in(keys, "regions");
   for (const std::string& other : step.regions) bound.need_object(keys.at("regions"), other);

@@ -75,6 +75,7 @@ struct ExportStep {
   Attachment attachment{};  ///< of decks
   /// Of decks that nothing holds: where the meshers fail, an octree's elements are taken, and marked.
   bool fallback = false;
+  bool second_order = false;  ///< of decks: ten-node tetrahedra
   /// Of decks: further objects that fill the same deck, each a region of its own, with shared nodes where
   /// they touch.
   std::vector<std::string> regions{};

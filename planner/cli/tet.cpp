@@ -30,6 +30,7 @@ struct TetText {
   std::vector<double> density;
   double seconds = 60.0;
   bool fallback = false, msh_2_2 = false;
+  int order = 1;
   ScanIn scan_in;
 };
 
@@ -135,6 +136,7 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
   convert::DeckOptions deck;
   deck.title = text.in.filename().string();
   deck.msh_2_2 = text.msh_2_2;
+  deck.second_order = text.order == 2;
   deck.surfaces = {{"SKIN", convert::surface_faces(filled.tetrahedra)}};
   deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION,
                 "dihedral angles " + grouped(quality.min_dihedral_deg, 2) + " to " +
@@ -196,6 +198,7 @@ int tet(const Program& program, TetText text) {
                      {"max_dihedral_deg", quality.max_dihedral_deg},
                      {"max_radius_edge", quality.max_radius_edge},
                      {"min_volume_mm3", quality.min_volume_mm3}};
+  json["order"] = text.order;
   json["method"] = tetrahedra.method;
   json["fallback"] = filled.fallback;
   json["materials"] = deck.materials.size();
@@ -271,6 +274,10 @@ void add_tet(Program& program) {
                 "elements, marked as such");
   verb.add_option("--voxel", text->voxel_mm, "Edge of their smallest, mm; default: about 200 000 voxels")
       ->check(above_zero());
+  verb.add_option("--order", text->order,
+                  "1: four-node tetrahedra; 2: ten-node ones, with nodes on their sides")
+      ->check(CLI::IsMember({1, 2}))
+      ->capture_default_str();
   verb.add_flag("--msh2", text->msh_2_2, "Write .msh in Gmsh's version 2.2");
   add_material_options(verb, *text);
   add_scan_options(verb, text->scan_in);

@@ -12,6 +12,7 @@
 #include "convert/calculix_result.h"
 #include "convert/deck.h"
 #include "convert/octree_tetrahedra.h"
+#include "convert/second_order.h"
 #include "convert/tetrahedralise.h"
 #include "tests/convert/surfaces.h"
 #include "voxel/combine.h"
@@ -64,81 +65,6 @@ std::vector<glm::dvec3> displacements_at(const Tetrahedra& t, const std::vector<
   return displacements;
 }
 
-TEST(DeckSolver, ALinearDisplacementOfTheSurfaceIsLinearWithinToABillionthOfAMillimetre) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
-  const Tetrahedra t = graded_block();
-  const auto field = [](const glm::dvec3& p) {
-    return 1e-6 * glm::dvec3(2.0 * p.x - p.y + 0.5 * p.z, p.x + 3.0 * p.y, -p.y + 1.5 * p.z);
-  };
-  DeckOptions options;
-  options.node_sets = {{"SKIN", t.boundary_nodes}};
-  options.prescribed = {{"SKIN", displacements_at(t, t.boundary_nodes, field)}};
-  write_deck(t, folder / "patch.inp", options);
-  ASSERT_EQ(run_in(folder, "ccx patch"), 0) << log_of(folder);
-  const auto solved = read_displacements(folder / "patch.frd", t.nodes_mm.size());
-  std::size_t within = 0;
-  for (std::size_t i = 0; i < solved.size(); ++i) {
-    ASSERT_TRUE(solved[i].has_value()) << "node " << i;
-    EXPECT_LT(glm::distance(*solved[i], field(t.nodes_mm[i])), 1e-9) << "node " << i;
-    within +=
-        !std::binary_search(t.boundary_nodes.begin(), t.boundary_nodes.end(), static_cast<std::uint32_t>(i));
-  }
-  EXPECT_GT(within, 100U);
-}
-
-TEST(DeckSolver, AThickSpheresWallMovesAsTheClosedFormSays) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
-  const double inner = 10.0;
-  const double outer = 20.0;
-  const brep::Triangles shell =
-      tests::together(tests::ball({0, 0, 0}, outer, 4), tests::inside_out(tests::ball({0, 0, 0}, inner, 4)));
-  TetOptions fine;
-  fine.limit_volume = true;
-  fine.max_volume_mm3 = 2.0;
-  const Tetrahedra t = tetrahedralise(brep::mesh_of(shell), fine);
-  // The wall pushed out from within by 0.1 and held without: u = a r + b / r^2, whatever the stiffness.
-  const double b = 0.1 / (1.0 / (inner * inner) - inner / (outer * outer * outer));
-  const double a = -b / (outer * outer * outer);
-  DeckOptions options;
-  options.node_sets = {{"INNER", {}}, {"OUTER", {}}};
-  for (const std::uint32_t node : t.boundary_nodes)
-    options.node_sets[glm::length(t.nodes_mm[node]) < 15.0 ? 0 : 1].nodes.push_back(node);
-  options.prescribed = {
-      {"INNER", displacements_at(t, options.node_sets[0].nodes,
-                                 [](const glm::dvec3& p) { return 0.1 * glm::normalize(p); })},
-      {"OUTER", {}}};
-  write_deck(t, folder / "sphere.inp", options);
-  ASSERT_EQ(run_in(folder, "ccx sphere"), 0) << log_of(folder);
-  const auto solved = read_displacements(folder / "sphere.frd", t.nodes_mm.size());
-  double worst = 0.0;
-  double mean = 0.0;
-  std::size_t middle = 0;
-  for (std::size_t i = 0; i < solved.size(); ++i) {
-    const double r = glm::length(t.nodes_mm[i]);
-    if (r < 12.0 || r > 15.0) continue;
-    const double error = glm::dot(*solved[i], t.nodes_mm[i]) / r / (a * r + b / (r * r)) - 1.0;
-    worst = std::max(worst, std::abs(error));
-    mean += error;
-    ++middle;
-  }
-  ASSERT_GT(middle, 50U);
-  EXPECT_LT(std::abs(mean / static_cast<double>(middle)), 0.025);
-  EXPECT_LT(worst, 0.06);
-}
-
-TEST(DeckSolver, AResultOfAnotherDeckOrOfNoneIsRefused) {
-  const Folder folder;
-  std::ofstream(folder / "a.frd")
-      << "    1C\n -4  DISP        4    1\n -1         9 1.00000E-01 0.00000E+00-2.00000E-01\n -3\n";
-  EXPECT_EQ(read_displacements(folder / "a.frd", 9)[8], glm::dvec3(0.1, 0.0, -0.2));
-  EXPECT_EQ(read_displacements(folder / "a.frd", 9)[3], std::nullopt);
-  EXPECT_THROW(read_displacements(folder / "a.frd", 8), std::runtime_error);
-  std::ofstream(folder / "b.frd") << "    1C\n -4  STRESS      4    1\n -3\n";
-  EXPECT_THROW(read_displacements(folder / "b.frd", 9), std::runtime_error);
-}
-
 /// A deck of two regions, two materials, a set, two surfaces and a field.
 struct Rich {
   Tetrahedra t = graded_block();
@@ -167,6 +93,159 @@ struct Rich {
     options.fields = {{"HU", std::vector<double>(t.tets.size(), 400.0)}};
   }
 };
+
+TEST(DeckSolver, ALinearDisplacementOfTheSurfaceIsLinearWithinToABillionthOfAMillimetre) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  const Tetrahedra t = graded_block();
+  const auto field = [](const glm::dvec3& p) {
+    return 1e-6 * glm::dvec3(2.0 * p.x - p.y + 0.5 * p.z, p.x + 3.0 * p.y, -p.y + 1.5 * p.z);
+  };
+  DeckOptions options;
+  options.node_sets = {{"SKIN", t.boundary_nodes}};
+  options.prescribed = {{"SKIN", displacements_at(t, t.boundary_nodes, field)}};
+  write_deck(t, folder / "patch.inp", options);
+  ASSERT_EQ(run_in(folder, "ccx patch"), 0) << log_of(folder);
+  const auto solved = read_displacements(folder / "patch.frd", t.nodes_mm.size());
+  std::size_t within = 0;
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    ASSERT_TRUE(solved[i].has_value()) << "node " << i;
+    EXPECT_LT(glm::distance(*solved[i], field(t.nodes_mm[i])), 1e-9) << "node " << i;
+    within +=
+        !std::binary_search(t.boundary_nodes.begin(), t.boundary_nodes.end(), static_cast<std::uint32_t>(i));
+  }
+  EXPECT_GT(within, 100U);
+}
+
+/// A deck solved, by node.
+std::vector<glm::dvec3> solved_by_ccx(const Folder& folder, const Tetrahedra& t, const DeckOptions& options) {
+  write_deck(t, folder / "job.inp", options);
+  EXPECT_EQ(run_in(folder, "ccx job"), 0) << log_of(folder);
+  std::vector<glm::dvec3> displacements;
+  for (const auto& each : read_displacements(folder / "job.frd", t.nodes_mm.size()))
+    displacements.push_back(each.value());
+  return displacements;
+}
+
+/// How far nodes are from a field at most when those of the surface are put there.
+double worst_within(const Folder& folder, const Tetrahedra& t,
+                    const std::function<glm::dvec3(const glm::dvec3&)>& field) {
+  DeckOptions options;
+  options.node_sets = {{"SKIN", t.boundary_nodes}};
+  options.prescribed = {{"SKIN", displacements_at(t, t.boundary_nodes, field)}};
+  const std::vector<glm::dvec3> solved = solved_by_ccx(folder, t, options);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < solved.size(); ++i)
+    worst = std::max(worst, glm::distance(solved[i], field(t.nodes_mm[i])));
+  return worst;
+}
+
+TEST(DeckSolver, AQuadraticDisplacementIsQuadraticWithinByTenNodesAndNotByFour) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  const Tetrahedra linear = graded_block();
+  // Without divergence and with a Laplacian of zero: in equilibrium whatever the stiffness.
+  const auto field = [](const glm::dvec3& p) {
+    return 1e-6 * glm::dvec3(p.y * p.y - p.z * p.z + p.y * p.z, p.z * p.z - p.x * p.x,
+                             p.x * p.x - p.y * p.y + 2.0 * p.x * p.y);
+  };
+  EXPECT_LT(worst_within(folder, second_order(linear, {}).tetrahedra, field), 1e-9);
+  EXPECT_GT(worst_within(folder, linear, field), 1e-7);
+}
+
+/// A wall between two balls, pushed out from within by 0.1 and held without: u = a r + b / r^2, whatever the
+/// stiffness.
+struct ThickSphere {
+  static constexpr double inner = 10.0, outer = 20.0, pushed = 0.1;
+  Tetrahedra t;
+  DeckOptions options;
+
+  explicit ThickSphere(double max_volume_mm3) {
+    const brep::Triangles shell = tests::together(tests::ball({0, 0, 0}, outer, 4),
+                                                  tests::inside_out(tests::ball({0, 0, 0}, inner, 4)));
+    TetOptions fine;
+    fine.limit_volume = true;
+    fine.max_volume_mm3 = max_volume_mm3;
+    t = tetrahedralise(brep::mesh_of(shell), fine);
+    options.node_sets = {{"INNER", {}}, {"OUTER", {}}};
+    for (const std::uint32_t node : t.boundary_nodes)
+      options.node_sets[glm::length(t.nodes_mm[node]) < 15.0 ? 0 : 1].nodes.push_back(node);
+    options.prescribed = {
+        {"INNER", displacements_at(t, options.node_sets[0].nodes,
+                                   [](const glm::dvec3& p) { return pushed * glm::normalize(p); })},
+        {"OUTER", {}}};
+  }
+};
+
+struct Errors {
+  double mean = 0.0, worst = 0.0;
+};
+/// Radial displacements in the wall's middle against the closed form, of them.
+Errors errors_of(const std::vector<glm::dvec3>& nodes_mm, const std::vector<glm::dvec3>& solved) {
+  constexpr double inner = ThickSphere::inner, outer = ThickSphere::outer;
+  const double b = ThickSphere::pushed / (1.0 / (inner * inner) - inner / (outer * outer * outer));
+  const double a = -b / (outer * outer * outer);
+  Errors errors;
+  std::size_t middle = 0;
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    const double r = glm::length(nodes_mm[i]);
+    if (r < 12.0 || r > 15.0) continue;
+    const double error = glm::dot(solved[i], nodes_mm[i]) / r / (a * r + b / (r * r)) - 1.0;
+    errors.worst = std::max(errors.worst, std::abs(error));
+    errors.mean += error;
+    ++middle;
+  }
+  EXPECT_GT(middle, 50U);
+  errors.mean = std::abs(errors.mean / static_cast<double>(middle));
+  return errors;
+}
+
+TEST(DeckSolver, AThickSpheresWallMovesAsTheClosedFormSaysAndCloserByTenNodesOfTheSameElements) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  const ThickSphere wall(8.0);
+  const Errors by_four = errors_of(wall.t.nodes_mm, solved_by_ccx(folder, wall.t, wall.options));
+  EXPECT_LT(by_four.mean, 0.025);
+  EXPECT_LT(by_four.worst, 0.12);
+  const SecondOrder finer = second_order(wall.t, wall.options);
+  const Errors by_ten =
+      errors_of(finer.tetrahedra.nodes_mm, solved_by_ccx(folder, finer.tetrahedra, finer.options));
+  // What is left of the mean is the flat triangles', whose middles are prescribed off the balls.
+  EXPECT_LT(by_ten.mean, by_four.mean);
+  EXPECT_LT(by_ten.worst, 0.25 * by_four.worst);
+  RecordProperty("by_four", std::to_string(by_four.mean) + " " + std::to_string(by_four.worst));
+  RecordProperty("by_ten", std::to_string(by_ten.mean) + " " + std::to_string(by_ten.worst));
+}
+
+TEST(DeckSolver, ASolvedDeckOfTenNodesIsReadAsEightLinearPartsEach) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  const Rich rich;
+  DeckOptions options = rich.options;
+  options.second_order = true;
+  write_deck(rich.t, folder / "rich.inp", options);
+  ASSERT_EQ(run_in(folder, "ccx rich"), 0) << log_of(folder);
+  const SolvedDeck solved = read_solved_deck(folder / "rich.frd");
+  EXPECT_EQ(solved.tetrahedra.tets.size(), 8 * rich.t.tets.size());
+  EXPECT_GT(quality(solved.tetrahedra).min_volume_mm3, 0.0);
+  EXPECT_NEAR(quality(solved.tetrahedra).volume_mm3, 12.0 * 11.0 * 11.0, 1e-3);
+  for (std::size_t i = 0; i < solved.displacement_mm.size(); ++i) {
+    if (solved.tetrahedra.nodes_mm[i].z > 11.4) {
+      EXPECT_EQ(solved.displacement_mm[i], glm::dvec3(0.0, 0.0, 0.01));
+    }
+  }
+}
+
+TEST(DeckSolver, AResultOfAnotherDeckOrOfNoneIsRefused) {
+  const Folder folder;
+  std::ofstream(folder / "a.frd")
+      << "    1C\n -4  DISP        4    1\n -1         9 1.00000E-01 0.00000E+00-2.00000E-01\n -3\n";
+  EXPECT_EQ(read_displacements(folder / "a.frd", 9)[8], glm::dvec3(0.1, 0.0, -0.2));
+  EXPECT_EQ(read_displacements(folder / "a.frd", 9)[3], std::nullopt);
+  EXPECT_THROW(read_displacements(folder / "a.frd", 8), std::runtime_error);
+  std::ofstream(folder / "b.frd") << "    1C\n -4  STRESS      4    1\n -3\n";
+  EXPECT_THROW(read_displacements(folder / "b.frd", 9), std::runtime_error);
+}
 
 TEST(Deck, FacesOfTheSurfaceFaceOutward) {
   const Rich rich;
@@ -204,8 +283,9 @@ TEST(DeckSolver, GmshFindsNothingWrongWithEitherVersion) {
   const Folder folder;
   Rich rich;
   rich.options.surfaces.pop_back();  // its faces would stand there twice
-  for (const bool old : {false, true}) {
+  for (const auto& [old, second] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
     rich.options.msh_2_2 = old;
+    rich.options.second_order = second;
     write_deck(rich.t, folder / "rich.msh", rich.options);
     ASSERT_EQ(run_in(folder, "gmsh -check rich.msh"), 0) << log_of(folder);
     EXPECT_EQ(log_of(folder).find("Error"), std::string::npos) << log_of(folder);
@@ -245,6 +325,48 @@ TEST(DeckSolver, MeshioReadsTheSameNodesElementsRegionsAndSets) {
          "mesh = meshio.read('rich.inp')\n"
          "assert len(mesh.point_sets['HIGH']) == "
       << rich.options.node_sets[1].nodes.size() << "\n";
+  EXPECT_EQ(run_in(folder, "/usr/bin/python3 look.py"), 0) << log_of(folder);
+}
+
+TEST(DeckSolver, MeshioFindsNodesInTheMiddleOfTheSidesThatItsOrderSays) {
+  if (std::system("/usr/bin/python3 -c 'import meshio' > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "python3-meshio is not installed";
+  const Folder folder;
+  Rich rich;
+  rich.options.second_order = true;
+  rich.options.surfaces.pop_back();
+  for (const char* name : {"rich.inp", "rich.vtu", "rich.msh", "rich.feb"})
+    write_deck(rich.t, folder / name, rich.options);
+  std::ofstream(folder / "look.py")
+      << "import meshio, numpy\n"
+         "import xml.etree.ElementTree as E\n"
+         "sides = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))\n"
+         "def check(points, cells, name):\n"
+         "    assert len(cells) == "
+      << rich.t.tets.size()
+      << ", name\n"
+         "    for k, (a, b) in enumerate(sides):\n"
+         "        mean = (points[cells[:, a]] + points[cells[:, b]]) / 2\n"
+         "        assert abs(points[cells[:, 4 + k]] - mean).max() < 1e-9, (name, k)\n"
+         "    assert len(set(cells.ravel())) == len(points), name\n"
+         "for name in ('rich.inp', 'rich.vtu', 'rich.msh'):\n"
+         "    mesh = meshio.read(name)\n"
+         "    check(mesh.points, numpy.vstack([c.data for c in mesh.cells if c.type == 'tetra10']), name)\n"
+         "    for c in mesh.cells:\n"
+         "        if c.type == 'triangle6':\n"
+         "            for k in range(3):\n"
+         "                mean = (mesh.points[c.data[:, k]] + mesh.points[c.data[:, (k + 1) % 3]]) / 2\n"
+         "                assert abs(mesh.points[c.data[:, 3 + k]] - mean).max() < 1e-9, (name, k)\n"
+         "root = E.parse('rich.feb').getroot().find('Mesh')\n"
+         "points = numpy.array([[float(x) for x in n.text.split(',')] for n in root.find('Nodes')])\n"
+         "rows = [e for block in root.findall('Elements') for e in block]\n"
+         "assert {b.attrib['type'] for b in root.findall('Elements')} == {'tet10'}\n"
+         "cells = numpy.array([[int(x) - 1 for x in e.text.split(',')] for e in rows])\n"
+         "check(points, cells, 'rich.feb')\n"
+         "faces = numpy.array([[int(x) - 1 for x in e.text.split(',')] for e in root.find('Surface')])\n"
+         "for k in range(3):\n"
+         "    mean = (points[faces[:, k]] + points[faces[:, (k + 1) % 3]]) / 2\n"
+         "    assert abs(points[faces[:, 3 + k]] - mean).max() < 1e-9, k\n";
   EXPECT_EQ(run_in(folder, "/usr/bin/python3 look.py"), 0) << log_of(folder);
 }
 

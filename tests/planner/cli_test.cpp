@@ -528,6 +528,12 @@ TEST_F(CommandLine, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFal
   EXPECT_EQ(Json::parse(marked.out)["fallback"], true);
   EXPECT_NE(marked.out.find("fallback: "), std::string::npos);
   expect_refused(run("tet " + at("ball.off") + " -o " + at("p.stp")), ".feb");
+  const CommandAnswer ten = run("tet " + at("ball.off") + " -o " + at("ten.vtu") + " --order 2 --json");
+  ASSERT_EQ(ten.status, 0) << ten.errors;
+  EXPECT_EQ(Json::parse(ten.out)["order"], 2);
+  EXPECT_GT(std::filesystem::file_size(folder_ / "ten.vtu"),
+            2 * std::filesystem::file_size(folder_ / "ball.vtu"));
+  expect_refused(run("tet " + at("ball.off") + " -o " + at("ten.node") + " --order 2"), "linear");
 }
 
 TEST_F(CommandLine, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {

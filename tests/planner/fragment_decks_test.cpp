@@ -106,6 +106,28 @@ TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAl
   EXPECT_NE(header.find("fallback: it has no mesh"), std::string::npos) << "the deck itself says so";
 }
 
+TEST(FragmentDecks, AStepOfOrderTwoWritesElementsOfTenNodes) {
+  const tests::TestFolder folder;
+  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
+  const auto plan = [&](const std::string& path, const std::string& order) {
+    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "deck", "do": "export", "object": "ball", "path": ")" +
+                          path + R"(", "order": )" + order + " } ] }",
+                      folder.path());
+  };
+  for (const std::string order : {"1", "2"}) {
+    const Plan the = plan("ball.inp", order);
+    ASSERT_TRUE(deck_of(the, evaluate(the), folder / "out").written);
+    std::ifstream inp(folder / "out/ball.inp");
+    const std::string text(std::istreambuf_iterator<char>(inp), {});
+    EXPECT_NE(text.find(order == "1" ? "TYPE=C3D4," : "TYPE=C3D10,"), std::string::npos) << order;
+  }
+  EXPECT_THROW(plan("ball.inp", "3"), std::runtime_error);
+  EXPECT_THROW(plan("ball.stl", "2"), std::runtime_error);
+  EXPECT_THROW(plan("ball.node", "2"), std::runtime_error);
+}
+
 TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
   const tests::TestFolder folder;
   voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
