@@ -166,7 +166,7 @@ TEST_F(SolvedFile, IsRefusedWithItsLineWhereItIsDamaged) {
     }
     return std::string();
   };
-  EXPECT_NE(refusal("    3    0    1", "    6    0    1").find("line 9"), std::string::npos);
+  EXPECT_NE(refusal("    3    0    1", "    4    0    1").find("line 9"), std::string::npos);
   EXPECT_NE(refusal("         3         4\n", "         3         9\n").find("line 10"), std::string::npos);
   EXPECT_NE(refusal(" -1         2 1.0", " -1         7 1.0").find("line 4"), std::string::npos);
   EXPECT_NE(refusal("-5.00000E-01", "NaN         ").find("line 17"), std::string::npos);
