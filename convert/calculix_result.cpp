@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "convert/calculix_result.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -28,14 +29,21 @@ std::ifstream opened(const std::filesystem::path& path) {
   return in;
 }
 
+double bytes_of(const std::filesystem::path& path) {
+  return std::max(1.0, static_cast<double>(std::filesystem::file_size(path)));
+}
+
 /// A line of a result that is read, and where it stands.
 struct Line {
   const std::filesystem::path& path;
+  const voxel::Progress& progress;
+  double bytes = 1.0;  ///< of the file
   std::size_t number = 0;
-  std::string text;
+  std::string text{};
 
   bool next(std::ifstream& in) {
-    ++number;
+    constexpr std::size_t look_every = 16384;  // lines: some milliseconds
+    if (number++ % look_every == 0) progress.at(std::min(1.0, static_cast<double>(in.tellg()) / bytes));
     return static_cast<bool>(std::getline(in, text));
   }
   bool begins(const char* with) const { return text.rfind(with, 0) == 0; }
@@ -115,12 +123,13 @@ void read_elements(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
 }  // namespace
 
 std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,
-                                                          std::size_t node_count) {
+                                                          std::size_t node_count,
+                                                          const voxel::Progress& progress) {
   std::ifstream in = opened(frd);
   std::vector<std::optional<glm::dvec3>> result(node_count);
   bool within = false;
   bool found = false;
-  for (Line line{frd, 0, {}}; line.next(in);) {
+  for (Line line{frd, progress, bytes_of(frd)}; line.next(in);) {
     if (line.begins(" -4")) {
       within = line.text.find("DISP") != std::string::npos;
       found = found || within;
@@ -141,10 +150,10 @@ std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem:
   return result;
 }
 
-SolvedDeck read_solved_deck(const std::filesystem::path& frd) {
+SolvedDeck read_solved_deck(const std::filesystem::path& frd, const voxel::Progress& progress) {
   std::ifstream in = opened(frd);
   SolvedDeck deck;
-  for (Line line{frd, 0, {}}; line.next(in);) {
+  for (Line line{frd, progress, bytes_of(frd)}; line.next(in);) {
     if (line.begins("    2C")) read_nodes(in, line, deck.tetrahedra);
     if (line.begins("    3C")) read_elements(in, line, deck.tetrahedra);
     if (line.begins(" -4")) break;
@@ -152,7 +161,7 @@ SolvedDeck read_solved_deck(const std::filesystem::path& frd) {
   if (deck.tetrahedra.tets.empty()) throw std::runtime_error(frd.string() + ": holds no elements");
   deck.tetrahedra.boundary_nodes = boundary_nodes(deck.tetrahedra.tets);
   deck.tetrahedra.method = "CalculiX";
-  const auto displacements = read_displacements(frd, deck.tetrahedra.nodes_mm.size());
+  const auto displacements = read_displacements(frd, deck.tetrahedra.nodes_mm.size(), progress);
   for (std::size_t node = 0; node < displacements.size(); ++node) {
     if (!displacements[node])
       throw std::runtime_error(frd.string() + ": node " + std::to_string(node + 1) + " has no displacement");

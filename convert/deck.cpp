@@ -96,6 +96,13 @@ void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
       if (face.tet >= tetrahedra.tets.size() || face.opposite > 3)
         refuse(path, "surface " + surface.name + " names a face that is not there");
   }
+  for (const ContactPair& pair : options.contacts) {
+    check_name(path, "contact pair", pair.name);
+    for (const std::string& name : {pair.slave, pair.master})
+      if (std::none_of(options.surfaces.begin(), options.surfaces.end(),
+                       [&](const DeckSurface& surface) { return surface.name == name; }))
+        refuse(path, "contact pair " + pair.name + " names a surface '" + name + "' that is not there");
+  }
   for (const Prescribed& prescribed : options.prescribed) {
     const auto set = std::find_if(options.node_sets.begin(), options.node_sets.end(),
                                   [&](const NodeSet& s) { return s.name == prescribed.node_set; });
@@ -250,19 +257,24 @@ std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra) {
 
 std::vector<Interface> interfaces(const Tetrahedra& tetrahedra) {
   const std::vector<Sided> all = sided_faces(tetrahedra);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<ElementFace>> found;
+  using Sides = std::pair<ElementFace, ElementFace>;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Sides>> found;
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     if (all[i].corners != all[i + 1].corners) continue;
     const std::uint32_t one = region_of(tetrahedra, all[i].face.tet);
     const std::uint32_t other = region_of(tetrahedra, all[i + 1].face.tet);
-    if (one != other)
-      found[{std::min(one, other), std::max(one, other)}].push_back(one < other ? all[i].face
-                                                                                : all[i + 1].face);
+    if (one < other) found[{one, other}].emplace_back(all[i].face, all[i + 1].face);
+    if (other < one) found[{other, one}].emplace_back(all[i + 1].face, all[i].face);
   }
   std::vector<Interface> result;
-  for (auto& [regions, faces] : found) {
-    std::sort(faces.begin(), faces.end(), in_order);
-    result.push_back({regions.first, regions.second, std::move(faces)});
+  for (auto& [regions, sides] : found) {
+    std::sort(sides.begin(), sides.end(),
+              [](const Sides& a, const Sides& b) { return in_order(a.first, b.first); });
+    result.push_back({regions.first, regions.second, {}, {}});
+    for (const auto& [face, opposite] : sides) {
+      result.back().faces.push_back(face);
+      result.back().opposite.push_back(opposite);
+    }
   }
   return result;
 }
@@ -330,6 +342,14 @@ std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementF
   const auto middles = middles_of(tetrahedra, face);
   nodes.insert(nodes.end(), middles.begin(), middles.end());
   return nodes;
+}
+
+double contact_stiffness(const DeckOptions& options) {
+  constexpr double moduli = 10.0;
+  double largest_mpa = 0.0;
+  for (const DeckMaterial& material : options.materials)
+    largest_mpa = std::max(largest_mpa, material.youngs_modulus_mpa);
+  return moduli * largest_mpa;
 }
 
 std::uint32_t material_of(const DeckOptions& options, std::size_t tet) {

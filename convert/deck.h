@@ -41,6 +41,12 @@ struct Prescribed {
   std::vector<glm::dvec3> displacement_mm;
 };
 
+/// Two surfaces that may touch, part and slide without friction, but not pass through each other.
+struct ContactPair {
+  std::string name;
+  std::string slave, master;  ///< surfaces; the slave should be the softer or finer one
+};
+
 /// A value an element, "HU" for example.
 struct ElementField {
   std::string name;
@@ -57,7 +63,8 @@ struct DeckOptions {
   std::vector<std::uint32_t> material_of_tet;  ///< by number in `materials`; empty: all are the first
   std::vector<NodeSet> node_sets;
   std::vector<DeckSurface> surfaces;
-  /// Where there are any, the deck ends in a linear static step.
+  std::vector<ContactPair> contacts;
+  /// Where there are any, the deck ends in a static step, linear but for contact.
   std::vector<Prescribed> prescribed;
   std::vector<ElementField> fields;  ///< written where the format has a place for them
   std::vector<std::string> notes;    ///< lines of the header: versions, plan, quality
@@ -92,6 +99,7 @@ std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
 struct Interface {
   std::uint32_t from = 0, to = 0;  ///< regions, from < to
   std::vector<ElementFace> faces;
+  std::vector<ElementFace> opposite;  ///< the same as faces of the second's elements, in the same order
 };
 /// Interfaces that there are, by their regions; faces in the elements' order. Cost: n log n.
 std::vector<Interface> interfaces(const Tetrahedra& tetrahedra);

@@ -28,6 +28,7 @@ std::vector<Block> blocks_of(const Tetrahedra& tetrahedra, const DeckOptions& op
     block.tets.push_back(static_cast<std::uint32_t>(t));
   }
   std::vector<Block> result;
+  result.reserve(blocks.size());
   for (auto& [key, block] : blocks) result.push_back(std::move(block));
   return result;
 }
@@ -80,6 +81,9 @@ void write_mesh(const Tetrahedra& tetrahedra, const DeckOptions& options, const 
     }
     out << "</Surface>\n";
   }
+  for (const ContactPair& pair : options.contacts)
+    out << "<SurfacePair name=\"" << pair.name << "\"><primary>" << pair.slave << "</primary><secondary>"
+        << pair.master << "</secondary></SurfacePair>\n";
   out << "</Mesh>\n<MeshDomains>\n";
   for (const Block& block : blocks)
     out << "<SolidDomain name=\"" << block.name << "\" mat=\"" << options.materials[block.material].name
@@ -123,6 +127,16 @@ void write_boundary(const DeckOptions& options, std::ostream& out) {
          "</load_controller>\n</LoadData>\n";
 }
 
+void write_contacts(const DeckOptions& options, std::ostream& out) {
+  if (options.contacts.empty()) return;
+  out << "<Contact>\n";
+  for (const ContactPair& pair : options.contacts)
+    out << "<contact name=\"" << pair.name << "\" type=\"sliding-elastic\" surface_pair=\"" << pair.name
+        << "\"><laugon>PENALTY</laugon><auto_penalty>0</auto_penalty><penalty>"
+        << full_number(contact_stiffness(options)).data() << "</penalty></contact>\n";
+  out << "</Contact>\n";
+}
+
 }  // namespace
 
 void write_feb(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out) {
@@ -140,6 +154,7 @@ void write_feb(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
         << full_number(options.materials[m].poisson_ratio).data() << "</v></material>\n";
   out << "</Material>\n";
   write_mesh(tetrahedra, options, blocks, out);
+  write_contacts(options, out);
   if (!options.prescribed.empty()) {
     write_maps(options, out);
     write_boundary(options, out);

@@ -37,6 +37,10 @@ std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t te
 /// A face's nodes: corners, then the middles of sides, if any.
 std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementFace& face);
 std::uint32_t material_of(const DeckOptions& options, std::size_t tet);
+/// Pressure by overclosure of contact, MPa a millimetre: ten times the largest Young's modulus, of the 5 to
+/// 50 that CalculiX's manual advises. A tenth of a millimetre's strain over ten millimetres then overlaps by
+/// under a hundredth of it.
+double contact_stiffness(const DeckOptions& options);
 /// Text that cannot end a comment or break a line.
 std::string xml_escaped(const std::string& text);
 

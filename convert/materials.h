@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "convert/deck.h"
+#include "voxel/progress.h"
 #include "voxel/scene.h"
 
 namespace octotomy::convert {
@@ -50,6 +51,7 @@ struct MaterialOptions {
   /// The least Young's modulus that an element gets, MPa: marrow and what lies at the surface's edge would
   /// else have none, or less.
   double least_mpa = 1.0;
+  voxel::Progress progress{};  ///< of the elements; where it asks to stop, voxel::Stopped is thrown
 };
 
 /// Element by element what a scan says of a mesh, and the materials made of it.

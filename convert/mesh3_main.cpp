@@ -11,7 +11,6 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
-#include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Polyhedral_mesh_domain_3.h>
 #include <CGAL/Surface_mesh.h>
@@ -24,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "convert/mesh3_criteria.h"
 #include "convert/mesher_child.h"
 
 using octotomy::convert::Mesh3Sizes;
@@ -46,7 +46,7 @@ class Domain : public CGAL::Polyhedral_mesh_domain_3<Surface, Kernel> {
   Domain(const Surface& surface, std::vector<Point> start)
       : CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>(surface), start_(std::move(start)) {}
 
-  struct Construct_initial_points {
+  struct Construct_initial_points {  // NOLINT(readability-identifier-naming): CGAL asks for the name
     const Domain& domain;
     template <typename Out>
     Out operator()(Out out, int = 0) const {
@@ -62,7 +62,6 @@ class Domain : public CGAL::Polyhedral_mesh_domain_3<Surface, Kernel> {
 
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
-using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 /// The size at a point: that of the surface's nearest point, between its triangle's corners by the
 /// barycentric coordinates, and more with the way from there.
@@ -115,6 +114,14 @@ struct Sizes {
   FT operator()(const Point& p, int /*dimension*/, const Index& /*index*/) const {
     return std::min(share * field(p), most_mm);
   }
+};
+
+/// A share of the field, under which nothing is refined.
+struct Least {
+  const SizeField& field;
+  double share = 1.0;
+
+  double operator()(const Point& p) const { return share * field(p); }
 };
 
 bool read_points(std::uint64_t count, std::vector<Point>& points) {
@@ -189,10 +196,14 @@ Complex mesh(const Request& request) {
   const Domain domain(request.surface, request.start);
   const Mesh3Sizes& sizes = request.sizes;
   const SizeField field(request.surface, request.sizes_mm, sizes.grading);
-  const Criteria criteria(p::facet_angle = facet_angle_deg, p::facet_size = Sizes{field},
-                          p::facet_distance = Sizes{field, sizes.distance},
-                          p::cell_radius_edge_ratio = radius_edge,
-                          p::cell_size = Sizes{field, sizes.cell, sizes.max_cell_mm});
+  // A twentieth of what elements are to be about there.
+  constexpr double least_share = 0.05;
+  const Least least{field, least_share};
+  const convert::FacetsDownTo<Triangulation, Least> facets(
+      {facet_angle_deg, Sizes{field}, Sizes{field, sizes.distance}}, least);
+  const convert::CellsDownTo<Triangulation, Least> cells(
+      {radius_edge, Sizes{field, sizes.cell, sizes.max_cell_mm}}, least);
+  const convert::CriteriaDownTo<Triangulation, Least> criteria(facets, cells);
   // No limit of time, not even CGAL's own. Flatter elements than this are exuded; moving nodes mends the
   // rest.
   constexpr double sliver_deg = 10.0;

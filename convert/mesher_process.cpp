@@ -201,25 +201,50 @@ Reason reason_of_status(int status, const MesherLimits& limits) {
   }
 }
 
-void write_request(const MemoryFile& file, const MesherInput& input, const std::string& switches,
-                   const MesherLimits& limits) {
+/// What is sent to a mesher, whatever it is made of.
+struct Sent {
   MesherRequest request;
+  std::vector<std::pair<const void*, std::size_t>> blocks;  ///< in the request's order, with their bytes
+
+  template <typename T>
+  std::uint64_t add(const std::vector<T>& values) {
+    blocks.emplace_back(values.data(), values.size() * sizeof(T));
+    return values.size();
+  }
+};
+
+Sent sent(const MesherInput& input) {
+  Sent made;
+  made.request.points = made.add(input.points_mm);
+  made.request.triangles = made.add(input.triangles);
+  made.request.holes = made.add(input.holes_mm);
+  made.request.sizes = made.add(input.sizes_mm);
+  return made;
+}
+
+Sent sent(const LabelImage& image) {
+  Sent made;
+  made.request.holes = made.add(image.start_mm);
+  made.request.labels = made.add(image.labels);
+  for (int axis = 0; axis < 3; ++axis) {
+    made.request.dims.at(static_cast<std::size_t>(axis)) = image.dims[axis];
+    made.request.spacing_mm.at(static_cast<std::size_t>(axis)) = image.spacing_mm[axis];
+  }
+  return made;
+}
+
+void write_request(const MemoryFile& file, Sent& sent, const std::string& switches,
+                   const MesherLimits& limits) {
+  MesherRequest& request = sent.request;
   if (switches.size() >= request.switches.size())
     throw std::invalid_argument("tetrahedralise: switches '" + switches + "' are too long");
   std::copy(switches.begin(), switches.end(), request.switches.begin());
-  request.points = input.points_mm.size();
-  request.triangles = input.triangles.size();
-  request.holes = input.holes_mm.size();
-  request.sizes = input.sizes_mm.size();
   request.memory_limit_bytes = limits.memory_bytes;
   // The clock on the wall decides; processor time is the net below it, should this process be gone by then.
   request.cpu_limit_seconds =
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(limits.time).count() + 2);
   file.write_all(&request, sizeof request);
-  file.write_all(input.points_mm.data(), input.points_mm.size() * sizeof(glm::dvec3));
-  file.write_all(input.triangles.data(), input.triangles.size() * sizeof(input.triangles[0]));
-  file.write_all(input.holes_mm.data(), input.holes_mm.size() * sizeof(glm::dvec3));
-  file.write_all(input.sizes_mm.data(), input.sizes_mm.size() * sizeof(double));
+  for (const auto& [data, bytes] : sent.blocks) file.write_all(data, bytes);
   file.rewind();
 }
 
@@ -233,10 +258,13 @@ bool read_answer(const MemoryFile& file, MesherOutcome& outcome) {
   const std::uint64_t point_bytes = sizeof(glm::dvec3);
   const std::uint64_t tet_bytes = 4 * sizeof(std::uint32_t);
   if (answer.points > size / point_bytes || answer.tetrahedra > size / tet_bytes) return false;
+  if (answer.labels != 0 && answer.labels != answer.tetrahedra) return false;
   outcome.points_mm.resize(answer.points);
   outcome.tetrahedra.resize(answer.tetrahedra);
+  outcome.labels.resize(answer.labels);
   return file.read_all(outcome.points_mm.data(), answer.points * point_bytes) &&
-         file.read_all(outcome.tetrahedra.data(), answer.tetrahedra * tet_bytes);
+         file.read_all(outcome.tetrahedra.data(), answer.tetrahedra * tet_bytes) &&
+         file.read_all(outcome.labels.data(), answer.labels * sizeof(std::uint32_t));
 }
 
 /// A mesher in a process of its own: its executable, and what messages call it.
@@ -245,12 +273,11 @@ struct Mesher {
   std::string said;
 };
 
-MesherOutcome run(const Mesher& mesher, const MesherInput& input, const std::string& switches,
-                  const MesherLimits& limits) {
+MesherOutcome run(const Mesher& mesher, Sent sent, const std::string& switches, const MesherLimits& limits) {
   const MemoryFile request("tetgen request");
   const MemoryFile answer("tetgen answer");
   const MemoryFile log("tetgen log");
-  write_request(request, input, switches, limits);
+  write_request(request, sent, switches, limits);
 
   const std::filesystem::path executable = beside_us(mesher.executable);
   const Clock::time_point started = Clock::now();
@@ -278,6 +305,7 @@ MesherOutcome run(const Mesher& mesher, const MesherInput& input, const std::str
   const std::string words = last_words(log);
   outcome.points_mm.clear();
   outcome.tetrahedra.clear();
+  outcome.labels.clear();
   outcome.failure = mesher.said + " " + why + " (after " + std::to_string(ran.count()) + " ms" +
                     (words.empty() ? "" : "; it said: " + words) + ")";
   return outcome;
@@ -286,14 +314,20 @@ MesherOutcome run(const Mesher& mesher, const MesherInput& input, const std::str
 }  // namespace
 
 MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, const MesherLimits& limits) {
-  return run({"octotomy-tetgen", "TetGen -" + switches}, input, switches, limits);
+  return run({"octotomy-tetgen", "TetGen -" + switches}, sent(input), switches, limits);
 }
 
 MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits) {
   std::array<char, std::tuple_size_v<decltype(MesherRequest::switches)>> text{};
   std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g %.9g", sizes.distance, sizes.cell, sizes.grading,
                 sizes.max_cell_mm);
-  return run({"octotomy-mesh3", "CGAL's Mesh_3"}, input, text.data(), limits);
+  return run({"octotomy-mesh3", "CGAL's Mesh_3"}, sent(input), text.data(), limits);
+}
+
+MesherOutcome run_mesh3(const LabelImage& image, const LabelSizes& sizes, const MesherLimits& limits) {
+  std::array<char, std::tuple_size_v<decltype(MesherRequest::switches)>> text{};
+  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g", sizes.facet_mm, sizes.distance_mm, sizes.cell_mm);
+  return run({"octotomy-mesh3-labels", "CGAL's Mesh_3 of labels"}, sent(image), text.data(), limits);
 }
 
 }  // namespace octotomy::convert

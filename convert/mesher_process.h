@@ -12,20 +12,23 @@
 
 namespace octotomy::convert {
 
-// What passes between the library and octotomy-tetgen or octotomy-mesh3, the executables beside it: a
-// MesherRequest, then points, triangles, hole points and sizes on its standard input; a MesherAnswer, then
-// points and tetrahedra on its standard output. Both sides are always of one build, so the bytes are the
-// machine's own.
+// What passes between the library and octotomy-tetgen, octotomy-mesh3 or octotomy-mesh3-labels, the
+// executables beside it: a MesherRequest, then points, triangles, hole points, sizes and labels on its
+// standard input; a MesherAnswer, then points, tetrahedra and labels on its standard output. Both sides are
+// always of one build, so the bytes are the machine's own.
 
 struct MesherRequest {
   static constexpr std::uint64_t this_version = 0x6f63746f74657432ULL;
 
   std::uint64_t version = this_version;
   std::array<char, 64> switches{};
-  std::uint64_t points = 0;     ///< three doubles each
-  std::uint64_t triangles = 0;  ///< three uint32 each
-  std::uint64_t holes = 0;      ///< three doubles each
-  std::uint64_t sizes = 0;      ///< a double each
+  std::uint64_t points = 0;            ///< three doubles each
+  std::uint64_t triangles = 0;         ///< three uint32 each
+  std::uint64_t holes = 0;             ///< three doubles each
+  std::uint64_t sizes = 0;             ///< a double each
+  std::uint64_t labels = 0;            ///< a byte each, x fastest
+  std::array<std::int32_t, 3> dims{};  ///< of the labels
+  std::array<double, 3> spacing_mm{};
   std::uint64_t memory_limit_bytes = 0;
   std::uint64_t cpu_limit_seconds = 0;
 };
@@ -33,6 +36,7 @@ struct MesherAnswer {
   std::uint64_t version = MesherRequest::this_version;
   std::uint64_t points = 0;      ///< three doubles each
   std::uint64_t tetrahedra = 0;  ///< four uint32 each
+  std::uint64_t labels = 0;      ///< a uint32 each, of every tetrahedron or of none
 };
 /// The child's exit status is 0, or this plus the number that TetGen ended with, at most 16; 2 is TetGen's
 /// internal error, and whatever CGAL throws.
@@ -61,6 +65,7 @@ struct MesherOutcome {
   bool worth_another_try = false;
   std::vector<glm::dvec3> points_mm;
   std::vector<std::array<std::uint32_t, 4>> tetrahedra;
+  std::vector<std::uint32_t> labels;
 };
 
 /// What Mesh_3 is asked for, in place of switches: lengths by the size that the input has at the nearest
@@ -79,5 +84,22 @@ MesherOutcome run_tetgen(const MesherInput& input, const std::string& switches, 
 /// The same of CGAL's Mesh_3, which puts points of its own on the surface. In place of hole points, the input
 /// has points of the surface to start from, on each of its parts.
 MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const MesherLimits& limits);
+
+/// An image of labels, 0 outside of all regions, as it is on its border: a byte a voxel, x fastest. Voxel
+/// (0, 0, 0) has its centre in the origin.
+struct LabelImage {
+  glm::ivec3 dims{0};
+  glm::dvec3 spacing_mm{1.0};
+  std::vector<std::uint8_t> labels;
+  std::vector<glm::dvec3> start_mm;  ///< points of every surface between labels to start from
+};
+struct LabelSizes {
+  double facet_mm = 2.0;     ///< radius of the ball about a facet between labels, at most
+  double distance_mm = 0.5;  ///< of a facet's middle from the surface, at most
+  double cell_mm = 4.0;      ///< circumradius of a tetrahedron, at most
+};
+inline constexpr const char* label_switches = "%lg %lg %lg";
+/// The same of CGAL's Mesh_3 over labels; the answer has one of each tetrahedron.
+MesherOutcome run_mesh3(const LabelImage& image, const LabelSizes& sizes, const MesherLimits& limits);
 
 }  // namespace octotomy::convert

@@ -93,6 +93,11 @@ class Cells {
     return cells;
   }
   std::size_t levels() const { return of_side_log2_.size(); }
+  std::size_t count() const {
+    std::size_t cells = 0;
+    for (const auto& of_side : of_side_log2_) cells += of_side.size();
+    return cells;
+  }
 
  private:
   static Place first_of(const Place& voxel, int level) { return (voxel >> level) << level; }
@@ -160,9 +165,13 @@ class Filling {
   Filling(const voxel::Universe& universe, const Cells& cells)
       : lattice_(universe.lattice()), cells_(cells) {}
 
-  Tetrahedra run() {
+  Tetrahedra run(const voxel::Progress& progress) {
+    constexpr std::size_t look_every = 4096;  // cells: some milliseconds
+    std::size_t done = 0;
     for (std::size_t level = 0; level < cells_.levels(); ++level)
       for (const Cell& cell : cells_.sorted(level)) {
+        if (done++ % look_every == 0)
+          progress.at(static_cast<double>(done) / static_cast<double>(cells_.count()));
         add_cell(cell.first, static_cast<int>(level));
         result_.region_of_tet.resize(result_.tets.size(), cell.region);
       }
@@ -267,13 +276,15 @@ class Filling {
 
 }  // namespace
 
-Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary) {
-  Tetrahedra all = tetrahedra_of(std::vector{octree}, boundary);
+Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary,
+                         const voxel::Progress& progress) {
+  Tetrahedra all = tetrahedra_of(std::vector{octree}, boundary, progress);
   all.region_of_tet.clear();
   return all;
 }
 
-Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCells boundary) {
+Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCells boundary,
+                         const voxel::Progress& progress) {
   if (regions.empty()) throw std::invalid_argument("tetrahedra_of: there is no region");
   for (const voxel::Octree& region : regions) {
     if (region.is_empty())
@@ -281,9 +292,10 @@ Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCell
     if (!(region.universe() == regions.front().universe()))
       throw std::invalid_argument("tetrahedra_of: regions are of different universes: evaluate them in one");
   }
+  progress.at(0.0);
   Cells cells(regions, boundary);
   cells.balance();
-  return Filling(regions.front().universe(), cells).run();
+  return Filling(regions.front().universe(), cells).run(progress);
 }
 
 }  // namespace octotomy::convert

@@ -5,6 +5,7 @@
 
 #include "convert/tetrahedra.h"
 #include "voxel/octree.h"
+#include "voxel/progress.h"
 
 namespace octotomy::convert {
 
@@ -19,7 +20,9 @@ enum class BoundaryCells { Nodes, Voxels };
 /// angle is at least 30 degrees where voxels are cubes. `method` says "octree". In LPS millimetres. Throws
 /// std::invalid_argument where the octree is empty, std::length_error where 32 bits do not number the nodes.
 /// Deterministic. Cost: about 12 elements and 300 bytes an element of memory a voxel at the boundary.
-Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary = BoundaryCells::Nodes);
+/// Throws voxel::Stopped where `progress` asks for it.
+Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary = BoundaryCells::Nodes,
+                         const voxel::Progress& progress = {});
 
 /// The same of several regions of one universe, which share the nodes of their interfaces: elements of
 /// touching regions have the same corners there, and none reaches into two regions. A voxel in several
@@ -27,6 +30,6 @@ Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary = B
 /// interfaces, too; boundary nodes are those of the outside alone. Throws std::invalid_argument where there
 /// is no region, one is empty, or their universes differ.
 Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions,
-                         BoundaryCells boundary = BoundaryCells::Nodes);
+                         BoundaryCells boundary = BoundaryCells::Nodes, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::convert

@@ -137,7 +137,8 @@ std::vector<convert::DeckSurface> surfaces_of(const Held& held, const std::vecto
 
 }  // namespace
 
-Attached attach(const Evaluation& evaluation, const Object& object, const Attachment& attachment) {
+Attached attach(const Evaluation& evaluation, const Object& object, const Attachment& attachment,
+                const voxel::Progress& progress) {
   std::vector<Holder> holders;
   for (const std::string& id : attachment.moved) holders.push_back(moved_holder(evaluation, id));
   for (const std::string& id : attachment.fixed)
@@ -150,7 +151,7 @@ Attached attach(const Evaluation& evaluation, const Object& object, const Attach
     for (Holder& holder : holders) holder.octree = voxel::combine(coarse, voxel::Expression(holder.octree));
   }
   if (tissue.is_empty()) throw std::runtime_error("nothing is left of it in voxels of that size");
-  Held held{convert::tetrahedra_of(tissue, convert::BoundaryCells::Voxels), {}};
+  Held held{convert::tetrahedra_of(tissue, convert::BoundaryCells::Voxels, progress), {}};
   held.holder_of_node = holders_of(held.tetrahedra, holders);
   const double left_out_mm3 = keep_held(held);
   Attached attached;

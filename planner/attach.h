@@ -6,6 +6,7 @@
 
 #include "convert/deck.h"
 #include "planner/evaluate.h"
+#include "voxel/progress.h"
 
 namespace octotomy::planner {
 
@@ -24,6 +25,8 @@ struct Attached {
 /// step's list, moved ones first. Nodes lie on voxels' corners, so that what an object holds is exact to the
 /// universe's voxels, or to those of `element_mm`. Parts that no object holds would float: they are left out,
 /// as a finding with their volume. Throws std::runtime_error where an object of the list holds no node.
-Attached attach(const Evaluation& evaluation, const Object& object, const Attachment& attachment);
+/// Throws Stopped where `progress` asks for it.
+Attached attach(const Evaluation& evaluation, const Object& object, const Attachment& attachment,
+                const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner

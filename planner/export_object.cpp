@@ -16,6 +16,7 @@
 #include "convert/tetrahedralise.h"
 #include "planner/attach.h"
 #include "planner/figures.h"
+#include "planner/region_deck.h"
 #include "voxel/components.h"
 #include "voxel/write_scene.h"
 
@@ -103,12 +104,12 @@ brep::Mesh simplified(const brep::Mesh& mesh, double error_mm, Filling& filling)
 }
 
 /// The voxels' own elements, crumbs left out as of meshes.
-Filling fallback_of(const Object& object, const std::string& why) {
+Filling fallback_of(const Object& object, const std::string& why, const std::stop_token& stop) {
   Filling filling;
   const auto parts = voxel::components(object.octree).voxel_counts;
   const auto least = static_cast<std::uint64_t>(std::ceil(crumb() * static_cast<double>(parts.front())));
   const voxel::Octree bodies = voxel::components_of_at_least(object.octree, least);
-  filling.tetrahedra = convert::tetrahedra_of(bodies);
+  filling.tetrahedra = convert::tetrahedra_of(bodies, convert::BoundaryCells::Nodes, {stop, {}});
   filling.bodies = static_cast<std::size_t>(
       std::count_if(parts.begin(), parts.end(), [&](std::uint64_t voxels) { return voxels >= least; }));
   filling.fallback = true;
@@ -122,14 +123,15 @@ Filling fallback_of(const Object& object, const std::string& why) {
   return filling;
 }
 
-Filling filling_of(const Object& object) {
+Filling filling_of(const Object& object, const std::stop_token& stop) {
   Filling filling;
   const voxel::Universe& universe = object.octree.universe();
   const brep::Mesh bodies = filled(bodies_of(*object.mesh, filling), universe, filling);
   convert::TetOptions options;
   options.mesher = convert::Mesher::Best;
-  // Ten times what a bone of 50 000 triangles takes, as machines are shared and nobody waits for a plan.
-  options.time_limit = std::chrono::minutes(5);
+  options.stop = stop;
+  // Some times what a bone of 50 000 triangles takes, as machines are shared.
+  options.time_limit = std::chrono::minutes(2);
   filling.tetrahedra =
       convert::tetrahedralise(simplified(bodies, simplification_mm(universe), filling), options);
   for (const std::string& finding : filling.tetrahedra.findings) filling.findings.push_back(finding);
@@ -160,12 +162,13 @@ std::optional<std::string> unfit(const Filling& filling) {
 }
 
 /// The object's filling, or why there is none.
-std::variant<Filling, std::string> fill(const Object& object) {
+std::variant<Filling, std::string> fill(const Object& object, const std::stop_token& stop) {
   if (!object.mesh) return "it has no mesh";
   if (object.mesh->n_faces() == 0) return "its mesh is empty";
   try {
-    return filling_of(object);
+    return filling_of(object, stop);
   } catch (const std::runtime_error& error) {
+    if (stop.stop_requested()) throw Stopped("stopped while " + object.id + " was filled");
     return error.what();
   } catch (const std::invalid_argument& error) {
     return error.what();
@@ -175,9 +178,9 @@ std::variant<Filling, std::string> fill(const Object& object) {
 void export_tetrahedra(const Object& object, const ExportStep& step, const std::filesystem::path& path,
                        Exported& exported, Fillings& fillings, Timings& timings) {
   const std::string key = object.id + (step.fallback ? " or its voxels" : "");
-  if (!fillings.contains(key)) {
+  if (!fillings.made.contains(key)) {
     const Stopwatch watch(timings, "tetrahedralise");
-    std::variant<Filling, std::string> filled = fill(object);
+    std::variant<Filling, std::string> filled = fill(object, fillings.stop);
     if (auto* filling = std::get_if<Filling>(&filled))
       if (const std::optional<std::string> why = unfit(*filling)) {
         if (step.fallback && !object.octree.is_empty())
@@ -192,12 +195,12 @@ void export_tetrahedra(const Object& object, const ExportStep& step, const std::
             (step.fallback ? "; and it has no voxel" : "; \"fallback\": true takes its voxels' elements"));
         return;
       }
-      filled = fallback_of(object, *why);
+      filled = fallback_of(object, *why, fillings.stop);
     }
-    fillings.emplace(key, std::get<Filling>(std::move(filled)));
+    fillings.made.emplace(key, std::get<Filling>(std::move(filled)));
   }
   const Stopwatch watch(timings, "write");
-  const auto& [tetrahedra, bodies, fallback, findings] = fillings.at(key);
+  const auto& [tetrahedra, bodies, fallback, findings] = fillings.made.at(key);
   exported.details["regions"] = bodies;
   exported.details["fallback"] = fallback;
   exported.details["method"] = tetrahedra.method;
@@ -212,12 +215,14 @@ void export_tetrahedra(const Object& object, const ExportStep& step, const std::
 }
 
 void export_attached(const Evaluation& evaluation, const Object& object, const ExportStep& step,
-                     const std::filesystem::path& path, Exported& exported, Timings& timings) {
+                     const std::filesystem::path& path, Exported& exported, const std::stop_token& stop,
+                     Timings& timings) {
   Attached attached;
   try {
     const Stopwatch watch(timings, "tetrahedralise");
-    attached = attach(evaluation, object, step.attachment);
+    attached = attach(evaluation, object, step.attachment, {stop, {}});
   } catch (const std::runtime_error& error) {
+    if (stop.stop_requested()) throw;
     exported.findings.push_back(std::string("not written: ") + error.what());
     return;
   }
@@ -236,60 +241,31 @@ void export_attached(const Evaluation& evaluation, const Object& object, const E
   say_written(attached.tetrahedra, convert::quality(attached.tetrahedra), exported);
 }
 
-/// The object and the step's regions as one deck of voxels' elements: a material a region, a surface where
-/// two touch and one where a region is free.
 void export_regions(const Evaluation& evaluation, const Object& object, const ExportStep& step,
-                    const std::filesystem::path& path, Exported& exported, Timings& timings) {
-  std::vector<std::string> names{object.id};
-  names.insert(names.end(), step.regions.begin(), step.regions.end());
-  std::vector<voxel::Octree> regions;
-  std::uint64_t counted = 0;
-  for (const std::string& name : names) {
-    regions.push_back(evaluation.object(name).octree);
-    counted += regions.back().voxel_count();
-    if (regions.back().is_empty()) {
-      exported.findings.push_back("not written: region '" + name + "' is empty");
-      return;
-    }
-  }
-  convert::Tetrahedra tetrahedra;
-  {
+                    const std::filesystem::path& path, Exported& exported, const std::stop_token& stop,
+                    Timings& timings) {
+  RegionDeck deck;
+  try {
     const Stopwatch watch(timings, "tetrahedralise");
-    tetrahedra = convert::tetrahedra_of(regions);
+    deck = region_deck(evaluation, object, step, {stop, {}});
+  } catch (const std::runtime_error& error) {
+    if (stop.stop_requested()) throw;
+    exported.findings.push_back(std::string("not written: ") + error.what());
+    return;
   }
   const Stopwatch watch(timings, "write");
-  const convert::TetQuality quality = convert::quality(tetrahedra);
-  exported.findings.emplace_back(
-      "the elements are the voxels', whose surface is in steps: do not read stresses there");
-  const glm::dvec3 edge_mm = regions.front().universe().lattice().spacing_mm();
-  const double shared_mm3 =
-      static_cast<double>(counted) * edge_mm.x * edge_mm.y * edge_mm.z - quality.volume_mm3;
-  if (shared_mm3 > 1e-6 * quality.volume_mm3)
-    exported.findings.push_back("regions overlap by " + grouped(shared_mm3, 1) +
-                                " mm\u00b3: what is in several is the first's");
-  convert::DeckOptions options;
-  options.title = object.id + " = " + object.definition;
-  options.second_order = step.second_order;
-  options.notes = exported.findings;
-  options.materials.clear();
-  std::vector<convert::DeckSurface> free;
-  for (const std::string& name : names) {
-    options.materials.push_back({"OF_" + name});
-    free.push_back({"FREE_" + name, {}});
-  }
-  exported.findings.emplace_back("every region has cortical bone's stiffness: write its own into the deck");
-  options.material_of_tet = tetrahedra.region_of_tet;
-  for (const convert::ElementFace& face : convert::surface_faces(tetrahedra))
-    free[tetrahedra.region_of_tet[face.tet]].faces.push_back(face);
-  for (convert::DeckSurface& surface : free)
-    if (!surface.faces.empty()) options.surfaces.push_back(std::move(surface));
-  for (convert::Interface& between : convert::interfaces(tetrahedra))
-    options.surfaces.push_back({names[between.from] + "_TO_" + names[between.to], std::move(between.faces)});
-  for (const convert::DeckSurface& surface : options.surfaces)
+  exported.findings = deck.findings;
+  deck.options.title = object.id + " = " + object.definition;
+  deck.options.second_order = step.second_order;
+  deck.options.notes = exported.findings;
+  for (const convert::DeckSurface& surface : deck.options.surfaces)
     exported.details["surfaces"][surface.name] = surface.faces.size();
-  exported.details["regions"] = names.size();
-  convert::write_deck(tetrahedra, path, options);
-  say_written(tetrahedra, quality, exported);
+  exported.details["regions"] = step.regions.size() + 1;
+  exported.details["contacts"] = deck.options.contacts.size();
+  exported.details["fallback"] = deck.fallback;
+  exported.details["method"] = deck.tetrahedra.method;
+  convert::write_deck(deck.tetrahedra, path, deck.options);
+  say_written(deck.tetrahedra, convert::quality(deck.tetrahedra), exported);
 }
 
 void export_label(const Object& object, const std::filesystem::path& path, Exported& exported,
@@ -336,9 +312,9 @@ Exported export_object(const Evaluation& evaluation, const std::string& id, cons
   std::filesystem::create_directories(path.parent_path());
   if (step.kind == ExportKind::Mesh) export_mesh(object, path, exported, timings);
   if (!step.regions.empty())
-    export_regions(evaluation, object, step, path, exported, timings);
+    export_regions(evaluation, object, step, path, exported, fillings.stop, timings);
   else if (step.attachment.any())
-    export_attached(evaluation, object, step, path, exported, timings);
+    export_attached(evaluation, object, step, path, exported, fillings.stop, timings);
   else if (step.kind == ExportKind::Tetrahedra)
     export_tetrahedra(object, step, path, exported, fillings, timings);
   if (step.kind == ExportKind::Label) export_label(object, path, exported, timings);

@@ -30,9 +30,13 @@ struct Filling {
   bool fallback = false;  ///< the elements are an octree's
   std::vector<std::string> findings;
 };
-/// Objects that were filled already, by their names and whether the fallback was allowed: several decks of
-/// one object are one filling.
-using Fillings = std::map<std::string, Filling>;
+/// What the exports of one result share.
+struct Fillings {
+  /// Objects that were filled already, by their names and whether the fallback was allowed: several decks of
+  /// one object are one filling.
+  std::map<std::string, Filling> made{};
+  std::stop_token stop{};  ///< ends a filling
+};
 
 /// Writes an object into a folder as the step's extension says: its mesh; tetrahedra that fill its mesh; its
 /// voxels as a label map of the universe. Times are added to "tetrahedralise" and "write".
@@ -45,13 +49,13 @@ using Fillings = std::map<std::string, Filling>;
 /// Where the step attaches the object to others, tetrahedra are an octree's (attach.h), and the deck ends in
 /// the static step in which those hold and move it.
 ///
-/// Where the step names further regions, the deck holds them all as an octree's tetrahedra with shared nodes.
+/// Where the step names further regions, the deck holds them all (region_deck.h).
 ///
 /// An object that is empty, has no mesh, or that no mesher can fill is not written; a finding says why. Where
 /// the step allows the fallback, its voxels' tetrahedra are written instead, marked by `fallback` in the
 /// details and by a finding; and so they are where the meshers leave dihedral angles that are not fit for a
 /// solver (convert::fit_dihedral_deg()), which else is a finding.
-/// Throws what the writers throw where the disk does not take it.
+/// Throws what the writers throw where the disk does not take it, and Stopped where the stop token was set.
 Exported export_object(const Evaluation& evaluation, const std::string& id, const ExportStep& step,
                        const std::filesystem::path& folder, Fillings& fillings, Timings& timings);
 

@@ -115,7 +115,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"measure", {"id", "do", "object", "to", "points_mm"}},
     {"export",
      {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback", "regions",
-      "order"}},
+      "order", "smooth_mm", "between", "materials"}},
 };
 
 std::vector<std::string> step_words() {
@@ -269,6 +269,51 @@ std::vector<std::string> names_in(const Keys& keys, const std::string& key) {
   return names;
 }
 
+RegionMaterial material_of(const Keys& material) {
+  const RegionMaterial read{material.number("youngs_modulus_mpa"), material.number("poisson_ratio")};
+  if (read.youngs_modulus_mpa <= 0.0)
+    refuse(material.at("youngs_modulus_mpa"), "must be above zero, for example 0.015");
+  if (read.poisson_ratio < 0.0 || read.poisson_ratio >= 0.5)
+    refuse(material.at("poisson_ratio"), "must be from 0 to less than 0.5, for example 0.45");
+  return read;
+}
+
+/// What only decks of several regions have.
+void read_regions(const Keys& keys, const Bound& bound, ExportStep& step) {
+  step.regions = names_in(keys, "regions");
+  for (const std::string& other : step.regions) bound.need_object(keys.at("regions"), other);
+  if (step.regions.empty()) {
+    for (const char* key : {"smooth_mm", "between", "materials"})
+      if (keys.find(key) != nullptr)
+        refuse(keys.at(key), "is of several regions: add 'regions', or leave it out");
+    return;
+  }
+  if (step.kind != ExportKind::Tetrahedra)
+    refuse(keys.at("regions"), "only tetrahedra have regions: choose .inp, .feb, .vtu or .msh");
+  step.smooth_mm = keys.number_if("smooth_mm");
+  if (step.smooth_mm && *step.smooth_mm <= 0.0)
+    refuse(keys.at("smooth_mm"), "must be above zero, for example 3.0");
+  if (step.attachment.any() || (step.fallback && !step.smooth_mm))
+    refuse(keys.at("regions"),
+           "regions are made of voxels unless 'smooth_mm' is there, and nothing else holds them: leave out "
+           "'moved', 'fixed' and 'fallback'");
+  if (keys.find("between") != nullptr) {
+    const std::string between = keys.text("between");
+    if (between != "shared" && between != "contact")
+      refuse(keys.at("between"), "must be \"shared\", nodes where regions touch, or \"contact\"");
+    step.contact = between == "contact";
+  }
+  if (const Json* materials = keys.find("materials")) {
+    std::vector<std::string> names = step.regions;
+    names.push_back(step.object);
+    const Keys by_name(*materials, keys.at("materials"), names);
+    for (const std::string& name : names)
+      if (const Json* value = by_name.find(name))
+        step.materials[name] =
+            material_of(Keys(*value, by_name.at(name), {"youngs_modulus_mpa", "poisson_ratio"}));
+  }
+}
+
 Attachment attachment_of(const Keys& keys, const Bound& bound) {
   Attachment attachment{names_in(keys, "moved"), names_in(keys, "fixed"), keys.number_if("element_mm")};
   for (const std::string& name : attachment.moved) bound.need_moved(keys.at("moved"), name);
@@ -276,13 +321,10 @@ Attachment attachment_of(const Keys& keys, const Bound& bound) {
   if (attachment.element_mm && *attachment.element_mm <= 0.0)
     refuse(keys.at("element_mm"), "must be above zero, for example 3.0");
   if (const Json* value = keys.find("material")) {
-    const Keys material(*value, keys.at("material"), {"youngs_modulus_mpa", "poisson_ratio"});
-    attachment.youngs_modulus_mpa = material.number("youngs_modulus_mpa");
-    attachment.poisson_ratio = material.number("poisson_ratio");
-    if (attachment.youngs_modulus_mpa <= 0.0)
-      refuse(material.at("youngs_modulus_mpa"), "must be above zero, for example 0.015");
-    if (attachment.poisson_ratio < 0.0 || attachment.poisson_ratio >= 0.5)
-      refuse(material.at("poisson_ratio"), "must be from 0 to less than 0.5, for example 0.45");
+    const RegionMaterial material =
+        material_of(Keys(*value, keys.at("material"), {"youngs_modulus_mpa", "poisson_ratio"}));
+    attachment.youngs_modulus_mpa = material.youngs_modulus_mpa;
+    attachment.poisson_ratio = material.poisson_ratio;
   }
   const bool any_text = keys.find("element_mm") != nullptr || keys.find("material") != nullptr;
   if (any_text && !attachment.any())
@@ -326,16 +368,7 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
       refuse(keys.at("order"), "is of tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
     step.second_order = *order == 2.0;
   }
-  step.regions = names_in(keys, "regions");
-  for (const std::string& other : step.regions) bound.need_object(keys.at("regions"), other);
-  if (!step.regions.empty()) {
-    if (step.kind != ExportKind::Tetrahedra)
-      refuse(keys.at("regions"), "only tetrahedra have regions: choose .inp, .feb, .vtu or .msh");
-    if (step.attachment.any() || step.fallback)
-      refuse(keys.at("regions"),
-             "regions are made of voxels, and nothing else holds them: leave out "
-             "'moved', 'fixed' and 'fallback'");
-  }
+  read_regions(keys, bound, step);
   return step;
 }
 

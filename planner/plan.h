@@ -68,6 +68,11 @@ struct Attachment {
 
   bool any() const { return !moved.empty() || !fixed.empty(); }
 };
+/// Linear elastic.
+struct RegionMaterial {
+  double youngs_modulus_mpa = 0.0;
+  double poisson_ratio = 0.0;
+};
 struct ExportStep {
   std::string object;
   std::filesystem::path path;  ///< within the result folder
@@ -79,6 +84,10 @@ struct ExportStep {
   /// Of decks: further objects that fill the same deck, each a region of its own, with shared nodes where
   /// they touch.
   std::vector<std::string> regions{};
+  /// Of decks of several regions: smooth elements of about this size, in place of the voxels'.
+  std::optional<double> smooth_mm{};
+  bool contact = false;  ///< of decks of several regions: they may part and slide where they touch
+  std::map<std::string, RegionMaterial> materials{};  ///< of regions, the object's own too, by their names
 };
 
 struct Step {

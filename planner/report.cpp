@@ -124,13 +124,14 @@ Json result_json(const Result& result) {
   return json;
 }
 
-Json write_result(Result& result, const std::filesystem::path& folder) {
+Json write_result(Result& result, const std::filesystem::path& folder, const std::stop_token& stop) {
   ResultFolder output(folder);
   {
     const Stopwatch watch(result.evaluation.timings, "measure");
     result.measurements = measurements_json(result.evaluation);
   }
   Fillings fillings;
+  fillings.stop = stop;
   for (const Step& step : result.plan.steps)
     if (const auto* to = std::get_if<ExportStep>(&step.action))
       result.exported.push_back(

@@ -54,7 +54,8 @@ nlohmann::ordered_json result_json(const Result& result);
 
 /// Writes a result's folder whole or not at all: its exports, views/*.png, report.html and result.json.
 /// Fills `result.exported` and `result.measurements`; returns what result.json holds. Throws as ResultFolder
-/// and the writers do.
-nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder);
+/// and the writers do, and Stopped where the stop token is set while an export is filled.
+nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder,
+                                    const std::stop_token& stop = {});
 
 }  // namespace octotomy::planner

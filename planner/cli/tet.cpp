@@ -69,7 +69,15 @@ void mark_fallback(Filled& filled, double voxel_mm, const std::string& why) {
                             grouped(voxel_mm, 3) + " mm: do not read stresses there");
 }
 
-Filled of_mesh(const TetText& text, Timings& timings) {
+/// Progress and stop as the program has them, of what a line calls `doing`.
+voxel::Progress progress_of(const Program& program, const std::string& doing) {
+  voxel::Progress progress{program.stop.get_token(), {}};
+  if (const auto report = program.progress())
+    progress.report = [report, doing](double fraction) { report(doing, fraction); };
+  return progress;
+}
+
+Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
   brep::Triangles triangles;
   {
     const Stopwatch watch(timings, "read");
@@ -104,6 +112,8 @@ Filled of_mesh(const TetText& text, Timings& timings) {
       }
       filled.findings.clear();
     } catch (const std::runtime_error& error) {
+      if (program.stop.stop_requested())
+        throw Stopped("stopped before " + text.out.string() + " was written");
       if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
       why = error.what();
     }
@@ -111,12 +121,13 @@ Filled of_mesh(const TetText& text, Timings& timings) {
   const voxel::Octree octree = voxels_of(text, triangles, health.solid());
   if (octree.is_empty())
     throw std::runtime_error(text.in.string() + ": encloses no voxel: take smaller ones by --voxel");
-  filled.tetrahedra = convert::tetrahedra_of(octree);
+  filled.tetrahedra =
+      convert::tetrahedra_of(octree, convert::BoundaryCells::Nodes, progress_of(program, "elements"));
   mark_fallback(filled, octree.universe().lattice().spacing_mm().x, why);
   return filled;
 }
 
-Filled of_octree(const TetText& text, Timings& timings) {
+Filled of_octree(const Program& program, const TetText& text, Timings& timings) {
   const voxel::OctreeFile file = read_timed(text.in, timings);
   const auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
@@ -126,7 +137,8 @@ Filled of_octree(const TetText& text, Timings& timings) {
         "and fill that");
   Filled filled;
   const Stopwatch watch(timings, "tetrahedralise");
-  filled.tetrahedra = convert::tetrahedra_of(*octree);
+  filled.tetrahedra =
+      convert::tetrahedra_of(*octree, convert::BoundaryCells::Nodes, progress_of(program, "elements"));
   mark_fallback(filled, octree->universe().lattice().spacing_mm().x, "an octree was given");
   return filled;
 }
@@ -148,6 +160,7 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
   convert::MaterialOptions options = text.materials;
   if (!text.density.empty())
     options.calibration = convert::DensityCalibration{text.density[0], text.density[1]};
+  options.progress = progress_of(program, "materials");
   const voxel::Scene scan = read_scan(program, text.scan, text.scan_in, timings);
   const Stopwatch watch(timings, "materials");
   convert::ElementMaterials made = convert::element_materials(filled.tetrahedra, scan, options);
@@ -178,7 +191,7 @@ int tet(const Program& program, TetText text) {
   text.options.time_limit = std::chrono::seconds(static_cast<long>(text.seconds));
   text.options.stop = program.stop.get_token();
   Timings timings;
-  Filled filled = is_octree(text.in) ? of_octree(text, timings) : of_mesh(text, timings);
+  Filled filled = is_octree(text.in) ? of_octree(program, text, timings) : of_mesh(program, text, timings);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
   const convert::TetQuality quality = convert::quality(tetrahedra);
   const convert::DeckOptions deck = deck_of(program, text, filled, quality, timings);

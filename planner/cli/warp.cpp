@@ -16,9 +16,18 @@ struct WarpText {
   ScanIn scan;
 };
 
-convert::SolvedDeck read_timed_result(const std::filesystem::path& path, Timings& timings) {
+/// Progress and stop as the program has them, of what a line calls `doing`.
+voxel::Progress progress_of(const Program& program, const std::string& doing) {
+  voxel::Progress progress{program.stop.get_token(), {}};
+  if (const auto report = program.progress())
+    progress.report = [report, doing](double fraction) { report(doing, fraction); };
+  return progress;
+}
+
+convert::SolvedDeck read_timed_result(const Program& program, const std::filesystem::path& path,
+                                      Timings& timings) {
   const Stopwatch watch(timings, "read");
-  return convert::read_solved_deck(path);
+  return convert::read_solved_deck(path, progress_of(program, "reading"));
 }
 
 void warp_mesh(const WarpText& text, const convert::DisplacementField& field, Timings& timings) {
@@ -35,13 +44,10 @@ void warp_mesh(const WarpText& text, const convert::DisplacementField& field, Ti
 void warp_scan(const Program& program, const WarpText& text, const convert::DisplacementField& field,
                Timings& timings) {
   const voxel::Scene scan = read_scan(program, text.in, text.scan, timings);
-  voxel::Progress progress{program.stop.get_token(), {}};
-  if (const auto report = program.progress())
-    progress.report = [report](double fraction) { report("warp", fraction); };
   voxel::Scene warped;
   {
     const Stopwatch watch(timings, "warp");
-    warped = convert::warped(scan, field, progress);
+    warped = convert::warped(scan, field, progress_of(program, "warp"));
   }
   const Stopwatch watch(timings, "write");
   voxel::write_scene(warped, text.out);
@@ -51,7 +57,7 @@ int warp(const Program& program, const WarpText& text) {
   if (is_mesh(text.in)) need_mesh_extension(text.out);
   need_folder_of(text.out);
   Timings timings;
-  convert::SolvedDeck deck = read_timed_result(text.result, timings);
+  convert::SolvedDeck deck = read_timed_result(program, text.result, timings);
   double largest_mm = 0.0;
   for (const glm::dvec3& displacement : deck.displacement_mm)
     largest_mm = std::max(largest_mm, glm::length(displacement));

@@ -13,6 +13,7 @@
 #include "convert/deck.h"
 #include "convert/octree_tetrahedra.h"
 #include "convert/second_order.h"
+#include "convert/separate_regions.h"
 #include "convert/tetrahedralise.h"
 #include "tests/convert/surfaces.h"
 #include "voxel/combine.h"
@@ -236,6 +237,81 @@ TEST(DeckSolver, ASolvedDeckOfTenNodesIsReadAsEightLinearPartsEach) {
   }
 }
 
+/// Two blocks of 6 x 6 x 6 mm, one upon the other, that touch or share their nodes; the lower one is held
+/// below, the upper one moved above.
+struct TwoBlocks {
+  Tetrahedra t;
+  DeckOptions options;
+
+  TwoBlocks(bool contact, double moved_mm) {
+    voxel::Universe universe;
+    universe.depth = 4;
+    t = tetrahedra_of({voxel::combine(universe, voxel::Box{{-0.5, -0.5, -0.5}, {5.5, 5.5, 5.5}}),
+                       voxel::combine(universe, voxel::Box{{-0.5, -0.5, 5.5}, {5.5, 5.5, 11.5}})},
+                      BoundaryCells::Voxels);
+    const Interface between = interfaces(t).front();
+    if (contact) {
+      options.surfaces = {{"LOWER", between.faces}, {"UPPER", between.opposite}};
+      options.contacts = {{"PAIR", "LOWER", "UPPER"}};
+      t = separate_regions(t);
+    }
+    options.node_sets = {{"HELD", {}}, {"MOVED", {}}};
+    for (const std::uint32_t node : t.boundary_nodes) {
+      if (t.nodes_mm[node].z < -0.4) options.node_sets[0].nodes.push_back(node);
+      if (t.nodes_mm[node].z > 11.4) options.node_sets[1].nodes.push_back(node);
+    }
+    options.prescribed = {
+        {"HELD", {}},
+        {"MOVED", std::vector<glm::dvec3>(options.node_sets[1].nodes.size(), {0.0, 0.0, moved_mm})}};
+  }
+
+  /// Mean displacement along z of the lower block's nodes between the two.
+  double between_mm(const Folder& folder) const {
+    const std::vector<glm::dvec3> solved = solved_by_ccx(folder, t, options);
+    std::vector<bool> is_lower(t.nodes_mm.size(), false);
+    for (std::size_t i = 0; i < t.tets.size(); ++i)
+      if (t.region_of_tet[i] == 0)
+        for (const std::uint32_t v : t.tets[i]) is_lower[v] = true;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < solved.size(); ++i)
+      if (is_lower[i] && std::abs(t.nodes_mm[i].z - 5.5) < 1e-9) {
+        sum += solved[i].z;
+        ++count;
+      }
+    EXPECT_EQ(count, 49u);
+    return sum / static_cast<double>(count);
+  }
+};
+
+TEST(DeckSolver, ContactPressesAsSharedNodesDoAndLetsGoWhereTheyPull) {
+  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const Folder folder;
+  // By symmetry what is between two equal blocks moves half as far.
+  EXPECT_NEAR(TwoBlocks(false, -0.06).between_mm(folder), -0.03, 1e-4);
+  EXPECT_NEAR(TwoBlocks(true, -0.06).between_mm(folder), -0.03, 1e-3);
+  EXPECT_NEAR(TwoBlocks(false, 0.06).between_mm(folder), 0.03, 1e-4);
+  EXPECT_NEAR(TwoBlocks(true, 0.06).between_mm(folder), 0.0, 1e-3);
+}
+
+TEST(DeckSolver, AFebioDeckHasItsContactPairs) {
+  if (!have("/usr/bin/python3")) GTEST_SKIP() << "python3 is not installed";
+  const Folder folder;
+  const TwoBlocks blocks(true, -0.06);
+  write_deck(blocks.t, folder / "blocks.feb", blocks.options);
+  std::ofstream(folder / "look.py")
+      << "import xml.etree.ElementTree as E\n"
+         "root = E.parse('blocks.feb').getroot()\n"
+         "surfaces = {s.attrib['name'] for s in root.find('Mesh').findall('Surface')}\n"
+         "pairs = {p.attrib['name']: (p.find('primary').text, p.find('secondary').text)\n"
+         "         for p in root.find('Mesh').findall('SurfacePair')}\n"
+         "assert pairs == {'PAIR': ('LOWER', 'UPPER')} and surfaces == {'LOWER', 'UPPER'}, pairs\n"
+         "contacts = root.find('Contact').findall('contact')\n"
+         "assert [c.attrib['surface_pair'] for c in contacts] == ['PAIR']\n"
+         "assert float(contacts[0].find('penalty').text) == 170000\n";
+  EXPECT_EQ(run_in(folder, "/usr/bin/python3 look.py"), 0) << log_of(folder);
+}
+
 TEST(DeckSolver, AResultOfAnotherDeckOrOfNoneIsRefused) {
   const Folder folder;
   std::ofstream(folder / "a.frd")
@@ -415,6 +491,7 @@ TEST(Deck, SetsMaterialsAndDisplacementsThatDoNotFitAreRefused) {
   refused([](Rich& r) { r.options.surfaces[0].faces[0].opposite = 4; });
   refused([](Rich& r) { r.options.fields[0].values.pop_back(); });
   refused([](Rich& r) { r.t.region_of_tet.pop_back(); });
+  refused([](Rich& r) { r.options.contacts = {{"PAIR", "ALL", "NONE"}}; });
   refused([](Rich& r) { r.options.materials[1].youngs_modulus_mpa = 0.0; });
 }
 

@@ -170,5 +170,21 @@ TEST(OctreeTetrahedra, NothingIsRefused) {
   EXPECT_THROW(tetrahedra_of({random_cubes(4, 3), random_cubes(3, 3)}), std::invalid_argument);
 }
 
+TEST(OctreeTetrahedra, ReportsWhatIsDoneAndEndsOnRequest) {
+  const voxel::Octree cube = voxel::Octree::full(tests::unit_universe(5));  // over 4096 cells at its boundary
+  std::vector<double> reported;
+  tetrahedra_of(cube, BoundaryCells::Voxels, {{}, [&](double fraction) { reported.push_back(fraction); }});
+  ASSERT_GT(reported.size(), 1u);
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+  EXPECT_GE(reported.front(), 0.0);
+  EXPECT_LE(reported.back(), 1.0);
+  std::stop_source source;
+  const auto stop_half_way = [&](double fraction) {
+    if (fraction > 0.0) source.request_stop();
+  };
+  EXPECT_THROW(tetrahedra_of(cube, BoundaryCells::Voxels, {source.get_token(), stop_half_way}),
+               voxel::Stopped);
+}
+
 }  // namespace
 }  // namespace octotomy::convert

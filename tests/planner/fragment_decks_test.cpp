@@ -128,6 +128,35 @@ TEST(FragmentDecks, AStepOfOrderTwoWritesElementsOfTenNodes) {
   EXPECT_THROW(plan("ball.node", "2"), std::runtime_error);
 }
 
+TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
+  const tests::TestFolder folder;
+  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
+  std::stop_source source;
+  source.request_stop();
+  Fillings fillings;
+  fillings.stop = source.get_token();
+  Timings timings;
+  for (const char* keys : {"", R"(, "fallback": true)", R"(, "regions": ["lower"])",
+                           R"(, "regions": ["lower"], "smooth_mm": 2.5)", R"(, "fixed": ["lower"])"}) {
+    const Plan plan = parse_plan(
+        std::string(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "cut", "do": "mask", "regions": [ { "view": "anterior",
+                     "polygons_mm": [[[-20, 0], [20, 0], [20, 20], [-20, 20]]] } ] },
+                 { "id": "upper", "do": "combine", "expression": "ball & cut" },
+                 { "id": "lower", "do": "combine", "expression": "ball - cut" },
+                 { "id": "deck", "do": "export", "object": "upper", "path": "ball.inp")") +
+            keys + " } ] }",
+        folder.path());
+    const Evaluation evaluation = evaluate(plan);
+    EXPECT_THROW(export_object(evaluation, "deck", std::get<ExportStep>(plan.steps.back().action),
+                               folder / "out", fillings, timings),
+                 Stopped)
+        << keys;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/ball.inp")) << keys;
+  }
+}
+
 TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
   const tests::TestFolder folder;
   voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
@@ -183,6 +212,28 @@ TEST(FragmentDecks, RegionsShareTheirNodesAndOverlapsBelongToTheFirst) {
   EXPECT_NE(with_overlap.findings[1].find("overlap"), std::string::npos) << with_overlap.findings[1];
   EXPECT_EQ(with_overlap.details["volume_mm3"], deck.details["volume_mm3"]);
 
+  const Plan smooth = plan(R"("regions": ["lower"], "smooth_mm": 2.5, "between": "contact", "materials":
+      { "lower": { "youngs_modulus_mpa": 0.5, "poisson_ratio": 0.4 } })");
+  const Exported apart = deck_of(smooth, evaluation, folder / "out");
+  ASSERT_TRUE(apart.written) << testing::PrintToString(apart.findings);
+  EXPECT_EQ(apart.details["method"], "Mesh_3 of labels");
+  EXPECT_EQ(apart.details["contacts"], 1);
+  EXPECT_FALSE(apart.details["fallback"].get<bool>());
+  EXPECT_GT(apart.details["quality"]["min_dihedral_deg"].get<double>(), convert::fit_dihedral_deg());
+  EXPECT_EQ(apart.details["surfaces"]["upper_TO_lower"], apart.details["surfaces"]["lower_TO_upper"]);
+  EXPECT_NEAR(apart.details["volume_mm3"].get<double>() / deck.details["volume_mm3"].get<double>(), 1.0,
+              0.03);
+  std::ifstream inp(folder / "out/ball.inp");
+  const std::string text(std::istreambuf_iterator<char>(inp), {});
+  EXPECT_NE(text.find("*MATERIAL, NAME=OF_lower\n*ELASTIC\n0.5, 0.4"), std::string::npos);
+  EXPECT_NE(text.find("lower_TO_upper, upper_TO_lower\n"), std::string::npos)
+      << "the softer one is the slave";
+
+  for (const char* keys :
+       {R"("regions": ["lower"], "between": "glued")", R"("smooth_mm": 2)",
+        R"("regions": ["lower"], "smooth_mm": 0)", R"("regions": ["lower"], "materials": { "ball": {} })",
+        R"("regions": ["lower"], "materials": { "lower": { "youngs_modulus_mpa": 1 } })"})
+    EXPECT_THROW(plan(keys), std::runtime_error) << keys;
   EXPECT_THROW(plan(R"("regions": ["nothing"])"), std::runtime_error);
   EXPECT_THROW(plan(R"("regions": ["lower"], "fallback": true)"), std::runtime_error);
 }

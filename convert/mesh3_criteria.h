@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <CGAL/Mesh_cell_criteria_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_edge_criteria_3.h>
+#include <CGAL/Mesh_facet_criteria_3.h>
+#include <algorithm>
+
+namespace octotomy::convert {
+
+// What Mesh_3's elements are to be, for the meshers' executables. Where a surface nearly touches itself, or
+// has edges that are sharper than the angles asked for, refinement for their sake has no end: facets and
+// cells all of whose sides are shorter than a length are good as they are.
+
+/// CGAL's criteria of facets or cells, down to a length that `Least` has at a point.
+template <typename Base, typename Least>
+class DownTo : public Base {
+ public:
+  DownTo(const Base& base, const Least& least) : Base(base), least_(least) {}
+
+  template <typename Triangulation, typename Element>
+  auto operator()(const Triangulation& triangulation, const Element& element) const {
+    auto bad = Base::operator()(triangulation, element);
+    if (bad && is_small(element)) bad = decltype(bad)();
+    return bad;
+  }
+
+ private:
+  /// A facet is a cell and the number of the corner across.
+  template <typename Cell>
+  bool is_small(const std::pair<Cell, int>& facet) const {
+    return is_small(facet.first, facet.second);
+  }
+  template <typename Cell>
+  bool is_small(const Cell& cell) const {
+    return is_small(cell, -1);
+  }
+  template <typename Cell>
+  bool is_small(const Cell& cell, int without) const {
+    double longest = 0.0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j)
+        if (i != without && j != without) {
+          const auto& p = cell->vertex(i)->point().point();
+          const auto& q = cell->vertex(j)->point().point();
+          longest = std::max(longest, (p - q).squared_length());
+        }
+    const double least_mm = least_(cell->vertex(without == 0 ? 1 : 0)->point().point());
+    return longest < least_mm * least_mm;
+  }
+
+  Least least_;
+};
+
+template <typename Triangulation, typename Least>
+using FacetsDownTo = DownTo<CGAL::Mesh_facet_criteria_3<Triangulation>, Least>;
+template <typename Triangulation, typename Least>
+using CellsDownTo = DownTo<CGAL::Mesh_cell_criteria_3<Triangulation>, Least>;
+template <typename Triangulation, typename Least>
+using CriteriaDownTo =
+    CGAL::internal::Mesh_criteria_3_impl<Triangulation, CGAL::Mesh_edge_criteria_3<Triangulation>,
+                               FacetsDownTo<Triangulation, Least>, CellsDownTo<Triangulation, Least>>;
+
+}  // namespace octotomy::convert

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+
+// octotomy-mesh3-labels: one run of CGAL's Mesh_3 over an image of labels, fed and read by
+// mesher_process.cpp: several regions with shared nodes where they touch. The request's switches are
+// LabelSizes, its hole points are where it starts. Nothing ends by the clock, so that the answer is the same
+// on any machine. Source: as mesh3_main.cpp; regions: Pons, Segonne, Boissonnat, Rineau, Yvinec, Keriven,
+// "High-quality consistent meshing of multi-label datasets", IPMI 2007.
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Labeled_mesh_domain_3.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/make_mesh_3.h>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "convert/mesh3_criteria.h"
+#include "convert/mesher_child.h"
+
+using octotomy::convert::LabelSizes;
+using octotomy::convert::MesherAnswer;
+using octotomy::convert::MesherRequest;
+using octotomy::convert::read_all;
+using octotomy::convert::write_all;
+namespace convert = octotomy::convert;
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+
+/// An image of labels, 0 outside of all regions; voxel (0, 0, 0) has its centre in the origin.
+struct Labels {
+  std::array<std::int64_t, 3> dims{};
+  std::array<double, 3> spacing_mm{};
+  std::vector<std::uint8_t> of_voxel;
+  std::vector<Point> start;
+
+  /// That with the largest trilinear share of the eight samples about a point, the lowest of several:
+  /// surfaces between labels are smooth where the voxels' are in steps.
+  int at(const Point& p) const {
+    std::array<std::int64_t, 3> low{};
+    std::array<double, 3> along{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      const double place = p[axis] / spacing_mm[i];
+      if (!(place >= 0.0 && place <= static_cast<double>(dims[i] - 1))) return 0;
+      low[i] = std::min(static_cast<std::int64_t>(place), dims[i] - 2);
+      along[i] = place - static_cast<double>(low[i]);
+    }
+    std::array<std::uint8_t, 8> labels{};
+    std::array<double, 8> shares{};
+    for (std::size_t k = 0; k < 8; ++k) {
+      std::size_t voxel = 0;
+      double share = 1.0;
+      for (std::size_t i = 3; i-- > 0;) {
+        const auto step = static_cast<std::int64_t>((k >> i) & 1);
+        voxel = voxel * static_cast<std::size_t>(dims[i]) + static_cast<std::size_t>(low[i] + step);
+        share *= step == 1 ? along[i] : 1.0 - along[i];
+      }
+      labels[k] = of_voxel[voxel];
+      shares[k] = share;
+    }
+    int best = labels[0];
+    double most = -1.0;
+    for (std::size_t k = 0; k < 8; ++k) {
+      double sum = 0.0;
+      for (std::size_t j = 0; j < 8; ++j) sum += labels[j] == labels[k] ? shares[j] : 0.0;
+      if (sum > most || (sum == most && labels[k] < best)) {
+        most = sum;
+        best = labels[k];
+      }
+    }
+    return best;
+  }
+};
+
+using Base = CGAL::Labeled_mesh_domain_3<Kernel>;
+
+/// Labels that are meshed from given points on: CGAL's own choice, where some rays meet a surface, misses
+/// small regions.
+class Domain : public Base {
+ public:
+  Domain(const Labels& labels, const CGAL::Bbox_3& box, double error)
+      : Base(std::function<int(const Point&)>([&labels](const Point& p) { return labels.at(p); }), box,
+             CGAL::parameters::relative_error_bound = error),
+        labels_(labels) {}
+
+  struct Construct_initial_points {  // NOLINT(readability-identifier-naming): CGAL asks for the name
+    const Domain& domain;
+    template <typename Out>
+    Out operator()(Out out, int = 0) const {
+      for (const Point& p : domain.labels_.start) *out++ = {p, domain.index_from_surface_patch_index({0, 1})};
+      return out;
+    }
+  };
+  Construct_initial_points construct_initial_points_object() const { return {*this}; }
+
+ private:
+  const Labels& labels_;
+};
+
+using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
+using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+
+bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
+  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+  if (std::sscanf(request.switches.data(), convert::label_switches, &sizes.facet_mm, &sizes.distance_mm,
+                  &sizes.cell_mm) != 3 ||
+      request.points != 0 || request.triangles != 0 || request.sizes != 0 || request.holes > most / 3)
+    return false;
+  std::uint64_t voxels = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    labels.dims[i] = request.dims[i];
+    labels.spacing_mm[i] = request.spacing_mm[i];
+    if (request.dims[i] < 2 || request.dims[i] > 65536) return false;
+    voxels *= static_cast<std::uint64_t>(request.dims[i]);
+  }
+  if (voxels != request.labels) return false;
+  std::vector<double> coordinates(3 * request.holes);
+  if (!read_all(coordinates.data(), coordinates.size() * sizeof(double))) return false;
+  for (std::size_t i = 0; i < coordinates.size(); i += 3)
+    labels.start.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
+  labels.of_voxel.resize(voxels);
+  return read_all(labels.of_voxel.data(), voxels);
+}
+
+/// Elements, their nodes and labels in the triangulation's order.
+bool write_answer(int file, const Complex& complex) {
+  std::map<Complex::Vertex_handle, std::uint32_t> number;
+  std::vector<double> points;
+  std::vector<std::uint32_t> corners, labels;
+  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
+    labels.push_back(static_cast<std::uint32_t>(complex.subdomain_index(cell)));
+    for (int i = 0; i < 4; ++i) {
+      const auto [at, is_new] =
+          number.try_emplace(cell->vertex(i), static_cast<std::uint32_t>(number.size()));
+      if (is_new) {
+        const auto& p = cell->vertex(i)->point();
+        points.insert(points.end(), {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
+      }
+      corners.push_back(at->second);
+    }
+  }
+  MesherAnswer answer;
+  answer.points = points.size() / 3;
+  answer.tetrahedra = answer.labels = labels.size();
+  return write_all(file, &answer, sizeof answer) &&
+         write_all(file, points.data(), points.size() * sizeof(double)) &&
+         write_all(file, corners.data(), corners.size() * sizeof(std::uint32_t)) &&
+         write_all(file, labels.data(), labels.size() * sizeof(std::uint32_t));
+}
+
+/// A length under which nothing is refined.
+struct Least {
+  double length_mm = 0.0;
+
+  double operator()(const Point& /*p*/) const { return length_mm; }
+};
+
+Complex mesh(const Labels& labels, const LabelSizes& sizes) {
+  namespace p = CGAL::parameters;
+  // What mesh3_main.cpp asks for; and surfaces found to a hundredth of a voxel.
+  constexpr double facet_angle_deg = 25.0, radius_edge = 2.5, error_voxels = 0.01;
+  std::array<double, 3> extent{};
+  for (std::size_t i = 0; i < 3; ++i)
+    extent[i] = static_cast<double>(labels.dims[i] - 1) * labels.spacing_mm[i];
+  const CGAL::Bbox_3 box(0.0, 0.0, 0.0, extent[0], extent[1], extent[2]);
+  const double diagonal_mm = std::hypot(extent[0], extent[1], extent[2]);
+  const Domain domain(labels, box, error_voxels * labels.spacing_mm[0] / diagonal_mm);
+  // Half a voxel, under which there is nothing but the corners of voxels.
+  constexpr double least_voxels = 0.5;
+  const Least least{least_voxels * *std::min_element(labels.spacing_mm.begin(), labels.spacing_mm.end())};
+  const convert::FacetsDownTo<Triangulation, Least> facets(
+      {facet_angle_deg, sizes.facet_mm, sizes.distance_mm}, least);
+  const convert::CellsDownTo<Triangulation, Least> cells({radius_edge, sizes.cell_mm}, least);
+  const convert::CriteriaDownTo<Triangulation, Least> criteria(facets, cells);
+  return CGAL::make_mesh_3<Complex>(domain, criteria, p::no_perturb(), p::no_exude());
+}
+
+}  // namespace
+
+int main() {
+  const convert::MesherTask task = convert::begin_mesher();
+  int status = 0;
+  try {
+    LabelSizes sizes;
+    Labels labels;
+    if (!read(task.request, labels, sizes)) convert::end_mesher(convert::mesher_exit_protocol);
+    if (!write_answer(task.answer_file, mesh(labels, sizes))) status = convert::mesher_exit_protocol;
+  } catch (const std::bad_alloc&) {
+    status = convert::mesher_exit_memory;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    status = convert::mesher_exit_base + 2;
+  }
+  convert::end_mesher(status);
+}
