@@ -8,6 +8,8 @@
 #include "convert/deck.h"
 #include "convert/materials.h"
 #include "convert/octree_tetrahedra.h"
+#include "convert/region_tetrahedra.h"
+#include "convert/separate_regions.h"
 #include "convert/tetrahedralise.h"
 #include "convert/voxelise.h"
 #include "convert/winding_number.h"
@@ -26,7 +28,9 @@ struct TetText {
   convert::TetOptions options;
   convert::MaterialOptions materials;
   std::string mesher = "best";
-  std::optional<double> max_volume_mm3, voxel_mm;
+  std::optional<double> max_volume_mm3, voxel_mm, size_mm;
+  std::vector<std::filesystem::path> regions;
+  bool contact = false;
   std::vector<double> density;
   double seconds = 60.0;
   bool fallback = false, msh_2_2 = false;
@@ -77,6 +81,14 @@ voxel::Progress progress_of(const Program& program, const std::string& doing) {
   return progress;
 }
 
+/// That elements are too flat for a solver; none where they are not.
+std::optional<std::string> why_unfit(const convert::Tetrahedra& tetrahedra) {
+  const double least_deg = convert::quality(tetrahedra).min_dihedral_deg;
+  if (least_deg >= convert::fit_dihedral_deg()) return std::nullopt;
+  return tetrahedra.method + " left dihedral angles down to " + grouped(least_deg, 2) +
+         " degrees, under the " + grouped(convert::fit_dihedral_deg(), 0) + " that are fit for a solver";
+}
+
 Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
   brep::Triangles triangles;
   {
@@ -102,10 +114,9 @@ Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
     try {
       filled.tetrahedra = convert::tetrahedralise(solid, text.options);
       filled.findings = filled.tetrahedra.findings;
-      const double least_deg = convert::quality(filled.tetrahedra).min_dihedral_deg;
-      if (least_deg >= convert::fit_dihedral_deg()) return filled;
-      why = filled.tetrahedra.method + " left dihedral angles down to " + grouped(least_deg, 2) +
-            " degrees, under the " + grouped(convert::fit_dihedral_deg(), 0) + " that are fit for a solver";
+      const std::optional<std::string> unfit = why_unfit(filled.tetrahedra);
+      if (!unfit) return filled;
+      why = *unfit;
       if (!text.fallback) {
         filled.findings.push_back(why + ": mend or simplify the surface, or take --fallback");
         return filled;
@@ -127,19 +138,52 @@ Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
   return filled;
 }
 
-Filled of_octree(const Program& program, const TetText& text, Timings& timings) {
-  const voxel::OctreeFile file = read_timed(text.in, timings);
-  const auto* octree = std::get_if<voxel::Octree>(&file.tree);
+voxel::Octree octree_in(const std::filesystem::path& path, Timings& timings) {
+  voxel::OctreeFile file = read_timed(path, timings);
+  auto* octree = std::get_if<voxel::Octree>(&file.tree);
   if (octree == nullptr)
     throw std::runtime_error(
-        text.in.string() +
+        path.string() +
         ": only a binary octree's voxels become elements: make its surface by octotomy mesh "
         "and fill that");
+  return std::move(*octree);
+}
+
+/// The octree and the regions beside it: smooth elements where a size is asked for, or else the voxels' own.
+Filled of_octrees(const Program& program, const TetText& text, Timings& timings) {
+  std::vector<voxel::Octree> octrees{octree_in(text.in, timings)};
+  for (const std::filesystem::path& path : text.regions) octrees.push_back(octree_in(path, timings));
   Filled filled;
+  filled.regions = octrees.size();
   const Stopwatch watch(timings, "tetrahedralise");
+  std::string why = "an octree was given without a size of elements";
+  if (text.size_mm) {
+    convert::RegionMeshOptions options;
+    options.size_mm = *text.size_mm;
+    options.min_dihedral_deg = text.options.min_dihedral_deg;
+    options.time_limit = text.options.time_limit;
+    options.stop = text.options.stop;
+    try {
+      filled.tetrahedra = convert::smooth_tetrahedra_of(octrees, options);
+      filled.findings = filled.tetrahedra.findings;
+      const std::optional<std::string> unfit = why_unfit(filled.tetrahedra);
+      if (!unfit) return filled;
+      why = *unfit;
+      if (!text.fallback) {
+        filled.findings.push_back(why + ": take another --size, or --fallback");
+        return filled;
+      }
+      filled.findings.clear();
+    } catch (const std::runtime_error& error) {
+      if (program.stop.stop_requested())
+        throw Stopped("stopped before " + text.out.string() + " was written");
+      if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
+      why = error.what();
+    }
+  }
   filled.tetrahedra =
-      convert::tetrahedra_of(*octree, convert::BoundaryCells::Nodes, progress_of(program, "elements"));
-  mark_fallback(filled, octree->universe().lattice().spacing_mm().x, "an octree was given");
+      convert::tetrahedra_of(octrees, convert::BoundaryCells::Nodes, progress_of(program, "elements"));
+  mark_fallback(filled, octrees.front().universe().lattice().spacing_mm().x, why);
   return filled;
 }
 
@@ -150,6 +194,15 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
   deck.msh_2_2 = text.msh_2_2;
   deck.second_order = text.order == 2;
   deck.surfaces = {{"SKIN", convert::surface_faces(filled.tetrahedra)}};
+  for (convert::Interface& between : convert::interfaces(filled.tetrahedra)) {
+    const std::string one = "REGION" + std::to_string(between.from + 1),
+                      other = "REGION" + std::to_string(between.to + 1);
+    deck.surfaces.push_back({one + "_TO_" + other, std::move(between.faces)});
+    if (!text.contact) continue;
+    deck.surfaces.push_back({other + "_TO_" + one, std::move(between.opposite)});
+    deck.contacts.push_back({one + "_TO_" + other, other + "_TO_" + one, one + "_TO_" + other});
+  }
+  if (text.contact) filled.tetrahedra = convert::separate_regions(filled.tetrahedra);
   deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION,
                 "dihedral angles " + grouped(quality.min_dihedral_deg, 2) + " to " +
                     grouped(quality.max_dihedral_deg, 2) + " degrees; radius-edge ratio up to " +
@@ -181,6 +234,9 @@ int tet(const Program& program, TetText text) {
   if (!convert::is_deck(text.out))
     throw std::runtime_error(text.out.string() + ": a deck is written as " + convert::deck_extensions());
   need_folder_of(text.out);
+  if (!is_octree(text.in) && (!text.regions.empty() || text.size_mm || text.contact))
+    throw std::runtime_error("--region, --size and --contact are of octrees: make one of " +
+                             text.in.string() + " by octotomy voxelise");
   if (text.max_volume_mm3) {
     text.options.limit_volume = true;
     text.options.max_volume_mm3 = *text.max_volume_mm3;
@@ -191,7 +247,7 @@ int tet(const Program& program, TetText text) {
   text.options.time_limit = std::chrono::seconds(static_cast<long>(text.seconds));
   text.options.stop = program.stop.get_token();
   Timings timings;
-  Filled filled = is_octree(text.in) ? of_octree(program, text, timings) : of_mesh(program, text, timings);
+  Filled filled = is_octree(text.in) ? of_octrees(program, text, timings) : of_mesh(program, text, timings);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
   const convert::TetQuality quality = convert::quality(tetrahedra);
   const convert::DeckOptions deck = deck_of(program, text, filled, quality, timings);
@@ -255,6 +311,7 @@ void add_tet(Program& program) {
   CLI::App& verb =
       program.verb("tet", "Fills a solid with quality tetrahedra for finite elements",
                    "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
+                   "  octotomy tet maxilla.octree --region rest.octree --size 3 --contact -o head.inp\n"
                    "  octotomy tet maxilla.stl -o maxilla.feb --scan head.nrrd --density 0.0009,0.05",
                    [&program, text] { return tet(program, *text); });
   verb.add_option("file", text->in, "A closed mesh, or a binary .octree file")
@@ -287,6 +344,19 @@ void add_tet(Program& program) {
                 "elements, marked as such");
   verb.add_option("--voxel", text->voxel_mm, "Edge of their smallest, mm; default: about 200 000 voxels")
       ->check(above_zero());
+  const std::string group = "regions of octrees";
+  verb.add_option("--region", text->regions,
+                  "A further octree of the same universe, a region of its own; repeated")
+      ->check(CLI::ExistingFile)
+      ->group(group);
+  verb.add_option("--size", text->size_mm,
+                  "Smooth quality elements of about this size, mm, in place of the voxels' own")
+      ->check(above_zero())
+      ->group(group);
+  verb.add_flag(
+          "--contact", text->contact,
+          "Regions have nodes of their own where they touch, and contact pairs there; default: shared nodes")
+      ->group(group);
   verb.add_option("--order", text->order,
                   "1: four-node tetrahedra; 2: ten-node ones, with nodes on their sides")
       ->check(CLI::IsMember({1, 2}))

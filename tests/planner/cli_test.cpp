@@ -536,6 +536,27 @@ TEST_F(CommandLine, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFal
   expect_refused(run("tet " + at("ball.off") + " -o " + at("ten.node") + " --order 2"), "linear");
 }
 
+TEST_F(CommandLine, OctreesBecomeRegionsOfSmoothElementsThatShareNodesOrTouch) {
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("ball.octree")).status, 0);
+  voxel::write_scene(tests::ball_scene(6.0, 32), folder_ / "core.nrrd");
+  ASSERT_EQ(run("octree " + at("core.nrrd") + " --window 0: -o " + at("core.octree")).status, 0);
+  const std::string two = "tet " + at("core.octree") + " --region " + at("ball.octree");
+  const CommandAnswer shared = run(two + " --size 3 -o " + at("two.inp") + " --json");
+  ASSERT_EQ(shared.status, 0) << shared.errors;
+  const Json json = Json::parse(shared.out);
+  EXPECT_EQ(json["regions"], 2);
+  EXPECT_EQ(json["fallback"], false);
+  EXPECT_GT(json["quality"]["min_dihedral_deg"].get<double>(), 5.0);
+  const CommandAnswer touching = run(two + " --size 3 --contact -o " + at("touch.inp") + " --json");
+  ASSERT_EQ(touching.status, 0) << touching.errors;
+  EXPECT_GT(Json::parse(touching.out)["nodes"].get<int>(), json["nodes"].get<int>());
+  const CommandAnswer voxels = run(two + " -o " + at("voxels.inp") + " --json");
+  ASSERT_EQ(voxels.status, 0) << voxels.errors;
+  EXPECT_EQ(Json::parse(voxels.out)["fallback"], true);
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 600").status, 0);
+  expect_refused(run("tet " + at("ball.off") + " --size 3 -o " + at("p.inp")), "voxelise");
+}
+
 TEST_F(CommandLine, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
   const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
