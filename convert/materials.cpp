@@ -52,16 +52,16 @@ void check(const Tetrahedra& tetrahedra, const MaterialOptions& options) {
 
 /// Bins of equal width in Young's modulus; those that hold no element are left out.
 void gather(const MaterialOptions& options, ElementMaterials& result) {
-  const auto [low, high] =
-      std::minmax_element(result.youngs_modulus_mpa.begin(), result.youngs_modulus_mpa.end());
-  const double width = (*high - *low) / options.bins;
+  const auto ends = std::minmax_element(result.youngs_modulus_mpa.begin(), result.youngs_modulus_mpa.end());
+  const double low = *ends.first;
+  const double width = (*ends.second - low) / options.bins;
   struct Bin {
     double sum = 0.0;
     std::size_t count = 0;
   };
   std::map<int, Bin> bins;
   const auto bin_of = [&](double e) {
-    return width > 0.0 ? std::min(static_cast<int>((e - *low) / width), options.bins - 1) : 0;
+    return width > 0.0 ? std::min(static_cast<int>((e - low) / width), options.bins - 1) : 0;
   };
   for (const double e : result.youngs_modulus_mpa) {
     Bin& bin = bins[bin_of(e)];

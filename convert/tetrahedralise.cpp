@@ -294,6 +294,13 @@ std::optional<std::string> fault_in_filling(const Tetrahedra& tetrahedra, double
   return std::nullopt;
 }
 
+std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra) {
+  const double least_deg = quality(tetrahedra).min_dihedral_deg;
+  if (least_deg >= fit_dihedral_deg()) return std::nullopt;
+  return tetrahedra.method + " left dihedral angles down to " + text_of(least_deg) + " degrees, under the " +
+         text_of(fit_dihedral_deg()) + " that are fit for a solver";
+}
+
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   check(options);
   MesherInput surface = surface_of(solid);

@@ -38,6 +38,8 @@ struct TetOptions {
 constexpr double fit_dihedral_deg() {
   return 5.0;
 }
+/// That elements are too flat for a solver, with the angle and what made them; none where they are not.
+std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 
 /// Fills a solid by a mesher run in a process of its own, so that its crashes, loops and appetite stay there.
 /// Hole points are found for cavities. Where TetGen fails, it is tried with less to ask: with quality (-pYq),

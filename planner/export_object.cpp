@@ -153,14 +153,6 @@ void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQualit
                                  {"min_volume_mm3", quality.min_volume_mm3}};
 }
 
-/// That the flattest element is not fit for a solver; none where it is.
-std::optional<std::string> unfit(const Filling& filling) {
-  const double least_deg = convert::quality(filling.tetrahedra).min_dihedral_deg;
-  if (least_deg >= convert::fit_dihedral_deg()) return std::nullopt;
-  return filling.tetrahedra.method + " left dihedral angles down to " + grouped(least_deg, 2) +
-         " degrees, under the " + grouped(convert::fit_dihedral_deg(), 0) + " that are fit for a solver";
-}
-
 /// The object's filling, or why there is none.
 std::variant<Filling, std::string> fill(const Object& object, const std::stop_token& stop) {
   if (!object.mesh) return "it has no mesh";
@@ -182,7 +174,7 @@ void export_tetrahedra(const Object& object, const ExportStep& step, const std::
     const Stopwatch watch(timings, "tetrahedralise");
     std::variant<Filling, std::string> filled = fill(object, fillings.stop);
     if (auto* filling = std::get_if<Filling>(&filled))
-      if (const std::optional<std::string> why = unfit(*filling)) {
+      if (const std::optional<std::string> why = convert::fault_in_shape(filling->tetrahedra)) {
         if (step.fallback && !object.octree.is_empty())
           filled = *why;
         else

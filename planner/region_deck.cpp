@@ -55,10 +55,7 @@ void fill(const Regions& regions, const ExportStep& step, const voxel::Progress&
     options.size_mm = *step.smooth_mm;
     options.stop = progress.stop;
     deck.tetrahedra = convert::smooth_tetrahedra_of(regions.octrees, options);
-    const double least_deg = convert::quality(deck.tetrahedra).min_dihedral_deg;
-    if (least_deg < convert::fit_dihedral_deg())
-      why = "smooth elements have dihedral angles down to " + grouped(least_deg, 2) + " degrees, under the " +
-            grouped(convert::fit_dihedral_deg(), 0) + " that are fit for a solver";
+    why = convert::fault_in_shape(deck.tetrahedra).value_or("");
   } catch (const std::exception& error) {
     if (progress.stop.stop_requested()) throw Stopped("stopped while regions were filled");
     if (!step.fallback) throw std::runtime_error(error.what());

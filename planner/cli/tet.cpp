@@ -81,14 +81,6 @@ voxel::Progress progress_of(const Program& program, const std::string& doing) {
   return progress;
 }
 
-/// That elements are too flat for a solver; none where they are not.
-std::optional<std::string> why_unfit(const convert::Tetrahedra& tetrahedra) {
-  const double least_deg = convert::quality(tetrahedra).min_dihedral_deg;
-  if (least_deg >= convert::fit_dihedral_deg()) return std::nullopt;
-  return tetrahedra.method + " left dihedral angles down to " + grouped(least_deg, 2) +
-         " degrees, under the " + grouped(convert::fit_dihedral_deg(), 0) + " that are fit for a solver";
-}
-
 Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
   brep::Triangles triangles;
   {
@@ -114,7 +106,7 @@ Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
     try {
       filled.tetrahedra = convert::tetrahedralise(solid, text.options);
       filled.findings = filled.tetrahedra.findings;
-      const std::optional<std::string> unfit = why_unfit(filled.tetrahedra);
+      const std::optional<std::string> unfit = convert::fault_in_shape(filled.tetrahedra);
       if (!unfit) return filled;
       why = *unfit;
       if (!text.fallback) {
@@ -166,7 +158,7 @@ Filled of_octrees(const Program& program, const TetText& text, Timings& timings)
     try {
       filled.tetrahedra = convert::smooth_tetrahedra_of(octrees, options);
       filled.findings = filled.tetrahedra.findings;
-      const std::optional<std::string> unfit = why_unfit(filled.tetrahedra);
+      const std::optional<std::string> unfit = convert::fault_in_shape(filled.tetrahedra);
       if (!unfit) return filled;
       why = *unfit;
       if (!text.fallback) {
@@ -194,13 +186,15 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
   deck.msh_2_2 = text.msh_2_2;
   deck.second_order = text.order == 2;
   deck.surfaces = {{"SKIN", convert::surface_faces(filled.tetrahedra)}};
+  const auto name = [](std::uint32_t from, std::uint32_t to) {
+    return "REGION" + std::to_string(from + 1) + "_TO_REGION" + std::to_string(to + 1);
+  };
   for (convert::Interface& between : convert::interfaces(filled.tetrahedra)) {
-    const std::string one = "REGION" + std::to_string(between.from + 1),
-                      other = "REGION" + std::to_string(between.to + 1);
-    deck.surfaces.push_back({one + "_TO_" + other, std::move(between.faces)});
+    const std::string there = name(between.from, between.to), back = name(between.to, between.from);
+    deck.surfaces.push_back({there, std::move(between.faces)});
     if (!text.contact) continue;
-    deck.surfaces.push_back({other + "_TO_" + one, std::move(between.opposite)});
-    deck.contacts.push_back({one + "_TO_" + other, other + "_TO_" + one, one + "_TO_" + other});
+    deck.surfaces.push_back({back, std::move(between.opposite)});
+    deck.contacts.push_back({there, back, there});
   }
   if (text.contact) filled.tetrahedra = convert::separate_regions(filled.tetrahedra);
   deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION,

@@ -75,11 +75,14 @@ TEST(Mesh3Tetrahedra, BestTakesItWhereNeedlesOfTheKeptSurfaceSpoilTheAngles) {
   const brep::Triangles surface = with_needles();
   TetOptions options;
   const Tetrahedra kept = tetrahedralise(brep::mesh_of(surface), options);
-  ASSERT_LT(quality(kept).min_dihedral_deg, 5.0);
+  ASSERT_LT(quality(kept).min_dihedral_deg, fit_dihedral_deg());
+  ASSERT_TRUE(fault_in_shape(kept));
+  EXPECT_NE(fault_in_shape(kept)->find("TetGen -pYq1.4 left dihedral angles down to "), std::string::npos);
   options.mesher = Mesher::Best;
   const Tetrahedra best = tetrahedralise(brep::mesh_of(surface), options);
   EXPECT_EQ(best.method, "Mesh_3");
-  EXPECT_GT(quality(best).min_dihedral_deg, 5.0);
+  EXPECT_GT(quality(best).min_dihedral_deg, fit_dihedral_deg());
+  EXPECT_FALSE(fault_in_shape(best));
   ASSERT_FALSE(best.findings.empty());
   EXPECT_NE(best.findings.back().find("Mesh_3's own"), std::string::npos) << best.findings.back();
 }

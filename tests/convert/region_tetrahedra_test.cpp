@@ -100,6 +100,26 @@ TEST(RegionTetrahedra, TheSameRegionsGiveTheSameBits) {
   EXPECT_EQ(one.region_of_tet, other.region_of_tet);
 }
 
+TEST(RegionTetrahedra, ATimeLimitAndAStopAreNamed) {
+  const auto refusal = [](const RegionMeshOptions& options) {
+    try {
+      smooth_tetrahedra_of({ball(12.0)}, options);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  RegionMeshOptions hurried;
+  hurried.size_mm = 0.8;
+  hurried.time_limit = std::chrono::milliseconds(1);
+  EXPECT_NE(refusal(hurried).find("time limit of 1 ms"), std::string::npos) << refusal(hurried);
+  std::stop_source source;
+  source.request_stop();
+  RegionMeshOptions stopped;
+  stopped.stop = source.get_token();
+  EXPECT_NE(refusal(stopped).find("stopped on request"), std::string::npos) << refusal(stopped);
+}
+
 TEST(RegionTetrahedra, RefusesWhatItCannotBeAskedFor) {
   EXPECT_THROW(smooth_tetrahedra_of({}), std::invalid_argument);
   EXPECT_THROW(smooth_tetrahedra_of({voxel::Octree::empty(tests::unit_universe(5))}), std::invalid_argument);
