@@ -169,7 +169,6 @@ Attempt near_attempt(const Question& question, const Mesh& b, const Triangles& t
   if (answer.meets_itself) attempt.failure = "an operand meets itself where the other cuts it";
   attempt.results = std::move(answer.results);
   attempt.volumes_mm3 = answer.volumes_mm3;
-  attempt.films = answer.films;
   attempt.flat = answer.flat;
   return attempt;
 }

@@ -108,30 +108,39 @@ struct CutEdges {
   }
 };
 
-/// Deletes the closed shells that are films and says how many. Points are rounded by half a unit of the last
-/// place of their largest coordinate, so two sheets that would coincide lie apart by a few of them, and a
-/// shell whose volume is no more than that over its area is nothing else.
-std::size_t drop_films(Mesh& mesh) {
+/// How far apart sheets may lie that would coincide but for rounding. The operands' points are rounded by
+/// half a unit of the last place of their largest coordinate, and a face lies where its corners do, however
+/// near to the origin the film itself is; new points add as much again.
+double film_thickness(const Mesh& a, const Mesh& b) {
   double reach = 0.0;
-  for (const auto v : mesh.vertices()) reach = std::max(reach, mesh.point(v).max_abs());
-  const double thickness = 4.0 * std::numeric_limits<double>::epsilon() * reach;
+  for (const Mesh* mesh : {&a, &b})
+    for (const auto v : mesh->vertices()) reach = std::max(reach, mesh->point(v).max_abs());
+  return 4.0 * std::numeric_limits<double>::epsilon() * reach;
+}
+
+struct Films {
+  std::size_t dropped = 0;
+  bool has_open = false;  ///< some part with a border is no wider
+};
+
+/// Deletes the closed shells that are films, whose volume is no more than the thickness over their area.
+Films drop_films(Mesh& mesh, double thickness) {
   std::vector<bool> seen(mesh.n_faces(), false);
   std::vector<Mesh::FaceHandle> shell;
-  std::size_t films = 0;
+  Films films;
   for (const auto seed : mesh.faces()) {
     if (seen[static_cast<std::size_t>(seed.idx())]) continue;
     seen[static_cast<std::size_t>(seed.idx())] = true;
     shell.assign(1, seed);
     const Mesh::Point origin = mesh.point(mesh.to_vertex_handle(mesh.halfedge_handle(seed)));
-    double volume = 0.0, area = 0.0;
-    bool open = false;
+    double volume = 0.0, area = 0.0, border = 0.0;
     for (std::size_t next = 0; next < shell.size(); ++next) {
       Mesh::HalfedgeHandle h = mesh.halfedge_handle(shell[next]);
       std::array<Mesh::Point, 3> p;
       for (Mesh::Point& corner : p) {
         corner = mesh.point(mesh.to_vertex_handle(h)) - origin;
         const Mesh::FaceHandle beyond = mesh.opposite_face_handle(h);
-        open = open || !beyond.is_valid();
+        if (!beyond.is_valid()) border += mesh.calc_edge_length(h);
         if (beyond.is_valid() && !seen[static_cast<std::size_t>(beyond.idx())]) {
           seen[static_cast<std::size_t>(beyond.idx())] = true;
           shell.push_back(beyond);
@@ -142,8 +151,9 @@ std::size_t drop_films(Mesh& mesh) {
       volume += OpenMesh::dot(p[0], normal) / 6.0;
       area += 0.5 * normal.norm();
     }
-    if (open || std::abs(volume) > thickness * area) continue;
-    ++films;
+    films.has_open = films.has_open || (border > 0.0 && area <= thickness * border);
+    if (border > 0.0 || std::abs(volume) > thickness * area) continue;
+    ++films.dropped;
     for (const Mesh::FaceHandle face : shell) mesh.delete_face(face, true);
   }
   return films;
@@ -203,6 +213,7 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
   for (std::size_t i = 0; i < output.size(); ++i)
     if (wanted[i]) output[i] = &meshes[i];
   const auto to = [&](std::size_t i) { return CGAL::parameters::vertex_point_map(PointMap{&meshes[i]}); };
+  const double thickness = film_thickness(a, b);
   std::vector<bool> cut_a, cut_b;
   StepBudget::left = step_limit(a, b);
   const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
@@ -217,8 +228,10 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
     if (!output[i] || !manifold[i]) continue;
     meshes[i].garbage_collection();
     check_joins(triangles_of(meshes[i]));
-    corefined.films[i] = drop_films(meshes[i]);
-    if (corefined.films[i] > 0) meshes[i].garbage_collection();
+    const Films films = drop_films(meshes[i], thickness);
+    if (films.dropped > 0) meshes[i].garbage_collection();
+    corefined.films[i] = films.dropped;
+    corefined.has_open_film = corefined.has_open_film || films.has_open;
     corefined.results[i] = finished(meshes[i]);
   }
   corefined.has_uncut_part = has_uncut_part(a, cut_a) || has_uncut_part(b, cut_b);

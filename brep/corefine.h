@@ -21,6 +21,7 @@ struct Corefined {
   /// Closed shells thinner than the rounding of points, left out: what remains between faces that would
   /// coincide but for their last places.
   std::array<std::size_t, 4> films{};
+  bool has_open_film = false;  ///< a part that thin ends at a border, so that it is not known for a film
   /// Some connected part of a surface has no edge on the cut, though its triangles may touch the other
   /// surface: such parts count as outside where the other surface is open.
   bool has_uncut_part = false;

@@ -16,6 +16,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include "brep/orientation.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -87,21 +89,30 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
   return weights;
 }
 
+/// As the ray along x sees it.
+glm::dvec2 projected(const glm::dvec3& p) {
+  return {p.y, p.z};
+}
+
 /// Whether the projected edge, which straddles the point's z by the half-open rule, runs past its larger y.
+/// Exactly, as all of passes(): one wrong crossing turns a whole part of a solid inside out.
 bool edge_passes(const glm::dvec3& p, const glm::dvec3& from, const glm::dvec3& to) {
   if ((from.z <= p.z) == (to.z <= p.z)) return false;
+  if (from.y <= p.y && to.y <= p.y) return false;
+  if (from.y > p.y && to.y > p.y) return true;
   const glm::dvec3 &low = from.z < to.z ? from : to, &high = from.z < to.z ? to : from;
-  return (low.y - p.y) * (high.z - low.z) + (p.z - low.z) * (high.y - low.y) > 0.0;
+  return orientation(projected(low), projected(high), projected(p)) > 0;
 }
 
 bool passes(const glm::dvec3& p, const Corners& t) {
   const bool in_projection = edge_passes(p, t.a, t.b) != edge_passes(p, t.b, t.c) ? !edge_passes(p, t.c, t.a)
                                                                                   : edge_passes(p, t.c, t.a);
   if (!in_projection) return false;
-  const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
-  // Along +x the plane lies ahead where it does on the side its normal says.
-  const double ahead = glm::dot(t.a - p, normal);
-  return normal.x > 0.0 ? ahead > 0.0 : ahead < 0.0;
+  if (t.a.x <= p.x && t.b.x <= p.x && t.c.x <= p.x) return false;
+  if (t.a.x > p.x && t.b.x > p.x && t.c.x > p.x) return true;
+  // Along +x the plane lies ahead where the point is not on the side that the normal says.
+  const int normal_x = orientation(projected(t.a), projected(t.b), projected(t.c));
+  return orientation(t.a, t.b, t.c, p) * normal_x < 0;
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ class SurfaceTree {
   std::vector<Foot> feet(const std::vector<glm::dvec3>& points_mm) const;
 
   /// 1 for each point inside, 0 outside, by parity along +x: a ray through an edge or vertex counts once, by
-  /// the half-open rule. Precondition: closed. A point within rounding of the surface may be either.
-  /// Parallel.
+  /// the half-open rule, and exactly, however near the surface the point is; on it, it may be either.
+  /// Precondition: closed. Parallel.
   std::vector<std::uint8_t> inside(const std::vector<glm::dvec3>& points_mm) const;
 
   /// The triangles that a ray from a point towards +x passes, by face number, by the same rule.

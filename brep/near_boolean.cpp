@@ -320,6 +320,8 @@ Corefined corefine_near(const Operand& a, const Operand& b, const std::array<Sid
   corefined = corefine(patch_of(a, sides[0].near_faces), patch_of(b, sides[1].near_faces),
                        {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]});
   if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
+  if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
+    throw Obstacle("faces coincide but for rounding, near the cut and perhaps beyond");
   if (corefined.has_uncut_part) throw Obstacle("the surfaces touch without cutting");
   return corefined;
 }
@@ -328,7 +330,6 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, NearBoolean& 
   std::array<Side, 2> sides = sides_of(a, b);
   const Corefined corefined = corefine_near(a, b, sides, wanted);
   answer.meets_itself = corefined.meets_itself;
-  answer.films = corefined.films;
   answer.flat = corefined.flat;
 
   std::array<std::optional<Seam>, 4> seams;

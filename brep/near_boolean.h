@@ -18,9 +18,8 @@ struct NearBoolean {
   Results results;  ///< those wanted, closed; none of them where `obstacle` says why
   /// Of those, and for witness of all others that are manifold.
   std::array<std::optional<double>, 4> volumes_mm3;
-  std::array<std::size_t, 4> films{};  ///< see Corefined
-  std::size_t flat = 0;                ///< see Corefined
-  bool meets_itself = false;           ///< see Corefined
+  std::size_t flat = 0;       ///< see Corefined
+  bool meets_itself = false;  ///< see Corefined
   std::string obstacle;
 };
 
@@ -29,8 +28,8 @@ struct NearBoolean {
 /// left falls into parts wholly inside or outside, which the borders tell and a ray confirms. A wanted
 /// result's volume is that of its triangles; a witness's is the near triangles' and the parts'. Gives up,
 /// with the reason, where that is no gain or not certain: more than half of the triangles are near, a part
-/// only touches, a result is not manifold, or border, ray and seam disagree. Cost: linear in all triangles,
-/// some 0.2 us each, and corefine()'s for the near ones.
+/// only touches, faces all but coincide, a result is not manifold, or border, ray and seam disagree. Cost:
+/// linear in all triangles, some 0.2 us each, and corefine()'s for the near ones.
 NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted);
 
 }  // namespace octotomy::brep

@@ -202,6 +202,7 @@ TEST(Boolean, TheShiftThatIsToldIsTheShiftThatWasMadeAndAShareOfTheExtent) {
   const double step_mm = 0x1p-18 * std::sqrt(4 * 4 + 4 * 4 + 2 * 2);
   const double steps = glm::length(shift) / step_mm;
   EXPECT_NEAR(steps, 1.0, 0.05) << "the first shift does";
+  EXPECT_GT(glm::min(glm::min(shift.x, shift.y), shift.z), 0.0) << "the first goes forward";
   double nearest = std::numeric_limits<double>::infinity();
   const glm::dvec3 corner = at + glm::dvec3(4, 4, 2) + shift;
   for (const auto v : united.mesh.vertices()) {
@@ -216,8 +217,41 @@ TEST(Boolean, SheetsThatMeetInOnePointAreOnePointHoweverManyTheyAre) {
   const BooleanResult united = boolean(pair, Operation::Union, box({2, 0, 2}, {3, 2, 3}));
   // Whatever becomes of the third one's edges, no point is counted for each of its sheets.
   EXPECT_NEAR(volume(united.mesh), 18, 1e-2);
-  const BooleanResult apart = boolean(pair, Operation::Union, box({10, 0, 0}, {11, 1, 1}));
-  EXPECT_EQ(told(apart.findings).find("touches itself"), std::string::npos) << told(apart.findings);
+}
+
+TEST(Boolean, WhereAnOperandTouchesItselfAwayFromTheOtherIsNotToldOfTheResult) {
+  const Mesh pair = boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4})).mesh;
+  for (const double at : {-11.0, 10.0}) {
+    const BooleanResult apart = boolean(pair, Operation::Union, box({at, -1, -1}, {at + 1, 5, 5}));
+    EXPECT_NEAR(volume(apart.mesh), 16 + 36, 1e-12);
+    EXPECT_EQ(told(apart.findings).find("touches itself"), std::string::npos) << told(apart.findings);
+  }
+}
+
+TEST(Boolean, PointsWhereItTouchesItselfAreCountedOnceEach) {
+  const Triangles corners = shapes::together(
+      shapes::together(shapes::box({-1, -1, -1}, {0, 0, 0}), shapes::box({2, 2, 2}, {3, 3, 3})),
+      shapes::box({-1, 2, -1}, {0, 3, 0}));
+  const BooleanResult three =
+      boolean(mesh_of(shapes::box({0, 0, 0}, {2, 2, 2})), Operation::Union, mesh_of(corners));
+  EXPECT_NEAR(volume(three.mesh), 8 + 3, 1e-12);
+  EXPECT_NE(told(three.findings).find("touches itself at 3 points;"), std::string::npos)
+      << told(three.findings);
+}
+
+TEST(Boolean, TheResidualIsMeasuredAndNotMerelySmall) {
+  double largest = 0;
+  for (int i = 1; i <= 5; ++i) {
+    const Booleans results = booleans(sphere({0, 0, 0}, 3, 3), sphere({0.3 * i, 0.5, 0.25}, 2.7, 3));
+    ASSERT_TRUE(results.residual);
+    const double whole = volume(sphere({0, 0, 0}, 3, 3));
+    const double seen =
+        std::abs(whole - volume(*results.intersection) - volume(*results.a_minus_b)) / (2 * whole);
+    EXPECT_GE(*results.residual, 0.9 * seen - 1e-17);
+    largest = std::max(largest, *results.residual);
+  }
+  EXPECT_GT(largest, 0.0);
+  EXPECT_LT(largest, 1e-13);
 }
 
 TEST(Boolean, ASharedVertexIsKeptOnceForEachSheetAndTold) {

@@ -40,15 +40,20 @@ CHANGES = [
     (r"\.full\b", ".some"), (r"\.some\b", ".full"), (r"Form::Full\b", "Form::Empty"), (r"Form::Empty\b", "Form::Full"),
     (r"State::Full\b", "State::Empty"), (r"State::Empty\b", "State::Full"), (r"\bof_a\b", "of_b"), (r"\ba_mm3\b", "b_mm3"),
 ]
-# Lines that tell and do not decide, or only set how fast.
-PASSED_OVER = re.compile(r"^\s*(//|#|\*)|std::string|findings|constexpr int parallel_height|prefetch_|template|failure =|throw |using |tell_touching")
+# Lines that only set how fast, and statements that tell and do not decide, to the line that ends them.
+PASSED_OVER = re.compile(r"^\s*(//|#|\*)|constexpr int parallel_height|prefetch_|template|using ")
+TELLS = re.compile(r"std::string|findings|failure =|throw |tell_touching")
 
 
 def mutants_of(root, path):
     lines = (root / path).read_text().split("\n")
     found = []
+    telling = False
     for number, line in enumerate(lines):
-        if PASSED_OVER.search(line):
+        telling = telling or bool(TELLS.search(line))
+        passed_over = telling or PASSED_OVER.search(line)
+        telling = telling and not line.rstrip().endswith((";", "{", "}"))
+        if passed_over:
             continue
         code = line.split(" //")[0]
         for pattern, into in CHANGES:
@@ -90,7 +95,7 @@ def linked_with(build, target, object_file, program):
 
 def questions_about(path, questions, folder):
     """Programs and their arguments, the quickest first."""
-    tests = [(target, f"--gtest_brief=1 --gtest_filter='{names}'") for target, names in SOURCES[path]]
+    tests = [(target, f"--gtest_brief=1 --gtest_fail_fast --gtest_filter='{names}'") for target, names in SOURCES[path]]
     return [*tests, ("octotomy", f"verify --random {questions} --failures {folder}/failures --json")]
 
 
