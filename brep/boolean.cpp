@@ -143,12 +143,14 @@ struct Question {
   Size size_b;
   Wanted wanted;
   Names names;
+  const std::stop_token& stop;
 };
 
 /// All triangles corefined.
 Attempt whole_attempt(const Question& question, const Mesh& b) {
   Attempt attempt;
-  Corefined corefined = corefine(question.a, b, with_witnesses(question.wanted, question.a, question.b));
+  Corefined corefined =
+      corefine(question.a, b, with_witnesses(question.wanted, question.a, question.b), question.stop);
   attempt.failure = corefined.failure;
   for (std::size_t r = 0; r < corefined.results.size(); ++r)
     if (corefined.results[r]) attempt.volumes_mm3[r] = size_of(*corefined.results[r]).volume_mm3;
@@ -164,7 +166,8 @@ Attempt whole_attempt(const Question& question, const Mesh& b) {
 
 Attempt near_attempt(const Question& question, const Mesh& b, const Triangles& triangles_b) {
   Attempt attempt;
-  NearBoolean answer = near_boolean({question.a, question.triangles_a}, {b, triangles_b}, question.wanted);
+  NearBoolean answer =
+      near_boolean({question.a, question.triangles_a}, {b, triangles_b}, question.wanted, question.stop);
   attempt.failure = answer.obstacle;
   if (answer.meets_itself) attempt.failure = "an operand meets itself where the other cuts it";
   attempt.results = std::move(answer.results);
@@ -297,16 +300,18 @@ bool comes_after(const Triangles& a, const Triangles& b) {
                                       a.points_mm.end(), less);
 }
 
-Answer answer(const Mesh& a, const Mesh& b, const Wanted& wanted) {
+Answer answer(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop) {
+  if (stop.stop_requested()) throw BooleanStopped();
   const Triangles triangles_a = triangles_of(a), triangles_b = triangles_of(b);
   const Size size_a = size_of(triangles_a), size_b = size_of(triangles_b);
   check_operand(a, size_a, "a");
   check_operand(b, size_b, "b");
   if (!comes_after(triangles_a, triangles_b))
-    return answer({a, triangles_a, size_a, b, triangles_b, size_b, wanted, {"a", "b"}});
+    return answer({a, triangles_a, size_a, b, triangles_b, size_b, wanted, {"a", "b"}, stop});
   Wanted turned = wanted;
   std::swap(turned[of_a_minus_b], turned[of_b_minus_a]);
-  Answer answer_to_turned = answer({b, triangles_b, size_b, a, triangles_a, size_a, turned, {"b", "a"}});
+  Answer answer_to_turned =
+      answer({b, triangles_b, size_b, a, triangles_a, size_a, turned, {"b", "a"}, stop});
   std::swap(answer_to_turned.results[of_a_minus_b], answer_to_turned.results[of_b_minus_a]);
   return answer_to_turned;
 }
@@ -319,8 +324,8 @@ struct MeshInPlace {
 
 }  // namespace
 
-Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted) {
-  Answer found = answer(a, b, {wanted.united, wanted.intersection, wanted.a_minus_b, wanted.b_minus_a});
+Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted, const std::stop_token& stop) {
+  Answer found = answer(a, b, {wanted.united, wanted.intersection, wanted.a_minus_b, wanted.b_minus_a}, stop);
   Booleans booleans;
   const auto make = [&](ResultPlace place, std::optional<Mesh>& mesh) {
     if (found.results[place]) mesh.emplace(MeshInPlace{*found.results[place]});
@@ -334,21 +339,21 @@ Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted) {
   return booleans;
 }
 
-BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b) {
+BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b, const std::stop_token& stop) {
   const ResultPlace place = operation == Operation::Union          ? of_union
                             : operation == Operation::Intersection ? of_intersection
                                                                    : of_a_minus_b;
   Wanted wanted{};
   wanted[place] = true;
-  Answer found = answer(a, b, wanted);
+  Answer found = answer(a, b, wanted, stop);
   return {mesh_of(found.results[place].value()), found.residual, std::move(found.findings)};
 }
 
-BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation) {
+BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation, const std::stop_token& stop) {
   if (operands.empty()) throw std::invalid_argument("a Boolean needs an operand");
   BooleanResult all;
   const auto combine = [&](const Mesh& a, Operation step, const Mesh& b) {
-    BooleanResult result = boolean(a, step, b);
+    BooleanResult result = boolean(a, step, b, stop);
     if (result.residual) all.residual = std::max(all.residual.value_or(0.0), *result.residual);
     all.findings.insert(all.findings.end(), result.findings.begin(), result.findings.end());
     return result.mesh;

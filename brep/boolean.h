@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -26,17 +27,18 @@ struct BooleanResult {
 /// self-intersection and with shells placed rightly. The bits are the same on any number of threads and for
 /// either order of the operands. Throws std::invalid_argument where an operand is open, naming the first such
 /// triangle, or inside out; std::runtime_error where the result cannot be represented as a manifold surface
-/// or the volumes do not add up, after the remedy below. Cost: linear in all triangles, some 0.4 us each, and
-/// n log n, about 2 us each, for those near the common lines.
-/// Source: CGAL's Polygon Mesh Processing, corefinement (Loriot et al.), EPICK predicates; only triangles
-/// near the common lines are given to it, see near_boolean().
-BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b);
+/// or the volumes do not add up, after the remedy below, or where stopped. Cost: linear in all triangles,
+/// some 0.4 us each, and n log n, about 2 us each, for those near the common lines. Source: CGAL's Polygon
+/// Mesh Processing, corefinement (Loriot et al.), EPICK predicates; only triangles near the common lines are
+/// given to it, see near_boolean().
+BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b, const std::stop_token& stop = {});
 
 /// The Boolean of any number of solids: their union, their intersection, or the first less all others. The
 /// residual is the largest of the steps', and findings are all of them. Throws std::invalid_argument where
 /// there are no operands, else as above. Cost: unions are taken in pairs, so that each triangle passes log n
 /// of them.
-BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation);
+BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation,
+                      const std::stop_token& stop = {});
 
 /// Which results booleans() must give.
 struct BooleansWanted {
@@ -67,6 +69,7 @@ struct Booleans {
 
 /// As boolean(), which see, for several results at the price of one. Only wanted results decide whether it
 /// throws or resorts to the shift.
-Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted = {});
+Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted = {},
+                  const std::stop_token& stop = {});
 
 }  // namespace octotomy::brep

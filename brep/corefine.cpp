@@ -36,11 +36,13 @@ inline bool Constrained_Delaunay_triangulation_2<CutTraits, CutLinks>::is_valid(
 
 namespace octotomy::brep {
 
-/// Steps along halfedges that the corefinement under way may still take.
+/// Steps along halfedges that the corefinement under way may still take, and what may end it before.
 struct StepBudget {
   static thread_local std::size_t left;
+  static thread_local std::stop_token stop;
 };
 thread_local std::size_t StepBudget::left = 0;
+thread_local std::stop_token StepBudget::stop;
 
 // CGAL finds these for our mesh instead of its own.
 // Its output builder distrusts open surfaces as operands: it would refuse what it has classified by edges
@@ -56,6 +58,8 @@ bool is_outward_oriented(const Mesh&, const Parameters&) {
 // Where surfaces all but coincide it may link halfedges into rings that its walks never leave.
 inline void take_step() {
   if (StepBudget::left == 0) throw std::runtime_error("its walk along the surface does not end");
+  constexpr std::size_t between_looks = 1 << 12;
+  if (StepBudget::left % between_looks == 0 && StepBudget::stop.stop_requested()) throw BooleanStopped();
   --StepBudget::left;
 }
 inline OpenMesh::HalfedgeHandle next(OpenMesh::HalfedgeHandle h, const Mesh& mesh) {
@@ -242,13 +246,16 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
 
 /// CGAL tells three troubles by exceptions: an operand that meets itself, constraints that cross within a
 /// triangle (the same, seen later), and broken invariants.
-Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted) {
+Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop) {
   Corefined failed;
+  StepBudget::stop = stop;
   for (const bool strict : {true, false}) {
     try {
       Corefined corefined = attempt(a, b, wanted, strict);
       corefined.meets_itself = !strict;
       return corefined;
+    } catch (const BooleanStopped&) {
+      throw;
     } catch (const pmp::Corefinement::Self_intersection_exception&) {
       failed.failure = "an operand meets itself where the other cuts it";
     } catch (const std::exception& e) {

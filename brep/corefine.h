@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
+#include <stop_token>
 #include <string>
 
 #include "brep/mesh.h"
@@ -15,6 +17,11 @@ namespace octotomy::brep {
 enum ResultPlace { of_union, of_intersection, of_a_minus_b, of_b_minus_a };
 using Results = std::array<std::optional<Triangles>, 4>;
 using Wanted = std::array<bool, 4>;
+
+/// A stop token was set.
+struct BooleanStopped : std::runtime_error {
+  BooleanStopped() : std::runtime_error("the Boolean was stopped") {}
+};
 
 struct Corefined {
   Results results;  ///< those wanted that are manifold, in order of their coordinates
@@ -34,8 +41,9 @@ struct Corefined {
 /// Cuts both surfaces along their common lines and puts the parts together. Either may be open, a part of a
 /// solid's surface, as long as its border does not meet the other; parts of results end at such borders then.
 /// Points come in an order that does not hang on addresses, as those of CGAL's do. The only unit that sees
-/// corefinement, which is dear to compile. Cost: n log n, about 2 us a triangle.
+/// corefinement, which is dear to compile. Throws BooleanStopped where asked to stop, within a millisecond.
+/// Cost: n log n, about 2 us a triangle.
 /// Source: CGAL's Polygon Mesh Processing, corefinement (Loriot et al.), EPICK predicates.
-Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted);
+Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop = {});
 
 }  // namespace octotomy::brep

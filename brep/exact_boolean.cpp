@@ -94,9 +94,31 @@ Mesh rounded(const Surface& surface, std::size_t& moved) {
   return mesh_of(in_coordinate_order(mesh_of(triangles)));
 }
 
+/// What CGAL tells while it works: meeting edges and faces are half of the work, cutting faces the other.
+struct Watched : pmp::Corefinement::Default_visitor<Surface> {
+  const Watch* watch = nullptr;
+  std::size_t steps = 0, step = 0;
+  double from = 0.0;
+
+  void begin(std::size_t count, double share) {
+    steps = std::max(count, std::size_t{1});
+    step = 0;
+    from = share;
+  }
+  void advance() {
+    if (watch->stop.stop_requested()) throw std::runtime_error("the exact Boolean was stopped");
+    if (watch->progress)
+      watch->progress(from + 0.45 * static_cast<double>(++step) / static_cast<double>(steps));
+  }
+  void start_handling_edge_face_intersections(std::size_t count) { begin(count, 0.0); }
+  void edge_face_intersections_step() { advance(); }
+  void start_triangulating_faces(std::size_t count) { begin(count, 0.45); }
+  void triangulating_faces_step() { advance(); }
+};
+
 }  // namespace
 
-ExactBoolean exact_boolean(const Mesh& a, Operation operation, const Mesh& b) {
+ExactBoolean exact_boolean(const Mesh& a, Operation operation, const Mesh& b, const Watch& watch) {
   Surface exact_a = surface_of(a, "a"), exact_b = surface_of(b, "b");
   const Rational of_a = six_volumes(exact_a), of_b = six_volumes(exact_b);
   std::array<Surface, 4> results;
@@ -107,13 +129,17 @@ ExactBoolean exact_boolean(const Mesh& a, Operation operation, const Mesh& b) {
   for (const std::size_t r :
        {wanted, std::size_t{pmp::Corefinement::UNION}, std::size_t{pmp::Corefinement::INTERSECTION}})
     output[r] = &results[r];
-  const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(exact_a, exact_b, output);
+  Watched watched;
+  watched.watch = &watch;
+  const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
+      exact_a, exact_b, output, CGAL::parameters::visitor(watched));
   for (std::size_t r = 0; r < output.size(); ++r)
     if (output[r] && !manifold[r])
       throw std::runtime_error(
           "no exact Boolean: a result would not be manifold, as the surfaces only touch; without exactness "
           "one is moved by far less than matters");
 
+  if (watch.progress) watch.progress(0.9);
   const Rational united = six_volumes(results[pmp::Corefinement::UNION]);
   const Rational common = six_volumes(results[pmp::Corefinement::INTERSECTION]);
   prove(of_a + of_b, united + common, "|A| + |B| = |A u B| + |A n B|");

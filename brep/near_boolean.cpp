@@ -311,14 +311,14 @@ std::array<Side, 2> sides_of(const Operand& a, const Operand& b) {
 }
 
 Corefined corefine_near(const Operand& a, const Operand& b, const std::array<Side, 2>& sides,
-                        const Wanted& wanted) {
+                        const Wanted& wanted, const std::stop_token& stop) {
   Corefined corefined;
   if (sides[0].near_faces.empty() && sides[1].near_faces.empty()) {
     corefined.results.fill(Triangles());
     return corefined;
   }
   corefined = corefine(patch_of(a, sides[0].near_faces), patch_of(b, sides[1].near_faces),
-                       {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]});
+                       {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
   if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
   if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
     throw Obstacle("faces coincide but for rounding, near the cut and perhaps beyond");
@@ -326,9 +326,10 @@ Corefined corefine_near(const Operand& a, const Operand& b, const std::array<Sid
   return corefined;
 }
 
-void sew(const Operand& a, const Operand& b, const Wanted& wanted, NearBoolean& answer) {
+void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::stop_token& stop,
+         NearBoolean& answer) {
   std::array<Side, 2> sides = sides_of(a, b);
-  const Corefined corefined = corefine_near(a, b, sides, wanted);
+  const Corefined corefined = corefine_near(a, b, sides, wanted, stop);
   answer.meets_itself = corefined.meets_itself;
   answer.flat = corefined.flat;
 
@@ -363,10 +364,11 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, NearBoolean& 
 
 }  // namespace
 
-NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted) {
+NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted,
+                         const std::stop_token& stop) {
   NearBoolean answer;
   try {
-    sew(a, b, wanted, answer);
+    sew(a, b, wanted, stop, answer);
     return answer;
   } catch (const Obstacle& obstacle) {
     answer = {};

@@ -30,6 +30,7 @@ struct NearBoolean {
 /// with the reason, where that is no gain or not certain: more than half of the triangles are near, a part
 /// only touches, faces all but coincide, a result is not manifold, or border, ray and seam disagree. Cost:
 /// linear in all triangles, some 0.2 us each, and corefine()'s for the near ones.
-NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted);
+NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted,
+                         const std::stop_token& stop = {});
 
 }  // namespace octotomy::brep

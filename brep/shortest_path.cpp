@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 bound the way's length by one along edges; 2 keep the triangles that a way no longer than that can touch;
-// 3 search them exactly. On a head the exact search of all triangles takes a minute, of those within reach a
-// second or two for ways of some centimetres.
+// 3 search them exactly, which is what costs: most of a head is out of reach of a way of some centimetres.
 #include "brep/shortest_path.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

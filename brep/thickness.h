@@ -38,7 +38,7 @@ struct ThicknessOptions {
 /// of the solid's extent. Precondition: closed and oriented; a point lies on the surface. Throws
 /// std::invalid_argument where there are no triangles, the angle is out of its range, or a ray leaves without
 /// meeting the surface, naming the point; std::runtime_error where stopped. The same bits on any number of
-/// threads. Cost: about log n a point for the ray, and for each of some 5 to 10 steps of the ball; parallel.
+/// threads. Cost: about log n a point for the ray, and for each step of the ball; parallel.
 /// Source: Ma, Bae and Choi, "3D medial axis point approximation using nearest neighbors and the normal
 /// field", The Visual Computer 28, 2012, with triangles for points.
 std::vector<Thickness> thickness(const Mesh& solid, const std::vector<SurfacePoint>& points,

@@ -18,8 +18,8 @@ struct Untangled {
 
 /// A mesh without triangles that intersect: those that do and some about them are smoothed, or taken out and
 /// the hole closed, with the genus kept where that will do. Where nothing helps, `is_done` is false and the
-/// surface as far as it came. Precondition: nothing is marked as deleted. Cost: the test's n log n, and about
-/// 1 ms a triangle that intersects. Source: CGAL's experimental remove_self_intersections().
+/// surface as far as it came. Precondition: nothing is marked as deleted. Cost: the test's n log n, and most
+/// for triangles that intersect. Source: CGAL's experimental remove_self_intersections().
 Untangled untangle(const Mesh& mesh);
 
 }  // namespace octotomy::brep

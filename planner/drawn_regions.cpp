@@ -2,43 +2,14 @@
 #include "planner/drawn_regions.h"
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "planner/nearest_name.h"
+#include "planner/json_file.h"
 
 namespace octotomy::planner {
 namespace {
 
 using Json = nlohmann::json;
-
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw std::runtime_error(where + ": " + what);
-}
-
-Json content_of(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  if (!stream) refuse(path.string(), "cannot be opened");
-  try {
-    return Json::parse(stream);
-  } catch (const Json::exception& error) {
-    refuse(path.string(), std::string("is no JSON: ") + error.what());
-  }
-}
-
-void check_keys(const Json& object, const std::string& where, const std::vector<std::string>& known) {
-  if (!object.is_object()) refuse(where, "must be an object with the keys of this kind of file");
-  for (const auto& [key, unused] : object.items())
-    if (std::find(known.begin(), known.end(), key) == known.end())
-      refuse(where, "unknown key '" + key + "'" + suggestion(key, known));
-}
-
-double number(const Json& value, const std::string& where) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(where, "must be a finite number");
-  return value.get<double>();
-}
 
 std::vector<std::vector<glm::dvec2>> polygons_of(const Json& value, const std::string& where) {
   if (!value.is_array()) refuse(where, "must be a list of polygons [[[u, v], ...], ...]");
@@ -49,29 +20,18 @@ std::vector<std::vector<glm::dvec2>> polygons_of(const Json& value, const std::s
     polygons.emplace_back();
     for (const Json& point : polygon) {
       const std::string place = at + "[" + std::to_string(polygons.back().size()) + "]";
-      if (!point.is_array() || point.size() != 2) refuse(place, "must be two numbers [u, v]");
-      polygons.back().emplace_back(number(point[0], place), number(point[1], place));
+      polygons.back().push_back(point_of(point, place));
     }
   }
   return polygons;
 }
 
-const Json& need(const Json& object, const std::string& key, const std::string& where) {
-  if (!object.contains(key)) refuse(where, "has no '" + key + "'");
-  return object[key];
-}
-
-std::string word(const Json& value, const std::string& where) {
-  if (!value.is_string()) refuse(where, "must be a word");
-  return value.get<std::string>();
-}
-
 voxel::SliceMask slices_of(const Json& json, const std::string& source) {
   check_keys(json, source, {"view", "between", "slices"});
   voxel::SliceMask mask;
-  mask.view = voxel::parse_view(word(need(json, "view", source), source + ": view"));
+  mask.view = voxel::parse_view(word_of(need(json, "view", source), source + ": view"));
   if (json.contains("between")) {
-    const std::string between = word(json["between"], source + ": between");
+    const std::string between = word_of(json["between"], source + ": between");
     if (between != "shape_based" && between != "nearest")
       refuse(source + ": between", "is shape_based or nearest, not '" + between + "'");
     mask.between =
@@ -82,7 +42,7 @@ voxel::SliceMask slices_of(const Json& json, const std::string& source) {
   for (const Json& slice : slices) {
     const std::string where = source + ": slices[" + std::to_string(mask.slices.size()) + "]";
     check_keys(slice, where, {"position_mm", "polygons_mm"});
-    mask.slices.push_back({number(need(slice, "position_mm", where), where + ".position_mm"),
+    mask.slices.push_back({number_of(need(slice, "position_mm", where), where + ".position_mm"),
                            polygons_of(need(slice, "polygons_mm", where), where + ".polygons_mm")});
   }
   std::stable_sort(mask.slices.begin(), mask.slices.end(),
@@ -94,7 +54,7 @@ voxel::SliceMask slices_of(const Json& json, const std::string& source) {
 }  // namespace
 
 voxel::Region read_region(const voxel::View& view, const std::filesystem::path& path) {
-  const Json json = content_of(path);
+  const Json json = read_json(path);
   if (json.is_array()) return {view, polygons_of(json, path.string())};
   check_keys(json, path.string(), {"polygons_mm"});
   return {view, polygons_of(need(json, "polygons_mm", path.string()), path.string() + ": polygons_mm")};
@@ -102,7 +62,7 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 
 voxel::SliceMask read_slices(const std::filesystem::path& path) {
   try {
-    return slices_of(content_of(path), path.string());
+    return slices_of(read_json(path), path.string());
   } catch (const std::invalid_argument& error) {
     refuse(path.string(), error.what());
   }

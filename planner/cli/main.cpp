@@ -90,7 +90,8 @@ int run_chosen(Program& program) {
                       error.code().value() == EIO || error.code().value() == ENOMEM;
     return refuse(error.what(), disk ? cli::out_of_resources : cli::bad_input);
   } catch (const std::exception& error) {
-    return refuse(error.what(), no_space(error.what()) ? cli::out_of_resources : cli::bad_input);
+    const bool ended = program.stop.stop_requested() || no_space(error.what());
+    return refuse(error.what(), ended ? cli::out_of_resources : cli::bad_input);
   }
 }
 
@@ -136,10 +137,12 @@ int parse_and_run(int count, char** arguments) {
   cli::add_register(program);
   cli::add_mirror(program);
   cli::add_repair(program);
+  cli::add_offset(program);
   cli::add_saw(program);
   cli::add_compare(program);
   cli::add_octree(program);
   cli::add_eval(program);
+  cli::add_contours(program);
   cli::add_mask(program);
   cli::add_phantom(program);
   try {

@@ -108,12 +108,7 @@ std::vector<brep::Thickness> thickness_of(const Program& program, const brep::Me
   const auto progress = program.progress();
   if (progress) options.progress = [&](double share) { progress("thickness", share); };
   options.stop = program.stop.get_token();
-  try {
-    return brep::thickness(mesh, points, options);
-  } catch (const std::runtime_error& error) {
-    if (program.stop.stop_requested()) throw Stopped(error.what());
-    throw;
-  }
+  return brep::thickness(mesh, points, options);
 }
 
 /// At vertices, where a picture shows it; each with the mean of its triangles' normals weighted by angle.

@@ -21,9 +21,12 @@ struct BooleanText {
 };
 
 /// What the proof says, and the mesh in place of the result's.
-Json proven(const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
+Json proven(const Program& program, const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
             brep::BooleanResult& result) {
-  brep::ExactBoolean exact = brep::exact_boolean(a, operation, b);
+  brep::Watch watch{.stop = program.stop.get_token()};
+  if (const auto progress = program.progress())
+    watch.progress = [=](double done) { progress("exact", done); };
+  brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, watch);
   result.mesh = std::move(exact.mesh);
   result.residual = 0.0;
   return {{"identity", "|A| + |B| = |A u B| + |A n B|, as rational numbers"},
@@ -52,9 +55,9 @@ int boolean(const Program& program, const BooleanText& text) {
   {
     const Stopwatch watch(timings, "boolean_mesh");
     if (text.exact)
-      proof = proven(operands[0], operation, operands[1], result);
+      proof = proven(program, operands[0], operation, operands[1], result);
     else
-      result = brep::boolean(operands, operation);
+      result = brep::boolean(operands, operation, program.stop.get_token());
   }
   if (result.mesh.n_faces() == 0)
     throw std::runtime_error("the " + text.operation + " of " + text.a.string() + " and " + text.b.string() +

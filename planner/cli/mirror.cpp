@@ -33,12 +33,7 @@ brep::MirrorFit fit(const Program& program, const MirrorText& text, const brep::
   options.stop = program.stop.get_token();
   if (const auto progress = program.progress())
     options.progress = [progress](double share) { progress("mid-plane", share); };
-  try {
-    return brep::fit_mirror_plane(mesh, options);
-  } catch (const std::runtime_error& error) {
-    if (program.stop.stop_requested()) throw Stopped(error.what());
-    throw;
-  }
+  return brep::fit_mirror_plane(mesh, options);
 }
 
 int mirror(const Program& program, const MirrorText& text) {

@@ -40,7 +40,7 @@ int saw(const Program& program, const SawText& text) {
   brep::BooleanResult rest;
   {
     const Stopwatch watch(timings, "boolean_mesh");
-    rest = brep::boolean(solid, brep::Operation::Difference, blade);
+    rest = brep::boolean(solid, brep::Operation::Difference, blade, program.stop.get_token());
   }
   if (rest.mesh.n_faces() == 0)
     throw std::runtime_error("the cut takes all of " + text.solid.string() + ": there is nothing to write");

@@ -3,6 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <thread>
 
 #include "brep/components.h"
 #include "brep/health.h"
@@ -212,11 +213,59 @@ TEST(Boolean, TheShiftThatIsToldIsTheShiftThatWasMadeAndAShareOfTheExtent) {
   EXPECT_LT(nearest, 0.05 * glm::length(shift)) << "no corner of b where the finding says it was moved to";
 }
 
+/// A tetrahedron with its tip at a point, its far face about where the way leads.
+Triangles tip(const glm::dvec3& at, const glm::dvec3& way) {
+  const glm::dvec3 side = glm::normalize(glm::cross(way, glm::dvec3(0.3, 0.5, 0.8)));
+  const glm::dvec3 other = glm::normalize(glm::cross(way, side));
+  Triangles t;
+  t.points_mm = {at, at + way + 0.4 * side, at + way - 0.3 * side + 0.3 * other,
+                 at + way - 0.3 * side - 0.3 * other};
+  t.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return size_of(t).volume_mm3 > 0.0 ? t : shapes::inside_out(t);
+}
+
 TEST(Boolean, SheetsThatMeetInOnePointAreOnePointHoweverManyTheyAre) {
-  const Mesh pair = boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4})).mesh;
-  const BooleanResult united = boolean(pair, Operation::Union, box({2, 0, 2}, {3, 2, 3}));
-  // Whatever becomes of the third one's edges, no point is counted for each of its sheets.
-  EXPECT_NEAR(volume(united.mesh), 18, 1e-2);
+  const glm::dvec3 at(1, 2, 3), ways[] = {{1, 0, 0}, {-1, 0.1, 0}, {0, 1, 0.1}, {0.1, 0, 1}};
+  const Triangles about = shapes::together(shapes::box(at - 5.0, at - 4.0), shapes::box(at + 4.0, at + 5.0));
+  Triangles tips = tip(at, ways[0]);
+  for (int count = 2; count <= 4; ++count) {
+    tips = shapes::together(tips, tip(at, ways[count - 1]));
+    const BooleanResult united = boolean(mesh_of(tips), Operation::Union, mesh_of(about));
+    EXPECT_EQ(told(united.findings), "the union touches itself at 1 point; ") << count << " tips";
+  }
+}
+
+TEST(Boolean, TellsOfTheDifferenceThatItIsInTheCallersOrder) {
+  const Mesh cube = box({0, 0, 0}, {6, 6, 6});
+  const Mesh pair = boolean(box({1, 1, 1}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4})).mesh;
+  const Booleans ab = booleans(cube, pair, {false, false, true, false}),
+                 ba = booleans(pair, cube, {false, false, false, true});
+  EXPECT_EQ(told(ab.findings), "a - b touches itself at 1 point; ");
+  EXPECT_EQ(told(ba.findings), "b - a touches itself at 1 point; ");
+  EXPECT_NEAR(volume(*ab.a_minus_b), 216 - 9, 1e-12);
+}
+
+TEST(Boolean, OneResultAloneIsVouchedForToo) {
+  const Mesh a = box({0, 0, 0}, {2, 2, 2}), b = box({1, 1, 1}, {4, 3.5, 3});
+  for (const Operation operation : {Operation::Union, Operation::Intersection, Operation::Difference}) {
+    const BooleanResult result = boolean(a, operation, b);
+    EXPECT_TRUE(result.residual) << told(result.findings);
+    EXPECT_TRUE(result.findings.empty()) << told(result.findings);
+  }
+}
+
+TEST(Boolean, ResultsThatDoNotAddUpAreNotGiven) {
+  // Two balls through each other as one mesh: what is in both counts twice for its volume, once for a result.
+  const Mesh twice =
+      mesh_of(shapes::together(shapes::sphere({0, 0, 0}, 3, 3), shapes::sphere({1, 0.5, 0.25}, 3, 3)));
+  for (const Operation operation : {Operation::Union, Operation::Intersection, Operation::Difference}) {
+    try {
+      const BooleanResult result = boolean(twice, operation, box({-5, -5, 0.1}, {5, 5, 5}));
+      ADD_FAILURE() << volume(result.mesh) << " mm3; " << told(result.findings);
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("no Boolean"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(Boolean, WhereAnOperandTouchesItselfAwayFromTheOtherIsNotToldOfTheResult) {
@@ -252,6 +301,11 @@ TEST(Boolean, TheResidualIsMeasuredAndNotMerelySmall) {
   }
   EXPECT_GT(largest, 0.0);
   EXPECT_LT(largest, 1e-13);
+  const BooleanResult all =
+      boolean({sphere({0, 0, 0}, 3, 3), sphere({1, 0.5, 0.25}, 2.7, 3), sphere({0.3, 1, 0.6}, 2.5, 3)},
+              Operation::Union);
+  ASSERT_TRUE(all.residual);
+  EXPECT_GT(*all.residual, 0.0);
 }
 
 TEST(Boolean, ASharedVertexIsKeptOnceForEachSheetAndTold) {
@@ -286,6 +340,23 @@ TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
     const Health h = health(united.mesh);
     EXPECT_TRUE(h.closed && h.manifold && h.oriented) << told(h.findings);
   }
+}
+
+TEST(Boolean, StopsWhereAskedTo) {
+  std::stop_source stop;
+  const Mesh a = sphere({0, 0, 0}, 3, 6), b = sphere({1, 0.5, 0.25}, 3, 6);
+  std::jthread asker([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    stop.request_stop();
+  });
+  // It may end before that on a quick machine, and then must not once it was asked.
+  try {
+    for (int i = 0; i < 100; ++i) boolean(a, Operation::Union, b, stop.get_token());
+    ADD_FAILURE() << "never stopped";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "the Boolean was stopped");
+  }
+  EXPECT_GT(volume(boolean(a, Operation::Union, b).mesh), volume(a)) << "the next one is not stopped";
 }
 
 TEST(Boolean, RefusesOpenAndInsideOutOperands) {

@@ -99,10 +99,10 @@ def questions_about(path, questions, folder):
     return [*tests, ("octotomy", f"verify --random {questions} --failures {folder}/failures --json")]
 
 
-def refuse_failing_tests(build, questions):
+def refuse_failing_tests(build, paths, questions):
     """Tests that fail without a mutant would catch every one."""
     with tempfile.TemporaryDirectory() as folder:
-        for path in SOURCES:
+        for path in paths:
             for name, arguments in questions_about(path, questions, folder):
                 if run(f"{build}/{name} {arguments}", folder, 600) != 0:
                     sys.exit(f"{name} {arguments} fails on the true sources: mend that first")
@@ -140,10 +140,11 @@ def main():
     options = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parents[2]
     build = options.build.resolve()
-    mutants = [m for path in SOURCES if options.only in path for m in mutants_of(root, path)]
+    paths = [path for path in SOURCES if options.only in path]
+    mutants = [m for path in paths for m in mutants_of(root, path)]
     if options.count:
         mutants = random.Random(options.seed).sample(mutants, min(options.count, len(mutants)))
-    refuse_failing_tests(build, options.questions)
+    refuse_failing_tests(build, paths, options.questions)
     tried, survivors = [], []
     for number, mutant in enumerate(mutants):
         with tempfile.TemporaryDirectory() as folder:

@@ -17,9 +17,10 @@ using tests::Json;
 TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
   const std::string help = run("--help").out;
-  for (const char* verb : {"look",   "run",   "verify",   "info",    "measure", "render", "mesh",  "boolean",
-                           "smooth", "tet",   "register", "compare", "phantom", "octree", "eval",  "mark",
-                           "mask",   "slice", "segment",  "prepare", "saw",     "repair", "mirror"}) {
+  for (const char* verb :
+       {"look",    "run",      "verify",  "info",    "measure", "render", "mesh",    "boolean", "smooth",
+        "tet",     "register", "compare", "phantom", "octree",  "eval",   "mark",    "mask",    "slice",
+        "segment", "prepare",  "saw",     "repair",  "mirror",  "offset", "contours"}) {
     EXPECT_NE(help.find(verb), std::string::npos) << verb;
     const CommandAnswer answer = run(std::string(verb) + " --help");
     EXPECT_EQ(answer.status, 0) << verb;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+// Files of JSON that people write. All throw std::runtime_error that begins with `where`: the file, then the
+// place in it.
+namespace octotomy::planner {
+
+[[noreturn]] void refuse(const std::string& where, const std::string& what);
+
+nlohmann::json read_json(const std::filesystem::path& path);
+
+/// Refuses keys that are not known, with the nearest that is.
+void check_keys(const nlohmann::json& object, const std::string& where,
+                const std::vector<std::string>& known);
+
+/// The value of a key that must be there.
+const nlohmann::json& need(const nlohmann::json& object, const std::string& key, const std::string& where);
+
+double number_of(const nlohmann::json& value, const std::string& where);      ///< finite
+std::size_t count_of(const nlohmann::json& value, const std::string& where);  ///< whole, from 0
+std::string word_of(const nlohmann::json& value, const std::string& where);
+glm::dvec2 point_of(const nlohmann::json& value, const std::string& where);  ///< [u, v]
+
+}  // namespace octotomy::planner
