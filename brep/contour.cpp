@@ -161,6 +161,24 @@ void require_closed(const Contour& contour, const std::string& who) {
     throw std::invalid_argument(who + ": the contour is open: follow it with its border closed");
 }
 
+/// A point that a closed contour encloses, however others touch it: half way along the lowest line that runs
+/// between two heights of its points. The first point where rounding leaves no such line.
+glm::dvec2 point_within(const Contour& contour) {
+  const auto& points = contour.points_mm;
+  double lowest = std::numeric_limits<double>::infinity(), next = lowest;
+  for (const glm::dvec2& p : points) lowest = std::min(lowest, p.y);
+  for (const glm::dvec2& p : points)
+    if (p.y > lowest) next = std::min(next, p.y);
+  const double y = 0.5 * lowest + 0.5 * next;
+  std::vector<double> crossings;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const glm::dvec2 &a = points[i], &b = points[(i + 1) % points.size()];
+    if ((a.y <= y) != (b.y <= y)) crossings.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+  }
+  std::sort(crossings.begin(), crossings.end());
+  return crossings.size() < 2 ? points.front() : glm::dvec2(0.5 * crossings[0] + 0.5 * crossings[1], y);
+}
+
 }  // namespace
 
 std::vector<Contour> follow(const Slice& slice, const FollowOptions& options) {
@@ -200,9 +218,9 @@ std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contour
   std::vector<std::optional<std::size_t>> around(contours.size());
   for (std::size_t c = 0; c < contours.size(); ++c) {
     if (contours[c].points_mm.empty()) continue;
-    const glm::dvec2 p = contours[c].points_mm.front();
+    const glm::dvec2 p = point_within(contours[c]);
     for (std::size_t o = 0; o < contours.size(); ++o) {
-      if (o == c || glm::any(glm::lessThan(p, extents[o].low)) ||
+      if (o == c || !(extents[o].area > extents[c].area) || glm::any(glm::lessThan(p, extents[o].low)) ||
           glm::any(glm::greaterThan(p, extents[o].high)))
         continue;
       if (around[c] && extents[o].area >= extents[*around[c]].area) continue;

@@ -49,8 +49,8 @@ double signed_area_mm2(const Contour& contour);
 /// Length of the line, with the closing piece where it is closed.
 double perimeter_mm(const Contour& contour);
 
-/// For each contour the smallest one around it, by index, or none. Precondition: closed, simple, and apart
-/// from each other, as follow() leaves them. Throws std::invalid_argument where one is open. Cost: contours
+/// For each contour the smallest one around it, by index, or none. Precondition: closed, simple, and not
+/// crossing each other; they may touch. Throws std::invalid_argument where one is open. Cost: contours
 /// times points in the worst case; bounding boxes spare most.
 std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contours);
 

@@ -198,5 +198,16 @@ TEST(Contour, FourierSmoothingTakesARippleOffACircleAndLeavesTheCircle) {
   EXPECT_THROW(fourier_smooth(rippled, {4, 8}), std::invalid_argument);
 }
 
+TEST(Nest, ContoursThatTouchAreNestedByWhatTheyEnclose) {
+  const Contour whole{{{0, 0}, {10, 0}, {10, 10}, {0, 10}}}, corner{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}},
+      beside{{{10, 0}, {12, 0}, {12, 10}, {10, 10}}}, half{{{0, 0}, {4, 0}, {4, 4}}},
+      other{{{0, 0}, {4, 4}, {0, 4}}};
+  using Around = std::vector<std::optional<std::size_t>>;
+  EXPECT_EQ(nest({whole, corner, beside}), (Around{std::nullopt, 0, std::nullopt}));
+  EXPECT_EQ(nest({beside, corner, whole}), (Around{std::nullopt, 2, std::nullopt}));
+  EXPECT_EQ(nest({half, other}), (Around{std::nullopt, std::nullopt}));
+  EXPECT_EQ(nest({half, corner, whole, other}), (Around{1, 2, std::nullopt, 1}));
+}
+
 }  // namespace
 }  // namespace octotomy::brep
