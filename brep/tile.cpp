@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper's j, and a
-// step to (i + 1, j) or (i, j + 1) is a triangle. 1 find the start; 2 walk greedily, or find the path of
-// least cost from the start once round both rings; 3 write the triangles.
+// step to (i + 1, j) or (i, j + 1) is a triangle. Costs of triangles alone: every strip has a span at the
+// lower ring's first point, so 1 find the paths of least cost from (0, 0) and from (0, n), the same once
+// round, to (m, n) and (m, 2n); 2 find the one that starts half way between two known, which need not cross
+// them, and so on; 3 write the triangles of the best. Else: 1 find the start; 2 walk greedily, or find the
+// path of least cost from there.
 #include "brep/tile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -80,23 +84,110 @@ std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<
   return steps;
 }
 
+/// A path once round both rings from node (0, start): the last column it has in each row.
+struct Path {
+  std::size_t start = 0;
+  double cost = 0.0;
+  std::vector<std::size_t> last;
+
+  std::size_t first(std::size_t row) const { return row == 0 ? start : last[row - 1]; }
+};
+
+/// The path of least cost among all starts (Fuchs, Kedem and Uselton 1977).
+class LeastPath {
+ public:
+  LeastPath(const Pair& pair, TileCost cost) : m_(pair.m()), n_(pair.n()) {
+    const glm::dvec3 tip = pair.lower.front();
+    const auto cost_of = [&](const Triangle& t) {
+      return cost == TileCost::least_area ? 0.5 * glm::length(t.normal())
+                                          : -glm::dot(t.a - tip, t.normal()) / 6.0;
+    };
+    for (const Step step : {along_lower, along_upper}) {
+      costs_[step].resize((m_ + 1) * (n_ + 1));
+      for (std::size_t i = 0; i + (step == along_lower) <= m_; ++i)
+        for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
+          costs_[step][i * (n_ + 1) + j] = cost_of(pair.triangle(i, j, step));
+    }
+  }
+
+  Path find() const {
+    const Path low = from(0, nullptr, nullptr);
+    Path high = low, best = low;
+    high.start += n_;
+    for (std::size_t& column : high.last) column += n_;
+    search(low, high, best);
+    return best;
+  }
+
+ private:
+  double cost(std::size_t i, std::size_t j, Step step) const { return costs_[step][i * (n_ + 1) + j % n_]; }
+
+  void search(const Path& low, const Path& high, Path& best) const {
+    if (high.start - low.start < 2) return;
+    const Path middle = from((low.start + high.start) / 2, &low, &high);
+    if (middle.cost < best.cost || (middle.cost == best.cost && middle.start < best.start)) best = middle;
+    search(low, middle, best);
+    search(middle, high, best);
+  }
+
+  /// The least from a start that stays between two others, where they are given.
+  Path from(std::size_t start, const Path* low, const Path* high) const {
+    const auto begin = [&](std::size_t i) { return low ? std::max(low->first(i), start) : start; };
+    const auto end = [&](std::size_t i) { return high ? std::min(high->last[i], start + n_) : start + n_; };
+    std::vector<std::vector<Step>> came(m_ + 1);
+    std::vector<double> row, above;
+    for (std::size_t i = 0; i <= m_; ++i) {
+      above.swap(row);
+      row.assign(end(i) - begin(i) + 1, std::numeric_limits<double>::infinity());
+      came[i].assign(row.size(), along_upper);
+      for (std::size_t j = begin(i); j <= end(i); ++j) {
+        double& least = row[j - begin(i)];
+        if (i == 0 && j == start) least = 0.0;
+        if (j > begin(i)) least = std::min(least, row[j - 1 - begin(i)] + cost(i, j - 1, along_upper));
+        if (i == 0 || j < begin(i - 1) || j > end(i - 1)) continue;
+        const double by_lower = above[j - begin(i - 1)] + cost(i - 1, j, along_lower);
+        if (by_lower >= least) continue;
+        least = by_lower;
+        came[i][j - begin(i)] = along_lower;
+      }
+    }
+    Path path{start, row.back(), std::vector<std::size_t>(m_ + 1)};
+    path.last[m_] = start + n_;
+    for (std::size_t i = m_, j = start + n_; i > 0;) {
+      if (came[i][j - begin(i)] == along_upper) {
+        --j;
+        continue;
+      }
+      path.last[--i] = j;
+    }
+    return path;
+  }
+
+  std::size_t m_, n_;
+  std::array<std::vector<double>, 2> costs_;  ///< of the step from (i, j), at i * (n + 1) + j
+};
+
+std::vector<Step> steps_of(const Path& path) {
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i < path.last.size(); ++i) {
+    if (i > 0) steps.push_back(along_lower);
+    steps.insert(steps.end(), path.last[i] - path.first(i), along_upper);
+  }
+  return steps;
+}
+
 /// Angle between the planes of two triangles; none where one has no area.
 double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
   return std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
 }
 
-/// The path of least cost. A node has a cost for each step that may have led to it, as an angle is between
-/// the triangle of that step and the next.
-std::vector<Step> least_steps(const Pair& pair, TileCost cost) {
+/// The path from (0, 0) with the least sum of angles. A node has a sum for each step that may have led to it,
+/// as an angle is between the triangle of that step and the next.
+std::vector<Step> least_angle_steps(const Pair& pair) {
   const std::size_t m = pair.m(), n = pair.n();
-  const glm::dvec3 tip = pair.lower.front();
   constexpr double far = std::numeric_limits<double>::infinity();
-  const auto cost_of = [&](const Triangle& t) {
-    return cost == TileCost::least_area ? 0.5 * glm::length(t.normal())
-                                        : -glm::dot(t.a - tip, t.normal()) / 6.0;
-  };
-  using Costs = std::array<double, 2>;
-  std::vector<Costs> row(n + 1, {far, far}), above;
+  using Sums = std::array<double, 2>;
+  std::vector<Sums> row(n + 1, {far, far}), above;
   std::vector<std::array<Step, 2>> came((m + 1) * (n + 1));
   for (std::size_t i = 0; i <= m; ++i) {
     above = row;
@@ -109,13 +200,12 @@ std::vector<Step> least_steps(const Pair& pair, TileCost cost) {
       for (const Step step : {along_lower, along_upper}) {
         if (step == along_lower ? i == 0 : j == 0) continue;
         const std::size_t from_i = step == along_lower ? i - 1 : i, from_j = step == along_lower ? j : j - 1;
-        const Costs& from = step == along_lower ? above[j] : row[j - 1];
+        const Sums& from = step == along_lower ? above[j] : row[j - 1];
         const Triangle here = pair.triangle(from_i, from_j, step);
-        const double own = cost == TileCost::least_angle ? 0.0 : cost_of(here);
         for (const Step before : {along_lower, along_upper}) {
           if (from[before] == far) continue;
-          double total = from[before] + own;
-          if (cost == TileCost::least_angle && (from_i > 0 || from_j > 0)) {
+          double total = from[before];
+          if (from_i > 0 || from_j > 0) {
             const Triangle last = before == along_lower ? pair.triangle(from_i - 1, from_j, before)
                                                         : pair.triangle(from_i, from_j - 1, before);
             total += angle_between(last.normal(), here.normal());
@@ -146,10 +236,18 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
       throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
                                   " points, three are needed");
   if (!(lower.z_mm < upper.z_mm)) throw std::invalid_argument("tile: the lower ring must lie lower");
-  const std::array<std::size_t, 2> start = start_of(lower, upper);
-  const std::vector<Step> steps = cost == TileCost::shortest_span
-                                      ? greedy_steps(lower, upper, start)
-                                      : least_steps({turned(lower, start[0]), turned(upper, start[1])}, cost);
+  std::array<std::size_t, 2> start{};
+  std::vector<Step> steps;
+  if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
+    const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost).find();
+    start[1] = path.start;
+    steps = steps_of(path);
+  } else {
+    start = start_of(lower, upper);
+    steps = cost == TileCost::shortest_span
+                ? greedy_steps(lower, upper, start)
+                : least_angle_steps({turned(lower, start[0]), turned(upper, start[1])});
+  }
 
   const std::size_t m = lower.points_mm.size(), n = upper.points_mm.size();
   const auto lower_point = [&](std::size_t i) { return static_cast<std::uint32_t>((start[0] + i) % m); };
