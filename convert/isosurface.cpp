@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "convert/surface_extraction.h"
+#include "voxel/octree_node.h"
 #include "voxel/window_bits.h"
 
 namespace octotomy::convert {
@@ -134,10 +135,18 @@ class GreySamples {
   std::pair<double, double> two(const glm::ivec3& voxel, int axis) const {
     glm::ivec3 next = voxel;
     ++next[axis];
-    return {grey_.sample(voxel), grey_.sample(next)};
+    return {sample(voxel), sample(next)};
   }
 
  private:
+  /// As GreyOctree::sample(), of a voxel that is known to be within.
+  double sample(const glm::ivec3& at) const {
+    const glm::ivec3 leaf = (at >> 2) & 3, in_leaf = at & 3;
+    return grey_.brick(at >> 4)
+        .samples[static_cast<std::size_t>(voxel::child_index(leaf.x, leaf.y, leaf.z))]
+                [static_cast<std::size_t>(voxel::child_index(in_leaf.x, in_leaf.y, in_leaf.z))];
+  }
+
   void mark_block(const glm::ivec3& block, voxel::Window16 window, InsideBits& bits) const {
     const voxel::MinMax range = grey_.range(2, block);
     if (range.high < window.low || range.low > window.high) return;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <utility>
 
 #include "convert/marching_cubes.h"
@@ -79,7 +80,10 @@ struct EdgeRows {
 class Extraction {
  public:
   Extraction(const voxel::Lattice& lattice, const InsideBits& bits, const Crossing& crossing)
-      : lattice_(lattice), bits_(bits), crossing_(crossing), cases_(flat_cases(!lattice.right_handed())) {}
+      : lattice_(lattice), bits_(bits), crossing_(crossing), cases_(flat_cases(!lattice.right_handed())) {
+    for (int column = 0; column < 4; ++column)
+      columns_mm_[static_cast<std::size_t>(column)] = glm::dvec3(lattice.lps_from_voxel[column]);
+  }
 
   brep::Triangles run() {
     find_words();
@@ -91,7 +95,8 @@ class Extraction {
 
  private:
   void find_words() {
-    words_.resize(bits_.rows_y * bits_.planes_z);
+    tbb::parallel_invoke([&] { words_.resize(bits_.rows_y * bits_.planes_z); },
+                         [&] { rows_.resize(bits_.rows_y * bits_.planes_z); });
     tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
       for (std::size_t y = 0; y < bits_.rows_y; ++y) {
         const std::uint64_t* row = bits_.row(y, z);
@@ -152,7 +157,6 @@ class Extraction {
   }
 
   void count() {
-    rows_.resize(bits_.rows_y * bits_.planes_z + 1);
     tbb::parallel_for(std::size_t{0}, bits_.planes_z - 1, [&](std::size_t z) {
       for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
         RowCount& row = rows_[bits_.row_number(y, z)];
@@ -174,21 +178,41 @@ class Extraction {
     });
   }
 
-  /// Turns counts into first numbers; the last entry holds the totals.
+  struct Totals {
+    std::uint64_t vertices = 0, triangles = 0;
+  };
+
+  /// Turns counts into first numbers: sums of planes, then what comes before each, then before each row.
   void number() {
-    std::uint64_t vertices = 0;
-    std::uint64_t triangles = 0;
-    for (RowCount& row : rows_) {
-      for (std::uint32_t& direction : row.vertices)
-        vertices += std::exchange(direction, static_cast<std::uint32_t>(vertices));
-      triangles += std::exchange(row.triangles, static_cast<std::uint32_t>(triangles));
+    std::vector<Totals> before(bits_.planes_z + 1);
+    tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
+      for (std::size_t y = 0; y < bits_.rows_y; ++y) {
+        const RowCount& row = rows_[bits_.row_number(y, z)];
+        for (const std::uint32_t direction : row.vertices) before[z + 1].vertices += direction;
+        before[z + 1].triangles += row.triangles;
+      }
+    });
+    for (std::size_t z = 1; z < before.size(); ++z) {
+      before[z].vertices += before[z - 1].vertices;
+      before[z].triangles += before[z - 1].triangles;
     }
-    if (std::max(vertices, triangles) > std::numeric_limits<std::uint32_t>::max())
-      throw std::length_error("the isosurface would have " + std::to_string(vertices) + " vertices and " +
-                              std::to_string(triangles) +
+    const Totals all = before.back();
+    if (std::max(all.vertices, all.triangles) > std::numeric_limits<std::uint32_t>::max())
+      throw std::length_error("the isosurface would have " + std::to_string(all.vertices) + " vertices and " +
+                              std::to_string(all.triangles) +
                               " triangles, more than 32-bit numbers can name: crop or resample the scan");
-    surface_.points_mm.resize(vertices);
-    surface_.faces.resize(triangles);
+    tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
+      auto vertex = static_cast<std::uint32_t>(before[z].vertices);
+      auto triangle = static_cast<std::uint32_t>(before[z].triangles);
+      for (std::size_t y = 0; y < bits_.rows_y; ++y) {
+        RowCount& row = rows_[bits_.row_number(y, z)];
+        for (std::uint32_t& direction : row.vertices) vertex += std::exchange(direction, vertex);
+        triangle += std::exchange(row.triangles, triangle);
+      }
+    });
+    // New pages are half of what this costs.
+    tbb::parallel_invoke([&] { surface_.points_mm.resize(all.vertices); },
+                         [&] { surface_.faces.resize(all.triangles); });
   }
 
   void write() {
@@ -229,7 +253,9 @@ class Extraction {
     } else {
       p_voxel[axis] += crossing_(voxel, axis, inside);
     }
-    return lattice_.lps_mm(p_voxel);
+    // As Lattice::lps_mm() does, to the last bit.
+    return (columns_mm_[0] * p_voxel.x + columns_mm_[1] * p_voxel.y) +
+           (columns_mm_[2] * p_voxel.z + columns_mm_[3]);
   }
 
   void write_triangles(std::size_t y, std::size_t z) {
@@ -266,6 +292,7 @@ class Extraction {
   }
 
   const voxel::Lattice& lattice_;
+  std::array<glm::dvec3, 4> columns_mm_;
   const InsideBits& bits_;
   const Crossing& crossing_;
   std::array<FlatCase, 256> cases_;
