@@ -246,8 +246,9 @@ TEST(Boolean, TellsOfTheDifferenceThatItIsInTheCallersOrder) {
 }
 
 TEST(Boolean, OneResultAloneIsVouchedForToo) {
-  // Most triangles meet, so that the whole is corefined.
-  const Mesh a = sphere({0, 0, 0}, 1, 1), b = sphere({0.1, 0.05, 0.02}, 1, 1);
+  // All triangles meet, so that the whole is corefined.
+  const Mesh a = box({-1, -1, -1}, {1, 1, 1});
+  const Mesh b = moved(a, glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1, 2, 3))));
   for (const Operation operation : {Operation::Union, Operation::Intersection, Operation::Difference}) {
     const BooleanResult result = boolean(a, operation, b);
     EXPECT_TRUE(result.residual) << told(result.findings);
