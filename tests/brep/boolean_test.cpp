@@ -344,6 +344,16 @@ TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
   }
 }
 
+TEST(Boolean, TheFirstLessAllOthersHowManyTheyAre) {
+  std::vector<Mesh> operands = {box({0, 0, 0}, {10, 10, 10})};
+  EXPECT_NEAR(volume(boolean(operands, Operation::Difference).mesh), 1000, 1e-11);
+  for (int others = 1; others <= 5; ++others) {
+    // A corner of one cubic millimetre of each lies in the one before.
+    operands.push_back(box(glm::dvec3(others), glm::dvec3(others + 2)));
+    EXPECT_NEAR(volume(boolean(operands, Operation::Difference).mesh), 999 - 7 * others, 1e-11) << others;
+  }
+}
+
 TEST(Boolean, StopsWhereAskedTo) {
   std::stop_source stop;
   const Mesh a = sphere({0, 0, 0}, 3, 6), b = sphere({1, 0.5, 0.25}, 3, 6);
