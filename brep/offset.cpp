@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "brep/distance.h"
@@ -141,7 +142,10 @@ Corners corners_of(const std::vector<std::uint64_t>& blocks, const Field& field,
 struct Edge {
   std::uint64_t from = 0;  // key of its lower end
   int along = 0;           // corner of the cell above that end where it leads
-  auto operator<=>(const Edge&) const = default;
+  bool operator==(const Edge&) const = default;
+  bool operator<(const Edge& other) const {
+    return std::tie(from, along) < std::tie(other.from, other.along);
+  }
 };
 
 /// Three edges for each triangle, outward.
@@ -239,6 +243,7 @@ std::vector<glm::dvec3> points_on(const std::vector<Edge>& edges, const Corners&
   // Twenty rounds would do by halving alone, were it ever needed.
   for (int round = 0; round < 20 && !open.empty(); ++round) {
     std::vector<glm::dvec3> tried_mm;
+    tried_mm.reserve(open.size());
     for (const std::size_t i : open) tried_mm.push_back(place(i));
     const std::vector<double> values = field.at(tried_mm);
     std::vector<std::size_t> still_open;

@@ -45,6 +45,7 @@ std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
   }
   const glm::dvec2 extent = glm::max(high - low, glm::dvec2(std::numeric_limits<double>::min()));
   std::vector<glm::dvec2> scaled;
+  scaled.reserve(points.size());
   for (const glm::dvec2& p : points) scaled.push_back((p - low) / extent);
   return scaled;
 }
@@ -120,7 +121,10 @@ class LeastPath {
   }
 
  private:
-  double cost(std::size_t i, std::size_t j, Step step) const { return costs_[step][i * (n_ + 1) + j % n_]; }
+  /// Columns run on once round.
+  double cost(std::size_t i, std::size_t j, Step step) const {
+    return costs_[step][i * (n_ + 1) + (j < n_ ? j : j - n_)];
+  }
 
   void search(const Path& low, const Path& high, Path& best) const {
     if (high.start - low.start < 2) return;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "planner/nearest_name.h"
+#include "voxel/staging.h"
 
 namespace octotomy::planner {
 
@@ -24,6 +25,15 @@ Json read_json(const std::filesystem::path& path) {
   } catch (const Json::exception& error) {
     refuse(path.string(), std::string("is no JSON: ") + error.what());
   }
+}
+
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path) {
+  voxel::Staging staging(std::filesystem::absolute(path).parent_path());
+  std::ofstream stream(staging.folder() / path.filename());
+  stream << json.dump() << '\n';
+  stream.close();
+  if (!stream) refuse(path.string(), "cannot be written");
+  staging.commit(path.filename());
 }
 
 void check_keys(const Json& object, const std::string& where, const std::vector<std::string>& known) {

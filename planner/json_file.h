@@ -15,6 +15,9 @@ namespace octotomy::planner {
 
 nlohmann::json read_json(const std::filesystem::path& path);
 
+/// Written beside and renamed into place.
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
+
 /// Refuses keys that are not known, with the nearest that is.
 void check_keys(const nlohmann::json& object, const std::string& where,
                 const std::vector<std::string>& known);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/slice_contours.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <stdexcept>
@@ -11,6 +13,7 @@
 #include "brep/offset_contours.h"
 #include "convert/trace_contours.h"
 #include "planner/json_file.h"
+#include "voxel/slice_contour.h"
 
 namespace octotomy::planner {
 namespace {
@@ -20,16 +23,6 @@ using Polygon = std::vector<glm::dvec2>;
 
 constexpr std::array view_names = {"anterior", "posterior", "left", "right", "superior", "inferior"};
 constexpr double rounding = 1e-6;  // of unit vectors that files hold
-
-voxel::View view_along(const glm::dvec3& normal) {
-  for (const char* name : view_names)
-    if (const voxel::View view = voxel::parse_view(name); glm::distance(view.look, normal) < rounding)
-      return view;
-  throw std::runtime_error(
-      "the slices lie obliquely to the patient's axes, so that no view looks along them: straighten the scan "
-      "first, "
-      "for example with octotomy prepare --resample 1");
-}
 
 /// The text that parse_view() makes this view of.
 std::string name_of(const voxel::View& view) {
@@ -164,12 +157,13 @@ class Edit {
 }  // namespace
 
 voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double high) {
-  const glm::dmat3 axes(scene.lattice.lps_from_voxel);
   voxel::SliceMask mask;
-  mask.view = view_along(glm::normalize(axes[2]));
-  if (std::abs(glm::dot(glm::normalize(axes[0]), mask.view.look)) > rounding ||
-      std::abs(glm::dot(glm::normalize(axes[1]), mask.view.look)) > rounding)
-    throw std::runtime_error("the slices are sheared against each other: straighten the scan first");
+  try {
+    mask.view = voxel::parse_view(voxel::contour_view(scene.lattice));
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(std::string(error.what()) +
+                             ": straighten the scan first, for example with octotomy prepare");
+  }
   const glm::dvec3 spacing = scene.lattice.spacing_mm();
   bool is_empty = true;
   for (const brep::Section& section : convert::trace_contours(scene, low, high)) {
@@ -189,6 +183,8 @@ voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double hi
   if (is_empty) throw std::runtime_error("no slice has anything in the window: choose another");
   if (mask.slices.size() < 2)
     throw std::runtime_error("a scan of one slice has no contours on parallel slices");
+  if (mask.slices.front().position_mm > mask.slices.back().position_mm)
+    std::reverse(mask.slices.begin(), mask.slices.end());
   drop_empty_ends(mask.slices);
   return mask;
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include <fstream>
 #include <limits>
 
 #include "brep/contour.h"
@@ -9,6 +8,7 @@
 #include "planner/cli/scan_verbs.h"
 #include "planner/drawn_regions.h"
 #include "planner/figures.h"
+#include "planner/json_file.h"
 #include "planner/slice_contours.h"
 
 namespace octotomy::planner::cli {
@@ -40,15 +40,6 @@ voxel::SliceMask drawn_or_followed(const Program& program, const ContoursText& t
   need_hounsfield(text.window, scene);
   const Stopwatch watch(timings, "follow");
   return slice_contours(scene, window.low, window.high.value_or(std::numeric_limits<double>::infinity()));
-}
-
-void write_json(const Json& json, const std::filesystem::path& path) {
-  const std::filesystem::path beside = path.string() + ".part";
-  std::ofstream stream(beside);
-  stream << json.dump() << "\n";
-  stream.close();
-  if (!stream) throw std::runtime_error(path.string() + ": cannot be written");
-  std::filesystem::rename(beside, path);
 }
 
 /// Per slice, and sums for people; holes count against areas.

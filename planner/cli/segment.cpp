@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "planner/cli/numbers.h"
@@ -10,7 +9,9 @@
 #include "planner/cli/scan_verbs.h"
 #include "planner/drawn_regions.h"
 #include "planner/figures.h"
+#include "planner/json_file.h"
 #include "planner/octree_answer.h"
+#include "planner/slice_contours.h"
 #include "voxel/combine.h"
 #include "voxel/components.h"
 #include "voxel/label_map.h"
@@ -18,7 +19,6 @@
 #include "voxel/otsu.h"
 #include "voxel/region_grow.h"
 #include "voxel/slice_contour.h"
-#include "voxel/staging.h"
 #include "voxel/tissue.h"
 #include "voxel/volume_header.h"
 #include "voxel/write_scene.h"
@@ -210,15 +210,6 @@ std::vector<Segment> segments_of(const Program& program, const SegmentText& text
   return segments;
 }
 
-void write_json(const Json& json, const fs::path& path) {
-  voxel::Staging staging(fs::absolute(path).parent_path());
-  std::ofstream stream(staging.folder() / path.filename());
-  stream << json.dump() << '\n';
-  stream.close();
-  if (!stream) throw std::runtime_error(path.string() + ": cannot be written");
-  staging.commit(path.filename());
-}
-
 /// The contours at a threshold, as mask --slices and segment --regions read them.
 Json write_contours(const Program& program, const SegmentText& text, const voxel::Scene& scene,
                     double threshold, Timings& timings) {
@@ -229,20 +220,12 @@ Json write_contours(const Program& program, const SegmentText& text, const voxel
   options.least_mm2 = spacing_mm.x * spacing_mm.y;  // a voxel's: less is noise
   options.progress.stop = program.stop.get_token();
   const voxel::SliceMask mask = voxel::contour_regions(scene, options);
-  Json slices = Json::array();
   std::size_t contours = 0, points = 0;
   for (const voxel::SliceMask::Slice& slice : mask.slices) {
-    Json polygons = Json::array();
-    for (const auto& polygon : slice.polygons_mm) {
-      Json list = Json::array();
-      for (const glm::dvec2& point : polygon) list.push_back({point.x, point.y});
-      polygons.push_back(std::move(list));
-      points += polygon.size();
-    }
     contours += slice.polygons_mm.size();
-    slices.push_back({{"position_mm", slice.position_mm}, {"polygons_mm", std::move(polygons)}});
+    for (const auto& polygon : slice.polygons_mm) points += polygon.size();
   }
-  write_json({{"view", voxel::contour_view(scene.lattice)}, {"slices", std::move(slices)}}, text.contours);
+  write_json(to_json(mask), text.contours);
   return {{"path", text.contours.string()},
           {"threshold", threshold},
           {"slices", mask.slices.size()},

@@ -8,31 +8,68 @@
 #include "planner/answer.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
+#include "planner/figures.h"
+#include "voxel/label_map.h"
+#include "voxel/volume_header.h"
+#include "voxel/write_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 struct VoxeliseText {
-  std::filesystem::path mesh, out, like;
+  std::vector<std::filesystem::path> meshes;
+  std::filesystem::path out, like;
   double voxel_mm = 1.0;
   std::string digitise = "centre";
 };
 
-voxel::Box box_of(const brep::Triangles& triangles) {
-  voxel::Box box{triangles.points_mm.front(), triangles.points_mm.front()};
-  for (const glm::dvec3& p : triangles.points_mm) {
-    box.low_mm = glm::min(box.low_mm, p);
-    box.high_mm = glm::max(box.high_mm, p);
+struct Subject {
+  std::filesystem::path path;
+  brep::Triangles triangles;
+  brep::Health health;
+};
+
+/// Throws where it holds no triangles, or is to be shared out exactly and is no solid; tells what is guessed.
+Subject read_subject(const std::filesystem::path& path, const std::string& digitise, Timings& timings,
+                     std::vector<std::string>& findings) {
+  Subject subject{path, {}, {}};
+  {
+    const Stopwatch watch(timings, "read");
+    subject.triangles = brep::read_triangles(path);
   }
+  if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
+  {
+    const Stopwatch watch(timings, "health");
+    subject.health = brep::health(subject.triangles);
+  }
+  if (subject.health.solid()) return subject;
+  if (digitise != "centre")
+    throw std::runtime_error(path.string() + ": is not a solid (" + subject.health.findings.front() +
+                             "), so that the share of a voxel it fills is not known: mend it, or take the "
+                             "voxels' centres by --digitise centre");
+  findings.push_back("method: " + path.string() + " is not a solid (" + subject.health.findings.front() +
+                     "); voxels are those about whose centre it winds more than a half (generalised winding "
+                     "number), which guesses across holes");
+  return subject;
+}
+
+voxel::Box box_of(const std::vector<Subject>& subjects) {
+  voxel::Box box{subjects.front().triangles.points_mm.front(), subjects.front().triangles.points_mm.front()};
+  for (const Subject& subject : subjects)
+    for (const glm::dvec3& p : subject.triangles.points_mm) {
+      box.low_mm = glm::min(box.low_mm, p);
+      box.high_mm = glm::max(box.high_mm, p);
+    }
   return box;
 }
 
-voxel::Universe universe_of(const VoxeliseText& text, const brep::Triangles& triangles, Timings& timings) {
+voxel::Universe universe_of(const VoxeliseText& text, const std::vector<Subject>& subjects,
+                            Timings& timings) {
   if (!text.like.empty()) return voxel::universe(read_timed(text.like, timings));
   try {
-    return voxel::universe_around(box_of(triangles), text.voxel_mm);
+    return voxel::universe_around(box_of(subjects), text.voxel_mm);
   } catch (const std::length_error& error) {
-    throw std::runtime_error(text.mesh.string() + ": " + error.what() +
+    throw std::runtime_error(subjects.front().path.string() + ": " + error.what() +
                              ": is its unit millimetres? Give larger voxels by --voxel");
   }
 }
@@ -53,56 +90,106 @@ bool is_nothing(const decltype(voxel::OctreeFile::tree)& tree) {
   return std::get<voxel::PartialOctree>(tree).touching.is_empty();
 }
 
-int voxelise(const Program& program, const VoxeliseText& text) {
-  need_octree_extension(text.out);
-  need_folder_of(text.out);
-  Timings timings;
-  brep::Triangles triangles;
-  {
-    const Stopwatch watch(timings, "read");
-    triangles = brep::read_triangles(text.mesh);
-  }
-  if (triangles.faces.empty()) throw std::runtime_error(text.mesh.string() + ": holds no triangles");
-  const voxel::Universe universe = universe_of(text, triangles, timings);
-  brep::Health health;
-  {
-    const Stopwatch watch(timings, "health");
-    health = brep::health(triangles);
-  }
-
-  std::vector<std::string> findings;
-  if (!health.solid()) {
-    if (text.digitise != "centre")
-      throw std::runtime_error(text.mesh.string() + ": is not a solid (" + health.findings.front() +
-                               "), so that the share of a voxel it fills is not known: mend it, or take the "
-                               "voxels' centres by --digitise centre");
-    findings.push_back(
-        "method: " + text.mesh.string() + " is not a solid (" + health.findings.front() +
-        "); voxels are those about whose centre it winds more than a half (generalised winding "
-        "number), which guesses across holes");
-  }
+decltype(voxel::OctreeFile::tree) voxelised(const Program& program, const VoxeliseText& text,
+                                            const Subject& subject, const voxel::Universe& universe,
+                                            Timings& timings) {
   convert::VoxeliseOptions options;
   options.stop = program.stop.get_token();
   if (const auto progress = program.progress())
     options.progress = [progress](double share) { progress("voxelising", share); };
-  voxel::OctreeFile file{voxel::Octree::empty(universe), text.mesh.stem().string(), ""};
-  {
-    const Stopwatch watch(timings, "voxelise");
-    if (health.solid())
-      file.tree = of_solid(universe, brep::mesh_of(triangles), text.digitise, options);
-    else
-      file.tree = convert::voxelise_by_winding_number(universe, triangles, options);
-  }
-  if (is_nothing(file.tree))
-    throw std::runtime_error(text.mesh.string() +
+  const Stopwatch watch(timings, "voxelise");
+  decltype(voxel::OctreeFile::tree) tree =
+      subject.health.solid() ? of_solid(universe, brep::mesh_of(subject.triangles), text.digitise, options)
+                             : convert::voxelise_by_winding_number(universe, subject.triangles, options);
+  if (is_nothing(tree))
+    throw std::runtime_error(subject.path.string() +
                              ": encloses no voxel: take smaller voxels by --voxel; where the mesh is inside "
                              "out, flip its triangles");
+  return tree;
+}
+
+int write_octree(const Program& program, const VoxeliseText& text, const Subject& subject, Timings& timings,
+                 const std::vector<std::string>& findings) {
+  const voxel::Universe universe = universe_of(text, {subject}, timings);
+  voxel::OctreeFile file{voxelised(program, text, subject, universe, timings), subject.path.stem().string(),
+                         ""};
   file.metadata = Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
-                       {"mesh", text.mesh.filename().string()},
+                       {"mesh", subject.path.filename().string()},
                        {"digitise", text.digitise},
-                       {"method", health.solid() ? "parity" : "winding number"}}
+                       {"method", subject.health.solid() ? "parity" : "winding number"}}
                       .dump();
   return write_and_say(program, file, text.out, timings, findings);
+}
+
+/// The voxels of a universe that a box reaches, as a lattice of their own.
+voxel::Lattice lattice_of(const voxel::Universe& universe, const voxel::Box& box) {
+  voxel::Lattice lattice = universe.lattice();
+  const glm::ivec3 last = lattice.dims - 1;
+  const glm::ivec3 from = glm::clamp(glm::ivec3(glm::floor(lattice.voxel(box.low_mm))), glm::ivec3(0), last);
+  const glm::ivec3 to = glm::clamp(glm::ivec3(glm::ceil(lattice.voxel(box.high_mm))), glm::ivec3(0), last);
+  lattice.lps_from_voxel[3] = glm::dvec4(lattice.lps_mm(glm::dvec3(from)), 1.0);
+  lattice.dims = to - from + 1;
+  return lattice;
+}
+
+int write_labels(const Program& program, const VoxeliseText& text, const std::vector<Subject>& subjects,
+                 Timings& timings, std::vector<std::string>& findings) {
+  const voxel::Universe universe = universe_of(text, subjects, timings);
+  std::vector<voxel::Octree> octrees;
+  for (const Subject& subject : subjects)
+    octrees.push_back(std::get<voxel::Octree>(voxelised(program, text, subject, universe, timings)));
+  const voxel::Lattice lattice =
+      text.like.empty() ? lattice_of(universe, box_of(subjects)) : universe.lattice();
+  const voxel::LabelMap map = voxel::label_map(lattice, octrees, {program.stop.get_token(), {}});
+  if (map.overlaps > 0)
+    findings.push_back(std::to_string(map.overlaps) +
+                       " voxels lie in several meshes: they have the first one's label");
+  {
+    const Stopwatch watch(timings, "write");
+    voxel::write_scene(map.scene, text.out);
+  }
+  Json json = answer(timings);
+  json["kind"] = "label map";
+  json["path"] = text.out.string();
+  json["dims"] = {lattice.dims.x, lattice.dims.y, lattice.dims.z};
+  json["spacing_mm"] = to_json(lattice.spacing_mm());
+  std::vector<std::pair<std::string, std::string>> rows = {{"written", text.out.string()}};
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    const std::uint64_t voxels = octrees[i].voxel_count();
+    json["labels"].push_back({{"label", i + 1},
+                              {"name", subjects[i].path.stem().string()},
+                              {"voxels", voxels},
+                              {"volume_mm3", static_cast<double>(voxels) * lattice.voxel_mm3()},
+                              {"method", subjects[i].health.solid() ? "parity" : "winding number"}});
+    rows.emplace_back(
+        "label " + std::to_string(i + 1),
+        subjects[i].path.stem().string() + ", " + grouped(static_cast<double>(voxels), 0) + " voxels");
+  }
+  json["overlaps"] = map.overlaps;
+  for (const std::string& finding : findings) {
+    warn(finding);
+    json["findings"].push_back(finding);
+  }
+  program.say(json, lines(rows));
+  return done;
+}
+
+int voxelise(const Program& program, const VoxeliseText& text) {
+  need_folder_of(text.out);
+  const bool labels = !is_octree(text.out) && voxel::volume_format(text.out);
+  if (!labels) need_octree_extension(text.out);
+  if (!labels && text.meshes.size() > 1)
+    throw CLI::ValidationError("--out", "an .octree holds one object: write several as a label map, .nrrd");
+  if (labels && text.digitise == "partial")
+    throw CLI::ValidationError("--digitise",
+                               "a label map has no shares of voxels: write an .octree for those");
+  Timings timings;
+  std::vector<std::string> findings;
+  std::vector<Subject> subjects;
+  for (const auto& path : text.meshes)
+    subjects.push_back(read_subject(path, text.digitise, timings, findings));
+  return labels ? write_labels(program, text, subjects, timings, findings)
+                : write_octree(program, text, subjects.front(), timings, findings);
 }
 
 }  // namespace
@@ -110,16 +197,18 @@ int voxelise(const Program& program, const VoxeliseText& text) {
 void add_voxelise(Program& program) {
   const auto text = std::make_shared<VoxeliseText>();
   CLI::App& verb =
-      program.verb("voxelise", "Makes an octree of a mesh",
+      program.verb("voxelise", "Makes an octree of a mesh, or a label map of several",
                    "octotomy voxelise maxilla.stl -o maxilla.octree --voxel 0.5\n"
+                   "  octotomy voxelise maxilla.stl mandible.stl -o jaws.nii.gz --voxel 0.5\n"
                    "  octotomy voxelise plate.stl -o plate.octree --like skull.octree --digitise partial",
                    [&program, text] { return voxelise(program, *text); });
-  verb.add_option("mesh", text->mesh,
-                  "A .stl, .ply, .obj, .off or .vtk file; where it is no solid, its holes and crossings are "
+  verb.add_option("mesh", text->meshes,
+                  "One or more .stl, .ply, .obj, .off or .vtk files; where one is no solid, its holes and "
+                  "crossings are "
                   "bridged by the winding number")
       ->required()
       ->check(CLI::ExistingFile);
-  verb.add_option("-o,--out", text->out, "An .octree file")->required();
+  verb.add_option("-o,--out", text->out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha")->required();
   CLI::Option* voxel = verb.add_option("--voxel", text->voxel_mm, "Edge of a voxel, mm")
                            ->check(above_zero())
                            ->capture_default_str();

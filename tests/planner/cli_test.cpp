@@ -644,5 +644,39 @@ TEST_F(CommandLine, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
   expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two of a kind");
 }
 
+std::string cube_off(int low, int high) {
+  std::string text = "OFF\n8 12 0\n";
+  for (int i = 0; i < 8; ++i) {
+    for (const int bit : {1, 2, 4}) text += std::to_string(i & bit ? high : low) + " ";
+    text += "\n";
+  }
+  return text +
+         "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 "
+         "5\n3 3 7 5\n";
+}
+
+TEST_F(CommandLine, SeveralMeshesBecomeALabelMapAndTellWhereTheyOverlap) {
+  write("a.off", cube_off(0, 8));
+  write("b.off", cube_off(6, 14));
+  const CommandAnswer answer =
+      run("voxelise " + at("a.off") + " " + at("b.off") + " -o " + at("ab.nrrd") + " --voxel 0.5 --json");
+  ASSERT_EQ(answer.status, 0) << answer.errors;
+  const Json json = Json::parse(answer.out);
+  ASSERT_EQ(json["labels"].size(), 2u);
+  EXPECT_EQ(json["labels"][1]["name"], "b");
+  EXPECT_NEAR(json["labels"][0]["volume_mm3"].get<double>(), 512, 1e-9);
+  EXPECT_NEAR(json["labels"][1]["volume_mm3"].get<double>(), 512, 1e-9);
+  EXPECT_EQ(json["overlaps"], 64);
+  EXPECT_NE(json["findings"][0].get<std::string>().find("64 voxels lie in several"), std::string::npos);
+  // Each comes back where it was, less what the first has of the second.
+  const Json back =
+      Json::parse(run("segment " + at("ab.nrrd") + " --label 2 -o " + at("b.octree") + " --json").out);
+  const Json measured = Json::parse(run("measure " + at("b.octree") + " --json").out);
+  EXPECT_NEAR(measured["volume_mm3"].get<double>(), 512 - 8, 1e-9) << back;
+  EXPECT_GT(measured["centroid_mm"][0].get<double>(), 10.0);
+  expect_refused(run("voxelise " + at("a.off") + " " + at("b.off") + " -o " + at("ab.octree")), "label map");
+  expect_refused(run("voxelise " + at("a.off") + " -o " + at("a.nrrd") + " --digitise partial"), "shares");
+}
+
 }  // namespace
 }  // namespace octotomy::planner
