@@ -10,9 +10,9 @@ class Appended {
   /// The element that refers to an array, which `write` appends to the bytes.
   template <typename Write>
   std::string array(const std::string& type, const std::string& name, int components, const Write& write) {
-    std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name +
-                                "\" NumberOfComponents=\"" + std::to_string(components) +
-                                "\" format=\"appended\" offset=\"" + std::to_string(bytes_.size()) + "\"/>\n";
+    std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                          std::to_string(components) + "\" format=\"appended\" offset=\"" +
+                          std::to_string(bytes_.size()) + "\"/>\n";
     std::string values;
     write(values);
     append_little(bytes_, static_cast<std::uint64_t>(values.size()));

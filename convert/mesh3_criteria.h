@@ -60,6 +60,7 @@ using CellsDownTo = DownTo<CGAL::Mesh_cell_criteria_3<Triangulation>, Least>;
 template <typename Triangulation, typename Least>
 using CriteriaDownTo =
     CGAL::internal::Mesh_criteria_3_impl<Triangulation, CGAL::Mesh_edge_criteria_3<Triangulation>,
-                               FacetsDownTo<Triangulation, Least>, CellsDownTo<Triangulation, Least>>;
+                                         FacetsDownTo<Triangulation, Least>,
+                                         CellsDownTo<Triangulation, Least>>;
 
 }  // namespace octotomy::convert

@@ -4,6 +4,8 @@
 // and pipeline: nothing is registered at start-up and the unit compiles in seconds.
 #include "voxel/scene_itk.h"
 
+#include "voxel/itk_compiler.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -20,7 +22,6 @@
 #include <zlib.h>
 
 #include "voxel/air_level.h"
-#include "voxel/itk_compiler.h"
 #include "voxel/quiet_errors.h"
 #include "voxel/stored_samples.h"
 

@@ -5,6 +5,8 @@
 // no longer than one, and ITK's own way of reporting progress from its threads is not needed.
 #include "voxel/smooth.h"
 
+#include "voxel/itk_compiler.h"
+
 #include <algorithm>
 #include <cmath>
 #include <itkCommand.h>
@@ -15,8 +17,6 @@
 #include <stdexcept>
 #include <string>
 #include <tbb/task_arena.h>
-
-#include "voxel/itk_compiler.h"
 
 namespace octotomy::voxel {
 namespace {
