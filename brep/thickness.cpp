@@ -77,6 +77,7 @@ void shrink(const SurfaceTree& tree, const std::vector<SurfacePoint>& points, do
   while (!shrinking.empty()) {
     if (options.stop.stop_requested()) throw std::runtime_error("thickness: stopped");
     std::vector<glm::dvec3> centres;
+    centres.reserve(shrinking.size());
     for (const std::size_t i : shrinking) centres.push_back(centre_of(i));
     const std::vector<Foot> feet = tree.feet(centres);
     std::vector<std::size_t> still;
