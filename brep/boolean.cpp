@@ -18,6 +18,7 @@
 #include "brep/corefine.h"
 #include "brep/measure.h"
 #include "brep/near_boolean.h"
+#include "brep/short_text.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -206,12 +207,6 @@ Attempt best_attempt(const Question& question, const Mesh& b, const Triangles& t
   return whole;
 }
 
-std::string text(double value) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
-  return buffer.data();
-}
-
 Attempt shifted_attempt(const Question& question, const glm::dvec3& shift) {
   Mesh b = question.b;
   for (const auto v : b.vertices()) b.set_point(v, b.point(v) + Mesh::Point(shift.x, shift.y, shift.z));
@@ -277,16 +272,16 @@ Answer answer(const Question& question) {
     if (attempt.failure.empty()) {
       if (i > 0)
         attempt.findings.push_back(
-            "shifted: " + question.names.second + " was moved by (" + text(shift.x) + ", " + text(shift.y) +
-            ", " + text(shift.z) + ") mm, which changes a volume by at most " +
-            text(glm::length(shift) * question.size_b.area_mm2) + " mm3, as " + first_failure);
+            "shifted: " + question.names.second + " was moved by (" + short_text(shift.x) + ", " +
+            short_text(shift.y) + ", " + short_text(shift.z) + ") mm, which changes a volume by at most " +
+            short_text(glm::length(shift) * question.size_b.area_mm2) + " mm3, as " + first_failure);
       return answer_of(question, std::move(attempt));
     }
     if (i == 0) first_failure = attempt.failure;
   }
   throw std::runtime_error(
       "no Boolean: " + first_failure + ", and moving " + question.names.second + " by up to " +
-      text(glm::length(shift_mm(attempt_count - 1, extent))) +
+      short_text(glm::length(shift_mm(attempt_count - 1, extent))) +
       " mm did not help; ask for the health of both operands and repair them, or move one");
 }
 

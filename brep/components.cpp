@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "brep/distance.h"
+#include "brep/mesh_point.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -24,10 +25,6 @@ struct Shell {
   double area_mm2 = 0.0;
   glm::dvec3 probe_mm{0.0};  ///< a vertex, one that no other shell touches where there is any
 };
-
-glm::dvec3 glm_of(const Mesh::Point& p) {
-  return {p[0], p[1], p[2]};
-}
 
 /// Labels faces connected across edges; labels ascend with a shell's first face.
 std::vector<std::uint32_t> label_shells(const Mesh& mesh, std::uint32_t& shell_count) {

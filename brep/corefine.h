@@ -41,9 +41,9 @@ struct Corefined {
 /// Cuts both surfaces along their common lines and puts the parts together. Either may be open, a part of a
 /// solid's surface, as long as its border does not meet the other; parts of results end at such borders then.
 /// Points come in an order that does not hang on addresses, as those of CGAL's do. The only unit that sees
-/// corefinement, which is dear to compile. Throws BooleanStopped where asked to stop, within a millisecond.
-/// Cost: n log n, about 2 us a triangle.
-/// Source: CGAL's Polygon Mesh Processing, corefinement (Loriot et al.), EPICK predicates.
+/// corefinement, which is dear to compile. Throws BooleanStopped where asked to stop, at one of its next
+/// steps along the surface. Cost: n log n, about 2 us a triangle. Source: CGAL's Polygon Mesh Processing,
+/// corefinement (Loriot et al.), EPICK predicates.
 Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop = {});
 
 }  // namespace octotomy::brep

@@ -10,12 +10,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "brep/mesh_point.h"
+
 namespace octotomy::brep {
 namespace {
-
-glm::dvec3 glm_of(const Mesh::Point& p) {
-  return {p[0], p[1], p[2]};
-}
 
 class Cut {
  public:

@@ -3,7 +3,6 @@
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
-#include <CGAL/Surface_mesh.h>
 #include <array>
 #include <stdexcept>
 #include <tuple>
@@ -11,6 +10,7 @@
 
 #include "brep/coordinate_order.h"
 #include "brep/measure.h"
+#include "brep/surface_mesh.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -30,12 +30,7 @@ Surface surface_of(const Mesh& mesh, const std::string& name) {
                                   "; a Boolean takes solids, close the surface first");
   if (size_of(triangles).volume_mm3 < 0.0)
     throw std::invalid_argument("operand " + name + "'s triangles face inward; turn them round first");
-  Surface surface;
-  for (const glm::dvec3& p : triangles.points_mm) surface.add_vertex(Kernel::Point_3(p.x, p.y, p.z));
-  for (const auto& face : triangles.faces)
-    surface.add_face(Surface::Vertex_index(face[0]), Surface::Vertex_index(face[1]),
-                     Surface::Vertex_index(face[2]));
-  return surface;
+  return surface_mesh_of<Kernel::Point_3>(triangles);
 }
 
 /// Halves added to halves, so that most sums are of numbers of like length.

@@ -3,10 +3,11 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <CGAL/Surface_mesh.h>
 #include <array>
 #include <iterator>
 
+#include "brep/mesh_point.h"
+#include "brep/surface_mesh.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -16,18 +17,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 
 glm::dvec3 point_of(const Mesh& mesh, std::uint32_t v) {
-  const Mesh::Point& p = mesh.point(Mesh::VertexHandle(static_cast<int>(v)));
-  return {p[0], p[1], p[2]};
-}
-
-Surface surface_of(const Mesh& mesh) {
-  const Triangles triangles = triangles_of(mesh);
-  Surface surface;
-  for (const glm::dvec3& p : triangles.points_mm) surface.add_vertex(Kernel::Point_3(p.x, p.y, p.z));
-  for (const auto& face : triangles.faces)
-    surface.add_face(Surface::Vertex_index(face[0]), Surface::Vertex_index(face[1]),
-                     Surface::Vertex_index(face[2]));
-  return surface;
+  return glm_of(mesh.point(Mesh::VertexHandle(static_cast<int>(v))));
 }
 
 /// Closes the hole in the surface, so that later ones do not take an edge that this one made.
@@ -49,7 +39,7 @@ void close(Surface& surface, Hole& hole) {
 
 std::vector<Hole> holes(const Mesh& mesh, const std::optional<double>& longest_mm) {
   std::vector<Hole> holes;
-  Surface surface = surface_of(mesh);
+  Surface surface = surface_mesh_of<Kernel::Point_3>(triangles_of(mesh));
   std::vector<bool> seen(mesh.n_halfedges(), false);
   for (const auto start : mesh.halfedges()) {
     if (!mesh.is_boundary(start) || seen[static_cast<std::size_t>(start.idx())]) continue;

@@ -16,6 +16,7 @@
 
 #include "brep/distance.h"
 #include "brep/meeting.h"
+#include "brep/mesh_point.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -45,10 +46,7 @@ Gap gap_of(const Segment& s, const Segment& t) {
 
 std::vector<Segment> edges_of(const Mesh& mesh) {
   std::vector<Segment> edges;
-  const auto at = [&](Mesh::VertexHandle v) {
-    const Mesh::Point& p = mesh.point(v);
-    return glm::dvec3(p[0], p[1], p[2]);
-  };
+  const auto at = [&](Mesh::VertexHandle v) { return glm_of(mesh.point(v)); };
   for (const auto e : mesh.edges()) {
     const Mesh::HalfedgeHandle h = mesh.halfedge_handle(e, 0);
     edges.push_back({at(mesh.from_vertex_handle(h)), at(mesh.to_vertex_handle(h))});

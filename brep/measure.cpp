@@ -12,12 +12,10 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "brep/mesh_point.h"
+
 namespace octotomy::brep {
 namespace {
-
-glm::dvec3 glm_of(const Mesh::Point& p) {
-  return {p[0], p[1], p[2]};
-}
 
 constexpr std::size_t block_size = 64;
 /// What a thread takes at a time: some 100 us of work.

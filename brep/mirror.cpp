@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "brep/forward_axis.h"
 #include "brep/register_surfaces.h"
 #include "brep/triangles.h"
 
@@ -21,12 +22,6 @@ glm::dmat4 reflection(const MirrorPlane& plane) {
   const glm::dvec3 shift = 2.0 * glm::dot(plane.point_mm, plane.normal) * plane.normal;
   matrix[3] = glm::dvec4(shift, 1.0);
   return matrix;
-}
-
-glm::dvec3 forward(const glm::dvec3& axis) {
-  const glm::dvec3 size = glm::abs(axis);
-  const int largest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  return axis[largest] < 0.0 ? -axis : axis;
 }
 
 /// Unit eigenvectors, of rising eigenvalue.

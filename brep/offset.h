@@ -23,9 +23,10 @@ struct OffsetOptions {
 /// each lies in a tetrahedron of its own. Precondition: the solid is closed and outward. Throws
 /// std::invalid_argument where the solid has no triangles or an option is out of its range, std::length_error
 /// where the lattice would have more than 2^20 cells a side or 2^23 near the surface, std::runtime_error
-/// where stopped. The same bits on any number of threads. Cost: some 20 distances a cell that the surface
-/// passes, about log n each; parallel. Source: the lattice's six tetrahedra a cell after Kuhn; blocks far
-/// from the surface are passed over, as distances change no faster than places do.
+/// where stopped. The same bits on any number of threads. Cost: a distance, about log n, for each
+/// corner of the cells near the surface and a few for each edge that it crosses; parallel. Source: the
+/// lattice's six tetrahedra a cell after Kuhn; blocks far from the surface are passed over, as distances
+/// change no faster than places do.
 Mesh offset(const Mesh& solid, const OffsetOptions& options);
 
 }  // namespace octotomy::brep

@@ -6,8 +6,8 @@
 namespace octotomy::brep {
 
 /// On which side of a plane or line a point lies, for the doubles as they stand: +1, -1, or 0 only where it
-/// lies on it. Precondition: all coordinates are finite. Cost: about 10 ns, some microseconds within rounding
-/// of 0. Source: CGAL's filtered predicates.
+/// lies on it. Precondition: all coordinates are finite. Cost: constant; exact numbers are
+/// called for only within rounding of 0. Source: CGAL's filtered predicates.
 
 /// Of the plane through a, b, c; +1 where (b - a) x (c - a) points to.
 int orientation(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p);

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "brep/forward_axis.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -18,12 +20,6 @@ std::vector<Kernel::Point_3> points_of(const Mesh& mesh) {
   for (const auto v : mesh.vertices())
     if (!mesh.is_isolated(v)) points.emplace_back(mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);
   return points;
-}
-
-glm::dvec3 forward(const glm::dvec3& axis) {
-  const glm::dvec3 size = glm::abs(axis);
-  const int largest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  return axis[largest] < 0.0 ? -axis : axis;
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/detect_features.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
-#include <CGAL/Surface_mesh.h>
 #include <stdexcept>
 #include <string>
 
+#include "brep/surface_mesh.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -37,14 +37,6 @@ void check(const Triangles& triangles, const RemeshOptions& options) {
   }
 }
 
-SurfaceMesh surface_of(const Triangles& triangles) {
-  SurfaceMesh surface;
-  for (const glm::dvec3& p : triangles.points_mm) surface.add_vertex({p.x, p.y, p.z});
-  for (const auto& f : triangles.faces)
-    surface.add_face(VertexIndex(f[0]), VertexIndex(f[1]), VertexIndex(f[2]));
-  return surface;
-}
-
 Triangles triangles_of(const SurfaceMesh& surface) {
   Triangles triangles;
   std::vector<std::uint32_t> number(surface.number_of_vertices() + surface.number_of_removed_vertices());
@@ -69,7 +61,7 @@ Mesh remesh(const Mesh& mesh, const RemeshOptions& options) {
   const Triangles triangles = brep::triangles_of(mesh);
   check(triangles, options);
   if (triangles.faces.empty()) return mesh;
-  SurfaceMesh surface = surface_of(triangles);
+  SurfaceMesh surface = surface_mesh_of<Kernel::Point_3>(triangles);
   auto kept = surface.add_property_map<SurfaceMesh::Edge_index, bool>("e:kept", false).first;
   pmp::detect_sharp_edges(surface, options.sharp_angle_deg, kept);
   for (const auto e : surface.edges())

@@ -17,6 +17,8 @@
 #include "brep/distance.h"
 #include "brep/fill_holes.h"
 #include "brep/flat_triangles.h"
+#include "brep/short_text.h"
+#include "brep/triangle_places.h"
 #include "brep/untangle.h"
 
 namespace octotomy::brep {
@@ -24,12 +26,6 @@ namespace {
 
 constexpr std::uint32_t is_new = std::numeric_limits<std::uint32_t>::max();
 using Face = std::array<std::uint32_t, 3>;
-
-std::string text(double value) {
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
-  return buffer.data();
-}
 
 class Mender {
  public:
@@ -49,7 +45,7 @@ class Mender {
       if (used[v] && sets.set_of(v) != v)
         change("weld",
                "point " + std::to_string(v) + " became point " + std::to_string(sets.set_of(v)) + ", " +
-                   text(glm::distance(points[v], points[sets.set_of(v)])) + " mm away",
+                   short_text(glm::distance(points[v], points[sets.set_of(v)])) + " mm away",
                points[v]);
     for (Face& face : repair_.surface.faces)
       for (std::uint32_t& v : face) v = sets.set_of(v);
@@ -103,7 +99,7 @@ class Mender {
       repair_.surface = triangles_of(mesh);
       for (const Hole& hole : holes(mesh, longest_mm)) {
         const std::string what = "a hole of " + std::to_string(hole.border.size()) + " sides, " +
-                                 text(hole.perimeter_mm) + " mm round";
+                                 short_text(hole.perimeter_mm) + " mm round";
         if (hole.faces.empty()) {
           left("holes", what + ", stays", hole.centre_mm);
           continue;
@@ -299,16 +295,6 @@ class Mender {
 
   /// Puts another surface in place and lists the triangles that are not in it.
   void replace(Triangles other, const char* step, const std::string& how) {
-    using Places = std::array<std::array<double, 3>, 3>;
-    const auto places_of = [](const Triangles& surface, const Face& face) {
-      Places places;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const glm::dvec3& p = surface.points_mm[face[k]];
-        places[k] = {p.x, p.y, p.z};
-      }
-      std::sort(places.begin(), places.end());
-      return places;
-    };
     std::multimap<Places, std::size_t> before;
     for (std::size_t f = 0; f < repair_.surface.faces.size(); ++f)
       before.emplace(places_of(repair_.surface, repair_.surface.faces[f]), f);

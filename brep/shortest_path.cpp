@@ -4,7 +4,6 @@
 #include "brep/shortest_path.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_shortest_path.h>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@
 
 #include "brep/components.h"
 #include "brep/distance.h"
+#include "brep/surface_mesh.h"
 #include "brep/triangles.h"
 
 namespace octotomy::brep {
@@ -26,15 +26,6 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Traits = CGAL::Surface_mesh_shortest_path_traits<Kernel, Surface>;
 using Paths = CGAL::Surface_mesh_shortest_path<Traits>;
-
-Surface surface_of(const Triangles& triangles) {
-  Surface surface;
-  for (const glm::dvec3& p : triangles.points_mm) surface.add_vertex(Kernel::Point_3(p.x, p.y, p.z));
-  for (const auto& face : triangles.faces)
-    surface.add_face(Surface::Vertex_index(face[0]), Surface::Vertex_index(face[1]),
-                     Surface::Vertex_index(face[2]));
-  return surface;
-}
 
 /// A foot as CGAL wants it: weights in its own order of the face's corners, from the source of its halfedge.
 Paths::Face_location location_of(const Foot& foot, const Triangles& triangles, const Surface& surface) {
@@ -114,7 +105,7 @@ SurfacePath shortest_path(const Mesh& mesh, const glm::dvec3& from_mm, const glm
   const Triangles triangles =
       triangles_of(part_of(mesh, within_reach(all, ends[0], ends[1], bound_mm * (1.0 + 0x1p-40))));
   const std::vector<Foot> feet = SurfaceTree(triangles).feet({ends[0].p_mm, ends[1].p_mm});
-  const Surface surface = surface_of(triangles);
+  const Surface surface = surface_mesh_of<Kernel::Point_3>(triangles);
   Paths paths(surface);
   paths.add_source_point(location_of(feet[0], triangles, surface));
   std::vector<Kernel::Point_3> points;

@@ -3,13 +3,14 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
-#include <CGAL/Surface_mesh.h>
 #include <algorithm>
 #include <array>
 #include <set>
 
 #include "brep/coordinate_order.h"
 #include "brep/health.h"
+#include "brep/surface_mesh.h"
+#include "brep/triangle_places.h"
 
 namespace octotomy::brep {
 namespace {
@@ -17,15 +18,6 @@ namespace {
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
-
-Surface surface_of(const Triangles& triangles) {
-  Surface surface;
-  for (const glm::dvec3& p : triangles.points_mm) surface.add_vertex(Kernel::Point_3(p.x, p.y, p.z));
-  for (const auto& face : triangles.faces)
-    surface.add_face(Surface::Vertex_index(face[0]), Surface::Vertex_index(face[1]),
-                     Surface::Vertex_index(face[2]));
-  return surface;
-}
 
 Triangles triangles_of(Surface& surface) {
   surface.collect_garbage();
@@ -44,18 +36,6 @@ Triangles triangles_of(Surface& surface) {
   return triangles;
 }
 
-/// A triangle by its places.
-using Places = std::array<std::array<double, 3>, 3>;
-Places places_of(const Triangles& triangles, const std::array<std::uint32_t, 3>& face) {
-  Places places;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const glm::dvec3& p = triangles.points_mm[face[k]];
-    places[k] = {p.x, p.y, p.z};
-  }
-  std::sort(places.begin(), places.end());
-  return places;
-}
-
 }  // namespace
 
 Untangled untangle(const Mesh& mesh) {
@@ -67,7 +47,7 @@ Untangled untangle(const Mesh& mesh) {
   // is left is not ours, which decides.
   for (const bool keeps_genus : {true, false, false, false}) {
     if (intersections == 0) break;
-    Surface surface = surface_of(untangled.surface);
+    Surface surface = surface_mesh_of<Kernel::Point_3>(untangled.surface);
     pmp::experimental::remove_self_intersections(surface, CGAL::parameters::preserve_genus(keeps_genus));
     // CGAL's order may hang on addresses.
     Triangles tried = in_coordinate_order(mesh_of(triangles_of(surface)));
