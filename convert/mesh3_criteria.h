@@ -13,6 +13,10 @@ namespace octotomy::convert {
 // has edges that are sharper than the angles asked for, refinement for their sake has no end: facets and
 // cells all of whose sides are shorter than a length are good as they are.
 
+/// Angle of a facet and radius-edge ratio of a cell that CGAL's manual calls safe to ask for.
+inline constexpr double safe_facet_angle_deg = 25.0;
+inline constexpr double safe_radius_edge = 2.5;
+
 /// CGAL's criteria of facets or cells, down to a length that `Least` has at a point.
 template <typename Base, typename Least>
 class DownTo : public Base {

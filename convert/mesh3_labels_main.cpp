@@ -14,20 +14,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <map>
-#include <new>
-#include <string>
+#include <functional>
 #include <vector>
 
 #include "convert/mesh3_criteria.h"
+#include "convert/mesh3_exchange.h"
 #include "convert/mesher_child.h"
 
 using octotomy::convert::LabelSizes;
-using octotomy::convert::MesherAnswer;
 using octotomy::convert::MesherRequest;
 using octotomy::convert::read_all;
-using octotomy::convert::write_all;
 namespace convert = octotomy::convert;
 
 namespace {
@@ -81,39 +77,14 @@ struct Labels {
   }
 };
 
-using Base = CGAL::Labeled_mesh_domain_3<Kernel>;
-
-/// Labels that are meshed from given points on: CGAL's own choice, where some rays meet a surface, misses
-/// small regions.
-class Domain : public Base {
- public:
-  Domain(const Labels& labels, const CGAL::Bbox_3& box, double error)
-      : Base(std::function<int(const Point&)>([&labels](const Point& p) { return labels.at(p); }), box,
-             CGAL::parameters::relative_error_bound = error),
-        labels_(labels) {}
-
-  struct Construct_initial_points {  // NOLINT(readability-identifier-naming): CGAL asks for the name
-    const Domain& domain;
-    template <typename Out>
-    Out operator()(Out out, int = 0) const {
-      for (const Point& p : domain.labels_.start) *out++ = {p, domain.index_from_surface_patch_index({0, 1})};
-      return out;
-    }
-  };
-  Construct_initial_points construct_initial_points_object() const { return {*this}; }
-
- private:
-  const Labels& labels_;
-};
-
+using Domain = convert::StartingFrom<CGAL::Labeled_mesh_domain_3<Kernel>, Point>;
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 
 bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
-  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
   if (std::sscanf(request.switches.data(), convert::label_switches, &sizes.facet_mm, &sizes.distance_mm,
                   &sizes.cell_mm) != 3 ||
-      request.points != 0 || request.triangles != 0 || request.sizes != 0 || request.holes > most / 3)
+      request.points != 0 || request.triangles != 0 || request.sizes != 0)
     return false;
   std::uint64_t voxels = 1;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -123,38 +94,9 @@ bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
     voxels *= static_cast<std::uint64_t>(request.dims[i]);
   }
   if (voxels != request.labels) return false;
-  std::vector<double> coordinates(3 * request.holes);
-  if (!read_all(coordinates.data(), coordinates.size() * sizeof(double))) return false;
-  for (std::size_t i = 0; i < coordinates.size(); i += 3)
-    labels.start.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
+  if (!convert::read_points(request.holes, labels.start)) return false;
   labels.of_voxel.resize(voxels);
   return read_all(labels.of_voxel.data(), voxels);
-}
-
-/// Elements, their nodes and labels in the triangulation's order.
-bool write_answer(int file, const Complex& complex) {
-  std::map<Complex::Vertex_handle, std::uint32_t> number;
-  std::vector<double> points;
-  std::vector<std::uint32_t> corners, labels;
-  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
-    labels.push_back(static_cast<std::uint32_t>(complex.subdomain_index(cell)));
-    for (int i = 0; i < 4; ++i) {
-      const auto [at, is_new] =
-          number.try_emplace(cell->vertex(i), static_cast<std::uint32_t>(number.size()));
-      if (is_new) {
-        const auto& p = cell->vertex(i)->point();
-        points.insert(points.end(), {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
-      }
-      corners.push_back(at->second);
-    }
-  }
-  MesherAnswer answer;
-  answer.points = points.size() / 3;
-  answer.tetrahedra = answer.labels = labels.size();
-  return write_all(file, &answer, sizeof answer) &&
-         write_all(file, points.data(), points.size() * sizeof(double)) &&
-         write_all(file, corners.data(), corners.size() * sizeof(std::uint32_t)) &&
-         write_all(file, labels.data(), labels.size() * sizeof(std::uint32_t));
 }
 
 /// A length under which nothing is refined.
@@ -166,39 +108,36 @@ struct Least {
 
 Complex mesh(const Labels& labels, const LabelSizes& sizes) {
   namespace p = CGAL::parameters;
-  // What mesh3_main.cpp asks for; and surfaces found to a hundredth of a voxel.
-  constexpr double facet_angle_deg = 25.0, radius_edge = 2.5, error_voxels = 0.01;
+  // Surfaces are found to a hundredth of a voxel.
+  constexpr double error_voxels = 0.01;
   std::array<double, 3> extent{};
   for (std::size_t i = 0; i < 3; ++i)
     extent[i] = static_cast<double>(labels.dims[i] - 1) * labels.spacing_mm[i];
   const CGAL::Bbox_3 box(0.0, 0.0, 0.0, extent[0], extent[1], extent[2]);
   const double diagonal_mm = std::hypot(extent[0], extent[1], extent[2]);
-  const Domain domain(labels, box, error_voxels * labels.spacing_mm[0] / diagonal_mm);
+  const std::function<int(const Point&)> label = [&labels](const Point& p) { return labels.at(p); };
+  const Domain domain(
+      labels.start, label, box,
+      CGAL::parameters::relative_error_bound = error_voxels * labels.spacing_mm[0] / diagonal_mm);
   // Half a voxel, under which there is nothing but the corners of voxels.
   constexpr double least_voxels = 0.5;
   const Least least{least_voxels * *std::min_element(labels.spacing_mm.begin(), labels.spacing_mm.end())};
   const convert::FacetsDownTo<Triangulation, Least> facets(
-      {facet_angle_deg, sizes.facet_mm, sizes.distance_mm}, least);
-  const convert::CellsDownTo<Triangulation, Least> cells({radius_edge, sizes.cell_mm}, least);
+      {convert::safe_facet_angle_deg, sizes.facet_mm, sizes.distance_mm}, least);
+  const convert::CellsDownTo<Triangulation, Least> cells({convert::safe_radius_edge, sizes.cell_mm}, least);
   const convert::CriteriaDownTo<Triangulation, Least> criteria(facets, cells);
   return CGAL::make_mesh_3<Complex>(domain, criteria, p::no_perturb(), p::no_exude());
+}
+
+bool answer(const convert::MesherTask& task) {
+  LabelSizes sizes;
+  Labels labels;
+  return read(task.request, labels, sizes) &&
+         convert::write_answer(task.answer_file, mesh(labels, sizes), convert::AnswerLabels::of_each);
 }
 
 }  // namespace
 
 int main() {
-  const convert::MesherTask task = convert::begin_mesher();
-  int status = 0;
-  try {
-    LabelSizes sizes;
-    Labels labels;
-    if (!read(task.request, labels, sizes)) convert::end_mesher(convert::mesher_exit_protocol);
-    if (!write_answer(task.answer_file, mesh(labels, sizes))) status = convert::mesher_exit_protocol;
-  } catch (const std::bad_alloc&) {
-    status = convert::mesher_exit_memory;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    status = convert::mesher_exit_base + 2;
-  }
-  convert::end_mesher(status);
+  convert::run_mesher(answer);
 }

@@ -17,20 +17,17 @@
 #include <CGAL/make_mesh_3.h>
 #include <cstdio>
 #include <limits>
-#include <map>
-#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "convert/mesh3_criteria.h"
+#include "convert/mesh3_exchange.h"
 #include "convert/mesher_child.h"
 
 using octotomy::convert::Mesh3Sizes;
-using octotomy::convert::MesherAnswer;
 using octotomy::convert::MesherRequest;
 using octotomy::convert::read_all;
-using octotomy::convert::write_all;
 namespace convert = octotomy::convert;
 
 namespace {
@@ -39,27 +36,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Surface = CGAL::Surface_mesh<Point>;
 
-/// A polyhedron that is meshed from given points on: CGAL's own choice, where some rays meet the surface,
-/// misses small parts.
-class Domain : public CGAL::Polyhedral_mesh_domain_3<Surface, Kernel> {
- public:
-  Domain(const Surface& surface, std::vector<Point> start)
-      : CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>(surface), start_(std::move(start)) {}
-
-  struct Construct_initial_points {  // NOLINT(readability-identifier-naming): CGAL asks for the name
-    const Domain& domain;
-    template <typename Out>
-    Out operator()(Out out, int = 0) const {
-      for (const Point& p : domain.start_) *out++ = {p, domain.index_from_surface_patch_index({0, 1})};
-      return out;
-    }
-  };
-  Construct_initial_points construct_initial_points_object() const { return {*this}; }
-
- private:
-  std::vector<Point> start_;
-};
-
+using Domain = convert::StartingFrom<CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>, Point>;
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 
@@ -124,18 +101,9 @@ struct Least {
   double operator()(const Point& p) const { return share * field(p); }
 };
 
-bool read_points(std::uint64_t count, std::vector<Point>& points) {
-  if (count > std::numeric_limits<std::uint32_t>::max() / 3) return false;
-  std::vector<double> coordinates(3 * count);
-  if (!read_all(coordinates.data(), coordinates.size() * sizeof(double))) return false;
-  for (std::size_t i = 0; i < coordinates.size(); i += 3)
-    points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
-  return true;
-}
-
 bool read_surface(const MesherRequest& request, Surface& surface) {
   std::vector<Point> points;
-  if (!read_points(request.points, points) ||
+  if (!convert::read_points(request.points, points) ||
       request.triangles > std::numeric_limits<std::uint32_t>::max() / 3)
     return false;
   std::vector<std::uint32_t> corners(3 * request.triangles);
@@ -146,29 +114,6 @@ bool read_surface(const MesherRequest& request, Surface& surface) {
                          Surface::Vertex_index(corners[i + 2])) == Surface::null_face())
       throw std::runtime_error("triangle " + std::to_string(i / 3) + " does not join the others");
   return true;
-}
-
-/// Elements and their nodes in the triangulation's order.
-bool write_answer(int file, const Complex& complex) {
-  std::map<Complex::Vertex_handle, std::uint32_t> number;
-  std::vector<double> points;
-  std::vector<std::uint32_t> corners;
-  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell)
-    for (int i = 0; i < 4; ++i) {
-      const auto [at, is_new] =
-          number.try_emplace(cell->vertex(i), static_cast<std::uint32_t>(number.size()));
-      if (is_new) {
-        const auto& p = cell->vertex(i)->point();
-        points.insert(points.end(), {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});
-      }
-      corners.push_back(at->second);
-    }
-  MesherAnswer answer;
-  answer.points = points.size() / 3;
-  answer.tetrahedra = corners.size() / 4;
-  return write_all(file, &answer, sizeof answer) &&
-         write_all(file, points.data(), points.size() * sizeof(double)) &&
-         write_all(file, corners.data(), corners.size() * sizeof(std::uint32_t));
 }
 
 struct Request {
@@ -182,7 +127,7 @@ bool read(const MesherRequest& request, Request& read) {
   if (std::sscanf(request.switches.data(), convert::mesh3_switches, &read.sizes.distance, &read.sizes.cell,
                   &read.sizes.grading, &read.sizes.max_cell_mm) != 4 ||
       request.sizes != request.points || !read_surface(request, read.surface) ||
-      !read_points(request.holes, read.start))
+      !convert::read_points(request.holes, read.start))
     return false;
   read.sizes_mm.resize(request.sizes);
   return read_all(read.sizes_mm.data(), read.sizes_mm.size() * sizeof(double));
@@ -190,19 +135,16 @@ bool read(const MesherRequest& request, Request& read) {
 
 Complex mesh(const Request& request) {
   namespace p = CGAL::parameters;
-  // Angles of a facet and radius-edge ratios of a cell that CGAL's manual calls safe to ask for.
-  constexpr double facet_angle_deg = 25.0;
-  constexpr double radius_edge = 2.5;
-  const Domain domain(request.surface, request.start);
+  const Domain domain(request.start, request.surface);
   const Mesh3Sizes& sizes = request.sizes;
   const SizeField field(request.surface, request.sizes_mm, sizes.grading);
   // A twentieth of what elements are to be about there.
   constexpr double least_share = 0.05;
   const Least least{field, least_share};
   const convert::FacetsDownTo<Triangulation, Least> facets(
-      {facet_angle_deg, Sizes{field}, Sizes{field, sizes.distance}}, least);
+      {convert::safe_facet_angle_deg, Sizes{field}, Sizes{field, sizes.distance}}, least);
   const convert::CellsDownTo<Triangulation, Least> cells(
-      {radius_edge, Sizes{field, sizes.cell, sizes.max_cell_mm}}, least);
+      {convert::safe_radius_edge, Sizes{field, sizes.cell, sizes.max_cell_mm}}, least);
   const convert::CriteriaDownTo<Triangulation, Least> criteria(facets, cells);
   // No limit of time, not even CGAL's own. Flatter elements than this are exuded; moving nodes mends the
   // rest.
@@ -211,20 +153,14 @@ Complex mesh(const Request& request) {
                                     p::exude(p::time_limit = 0.0, p::sliver_bound = sliver_deg));
 }
 
+bool answer(const convert::MesherTask& task) {
+  Request request;
+  return read(task.request, request) &&
+         convert::write_answer(task.answer_file, mesh(request), convert::AnswerLabels::none);
+}
+
 }  // namespace
 
 int main() {
-  const convert::MesherTask task = convert::begin_mesher();
-  int status = 0;
-  try {
-    Request request;
-    if (!read(task.request, request)) convert::end_mesher(convert::mesher_exit_protocol);
-    if (!write_answer(task.answer_file, mesh(request))) status = convert::mesher_exit_protocol;
-  } catch (const std::bad_alloc&) {
-    status = convert::mesher_exit_memory;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    status = convert::mesher_exit_base + 2;
-  }
-  convert::end_mesher(status);
+  convert::run_mesher(answer);
 }

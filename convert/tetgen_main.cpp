@@ -3,7 +3,6 @@
 // octotomy-tetgen: one run of TetGen, fed and read by mesher_process.cpp.
 
 #include <limits>
-#include <new>
 #include <string>
 #include <tetgen.h>
 
@@ -50,23 +49,18 @@ bool write_answer(int file, const tetgenio& out) {
          write_all(file, out.tetrahedronlist, 4 * answer.tetrahedra * sizeof(int));
 }
 
+bool answer(const convert::MesherTask& task) {
+  // Never destroyed: their destructors would free one by one what read_complex allocates at once.
+  static auto& in = *new tetgenio;
+  static auto& out = *new tetgenio;
+  std::string switches = task.request.switches.data();
+  if (!read_complex(task.request, in)) return false;
+  tetrahedralize(switches.data(), &in, &out);
+  return write_answer(task.answer_file, out);
+}
+
 }  // namespace
 
 int main() {
-  const convert::MesherTask task = convert::begin_mesher();
-  int status = 0;
-  try {
-    // Never destroyed: their destructors would free one by one what read_complex allocates at once.
-    auto* in = new tetgenio;
-    auto* out = new tetgenio;
-    std::string switches = task.request.switches.data();
-    if (!read_complex(task.request, *in)) convert::end_mesher(convert::mesher_exit_protocol);
-    tetrahedralize(switches.data(), in, out);
-    if (!write_answer(task.answer_file, *out)) status = convert::mesher_exit_protocol;
-  } catch (int reason) {
-    status = reason == 1 ? convert::mesher_exit_memory : convert::mesher_exit_base + (reason & 15);
-  } catch (const std::bad_alloc&) {
-    status = convert::mesher_exit_memory;
-  }
-  convert::end_mesher(status);
+  convert::run_mesher(answer);
 }
