@@ -2,6 +2,7 @@
 #include "convert/expression_surface.h"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "convert/surface_extraction.h"
@@ -90,20 +91,23 @@ class Membership {
 brep::Triangles isosurface(const voxel::Universe& universe, const voxel::Expression& expression) {
   const voxel::Lattice lattice = universe.lattice();
   const Membership inside(expression);
-  const Crossing crossing = [&](const glm::ivec3& voxel, int axis, bool first_inside) {
-    const glm::dvec3 first_mm = lattice.lps_mm(voxel);
-    glm::ivec3 next = voxel;
-    ++next[axis];
+  const auto crossing = [&](const CrossedEdge& edge) {
+    const glm::dvec3 first_mm = lattice.lps_mm(edge.voxel);
+    glm::ivec3 next = edge.voxel;
+    ++next[edge.axis];
     const glm::dvec3 step_mm = lattice.lps_mm(next) - first_mm;
     double low = 0.0;
     double high = 1.0;
     for (int i = 0; i < halvings; ++i) {
       const double middle = 0.5 * (low + high);
-      (inside(first_mm + middle * step_mm) == first_inside ? low : high) = middle;
+      (inside(first_mm + middle * step_mm) == edge.first_inside ? low : high) = middle;
     }
     return std::clamp(0.5 * (low + high), closest_to_sample(), 1.0 - closest_to_sample());
   };
-  return extract_surface(lattice, inside_bits(combine(universe, expression)), crossing);
+  const Crossings crossings = [&](std::span<const CrossedEdge> edges, double* parts) {
+    std::transform(edges.begin(), edges.end(), parts, crossing);
+  };
+  return extract_surface(lattice, inside_bits(combine(universe, expression)), crossings);
 }
 
 }  // namespace octotomy::convert

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -132,20 +133,29 @@ class GreySamples {
     return bits;
   }
 
+  /// As GreyOctree::sample() has them, of voxels that are known to be within.
   std::pair<double, double> two(const glm::ivec3& voxel, int axis) const {
-    glm::ivec3 next = voxel;
+    const glm::ivec3 in_brick = voxel & 15;
+    const int place = in_brick[axis];
+    const int first = (spread[in_brick.x] + (spread[in_brick.y] << 2)) + (spread[in_brick.z] << 4);
+    const int second = first + ((spread[(place + 1) & 15] - spread[place]) << (2 * axis));
+    const glm::ivec3 block = voxel >> 4;
+    const voxel::GreyBrick& brick = grey_.brick(block);
+    if (place != 15) return {sample(brick, first), sample(brick, second)};
+    glm::ivec3 next = block;
     ++next[axis];
-    return {sample(voxel), sample(next)};
+    return {sample(brick, first), sample(grey_.brick(next), second)};
   }
 
  private:
-  /// As GreyOctree::sample(), of a voxel that is known to be within.
-  double sample(const glm::ivec3& at) const {
-    const glm::ivec3 leaf = (at >> 2) & 3, in_leaf = at & 3;
-    return grey_.brick(at >> 4)
-        .samples[static_cast<std::size_t>(voxel::child_index(leaf.x, leaf.y, leaf.z))]
-                [static_cast<std::size_t>(voxel::child_index(in_leaf.x, in_leaf.y, in_leaf.z))];
+  static double sample(const voxel::GreyBrick& brick, int number) {
+    const auto at = static_cast<std::size_t>(number);
+    return brick.samples[at / 64][at % 64];
   }
+
+  /// A coordinate within a brick as a part of the sample's number along x: leaves of 4^3 follow each other.
+  static constexpr std::array<int, 16> spread = {0,   1,   2,   3,   64,  65,  66,  67,
+                                                 128, 129, 130, 131, 192, 193, 194, 195};
 
   void mark_block(const glm::ivec3& block, voxel::Window16 window, InsideBits& bits) const {
     const voxel::MinMax range = grey_.range(2, block);
@@ -191,9 +201,11 @@ void check_bounds(double low, double high) {
 
 template <typename Samples>
 brep::Triangles surface_of(const Samples& samples, double low, double high) {
-  const Crossing at = [&](const glm::ivec3& voxel, int axis, bool first_inside) {
-    const auto [first, second] = samples.two(voxel, axis);
-    return crossing(first, second, first_inside, low, high);
+  const Crossings at = [&](std::span<const CrossedEdge> edges, double* parts) {
+    for (const CrossedEdge& edge : edges) {
+      const auto [first, second] = samples.two(edge.voxel, edge.axis);
+      *parts++ = crossing(first, second, edge.first_inside, low, high);
+    }
   };
   return extract_surface(samples.lattice(), samples.inside(low, high), at);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <unordered_map>
 
 #include "convert/surface_extraction.h"
@@ -73,13 +74,16 @@ brep::Triangles interpolated(const voxel::PartialOctree& partial) {
   const auto share = [&](const glm::ivec3& v) {
     return shares.at(v).value_or(partial.inside.contains(v) ? 1.0 : 0.0);
   };
-  const Crossing crossing = [&](const glm::ivec3& voxel, int axis, bool) {
-    glm::ivec3 next = voxel;
-    ++next[axis];
-    const double first = share(voxel);
+  const auto crossing = [&](const CrossedEdge& edge) {
+    glm::ivec3 next = edge.voxel;
+    ++next[edge.axis];
+    const double first = share(edge.voxel);
     return std::clamp((0.5 - first) / (share(next) - first), closest_to_sample(), 1.0 - closest_to_sample());
   };
-  return extract_surface(partial.inside.universe().lattice(), inside_bits(at_least_half(partial)), crossing);
+  const Crossings crossings = [&](std::span<const CrossedEdge> edges, double* parts) {
+    std::transform(edges.begin(), edges.end(), parts, crossing);
+  };
+  return extract_surface(partial.inside.universe().lattice(), inside_bits(at_least_half(partial)), crossings);
 }
 
 /// Pass 2: the volume that each voxel of the solid has more than within the surface.

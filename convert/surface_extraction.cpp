@@ -18,14 +18,14 @@
 //
 // 1 A bit a sample says whether it is inside. The lattice is padded by samples that are outside, so that the
 //   surface closes at its border. From here on corners are counted in the padded lattice.
-// 2 Every row of cells counts its crossings and triangles. Word operations find both: an edge is crossed
-//   where two neighbouring bits differ.
-// 3 A running sum over the rows gives every row its first vertex and its first triangle, so the numbers do
-//   not depend on who computes what.
-// 4 Every row writes its vertices, then its triangles. A vertex's number is its row's first plus the crossed
-//   edges before it, which a population count gives: no table of vertices is kept.
+// 2 Every row of cells counts its crossings and notes the cases of its cells. Word operations find both: an
+//   edge is crossed where two neighbouring bits differ.
+// 3 A running sum over the rows gives every row its first vertex and every plane its first triangle, so the
+//   numbers do not depend on who computes what.
+// 4 Every plane writes its vertices, then its triangles. A cell's vertices are numbered by running numbers of
+//   the eight rows of edges about its row, which its case says how to step: no table of vertices is kept.
 //
-// Memory beside the surface: one bit a sample and 16 bytes a row of samples.
+// Memory beside the surface: one bit a sample, 24 bytes a row of samples and a byte a cell of the surface.
 
 namespace octotomy::convert {
 namespace {
@@ -36,51 +36,60 @@ std::uint64_t crossed_x(const std::uint64_t* row, std::size_t word, std::size_t 
   return row[word] ^ ((row[word] >> 1) | (next << 63));
 }
 
+// Rows of the whole lattice are many megabytes: they are left without values until threads fill them.
+
 /// Words of a row, or of rows beside each other, that hold a crossed edge: those with a bit, and the one
 /// before them, whose last edge ends in the first of them.
 struct Words {
-  std::uint32_t begin = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t end = 0;
-  Words& operator|=(const Words& other) {
-    begin = std::min(begin, other.begin);
-    end = std::max(end, other.end);
-    return *this;
-  }
+  std::uint32_t begin, end;
 };
+constexpr Words no_words{std::numeric_limits<std::uint32_t>::max(), 0};
+Words both(const Words& a, const Words& b) {
+  return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
+}
 
-/// Crossed edges of a row by direction, and triangles of the row of cells that begins at it.
+/// Crossed edges of a row by direction, and cells with any in the row of cells that begins at it.
 struct RowCount {
-  std::array<std::uint32_t, 3> vertices{};
-  std::uint32_t triangles = 0;
+  std::array<std::uint32_t, 3> vertices;
+  std::uint32_t cells;
 };
 
-/// A case's triangles in a form that the inner loop reads.
+/// A case in a form that the inner loop reads. Eight rows of edges run along a row of cells: those along x at
+/// (y, z) = (0, 0), (1, 0), (0, 1), (1, 1), those along y at z = 0, 1, those along z at y = 0, 1. A cell has
+/// the first four's edges, then the others' at its lower x, then those at its upper x, which are the next
+/// cell's lower ones.
 struct FlatCase {
+  std::array<std::uint32_t, 8> crossed{};  ///< 1 where the row's edge at the cell, at its lower x, is
   std::uint32_t count = 0;
   std::array<std::array<std::uint8_t, 3>, 5> triangles{};
 };
 
+/// From the numbers of marching_cubes.h.
+std::uint8_t edge_in_row(std::uint8_t edge) {
+  if (edge < 4) return edge;
+  return static_cast<std::uint8_t>((edge % 2 == 0 ? 4 : 8) + (edge - 4) / 2);
+}
+
 std::array<FlatCase, 256> flat_cases(bool mirrored) {
   std::array<FlatCase, 256> flat;
   for (int inside = 0; inside < 256; ++inside) {
+    const MarchingCubesCase& source = marching_cubes_case(inside);
     FlatCase& target = flat[static_cast<std::size_t>(inside)];
-    for (const std::array<std::uint8_t, 3>& t : marching_cubes_case(inside).triangles)
-      target.triangles.at(target.count++) = mirrored ? std::array<std::uint8_t, 3>{t[0], t[2], t[1]} : t;
+    for (std::uint8_t edge = 0; edge < 12; ++edge)
+      if (const std::uint8_t row = edge_in_row(edge); row < 8)
+        target.crossed[row] = (source.crossed >> edge) & 1;
+    for (const std::array<std::uint8_t, 3>& t : source.triangles) {
+      std::array<std::uint8_t, 3>& corners = target.triangles.at(target.count++);
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = edge_in_row(t[mirrored ? (3 - i) % 3 : i]);
+    }
   }
   return flat;
 }
 
-/// The twelve edges' place in a row of cells: the bits of eight rows of edges, along x at (y, z) = (0, 0),
-/// (1, 0), (0, 1), (1, 1), along y at z = 0, 1, along z at y = 0, 1. Edges along y and z serve two cells.
-struct EdgeRows {
-  std::array<std::uint64_t, 8> crossed{};
-  std::array<std::uint32_t, 8> first{};  ///< number of the first vertex of the word
-};
-
 class Extraction {
  public:
-  Extraction(const voxel::Lattice& lattice, const InsideBits& bits, const Crossing& crossing)
-      : lattice_(lattice), bits_(bits), crossing_(crossing), cases_(flat_cases(!lattice.right_handed())) {
+  Extraction(const voxel::Lattice& lattice, const InsideBits& bits, const Crossings& crossings)
+      : lattice_(lattice), bits_(bits), crossings_(crossings), cases_(flat_cases(!lattice.right_handed())) {
     for (int column = 0; column < 4; ++column)
       columns_mm_[static_cast<std::size_t>(column)] = glm::dvec3(lattice.lps_from_voxel[column]);
   }
@@ -95,209 +104,201 @@ class Extraction {
 
  private:
   void find_words() {
-    tbb::parallel_invoke([&] { words_.resize(bits_.rows_y * bits_.planes_z); },
-                         [&] { rows_.resize(bits_.rows_y * bits_.planes_z); });
+    words_.resize(bits_.rows_y * bits_.planes_z);
+    rows_.resize(bits_.rows_y * bits_.planes_z);
     tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
       for (std::size_t y = 0; y < bits_.rows_y; ++y) {
         const std::uint64_t* row = bits_.row(y, z);
-        std::size_t begin = 0;
-        while (begin < bits_.words && row[begin] == 0) ++begin;
-        if (begin == bits_.words) continue;
-        std::size_t end = bits_.words;
-        while (row[end - 1] == 0) --end;
-        words_[bits_.row_number(y, z)] = {static_cast<std::uint32_t>(begin > 0 ? begin - 1 : 0),
-                                          static_cast<std::uint32_t>(end)};
+        std::uint64_t any = 0;
+        for (std::size_t word = 0; word < bits_.words; ++word) any |= row[word];
+        words_[bits_.row_number(y, z)] = any != 0 ? words_of(row) : no_words;
+        rows_[bits_.row_number(y, z)] = RowCount{};
       }
     });
+  }
+
+  Words words_of(const std::uint64_t* row) const {
+    std::uint32_t begin = 0, end = static_cast<std::uint32_t>(bits_.words);
+    while (row[begin] == 0) ++begin;
+    while (row[end - 1] == 0) --end;
+    return {begin > 0 ? begin - 1 : 0, end};
   }
 
   /// Of the cells between four rows.
   Words words_of_cells(std::size_t y, std::size_t z) const {
-    Words words = words_[bits_.row_number(y, z)];
-    words |= words_[bits_.row_number(y + 1, z)];
-    words |= words_[bits_.row_number(y, z + 1)];
-    words |= words_[bits_.row_number(y + 1, z + 1)];
-    return words;
-  }
-
-  /// Calls f(x, case, rows) for each cell of a row that the surface passes.
-  template <typename F>
-  void for_crossed_cells(std::size_t y, std::size_t z, EdgeRows rows, const F& f) const {
-    const Words within = words_of_cells(y, z);
-    const std::size_t words = bits_.words;
-    const std::array<const std::uint64_t*, 4> row = {bits_.row(y, z), bits_.row(y + 1, z),
-                                                     bits_.row(y, z + 1), bits_.row(y + 1, z + 1)};
-    for (std::size_t word = within.begin; word < within.end; ++word) {
-      std::array<std::uint64_t, 4> here{};
-      for (std::size_t i = 0; i < 4; ++i) {
-        here[i] = row[i][word];
-        rows.crossed[i] = crossed_x(row[i], word, words);
-      }
-      rows.crossed[4] = here[0] ^ here[1];
-      rows.crossed[5] = here[2] ^ here[3];
-      rows.crossed[6] = here[0] ^ here[2];
-      rows.crossed[7] = here[1] ^ here[3];
-      std::uint64_t any = 0;
-      for (const std::uint64_t crossed : rows.crossed) any |= crossed;
-      // Where no edge at x is crossed, all eight corners are equal: the far edges need no look.
-      for (std::uint64_t left = any; left != 0; left &= left - 1) {
-        const int bit = std::countr_zero(left);
-        std::uint32_t inside = 0;
-        for (std::uint32_t i = 0; i < 4; ++i) {
-          const std::uint32_t at_x = (here[i] >> bit) & 1;
-          const std::uint32_t crossed = (rows.crossed[i] >> bit) & 1;
-          inside |= (at_x | ((at_x ^ crossed) << 1)) << (2 * i);
-        }
-        f(64 * word + static_cast<std::size_t>(bit), bit, inside, rows);
-      }
-      if (any != 0)
-        for (std::size_t i = 0; i < 8; ++i)
-          rows.first[i] += static_cast<std::uint32_t>(std::popcount(rows.crossed[i]));
-    }
+    return both(both(words_[bits_.row_number(y, z)], words_[bits_.row_number(y + 1, z)]),
+                both(words_[bits_.row_number(y, z + 1)], words_[bits_.row_number(y + 1, z + 1)]));
   }
 
   void count() {
+    planes_.resize(bits_.planes_z);
     tbb::parallel_for(std::size_t{0}, bits_.planes_z - 1, [&](std::size_t z) {
       for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
-        RowCount& row = rows_[bits_.row_number(y, z)];
-        const std::uint64_t* here = bits_.row(y, z);
-        const std::uint64_t* along_y = bits_.row(y + 1, z);
-        const std::uint64_t* along_z = bits_.row(y, z + 1);
         const Words within = words_of_cells(y, z);
-        for (std::size_t word = within.begin; word < within.end; ++word) {
-          const std::array<std::uint64_t, 3> crossed = {
-              crossed_x(here, word, bits_.words), here[word] ^ along_y[word], here[word] ^ along_z[word]};
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            if (crossed[axis] != 0)
-              row.vertices[axis] += static_cast<std::uint32_t>(std::popcount(crossed[axis]));
-        }
-        for_crossed_cells(y, z, {}, [&](std::size_t, int, std::uint32_t inside, const EdgeRows&) {
-          row.triangles += cases_[inside].count;
-        });
+        if (within.begin < within.end) rows_[bits_.row_number(y, z)] = counted_row(y, z, within);
       }
     });
   }
 
-  struct Totals {
-    std::uint64_t vertices = 0, triangles = 0;
-  };
-
-  /// Turns counts into first numbers: sums of planes, then what comes before each, then before each row.
-  void number() {
-    std::vector<Totals> before(bits_.planes_z + 1);
-    tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
-      for (std::size_t y = 0; y < bits_.rows_y; ++y) {
-        const RowCount& row = rows_[bits_.row_number(y, z)];
-        for (const std::uint32_t direction : row.vertices) before[z + 1].vertices += direction;
-        before[z + 1].triangles += row.triangles;
+  RowCount counted_row(std::size_t y, std::size_t z, const Words& within) {
+    Plane& plane = planes_[z];
+    const std::array<const std::uint64_t*, 4> row = {bits_.row(y, z), bits_.row(y + 1, z),
+                                                     bits_.row(y, z + 1), bits_.row(y + 1, z + 1)};
+    const std::size_t before = plane.cells;
+    std::array<std::uint32_t, 3> vertices{};
+    std::uint64_t triangles = 0;
+    for (std::size_t word = within.begin; word < within.end; ++word) {
+      std::array<std::uint64_t, 4> here{}, crossed{};
+      for (std::size_t i = 0; i < 4; ++i) {
+        here[i] = row[i][word];
+        crossed[i] = crossed_x(row[i], word, bits_.words);
       }
-    });
-    for (std::size_t z = 1; z < before.size(); ++z) {
-      before[z].vertices += before[z - 1].vertices;
-      before[z].triangles += before[z - 1].triangles;
+      const std::uint64_t along_y = here[0] ^ here[1], along_z = here[0] ^ here[2];
+      // Where no edge at x is crossed, all eight corners are equal: the far edges need no look.
+      const std::uint64_t any = crossed[0] | crossed[1] | crossed[2] | crossed[3] | along_y | along_z |
+                                (here[2] ^ here[3]) | (here[1] ^ here[3]);
+      if (any == 0) continue;
+      vertices[0] += static_cast<std::uint32_t>(std::popcount(crossed[0]));
+      vertices[1] += static_cast<std::uint32_t>(std::popcount(along_y));
+      vertices[2] += static_cast<std::uint32_t>(std::popcount(along_z));
+      if (plane.cases.size() < plane.cells + 64) plane.cases.resize(2 * plane.cells + 1024);
+      std::uint8_t* cell = &plane.cases[plane.cells];
+      for (std::uint64_t left = any; left != 0; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        std::uint64_t inside = 0;
+        for (std::size_t i = 0; i < 4; ++i) {
+          const std::uint64_t at_x = (here[i] >> bit) & 1, next = at_x ^ ((crossed[i] >> bit) & 1);
+          inside |= (at_x | (next << 1)) << (2 * i);
+        }
+        *cell++ = static_cast<std::uint8_t>(inside);
+        triangles += cases_[inside].count;
+      }
+      plane.cells += static_cast<std::size_t>(std::popcount(any));
     }
-    const Totals all = before.back();
-    if (std::max(all.vertices, all.triangles) > std::numeric_limits<std::uint32_t>::max())
-      throw std::length_error("the isosurface would have " + std::to_string(all.vertices) + " vertices and " +
-                              std::to_string(all.triangles) +
+    plane.vertices += std::uint64_t{vertices[0]} + vertices[1] + vertices[2];
+    plane.triangles += triangles;
+    return {vertices, static_cast<std::uint32_t>(plane.cells - before)};
+  }
+
+  /// Turns counts into first numbers, of planes and then of their rows.
+  void number() {
+    std::uint64_t vertices = 0, triangles = 0;
+    for (Plane& plane : planes_) {
+      vertices += std::exchange(plane.vertices, vertices);
+      triangles += std::exchange(plane.triangles, triangles);
+    }
+    if (std::max(vertices, triangles) > std::numeric_limits<std::uint32_t>::max())
+      throw std::length_error("the isosurface would have " + std::to_string(vertices) + " vertices and " +
+                              std::to_string(triangles) +
                               " triangles, more than 32-bit numbers can name: crop or resample the scan");
     tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
-      auto vertex = static_cast<std::uint32_t>(before[z].vertices);
-      auto triangle = static_cast<std::uint32_t>(before[z].triangles);
-      for (std::size_t y = 0; y < bits_.rows_y; ++y) {
-        RowCount& row = rows_[bits_.row_number(y, z)];
-        for (std::uint32_t& direction : row.vertices) vertex += std::exchange(direction, vertex);
-        triangle += std::exchange(row.triangles, triangle);
-      }
+      auto vertex = static_cast<std::uint32_t>(planes_[z].vertices);
+      for (std::size_t y = 0; y < bits_.rows_y; ++y)
+        if (RowCount& row = rows_[bits_.row_number(y, z)]; row.cells != 0)
+          for (std::uint32_t& direction : row.vertices) vertex += std::exchange(direction, vertex);
     });
     // New pages are half of what this costs.
-    tbb::parallel_invoke([&] { surface_.points_mm.resize(all.vertices); },
-                         [&] { surface_.faces.resize(all.triangles); });
+    tbb::parallel_invoke([&] { surface_.points_mm.resize(vertices); },
+                         [&] { surface_.faces.resize(triangles); });
   }
 
   void write() {
     tbb::parallel_for(std::size_t{0}, bits_.planes_z - 1, [&](std::size_t z) {
-      for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
-        write_vertices(y, z);
-        write_triangles(y, z);
-      }
+      write_vertices(z);
+      write_triangles(z);
     });
   }
 
-  void write_vertices(std::size_t y, std::size_t z) {
-    const std::uint64_t* here = bits_.row(y, z);
-    const std::array<const std::uint64_t*, 3> beyond = {nullptr, bits_.row(y + 1, z), bits_.row(y, z + 1)};
-    const RowCount& row = rows_[bits_.row_number(y, z)];
-    const Words within = words_of_cells(y, z);
-    for (int axis = 0; axis < 3; ++axis) {
-      std::uint32_t vertex = row.vertices[axis];
-      for (std::size_t word = within.begin; word < within.end; ++word) {
-        const std::uint64_t crossed =
-            axis == 0 ? crossed_x(here, word, bits_.words) : here[word] ^ beyond[axis][word];
-        for (std::uint64_t left = crossed; left != 0; left &= left - 1) {
-          const int bit = std::countr_zero(left);
-          const glm::ivec3 padded(static_cast<int>(64 * word) + bit, static_cast<int>(y),
-                                  static_cast<int>(z));
-          const bool inside = ((here[word] >> bit) & 1) != 0;
-          surface_.points_mm[vertex++] = vertex_mm(padded - bits_.padding, axis, inside);
+  void write_vertices(std::size_t z) {
+    const std::vector<CrossedEdge> edges = edges_of(z);
+    std::vector<double> parts(edges.size(), 0.5);
+    const auto leaves = [&](const CrossedEdge& edge) {
+      return edge.voxel[edge.axis] < 0 || edge.voxel[edge.axis] + 1 >= lattice_.dims[edge.axis];
+    };
+    // Where an edge leaves the lattice there is no sample to interpolate with: the voxel ends half way.
+    for (std::size_t i = 0; i < edges.size();) {
+      const std::size_t first = i;
+      while (i < edges.size() && !leaves(edges[i])) ++i;
+      if (first < i) crossings_({&edges[first], i - first}, &parts[first]);
+      while (i < edges.size() && leaves(edges[i])) ++i;
+    }
+    const std::array<glm::dvec3, 3> unit = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    glm::dvec3* point_mm = surface_.points_mm.data() + planes_[z].vertices;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const glm::dvec3 p_voxel = glm::dvec3(edges[i].voxel) + parts[i] * unit[edges[i].axis];
+      // As Lattice::lps_mm() does, to the last bit.
+      *point_mm++ = (columns_mm_[0] * p_voxel.x + columns_mm_[1] * p_voxel.y) +
+                    (columns_mm_[2] * p_voxel.z + columns_mm_[3]);
+    }
+  }
+
+  /// The crossed edges that begin in a plane of samples, in the order of their vertices.
+  std::vector<CrossedEdge> edges_of(std::size_t z) const {
+    std::vector<CrossedEdge> edges(planes_[z + 1].vertices - planes_[z].vertices);
+    CrossedEdge* edge = edges.data();
+    for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
+      if (rows_[bits_.row_number(y, z)].cells == 0) continue;
+      const Words within = words_of_cells(y, z);
+      const std::uint64_t* here = bits_.row(y, z);
+      const std::array<const std::uint64_t*, 3> beyond = {nullptr, bits_.row(y + 1, z), bits_.row(y, z + 1)};
+      const glm::ivec3 row = glm::ivec3(0, y, z) - bits_.padding;
+      for (std::uint8_t axis = 0; axis < 3; ++axis)
+        for (std::size_t word = within.begin; word < within.end; ++word) {
+          const std::uint64_t inside = here[word];
+          const std::uint64_t crossed =
+              axis == 0 ? crossed_x(here, word, bits_.words) : inside ^ beyond[axis][word];
+          const int first_x = static_cast<int>(64 * word) + row.x;
+          for (std::uint64_t left = crossed; left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            *edge++ = {{first_x + bit, row.y, row.z}, axis, ((inside >> bit) & 1) != 0};
+          }
+        }
+    }
+    return edges;
+  }
+
+  void write_triangles(std::size_t z) {
+    const Plane& plane = planes_[z];
+    const std::uint8_t* cell = plane.cases.data();
+    std::array<std::uint32_t, 3>* triangle = surface_.faces.data() + plane.triangles;
+    for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
+      const RowCount& near = rows_[bits_.row_number(y, z)];
+      if (near.cells == 0) continue;
+      const RowCount& beside = rows_[bits_.row_number(y + 1, z)];
+      const RowCount& above = rows_[bits_.row_number(y, z + 1)];
+      const RowCount& across = rows_[bits_.row_number(y + 1, z + 1)];
+      std::array<std::uint32_t, 8> next = {near.vertices[0],   beside.vertices[0], above.vertices[0],
+                                           across.vertices[0], near.vertices[1],   above.vertices[1],
+                                           near.vertices[2],   beside.vertices[2]};
+      for (const std::uint8_t* const end = cell + near.cells; cell != end; ++cell) {
+        const FlatCase& here = cases_[*cell];
+        std::array<std::uint32_t, 12> vertex;  // NOLINT(cppcoreguidelines-pro-type-member-init): set below
+        for (std::size_t i = 0; i < 8; ++i) vertex[i] = next[i];
+        for (std::size_t i = 0; i < 8; ++i) next[i] += here.crossed[i];
+        for (std::size_t i = 4; i < 8; ++i) vertex[4 + i] = next[i];
+        for (std::uint32_t t = 0; t < here.count; ++t) {
+          const std::array<std::uint8_t, 3>& edges = here.triangles[t];
+          *triangle++ = {vertex[edges[0]], vertex[edges[1]], vertex[edges[2]]};
         }
       }
     }
   }
 
-  glm::dvec3 vertex_mm(const glm::ivec3& voxel, int axis, bool inside) const {
-    glm::dvec3 p_voxel(voxel);
-    // Beyond the scan there is no sample to interpolate with: the voxel ends half way.
-    if (voxel[axis] < 0 || voxel[axis] + 1 >= lattice_.dims[axis]) {
-      p_voxel[axis] += 0.5;
-    } else {
-      p_voxel[axis] += crossing_(voxel, axis, inside);
-    }
-    // As Lattice::lps_mm() does, to the last bit.
-    return (columns_mm_[0] * p_voxel.x + columns_mm_[1] * p_voxel.y) +
-           (columns_mm_[2] * p_voxel.z + columns_mm_[3]);
-  }
-
-  void write_triangles(std::size_t y, std::size_t z) {
-    const std::array<const RowCount*, 4> row = {
-        &rows_[bits_.row_number(y, z)], &rows_[bits_.row_number(y + 1, z)],
-        &rows_[bits_.row_number(y, z + 1)], &rows_[bits_.row_number(y + 1, z + 1)]};
-    EdgeRows first;
-    for (std::size_t i = 0; i < 4; ++i) first.first[i] = row[i]->vertices[0];
-    first.first[4] = row[0]->vertices[1];
-    first.first[5] = row[2]->vertices[1];
-    first.first[6] = row[0]->vertices[2];
-    first.first[7] = row[1]->vertices[2];
-    std::uint32_t triangle = row[0]->triangles;
-    for_crossed_cells(y, z, first, [&](std::size_t, int bit, std::uint32_t inside, const EdgeRows& rows) {
-      const FlatCase& cell = cases_[inside];
-      if (cell.count == 0) return;
-      const std::uint64_t before = (std::uint64_t{1} << bit) - 1;
-      std::array<std::uint32_t, 12> vertex{};
-      for (std::size_t i = 0; i < 8; ++i) {
-        const std::uint32_t number =
-            rows.first[i] + static_cast<std::uint32_t>(std::popcount(rows.crossed[i] & before));
-        if (i < 4) {
-          vertex[i] = number;
-        } else {
-          vertex[2 * i - 4] = number;
-          vertex[2 * i - 3] = number + static_cast<std::uint32_t>((rows.crossed[i] >> bit) & 1);
-        }
-      }
-      for (std::uint32_t t = 0; t < cell.count; ++t) {
-        const std::array<std::uint8_t, 3>& edges = cell.triangles[t];
-        surface_.faces[triangle++] = {vertex[edges[0]], vertex[edges[1]], vertex[edges[2]]};
-      }
-    });
-  }
+  /// Of the cells and edges between two planes of samples.
+  struct Plane {
+    std::uint64_t vertices = 0, triangles = 0;  ///< counts, then first numbers
+    std::vector<std::uint8_t> cases;            ///< of the cells, `cells` of them
+    std::size_t cells = 0;
+  };
 
   const voxel::Lattice& lattice_;
   std::array<glm::dvec3, 4> columns_mm_;
   const InsideBits& bits_;
-  const Crossing& crossing_;
+  const Crossings& crossings_;
   std::array<FlatCase, 256> cases_;
-  std::vector<Words> words_;
-  std::vector<RowCount> rows_;
+  std::vector<Words, voxel::LargeAllocator<Words>> words_;
+  std::vector<RowCount, voxel::LargeAllocator<RowCount>> rows_;
+  std::vector<Plane> planes_;
   brep::Triangles surface_;
 };
 
@@ -317,8 +318,8 @@ InsideBits inside_bits(const voxel::Octree& octree) {
 }
 
 brep::Triangles extract_surface(const voxel::Lattice& lattice, const InsideBits& inside,
-                                const Crossing& crossing) {
-  return Extraction(lattice, inside, crossing).run();
+                                const Crossings& crossings) {
+  return Extraction(lattice, inside, crossings).run();
 }
 
 }  // namespace octotomy::convert

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <tbb/parallel_for.h>
 #include <vector>
 
@@ -41,14 +42,21 @@ struct InsideBits {
 /// The voxels of an octree.
 InsideBits inside_bits(const voxel::Octree& octree);
 
-/// Where the edge from a voxel to the next one along an axis is crossed, as a part of the edge, strictly
-/// between 0 and 1; one end is inside, the first where `first_inside`. Called from several threads.
-using Crossing = std::function<double(const glm::ivec3& voxel, int axis, bool first_inside)>;
+/// The edge of a lattice from a voxel to the next one along an axis; one end is inside.
+struct CrossedEdge {
+  glm::ivec3 voxel{0};
+  std::uint8_t axis = 0;
+  bool first_inside = false;
+};
+
+/// Where edges are crossed: of each its part, strictly between 0 and 1. Called from several threads with some
+/// hundred edges at a time, beside each other for the most part.
+using Crossings = std::function<void(std::span<const CrossedEdge> edges, double* parts)>;
 
 /// The closed surface about the inside samples of a lattice, in LPS millimetres, turned outward. Where an
 /// edge leaves the lattice it is crossed half way. Throws std::length_error where 32 bits do not number the
 /// triangles. Parallel; same bits on any thread count.
 brep::Triangles extract_surface(const voxel::Lattice& lattice, const InsideBits& inside,
-                                const Crossing& crossing);
+                                const Crossings& crossings);
 
 }  // namespace octotomy::convert
