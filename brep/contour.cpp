@@ -230,6 +230,13 @@ std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contour
   return around;
 }
 
+std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& around) {
+  std::vector<std::size_t> depths(around.size(), 0);
+  for (std::size_t c = 0; c < around.size(); ++c)
+    for (auto outer = around[c]; outer; outer = around[*outer]) ++depths[c];
+  return depths;
+}
+
 Contour thin(const Contour& contour, double max_distance_mm) {
   if (!(max_distance_mm >= 0.0) || !std::isfinite(max_distance_mm))
     throw std::invalid_argument("thin: the distance must be 0 or more");

@@ -54,6 +54,10 @@ double perimeter_mm(const Contour& contour);
 /// times points in the worst case; bounding boxes spare most.
 std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contours);
 
+/// How many contours are around each, from what nest() returned: outer boundaries are at an even depth, holes
+/// at an odd one. Cost: the depths' sum.
+std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& around);
+
 /// The contour without points that are collinear within max_distance_mm: every point left out lies no further
 /// than that from the piece that stands for it. The first point stays; at least three points of a closed
 /// contour do, two of an open one. At distances above zero a thinned contour may cross itself or another.

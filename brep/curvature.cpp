@@ -89,6 +89,9 @@ Curvature curvature(const Mesh& mesh) {
     curvature.mean_per_mm[v] = sign * 0.5 * glm::length(sums.gradient[v]) / sums.area[v];
     curvature.gaussian_per_mm2[v] = (2.0 * std::numbers::pi - sums.angle[v]) / sums.area[v];
   }
+  for (glm::dvec3& normal : sums.normal)
+    if (const double length = glm::length(normal); length > 0.0) normal /= length;
+  curvature.normals = std::move(sums.normal);
   curvature.areas_mm2 = std::move(sums.area);
   return curvature;
 }

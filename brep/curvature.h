@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "brep/mesh.h"
@@ -12,6 +13,7 @@ namespace octotomy::brep {
 struct Curvature {
   std::vector<double> mean_per_mm;       ///< positive where convex: 1 / r on a ball of radius r
   std::vector<double> gaussian_per_mm2;  ///< 1 / r^2 on a ball, negative on saddles
+  std::vector<glm::dvec3> normals;       ///< unit, its triangles' by their angles; 0 where they have none
   std::vector<double> areas_mm2;         ///< of the surface that each vertex stands for; they add up to all
   std::vector<std::uint8_t> known;       ///< 1 where the curvature is
 };

@@ -31,9 +31,8 @@ Contour contour_of(const Polygon::ring_type& ring) {
 /// Contours at an even depth are polygons, those at an odd one holes of the one around them.
 Polygons polygons_of(const std::vector<Contour>& contours) {
   const auto around = nest(contours);
-  std::vector<std::size_t> depth(contours.size(), 0), polygon(contours.size(), 0);
-  for (std::size_t i = 0; i < contours.size(); ++i)
-    for (auto outer = around[i]; outer; outer = around[*outer]) ++depth[i];
+  const std::vector<std::size_t> depth = depths(around);
+  std::vector<std::size_t> polygon(contours.size(), 0);
   Polygons polygons;
   for (std::size_t i = 0; i < contours.size(); ++i) {
     if (depth[i] % 2 == 1) continue;

@@ -57,12 +57,10 @@ constexpr int attempt_count = 4;
 
 /// Contours at even depth run counter-clockwise, holes clockwise.
 std::vector<Contour> directed(const std::vector<Contour>& contours, const glm::dvec2& shift) {
-  const auto around = nest(contours);
+  const std::vector<std::size_t> depth = depths(nest(contours));
   std::vector<Contour> turned = contours;
   for (std::size_t c = 0; c < turned.size(); ++c) {
-    std::size_t depth = 0;
-    for (auto outer = around[c]; outer; outer = around[*outer]) ++depth;
-    if ((signed_area_mm2(turned[c]) > 0.0) != (depth % 2 == 0))
+    if ((signed_area_mm2(turned[c]) > 0.0) != (depth[c] % 2 == 0))
       std::reverse(turned[c].points_mm.begin(), turned[c].points_mm.end());
     for (glm::dvec2& p : turned[c].points_mm) p += shift;
   }

@@ -42,9 +42,15 @@ NearestVoxels nearest_voxels(const voxel::Octree& a, const voxel::Octree& b) {
 }
 
 /// Whether a point of one is inside the other. Where their surfaces do not meet, one decides for all.
-bool is_within(const brep::Mesh& one, const brep::Mesh& other) {
-  const brep::Triangles surface = brep::triangles_of(one);
-  return brep::is_inside(surface.points_mm[surface.faces.front()[0]], brep::triangles_of(other));
+bool is_within(const brep::Triangles& one, const brep::Triangles& other) {
+  return brep::is_inside(one.points_mm[one.faces.front()[0]], other);
+}
+
+/// 0 where one solid holds a part of the other.
+double mesh_gap_mm(const brep::Mesh& a, const brep::Mesh& b) {
+  const brep::Triangles surface_a = brep::triangles_of(a), surface_b = brep::triangles_of(b);
+  if (is_within(surface_a, surface_b) || is_within(surface_b, surface_a)) return 0.0;
+  return brep::gap(a, b).distance_mm;
 }
 
 }  // namespace
@@ -64,9 +70,7 @@ Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const brep::Mesh
     gap.voxel_mm =
         glm::length(glm::dvec3(glm::max(glm::abs(nearest.b - nearest.a) - 1, 0)) * lattice.spacing_mm());
   if (mesh_a != nullptr && mesh_b != nullptr && mesh_a->n_faces() > 0 && mesh_b->n_faces() > 0)
-    gap.mesh_mm = is_within(*mesh_a, *mesh_b) || is_within(*mesh_b, *mesh_a)
-                      ? 0.0
-                      : brep::gap(*mesh_a, *mesh_b).distance_mm;
+    gap.mesh_mm = mesh_gap_mm(*mesh_a, *mesh_b);
   return gap;
 }
 

@@ -13,7 +13,8 @@ namespace octotomy::planner {
 
 /// The contours of the window low..high on a scan's slices, in the view that looks along its third axis.
 /// Slices without any are left out at either end. Throws std::runtime_error where the slices lie obliquely to
-/// the patient's axes or nothing is in the window.
+/// the patient's axes or nothing is in the window. The surface kernel's follower (brep/contour.h); the voxel
+/// kernel's own is voxel::contour_regions().
 voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double high);
 
 /// What is done to every contour, in this order.

@@ -54,12 +54,10 @@ Sizes sizes_of(const voxel::SliceMask& mask) {
   for (const auto& slice : mask.slices) {
     std::vector<brep::Contour> contours;
     for (const auto& polygon : slice.polygons_mm) contours.push_back({polygon});
-    const auto around = brep::nest(contours);
+    const std::vector<std::size_t> depth = brep::depths(brep::nest(contours));
     double area_mm2 = 0.0, perimeter_mm = 0.0;
     for (std::size_t i = 0; i < contours.size(); ++i) {
-      bool is_hole = false;
-      for (auto outer = around[i]; outer; outer = around[*outer]) is_hole = !is_hole;
-      area_mm2 += (is_hole ? -1.0 : 1.0) * std::abs(brep::signed_area_mm2(contours[i]));
+      area_mm2 += (depth[i] % 2 == 1 ? -1.0 : 1.0) * std::abs(brep::signed_area_mm2(contours[i]));
       perimeter_mm += brep::perimeter_mm(contours[i]);
       sizes.points += contours[i].points_mm.size();
     }

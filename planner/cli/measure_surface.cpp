@@ -22,14 +22,9 @@
 namespace octotomy::planner::cli {
 namespace {
 
-glm::dvec3 point_of(const std::string& option, const std::string& text) {
-  const auto [x, y, z] = numbers_of<3>(option, text, "-45,-60,12.5");
-  return {x, y, z};
-}
-
 Json section_json(const SurfaceQuestions& questions, const brep::Mesh& mesh) {
-  const brep::Plane plane = brep::plane_through(point_of("--section", questions.section[0]),
-                                                point_of("--section", questions.section[1]));
+  const brep::Plane plane = brep::plane_through(parse_point("--section", questions.section[0]),
+                                                parse_point("--section", questions.section[1]));
   const brep::CrossSection section = brep::cross_section(mesh, plane);
   Json contours = Json::array();
   for (const brep::Contour& contour : section.contours)
@@ -105,40 +100,29 @@ Json curvature_json(const brep::Mesh& mesh, AtVertices& shown) {
 std::vector<brep::Thickness> thickness_of(const Program& program, const brep::Mesh& mesh,
                                           const std::vector<brep::SurfacePoint>& points) {
   brep::ThicknessOptions options;
-  const auto progress = program.progress();
-  if (progress) options.progress = [&](double share) { progress("thickness", share); };
+  options.progress = program.progress("thickness");
   options.stop = program.stop.get_token();
   return brep::thickness(mesh, points, options);
 }
 
-/// At vertices, where a picture shows it; each with the mean of its triangles' normals weighted by angle.
+/// At vertices, where a picture shows it.
 Json thickness_json(const Program& program, const brep::Mesh& mesh, AtVertices& shown) {
+  const brep::Curvature surface = brep::curvature(mesh);
   std::vector<brep::SurfacePoint> points;
   std::vector<std::size_t> vertices;
-  const auto at = [&](brep::Mesh::VertexHandle v) {
-    return glm::dvec3(mesh.point(v)[0], mesh.point(v)[1], mesh.point(v)[2]);
-  };
-  for (const auto v : mesh.vertices()) {
-    glm::dvec3 normal(0.0);
-    for (auto h = mesh.cvoh_begin(v); h != mesh.cvoh_end(v); ++h) {
-      if (mesh.is_boundary(*h)) continue;
-      const glm::dvec3 one = at(mesh.to_vertex_handle(*h)) - at(v),
-                       other = at(mesh.from_vertex_handle(mesh.prev_halfedge_handle(*h))) - at(v);
-      const glm::dvec3 square = glm::cross(one, other);
-      const double twice = glm::length(square);
-      if (twice > 0.0) normal += std::atan2(twice, glm::dot(one, other)) / twice * square;
-    }
-    if (!(glm::length(normal) > 0.0)) continue;
-    points.push_back({at(v), glm::normalize(normal)});
-    vertices.push_back(static_cast<std::size_t>(v.idx()));
+  for (const auto vertex : mesh.vertices()) {
+    const auto v = static_cast<std::size_t>(vertex.idx());
+    if (surface.normals[v] == glm::dvec3(0.0)) continue;
+    const auto& p = mesh.point(vertex);
+    points.push_back({{p[0], p[1], p[2]}, surface.normals[v]});
+    vertices.push_back(v);
   }
   const std::vector<brep::Thickness> found = thickness_of(program, mesh, points);
-  const std::vector<double> areas = brep::curvature(mesh).areas_mm2;
   std::vector<std::pair<double, double>> ray, ball;
   shown = {"thickness_mm", std::vector<double>(mesh.n_vertices(), 0.0)};
   for (std::size_t i = 0; i < found.size(); ++i) {
-    ray.emplace_back(found[i].ray_mm, areas[vertices[i]]);
-    ball.emplace_back(found[i].ball_mm, areas[vertices[i]]);
+    ray.emplace_back(found[i].ray_mm, surface.areas_mm2[vertices[i]]);
+    ball.emplace_back(found[i].ball_mm, surface.areas_mm2[vertices[i]]);
     shown.values[vertices[i]] = found[i].ball_mm;
   }
   return {
@@ -150,8 +134,8 @@ Json thickness_json(const Program& program, const brep::Mesh& mesh, AtVertices& 
 }
 
 Json along_json(const SurfaceQuestions& questions, const brep::Mesh& mesh) {
-  const brep::SurfacePath path = brep::shortest_path(mesh, point_of("--along", questions.along[0]),
-                                                     point_of("--along", questions.along[1]));
+  const brep::SurfacePath path = brep::shortest_path(mesh, parse_point("--along", questions.along[0]),
+                                                     parse_point("--along", questions.along[1]));
   Json points = Json::array();
   for (const glm::dvec3& p : path.points_mm) points.push_back(to_json(p));
   return {{"length_mm", path.length_mm},
@@ -166,8 +150,8 @@ Json gap_json(const brep::Mesh& mesh, const brep::Mesh& other) {
 }
 
 double angle_deg(const std::vector<std::string>& texts) {
-  const glm::dvec3 at = point_of("--angle", texts[1]), one = point_of("--angle", texts[0]) - at,
-                   other = point_of("--angle", texts[2]) - at;
+  const glm::dvec3 at = parse_point("--angle", texts[1]), one = parse_point("--angle", texts[0]) - at,
+                   other = parse_point("--angle", texts[2]) - at;
   if (!(glm::length(one) > 0.0) || !(glm::length(other) > 0.0))
     throw std::runtime_error("--angle: a point coincides with the corner, so there is no angle");
   return std::atan2(glm::length(glm::cross(one, other)), glm::dot(one, other)) * 180.0 / std::numbers::pi;
@@ -211,8 +195,8 @@ Json answer_surface_questions(const Program& program, const SurfaceQuestions& qu
   put("oriented_box", [&] { return box_json(mesh); });
   if (!questions.section.empty()) put("section", [&] { return section_json(questions, mesh); });
   if (!questions.distance.empty())
-    json["distance_mm"] = glm::distance(point_of("--distance", questions.distance[0]),
-                                        point_of("--distance", questions.distance[1]));
+    json["distance_mm"] = glm::distance(parse_point("--distance", questions.distance[0]),
+                                        parse_point("--distance", questions.distance[1]));
   if (!questions.angle.empty()) json["angle_deg"] = angle_deg(questions.angle);
   if (!questions.along.empty()) put("along", [&] { return along_json(questions, mesh); });
   if (!questions.to.empty()) {

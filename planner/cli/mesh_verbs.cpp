@@ -23,9 +23,7 @@ struct BooleanText {
 /// What the proof says, and the mesh in place of the result's.
 Json proven(const Program& program, const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
             brep::BooleanResult& result) {
-  brep::Watch watch{.stop = program.stop.get_token()};
-  if (const auto progress = program.progress())
-    watch.progress = [=](double done) { progress("exact", done); };
+  const brep::Watch watch{.progress = program.progress("exact"), .stop = program.stop.get_token()};
   brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, watch);
   result.mesh = std::move(exact.mesh);
   result.residual = 0.0;

@@ -19,11 +19,10 @@ struct MirrorText {
 
 std::optional<brep::MirrorPlane> plane_of(const MirrorText& text) {
   if (text.plane.empty()) return std::nullopt;
-  const auto [x, y, z] = numbers_of<3>("--plane", text.plane[0], "0,0,0");
-  const auto [u, v, w] = numbers_of<3>("--plane", text.plane[1], "1,0,0");
-  const glm::dvec3 normal(u, v, w);
+  const glm::dvec3 point_mm = parse_point("--plane", text.plane[0]);
+  const glm::dvec3 normal = parse_point("--plane", text.plane[1]);
   if (!(glm::length(normal) > 0.0)) throw std::runtime_error("--plane: its normal has no length");
-  return brep::MirrorPlane{{x, y, z}, glm::normalize(normal)};
+  return brep::MirrorPlane{point_mm, glm::normalize(normal)};
 }
 
 brep::MirrorFit fit(const Program& program, const MirrorText& text, const brep::Mesh& mesh) {
@@ -31,8 +30,7 @@ brep::MirrorFit fit(const Program& program, const MirrorText& text, const brep::
   options.start = plane_of(text);
   options.overlap = text.overlap;
   options.stop = program.stop.get_token();
-  if (const auto progress = program.progress())
-    options.progress = [progress](double share) { progress("mid-plane", share); };
+  options.progress = program.progress("mid-plane");
   return brep::fit_mirror_plane(mesh, options);
 }
 

@@ -9,15 +9,25 @@ namespace {
 
 CLI::Validator number_that(const std::string& is, const std::function<bool(double)>& holds) {
   return {[is, holds](const std::string& text) -> std::string {
-            char* end = nullptr;
-            const double number = std::strtod(text.c_str(), &end);
-            const bool good = end != text.c_str() && *end == '\0' && std::isfinite(number) && holds(number);
-            return good ? std::string() : "'" + text + "' is not a number" + is;
+            const std::optional<double> number = parse_number(text);
+            return number && holds(*number) ? std::string() : "'" + text + "' is not a number" + is;
           },
           ""};
 }
 
 }  // namespace
+
+std::optional<double> parse_number(const std::string& text) {
+  const auto number = parse_numbers<1>(text);
+  return number ? std::optional((*number)[0]) : std::nullopt;
+}
+
+glm::dvec3 parse_point(const std::string& option, const std::string& text) {
+  const auto point = parse_numbers<3>(text);
+  if (!point)
+    throw CLI::ValidationError(option, "'" + text + "' is no point: give X,Y,Z, for example -10,25.5,40");
+  return {(*point)[0], (*point)[1], (*point)[2]};
+}
 
 CLI::Validator finite() {
   return number_that("", [](double) { return true; });

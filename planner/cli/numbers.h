@@ -5,29 +5,41 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <glm/glm.hpp>
+#include <optional>
 #include <string>
 
 namespace octotomy::planner::cli {
 
-/// Finite numbers between commas, just as many. Throws CLI::ValidationError naming the option, the text and
-/// the example.
+/// The finite number that a text is, or nothing.
+std::optional<double> parse_number(const std::string& text);
+
+/// Finite numbers between commas, just as many, or nothing.
 template <std::size_t Count>
-std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
-                                     const std::string& example) {
+std::optional<std::array<double, Count>> parse_numbers(const std::string& text) {
   std::array<double, Count> numbers{};
   const char* at = text.c_str();
   for (std::size_t i = 0; i < Count; ++i) {
     char* end = nullptr;
     numbers[i] = std::strtod(at, &end);
-    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0')) {
-      std::string message = "'" + text + "' is not ";
-      message.append(std::to_string(Count)).append(" numbers between commas, for example ").append(example);
-      throw CLI::ValidationError(option, message);
-    }
+    if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0')) return std::nullopt;
     at = end + 1;
   }
   return numbers;
 }
+
+/// The same; throws CLI::ValidationError naming the option, the text and the example where there are none.
+template <std::size_t Count>
+std::array<double, Count> numbers_of(const std::string& option, const std::string& text,
+                                     const std::string& example) {
+  if (const auto numbers = parse_numbers<Count>(text)) return *numbers;
+  std::string message = "'" + text + "' is not ";
+  message.append(std::to_string(Count)).append(" numbers between commas, for example ").append(example);
+  throw CLI::ValidationError(option, message);
+}
+
+/// X,Y,Z; throws CLI::ValidationError, naming the option, where it is not that.
+glm::dvec3 parse_point(const std::string& option, const std::string& text);
 
 /// Checks of options that are numbers. CLI11's own let NaN through, which is on no side of any bound.
 CLI::Validator finite();

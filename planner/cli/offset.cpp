@@ -33,8 +33,7 @@ int offset(const Program& program, const OffsetText& text) {
   brep::OffsetOptions options{.by_mm = text.by_mm,
                               .cell_mm = text.cell_mm.value_or(cell_for(solid, text.by_mm))};
   options.stop = program.stop.get_token();
-  if (const auto progress = program.progress())
-    options.progress = [=](double done) { progress("offset", done); };
+  options.progress = program.progress("offset");
   brep::Mesh moved;
   {
     const Stopwatch watch(timings, "offset");

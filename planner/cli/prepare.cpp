@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
@@ -40,10 +41,9 @@ struct Step {
   }
   double number(std::size_t i, const std::string& expected) const {
     if (i >= values.size()) refuse(expected);
-    char* end = nullptr;
-    const double value = std::strtod(values[i].c_str(), &end);
-    if (values[i].empty() || *end != '\0' || !std::isfinite(value)) refuse(expected);
-    return value;
+    const std::optional<double> value = parse_number(values[i]);
+    if (!value) refuse(expected);
+    return *value;
   }
   /// Between least and most values.
   void need(std::size_t least, std::size_t most, const std::string& expected) const {
@@ -308,8 +308,7 @@ int prepare(const Program& program, const PrepareText& text) {
   Json did = Json::array();
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Step& step : steps) {
-    if (const auto progress = program.progress())
-      work.progress.report = [progress, name = step.name](double fraction) { progress(name, fraction); };
+    work.progress.report = program.progress(step.name);
     Json said{{"do", step.name}};
     {
       const Stopwatch watch(timings, step.name);

@@ -55,7 +55,7 @@ brep::SurfaceFit fit_surfaces(const Program& program, const RegisterText& text,
   brep::SurfaceFitOptions options = text.options;
   options.start = start;
   options.stop = program.stop.get_token();
-  if (const auto say = program.progress()) options.progress = [say](double share) { say("register", share); };
+  options.progress = program.progress("register");
   try {
     brep::SurfaceFit fit = brep::register_surfaces(a, b, options);
     json["surfaces"] = {{"rms_mm", fit.rms_mm},       {"kept_share", fit.kept_share},

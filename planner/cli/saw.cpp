@@ -21,17 +21,12 @@ struct SawText {
   double depth_mm = 100.0, kerf_mm = 1.0;
 };
 
-glm::dvec3 point_of(const std::string& option, const std::string& text) {
-  const auto [x, y, z] = numbers_of<3>(option, text, "-45,-60,12.5");
-  return {x, y, z};
-}
-
 int saw(const Program& program, const SawText& text) {
   need_mesh_extension(text.out);
   need_folder_of(text.out);
   brep::SawCut cut;
-  for (const std::string& point : text.line) cut.line_mm.push_back(point_of("--line", point));
-  cut.direction = point_of("--direction", text.direction);
+  for (const std::string& point : text.line) cut.line_mm.push_back(parse_point("--line", point));
+  cut.direction = parse_point("--direction", text.direction);
   cut.depth_mm = text.depth_mm;
   cut.kerf_mm = text.kerf_mm;
   const brep::Mesh blade = brep::saw_blade(cut);

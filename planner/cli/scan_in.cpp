@@ -2,26 +2,19 @@
 #include "planner/cli/scan_in.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
+
+#include "planner/cli/numbers.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 glm::dvec3 spacing_of(const std::string& text) {
-  glm::dvec3 spacing_mm(0.0);
-  const char* at = text.c_str();
-  for (int axis = 0; axis < 3; ++axis) {
-    char* end = nullptr;
-    spacing_mm[axis] = std::strtod(at, &end);
-    const bool read = end != at && spacing_mm[axis] > 0.0 && std::isfinite(spacing_mm[axis]);
-    if (!read || *end != (axis < 2 ? ',' : '\0'))
-      throw CLI::ValidationError("--spacing",
-                                 "'" + text + "' is no spacing: give X,Y,Z in mm, for example 0.5,0.5,1");
-    at = end + 1;
-  }
-  return spacing_mm;
+  const auto mm = parse_numbers<3>(text);
+  if (!mm || !std::all_of(mm->begin(), mm->end(), [](double length) { return length > 0.0; }))
+    throw CLI::ValidationError("--spacing",
+                               "'" + text + "' is no spacing: give X,Y,Z in mm, for example 0.5,0.5,1");
+  return {(*mm)[0], (*mm)[1], (*mm)[2]};
 }
 
 voxel::RawLayout layout_of(const ScanIn& in) {
@@ -76,8 +69,7 @@ voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
   if (in.raw.empty() && (in.big_endian || in.offset != 0))
     throw CLI::ValidationError("--offset", "--offset and --big-endian are of raw files: give --raw too");
   options.stop = program.stop.get_token();
-  if (const auto progress = program.progress())
-    options.progress = [progress](double fraction) { progress("reading", fraction); };
+  options.progress = program.progress("reading");
   return options;
 }
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "planner/colour.h"
 #include "voxel/tissue.h"
@@ -15,19 +14,6 @@ void need_hounsfield(const std::string& window, const voxel::Scene& scene) {
   throw std::runtime_error(scene.source + ": '" + window +
                            "' is a window of Hounsfield units, which its samples are not: give LOW:HIGH, or "
                            "let octotomy segment --otsu suggest bounds");
-}
-
-glm::dvec3 parse_point(const std::string& option, const std::string& text) {
-  glm::dvec3 point(0.0);
-  const char* at = text.c_str();
-  for (int axis = 0; axis < 3; ++axis) {
-    char* end = nullptr;
-    point[axis] = std::strtod(at, &end);
-    if (end == at || !std::isfinite(point[axis]) || *end != (axis < 2 ? ',' : '\0'))
-      throw CLI::ValidationError(option, "'" + text + "' is no point: give X,Y,Z, for example -10,25.5,40");
-    at = end + 1;
-  }
-  return point;
 }
 
 glm::vec3 parse_colour(const std::string& text) {

@@ -17,8 +17,6 @@ void add_slice(Program& program);
 /// and the samples are no Hounsfield units.
 void need_hounsfield(const std::string& window, const voxel::Scene& scene);
 
-/// X,Y,Z; throws CLI::ValidationError, naming the option, where it is not that.
-glm::dvec3 parse_point(const std::string& option, const std::string& text);
 /// #RRGGBB, each part 0 to 1; throws CLI::ValidationError where it is not that.
 glm::vec3 parse_colour(const std::string& text);
 /// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.

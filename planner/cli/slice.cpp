@@ -75,11 +75,10 @@ double position_of(const std::string& option, const std::string& text, const vox
     const glm::dvec3 middle = lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1));
     return middle[axis];
   }
-  char* end = nullptr;
-  const double position_mm = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(position_mm))
+  const std::optional<double> position_mm = parse_number(text);
+  if (!position_mm)
     throw CLI::ValidationError(option, "'" + text + "' is no position: give millimetres, or middle");
-  return position_mm;
+  return *position_mm;
 }
 
 /// The view that looks along a direction with `up` as near upwards as it can be.

@@ -42,7 +42,7 @@ struct TetText {
 struct Filled {
   convert::Tetrahedra tetrahedra;
   std::size_t regions = 1;
-  bool fallback = false;
+  std::optional<std::string> fallback;  ///< why the elements are an octree's own
   std::vector<std::string> findings;
 };
 
@@ -66,19 +66,34 @@ voxel::Octree voxels_of(const TetText& text, const brep::Triangles& triangles, b
                : convert::voxelise_by_winding_number(universe, triangles);
 }
 
-void mark_fallback(Filled& filled, double voxel_mm, const std::string& why) {
-  filled.fallback = true;
-  filled.findings.push_back("fallback: " + why +
-                            "; the elements are an octree's, whose surface is in steps of " +
-                            grouped(voxel_mm, 3) + " mm: do not read stresses there");
+/// Elements as they are made, or why the fallback is to be taken. Without --fallback throws where none are
+/// made, and keeps unfit ones with a finding.
+void fill(const TetText& text, Filled& filled, const std::function<convert::Tetrahedra()>& make) {
+  try {
+    filled.tetrahedra = make();
+    filled.findings = filled.tetrahedra.findings;
+    const std::optional<std::string> unfit = convert::fault_in_shape(filled.tetrahedra);
+    if (!unfit) return;
+    if (text.fallback)
+      filled.fallback = unfit;
+    else
+      filled.findings.push_back(*unfit + (is_octree(text.in)
+                                              ? ": take another --size, or --fallback"
+                                              : ": mend or simplify the surface, or take --fallback"));
+  } catch (const std::runtime_error& error) {
+    if (text.options.stop.stop_requested())
+      throw Stopped("stopped before " + text.out.string() + " was written");
+    if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
+    filled.fallback = error.what();
+  }
 }
 
-/// Progress and stop as the program has them, of what a line calls `doing`.
-voxel::Progress progress_of(const Program& program, const std::string& doing) {
-  voxel::Progress progress{program.stop.get_token(), {}};
-  if (const auto report = program.progress())
-    progress.report = [report, doing](double fraction) { report(doing, fraction); };
-  return progress;
+/// In place of smooth elements those of an octree.
+void fall_back(Filled& filled, convert::Tetrahedra tetrahedra, const voxel::Universe& universe) {
+  filled.tetrahedra = std::move(tetrahedra);
+  filled.findings = {"fallback: " + *filled.fallback +
+                     "; the elements are an octree's, whose surface is in steps of " +
+                     grouped(universe.lattice().spacing_mm().x, 3) + " mm: do not read stresses there"};
 }
 
 Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
@@ -98,35 +113,22 @@ Filled of_mesh(const Program& program, const TetText& text, Timings& timings) {
                              "; mend it first, octotomy info tells all; or take an octree's elements by "
                              "--fallback, which need none");
   Filled filled;
-  std::string why = health.solid() ? "" : "the mesh is not a solid (" + health.findings.front() + ")";
   const Stopwatch watch(timings, "tetrahedralise");
   if (health.solid()) {
     const brep::Mesh solid = brep::mesh_of(triangles);
     filled.regions = brep::components(solid).size();
-    try {
-      filled.tetrahedra = convert::tetrahedralise(solid, text.options);
-      filled.findings = filled.tetrahedra.findings;
-      const std::optional<std::string> unfit = convert::fault_in_shape(filled.tetrahedra);
-      if (!unfit) return filled;
-      why = *unfit;
-      if (!text.fallback) {
-        filled.findings.push_back(why + ": mend or simplify the surface, or take --fallback");
-        return filled;
-      }
-      filled.findings.clear();
-    } catch (const std::runtime_error& error) {
-      if (program.stop.stop_requested())
-        throw Stopped("stopped before " + text.out.string() + " was written");
-      if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
-      why = error.what();
-    }
+    fill(text, filled, [&] { return convert::tetrahedralise(solid, text.options); });
+  } else {
+    filled.fallback = "the mesh is not a solid (" + health.findings.front() + ")";
   }
+  if (!filled.fallback) return filled;
   const voxel::Octree octree = voxels_of(text, triangles, health.solid());
   if (octree.is_empty())
     throw std::runtime_error(text.in.string() + ": encloses no voxel: take smaller ones by --voxel");
-  filled.tetrahedra =
-      convert::tetrahedra_of(octree, convert::BoundaryCells::Nodes, progress_of(program, "elements"));
-  mark_fallback(filled, octree.universe().lattice().spacing_mm().x, why);
+  fall_back(filled,
+            convert::tetrahedra_of(octree, convert::BoundaryCells::Nodes,
+                                   {program.stop.get_token(), program.progress("elements")}),
+            octree.universe());
   return filled;
 }
 
@@ -148,34 +150,21 @@ Filled of_octrees(const Program& program, const TetText& text, Timings& timings)
   Filled filled;
   filled.regions = octrees.size();
   const Stopwatch watch(timings, "tetrahedralise");
-  std::string why = "an octree was given without a size of elements";
   if (text.size_mm) {
     convert::RegionMeshOptions options;
     options.size_mm = *text.size_mm;
     options.min_dihedral_deg = text.options.min_dihedral_deg;
     options.time_limit = text.options.time_limit;
     options.stop = text.options.stop;
-    try {
-      filled.tetrahedra = convert::smooth_tetrahedra_of(octrees, options);
-      filled.findings = filled.tetrahedra.findings;
-      const std::optional<std::string> unfit = convert::fault_in_shape(filled.tetrahedra);
-      if (!unfit) return filled;
-      why = *unfit;
-      if (!text.fallback) {
-        filled.findings.push_back(why + ": take another --size, or --fallback");
-        return filled;
-      }
-      filled.findings.clear();
-    } catch (const std::runtime_error& error) {
-      if (program.stop.stop_requested())
-        throw Stopped("stopped before " + text.out.string() + " was written");
-      if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
-      why = error.what();
-    }
+    fill(text, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
+  } else {
+    filled.fallback = "an octree was given without a size of elements";
   }
-  filled.tetrahedra =
-      convert::tetrahedra_of(octrees, convert::BoundaryCells::Nodes, progress_of(program, "elements"));
-  mark_fallback(filled, octrees.front().universe().lattice().spacing_mm().x, why);
+  if (filled.fallback)
+    fall_back(filled,
+              convert::tetrahedra_of(octrees, convert::BoundaryCells::Nodes,
+                                     {program.stop.get_token(), program.progress("elements")}),
+              octrees.front().universe());
   return filled;
 }
 
@@ -207,7 +196,7 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
   convert::MaterialOptions options = text.materials;
   if (!text.density.empty())
     options.calibration = convert::DensityCalibration{text.density[0], text.density[1]};
-  options.progress = progress_of(program, "materials");
+  options.progress = {program.stop.get_token(), program.progress("materials")};
   const voxel::Scene scan = read_scan(program, text.scan, text.scan_in, timings);
   const Stopwatch watch(timings, "materials");
   convert::ElementMaterials made = convert::element_materials(filled.tetrahedra, scan, options);
@@ -263,7 +252,7 @@ int tet(const Program& program, TetText text) {
                      {"min_volume_mm3", quality.min_volume_mm3}};
   json["order"] = text.order;
   json["method"] = tetrahedra.method;
-  json["fallback"] = filled.fallback;
+  json["fallback"] = filled.fallback.has_value();
   json["materials"] = deck.materials.size();
   json["findings"] = filled.findings;
   program.say(json, lines({{"written", text.out.string()},

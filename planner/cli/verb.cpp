@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <system_error>
 #include <unistd.h>
@@ -23,13 +21,6 @@ void put(const std::string& text) {
   const bool written =
       std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!written && errno != EPIPE) throw std::system_error(errno, std::generic_category(), "standard output");
-}
-
-std::optional<double> number(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) return std::nullopt;
-  return value;
 }
 
 std::vector<std::string> tissue_names() {
@@ -70,6 +61,12 @@ std::function<void(const std::string&, double)> Program::progress() const {
   };
 }
 
+std::function<void(double)> Program::progress(const std::string& doing) const {
+  const auto report = progress();
+  if (!report) return {};
+  return [report, doing](double fraction) { report(doing, fraction); };
+}
+
 void warn(const std::string& line) {
   std::fprintf(stderr, "octotomy: %s\n", line.c_str());
 }
@@ -84,8 +81,8 @@ WindowText parse_window(const std::string& text) {
   const std::string low = text.substr(0, colon);
   const std::string high = colon == std::string::npos ? "" : text.substr(colon + 1);
   WindowText window;
-  const auto low_value = number(low);
-  const auto high_value = number(high);
+  const auto low_value = parse_number(low);
+  const auto high_value = parse_number(high);
   if (!low_value || (!high.empty() && !high_value))
     throw CLI::ValidationError("--window",
                                "'" + text + "' is no window: give LOW:HIGH or LOW:, for example 300:3000, " +

@@ -36,6 +36,8 @@ struct Program {
   void say(const Json& answer, const std::string& text) const;
   /// A progress line on standard error where that is a terminal and people read.
   std::function<void(const std::string&, double)> progress() const;
+  /// The same of one thing only, which the line calls `doing`.
+  std::function<void(double)> progress(const std::string& doing) const;
 };
 
 /// One line on standard error.

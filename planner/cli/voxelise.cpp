@@ -95,8 +95,7 @@ decltype(voxel::OctreeFile::tree) voxelised(const Program& program, const Voxeli
                                             Timings& timings) {
   convert::VoxeliseOptions options;
   options.stop = program.stop.get_token();
-  if (const auto progress = program.progress())
-    options.progress = [progress](double share) { progress("voxelising", share); };
+  options.progress = program.progress("voxelising");
   const Stopwatch watch(timings, "voxelise");
   decltype(voxel::OctreeFile::tree) tree =
       subject.health.solid() ? of_solid(universe, brep::mesh_of(subject.triangles), text.digitise, options)

@@ -16,18 +16,10 @@ struct WarpText {
   ScanIn scan;
 };
 
-/// Progress and stop as the program has them, of what a line calls `doing`.
-voxel::Progress progress_of(const Program& program, const std::string& doing) {
-  voxel::Progress progress{program.stop.get_token(), {}};
-  if (const auto report = program.progress())
-    progress.report = [report, doing](double fraction) { report(doing, fraction); };
-  return progress;
-}
-
 convert::SolvedDeck read_timed_result(const Program& program, const std::filesystem::path& path,
                                       Timings& timings) {
   const Stopwatch watch(timings, "read");
-  return convert::read_solved_deck(path, progress_of(program, "reading"));
+  return convert::read_solved_deck(path, {program.stop.get_token(), program.progress("reading")});
 }
 
 void warp_mesh(const WarpText& text, const convert::DisplacementField& field, Timings& timings) {
@@ -47,7 +39,7 @@ void warp_scan(const Program& program, const WarpText& text, const convert::Disp
   voxel::Scene warped;
   {
     const Stopwatch watch(timings, "warp");
-    warped = convert::warped(scan, field, progress_of(program, "warp"));
+    warped = convert::warped(scan, field, {program.stop.get_token(), program.progress("warp")});
   }
   const Stopwatch watch(timings, "write");
   voxel::write_scene(warped, text.out);

@@ -207,6 +207,7 @@ TEST(Nest, ContoursThatTouchAreNestedByWhatTheyEnclose) {
   EXPECT_EQ(nest({beside, corner, whole}), (Around{std::nullopt, 2, std::nullopt}));
   EXPECT_EQ(nest({half, other}), (Around{std::nullopt, std::nullopt}));
   EXPECT_EQ(nest({half, corner, whole, other}), (Around{1, 2, std::nullopt, 1}));
+  EXPECT_EQ(depths(nest({half, corner, whole, other})), (std::vector<std::size_t>{2, 1, 0, 2}));
 }
 
 }  // namespace

@@ -21,6 +21,9 @@ TEST(Curvature, ABallsIsOneOverItsRadiusAndTurnsNegativeInsideOut) {
     EXPECT_NEAR(out.gaussian_per_mm2[v], 0.0625, 0.002);
     EXPECT_NEAR(in.mean_per_mm[v], -out.mean_per_mm[v], 1e-12);
     EXPECT_NEAR(in.gaussian_per_mm2[v], out.gaussian_per_mm2[v], 1e-12);
+    const glm::dvec3 outward = (ball.points_mm[v] - glm::dvec3(1, 2, 3)) / 4.0;
+    EXPECT_LT(glm::distance(out.normals[v], outward), 0.005);
+    EXPECT_LT(glm::distance(in.normals[v], -outward), 0.005);
   }
 }
 
