@@ -17,6 +17,7 @@
 #include "tests/bench/openvdb_peer.h"
 #endif
 #if defined(OCTOTOMY_HAS_VTK)
+#include "tests/bench/flat_scan.h"
 #include "tests/bench/vtk_contour.h"
 #endif
 
@@ -119,16 +120,8 @@ void run_openvdb(benchmark::State& state, int side) {
 
 #if defined(OCTOTOMY_HAS_VTK)
 void run_vtk(benchmark::State& state, const std::string& name, int side) {
-  const voxel::Scene& scene = scan_of(name, side);
-  FlatScan scan;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int i = static_cast<int>(axis);
-    scan.dims[axis] = scene.lattice.dims[i];
-    scan.spacing_mm[axis] = scene.lattice.spacing_mm()[i];
-    scan.first_mm[axis] = scene.lattice.lps_mm(glm::dvec3(0.0))[i];
-  }
-  scan.samples = std::get<voxel::Int16Samples>(scene.samples).data();
-  const VtkContour peer(scan, bone_hu, static_cast<int>(std::thread::hardware_concurrency()));
+  const VtkContour peer(flat_scan(scan_of(name, side)), bone_hu,
+                        static_cast<int>(std::thread::hardware_concurrency()));
   std::size_t triangles = 0;
   for (auto _ : state) triangles = peer.triangles();
   state.counters["triangles"] = static_cast<double>(triangles);

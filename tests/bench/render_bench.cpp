@@ -21,6 +21,7 @@
 #include "tests/bench/openvdb_peer.h"
 #endif
 #ifdef OCTOTOMY_HAS_VTK
+#include "tests/bench/flat_scan.h"
 #include "tests/bench/vtk_peer.h"
 #endif
 
@@ -143,14 +144,8 @@ void run_openvdb(benchmark::State& state, const Case& the) {
 
 #ifdef OCTOTOMY_HAS_VTK
 void run_vtk(benchmark::State& state, const Case& the) {
-  const voxel::Scene& scene = head(the.side);
-  FlatScan scan;
-  for (int axis = 0; axis < 3; ++axis) scan.dims[static_cast<std::size_t>(axis)] = scene.lattice.dims[axis];
-  scan.first_mm = triple(scene.lattice.lps_mm(glm::dvec3(0.0)));
-  scan.spacing_mm = triple(scene.lattice.spacing_mm());
-  scan.samples = std::get<voxel::Int16Samples>(scene.samples).data();
   const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  const VtkPeer peer(scan, bone_hu, static_cast<int>(threads));
+  const VtkPeer peer(flat_scan(head(the.side)), bone_hu, static_cast<int>(threads));
   const PicturePlane plane = plane_of(the);
   int lit = 0;
   for (auto _ : state) benchmark::DoNotOptimize(lit = peer.draw(plane));

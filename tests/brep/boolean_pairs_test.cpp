@@ -26,23 +26,6 @@ double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-Triangles torus(double ring, double tube, int around, int across) {
-  Triangles t;
-  for (int i = 0; i < around; ++i)
-    for (int j = 0; j < across; ++j) {
-      const double u = 2 * std::numbers::pi * i / around, v = 2 * std::numbers::pi * j / across;
-      const double r = ring + tube * std::cos(v);
-      t.points_mm.emplace_back(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
-    }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i % around * across + j % across); };
-  for (int i = 0; i < around; ++i)
-    for (int j = 0; j < across; ++j) {
-      t.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      t.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return t;
-}
-
 glm::dmat4 any_motion(Random& random, double reach) {
   const glm::dvec3 axis(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, 0.1, 1));
   const glm::dvec3 shift(uniform(random, -reach, reach), uniform(random, -reach, reach),
@@ -89,7 +72,7 @@ Mesh any_solid(Random& random) {
   if (kind == 0) t = shapes::sphere({0, 0, 0}, uniform(random, 3, 6), splits);
   if (kind == 1 || kind == 2)
     t = shapes::box({-uniform(random, 1, 5), -4, -3}, {4, uniform(random, 1, 5), uniform(random, 1, 5)});
-  if (kind == 3) t = torus(uniform(random, 3, 5), uniform(random, 0.5, 2), 40, 20);
+  if (kind == 3) t = shapes::torus(uniform(random, 3, 5), uniform(random, 0.5, 2), 40, 20);
   if (kind == 4) {
     t = shapes::sphere({0, 0, 0}, 1, splits);
     const double a = uniform(random, 0, 3), b = uniform(random, 2, 5);

@@ -32,27 +32,10 @@ double total_gaussian(const Curvature& curvature) {
                             curvature.gaussian_per_mm2.begin(), 0.0);
 }
 
-/// A ring of radius 5 and tube 2.
-Triangles torus(int around, int across) {
-  Triangles t;
-  for (int i = 0; i < around; ++i)
-    for (int j = 0; j < across; ++j) {
-      const double u = 2 * pi * i / around, v = 2 * pi * j / across, r = 5.0 + 2.0 * std::cos(v);
-      t.points_mm.emplace_back(r * std::cos(u), r * std::sin(u), 2.0 * std::sin(v));
-    }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i % around * across + j % across); };
-  for (int i = 0; i < around; ++i)
-    for (int j = 0; j < across; ++j) {
-      t.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      t.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  return t;
-}
-
 TEST(Curvature, ATorusIsASaddleInsideAndConvergesToItsClosedForm) {
   double before = 0.0;
   for (const int fine : {1, 2, 4}) {
-    const Triangles ring = torus(48 * fine, 24 * fine);
+    const Triangles ring = shapes::torus(5.0, 2.0, 48 * fine, 24 * fine);
     const Curvature found = curvature(mesh_of(ring));
     double worst = 0.0;
     for (int j = 0; j < 24 * fine; ++j) {

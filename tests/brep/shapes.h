@@ -50,6 +50,24 @@ inline Triangles sphere(const glm::dvec3& centre, double radius, int splits) {
   return t;
 }
 
+/// A ring about the z axis, and its tube, by their radii.
+inline Triangles torus(double ring, double tube, int around, int across) {
+  Triangles t;
+  for (int i = 0; i < around; ++i)
+    for (int j = 0; j < across; ++j) {
+      const double u = 2 * std::numbers::pi * i / around, v = 2 * std::numbers::pi * j / across;
+      const double r = ring + tube * std::cos(v);
+      t.points_mm.emplace_back(r * std::cos(u), r * std::sin(u), tube * std::sin(v));
+    }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i % around * across + j % across); };
+  for (int i = 0; i < around; ++i)
+    for (int j = 0; j < across; ++j) {
+      t.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      t.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return t;
+}
+
 /// Both, side by side in one list.
 inline Triangles together(Triangles a, const Triangles& b) {
   const auto shift = static_cast<std::uint32_t>(a.points_mm.size());

@@ -13,10 +13,14 @@
 #include <vector>
 
 #include "brep/triangles.h"
+#include "tests/brep/shapes.h"
 
 // Closed surfaces with known volumes, and an independent proof of closedness.
 
 namespace octotomy::tests {
+
+using brep::shapes::inside_out;
+using brep::shapes::together;
 
 /// Why the triangles are no closed oriented manifold surface: the first edge that has not exactly one
 /// triangle in each direction, the first triangle that repeats a point. None where they are one.
@@ -102,19 +106,6 @@ inline brep::Triangles ball(const glm::dvec3& centre, double radius, int levels)
   }
   for (glm::dvec3& p : t.points_mm) p = centre + radius * p;
   return t;
-}
-
-/// The same surface seen from the other side.
-inline brep::Triangles inside_out(brep::Triangles t) {
-  for (auto& face : t.faces) std::swap(face[1], face[2]);
-  return t;
-}
-
-inline brep::Triangles together(brep::Triangles a, const brep::Triangles& b) {
-  const auto shift = static_cast<std::uint32_t>(a.points_mm.size());
-  a.points_mm.insert(a.points_mm.end(), b.points_mm.begin(), b.points_mm.end());
-  for (const auto& [i, j, k] : b.faces) a.faces.push_back({i + shift, j + shift, k + shift});
-  return a;
 }
 
 }  // namespace octotomy::tests

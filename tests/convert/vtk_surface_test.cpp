@@ -8,6 +8,7 @@
 
 #include "brep/distance.h"
 #include "convert/isosurface.h"
+#include "tests/bench/flat_scan.h"
 #include "tests/bench/vtk_contour.h"
 #include "verify/phantom.h"
 
@@ -15,15 +16,7 @@ namespace octotomy::convert {
 namespace {
 
 brep::Triangles of_vtk(const voxel::Scene& scene, double value) {
-  bench::FlatScan scan;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int i = static_cast<int>(axis);
-    scan.dims[axis] = scene.lattice.dims[i];
-    scan.spacing_mm[axis] = scene.lattice.spacing_mm()[i];
-    scan.first_mm[axis] = scene.lattice.lps_mm(glm::dvec3(0.0))[i];
-  }
-  scan.samples = std::get<voxel::Int16Samples>(scene.samples).data();
-  const bench::VtkContour contour(scan, value, 1);
+  const bench::VtkContour contour(bench::flat_scan(scene), value, 1);
   contour.triangles();
   const bench::FlatMesh flat = contour.surface();
   brep::Triangles surface;

@@ -81,17 +81,39 @@ TEST(FragmentDecks, RandomFragmentsOfTheHeadAllBecomeDecksWithoutAnInvertedEleme
   EXPECT_GT(by_meshers, fragments / 2);
 }
 
-TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAllowsIt) {
-  const tests::TestFolder folder;
-  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
-  const auto plan = [&](const std::string& fallback) {
+/// A folder with a ball's scan, and plans that write it, or its upper half, as a deck.
+class BallFolder {
+ public:
+  BallFolder() { voxel::write_scene(tests::ball_scene(10.0, 32), folder_ / "ball.nrrd"); }
+
+  std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+
+  /// `keys` end the export step.
+  Plan plan(const std::string& keys) const { return plan_of("", "ball", keys); }
+  Plan plan_of_half(const std::string& keys) const {
+    return plan_of(R"({ "id": "cut", "do": "mask", "regions": [ { "view": "anterior",
+                     "polygons_mm": [[[-20, 0], [20, 0], [20, 20], [-20, 20]]] } ] },
+                 { "id": "upper", "do": "combine", "expression": "ball & cut" },
+                 { "id": "lower", "do": "combine", "expression": "ball - cut" },)",
+                   "upper", keys);
+  }
+
+ private:
+  Plan plan_of(const std::string& steps, const std::string& object, const std::string& keys) const {
     return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
-      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
-                 { "id": "deck", "do": "export", "object": "ball", "path": "ball.inp")" +
-                          fallback + " } ] }",
-                      folder.path());
-  };
-  const Plan with = plan(R"(, "fallback": true)"), without = plan("");
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 }, )" +
+                          steps + R"({ "id": "deck", "do": "export", "object": ")" + object + "\", " + keys +
+                          " } ] }",
+                      folder_.path());
+  }
+
+  tests::TestFolder folder_;
+};
+
+TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAllowsIt) {
+  const BallFolder folder;
+  const Plan with = folder.plan(R"("path": "ball.inp", "fallback": true)"),
+             without = folder.plan(R"("path": "ball.inp")");
   Evaluation evaluation = evaluate(with);
   EXPECT_FALSE(deck_of(with, evaluation, folder / "out").details["fallback"].get<bool>());
   evaluation.objects.front().mesh = nullptr;
@@ -107,30 +129,21 @@ TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAl
 }
 
 TEST(FragmentDecks, AStepOfOrderTwoWritesElementsOfTenNodes) {
-  const tests::TestFolder folder;
-  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
-  const auto plan = [&](const std::string& path, const std::string& order) {
-    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
-      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
-                 { "id": "deck", "do": "export", "object": "ball", "path": ")" +
-                          path + R"(", "order": )" + order + " } ] }",
-                      folder.path());
-  };
+  const BallFolder folder;
   for (const std::string order : {"1", "2"}) {
-    const Plan the = plan("ball.inp", order);
+    const Plan the = folder.plan(R"("path": "ball.inp", "order": )" + order);
     ASSERT_TRUE(deck_of(the, evaluate(the), folder / "out").written);
     std::ifstream inp(folder / "out/ball.inp");
     const std::string text(std::istreambuf_iterator<char>(inp), {});
     EXPECT_NE(text.find(order == "1" ? "TYPE=C3D4," : "TYPE=C3D10,"), std::string::npos) << order;
   }
-  EXPECT_THROW(plan("ball.inp", "3"), std::runtime_error);
-  EXPECT_THROW(plan("ball.stl", "2"), std::runtime_error);
-  EXPECT_THROW(plan("ball.node", "2"), std::runtime_error);
+  EXPECT_THROW(folder.plan(R"("path": "ball.inp", "order": 3)"), std::runtime_error);
+  EXPECT_THROW(folder.plan(R"("path": "ball.stl", "order": 2)"), std::runtime_error);
+  EXPECT_THROW(folder.plan(R"("path": "ball.node", "order": 2)"), std::runtime_error);
 }
 
 TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
-  const tests::TestFolder folder;
-  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
+  const BallFolder folder;
   std::stop_source source;
   source.request_stop();
   Fillings fillings;
@@ -138,16 +151,7 @@ TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
   Timings timings;
   for (const char* keys : {"", R"(, "fallback": true)", R"(, "regions": ["lower"])",
                            R"(, "regions": ["lower"], "smooth_mm": 2.5)", R"(, "fixed": ["lower"])"}) {
-    const Plan plan = parse_plan(
-        std::string(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
-      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
-                 { "id": "cut", "do": "mask", "regions": [ { "view": "anterior",
-                     "polygons_mm": [[[-20, 0], [20, 0], [20, 20], [-20, 20]]] } ] },
-                 { "id": "upper", "do": "combine", "expression": "ball & cut" },
-                 { "id": "lower", "do": "combine", "expression": "ball - cut" },
-                 { "id": "deck", "do": "export", "object": "upper", "path": "ball.inp")") +
-            keys + " } ] }",
-        folder.path());
+    const Plan plan = folder.plan_of_half(R"("path": "ball.inp")" + std::string(keys));
     const Evaluation evaluation = evaluate(plan);
     EXPECT_THROW(export_object(evaluation, "deck", std::get<ExportStep>(plan.steps.back().action),
                                folder / "out", fillings, timings),
@@ -158,16 +162,9 @@ TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
 }
 
 TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
-  const tests::TestFolder folder;
-  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
-  const auto plan = [&](const std::string& fallback) {
-    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
-      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
-                 { "id": "deck", "do": "export", "object": "ball", "path": "ball.inp")" +
-                          fallback + " } ] }",
-                      folder.path());
-  };
-  const Plan with = plan(R"(, "fallback": true)"), without = plan("");
+  const BallFolder folder;
+  const Plan with = folder.plan(R"("path": "ball.inp", "fallback": true)"),
+             without = folder.plan(R"("path": "ball.inp")");
   Evaluation evaluation = evaluate(with);
   // A plate of a hundredth of a voxel: no mesher can make good elements of it.
   brep::Mesh plate = brep::mesh_of(tests::box({-10, -10, 0}, {10, 10, 0.01}));
@@ -184,18 +181,9 @@ TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
 }
 
 TEST(FragmentDecks, RegionsShareTheirNodesAndOverlapsBelongToTheFirst) {
-  const tests::TestFolder folder;
-  voxel::write_scene(tests::ball_scene(10.0, 32), folder / "ball.nrrd");
+  const BallFolder folder;
   const auto plan = [&](const std::string& keys) {
-    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
-      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
-                 { "id": "cut", "do": "mask", "regions": [ { "view": "anterior",
-                     "polygons_mm": [[[-20, 0], [20, 0], [20, 20], [-20, 20]]] } ] },
-                 { "id": "upper", "do": "combine", "expression": "ball & cut" },
-                 { "id": "lower", "do": "combine", "expression": "ball - cut" },
-                 { "id": "deck", "do": "export", "object": "upper", "path": "ball.inp", )" +
-                          keys + " } ] }",
-                      folder.path());
+    return folder.plan_of_half(R"("path": "ball.inp", )" + keys);
   };
   const Plan halves = plan(R"("regions": ["lower"])");
   const Evaluation evaluation = evaluate(halves);
