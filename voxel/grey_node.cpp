@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "voxel/level_tally.h"
+
 namespace octotomy::voxel {
 namespace {
 
@@ -39,26 +41,24 @@ Status status_in(const MinMax& range, Window16 window) {
 
 class WindowCounter {
  public:
-  WindowCounter(const GreyOctree& grey, Window16 window) : grey_(grey), window_(window) {
-    for (int level = 1; level <= grey.universe().depth; ++level) levels_.push_back({level, 0, 0, 0});
-  }
+  WindowCounter(const GreyOctree& grey, Window16 window)
+      : grey_(grey), window_(window), tally_(grey.universe().depth) {}
   void count_children(const glm::ivec3& origin, int side_log2) {
     const int child_log2 = side_log2 - 1;
-    LevelCount& level = levels_[static_cast<std::size_t>(grey_.universe().depth - child_log2 - 1)];
     for (int number = 0; number < 8; ++number) {
       const glm::ivec3 child = origin + (octant(number) << child_log2);
       const MinMax range = range_of_node(grey_, child, child_log2);
       const Status status = status_in(range, window_);
-      ++(status == Status::Partial ? level.partial : status == Status::Full ? level.full : level.empty);
+      tally_.count(child_log2, status == Status::Full, status == Status::Empty);
       if (range.low != range.high) count_children(child, child_log2);
     }
   }
-  std::vector<LevelCount> levels() { return std::move(levels_); }
+  std::vector<LevelCount> levels() const { return tally_.levels(); }
 
  private:
   const GreyOctree& grey_;
   Window16 window_;
-  std::vector<LevelCount> levels_;
+  LevelTally tally_;
 };
 
 }  // namespace

@@ -5,25 +5,23 @@
 #include <bit>
 #include <unordered_set>
 
+#include "voxel/level_tally.h"
+#include "voxel/octant_order.h"
+
 namespace octotomy::voxel {
 namespace {
 
-constexpr std::uint64_t octant(int octant_number) {
-  return octant_children << child_index(2 * (octant_number & 1), 2 * ((octant_number >> 1) & 1),
-                                        2 * (octant_number >> 2));
-}
-
-// Counts nodes of the logical octree. `side_log2` is the level's place counted from the voxels.
+// Counts nodes of the logical octree.
 class LevelCounter {
  public:
-  explicit LevelCounter(int depth) : by_side_(static_cast<std::size_t>(depth) + 1) {}
+  explicit LevelCounter(int depth) : tally_(depth) {}
 
   // The 64 children of a Partial block: its 8 octants, and the 8 children of each that is Partial.
   void count_children(BlockRef block, int height) {
     const Node& node = *block.node();
     for (int octant_number = 0; octant_number < 8; ++octant_number) {
-      const std::uint64_t mask = octant(octant_number);
-      if (!count(2 * height - 1, (node.full & mask) == mask, ((node.full | node.partial) & mask) == 0))
+      const std::uint64_t mask = octant_mask(octant_number);
+      if (!tally_.count(2 * height - 1, (node.full & mask) == mask, ((node.full | node.partial) & mask) == 0))
         continue;
       count_octant(block, height, mask);
     }
@@ -35,7 +33,8 @@ class LevelCounter {
     for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
       const int child = std::countr_zero(rest);
       const std::uint64_t bit = rest & (~rest + 1);
-      if (!count(2 * height - 2, (node.full & bit) != 0, ((node.full | node.partial) & bit) == 0)) continue;
+      if (!tally_.count(2 * height - 2, (node.full & bit) != 0, ((node.full | node.partial) & bit) == 0))
+        continue;
       if (height > 2)
         count_children(block.child(child), height - 1);
       else
@@ -46,35 +45,16 @@ class LevelCounter {
   // The two levels within a Partial leaf.
   void count_word(std::uint64_t word) {
     for (int octant_number = 0; octant_number < 8; ++octant_number)
-      count_word_octant(word, octant(octant_number));
+      count_word_octant(word, octant_mask(octant_number));
   }
   void count_word_octant(std::uint64_t word, std::uint64_t mask) {
-    if (count(1, (word & mask) == mask, (word & mask) == 0)) count_voxels(word, mask);
-  }
-  void count_voxels(std::uint64_t word, std::uint64_t mask) {
-    by_side_[0].full += static_cast<std::uint64_t>(std::popcount(word & mask));
-    by_side_[0].empty += static_cast<std::uint64_t>(std::popcount(~word & mask));
+    if (tally_.count(1, (word & mask) == mask, (word & mask) == 0)) tally_.count_voxels(word, mask);
   }
 
-  std::vector<LevelCount> levels() const {
-    const int depth = static_cast<int>(by_side_.size()) - 1;
-    std::vector<LevelCount> result;
-    for (int level = 1; level <= depth; ++level) {
-      result.push_back(by_side_[static_cast<std::size_t>(depth - level)]);
-      result.back().level = level;
-    }
-    return result;
-  }
+  std::vector<LevelCount> levels() const { return tally_.levels(); }
 
  private:
-  // Counts a node by its status; true where it is Partial.
-  bool count(int side_log2, bool is_full, bool is_empty) {
-    LevelCount& level = by_side_[static_cast<std::size_t>(side_log2)];
-    ++(is_full ? level.full : is_empty ? level.empty : level.partial);
-    return !is_full && !is_empty;
-  }
-
-  std::vector<LevelCount> by_side_;
+  LevelTally tally_;
 };
 
 std::uint64_t bytes_below(const Node* node, std::unordered_set<const Node*>& met) {

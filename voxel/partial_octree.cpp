@@ -7,6 +7,8 @@
 #include <string>
 
 #include "voxel/combine.h"
+#include "voxel/level_tally.h"
+#include "voxel/octant_order.h"
 #include "voxel/octree_node.h"
 
 namespace octotomy::voxel {
@@ -30,12 +32,12 @@ std::uint64_t some_children(BlockRef block) {
 
 class LevelCounter {
  public:
-  explicit LevelCounter(int depth) : by_side_(static_cast<std::size_t>(depth) + 1) {}
+  explicit LevelCounter(int depth) : tally_(depth) {}
 
   void count_block(BlockRef inside, BlockRef touching, int height, std::uint64_t within) {
     const Masks masks{full_children(inside), some_children(touching)};
     for (int octant = 0; octant < 8; ++octant) {
-      const std::uint64_t mask = octant_of(octant);
+      const std::uint64_t mask = octant_mask(octant);
       if ((mask & within) == 0) continue;
       // Where the universe is one octant of its root block, the octant is the root: level 0 is not counted.
       if (within == all_children && !count(2 * height - 1, masks, mask)) continue;
@@ -51,38 +53,21 @@ class LevelCounter {
     }
   }
 
-  std::vector<LevelCount> levels() const {
-    const int depth = static_cast<int>(by_side_.size()) - 1;
-    std::vector<LevelCount> result;
-    for (int level = 1; level <= depth; ++level) {
-      result.push_back(by_side_[static_cast<std::size_t>(depth - level)]);
-      result.back().level = level;
-    }
-    return result;
-  }
+  std::vector<LevelCount> levels() const { return tally_.levels(); }
 
  private:
-  static std::uint64_t octant_of(int octant) {
-    return octant_children << child_index(2 * (octant & 1), 2 * ((octant >> 1) & 1), 2 * (octant >> 2));
-  }
   void count_leaf(const Masks& words) {
     for (int octant = 0; octant < 8; ++octant) {
-      const std::uint64_t mask = octant_of(octant);
-      if (!count(1, words, mask)) continue;
-      by_side_[0].full += static_cast<std::uint64_t>(std::popcount(words.some & mask));
-      by_side_[0].empty += static_cast<std::uint64_t>(std::popcount(~words.some & mask));
+      const std::uint64_t mask = octant_mask(octant);
+      if (count(1, words, mask)) tally_.count_voxels(words.some, mask);
     }
   }
   // Counts the node made of the children of `mask`; true where it is Partial.
   bool count(int side_log2, const Masks& masks, std::uint64_t mask) {
-    LevelCount& level = by_side_[static_cast<std::size_t>(side_log2)];
-    const bool is_full = (masks.full & mask) == mask;
-    const bool is_empty = (masks.some & mask) == 0;
-    ++(is_full ? level.full : is_empty ? level.empty : level.partial);
-    return !is_full && !is_empty;
+    return tally_.count(side_log2, (masks.full & mask) == mask, (masks.some & mask) == 0);
   }
 
-  std::vector<LevelCount> by_side_;
+  LevelTally tally_;
 };
 
 // Visits the leaf words of touching - inside in tree order.
