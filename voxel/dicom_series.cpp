@@ -15,6 +15,8 @@
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
+#include "voxel/file_text.h"
+
 namespace octotomy::voxel {
 
 namespace {
@@ -41,10 +43,6 @@ std::string print(const char* format, Parts... parts) {
 
 std::string slices(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " slice" : " slices");
-}
-
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-  throw std::runtime_error(path.string() + ": " + reason);
 }
 
 /// The regular files of a folder and its subfolders, sorted.

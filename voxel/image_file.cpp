@@ -2,11 +2,11 @@
 #include "voxel/image_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <dlfcn.h>
 #include <fstream>
 #include <stdexcept>
 
+#include "voxel/file_text.h"
 #include "voxel/image_file_oiio.h"
 #include "voxel/program_folder.h"
 #include "voxel/quiet_errors.h"
@@ -73,10 +73,8 @@ std::vector<StoredImage> read_images(const fs::path& path) {
 }
 
 void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb) {
-  std::string format = path.extension().string();
+  std::string format = extension_of(path);
   if (!format.empty()) format.erase(0, 1);
-  std::transform(format.begin(), format.end(), format.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
   if (format == "jpg") format = "jpeg";
   std::vector<std::uint8_t> encoded;
   try {

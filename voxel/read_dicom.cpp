@@ -21,6 +21,7 @@
 
 #include "voxel/air_level.h"
 #include "voxel/dicom_series.h"
+#include "voxel/file_text.h"
 
 namespace octotomy::voxel {
 
@@ -47,10 +48,6 @@ std::string print(const char* format, Parts... parts) {
   char text[512];
   std::snprintf(text, sizeof text, format, parts...);
   return text;
-}
-
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-  throw std::runtime_error(path.string() + ": " + reason);
 }
 
 /// Where the lattice's slices lie in the stack.

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cctype>
 
+#include "voxel/file_text.h"
 #include "voxel/image_file.h"
 #include "voxel/read_raw.h"
 
@@ -17,15 +18,8 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 10> extensions{".tif", ".tiff", ".png", ".jpg", ".jpeg",
                                                       ".bmp", ".pgm",  ".exr", ".jp2", ".webp"};
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-  throw std::runtime_error(path.string() + ": " + reason);
-}
-
 bool is_image(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+  return std::find(extensions.begin(), extensions.end(), extension_of(path)) != extensions.end();
 }
 
 bool is_digit(char c) {

@@ -17,6 +17,7 @@
 #include <optional>
 #include <zlib.h>
 
+#include "voxel/file_text.h"
 #include "voxel/inflate.h"
 #include "voxel/stored_samples.h"
 
@@ -26,10 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t header_bytes = 540;
-
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-  throw std::runtime_error(path.string() + ": " + reason);
-}
 
 template <typename Number>
 Number swapped(Number value) {

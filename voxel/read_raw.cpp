@@ -4,14 +4,12 @@
 #include <fstream>
 #include <limits>
 
+#include "voxel/file_text.h"
+
 namespace octotomy::voxel {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-  throw std::runtime_error(path.string() + ": " + reason);
-}
 
 std::string bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint64_t count) {
   std::ifstream in(path, std::ios::binary);

@@ -7,7 +7,6 @@
 #include "voxel/itk_compiler.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -22,6 +21,7 @@
 #include <zlib.h>
 
 #include "voxel/air_level.h"
+#include "voxel/file_text.h"
 #include "voxel/quiet_errors.h"
 #include "voxel/stored_samples.h"
 
@@ -36,21 +36,6 @@ constexpr const char* meaning_key = "octotomy_meaning";
 constexpr const char* modality_key = "octotomy_modality";
 constexpr const char* nifti_text_key = "descrip";
 constexpr std::string_view nifti_mark = "octotomy ";
-
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-  throw std::runtime_error(path.string() + ": " + reason);
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 itk::ImageIOBase::Pointer new_io(VolumeFormat format) {
   switch (format) {
@@ -280,7 +265,7 @@ void finish_nifti(const fs::path& from, const fs::path& to, const Scene& scene) 
   bool written = static_cast<bool>(in);
   part = nifti_beginning(std::move(part), scene);
   // "T": as it is, without packing.
-  const gzFile out = gzopen(to.c_str(), lower_case(to.extension().string()) == ".gz" ? "wb1" : "wbT");
+  const gzFile out = gzopen(to.c_str(), extension_of(to) == ".gz" ? "wb1" : "wbT");
   written = written && out != nullptr;
   while (written && !part.empty()) {
     written = gzwrite(out, part.data(), static_cast<unsigned>(part.size())) == static_cast<int>(part.size());

@@ -14,26 +14,13 @@
 #include <vector>
 #include <zlib.h>
 
+#include "voxel/file_text.h"
+
 namespace octotomy::voxel {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse(const fs::path& path, const std::string& reason) {
-  throw std::runtime_error(path.string() + ": " + reason);
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return text;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 /// Refuses a NIfTI-1 header that holds what cannot be: the library behind ITK trusts it, and never returns
 /// from some of it. Reads the first kilobyte, unpacked.
@@ -171,7 +158,7 @@ class TextHeader {
     } else if (format == VolumeFormat::Meta) {
       held = head.find("ElementDataFile") != std::string::npos;
     } else {
-      const bool packed = lower_case(path_.extension().string()) == ".gz";
+      const bool packed = extension_of(path_) == ".gz";
       const auto size = [&](unsigned low, unsigned high) {
         return (at(0) == low && at(1) == high) || (at(3) == low && at(2) == high);  // either byte order
       };
@@ -313,7 +300,7 @@ std::uintmax_t most_bytes(const fs::path& path, VolumeFormat format, const Volum
   bool packed = false;
   std::string data_file;
   if (format == VolumeFormat::Nifti) {
-    packed = lower_case(path.extension().string()) == ".gz";
+    packed = extension_of(path) == ".gz";
   } else if (format == VolumeFormat::Nrrd) {
     packed = lower_case(header.field("encoding").value_or("raw")) != "raw";
     data_file = header.field("data file").value_or(header.field("datafile").value_or(""));
@@ -404,7 +391,7 @@ void require_samples(const fs::path& path, VolumeFormat format, const VolumeHead
                        (encoding != "raw" && !is_packed_nrrd);
   if (is_text) return;  // its library counts what it parses
   std::optional<std::uintmax_t> held;
-  if (format == VolumeFormat::Nifti && lower_case(path.extension().string()) == ".gz") {
+  if (format == VolumeFormat::Nifti && extension_of(path) == ".gz") {
     held = unpacked_bytes(path);
   } else if (is_packed_nrrd || (format == VolumeFormat::Meta && is_compressed_meta(header))) {
     held = inflated_bytes(header.data_file, header.data_at);

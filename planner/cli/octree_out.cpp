@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/octree_out.h"
 
-#include <algorithm>
-
 #include "planner/octree_answer.h"
+#include "voxel/file_text.h"
 
 namespace octotomy::planner::cli {
 
 namespace fs = std::filesystem;
 
 bool is_octree(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".octree";
+  return voxel::extension_of(path) == ".octree";
 }
 
 void need_octree_extension(const fs::path& out) {

@@ -10,6 +10,7 @@
 
 #include "planner/cli/numbers.h"
 #include "planner/nearest_name.h"
+#include "voxel/file_text.h"
 #include "voxel/tissue.h"
 
 namespace octotomy::planner::cli {
@@ -95,9 +96,7 @@ WindowText parse_window(const std::string& text) {
 }
 
 bool is_mesh(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = voxel::extension_of(path);
   for (const char* known : {".stl", ".ply", ".obj", ".off", ".vtk", ".vtp"})
     if (extension == known) return true;
   return false;
