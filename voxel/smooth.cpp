@@ -98,6 +98,29 @@ Scene with_samples_of(const Scene& scene) {
   return {scene.lattice, {}, scene.meaning, scene.modality, scene.source, scene.audit};
 }
 
+// What a local filter makes of the samples, slab by slab: `new_filter(Sample())` gives one whose slices
+// depend on no more than `reach` others on either side.
+template <typename NewFilter>
+Scene filtered(const Scene& scene, int reach, const Progress& progress, const NewFilter& new_filter) {
+  Scene result = with_samples_of(scene);
+  const Lattice& lattice = scene.lattice;
+  std::visit(
+      [&](const auto& samples) {
+        using Sample = typename std::decay_t<decltype(samples)>::value_type;
+        Samples<Sample> made(samples.size());
+        slab_by_slab(lattice.dims.z, reach, progress, [&](int from, int to, int first, int last) {
+          const auto filter = new_filter(Sample());
+          set_threads(*filter);
+          filter->SetInput(image_of(samples.data(), lattice, from, to));
+          filter->Update();
+          take_slab<Sample>(*filter->GetOutput(), lattice, from, first, last, made);
+        });
+        result.samples = std::move(made);
+      },
+      scene.samples);
+  return result;
+}
+
 [[noreturn]] void refuse(const std::string& what) {
   throw std::invalid_argument(what);
 }
@@ -108,26 +131,12 @@ Scene median(const Scene& scene, const glm::ivec3& radius, const Progress& progr
   need_values(scene);
   if (glm::any(glm::lessThan(radius, glm::ivec3(0))) || glm::any(glm::greaterThan(radius, glm::ivec3(16))))
     refuse("a median reaches 0 to 16 samples along each axis");
-  Scene result = with_samples_of(scene);
-  const Lattice& lattice = scene.lattice;
-  std::visit(
-      [&](const auto& samples) {
-        using Sample = typename std::decay_t<decltype(samples)>::value_type;
-        Samples<Sample> made(samples.size());
-        slab_by_slab(lattice.dims.z, radius.z, progress, [&](int from, int to, int first, int last) {
-          auto filter = itk::MedianImageFilter<Image<Sample>, Image<Sample>>::New();
-          set_threads(*filter);
-          filter->SetRadius({static_cast<itk::SizeValueType>(radius.x),
-                             static_cast<itk::SizeValueType>(radius.y),
-                             static_cast<itk::SizeValueType>(radius.z)});
-          filter->SetInput(image_of(samples.data(), lattice, from, to));
-          filter->Update();
-          take_slab<Sample>(*filter->GetOutput(), lattice, from, first, last, made);
-        });
-        result.samples = std::move(made);
-      },
-      scene.samples);
-  return result;
+  return filtered(scene, radius.z, progress, [&]<typename Sample>(Sample /*tag*/) {
+    auto filter = itk::MedianImageFilter<Image<Sample>, Image<Sample>>::New();
+    filter->SetRadius({static_cast<itk::SizeValueType>(radius.x), static_cast<itk::SizeValueType>(radius.y),
+                       static_cast<itk::SizeValueType>(radius.z)});
+    return filter;
+  });
 }
 
 Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
@@ -137,29 +146,16 @@ Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
   if (!(sigma_mm > 0.0) || !(sigma_mm <= 32.0 * finest_mm))
     refuse("a Gaussian's sigma is above 0 and at most 32 samples, " + std::to_string(32.0 * finest_mm) +
            " mm here, not " + std::to_string(sigma_mm) + " mm");
-  Scene result = with_samples_of(scene);
-  const Lattice& lattice = scene.lattice;
   // The weights beyond four standard deviations and two samples sum to less than the part cut off.
   const int reach = static_cast<int>(std::ceil(4.0 * sigma_mm / spacing_mm.z)) + 2;
-  std::visit(
-      [&](const auto& samples) {
-        using Sample = typename std::decay_t<decltype(samples)>::value_type;
-        Samples<Sample> made(samples.size());
-        slab_by_slab(lattice.dims.z, reach, progress, [&](int from, int to, int first, int last) {
-          auto filter = itk::DiscreteGaussianImageFilter<Image<Sample>, Image<float>>::New();
-          set_threads(*filter);
-          filter->SetVariance(sigma_mm * sigma_mm);
-          filter->SetMaximumError(0.001);
-          filter->SetMaximumKernelWidth(2 * 4 * 32 + 5);
-          filter->SetUseImageSpacing(true);
-          filter->SetInput(image_of(samples.data(), lattice, from, to));
-          filter->Update();
-          take_slab<Sample>(*filter->GetOutput(), lattice, from, first, last, made);
-        });
-        result.samples = std::move(made);
-      },
-      scene.samples);
-  return result;
+  return filtered(scene, reach, progress, [&]<typename Sample>(Sample /*tag*/) {
+    auto filter = itk::DiscreteGaussianImageFilter<Image<Sample>, Image<float>>::New();
+    filter->SetVariance(sigma_mm * sigma_mm);
+    filter->SetMaximumError(0.001);
+    filter->SetMaximumKernelWidth(2 * 4 * 32 + 5);
+    filter->SetUseImageSpacing(true);
+    return filter;
+  });
 }
 
 Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
