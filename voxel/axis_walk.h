@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "voxel/camera.h"
+#include "voxel/column_map.h"
+#include "voxel/counted_walk.h"
 #include "voxel/logical_node.h"
 
 // What the thesis's walks along an axis share (appendix A.2): quadtree child i is the projection of octree
@@ -52,5 +54,20 @@ class AxisFrame {
   AxisView axes_;
   int depth_, side_;
 };
+
+/// What the columns of a view see: `walk(frame, root, counter, columns)` finds it for one object, with a node
+/// and a counter as in walk_object().
+template <typename Walk>
+ColumnMap walk_columns(const std::vector<Drawn>& objects, const AxisView& axes, Visits* visits,
+                       const Walk& walk) {
+  const AxisFrame frame(axes, objects.front().octree.universe().depth);
+  std::vector<ColumnDepths> before;
+  for (const Drawn& object : objects) {
+    before.emplace_back(frame.column_count(), -1);
+    walk_object(object, frame.column_count(), visits,
+                [&](const auto& root, auto& counter) { walk(frame, root, counter, before.back()); });
+  }
+  return column_map(objects, axes, before);
+}
 
 }  // namespace octotomy::voxel

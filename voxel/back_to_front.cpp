@@ -85,17 +85,11 @@ class PolygonPainter {
 }  // namespace
 
 ColumnMap back_to_front(const std::vector<Drawn>& objects, const AxisView& axes, Visits* visits) {
-  const AxisFrame frame(axes, objects.front().octree.universe().depth);
-  std::vector<ColumnDepths> before;
-  for (const Drawn& object : objects) {
-    before.emplace_back(frame.column_count(), -1);
-    walk_object(object, frame.column_count(), visits, [&](const auto& root, auto& counter) {
-      AxisPainter<std::decay_t<decltype(root)>, std::decay_t<decltype(counter)>>(frame, counter,
-                                                                                 before.back())
-          .paint(root, 0, 0, 0, 0);
-    });
-  }
-  return column_map(objects, axes, before);
+  return walk_columns(
+      objects, axes, visits, [](const auto& frame, const auto& root, auto& counter, ColumnDepths& columns) {
+        AxisPainter<std::decay_t<decltype(root)>, std::decay_t<decltype(counter)>>(frame, counter, columns)
+            .paint(root, 0, 0, 0, 0);
+      });
 }
 
 DepthImage back_to_front(const std::vector<Drawn>& objects, const ImagePlane& plane, Visits* visits) {

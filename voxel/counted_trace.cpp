@@ -173,19 +173,14 @@ class RayCounter {
 }  // namespace
 
 ColumnMap quadtree_trace(const std::vector<Drawn>& objects, const AxisView& axes, Visits* visits) {
-  const AxisFrame frame(axes, objects.front().octree.universe().depth);
-  std::vector<ColumnDepths> before;
-  for (const Drawn& object : objects) {
-    before.emplace_back(frame.column_count(), -1);
-    walk_object(object, frame.column_count(), visits, [&](const auto& root, auto& counter) {
-      using Root = std::decay_t<decltype(root)>;
-      counter.direct(0, root.status(), glm::ivec3(0));
-      counter.quadtree(1, 0);
-      NodeTracer<Root, std::decay_t<decltype(counter)>>(frame, counter, before.back())
-          .trace(Ancestors<Root>(root), 0, 0, 0, 0);
-    });
-  }
-  return column_map(objects, axes, before);
+  return walk_columns(objects, axes, visits,
+                      [](const auto& frame, const auto& root, auto& counter, ColumnDepths& columns) {
+                        using Root = std::decay_t<decltype(root)>;
+                        counter.direct(0, root.status(), glm::ivec3(0));
+                        counter.quadtree(1, 0);
+                        NodeTracer<Root, std::decay_t<decltype(counter)>>(frame, counter, columns)
+                            .trace(Ancestors<Root>(root), 0, 0, 0, 0);
+                      });
 }
 
 void count_rays(const std::vector<Drawn>& objects, const ImagePlane& plane, Visits& visits) {

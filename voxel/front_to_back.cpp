@@ -184,16 +184,11 @@ class PolygonWalk {
 }  // namespace
 
 ColumnMap front_to_back(const std::vector<Drawn>& objects, const AxisView& axes, Visits* visits) {
-  const AxisFrame frame(axes, objects.front().octree.universe().depth);
-  std::vector<ColumnDepths> before;
-  for (const Drawn& object : objects) {
-    before.emplace_back(frame.column_count(), -1);
-    walk_object(object, frame.column_count(), visits, [&](const auto& root, auto& counter) {
-      AxisWalk<std::decay_t<decltype(root)>, std::decay_t<decltype(counter)>>(frame, counter, before.back())
-          .walk(root, 0, 0, 0, 0, false);
-    });
-  }
-  return column_map(objects, axes, before);
+  return walk_columns(
+      objects, axes, visits, [](const auto& frame, const auto& root, auto& counter, ColumnDepths& columns) {
+        AxisWalk<std::decay_t<decltype(root)>, std::decay_t<decltype(counter)>>(frame, counter, columns)
+            .walk(root, 0, 0, 0, 0, false);
+      });
 }
 
 DepthImage front_to_back(const std::vector<Drawn>& objects, const ImagePlane& plane, Visits* visits) {
