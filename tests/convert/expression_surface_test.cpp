@@ -7,6 +7,7 @@
 
 #include "convert/isosurface.h"
 #include "tests/convert/surfaces.h"
+#include "tests/voxel/field_scene.h"
 #include "voxel/combine.h"
 
 namespace octotomy::convert {
@@ -22,16 +23,10 @@ voxel::Universe universe_of(int depth, double voxel_mm) {
 /// Samples fall by 100 a voxel with the distance from a point.
 voxel::GreyOctree distance_samples(const voxel::Universe& universe, const glm::dvec3& centre_mm,
                                    double radius_mm) {
-  voxel::Scene scene;
-  scene.lattice = universe.lattice();
-  voxel::Int16Samples samples;
-  for (int z = 0; z < universe.side(); ++z)
-    for (int y = 0; y < universe.side(); ++y)
-      for (int x = 0; x < universe.side(); ++x)
-        samples.push_back(static_cast<std::int16_t>(std::lround(
-            100.0 * (radius_mm - glm::distance(universe.lattice().lps_mm({x, y, z}), centre_mm)))));
-  scene.samples = std::move(samples);
-  return voxel::grey_octree_of(universe, scene);
+  return voxel::grey_octree_of(
+      universe, tests::field_scene<std::int16_t>(universe.lattice(), [&](const glm::dvec3& p_mm) {
+        return 100.0 * (radius_mm - glm::distance(p_mm, centre_mm));
+      }));
 }
 
 TEST(ExpressionSurface, OfAWindowIsTheIsosurfaceOfItsSamples) {

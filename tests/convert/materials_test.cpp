@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "convert/octree_tetrahedra.h"
+#include "tests/voxel/field_scene.h"
 #include "voxel/combine.h"
 
 namespace octotomy::convert {
@@ -14,15 +15,8 @@ namespace {
 /// HU = f(x) at voxel centres of 1.5 mm, 20 along each axis.
 template <typename F>
 voxel::Scene scan_of(const F& f) {
-  voxel::Scene scan;
-  scan.lattice = voxel::axis_aligned_lattice({20, 20, 20}, glm::dvec3(1.5), {-3.0, 2.0, 1.0});
-  voxel::FloatSamples samples;
-  for (int z = 0; z < 20; ++z)
-    for (int y = 0; y < 20; ++y)
-      for (int x = 0; x < 20; ++x) samples.push_back(static_cast<float>(f(scan.lattice.lps_mm({x, y, z}))));
-  scan.samples = std::move(samples);
-  scan.source = "test";
-  return scan;
+  return tests::field_scene<float>(
+      voxel::axis_aligned_lattice({20, 20, 20}, glm::dvec3(1.5), {-3.0, 2.0, 1.0}), f);
 }
 
 Tetrahedra block() {

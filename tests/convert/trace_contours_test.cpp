@@ -10,6 +10,7 @@
 #include "brep/measure.h"
 #include "convert/isosurface.h"
 #include "tests/reference_data.h"
+#include "tests/voxel/field_scene.h"
 #include "voxel/read_scene.h"
 
 namespace octotomy::convert {
@@ -20,16 +21,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Depth below the surface of an ellipsoid, in tenths of a millimetre.
 voxel::Scene ellipsoid(const glm::dmat4& lps_from_voxel, const glm::ivec3& dims, const glm::dvec3& centre_mm,
                        const glm::dvec3& axes_mm) {
-  voxel::Scene scene;
-  scene.lattice = {dims, lps_from_voxel};
-  voxel::FloatSamples samples;
-  for (int z = 0; z < dims.z; ++z)
-    for (int y = 0; y < dims.y; ++y)
-      for (int x = 0; x < dims.x; ++x)
-        samples.push_back(static_cast<float>(
-            10.0 * (1.0 - glm::length((scene.lattice.lps_mm({x, y, z}) - centre_mm) / axes_mm)) * axes_mm.z));
-  scene.samples = std::move(samples);
-  return scene;
+  return tests::field_scene<float>({dims, lps_from_voxel}, [&](const glm::dvec3& p_mm) {
+    return 10.0 * (1.0 - glm::length((p_mm - centre_mm) / axes_mm)) * axes_mm.z;
+  });
 }
 
 TEST(ContourSurface, AnEllipsoidHasItsVolumeAndPlaceInAnyLattice) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "tests/voxel/field_scene.h"
 #include "voxel/combine.h"
 
 namespace octotomy::planner {
@@ -103,15 +104,9 @@ TEST(AreaHalfWidth, GrowsWithTheWindowsShiftByTwiceTheMeanCurvature) {
 
 TEST(WindowShift, OfARampIsTenUnitsByItsSlope) {
   // A ball whose samples fall by 40 a millimetre moves by a quarter of a millimetre for ten.
-  voxel::Scene scene;
-  scene.lattice = voxel::axis_aligned_lattice({64, 64, 64}, glm::dvec3(1.0), glm::dvec3(-31.5));
-  voxel::Int16Samples samples;
-  for (int z = 0; z < 64; ++z)
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 64; ++x)
-        samples.push_back(static_cast<std::int16_t>(
-            std::lround(40.0 * (20.0 - glm::length(scene.lattice.lps_mm({x, y, z}) - glm::dvec3(0.3))))));
-  scene.samples = std::move(samples);
+  const voxel::Scene scene = tests::field_scene<std::int16_t>(
+      voxel::axis_aligned_lattice({64, 64, 64}, glm::dvec3(1.0), glm::dvec3(-31.5)),
+      [](const glm::dvec3& p_mm) { return 40.0 * (20.0 - glm::length(p_mm - glm::dvec3(0.3))); });
   const voxel::GreyOctree grey = voxel::grey_octree_of(universe_of_64(), scene, -2000);
   const std::optional<double> shift_mm = window_shift_mm({grey, 0.0});
   ASSERT_TRUE(shift_mm);

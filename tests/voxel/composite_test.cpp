@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/field_scene.h"
 #include "voxel/interpolate.h"
 #include "voxel/object_normals.h"
 #include "voxel/tone.h"
@@ -21,15 +22,9 @@ Universe universe_about_origin() {
 }
 
 GreyOctree grey_of(const std::function<double(const glm::dvec3& p_mm)>& sample, std::int16_t background = 0) {
-  Scene scene;
-  scene.lattice = universe_about_origin().lattice();
-  Int16Samples samples;
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x)
-        samples.push_back(static_cast<std::int16_t>(std::lround(sample(scene.lattice.lps_mm({x, y, z})))));
-  scene.samples = std::move(samples);
-  return grey_octree_of(universe_about_origin(), scene, background);
+  return grey_octree_of(universe_about_origin(),
+                        tests::field_scene<std::int16_t>(universe_about_origin().lattice(), sample),
+                        background);
 }
 
 ImagePlane plane_of(const GreyOctree& grey, const std::string& view, int size_px = 40,

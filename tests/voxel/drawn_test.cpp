@@ -6,6 +6,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "tests/voxel/field_scene.h"
 #include "voxel/column_map.h"
 #include "voxel/combine.h"
 #include "voxel/front_to_back.h"
@@ -31,16 +32,9 @@ glm::dmat4 motion() {
 
 /// A ball whose samples fall from its surface outwards, moved.
 Drawn moved_ball() {
-  Scene scene;
-  scene.lattice = universe().lattice();
-  Int16Samples samples(scene.lattice.sample_count());
-  std::size_t next = 0;
-  for (int z = 0; z < 64; ++z)
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 64; ++x)
-        samples[next++] = static_cast<std::int16_t>(std::lround(
-            200.0 * (radius_mm - glm::length(scene.lattice.lps_mm({x, y, z}) - still_centre_mm()))));
-  scene.samples = std::move(samples);
+  const Scene scene = tests::field_scene<std::int16_t>(universe().lattice(), [](const glm::dvec3& p_mm) {
+    return 200.0 * (radius_mm - glm::length(p_mm - still_centre_mm()));
+  });
   const GreyOctree grey = grey_octree_of(universe(), scene, -9999);
   Drawn ball{"ball", combine(universe(), moved(Window{grey, 0.0, 32767.0}, motion()))};
   ball.grey = grey;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <memory>
 
+#include "tests/voxel/field_scene.h"
 #include "voxel/annotation.h"
 #include "voxel/combine.h"
 #include "voxel/composite.h"
@@ -27,30 +28,22 @@ using Pixels = std::vector<std::uint8_t>;
 /// patient's left temple. Bone 1000, inside 40, air -1000.
 GreyOctree head() {
   const Universe universe = universe_around({glm::dvec3(-40.0), glm::dvec3(40.0)}, 1.25);
-  Scene scene;
-  scene.lattice = universe.lattice();
   const auto ball = [](const glm::dvec3& p, const glm::dvec3& centre, const glm::dvec3& radii) {
     const double least = std::min({radii.x, radii.y, radii.z});
     return (glm::length((p - centre) / radii) - 1.0) * least;
   };
-  Int16Samples samples;
-  for (int z = 0; z < universe.side(); ++z)
-    for (int y = 0; y < universe.side(); ++y)
-      for (int x = 0; x < universe.side(); ++x) {
-        const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
-        const double outside = ball(p, {0, 4, 8}, {24, 29, 25});
-        double bone = std::max(outside, -ball(p, {0, 4, 8}, {20, 25, 21}));
-        bone = std::min(
-            bone, std::max(ball(p, {0, -14, -20}, {15, 12, 12}), -ball(p, {0, -10, -14}, {11, 12, 10})));
-        for (const double side : {-1.0, 1.0})
-          bone = std::max(bone, -ball(p, {side * 9.0, -25, 3}, {6, 9, 5}));
-        bone = std::min(bone, ball(p, {24, 0, 12}, {5, 4, 4}));
-        const double flesh = outside < 0.0 ? 40.0 : -1000.0;
-        const double share = std::clamp(0.5 - bone / 1.25, 0.0, 1.0);
-        samples.push_back(static_cast<std::int16_t>(std::lround(flesh + share * (1000.0 - flesh))));
-      }
-  scene.samples = std::move(samples);
-  return grey_octree_of(universe, scene);
+  const auto sample = [&](const glm::dvec3& p) {
+    const double outside = ball(p, {0, 4, 8}, {24, 29, 25});
+    double bone = std::max(outside, -ball(p, {0, 4, 8}, {20, 25, 21}));
+    bone =
+        std::min(bone, std::max(ball(p, {0, -14, -20}, {15, 12, 12}), -ball(p, {0, -10, -14}, {11, 12, 10})));
+    for (const double side : {-1.0, 1.0}) bone = std::max(bone, -ball(p, {side * 9.0, -25, 3}, {6, 9, 5}));
+    bone = std::min(bone, ball(p, {24, 0, 12}, {5, 4, 4}));
+    const double flesh = outside < 0.0 ? 40.0 : -1000.0;
+    const double share = std::clamp(0.5 - bone / 1.25, 0.0, 1.0);
+    return flesh + share * (1000.0 - flesh);
+  };
+  return grey_octree_of(universe, tests::field_scene<std::int16_t>(universe.lattice(), sample));
 }
 
 Drawn skull(const GreyOctree& grey) {

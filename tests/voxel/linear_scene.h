@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/voxel/field_scene.h"
 #include "voxel/scene.h"
 
 namespace octotomy::tests {
@@ -15,16 +16,7 @@ inline double linear_field(const glm::dvec3& p_mm) {
 
 /// The field at the lattice's points, rounded.
 inline voxel::Scene linear_scene(const voxel::Lattice& lattice) {
-  voxel::Scene scene;
-  scene.lattice = lattice;
-  scene.meaning = voxel::Meaning::Hounsfield;
-  voxel::Int16Samples samples;
-  for (int z = 0; z < lattice.dims.z; ++z)
-    for (int y = 0; y < lattice.dims.y; ++y)
-      for (int x = 0; x < lattice.dims.x; ++x)
-        samples.push_back(static_cast<std::int16_t>(std::lround(linear_field(lattice.lps_mm({x, y, z})))));
-  scene.samples = std::move(samples);
-  return scene;
+  return field_scene<std::int16_t>(lattice, linear_field);
 }
 
 /// A lattice turned out of all axes, about 40 mm wide, with different spacings.

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/field_scene.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -108,17 +109,9 @@ TEST(NodeTrace, ComparisonWithVoxelsFailsWhereOneVisibleVoxelIsMissing) {
 
 /// Samples rising linearly into the half-space behind a plane, `per_mm` a millimetre.
 Scene ramp(const Universe& universe, const glm::dvec3& into, double offset_mm, double per_mm) {
-  Scene scene;
-  scene.lattice = universe.lattice();
-  voxel::Int16Samples samples(scene.lattice.sample_count());
-  std::size_t next = 0;
-  for (int z = 0; z < universe.side(); ++z)
-    for (int y = 0; y < universe.side(); ++y)
-      for (int x = 0; x < universe.side(); ++x)
-        samples[next++] = static_cast<std::int16_t>(
-            std::lround(per_mm * (glm::dot(scene.lattice.lps_mm({x, y, z}), into) - offset_mm)));
-  scene.samples = std::move(samples);
-  return scene;
+  return tests::field_scene<std::int16_t>(universe.lattice(), [&](const glm::dvec3& p_mm) {
+    return per_mm * (glm::dot(p_mm, into) - offset_mm);
+  });
 }
 
 TEST(NodeTrace, PartialVolumeDepthOfASlantingPlaneIsThePlaneItselfNotItsSteps) {

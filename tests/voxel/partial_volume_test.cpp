@@ -6,6 +6,7 @@
 #include <numbers>
 #include <tbb/global_control.h>
 
+#include "tests/voxel/field_scene.h"
 #include "voxel/combine.h"
 
 namespace octotomy::voxel {
@@ -14,16 +15,9 @@ namespace {
 // Samples fall linearly through the surface, as a scan's do within a voxel of it.
 GreyOctree ball(int side, double radius_mm, const glm::dvec3& centre_mm) {
   const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 32.0 / side);
-  Scene scene;
-  scene.lattice = universe.lattice();
-  voxel::Int16Samples samples;
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
-        const double depth = radius_mm - glm::distance(scene.lattice.lps_mm({x, y, z}), centre_mm);
-        samples.push_back(static_cast<std::int16_t>(std::lround(1000 * std::clamp(depth / 2.0, -1.0, 1.0))));
-      }
-  scene.samples = std::move(samples);
+  const Scene scene = tests::field_scene<std::int16_t>(universe.lattice(), [&](const glm::dvec3& p_mm) {
+    return 1000 * std::clamp((radius_mm - glm::distance(p_mm, centre_mm)) / 2.0, -1.0, 1.0);
+  });
   return grey_octree_of(universe, scene, -1024);
 }
 
@@ -53,17 +47,10 @@ TEST(PartialVolume, OfABallConvergesWithTheSquareOfTheVoxel) {
 TEST(PartialVolume, SeesAShiftOfAFifthOfAVoxelAndACountDoesNot) {
   const auto slab = [](double face_mm) {
     const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
-    Scene scene;
-    scene.lattice = universe.lattice();
-    voxel::Int16Samples samples;
-    for (int z = 0; z < 32; ++z)
-      for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 32; ++x) {
-          const glm::dvec3 p = glm::abs(scene.lattice.lps_mm({x, y, z}));
-          const double depth = std::min({8.0 - p.y, 8.0 - p.z, face_mm - p.x});
-          samples.push_back(static_cast<std::int16_t>(std::lround(600 * std::clamp(depth, -1.5, 1.5))));
-        }
-    scene.samples = std::move(samples);
+    const Scene scene = tests::field_scene<std::int16_t>(universe.lattice(), [&](const glm::dvec3& p_mm) {
+      const glm::dvec3 p = glm::abs(p_mm);
+      return 600 * std::clamp(std::min({8.0 - p.y, 8.0 - p.z, face_mm - p.x}), -1.5, 1.5);
+    });
     return grey_octree_of(universe, scene, -1024);
   };
   const double before = partial_volume_mm3({slab(5.0), 0.0});

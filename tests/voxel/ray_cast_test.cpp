@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/field_scene.h"
 #include "voxel/node_trace.h"
 
 namespace octotomy::voxel {
@@ -164,17 +165,9 @@ TEST(RayCast, AlongAnAxisItSeesTheSameVoxelAsNodeTracingDoes) {
 
 /// A ball whose samples fall by `per_mm` a millimetre from its surface outwards, rise inwards.
 Scene soft_ball(const Universe& universe, const glm::dvec3& centre_mm, double radius_mm, double per_mm) {
-  Scene scene;
-  scene.lattice = universe.lattice();
-  voxel::Int16Samples samples(scene.lattice.sample_count());
-  std::size_t next = 0;
-  for (int z = 0; z < universe.side(); ++z)
-    for (int y = 0; y < universe.side(); ++y)
-      for (int x = 0; x < universe.side(); ++x)
-        samples[next++] = static_cast<std::int16_t>(
-            std::lround(per_mm * (radius_mm - glm::length(scene.lattice.lps_mm({x, y, z}) - centre_mm))));
-  scene.samples = std::move(samples);
-  return scene;
+  return tests::field_scene<std::int16_t>(universe.lattice(), [&](const glm::dvec3& p_mm) {
+    return per_mm * (radius_mm - glm::length(p_mm - centre_mm));
+  });
 }
 
 TEST(RayCast, PartialVolumeDepthOfABallIsTheBallsFromAnyDirection) {

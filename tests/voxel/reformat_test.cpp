@@ -7,6 +7,7 @@
 #include <numbers>
 #include <tbb/global_control.h>
 
+#include "tests/voxel/field_scene.h"
 #include "tests/voxel/linear_scene.h"
 #include "voxel/combine.h"
 #include "voxel/read_scene.h"
@@ -16,14 +17,7 @@ namespace {
 
 // The field that linear_scene() rounds, in float: linear interpolation gives it back.
 Scene exact_scene(const Lattice& lattice) {
-  Scene scene = tests::linear_scene(lattice);
-  FloatSamples samples;
-  for (int z = 0; z < lattice.dims.z; ++z)
-    for (int y = 0; y < lattice.dims.y; ++y)
-      for (int x = 0; x < lattice.dims.x; ++x)
-        samples.push_back(static_cast<float>(tests::linear_field(lattice.lps_mm({x, y, z}))));
-  scene.samples = std::move(samples);
-  return scene;
+  return tests::field_scene<float>(lattice, tests::linear_field);
 }
 
 Lattice head_lattice(double x_step_mm) {

@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/field_scene.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -133,15 +134,8 @@ TEST(Render, APixelLooksThroughItsCentreWhateverItsSize) {
 
 TEST(Render, BothAlgorithmsAgreeOnPartialVolumePicturesOfABall) {
   const Universe universe = universe_about_origin();
-  Scene scene;
-  scene.lattice = universe.lattice();
-  voxel::Int16Samples samples;
-  for (int z = 0; z < 64; ++z)
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 64; ++x)
-        samples.push_back(static_cast<std::int16_t>(
-            std::lround(100.0 * (45.0 - glm::length(scene.lattice.lps_mm({x, y, z}))))));
-  scene.samples = std::move(samples);
+  const Scene scene = tests::field_scene<std::int16_t>(
+      universe.lattice(), [](const glm::dvec3& p_mm) { return 100.0 * (45.0 - glm::length(p_mm)); });
   const Drawn ball{
       "ball", octree_of_window(universe, scene, 0, 32767), {}, grey_octree_of(universe, scene), 0.0};
   RenderOptions options = whole_universe("left");

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "tests/voxel/field_scene.h"
 #include "voxel/combine.h"
 
 namespace octotomy::voxel {
@@ -19,16 +20,11 @@ Octree ball(const glm::dvec3& centre_mm, double radius_mm) {
 
 /// Samples that fall with the distance from the middle: 0 at 18 mm.
 GreyOctree grey_ball() {
-  Scene scene;
-  scene.lattice = universe_about_origin().lattice();
-  Int16Samples samples;
-  for (int z = 0; z < 64; ++z)
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 64; ++x)
-        samples.push_back(static_cast<std::int16_t>(
-            std::lround(50.0 * (18.0 - glm::length(scene.lattice.lps_mm({x, y, z}))))));
-  scene.samples = std::move(samples);
-  return grey_octree_of(universe_about_origin(), scene);
+  return grey_octree_of(
+      universe_about_origin(),
+      tests::field_scene<std::int16_t>(universe_about_origin().lattice(), [](const glm::dvec3& p_mm) {
+        return 50.0 * (18.0 - glm::length(p_mm));
+      }));
 }
 
 Drawn window_of(const GreyOctree& grey, double low) {
