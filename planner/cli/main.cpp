@@ -16,6 +16,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <sysexits.h>
 #include <system_error>
 #include <tbb/global_control.h>
 #include <thread>
@@ -152,6 +153,9 @@ int parse_and_run(int count, char** arguments) {
     if (count > 1 && arguments[1][0] != '-' && app.get_subcommands().empty())
       return refuse(unknown_verb(app, arguments[1]), cli::bad_input);
     return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
+  } catch (const std::filesystem::filesystem_error& error) {
+    // A path that is too long, or in a folder that is closed.
+    return refuse(error.path1().string() + ": " + error.code().message(), cli::bad_input);
   }
   return run_chosen(program);
 }
@@ -164,9 +168,13 @@ int main(int count, char** arguments) {
   std::signal(SIGTERM, [](int) { interrupted = true; });
   try {
     return parse_and_run(count, arguments);
-  } catch (...) {
-    // Only a lack of memory gets past run_chosen(); a line that is no allocation can still be said.
-    std::fputs("octotomy: out of memory before anything was done\n", stderr);
+  } catch (const std::bad_alloc&) {
+    // Of run_chosen()'s errors only this gets past it; a line that is no allocation can still be said.
+    std::fputs("octotomy: out of memory\n", stderr);
     return cli::out_of_resources;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "octotomy: a mistake in the program, not in its use: %s; please report it\n",
+                 error.what());
+    return EX_SOFTWARE;
   }
 }

@@ -34,6 +34,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_refused(run("lok " + at("ball.nrrd")), "lok");
   expect_refused(run("info"), "file");
   expect_refused(run("info " + at("missing.nrrd")), "missing.nrrd");
+  expect_refused(run("info " + std::string(300, 'a') + ".nrrd"), "aaa.nrrd: ");
   expect_refused(run("measure " + at("ball.nrrd") + " --json"), "--window");
   expect_refused(run("measure " + at("ball.nrrd") + " --window abc"), "abc");
   expect_refused(run("measure " + at("ball.nrrd") + " --window 5:1"), "5:1");
