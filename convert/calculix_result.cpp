@@ -120,16 +120,13 @@ void read_elements(std::ifstream& in, Line& line, Tetrahedra& tetrahedra) {
   }
 }
 
-}  // namespace
-
-std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,
-                                                          std::size_t node_count,
-                                                          const voxel::Progress& progress) {
-  std::ifstream in = opened(frd);
+/// The displacements' blocks from the line that is read on: those of the last step.
+std::vector<std::optional<glm::dvec3>> displacements_from(std::ifstream& in, Line& line,
+                                                          std::size_t node_count) {
   std::vector<std::optional<glm::dvec3>> result(node_count);
   bool within = false;
   bool found = false;
-  for (Line line{frd, progress, bytes_of(frd)}; line.next(in);) {
+  do {
     if (line.begins(" -4")) {
       within = line.text.find("DISP") != std::string::npos;
       found = found || within;
@@ -139,29 +136,40 @@ std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem:
       const glm::dvec3 displacement = line.vector();
       const long node = line.whole(node_at, node_width);
       if (node < 1 || static_cast<std::size_t>(node) > node_count)
-        refuse(frd, line.number,
+        refuse(line.path, line.number,
                "node " + std::to_string(node) + " is none of the deck's " + std::to_string(node_count));
       result[static_cast<std::size_t>(node - 1)] = displacement;
     }
-  }
+  } while (line.next(in));
   if (!found)
-    throw std::runtime_error(frd.string() +
+    throw std::runtime_error(line.path.string() +
                              ": holds no displacements: did the solver end before its step did?");
+  line.progress.at(1.0);
   return result;
+}
+
+}  // namespace
+
+std::vector<std::optional<glm::dvec3>> read_displacements(const std::filesystem::path& frd,
+                                                          std::size_t node_count,
+                                                          const voxel::Progress& progress) {
+  std::ifstream in = opened(frd);
+  Line line{frd, progress, bytes_of(frd)};
+  return displacements_from(in, line, node_count);
 }
 
 SolvedDeck read_solved_deck(const std::filesystem::path& frd, const voxel::Progress& progress) {
   std::ifstream in = opened(frd);
+  Line line{frd, progress, bytes_of(frd)};
   SolvedDeck deck;
-  for (Line line{frd, progress, bytes_of(frd)}; line.next(in);) {
+  while (line.next(in) && !line.begins(" -4")) {
     if (line.begins("    2C")) read_nodes(in, line, deck.tetrahedra);
     if (line.begins("    3C")) read_elements(in, line, deck.tetrahedra);
-    if (line.begins(" -4")) break;
   }
   if (deck.tetrahedra.tets.empty()) throw std::runtime_error(frd.string() + ": holds no elements");
   deck.tetrahedra.boundary_nodes = boundary_nodes(deck.tetrahedra.tets);
   deck.tetrahedra.method = "CalculiX";
-  const auto displacements = read_displacements(frd, deck.tetrahedra.nodes_mm.size(), progress);
+  const auto displacements = displacements_from(in, line, deck.tetrahedra.nodes_mm.size());
   for (std::size_t node = 0; node < displacements.size(); ++node) {
     if (!displacements[node])
       throw std::runtime_error(frd.string() + ": node " + std::to_string(node + 1) + " has no displacement");

@@ -148,7 +148,10 @@ class SolvedFile : public testing::Test {
 };
 
 TEST_F(SolvedFile, IsReadWithItsNodesElementsAndDisplacements) {
-  const SolvedDeck deck = read_solved_deck(write(text_));
+  std::vector<double> reported;
+  const SolvedDeck deck =
+      read_solved_deck(write(text_), {{}, [&](double fraction) { reported.push_back(fraction); }});
+  EXPECT_EQ(reported, (std::vector<double>{0.0, 1.0}));
   ASSERT_EQ(deck.tetrahedra.tets.size(), 1u);
   EXPECT_EQ(deck.tetrahedra.nodes_mm[3], glm::dvec3(0, -1, 2));
   EXPECT_EQ(deck.displacement_mm[3], glm::dvec3(0, 0, -0.5));
