@@ -3,23 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
 
 #include "brep/disjoint_sets.h"
-#include "convert/octree_tetrahedra.h"
 #include "planner/figures.h"
-#include "voxel/combine.h"
 
 namespace octotomy::planner {
 namespace {
 
-/// Bone as it lay when the tissue was attached to it, and where the plan takes it.
-struct Holder {
-  std::string id;
-  voxel::Octree octree;
-  std::optional<glm::dmat4> motion;  ///< LPS to LPS; none: it stays
-};
+constexpr int nobody = -1;
 
 Holder moved_holder(const Evaluation& evaluation, const std::string& id) {
   const Object* object = &evaluation.object(id);
@@ -30,12 +22,6 @@ Holder moved_holder(const Evaluation& evaluation, const std::string& id) {
   }
   return {id, object->octree, motion};
 }
-
-/// The tissue's elements, and which holder each node lies on, -1: none.
-struct Held {
-  convert::Tetrahedra tetrahedra;
-  std::vector<int> holder_of_node;
-};
 
 /// Whether a node lies on an object's voxels or between two of them.
 bool touches(const voxel::Octree& octree, const glm::dvec3& p_voxel) {
@@ -49,119 +35,194 @@ bool touches(const voxel::Octree& octree, const glm::dvec3& p_voxel) {
   return false;
 }
 
-std::vector<int> holders_of(const convert::Tetrahedra& tetrahedra, const std::vector<Holder>& holders) {
-  std::vector<int> of_node(tetrahedra.nodes_mm.size(), -1);
-  const glm::dmat4 voxel_from_lps = glm::inverse(holders.front().octree.universe().lps_from_voxel);
-  for (const std::uint32_t node : tetrahedra.boundary_nodes) {
-    const glm::dvec3 p_voxel(voxel_from_lps * glm::dvec4(tetrahedra.nodes_mm[node], 1.0));
-    const auto found = std::find_if(holders.begin(), holders.end(),
-                                    [&](const Holder& holder) { return touches(holder.octree, p_voxel); });
-    if (found != holders.end()) of_node[node] = static_cast<int>(found - holders.begin());
-  }
-  return of_node;
-}
+/// A deck's elements on their way to be held.
+class Attacher {
+ public:
+  Attacher(const std::vector<Holder>& holders, const std::vector<std::string>& names,
+           convert::Tetrahedra& tetrahedra, convert::DeckOptions& options)
+      : holders_(holders), names_(names), tetrahedra_(tetrahedra), options_(options) {}
 
-/// Takes away the parts that nothing holds; answers their volume.
-double keep_held(Held& held) {
-  convert::Tetrahedra& all = held.tetrahedra;
-  brep::DisjointSets parts(all.nodes_mm.size());
-  for (const auto& tet : all.tets)
-    for (std::size_t i = 1; i < 4; ++i) parts.join(tet[0], tet[i]);
-  std::vector<bool> is_held(all.nodes_mm.size(), false);
-  for (std::uint32_t node = 0; node < is_held.size(); ++node)
-    if (held.holder_of_node[node] >= 0) is_held[parts.set_of(node)] = true;
-
-  constexpr std::uint32_t none = ~0u;
-  std::vector<std::uint32_t> renumbered(all.nodes_mm.size(), none);
-  Held kept;
-  for (std::uint32_t node = 0; node < is_held.size(); ++node) {
-    if (!is_held[parts.set_of(node)]) continue;
-    renumbered[node] = static_cast<std::uint32_t>(kept.tetrahedra.nodes_mm.size());
-    kept.tetrahedra.nodes_mm.push_back(all.nodes_mm[node]);
-    kept.holder_of_node.push_back(held.holder_of_node[node]);
+  std::vector<std::string> run() {
+    find_holders();
+    const double left_out_mm3 = keep_held();
+    prescribe();
+    part_surfaces();
+    if (left_out_mm3 <= 0.0) return {};
+    return {"parts that nothing holds, " + grouped(left_out_mm3, 1) + " mm\u00b3 together, are left out"};
   }
-  double left_out_mm3 = 0.0;
-  for (std::size_t t = 0; t < all.tets.size(); ++t) {
-    std::array<std::uint32_t, 4> tet = all.tets[t];
-    if (renumbered[tet[0]] == none) {
-      left_out_mm3 += convert::six_volumes(convert::corners_mm(all, t)) / 6.0;
-      continue;
+
+ private:
+  /// The number of the region that a holder is, or `nobody`.
+  int region_of(const Holder& holder) const {
+    const auto found = std::find(names_.begin(), names_.end(), holder.id);
+    return found != names_.end() ? static_cast<int>(found - names_.begin()) : nobody;
+  }
+  bool is_in_region(std::size_t tet, int region) const {
+    return region >= 0 && (tetrahedra_.region_of_tet.empty() ? 0U : tetrahedra_.region_of_tet[tet]) ==
+                              static_cast<std::uint32_t>(region);
+  }
+
+  void find_holders() {
+    holder_of_node_.assign(tetrahedra_.nodes_mm.size(), nobody);
+    for (std::size_t h = 0; h < holders_.size(); ++h)
+      if (const int region = region_of(holders_[h]); region != nobody)
+        hold_region(static_cast<int>(h), region);
+      else
+        hold_boundary(static_cast<int>(h));
+  }
+
+  void hold(std::uint32_t node, int holder) {
+    if (holder_of_node_[node] == nobody) holder_of_node_[node] = holder;
+  }
+
+  void hold_region(int holder, int region) {
+    for (std::size_t t = 0; t < tetrahedra_.tets.size(); ++t)
+      if (is_in_region(t, region))
+        for (const std::uint32_t node : tetrahedra_.tets[t]) hold(node, holder);
+  }
+
+  void hold_boundary(int holder) {
+    const voxel::Octree& octree = holders_[static_cast<std::size_t>(holder)].octree;
+    const glm::dmat4 voxel_from_lps = glm::inverse(octree.universe().lps_from_voxel);
+    for (const std::uint32_t node : tetrahedra_.boundary_nodes)
+      if (touches(octree, glm::dvec3(voxel_from_lps * glm::dvec4(tetrahedra_.nodes_mm[node], 1.0))))
+        hold(node, holder);
+  }
+
+  /// Takes away the parts that nothing holds; answers their volume.
+  double keep_held() {
+    brep::DisjointSets parts(tetrahedra_.nodes_mm.size());
+    for (const auto& tet : tetrahedra_.tets)
+      for (std::size_t i = 1; i < 4; ++i) parts.join(tet[0], tet[i]);
+    std::vector<bool> is_held(tetrahedra_.nodes_mm.size(), false);
+    for (std::uint32_t node = 0; node < is_held.size(); ++node)
+      if (holder_of_node_[node] != nobody) is_held[parts.set_of(node)] = true;
+
+    std::vector<std::uint32_t> number_of_node(tetrahedra_.nodes_mm.size(), gone);
+    convert::Tetrahedra kept;
+    std::vector<int> holder_of_kept;
+    for (std::uint32_t node = 0; node < is_held.size(); ++node) {
+      if (!is_held[parts.set_of(node)]) continue;
+      number_of_node[node] = static_cast<std::uint32_t>(kept.nodes_mm.size());
+      kept.nodes_mm.push_back(tetrahedra_.nodes_mm[node]);
+      holder_of_kept.push_back(holder_of_node_[node]);
     }
-    for (std::uint32_t& node : tet) node = renumbered[node];
-    kept.tetrahedra.tets.push_back(tet);
-  }
-  for (const std::uint32_t node : all.boundary_nodes)
-    if (renumbered[node] != none) kept.tetrahedra.boundary_nodes.push_back(renumbered[node]);
-  kept.tetrahedra.method = all.method;
-  held = std::move(kept);
-  return left_out_mm3;
-}
-
-void prescribe(const Held& held, const std::vector<Holder>& holders, Attached& attached) {
-  for (std::size_t h = 0; h < holders.size(); ++h) {
-    convert::NodeSet set{(holders[h].motion ? "MOVED_" : "FIXED_") + holders[h].id, {}};
-    convert::Prescribed prescribed{set.name, {}};
-    for (std::uint32_t node = 0; node < held.holder_of_node.size(); ++node) {
-      if (held.holder_of_node[node] != static_cast<int>(h)) continue;
-      set.nodes.push_back(node);
-      if (!holders[h].motion) continue;
-      const glm::dvec3& p_mm = held.tetrahedra.nodes_mm[node];
-      prescribed.displacement_mm.push_back(glm::dvec3(*holders[h].motion * glm::dvec4(p_mm, 1.0)) - p_mm);
+    double left_out_mm3 = 0.0;
+    std::vector<std::uint32_t> number_of_tet(tetrahedra_.tets.size(), gone);
+    std::vector<std::uint32_t> material_of_kept;
+    for (std::size_t t = 0; t < tetrahedra_.tets.size(); ++t) {
+      std::array<std::uint32_t, 4> tet = tetrahedra_.tets[t];
+      if (number_of_node[tet[0]] == gone) {
+        left_out_mm3 += convert::six_volumes(convert::corners_mm(tetrahedra_, t)) / 6.0;
+        continue;
+      }
+      for (std::uint32_t& node : tet) node = number_of_node[node];
+      number_of_tet[t] = static_cast<std::uint32_t>(kept.tets.size());
+      kept.tets.push_back(tet);
+      if (!tetrahedra_.region_of_tet.empty()) kept.region_of_tet.push_back(tetrahedra_.region_of_tet[t]);
+      if (!options_.material_of_tet.empty()) material_of_kept.push_back(options_.material_of_tet[t]);
     }
-    if (set.nodes.empty())
-      throw std::runtime_error(
-          "'" + holders[h].id +
-          "' touches nothing of the object: attach what it lies on, or take the bone out "
-          "of the tissue, as in skin - skull");
-    attached.node_sets.push_back(std::move(set));
-    attached.prescribed.push_back(std::move(prescribed));
+    for (const std::uint32_t node : tetrahedra_.boundary_nodes)
+      if (number_of_node[node] != gone) kept.boundary_nodes.push_back(number_of_node[node]);
+    kept.method = tetrahedra_.method;
+    kept.findings = tetrahedra_.findings;
+    tetrahedra_ = std::move(kept);
+    holder_of_node_ = std::move(holder_of_kept);
+    options_.material_of_tet = std::move(material_of_kept);
+    renumber_surfaces(number_of_tet);
+    return left_out_mm3;
   }
-}
 
-std::vector<convert::DeckSurface> surfaces_of(const Held& held, const std::vector<Holder>& holders) {
-  std::vector<convert::DeckSurface> surfaces;
-  surfaces.reserve(holders.size() + 1);
-  for (const Holder& holder : holders) surfaces.push_back({"ON_" + holder.id, {}});
-  surfaces.push_back({"FREE", {}});
-  for (const convert::ElementFace& face : convert::surface_faces(held.tetrahedra)) {
-    const auto corners = convert::corners_of(held.tetrahedra, face);
-    const int holder = held.holder_of_node[corners[0]];
-    const bool on = holder >= 0 && std::all_of(corners.begin(), corners.end(), [&](std::uint32_t node) {
-                      return held.holder_of_node[node] == holder;
-                    });
-    (on ? surfaces[static_cast<std::size_t>(holder)] : surfaces.back()).faces.push_back(face);
+  void renumber_surfaces(const std::vector<std::uint32_t>& number_of_tet) {
+    for (convert::DeckSurface& surface : options_.surfaces) {
+      std::erase_if(surface.faces,
+                    [&](const convert::ElementFace& face) { return number_of_tet[face.tet] == gone; });
+      for (convert::ElementFace& face : surface.faces) face.tet = number_of_tet[face.tet];
+    }
   }
-  std::erase_if(surfaces, [](const convert::DeckSurface& surface) { return surface.faces.empty(); });
-  return surfaces;
-}
+
+  void prescribe() {
+    for (std::size_t h = 0; h < holders_.size(); ++h) {
+      const Holder& holder = holders_[h];
+      convert::NodeSet set{(holder.motion ? "MOVED_" : "FIXED_") + holder.id, {}};
+      convert::Prescribed prescribed{set.name, {}};
+      for (std::uint32_t node = 0; node < holder_of_node_.size(); ++node) {
+        if (holder_of_node_[node] != static_cast<int>(h)) continue;
+        set.nodes.push_back(node);
+        if (!holder.motion) continue;
+        const glm::dvec3& p_mm = tetrahedra_.nodes_mm[node];
+        prescribed.displacement_mm.push_back(glm::dvec3(*holder.motion * glm::dvec4(p_mm, 1.0)) - p_mm);
+      }
+      if (set.nodes.empty())
+        throw std::runtime_error("'" + holder.id +
+                                 "' touches nothing of the object: attach what it lies on, or take the bone "
+                                 "out of the tissue, as in skin - skull");
+      options_.node_sets.push_back(std::move(set));
+      options_.prescribed.push_back(std::move(prescribed));
+    }
+  }
+
+  /// The holder outside of the deck that all of a face's nodes lie on, or `nobody`.
+  int holder_of(const convert::ElementFace& face) const {
+    const auto corners = convert::corners_of(tetrahedra_, face);
+    const int holder = holder_of_node_[corners[0]];
+    if (holder == nobody || region_of(holders_[static_cast<std::size_t>(holder)]) != nobody) return nobody;
+    const bool all = std::all_of(corners.begin(), corners.end(),
+                                 [&](std::uint32_t node) { return holder_of_node_[node] == holder; });
+    return all ? holder : nobody;
+  }
+
+  bool is_in_contact(const std::string& surface) const {
+    return std::any_of(
+        options_.contacts.begin(), options_.contacts.end(),
+        [&](const convert::ContactPair& pair) { return pair.slave == surface || pair.master == surface; });
+  }
+
+  void part_surfaces() {
+    std::vector<convert::DeckSurface> surfaces;
+    for (const Holder& holder : holders_) surfaces.push_back({"ON_" + holder.id, {}});
+    for (convert::DeckSurface& surface : options_.surfaces) {
+      if (!is_in_contact(surface.name))
+        std::erase_if(surface.faces, [&](const convert::ElementFace& face) {
+          const int holder = holder_of(face);
+          if (holder != nobody) surfaces[static_cast<std::size_t>(holder)].faces.push_back(face);
+          return holder != nobody;
+        });
+      surfaces.push_back(std::move(surface));
+    }
+    std::erase_if(surfaces, [](const convert::DeckSurface& surface) { return surface.faces.empty(); });
+    options_.surfaces = std::move(surfaces);
+    std::erase_if(options_.contacts, [&](const convert::ContactPair& pair) {
+      const auto is_there = [&](const std::string& name) {
+        return std::any_of(options_.surfaces.begin(), options_.surfaces.end(),
+                           [&](const convert::DeckSurface& surface) { return surface.name == name; });
+      };
+      return !is_there(pair.slave) || !is_there(pair.master);
+    });
+  }
+
+  static constexpr std::uint32_t gone = ~0U;
+
+  const std::vector<Holder>& holders_;
+  const std::vector<std::string>& names_;
+  convert::Tetrahedra& tetrahedra_;
+  convert::DeckOptions& options_;
+  std::vector<int> holder_of_node_;
+};
 
 }  // namespace
 
-Attached attach(const Evaluation& evaluation, const Object& object, const Attachment& attachment,
-                const voxel::Progress& progress) {
+std::vector<Holder> holders_of(const Evaluation& evaluation, const Attachment& attachment) {
   std::vector<Holder> holders;
   for (const std::string& id : attachment.moved) holders.push_back(moved_holder(evaluation, id));
   for (const std::string& id : attachment.fixed)
     holders.push_back({id, evaluation.object(id).octree, std::nullopt});
-  voxel::Octree tissue = object.octree;
-  if (attachment.element_mm) {
-    const voxel::Universe coarse =
-        voxel::universe_around(voxel::bounds(evaluation.universe.lattice()), *attachment.element_mm);
-    tissue = voxel::combine(coarse, voxel::Expression(tissue));
-    for (Holder& holder : holders) holder.octree = voxel::combine(coarse, voxel::Expression(holder.octree));
-  }
-  if (tissue.is_empty()) throw std::runtime_error("nothing is left of it in voxels of that size");
-  Held held{convert::tetrahedra_of(tissue, convert::BoundaryCells::Voxels, progress), {}};
-  held.holder_of_node = holders_of(held.tetrahedra, holders);
-  const double left_out_mm3 = keep_held(held);
-  Attached attached;
-  prescribe(held, holders, attached);
-  attached.surfaces = surfaces_of(held, holders);
-  if (left_out_mm3 > 0.0)
-    attached.findings.push_back("parts that nothing holds, " + grouped(left_out_mm3, 1) +
-                                " mm\u00b3 together, are left out");
-  attached.tetrahedra = std::move(held.tetrahedra);
-  return attached;
+  return holders;
+}
+
+std::vector<std::string> attach(const std::vector<Holder>& holders, const std::vector<std::string>& names,
+                                convert::Tetrahedra& tetrahedra, convert::DeckOptions& options) {
+  return Attacher(holders, names, tetrahedra, options).run();
 }
 
 }  // namespace octotomy::planner

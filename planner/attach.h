@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "convert/deck.h"
 #include "planner/evaluate.h"
-#include "voxel/progress.h"
 
 namespace octotomy::planner {
 
-/// An object as finite elements that other objects hold and move: soft tissue on bone.
-struct Attached {
-  convert::Tetrahedra tetrahedra;
-  std::vector<convert::NodeSet> node_sets;      ///< MOVED_<object>, FIXED_<object>
-  std::vector<convert::DeckSurface> surfaces;   ///< ON_<object> where an object holds it, FREE elsewhere
-  std::vector<convert::Prescribed> prescribed;  ///< what the plan moves, node by node, and what it holds fast
-  std::vector<std::string> findings;
+/// An object that elements are attached to, as it lay when they were, and where the plan takes it.
+struct Holder {
+  std::string id;
+  voxel::Octree octree;
+  std::optional<glm::dmat4> motion;  ///< LPS to LPS, by all the steps that moved it; none: it stays
 };
+/// Those of a step, moved ones first. A result of move steps holds as the object lay before them all.
+std::vector<Holder> holders_of(const Evaluation& evaluation, const Attachment& attachment);
 
-/// Fills an object by an octree's tetrahedra and prescribes how its nodes move that lie on the objects it is
-/// attached to: a result of move steps takes the nodes on the object as it lay before them along by all their
-/// motions; the nodes on an object that stays are held. A node on two objects goes with the first of the
-/// step's list, moved ones first. Nodes lie on voxels' corners, so that what an object holds is exact to the
-/// universe's voxels, or to those of `element_mm`. Parts that no object holds would float: they are left out,
-/// as a finding with their volume. Throws std::runtime_error where an object of the list holds no node.
-/// Throws Stopped where `progress` asks for it.
-Attached attach(const Evaluation& evaluation, const Object& object, const Attachment& attachment,
-                const voxel::Progress& progress = {});
+/// Holds and moves a deck's elements as its step says, in a static step: a holder that is one of the deck's
+/// regions, `names`, takes all of that region's nodes along, another one the boundary's nodes that lie on its
+/// voxels. A node on two holders goes with the first. Adds node sets MOVED_<holder> and FIXED_<holder>; faces
+/// that lie on holders outside of the deck leave their surface for ON_<holder>. Parts that nothing holds
+/// would float: they are left out, as a finding with their volume. Answers findings. Throws
+/// std::runtime_error where a holder holds no node. Precondition: boundary elements end at voxels' corners,
+/// or all holders are regions.
+std::vector<std::string> attach(const std::vector<Holder>& holders, const std::vector<std::string>& names,
+                                convert::Tetrahedra& tetrahedra, convert::DeckOptions& options);
 
 }  // namespace octotomy::planner

@@ -340,6 +340,7 @@ class Evaluator {
                     .mesh;
       return shared(std::move(solid));
     });
+    if (making.solid) object.cuts = {{id, making.solid}};
     keep(std::move(object), std::move(making));
   }
 
@@ -359,6 +360,8 @@ class Evaluator {
     const auto names = voxel::names_in(step.expression);
     inherit_samples(object, names);
     for (const std::string& name : names) {
+      const std::vector<Cut>& cuts = result_.object(name).cuts;
+      object.cuts.insert(object.cuts.end(), cuts.begin(), cuts.end());
       const Making& from = makings_.at(name);
       making.planes.insert(making.planes.end(), from.planes.begin(), from.planes.end());
       making.spacing_mm = glm::max(making.spacing_mm, from.spacing_mm);
@@ -385,6 +388,8 @@ class Evaluator {
     inherit_samples(object, {step.object});
     object.moved_from_still = motion * object.moved_from_still;
     object.moved = Object::Moved{step.object, motion};
+    object.cuts = result_.object(step.object).cuts;
+    for (Cut& cut : object.cuts) cut.moved_from_still = motion * cut.moved_from_still;
     making.planes = still.planes;
     if (still.scan_box_mm) {
       const auto ends =

@@ -37,6 +37,13 @@ struct ScanRecord {
   std::vector<voxel::Finding> audit;
 };
 
+/// A wall of an object that a mask cut, and the motion of all the steps that moved it since, LPS to LPS.
+struct Cut {
+  std::string mask;
+  std::shared_ptr<const brep::Mesh> wall;
+  glm::dmat4 moved_from_still{1.0};
+};
+
 /// What a window, mask, combine or move step made, in both kernels.
 struct Object {
   explicit Object(voxel::Octree voxels) : octree(std::move(voxels)) {}
@@ -64,6 +71,7 @@ struct Object {
     glm::dmat4 motion{1.0};
   };
   std::optional<Moved> moved;
+  std::vector<Cut> cuts;  ///< the masks that it was made with, where they have a mesh
 };
 
 /// What a measure step asks for: indices into Evaluation::objects, or points.

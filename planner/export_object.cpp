@@ -12,9 +12,10 @@
 #include "brep/write_mesh.h"
 #include "convert/deck.h"
 #include "convert/fill_cavities.h"
+#include "convert/midline.h"
 #include "convert/octree_tetrahedra.h"
 #include "convert/tetrahedralise.h"
-#include "planner/attach.h"
+#include "planner/cut_surfaces.h"
 #include "planner/figures.h"
 #include "planner/region_deck.h"
 #include "voxel/components.h"
@@ -138,8 +139,20 @@ Filling filling_of(const Object& object, const std::stop_token& stop) {
   return filling;
 }
 
-void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQuality& quality,
+/// The set of nodes along the step's mid-line.
+void add_midline(const convert::Tetrahedra& tetrahedra, const ExportStep& step, convert::DeckOptions& options,
                  Exported& exported) {
+  if (!step.midline) return;
+  convert::NodeSet set{"MIDLINE",
+                       convert::midline_nodes(tetrahedra, step.midline->point_mm, step.midline->normal)};
+  if (set.nodes.empty())
+    exported.findings.push_back("the plane of 'midline' passes the deck nowhere: there is no set MIDLINE");
+  else
+    options.node_sets.push_back(std::move(set));
+}
+
+void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQuality& quality,
+                 const convert::DeckOptions& options, Exported& exported) {
   exported.written = true;
   exported.content = grouped(static_cast<double>(tetrahedra.tets.size()), 0) +
                      " tetrahedra, dihedral angles " + grouped(quality.min_dihedral_deg, 1) + "\u00b0 to " +
@@ -147,6 +160,10 @@ void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQualit
   exported.details["nodes"] = tetrahedra.nodes_mm.size();
   exported.details["tets"] = tetrahedra.tets.size();
   exported.details["volume_mm3"] = quality.volume_mm3;
+  for (const convert::NodeSet& set : options.node_sets)
+    exported.details["node_sets"][set.name] = set.nodes.size();
+  for (const convert::DeckSurface& surface : options.surfaces)
+    exported.details["surfaces"][surface.name] = surface.faces.size();
   exported.details["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
                                  {"max_dihedral_deg", quality.max_dihedral_deg},
                                  {"max_radius_edge", quality.max_radius_edge},
@@ -201,36 +218,11 @@ void export_tetrahedra(const Object& object, const ExportStep& step, const std::
   convert::DeckOptions options;
   options.title = object.id + " = " + object.definition;
   options.second_order = step.second_order;
-  options.notes = findings;
+  if (object.mesh && object.mesh->n_faces() > 0) options.surfaces = cut_surfaces(object, tetrahedra);
+  add_midline(tetrahedra, step, options, exported);
+  options.notes = exported.findings;
   convert::write_deck(tetrahedra, path, options);
-  say_written(tetrahedra, quality, exported);
-}
-
-void export_attached(const Evaluation& evaluation, const Object& object, const ExportStep& step,
-                     const std::filesystem::path& path, Exported& exported, const std::stop_token& stop,
-                     Timings& timings) {
-  Attached attached;
-  try {
-    const Stopwatch watch(timings, "tetrahedralise");
-    attached = attach(evaluation, object, step.attachment, {stop, {}});
-  } catch (const std::runtime_error& error) {
-    if (stop.stop_requested()) throw;
-    exported.findings.push_back(std::string("not written: ") + error.what());
-    return;
-  }
-  const Stopwatch watch(timings, "write");
-  exported.findings = attached.findings;
-  for (const convert::NodeSet& set : attached.node_sets)
-    exported.details["node_sets"][set.name] = set.nodes.size();
-  convert::DeckOptions options;
-  options.title = object.id + " = " + object.definition;
-  options.second_order = step.second_order;
-  options.materials = {{"SOFT_TISSUE", step.attachment.youngs_modulus_mpa, step.attachment.poisson_ratio}};
-  options.node_sets = std::move(attached.node_sets);
-  options.surfaces = std::move(attached.surfaces);
-  options.prescribed = std::move(attached.prescribed);
-  convert::write_deck(attached.tetrahedra, path, options);
-  say_written(attached.tetrahedra, convert::quality(attached.tetrahedra), exported);
+  say_written(tetrahedra, quality, options, exported);
 }
 
 void export_regions(const Evaluation& evaluation, const Object& object, const ExportStep& step,
@@ -249,15 +241,14 @@ void export_regions(const Evaluation& evaluation, const Object& object, const Ex
   exported.findings = deck.findings;
   deck.options.title = object.id + " = " + object.definition;
   deck.options.second_order = step.second_order;
+  add_midline(deck.tetrahedra, step, deck.options, exported);
   deck.options.notes = exported.findings;
-  for (const convert::DeckSurface& surface : deck.options.surfaces)
-    exported.details["surfaces"][surface.name] = surface.faces.size();
   exported.details["regions"] = step.regions.size() + 1;
   exported.details["contacts"] = deck.options.contacts.size();
   exported.details["fallback"] = deck.fallback;
   exported.details["method"] = deck.tetrahedra.method;
   convert::write_deck(deck.tetrahedra, path, deck.options);
-  say_written(deck.tetrahedra, convert::quality(deck.tetrahedra), exported);
+  say_written(deck.tetrahedra, convert::quality(deck.tetrahedra), deck.options, exported);
 }
 
 void export_label(const Object& object, const std::filesystem::path& path, Exported& exported,
@@ -303,10 +294,8 @@ Exported export_object(const Evaluation& evaluation, const std::string& id, cons
 
   std::filesystem::create_directories(path.parent_path());
   if (step.kind == ExportKind::Mesh) export_mesh(object, path, exported, timings);
-  if (!step.regions.empty())
+  if (!step.regions.empty() || step.attachment.any())
     export_regions(evaluation, object, step, path, exported, fillings.stop, timings);
-  else if (step.attachment.any())
-    export_attached(evaluation, object, step, path, exported, fillings.stop, timings);
   else if (step.kind == ExportKind::Tetrahedra)
     export_tetrahedra(object, step, path, exported, fillings, timings);
   if (step.kind == ExportKind::Label) export_label(object, path, exported, timings);

@@ -46,10 +46,8 @@ struct Fillings {
 /// within a third of a voxel. What is left out is a finding with its volume, and so are several bodies in one
 /// deck.
 ///
-/// Where the step attaches the object to others, tetrahedra are an octree's (attach.h), and the deck ends in
-/// the static step in which those hold and move it.
-///
-/// Where the step names further regions, the deck holds them all (region_deck.h).
+/// Where the step names further regions, or objects that hold and move this one, the deck is region_deck()'s
+/// (region_deck.h).
 ///
 /// An object that is empty, has no mesh, or that no mesher can fill is not written; a finding says why. Where
 /// the step allows the fallback, its voxels' tetrahedra are written instead, marked by `fallback` in the

@@ -115,7 +115,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"measure", {"id", "do", "object", "to", "points_mm"}},
     {"export",
      {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback", "regions",
-      "order", "smooth_mm", "between", "materials"}},
+      "order", "midline", "smooth_mm", "between", "sliding", "materials"}},
 };
 
 std::vector<std::string> step_words() {
@@ -278,12 +278,51 @@ RegionMaterial material_of(const Keys& material) {
   return read;
 }
 
+/// Pairs of a deck's regions that slide on each other.
+std::vector<std::pair<std::string, std::string>> sliding_of(const Keys& keys,
+                                                            const std::vector<std::string>& regions) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  const Json* list = keys.find("sliding");
+  if (list == nullptr) return pairs;
+  const std::string where = keys.at("sliding");
+  const char* const example = "must be a list of pairs of regions, as [[\"upper_lip\", \"lower_lip\"]]";
+  if (!list->is_array()) refuse(where, example);
+  for (const Json& pair : *list) {
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_string() || !pair[1].is_string())
+      refuse(where, example);
+    pairs.emplace_back(pair[0].get<std::string>(), pair[1].get<std::string>());
+    for (const std::string& name : {pairs.back().first, pairs.back().second})
+      if (std::find(regions.begin(), regions.end(), name) == regions.end())
+        refuse(where, "'" + name + "' is no region of this deck" + suggestion(name, regions));
+    if (pairs.back().first == pairs.back().second)
+      refuse(where, "'" + pairs.back().first + "' cannot slide on itself: cut it in two");
+  }
+  return pairs;
+}
+
+/// Elements of regions, and what holds them.
+void check_filling(const Keys& keys, const ExportStep& step) {
+  if (step.smooth_mm && *step.smooth_mm <= 0.0)
+    refuse(keys.at("smooth_mm"), "must be above zero, for example 3.0");
+  if (step.fallback && !step.smooth_mm)
+    refuse(keys.at("fallback"), "regions are made of voxels unless 'smooth_mm' is there: leave it out");
+  if (!step.smooth_mm) return;
+  if (step.attachment.element_mm)
+    refuse(keys.at("element_mm"), "is of voxels, and 'smooth_mm' of smooth elements: leave one out");
+  for (const std::vector<std::string>* holders : {&step.attachment.moved, &step.attachment.fixed})
+    for (const std::string& holder : *holders)
+      if (holder != step.object &&
+          std::find(step.regions.begin(), step.regions.end(), holder) == step.regions.end())
+        refuse(keys.at("smooth_mm"), "smooth elements do not lie on voxels: add '" + holder +
+                                         "', which holds them, to 'regions', or leave 'smooth_mm' out");
+}
+
 /// What only decks of several regions have.
 void read_regions(const Keys& keys, const Bound& bound, ExportStep& step) {
   step.regions = names_in(keys, "regions");
   for (const std::string& other : step.regions) bound.need_object(keys.at("regions"), other);
   if (step.regions.empty()) {
-    for (const char* key : {"smooth_mm", "between", "materials"})
+    for (const char* key : {"smooth_mm", "between", "sliding", "materials"})
       if (keys.find(key) != nullptr)
         refuse(keys.at(key), "is of several regions: add 'regions', or leave it out");
     return;
@@ -291,21 +330,17 @@ void read_regions(const Keys& keys, const Bound& bound, ExportStep& step) {
   if (step.kind != ExportKind::Tetrahedra)
     refuse(keys.at("regions"), "only tetrahedra have regions: choose .inp, .feb, .vtu or .msh");
   step.smooth_mm = keys.number_if("smooth_mm");
-  if (step.smooth_mm && *step.smooth_mm <= 0.0)
-    refuse(keys.at("smooth_mm"), "must be above zero, for example 3.0");
-  if (step.attachment.any() || (step.fallback && !step.smooth_mm))
-    refuse(keys.at("regions"),
-           "regions are made of voxels unless 'smooth_mm' is there, and nothing else holds them: leave out "
-           "'moved', 'fixed' and 'fallback'");
+  check_filling(keys, step);
   if (keys.find("between") != nullptr) {
     const std::string between = keys.text("between");
     if (between != "shared" && between != "contact")
       refuse(keys.at("between"), "must be \"shared\", nodes where regions touch, or \"contact\"");
     step.contact = between == "contact";
   }
+  std::vector<std::string> names = step.regions;
+  names.push_back(step.object);
+  step.sliding = sliding_of(keys, names);
   if (const Json* materials = keys.find("materials")) {
-    std::vector<std::string> names = step.regions;
-    names.push_back(step.object);
     const Keys by_name(*materials, keys.at("materials"), names);
     for (const std::string& name : names)
       if (const Json* value = by_name.find(name))
@@ -357,7 +392,7 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
     if (step.kind != ExportKind::Tetrahedra)
       refuse(keys.at("fallback"),
              "only tetrahedra have a fallback: leave it out, or choose .inp, .feb or .vtu");
-    if (step.attachment.any())
+    if (step.attachment.any() && keys.find("smooth_mm") == nullptr)
       refuse(keys.at("fallback"), "what others hold is made of its voxels anyhow: leave it out");
     step.fallback = fallback->get<bool>();
   }
@@ -367,6 +402,14 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
     if (step.kind != ExportKind::Tetrahedra || name.ends_with(".node"))
       refuse(keys.at("order"), "is of tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
     step.second_order = *order == 2.0;
+  }
+  if (const Json* value = keys.find("midline")) {
+    const Keys plane(*value, keys.at("midline"), {"point_mm", "normal"});
+    if (step.kind != ExportKind::Tetrahedra)
+      refuse(keys.at("midline"), "is a set of a deck's nodes: leave it out");
+    step.midline = PlaneText{plane.point("point_mm"), plane.point("normal")};
+    if (step.midline->normal == glm::dvec3(0.0))
+      refuse(plane.at("normal"), "has no direction: give for example [1, 0, 0]");
   }
   read_regions(keys, bound, step);
   return step;

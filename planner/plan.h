@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -68,6 +69,10 @@ struct Attachment {
 
   bool any() const { return !moved.empty() || !fixed.empty(); }
 };
+struct PlaneText {
+  glm::dvec3 point_mm{0.0};
+  glm::dvec3 normal{1, 0, 0};
+};
 /// Linear elastic.
 struct RegionMaterial {
   double youngs_modulus_mpa = 0.0;
@@ -80,13 +85,16 @@ struct ExportStep {
   Attachment attachment{};  ///< of decks
   /// Of decks that nothing holds: where the meshers fail, an octree's elements are taken, and marked.
   bool fallback = false;
-  bool second_order = false;  ///< of decks: ten-node tetrahedra
+  bool second_order = false;           ///< of decks: ten-node tetrahedra
+  std::optional<PlaneText> midline{};  ///< of decks: the surface's nodes along it are a set
   /// Of decks: further objects that fill the same deck, each a region of its own, with shared nodes where
   /// they touch.
   std::vector<std::string> regions{};
   /// Of decks of several regions: smooth elements of about this size, in place of the voxels'.
   std::optional<double> smooth_mm{};
   bool contact = false;  ///< of decks of several regions: they may part and slide where they touch
+  /// Of decks of several regions: pairs that may, as lips or cheek and teeth do; others share nodes.
+  std::vector<std::pair<std::string, std::string>> sliding{};
   std::map<std::string, RegionMaterial> materials{};  ///< of regions, the object's own too, by their names
 };
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/region_deck.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "convert/octree_tetrahedra.h"
 #include "convert/region_tetrahedra.h"
 #include "convert/separate_regions.h"
 #include "convert/tetrahedralise.h"
+#include "planner/attach.h"
 #include "planner/figures.h"
+#include "voxel/combine.h"
 
 namespace octotomy::planner {
 namespace {
@@ -18,23 +21,50 @@ struct Regions {
   double voxels_mm3 = 0.0;  ///< of all, what overlaps more than once
 };
 
-Regions regions_of(const Evaluation& evaluation, const Object& object, const ExportStep& step) {
+Regions regions_of(const Evaluation& evaluation, const Object& object, const ExportStep& step,
+                   const std::vector<Holder>& holders) {
   Regions regions;
   regions.names = {object.id};
   regions.names.insert(regions.names.end(), step.regions.begin(), step.regions.end());
-  std::uint64_t counted = 0;
   for (const std::string& name : regions.names) {
-    regions.octrees.push_back(evaluation.object(name).octree);
-    if (regions.octrees.back().is_empty()) throw std::runtime_error("region '" + name + "' is empty");
-    counted += regions.octrees.back().voxel_count();
+    const auto holder =
+        std::find_if(holders.begin(), holders.end(), [&](const Holder& h) { return h.id == name; });
+    regions.octrees.push_back(holder != holders.end() ? holder->octree : evaluation.object(name).octree);
   }
-  regions.voxels_mm3 =
-      static_cast<double>(counted) * regions.octrees.front().universe().lattice().voxel_mm3();
   return regions;
 }
 
-void fill_by_voxels(const Regions& regions, const voxel::Progress& progress, RegionDeck& deck) {
-  deck.tetrahedra = convert::tetrahedra_of(regions.octrees, convert::BoundaryCells::Nodes, progress);
+/// In a universe of larger voxels.
+void coarsen(const Evaluation& evaluation, double voxel_mm, Regions& regions, std::vector<Holder>& holders) {
+  const voxel::Universe coarse =
+      voxel::universe_around(voxel::bounds(evaluation.universe.lattice()), voxel_mm);
+  const auto to_coarse = [&](voxel::Octree& octree) {
+    octree = voxel::combine(coarse, voxel::Expression(octree));
+  };
+  for (voxel::Octree& octree : regions.octrees) to_coarse(octree);
+  for (Holder& holder : holders) to_coarse(holder.octree);
+}
+
+void check_and_count(Regions& regions) {
+  std::uint64_t counted = 0;
+  for (std::size_t i = 0; i < regions.names.size(); ++i) {
+    if (regions.octrees[i].is_empty())
+      throw std::runtime_error("nothing is left of '" + regions.names[i] + "' in voxels of that size");
+    counted += regions.octrees[i].voxel_count();
+  }
+  regions.voxels_mm3 =
+      static_cast<double>(counted) * regions.octrees.front().universe().lattice().voxel_mm3();
+}
+
+void fill_by_voxels(const Regions& regions, const ExportStep& step, const voxel::Progress& progress,
+                    RegionDeck& deck) {
+  // What holds a boundary ends at voxels' corners.
+  const auto cells = step.attachment.any() ? convert::BoundaryCells::Voxels : convert::BoundaryCells::Nodes;
+  if (regions.octrees.size() == 1) {
+    deck.tetrahedra = convert::tetrahedra_of(regions.octrees.front(), cells, progress);
+    return;
+  }
+  deck.tetrahedra = convert::tetrahedra_of(regions.octrees, cells, progress);
   deck.findings.emplace_back(
       "the elements are the voxels', whose surface is in steps: do not read stresses there");
   const double volume_mm3 = convert::quality(deck.tetrahedra).volume_mm3;
@@ -46,7 +76,7 @@ void fill_by_voxels(const Regions& regions, const voxel::Progress& progress, Reg
 
 void fill(const Regions& regions, const ExportStep& step, const voxel::Progress& progress, RegionDeck& deck) {
   if (!step.smooth_mm) {
-    fill_by_voxels(regions, progress, deck);
+    fill_by_voxels(regions, step, progress, deck);
     return;
   }
   std::string why;
@@ -64,23 +94,40 @@ void fill(const Regions& regions, const ExportStep& step, const voxel::Progress&
   if (!why.empty() && step.fallback) {
     deck.fallback = true;
     deck.findings.push_back("fallback: " + why);
-    fill_by_voxels(regions, progress, deck);
+    fill_by_voxels(regions, step, progress, deck);
     return;
   }
   if (!why.empty()) deck.findings.push_back(why + "; \"fallback\": true takes the voxels' elements");
   for (const std::string& finding : deck.tetrahedra.findings) deck.findings.push_back(finding);
 }
 
+bool is_holder(const ExportStep& step, const std::string& name) {
+  const auto has = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return has(step.attachment.moved) || has(step.attachment.fixed);
+}
+
+convert::DeckMaterial tissue_of(const Attachment& attachment, const std::string& name) {
+  return {name, attachment.youngs_modulus_mpa, attachment.poisson_ratio};
+}
+
 void add_materials(const Regions& regions, const ExportStep& step, RegionDeck& deck) {
   deck.options.materials.clear();
+  if (regions.names.size() == 1) {
+    deck.options.materials = {tissue_of(step.attachment, "SOFT_TISSUE")};
+    return;
+  }
   std::string unknown;
   for (const std::string& name : regions.names) {
     convert::DeckMaterial material{"OF_" + name};
     if (const auto given = step.materials.find(name); given != step.materials.end()) {
       material.youngs_modulus_mpa = given->second.youngs_modulus_mpa;
       material.poisson_ratio = given->second.poisson_ratio;
-    } else {
+    } else if (!step.attachment.any()) {
       unknown += (unknown.empty() ? "" : ", ") + name;
+    } else if (!is_holder(step, name)) {
+      material = tissue_of(step.attachment, material.name);
     }
     deck.options.materials.push_back(material);
   }
@@ -91,23 +138,72 @@ void add_materials(const Regions& regions, const ExportStep& step, RegionDeck& d
         ": cortical bone's stiffness is taken; \"materials\" of the step gives each its own");
 }
 
-void add_surfaces(const Regions& regions, const ExportStep& step, RegionDeck& deck) {
-  convert::DeckOptions& options = deck.options;
+/// Pairs of regions that slide, by their numbers, the lower first.
+std::vector<convert::RegionPair> sliding_pairs(const Regions& regions, const ExportStep& step) {
+  const auto number_of = [&](const std::string& name) {
+    const auto found = std::find(regions.names.begin(), regions.names.end(), name);
+    return static_cast<std::uint32_t>(found - regions.names.begin());
+  };
+  std::vector<convert::RegionPair> pairs;
+  for (const auto& [one, other] : step.sliding)
+    pairs.push_back(std::minmax(number_of(one), number_of(other)));
+  if (step.contact)
+    for (std::uint32_t one = 0; one < regions.names.size(); ++one)
+      for (std::uint32_t other = one + 1; other < regions.names.size(); ++other)
+        pairs.emplace_back(one, other);
+  return pairs;
+}
+
+/// Leaves out the faces of an interface whose two sides still share a node.
+void keep_parted(const convert::Tetrahedra& apart, convert::Interface& between) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < between.faces.size(); ++i) {
+    const auto here = convert::corners_of(apart, between.faces[i]);
+    const auto there = convert::corners_of(apart, between.opposite[i]);
+    if (std::find_first_of(here.begin(), here.end(), there.begin(), there.end()) != here.end()) continue;
+    between.faces[kept] = between.faces[i];
+    between.opposite[kept++] = between.opposite[i];
+  }
+  between.faces.resize(kept);
+  between.opposite.resize(kept);
+}
+
+void add_free_surfaces(const Regions& regions, RegionDeck& deck) {
   std::vector<convert::DeckSurface> free;
-  for (const std::string& name : regions.names) free.push_back({"FREE_" + name, {}});
+  for (const std::string& name : regions.names)
+    free.push_back({regions.names.size() == 1 ? "FREE" : "FREE_" + name, {}});
   for (const convert::ElementFace& face : convert::surface_faces(deck.tetrahedra))
-    free[deck.tetrahedra.region_of_tet[face.tet]].faces.push_back(face);
+    free[regions.names.size() == 1 ? 0 : deck.tetrahedra.region_of_tet[face.tet]].faces.push_back(face);
   for (convert::DeckSurface& surface : free)
-    if (!surface.faces.empty()) options.surfaces.push_back(std::move(surface));
-  for (convert::Interface& between : convert::interfaces(deck.tetrahedra)) {
+    if (!surface.faces.empty()) deck.options.surfaces.push_back(std::move(surface));
+}
+
+/// Parts the regions that slide, and names where regions touch.
+void add_interfaces(const Regions& regions, const ExportStep& step, RegionDeck& deck) {
+  convert::DeckOptions& options = deck.options;
+  std::vector<convert::Interface> touching = convert::interfaces(deck.tetrahedra);
+  const std::vector<convert::RegionPair> pairs = sliding_pairs(regions, step);
+  if (!pairs.empty()) deck.tetrahedra = convert::separate_regions(deck.tetrahedra, pairs);
+  for (convert::Interface& between : touching) {
+    const bool slides =
+        std::find(pairs.begin(), pairs.end(), convert::RegionPair(between.from, between.to)) != pairs.end();
+    if (slides) keep_parted(deck.tetrahedra, between);
     const std::string name = regions.names[between.from] + "_TO_" + regions.names[between.to];
     options.surfaces.push_back({name, std::move(between.faces)});
-    if (!step.contact) continue;
+    if (!slides) continue;
     const std::string back = regions.names[between.to] + "_TO_" + regions.names[between.from];
     options.surfaces.push_back({back, std::move(between.opposite)});
     const bool first_is_softer =
         options.materials[between.from].youngs_modulus_mpa < options.materials[between.to].youngs_modulus_mpa;
     options.contacts.push_back({name, first_is_softer ? name : back, first_is_softer ? back : name});
+  }
+  for (const auto& [one, other] : step.sliding) {
+    const auto is_pair = [&, a = one, b = other](const convert::ContactPair& pair) {
+      return pair.name == a + "_TO_" + b || pair.name == b + "_TO_" + a;
+    };
+    if (std::none_of(options.contacts.begin(), options.contacts.end(), is_pair))
+      throw std::runtime_error("'" + one + "' and '" + other +
+                               "' touch nowhere, so they cannot slide: leave the pair out of 'sliding'");
   }
 }
 
@@ -115,12 +211,18 @@ void add_surfaces(const Regions& regions, const ExportStep& step, RegionDeck& de
 
 RegionDeck region_deck(const Evaluation& evaluation, const Object& object, const ExportStep& step,
                        const voxel::Progress& progress) {
-  const Regions regions = regions_of(evaluation, object, step);
+  std::vector<Holder> holders = holders_of(evaluation, step.attachment);
+  Regions regions = regions_of(evaluation, object, step, holders);
+  if (step.attachment.element_mm) coarsen(evaluation, *step.attachment.element_mm, regions, holders);
+  check_and_count(regions);
   RegionDeck deck;
   fill(regions, step, progress, deck);
   add_materials(regions, step, deck);
-  add_surfaces(regions, step, deck);
-  if (step.contact) deck.tetrahedra = convert::separate_regions(deck.tetrahedra);
+  add_free_surfaces(regions, deck);
+  add_interfaces(regions, step, deck);
+  if (step.attachment.any())
+    for (std::string& finding : attach(holders, regions.names, deck.tetrahedra, deck.options))
+      deck.findings.push_back(std::move(finding));
   return deck;
 }
 

@@ -49,6 +49,38 @@ TEST(SeparateRegions, BothSidesOfAnInterfaceFaceEachOther) {
   }
 }
 
+/// Two blocks upon each other, and a third beside both.
+Tetrahedra blocks_with_a_neighbour() {
+  const voxel::Universe universe = tests::unit_universe(3);
+  const auto block = [&](const glm::dvec3& low, const glm::dvec3& high) {
+    return voxel::combine(universe, voxel::Expression(voxel::Box{low, high}));
+  };
+  return tetrahedra_of({block({-0.5, -0.5, -0.5}, {3.5, 3.5, 3.5}), block({-0.5, -0.5, 3.5}, {3.5, 3.5, 7.5}),
+                        block({3.5, -0.5, -0.5}, {7.5, 3.5, 7.5})},
+                       BoundaryCells::Voxels);
+}
+
+TEST(SeparateRegions, ASlitBetweenTwoEndsWhereAThirdHoldsBoth) {
+  const Tetrahedra shared = blocks_with_a_neighbour();
+  const Tetrahedra apart = separate_regions(shared, {{1, 0}});
+  EXPECT_EQ(apart.nodes_mm.size(), shared.nodes_mm.size() + 20)
+      << "of 5 x 5 corners between the blocks, five lie on the third";
+  ASSERT_EQ(interfaces(apart).size(), 2u) << "both still share the third's";
+  for (const Interface& between : interfaces(apart)) {
+    EXPECT_EQ(between.to, 2u);
+    EXPECT_EQ(between.faces.size(), interfaces(shared)[between.from + 1].faces.size());
+  }
+}
+
+TEST(SeparateRegions, EveryPairApartIsAllApartAndNoPairIsNone) {
+  const Tetrahedra shared = blocks_with_a_neighbour();
+  const Tetrahedra all = separate_regions(shared);
+  const Tetrahedra each = separate_regions(shared, {{0, 1}, {0, 2}, {1, 2}});
+  EXPECT_EQ(each.tets, all.tets);
+  EXPECT_EQ(each.nodes_mm, all.nodes_mm);
+  EXPECT_EQ(separate_regions(shared, {}).tets, shared.tets);
+}
+
 TEST(SeparateRegions, OneRegionStaysAsItIsAndMiddlesComeAfter) {
   const Tetrahedra shared = two_blocks();
   Tetrahedra one = shared;

@@ -3,12 +3,12 @@
 // Soft tissue about a bone of two pieces, one of which the plan moves.
 #include "planner/attach.h"
 
-#include <algorithm>
 #include <gtest/gtest.h>
 
-#include "convert/calculix_result.h"
 #include "planner/plan.h"
+#include "planner/region_deck.h"
 #include "tests/planner/ball_scan.h"
+#include "tests/planner/solved_deck.h"
 #include "tests/run_command.h"
 #include "voxel/expression.h"
 
@@ -55,42 +55,20 @@ class Attach : public testing::Test {
                           keys + " } ] }",
                       folder_ / "");
   }
-  Attached attached(const std::string& keys) const {
+  RegionDeck attached(const std::string& keys) const {
     const Plan the = plan(keys);
     const Evaluation evaluation = evaluate(the);
-    return attach(evaluation, evaluation.object("soft"),
-                  std::get<ExportStep>(the.steps.back().action).attachment);
-  }
-  /// CalculiX's displacements.
-  std::vector<glm::dvec3> solved(const Attached& attached) const {
-    convert::DeckOptions options;
-    options.materials = {{"SOFT_TISSUE", 0.015, 0.45}};
-    options.node_sets = attached.node_sets;
-    options.surfaces = attached.surfaces;
-    options.prescribed = attached.prescribed;
-    convert::write_deck(attached.tetrahedra, folder_ / "face.inp", options);
-    const tests::CommandAnswer ccx =
-        tests::run_command("cd " + tests::quoted(folder_ / "") + " && ccx -i face", folder_ / "");
-    EXPECT_EQ(ccx.status, 0) << ccx.out;
-    std::vector<glm::dvec3> displacements;
-    for (const auto& each :
-         convert::read_displacements(folder_ / "face.frd", attached.tetrahedra.nodes_mm.size()))
-      displacements.push_back(each.value());
-    return displacements;
+    return region_deck(evaluation, evaluation.object("soft"), std::get<ExportStep>(the.steps.back().action));
   }
 
   tests::TestFolder folder_;
 };
 
-const convert::NodeSet& set_of(const Attached& attached, const std::string& name) {
-  const auto found = std::find_if(attached.node_sets.begin(), attached.node_sets.end(),
-                                  [&](const convert::NodeSet& set) { return set.name == name; });
-  if (found == attached.node_sets.end()) throw std::out_of_range(name);
-  return *found;
-}
+using tests::set_of;
+using tests::solved;
 
 TEST_F(Attach, NodesOnThePieceGoWhereThePlanPutItByAllItsMotions) {
-  const Attached face = attached(R"("moved": ["turned"], "fixed": ["rest"])");
+  const RegionDeck face = attached(R"("moved": ["turned"], "fixed": ["rest"])");
   // The piece's and the rest's surfaces of 8 x 8 x 4 voxels, less the cut between them: five faces each, of
   // 9 x 9 x 5 corners without the inner ones. The rim of the cut goes with the piece.
   const convert::NodeSet& moved = set_of(face, "MOVED_turned");
@@ -98,17 +76,17 @@ TEST_F(Attach, NodesOnThePieceGoWhereThePlanPutItByAllItsMotions) {
   EXPECT_EQ(set_of(face, "FIXED_rest").nodes.size(), 9u * 9 * 4 - 7 * 7 * 3);
   const glm::dmat4 motion = voxel::moved_from_still({{0, 0, 0}, 5.0, {1, 0, 0}, {0, -4, 2}}) *
                             voxel::moved_from_still({{0, 0, 1.5}, 0.0, {1, 0, 0}, {0, 0, 0}});
-  ASSERT_EQ(face.prescribed[0].node_set, "MOVED_turned");
+  ASSERT_EQ(face.options.prescribed[0].node_set, "MOVED_turned");
   for (std::size_t i = 0; i < moved.nodes.size(); ++i) {
     const glm::dvec3 p_mm = face.tetrahedra.nodes_mm[moved.nodes[i]];
     const glm::dvec3 to_mm(motion * glm::dvec4(p_mm, 1.0));
-    EXPECT_LT(glm::distance(p_mm + face.prescribed[0].displacement_mm[i], to_mm), 1e-12);
+    EXPECT_LT(glm::distance(p_mm + face.options.prescribed[0].displacement_mm[i], to_mm), 1e-12);
   }
-  EXPECT_TRUE(face.prescribed[1].displacement_mm.empty());
+  EXPECT_TRUE(face.options.prescribed[1].displacement_mm.empty());
 }
 
 TEST_F(Attach, WhatNothingHoldsIsLeftOutAndTold) {
-  const Attached face = attached(R"("moved": ["turned"], "fixed": ["rest"])");
+  const RegionDeck face = attached(R"("moved": ["turned"], "fixed": ["rest"])");
   EXPECT_NEAR(convert::quality(face.tetrahedra).volume_mm3, 20.0 * 20 * 20 - 8 * 8 * 8, 1e-6);
   ASSERT_EQ(face.findings.size(), 1u);
   EXPECT_NE(face.findings[0].find("8.0 mm"), std::string::npos) << face.findings[0];
@@ -116,15 +94,15 @@ TEST_F(Attach, WhatNothingHoldsIsLeftOutAndTold) {
 
 TEST_F(Attach, TissueHeldByOnePieceAloneFollowsItRigidly) {
   OCTOTOMY_NEEDS_PROGRAM("ccx", "calculix-ccx");
-  const Attached face = attached(R"("moved": ["raised"])");
-  for (const glm::dvec3& displacement : solved(face))
+  const RegionDeck face = attached(R"("moved": ["raised"])");
+  for (const glm::dvec3& displacement : solved(face, folder_))
     EXPECT_LT(glm::distance(displacement, glm::dvec3(0, 0, 1.5)), 1e-5);
 }
 
 TEST_F(Attach, BoneNodesEndWhereThePlanPutThemAndTissueBetween) {
   OCTOTOMY_NEEDS_PROGRAM("ccx", "calculix-ccx");
-  const Attached face = attached(R"("moved": ["raised"], "fixed": ["rest"])");
-  const std::vector<glm::dvec3> displacements = solved(face);
+  const RegionDeck face = attached(R"("moved": ["raised"], "fixed": ["rest"])");
+  const std::vector<glm::dvec3> displacements = solved(face, folder_);
   for (const std::uint32_t node : set_of(face, "MOVED_raised").nodes)
     EXPECT_LT(glm::distance(displacements[node], glm::dvec3(0, 0, 1.5)), 1e-5);
   for (const std::uint32_t node : set_of(face, "FIXED_rest").nodes)
@@ -142,8 +120,8 @@ TEST_F(Attach, BoneNodesEndWhereThePlanPutThemAndTissueBetween) {
 }
 
 TEST_F(Attach, ElementsMayBeLargerThanTheUniversesVoxels) {
-  const Attached fine = attached(R"("moved": ["raised"])");
-  const Attached coarse = attached(R"("moved": ["raised"], "element_mm": 2)");
+  const RegionDeck fine = attached(R"("moved": ["raised"])");
+  const RegionDeck coarse = attached(R"("moved": ["raised"], "element_mm": 2)");
   EXPECT_LT(4 * coarse.tetrahedra.tets.size(), fine.tetrahedra.tets.size());
   EXPECT_NEAR(convert::quality(coarse.tetrahedra).volume_mm3, 20.0 * 20 * 20 - 8 * 8 * 8, 1200.0);
 }
