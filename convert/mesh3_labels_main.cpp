@@ -37,6 +37,8 @@ struct Labels {
   std::array<double, 3> spacing_mm{};
   std::vector<std::uint8_t> of_voxel;
   std::vector<Point> start;
+  std::vector<double> shares;
+  int share_step = 1;
 
   /// That with the largest trilinear share of the eight samples about a point, the lowest of several:
   /// surfaces between labels are smooth where the voxels' are in steps.
@@ -77,24 +79,67 @@ struct Labels {
   }
 };
 
+/// A length by what the request has it multiplied by at a point, as Mesh_3 asks for it.
+struct Length {
+  using FT = Kernel::FT;
+  const Labels& labels;
+  double length_mm = 0.0;
+
+  template <typename Index>
+  FT operator()(const Point& p, int /*dimension*/, const Index& /*index*/) const {
+    return length_mm * share(p);
+  }
+
+  /// Between the eight samples about a point, trilinear.
+  double share(const Point& p) const {
+    if (labels.shares.empty()) return 1.0;
+    std::array<std::size_t, 3> low{}, count{};
+    std::array<double, 3> along{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      count[i] =
+          static_cast<std::size_t>(convert::share_count(static_cast<int>(labels.dims[i]), labels.share_step));
+      const double last = static_cast<double>(count[i] - 1);
+      const double place =
+          std::clamp(p[static_cast<int>(i)] / (labels.spacing_mm[i] * labels.share_step), 0.0, last);
+      low[i] = std::min(static_cast<std::size_t>(place), count[i] - 2);
+      along[i] = place - static_cast<double>(low[i]);
+    }
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 8; ++k) {
+      std::size_t number = 0;
+      double weight = 1.0;
+      for (std::size_t i = 3; i-- > 0;) {
+        const std::size_t step = (k >> i) & 1;
+        number = number * count[i] + low[i] + step;
+        weight *= step == 1 ? along[i] : 1.0 - along[i];
+      }
+      sum += weight * labels.shares[number];
+    }
+    return sum;
+  }
+};
+
 using Domain = convert::StartingFrom<CGAL::Labeled_mesh_domain_3<Kernel>, Point>;
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 
 bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
   if (std::sscanf(request.switches.data(), convert::label_switches, &sizes.facet_mm, &sizes.distance_mm,
-                  &sizes.cell_mm) != 3 ||
-      request.points != 0 || request.triangles != 0 || request.sizes != 0)
+                  &sizes.cell_mm, &labels.share_step) != 4 ||
+      request.points != 0 || request.triangles != 0 || labels.share_step < 1)
     return false;
-  std::uint64_t voxels = 1;
+  std::uint64_t voxels = 1, shares = 1;
   for (std::size_t i = 0; i < 3; ++i) {
     labels.dims[i] = request.dims[i];
     labels.spacing_mm[i] = request.spacing_mm[i];
     if (request.dims[i] < 2 || request.dims[i] > 65536) return false;
     voxels *= static_cast<std::uint64_t>(request.dims[i]);
+    shares *= static_cast<std::uint64_t>(convert::share_count(request.dims[i], labels.share_step));
   }
-  if (voxels != request.labels) return false;
+  if (voxels != request.labels || (request.sizes != 0 && request.sizes != shares)) return false;
   if (!convert::read_points(request.holes, labels.start)) return false;
+  labels.shares.resize(request.sizes);
+  if (!read_all(labels.shares.data(), labels.shares.size() * sizeof(double))) return false;
   labels.of_voxel.resize(voxels);
   return read_all(labels.of_voxel.data(), voxels);
 }
@@ -123,8 +168,9 @@ Complex mesh(const Labels& labels, const LabelSizes& sizes) {
   constexpr double least_voxels = 0.5;
   const Least least{least_voxels * *std::min_element(labels.spacing_mm.begin(), labels.spacing_mm.end())};
   const convert::FacetsDownTo<Triangulation, Least> facets(
-      {convert::safe_facet_angle_deg, sizes.facet_mm, sizes.distance_mm}, least);
-  const convert::CellsDownTo<Triangulation, Least> cells({convert::safe_radius_edge, sizes.cell_mm}, least);
+      {convert::safe_facet_angle_deg, Length{labels, sizes.facet_mm}, sizes.distance_mm}, least);
+  const convert::CellsDownTo<Triangulation, Least> cells(
+      {convert::safe_radius_edge, Length{labels, sizes.cell_mm}}, least);
   const convert::CriteriaDownTo<Triangulation, Least> criteria(facets, cells);
   return CGAL::make_mesh_3<Complex>(domain, criteria, p::no_perturb(), p::no_exude());
 }

@@ -9,7 +9,6 @@
 #include "brep/distance.h"
 #include "convert/deck.h"
 #include "convert/improve_tetrahedra.h"
-#include "convert/surface_sizes.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until the surface's facets and the cells are of the sizes asked
 //   for, and exudes slivers.
@@ -224,9 +223,13 @@ Try try_once(const MesherInput& surface, const Given& given, const TetOptions& o
 
 }  // namespace
 
-Mesh3Filling fill_by_mesh3(const MesherInput& given, double surface_mm3, const TetOptions& options) {
+Mesh3Filling fill_by_mesh3(const MesherInput& given, const SizeLimits& limits, double surface_mm3,
+                           const TetOptions& options) {
   constexpr int tries = 4;
-  SurfaceSizes sizes(given, Mesh3Sizes{}.grading);
+  // No facet is to have longer sides than where elements are finer.
+  SizeLimits by_facets = limits;
+  for (double& most_mm : by_facets.most_mm) most_mm /= std::sqrt(3.0) * facet_radius_by_side();
+  SurfaceSizes sizes(given, Mesh3Sizes{}.grading, by_facets);
   sizes.scale(facet_radius_by_side());
   const Given first{given, surface_mm3, sizes.at_points_mm(),
                     brep::SurfaceTree(brep::Triangles{given.points_mm, given.triangles})};

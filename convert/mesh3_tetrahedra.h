@@ -2,6 +2,7 @@
 #pragma once
 
 #include "convert/mesher_process.h"
+#include "convert/surface_sizes.h"
 #include "convert/tetrahedralise.h"
 
 namespace octotomy::convert {
@@ -24,6 +25,7 @@ struct Mesh3Filling {
   std::optional<Tetrahedra> tetrahedra;
   std::vector<std::string> findings;  ///< tries that came to nothing, then what is to be said of the answer
 };
-Mesh3Filling fill_by_mesh3(const MesherInput& surface, double surface_mm3, const TetOptions& options);
+Mesh3Filling fill_by_mesh3(const MesherInput& surface, const SizeLimits& limits, double surface_mm3,
+                           const TetOptions& options);
 
 }  // namespace octotomy::convert

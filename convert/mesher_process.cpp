@@ -225,6 +225,7 @@ Sent sent(const MesherInput& input) {
 Sent sent(const LabelImage& image) {
   Sent made;
   made.request.holes = made.add(image.start_mm);
+  made.request.sizes = made.add(image.shares);
   made.request.labels = made.add(image.labels);
   for (int axis = 0; axis < 3; ++axis) {
     made.request.dims.at(static_cast<std::size_t>(axis)) = image.dims[axis];
@@ -326,7 +327,8 @@ MesherOutcome run_mesh3(const MesherInput& input, const Mesh3Sizes& sizes, const
 
 MesherOutcome run_mesh3(const LabelImage& image, const LabelSizes& sizes, const MesherLimits& limits) {
   std::array<char, std::tuple_size_v<decltype(MesherRequest::switches)>> text{};
-  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g", sizes.facet_mm, sizes.distance_mm, sizes.cell_mm);
+  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g %d", sizes.facet_mm, sizes.distance_mm,
+                sizes.cell_mm, image.share_step);
   return run({"octotomy-mesh3-labels", "CGAL's Mesh_3 of labels"}, sent(image), text.data(), limits);
 }
 

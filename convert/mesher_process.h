@@ -25,7 +25,7 @@ struct MesherRequest {
   std::uint64_t points = 0;            ///< three doubles each
   std::uint64_t triangles = 0;         ///< three uint32 each
   std::uint64_t holes = 0;             ///< three doubles each
-  std::uint64_t sizes = 0;             ///< a double each
+  std::uint64_t sizes = 0;             ///< a double each; of labels, the shares
   std::uint64_t labels = 0;            ///< a byte each, x fastest
   std::array<std::int32_t, 3> dims{};  ///< of the labels
   std::array<double, 3> spacing_mm{};
@@ -92,13 +92,21 @@ struct LabelImage {
   glm::dvec3 spacing_mm{1.0};
   std::vector<std::uint8_t> labels;
   std::vector<glm::dvec3> start_mm;  ///< points of every surface between labels to start from
+  /// What sizes are multiplied by, 0..1, at every `share_step`-th voxel along each axis from the first one on
+  /// to at or beyond the last, x fastest, and in between: none where sizes are the same everywhere.
+  std::vector<double> shares{};
+  int share_step = 8;
 };
+/// Of so many voxels, how many have shares.
+constexpr int share_count(int voxels, int step) {
+  return (voxels - 2) / step + 2;
+}
 struct LabelSizes {
   double facet_mm = 2.0;     ///< radius of the ball about a facet between labels, at most
   double distance_mm = 0.5;  ///< of a facet's middle from the surface, at most
   double cell_mm = 4.0;      ///< circumradius of a tetrahedron, at most
 };
-inline constexpr const char* label_switches = "%lg %lg %lg";
+inline constexpr const char* label_switches = "%lg %lg %lg %d";  ///< the last is the step of shares
 /// The same of CGAL's Mesh_3 over labels; the answer has one of each tetrahedron.
 MesherOutcome run_mesh3(const LabelImage& image, const LabelSizes& sizes, const MesherLimits& limits);
 

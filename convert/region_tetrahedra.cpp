@@ -92,6 +92,32 @@ Labelled labelled(const std::vector<voxel::Octree>& regions) {
   return made;
 }
 
+glm::dvec3 lps_mm(const Labelled& labelled, const voxel::Lattice& lattice, const glm::dvec3& image_mm) {
+  return lattice.lps_mm(image_mm / labelled.image.spacing_mm + glm::dvec3(labelled.first_voxel));
+}
+
+/// Where elements are to be finer than a size: by which share, at every few voxels.
+void add_shares(Labelled& labelled, const voxel::Lattice& lattice, const RegionMeshOptions& options) {
+  if (options.finer.empty()) return;
+  LabelImage& image = labelled.image;
+  const FinerSizes sizes(options.finer);
+  const glm::dvec3& edge_mm = image.spacing_mm;
+  // Between shares as far apart as elements are large, sizes grow by a quarter.
+  image.share_step =
+      static_cast<int>(std::clamp(sizes.least_mm() / std::max({edge_mm.x, edge_mm.y, edge_mm.z}), 2.0, 8.0));
+  glm::ivec3 count;
+  for (int axis = 0; axis < 3; ++axis) count[axis] = share_count(image.dims[axis], image.share_step);
+  std::vector<glm::dvec3> points_mm;
+  for (int z = 0; z < count.z; ++z)
+    for (int y = 0; y < count.y; ++y)
+      for (int x = 0; x < count.x; ++x)
+        points_mm.push_back(
+            lps_mm(labelled, lattice, static_cast<double>(image.share_step) * glm::dvec3(x, y, z) * edge_mm));
+  image.shares = sizes.at_mm(points_mm);
+  // The size is that of a facet's ball, in which no side is longer than that of an equilateral one.
+  for (double& share : image.shares) share = std::min(1.0, share / (std::sqrt(3.0) * options.size_mm));
+}
+
 /// What the voxels say of a region.
 struct Counted {
   std::uint64_t voxels = 0;
@@ -199,6 +225,8 @@ void check_volumes(Tetrahedra& made, const std::vector<Counted>& counted, const 
 Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const RegionMeshOptions& options) {
   check(regions, options);
   Labelled image = labelled(regions);
+  const voxel::Lattice lattice = regions.front().universe().lattice();
+  add_shares(image, lattice, options);
   const std::vector<Counted> counted = add_starts(image, options.size_mm, regions.size());
   for (std::size_t label = 1; label < counted.size(); ++label)
     if (counted[label].voxels == 0)
@@ -218,9 +246,7 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
   made.method = "Mesh_3 of labels";
   made.tets = std::move(outcome.tetrahedra);
   for (const std::uint32_t label : outcome.labels) made.region_of_tet.push_back(label - 1);
-  const voxel::Lattice lattice = regions.front().universe().lattice();
-  for (const glm::dvec3& p_mm : outcome.points_mm)
-    made.nodes_mm.push_back(lattice.lps_mm(p_mm / edge_mm + glm::dvec3(image.first_voxel)));
+  for (const glm::dvec3& p_mm : outcome.points_mm) made.nodes_mm.push_back(lps_mm(image, lattice, p_mm));
   if (!lattice.right_handed())
     for (auto& tet : made.tets) std::swap(tet[0], tet[1]);
   made.boundary_nodes = boundary_nodes(made.tets);

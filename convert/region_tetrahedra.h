@@ -5,6 +5,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "convert/finer.h"
 #include "convert/tetrahedra.h"
 #include "voxel/octree.h"
 
@@ -12,6 +13,7 @@ namespace octotomy::convert {
 
 struct RegionMeshOptions {
   double size_mm = 2.0;                          ///< of elements, about; two voxels at least show no steps
+  std::vector<Finer> finer{};                    ///< where elements are smaller
   double min_dihedral_deg = 8.0;                 ///< what is aimed at, 0..30
   std::chrono::milliseconds time_limit{300000};  ///< by the clock on the wall
   std::uint64_t memory_limit_bytes = 4ull << 30;

@@ -23,30 +23,40 @@ double side_of_area(double area_mm2) {
 using Waiting = std::pair<double, std::uint32_t>;
 using Queue = std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>>;
 
+double area_mm2(const MesherInput& surface, const std::array<std::uint32_t, 3>& triangle) {
+  const auto& p = surface.points_mm;
+  const auto& [a, b, c] = triangle;
+  return 0.5 * glm::length(glm::cross(p[b] - p[a], p[c] - p[a]));
+}
+
 }  // namespace
 
-SurfaceSizes::SurfaceSizes(const MesherInput& surface, double grading)
+double mean_side_mm(const MesherInput& surface) {
+  double all_mm2 = 0.0;
+  for (const auto& triangle : surface.triangles) all_mm2 += area_mm2(surface, triangle);
+  return side_of_area(all_mm2 / static_cast<double>(surface.triangles.size()));
+}
+
+SurfaceSizes::SurfaceSizes(const MesherInput& surface, double grading, const SizeLimits& limits)
     : surface_(surface),
       grading_(grading),
       sizes_mm_(surface.points_mm.size()),
       first_(surface.points_mm.size() + 1, 0) {
-  std::vector<double> area_mm2(sizes_mm_.size(), 0.0);
+  std::vector<double> about_mm2(sizes_mm_.size(), 0.0);
   std::vector<std::uint32_t> triangles(sizes_mm_.size(), 0);
-  double all_mm2 = 0.0;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const auto& p = surface.points_mm;
-    const double own_mm2 = 0.5 * glm::length(glm::cross(p[b] - p[a], p[c] - p[a]));
-    all_mm2 += own_mm2;
-    for (const std::uint32_t v : {a, b, c}) {
-      area_mm2[v] += own_mm2;
+  for (const auto& triangle : surface.triangles) {
+    const double own_mm2 = area_mm2(surface, triangle);
+    for (const std::uint32_t v : triangle) {
+      about_mm2[v] += own_mm2;
       ++triangles[v];
       first_[v + 1] += 2;
     }
   }
-  const double mean_mm = side_of_area(all_mm2 / static_cast<double>(surface.triangles.size()));
+  const double mean_mm = limits.mean_mm.value_or(mean_side_mm(surface));
   for (std::size_t v = 0; v < sizes_mm_.size(); ++v) {
     sizes_mm_[v] =
-        std::clamp(side_of_area(area_mm2[v] / std::max(triangles[v], 1u)), least_share() * mean_mm, mean_mm);
+        std::clamp(side_of_area(about_mm2[v] / std::max(triangles[v], 1u)), least_share() * mean_mm, mean_mm);
+    if (!limits.most_mm.empty()) sizes_mm_[v] = std::min(sizes_mm_[v], limits.most_mm[v]);
     first_[v + 1] += first_[v];
   }
   beside_.resize(first_.back());

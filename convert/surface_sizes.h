@@ -2,11 +2,22 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "convert/mesher_process.h"
 
 namespace octotomy::convert {
+
+/// The side of an equilateral triangle of the surface's mean area.
+double mean_side_mm(const MesherInput& surface);
+
+/// What sizes are held to beside the triangles' own.
+struct SizeLimits {
+  std::optional<double>
+      mean_mm;                  ///< in place of the surface's mean_side_mm(), where parts of it were divided
+  std::vector<double> most_mm;  ///< at each point, or none
+};
 
 /// How large triangles are about each point of a surface, and how a mesher's may be: lengths in mm at the
 /// points, which grow by no more than a share of the way along the triangles' sides.
@@ -14,9 +25,9 @@ class SurfaceSizes {
  public:
   /// The side of an equilateral triangle of the mean area of those at a point; no more than that of all, as
   /// flat parts have large triangles up to their sharp edges, and no less than an eighth of it, as what is
-  /// far smaller than its surroundings is noise; graded. Preconditions: there are triangles, grading > 0.
-  /// Cost: n log n, 40 bytes a side.
-  SurfaceSizes(const MesherInput& surface, double grading);
+  /// far smaller than its surroundings is noise; within the limits; graded. Preconditions: there are
+  /// triangles, grading > 0. Cost: n log n, 40 bytes a side.
+  SurfaceSizes(const MesherInput& surface, double grading, const SizeLimits& limits = {});
 
   const std::vector<double>& at_points_mm() const { return sizes_mm_; }
   /// Halves the sizes at points, and grades again.

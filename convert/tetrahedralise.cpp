@@ -13,6 +13,7 @@
 #include "convert/improve_tetrahedra.h"
 #include "convert/mesh3_tetrahedra.h"
 #include "convert/mesher_process.h"
+#include "convert/surface_sizes.h"
 
 // 1 The surface becomes points and triangles; what TetGen would abort on is refused here.
 // 2 A cavity is a connected part of the surface that is inside out. Half way from one of its triangles to
@@ -276,6 +277,20 @@ MesherInput starting(MesherInput surface, const std::vector<Part>& parts) {
   return surface;
 }
 
+/// Divides the surface where elements are to be finer; answers what Mesh_3's sizes are held to.
+SizeLimits refine(MesherInput& surface, const std::vector<Finer>& finer) {
+  if (finer.empty()) return {};
+  const FinerSizes sizes(finer);
+  SizeLimits limits;
+  limits.mean_mm = mean_side_mm(surface);
+  brep::Triangles divided =
+      finer_surface({std::move(surface.points_mm), std::move(surface.triangles)}, sizes);
+  surface.points_mm = std::move(divided.points_mm);
+  surface.triangles = std::move(divided.faces);
+  limits.most_mm = sizes.at_mm(surface.points_mm);
+  return limits;
+}
+
 }  // namespace
 
 std::optional<std::string> fault_in_filling(const Tetrahedra& tetrahedra, double surface_mm3,
@@ -304,6 +319,7 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra) {
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   check(options);
   MesherInput surface = surface_of(solid);
+  const SizeLimits limits = refine(surface, options.finer);
   if (surface.triangles.size() < 4)
     refuse("a surface of " + std::to_string(surface.triangles.size()) + " triangles encloses nothing");
   const std::vector<Part> parts = parts_of(surface);
@@ -316,7 +332,7 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   if (options.mesher != Mesher::Mesh3) best = by_tetgen(surface, surface_mm3, options, findings);
   const bool good = best && quality(*best).min_dihedral_deg >= options.min_dihedral_deg;
   if (options.mesher != Mesher::TetGen && !good && !options.stop.stop_requested()) {
-    Mesh3Filling filling = fill_by_mesh3(starting(surface, parts), surface_mm3, options);
+    Mesh3Filling filling = fill_by_mesh3(starting(surface, parts), limits, surface_mm3, options);
     findings.insert(findings.end(), filling.findings.begin(), filling.findings.end());
     if (filling.tetrahedra) {
       if (best) {

@@ -6,8 +6,10 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "brep/mesh.h"
+#include "convert/finer.h"
 #include "convert/tetrahedra.h"
 
 namespace octotomy::convert {
@@ -26,6 +28,7 @@ struct TetOptions {
   double max_volume_mm3 = 0.0;
   bool limit_volume = false;
   bool keep_boundary = true;                      ///< TetGen's -Y: no new points on the surface
+  std::vector<Finer> finer{};                     ///< where the surface is divided before, and elements by it
   std::chrono::milliseconds time_limit{60000};    ///< of each run, by the clock on the wall
   std::uint64_t memory_limit_bytes = 4ull << 30;  ///< of each run
   std::stop_token stop;                           ///< ends a run; then std::runtime_error says so
@@ -46,12 +49,13 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// any tetrahedra within the same surface (-pY), any with new points on the surface allowed (-p); `method`
 /// and `findings` tell. Nodes within are then moved where elements are flat (improve_tetrahedra.h). An
 /// isosurface has short edges that make quality dear: brep::decimate() takes them away without
-/// self-intersections. Guaranteed: all volumes positive, total volume the surface's to 1e-9 of it by TetGen,
-/// to 1e-3 by Mesh_3.
-/// Throws std::invalid_argument where the mesh is not closed, inside out, flat or tiny, or an option is out
-/// of range; std::runtime_error that says how the meshers ended, with which switches, and what to try, and
-/// where octotomy-tetgen or octotomy-mesh3 does not lie beside the running program.
-/// Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM TOMS 41(2), 2015.
+/// self-intersections. Where elements are to be finer, the surface's triangles are divided before, in their
+/// planes, and elements grow inward from there. Guaranteed: all volumes positive, total volume the surface's
+/// to 1e-9 of it by TetGen, to 1e-3 by Mesh_3. Throws std::invalid_argument where the mesh is not closed,
+/// inside out, flat or tiny, or an option is out of range; std::runtime_error that says how the meshers
+/// ended, with which switches, and what to try, and where octotomy-tetgen or octotomy-mesh3 does not lie
+/// beside the running program. Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM
+/// TOMS 41(2), 2015.
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options = {});
 
 /// What is wrong with tetrahedra that are to fill a surface of this volume, within a share of it: none, one

@@ -17,6 +17,7 @@
 #include "convert/tetrahedralise.h"
 #include "planner/cut_surfaces.h"
 #include "planner/figures.h"
+#include "planner/finer_places.h"
 #include "planner/region_deck.h"
 #include "voxel/components.h"
 #include "voxel/write_scene.h"
@@ -124,13 +125,15 @@ Filling fallback_of(const Object& object, const std::string& why, const std::sto
   return filling;
 }
 
-Filling filling_of(const Object& object, const std::stop_token& stop) {
+Filling filling_of(const Object& object, const std::vector<convert::Finer>& finer,
+                   const std::stop_token& stop) {
   Filling filling;
   const voxel::Universe& universe = object.octree.universe();
   const brep::Mesh bodies = filled(bodies_of(*object.mesh, filling), universe, filling);
   convert::TetOptions options;
   options.mesher = convert::Mesher::Best;
   options.stop = stop;
+  options.finer = finer;
   // Some times what a bone of 50 000 triangles takes, as machines are shared.
   options.time_limit = std::chrono::minutes(2);
   filling.tetrahedra =
@@ -171,25 +174,27 @@ void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQualit
 }
 
 /// The object's filling, or why there is none.
-std::variant<Filling, std::string> fill(const Object& object, const std::stop_token& stop) {
+std::variant<Filling, std::string> fill(const Evaluation& evaluation, const Object& object,
+                                        const ExportStep& step, const std::stop_token& stop) {
   if (!object.mesh) return "it has no mesh";
   if (object.mesh->n_faces() == 0) return "its mesh is empty";
   try {
-    return filling_of(object, stop);
+    return filling_of(object, finer_places(evaluation, step), stop);
   } catch (const std::runtime_error& error) {
     if (stop.stop_requested()) throw Stopped("stopped while " + object.id + " was filled");
     return error.what();
-  } catch (const std::invalid_argument& error) {
+  } catch (const std::logic_error& error) {
     return error.what();
   }
 }
 
-void export_tetrahedra(const Object& object, const ExportStep& step, const std::filesystem::path& path,
-                       Exported& exported, Fillings& fillings, Timings& timings) {
-  const std::string key = object.id + (step.fallback ? " or its voxels" : "");
+void export_tetrahedra(const Evaluation& evaluation, const Object& object, const ExportStep& step,
+                       const std::filesystem::path& path, Exported& exported, Fillings& fillings,
+                       Timings& timings) {
+  const std::string key = object.id + (step.fallback ? " or its voxels" : "") + finer_key(step);
   if (!fillings.made.contains(key)) {
     const Stopwatch watch(timings, "tetrahedralise");
-    std::variant<Filling, std::string> filled = fill(object, fillings.stop);
+    std::variant<Filling, std::string> filled = fill(evaluation, object, step, fillings.stop);
     if (auto* filling = std::get_if<Filling>(&filled))
       if (const std::optional<std::string> why = convert::fault_in_shape(filling->tetrahedra)) {
         if (step.fallback && !object.octree.is_empty())
@@ -297,7 +302,7 @@ Exported export_object(const Evaluation& evaluation, const std::string& id, cons
   if (!step.regions.empty() || step.attachment.any())
     export_regions(evaluation, object, step, path, exported, fillings.stop, timings);
   else if (step.kind == ExportKind::Tetrahedra)
-    export_tetrahedra(object, step, path, exported, fillings, timings);
+    export_tetrahedra(evaluation, object, step, path, exported, fillings, timings);
   if (step.kind == ExportKind::Label) export_label(object, path, exported, timings);
   if (exported.written) exported.details["bytes"] = std::filesystem::file_size(path);
   return exported;

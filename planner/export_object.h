@@ -32,8 +32,8 @@ struct Filling {
 };
 /// What the exports of one result share.
 struct Fillings {
-  /// Objects that were filled already, by their names and whether the fallback was allowed: several decks of
-  /// one object are one filling.
+  /// Objects that were filled already, by their names, whether the fallback was allowed and where elements
+  /// are finer: several decks of one object are one filling.
   std::map<std::string, Filling> made{};
   std::stop_token stop{};  ///< ends a filling
 };

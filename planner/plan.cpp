@@ -114,8 +114,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"move", {"id", "do", "object", "translate_mm", "rotate"}},
     {"measure", {"id", "do", "object", "to", "points_mm"}},
     {"export",
-     {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback", "regions",
-      "order", "midline", "smooth_mm", "between", "sliding", "materials"}},
+     {"id", "do", "object", "path", "moved", "fixed", "element_mm", "material", "fallback", "finer",
+      "regions", "order", "midline", "smooth_mm", "between", "sliding", "materials"}},
 };
 
 std::vector<std::string> step_words() {
@@ -368,6 +368,28 @@ Attachment attachment_of(const Keys& keys, const Bound& bound) {
   return attachment;
 }
 
+std::vector<FinerText> finer_of(const Keys& keys, const Bound& bound) {
+  std::vector<FinerText> places;
+  const Json* list = keys.find("finer");
+  if (list == nullptr) return places;
+  if (!list->is_array())
+    refuse(keys.at("finer"), "must be a list, as [{\"at\": [0, -80, 20], \"size_mm\": 0.5}]");
+  for (const Json& value : *list) {
+    const Keys place(value, keys.at("finer[" + std::to_string(places.size()) + "]"), {"at", "size_mm"});
+    FinerText text;
+    text.size_mm = place.number("size_mm");
+    if (text.size_mm <= 0.0) refuse(place.at("size_mm"), "must be above zero, for example 0.5");
+    if (place.need("at").is_string()) {
+      text.object = place.text("at");
+      bound.need_object(place.at("at"), text.object);
+    } else {
+      text.point_mm = place.point("at");
+    }
+    places.push_back(std::move(text));
+  }
+  return places;
+}
+
 ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::string>& taken) {
   ExportStep step{keys.text("object"), keys.text("path")};
   bound.need_object(keys.at("object"), step.object);
@@ -412,6 +434,11 @@ ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::strin
       refuse(plane.at("normal"), "has no direction: give for example [1, 0, 0]");
   }
   read_regions(keys, bound, step);
+  step.finer = finer_of(keys, bound);
+  if (!step.finer.empty() && step.kind != ExportKind::Tetrahedra)
+    refuse(keys.at("finer"), "is of a deck's elements: leave it out");
+  if (!step.finer.empty() && !step.smooth_mm && (step.attachment.any() || !step.regions.empty()))
+    refuse(keys.at("finer"), "is not of voxels' elements: add 'smooth_mm', or leave it out");
   return step;
 }
 

@@ -73,6 +73,12 @@ struct PlaneText {
   glm::dvec3 point_mm{0.0};
   glm::dvec3 normal{1, 0, 0};
 };
+/// Elements of about a size at a point or, where named, along an object's surface.
+struct FinerText {
+  glm::dvec3 point_mm{0.0};
+  std::string object;
+  double size_mm = 1.0;
+};
 /// Linear elastic.
 struct RegionMaterial {
   double youngs_modulus_mpa = 0.0;
@@ -86,6 +92,7 @@ struct ExportStep {
   /// Of decks that nothing holds: where the meshers fail, an octree's elements are taken, and marked.
   bool fallback = false;
   bool second_order = false;           ///< of decks: ten-node tetrahedra
+  std::vector<FinerText> finer{};      ///< of decks that are not of voxels
   std::optional<PlaneText> midline{};  ///< of decks: the surface's nodes along it are a set
   /// Of decks: further objects that fill the same deck, each a region of its own, with shared nodes where
   /// they touch.

@@ -10,6 +10,7 @@
 #include "convert/tetrahedralise.h"
 #include "planner/attach.h"
 #include "planner/figures.h"
+#include "planner/finer_places.h"
 #include "voxel/combine.h"
 
 namespace octotomy::planner {
@@ -74,7 +75,8 @@ void fill_by_voxels(const Regions& regions, const ExportStep& step, const voxel:
                             " mm\u00b3: what is in several is the first's");
 }
 
-void fill(const Regions& regions, const ExportStep& step, const voxel::Progress& progress, RegionDeck& deck) {
+void fill(const Evaluation& evaluation, const Regions& regions, const ExportStep& step,
+          const voxel::Progress& progress, RegionDeck& deck) {
   if (!step.smooth_mm) {
     fill_by_voxels(regions, step, progress, deck);
     return;
@@ -84,6 +86,7 @@ void fill(const Regions& regions, const ExportStep& step, const voxel::Progress&
     convert::RegionMeshOptions options;
     options.size_mm = *step.smooth_mm;
     options.stop = progress.stop;
+    options.finer = finer_places(evaluation, step);
     deck.tetrahedra = convert::smooth_tetrahedra_of(regions.octrees, options);
     why = convert::fault_in_shape(deck.tetrahedra).value_or("");
   } catch (const std::exception& error) {
@@ -216,7 +219,7 @@ RegionDeck region_deck(const Evaluation& evaluation, const Object& object, const
   if (step.attachment.element_mm) coarsen(evaluation, *step.attachment.element_mm, regions, holders);
   check_and_count(regions);
   RegionDeck deck;
-  fill(regions, step, progress, deck);
+  fill(evaluation, regions, step, progress, deck);
   add_materials(regions, step, deck);
   add_free_surfaces(regions, deck);
   add_interfaces(regions, step, deck);

@@ -19,6 +19,7 @@
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/figures.h"
+#include "planner/landmarks_file.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -30,6 +31,8 @@ struct TetText {
   std::string mesher = "best";
   std::optional<double> max_volume_mm3, voxel_mm, size_mm;
   std::vector<std::filesystem::path> regions;
+  std::vector<std::string> finer;
+  std::filesystem::path landmarks;
   bool contact = false;
   std::vector<double> density;
   double seconds = 60.0;
@@ -37,6 +40,37 @@ struct TetText {
   int order = 1;
   ScanIn scan_in;
 };
+
+/// Places of --finer: WHERE=SIZE, where a place is a point, a landmark's name or a mesh file.
+std::vector<convert::Finer> finer_places(const TetText& text) {
+  std::vector<brep::Landmark> landmarks;
+  if (!text.landmarks.empty()) landmarks = read_landmarks(text.landmarks);
+  std::vector<convert::Finer> places;
+  for (const std::string& word : text.finer) {
+    const std::size_t equals = word.rfind('=');
+    const std::optional<double> size_mm =
+        equals == std::string::npos ? std::nullopt : parse_number(word.substr(equals + 1));
+    if (!size_mm || *size_mm <= 0.0)
+      throw std::runtime_error("--finer: '" + word +
+                               "' says no size: for example 12,-80,4=0.5 or cut.stl=0.5");
+    const std::string where = word.substr(0, equals);
+    const auto landmark = std::find_if(landmarks.begin(), landmarks.end(),
+                                       [&](const brep::Landmark& known) { return known.name == where; });
+    convert::Finer place;
+    place.size_mm = *size_mm;
+    if (landmark != landmarks.end())
+      place.points_mm = {landmark->p_mm};
+    else if (const auto numbers = parse_numbers<3>(where))
+      place.points_mm = {{(*numbers)[0], (*numbers)[1], (*numbers)[2]}};
+    else if (std::filesystem::exists(where))
+      place.surface = brep::read_triangles(where);
+    else
+      throw std::runtime_error("--finer: '" + where +
+                               "' is no point x,y,z, no mesh file, and no landmark of --landmarks");
+    places.push_back(std::move(place));
+  }
+  return places;
+}
 
 /// What a deck is made of, and how it came about.
 struct Filled {
@@ -154,6 +188,7 @@ Filled of_octrees(const Program& program, const TetText& text, Timings& timings)
     convert::RegionMeshOptions options;
     options.size_mm = *text.size_mm;
     options.min_dihedral_deg = text.options.min_dihedral_deg;
+    options.finer = text.options.finer;
     options.time_limit = text.options.time_limit;
     options.stop = text.options.stop;
     fill(text, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
@@ -227,6 +262,9 @@ int tet(const Program& program, TetText text) {
   text.options.mesher = text.mesher == "tetgen"  ? convert::Mesher::TetGen
                         : text.mesher == "mesh3" ? convert::Mesher::Mesh3
                                                  : convert::Mesher::Best;
+  text.options.finer = finer_places(text);
+  if (!text.finer.empty() && is_octree(text.in) && !text.size_mm)
+    throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
   text.options.time_limit = std::chrono::seconds(static_cast<long>(text.seconds));
   text.options.stop = program.stop.get_token();
   Timings timings;
@@ -294,6 +332,7 @@ void add_tet(Program& program) {
   CLI::App& verb =
       program.verb("tet", "Fills a solid with quality tetrahedra for finite elements",
                    "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
+                   "  octotomy tet maxilla.stl -o maxilla.inp --finer 12,-80,4=0.5 --finer plate.stl=0.8\n"
                    "  octotomy tet maxilla.octree --region rest.octree --size 3 --contact -o head.inp\n"
                    "  octotomy tet maxilla.stl -o maxilla.feb --scan head.nrrd --density 0.0009,0.05",
                    [&program, text] { return tet(program, *text); });
@@ -317,6 +356,14 @@ void add_tet(Program& program) {
       ->check(between(1.1, 10.0))
       ->capture_default_str();
   verb.add_option("--max-volume", text->max_volume_mm3, "Largest tetrahedron, mm3")->check(above_zero());
+  verb.add_option(
+          "--finer", text->finer,
+          "WHERE=MM: elements with sides of about so many mm at a point x,y,z, a landmark or along a mesh "
+          "file's surface, growing from there; repeated")
+      ->allow_extra_args(false);
+  verb.add_option("--landmarks", text->landmarks,
+                  "Landmarks that --finer names: JSON, or 3D Slicer's markups")
+      ->check(CLI::ExistingFile);
   verb.add_flag("!--refine-boundary", text->options.keep_boundary,
                 "Let TetGen add points on the surface; by default it is kept as it is");
   verb.add_option("--seconds", text->seconds, "Time that each run of a mesher may take")

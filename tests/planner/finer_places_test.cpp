@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/finer_places.h"
+
+#include <gtest/gtest.h>
+
+#include "planner/export_object.h"
+#include "planner/plan.h"
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::planner {
+namespace {
+
+class FinerPlaces : public testing::Test {
+ protected:
+  FinerPlaces() { voxel::write_scene(tests::ball_scene(10.0, 32), folder_ / "ball.nrrd"); }
+
+  Plan plan(const std::string& keys) const {
+    return parse_plan(R"({ "octotomy_plan": 1, "name": "ball", "scans": { "ct": { "path": "ball.nrrd" } },
+      "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
+                 { "id": "cut", "do": "mask", "regions": [ { "view": "anterior",
+                     "polygons_mm": [[[-20, 0], [20, 0], [20, 20], [-20, 20]]] } ] },
+                 { "id": "upper", "do": "combine", "expression": "ball & cut" },
+                 { "id": "deck", "do": "export", "object": "upper", )" +
+                          keys + " } ] }",
+                      folder_.path());
+  }
+  Exported written(const Plan& plan, const Evaluation& evaluation, Fillings& fillings) const {
+    Timings timings;
+    return export_object(evaluation, "deck", std::get<ExportStep>(plan.steps.back().action), folder_ / "out",
+                         fillings, timings);
+  }
+
+  tests::TestFolder folder_;
+};
+
+TEST_F(FinerPlaces, DecksOfOneObjectAreFilledOnceForEachGrading) {
+  const Plan even = plan(R"("path": "even.vtu")");
+  const Plan at_point = plan(R"("path": "at_point.vtu", "finer": [{ "at": [0, 0, 10], "size_mm": 0.5 }])");
+  const Plan along_cut = plan(R"("path": "along_cut.vtu", "finer": [{ "at": "cut", "size_mm": 1 }])");
+  const Evaluation evaluation = evaluate(even);
+  Fillings fillings;
+  const auto tets = [&](const Plan& plan) {
+    return written(plan, evaluation, fillings).details["tets"].get<double>();
+  };
+  const double evenly = tets(even);
+  EXPECT_GT(tets(at_point), 1.1 * evenly);
+  EXPECT_GT(tets(along_cut), 1.5 * evenly);
+  EXPECT_EQ(fillings.made.size(), 3U);
+  EXPECT_EQ(tets(even), evenly);
+  EXPECT_EQ(fillings.made.size(), 3U);
+}
+
+TEST_F(FinerPlaces, AnObjectWithoutAMeshIsNamedAndNothingIsWritten) {
+  const Plan along_cut = plan(R"("path": "deck.vtu", "finer": [{ "at": "cut", "size_mm": 1 }])");
+  Evaluation evaluation = evaluate(along_cut);
+  evaluation.objects[1].mesh = nullptr;
+  Fillings fillings;
+  const Exported deck = written(along_cut, evaluation, fillings);
+  EXPECT_FALSE(deck.written);
+  EXPECT_NE(deck.findings.front().find("finer at 'cut'"), std::string::npos) << deck.findings.front();
+}
+
+TEST_F(FinerPlaces, PlacesWithoutSizeOrMeaningAreRefused) {
+  for (const char* keys :
+       {R"("path": "d.vtu", "finer": [{ "at": [0, 0, 0] }])",
+        R"("path": "d.vtu", "finer": [{ "size_mm": 1 }])",
+        R"("path": "d.vtu", "finer": [{ "at": [0, 0], "size_mm": 1 }])",
+        R"("path": "d.vtu", "finer": [{ "at": "nothing", "size_mm": 1 }])",
+        R"("path": "d.vtu", "finer": [{ "at": [0, 0, 0], "size_mm": 0 }])",
+        R"("path": "d.vtu", "finer": { "at": [0, 0, 0], "size_mm": 1 })",
+        R"("path": "d.stl", "finer": [{ "at": [0, 0, 0], "size_mm": 1 }])",
+        R"("path": "d.vtu", "regions": ["ball"], "finer": [{ "at": [0, 0, 0], "size_mm": 1 }])"})
+    EXPECT_THROW(plan(keys), std::runtime_error) << keys;
+}
+
+}  // namespace
+}  // namespace octotomy::planner
