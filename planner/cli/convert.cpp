@@ -94,12 +94,9 @@ int convert(const Program& program, const ConvertText& text) {
   }
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
-  const glm::ivec3 dims = scene.lattice.dims;
   for (const voxel::Finding& finding : scene.audit)
     if (finding.verdict != voxel::Verdict::Pass) warn(finding.check + ": " + finding.detail);
-  program.say(json, lines({{"written", text.out.string()},
-                           {"samples", std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
-                                           std::to_string(dims.z)}}));
+  program.say(json, lines({{"written", text.out.string()}, {"samples", dims_text(scene.lattice.dims)}}));
   return done;
 }
 

@@ -60,15 +60,13 @@ int info_of_scan(const Program& program, const std::filesystem::path& path, cons
   json["series"] = series_of(path, scene);
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   const voxel::Range range = voxel::range(scene);
-  const glm::ivec3 dims = scene.lattice.dims;
-  std::string text = lines(
-      {{"scan", path.string()},
-       {"modality", scene.modality.empty() ? "not stated" : scene.modality},
-       {"samples", std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z)},
-       {"spacing", grouped(spacing_mm.x, 4) + " x " + grouped(spacing_mm.y, 4) + " x " +
-                       grouped(spacing_mm.z, 4) + " mm"},
-       {"range",
-        grouped(range.low, 0) + " to " + grouped(range.high, 0) + (voxel::unit(scene) == "1" ? "" : " HU")}});
+  std::string text = lines({{"scan", path.string()},
+                            {"modality", scene.modality.empty() ? "not stated" : scene.modality},
+                            {"samples", dims_text(scene.lattice.dims)},
+                            {"spacing", grouped(spacing_mm.x, 4) + " x " + grouped(spacing_mm.y, 4) + " x " +
+                                            grouped(spacing_mm.z, 4) + " mm"},
+                            {"range", grouped(range.low, 0) + " to " + grouped(range.high, 0) +
+                                          (voxel::unit(scene) == "1" ? "" : " HU")}});
   if (json["series"].size() > 1)
     for (const Json& series : json["series"])
       text += "  series " + std::to_string(series["series"].get<int>()) + ": '" +

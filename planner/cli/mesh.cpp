@@ -5,7 +5,6 @@
 #include "brep/health.h"
 #include "brep/measure.h"
 #include "brep/smooth.h"
-#include "brep/write_mesh.h"
 #include "convert/cuberille.h"
 #include "convert/expression_surface.h"
 #include "convert/isosurface.h"
@@ -141,10 +140,7 @@ int mesh(const Program& program, const MeshText& text) {
     health = brep::health(surface);
   }
   const brep::Measures measures = brep::measure(surface);
-  {
-    const Stopwatch watch(timings, "write");
-    brep::write_mesh(surface, text.out);
-  }
+  write_surface(surface, text.out, timings);
   Json json = answer(timings);
   json["kind"] = "mesh";
   json["path"] = text.out.string();

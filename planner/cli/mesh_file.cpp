@@ -3,6 +3,7 @@
 
 #include "brep/health.h"
 #include "brep/read_mesh.h"
+#include "brep/write_mesh.h"
 
 namespace octotomy::planner::cli {
 
@@ -24,6 +25,11 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings) {
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
   }
+}
+
+void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings) {
+  const Stopwatch watch(timings, "write");
+  brep::write_mesh(mesh, out);
 }
 
 void need_mesh_extension(const std::filesystem::path& path) {

@@ -16,6 +16,9 @@ brep::Mesh read_solid(const std::filesystem::path& path, Timings& timings);
 /// cannot be joined.
 brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings);
 
+/// Writes a mesh by brep::write_mesh(); "write" in the timings.
+void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings);
+
 /// Throws std::runtime_error where no mesh is written with the path's extension.
 void need_mesh_extension(const std::filesystem::path& out);
 

@@ -4,7 +4,6 @@
 #include "brep/health.h"
 #include "brep/measure.h"
 #include "brep/smooth.h"
-#include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
@@ -62,10 +61,7 @@ int boolean(const Program& program, const BooleanText& text) {
                              " is empty: there is no surface to write");
   const brep::Health health = brep::health(result.mesh);
   const brep::Measures measures = brep::measure(result.mesh);
-  {
-    const Stopwatch watch(timings, "write");
-    brep::write_mesh(result.mesh, text.out);
-  }
+  write_surface(result.mesh, text.out, timings);
   for (const std::string& finding : result.findings) warn(finding);
   Json json = answer(timings);
   json["path"] = text.out.string();
@@ -98,10 +94,7 @@ int smooth(const Program& program, const SmoothText& text) {
   }
   const brep::Health health = brep::health(smoothed);
   const brep::Measures measures = brep::measure(smoothed);
-  {
-    const Stopwatch watch(timings, "write");
-    brep::write_mesh(smoothed, text.out);
-  }
+  write_surface(smoothed, text.out, timings);
   for (const std::string& finding : health.findings) warn(finding);
   const double change_mm3 = measures.volume_mm3 - brep::volume_mm3(solid);
   Json json = answer(timings);

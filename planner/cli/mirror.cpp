@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/mirror.h"
 
-#include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
@@ -48,10 +47,7 @@ int mirror(const Program& program, const MirrorText& text) {
     found = fit(program, text, mesh);
   }
   const brep::MirrorPlane plane = found ? found->plane : *plane_of(text);
-  if (!text.out.empty()) {
-    const Stopwatch watch(timings, "write");
-    brep::write_mesh(brep::mirrored(mesh, plane), text.out);
-  }
+  if (!text.out.empty()) write_surface(brep::mirrored(mesh, plane), text.out, timings);
   const std::vector<std::string> findings = found ? found->findings : std::vector<std::string>();
   for (const std::string& finding : findings) warn(finding);
   const auto of_fit = [&](double brep::MirrorFit::*value) {

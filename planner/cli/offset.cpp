@@ -3,7 +3,6 @@
 
 #include "brep/health.h"
 #include "brep/measure.h"
-#include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
@@ -44,10 +43,7 @@ int offset(const Program& program, const OffsetText& text) {
                              " mm inside it: there is no surface to write");
   const brep::Health health = brep::health(moved);
   const brep::Measures measures = brep::measure(moved);
-  {
-    const Stopwatch watch(timings, "write");
-    brep::write_mesh(moved, text.out);
-  }
+  write_surface(moved, text.out, timings);
   Json json = answer(timings);
   json["path"] = text.out.string();
   json["by_mm"] = text.by_mm;

@@ -68,10 +68,7 @@ int head(const Program& program, const PhantomText& text) {
                    {"area_mm2", nullptr}};
   json["findings"] = {
       "truth.area_mm2: the bone's closed form is a Boolean of solids, which has no closed area"};
-  const glm::ivec3 dims = scene.lattice.dims;
-  program.say(json, lines({{"phantom", text.out.string()},
-                           {"samples", std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
-                                           std::to_string(dims.z)}}));
+  program.say(json, lines({{"phantom", text.out.string()}, {"samples", dims_text(scene.lattice.dims)}}));
   return done;
 }
 

@@ -317,13 +317,11 @@ int prepare(const Program& program, const PrepareText& text) {
     said.update(lattice_json(scene));
     if (work.progress.report) work.progress.report(1.0);
     if (said.contains("finding")) warn(step.name + ": " + said["finding"].get<std::string>());
-    const glm::ivec3 dims = scene.lattice.dims;
-    rows.emplace_back(
-        step.name,
-        std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z) +
-            (said.contains("volume_removed_mm3")
-                 ? ", " + grouped(said["volume_removed_mm3"].get<double>(), 0) + " mm\u00b3 removed"
-                 : ""));
+    rows.emplace_back(step.name, dims_text(scene.lattice.dims) +
+                                     (said.contains("volume_removed_mm3")
+                                          ? ", " + grouped(said["volume_removed_mm3"].get<double>(), 0) +
+                                                " mm\u00b3 removed"
+                                          : ""));
     did.push_back(std::move(said));
   }
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");

@@ -3,7 +3,6 @@
 
 #include "brep/health.h"
 #include "brep/read_mesh.h"
-#include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
@@ -48,10 +47,7 @@ int repair(const Program& program, const RepairText& text) {
     repaired = brep::repair(triangles, text.options);
   }
   const brep::Health before = brep::health(triangles), after = brep::health(repaired.surface);
-  {
-    const Stopwatch watch(timings, "write");
-    brep::write_mesh(brep::mesh_of(repaired.surface), text.out);
-  }
+  write_surface(brep::mesh_of(repaired.surface), text.out, timings);
   for (const brep::Change& left : repaired.left) warn(left.step + ": " + left.what);
   Json json = answer(timings);
   json["path"] = text.out.string();

@@ -5,7 +5,6 @@
 #include "brep/components.h"
 #include "brep/health.h"
 #include "brep/measure.h"
-#include "brep/write_mesh.h"
 #include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
@@ -41,10 +40,7 @@ int saw(const Program& program, const SawText& text) {
     throw std::runtime_error("the cut takes all of " + text.solid.string() + ": there is nothing to write");
   const brep::Health health = brep::health(rest.mesh);
   const brep::Measures measures = brep::measure(rest.mesh);
-  {
-    const Stopwatch watch(timings, "write");
-    brep::write_mesh(rest.mesh, text.out);
-  }
+  write_surface(rest.mesh, text.out, timings);
   Json pieces = Json::array();
   for (const brep::Component& piece : brep::components(rest.mesh))
     pieces.push_back({{"volume_mm3", piece.volume_mm3}, {"area_mm2", piece.area_mm2}});

@@ -112,6 +112,10 @@ void need_folder_of(const std::filesystem::path& out) {
                              " cannot be written to: choose another -o");
 }
 
+std::string dims_text(const glm::ivec3& dims) {
+  return std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z);
+}
+
 std::string lines(const std::vector<std::pair<std::string, std::string>>& rows) {
   std::size_t widest = 0;
   for (const auto& [name, unused] : rows) widest = std::max(widest, name.size());

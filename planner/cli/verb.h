@@ -86,6 +86,9 @@ int info_of_octree(const Program& program, const std::filesystem::path& path);
 /// Throws std::runtime_error where a file cannot be made at `out`: before the work, so that none is lost.
 void need_folder_of(const std::filesystem::path& out);
 
+/// Numbers of samples for people: 512 x 512 x 300.
+std::string dims_text(const glm::ivec3& dims);
+
 /// A table of two columns for people.
 std::string lines(const std::vector<std::pair<std::string, std::string>>& rows);
 

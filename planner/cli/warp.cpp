@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "brep/write_mesh.h"
 #include "convert/calculix_result.h"
 #include "convert/displacement_field.h"
 #include "planner/answer.h"
@@ -29,8 +28,7 @@ void warp_mesh(const WarpText& text, const convert::DisplacementField& field, Ti
     const Stopwatch watch(timings, "warp");
     warped = convert::warped(mesh, field);
   }
-  const Stopwatch watch(timings, "write");
-  brep::write_mesh(warped, text.out);
+  write_surface(warped, text.out, timings);
 }
 
 void warp_scan(const Program& program, const WarpText& text, const convert::DisplacementField& field,
