@@ -2,11 +2,11 @@
 #include "brep/write_mesh.h"
 
 #include <cstring>
-#include <fstream>
 #include <gtest/gtest.h>
 
 #include "brep/read_mesh.h"
 #include "tests/brep/shapes.h"
+#include "tests/file_bytes.h"
 
 namespace octotomy::brep {
 namespace {
@@ -51,8 +51,7 @@ TEST(WriteMesh, ColoursAndScalarsGoIntoPlyBesideThePlaces) {
   }
   write_mesh(mesh, folder() / "coloured.ply", data);
   EXPECT_EQ(read_triangles(folder() / "coloured.ply").points_mm, triangles_of(mesh).points_mm);
-  std::ifstream file(folder() / "coloured.ply", std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  const std::string bytes = tests::bytes_of(folder() / "coloured.ply");
   EXPECT_NE(bytes.find("property uchar red\nproperty uchar green\nproperty uchar blue\n"
                        "property double distance_mm\nelement face"),
             std::string::npos);
@@ -69,11 +68,6 @@ TEST(WriteMesh, ColoursAndScalarsGoIntoPlyBesideThePlaces) {
   EXPECT_THROW(write_mesh(mesh, folder() / "coloured.ply", data), std::invalid_argument);
 }
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 template <typename T>
 T number_at(const std::string& bytes, std::size_t at) {
   T value;
@@ -86,7 +80,7 @@ TEST(WriteMesh, AGlbHoldsPlacesNormalsColoursAndCornersAsItsHeaderSays) {
   VertexData data;
   for (std::size_t v = 0; v < mesh.n_vertices(); ++v) data.colours.emplace_back(0, 255, 188);
   write_mesh(mesh, folder() / "ball.glb", data);
-  const std::string bytes = bytes_of(folder() / "ball.glb");
+  const std::string bytes = tests::bytes_of(folder() / "ball.glb");
   ASSERT_EQ(bytes.substr(0, 4), "glTF");
   EXPECT_EQ(number_at<std::uint32_t>(bytes, 4), 2u);
   EXPECT_EQ(number_at<std::uint32_t>(bytes, 8), bytes.size());

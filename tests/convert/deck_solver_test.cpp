@@ -16,6 +16,7 @@
 #include "convert/separate_regions.h"
 #include "convert/tetrahedralise.h"
 #include "tests/convert/surfaces.h"
+#include "tests/file_bytes.h"
 #include "voxel/combine.h"
 
 namespace octotomy::convert {
@@ -48,8 +49,7 @@ bool have(const std::string& program) {
 }
 
 std::string log_of(const Folder& folder) {
-  std::ifstream in(folder / "log");
-  return {std::istreambuf_iterator<char>(in), {}};
+  return tests::bytes_of(folder / "log");
 }
 
 /// Elements of graded sizes.

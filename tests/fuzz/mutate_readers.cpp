@@ -13,13 +13,13 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <mutex>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
+#include "tests/file_bytes.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/voxel/dicom_frames.h"
 #include "tests/voxel/scratch_folder.h"
@@ -28,11 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace octotomy::tests;
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "tests/file_bytes.h"
 #include "tests/planner/command_line.h"
 
 namespace octotomy::planner {
@@ -240,10 +241,7 @@ TEST_F(CommandLine, Figure31GoesThroughEveryRepresentation) {
   write("figure.txt", "P(EP(EEEEEEEF)FP(EEEEFEEE)EEP(EFFEEFEE)E)\n");
   ASSERT_EQ(run("octree " + at("figure.txt") + " --from treecode --depth 2 -o " + at("figure.octree")).status,
             0);
-  const auto content = [&](const std::string& name) {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(file), {});
-  };
+  const auto content = [&](const std::string& name) { return tests::bytes_of(folder_ / name); };
   for (const char* form : {"treecode", "linear", "explicit", "runs", "segments", "marginal", "faces", "array",
                            "packed", "bits"}) {
     SCOPED_TRACE(form);

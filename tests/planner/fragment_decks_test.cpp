@@ -2,12 +2,12 @@
 //
 // Fragments of the head phantom, cut and moved by random plans, as decks.
 #include <cstdlib>
-#include <fstream>
 #include <gtest/gtest.h>
 
 #include "planner/export_object.h"
 #include "planner/random_plan.h"
 #include "tests/convert/surfaces.h"
+#include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
 #include "verify/phantom.h"
 
@@ -123,8 +123,7 @@ TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAl
   EXPECT_TRUE(deck.details["fallback"].get<bool>());
   EXPECT_NEAR(deck.details["volume_mm3"].get<double>(),
               static_cast<double>(evaluation.objects.front().octree.voxel_count()), 1e-6);
-  std::ifstream inp(folder / "out/ball.inp");
-  const std::string header(std::istreambuf_iterator<char>(inp), {});
+  const std::string header = tests::bytes_of(folder / "out/ball.inp");
   EXPECT_NE(header.find("fallback: it has no mesh"), std::string::npos) << "the deck itself says so";
 }
 
@@ -133,8 +132,7 @@ TEST(FragmentDecks, AStepOfOrderTwoWritesElementsOfTenNodes) {
   for (const std::string order : {"1", "2"}) {
     const Plan the = folder.plan(R"("path": "ball.inp", "order": )" + order);
     ASSERT_TRUE(deck_of(the, evaluate(the), folder / "out").written);
-    std::ifstream inp(folder / "out/ball.inp");
-    const std::string text(std::istreambuf_iterator<char>(inp), {});
+    const std::string text = tests::bytes_of(folder / "out/ball.inp");
     EXPECT_NE(text.find(order == "1" ? "TYPE=C3D4," : "TYPE=C3D10,"), std::string::npos) << order;
   }
   EXPECT_THROW(folder.plan(R"("path": "ball.inp", "order": 3)"), std::runtime_error);
@@ -211,8 +209,7 @@ TEST(FragmentDecks, RegionsShareTheirNodesAndOverlapsBelongToTheFirst) {
   EXPECT_EQ(apart.details["surfaces"]["upper_TO_lower"], apart.details["surfaces"]["lower_TO_upper"]);
   EXPECT_NEAR(apart.details["volume_mm3"].get<double>() / deck.details["volume_mm3"].get<double>(), 1.0,
               0.03);
-  std::ifstream inp(folder / "out/ball.inp");
-  const std::string text(std::istreambuf_iterator<char>(inp), {});
+  const std::string text = tests::bytes_of(folder / "out/ball.inp");
   EXPECT_NE(text.find("*MATERIAL, NAME=OF_lower\n*ELASTIC\n0.5, 0.4"), std::string::npos);
   EXPECT_NE(text.find("lower_TO_upper, upper_TO_lower\n"), std::string::npos)
       << "the softer one is the slave";

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
 #include "tests/run_command.h"
@@ -156,10 +157,8 @@ TEST_P(NumpysReader, NumpyReadsTheSameSlicesWithoutAHeader) {
   if (unpacked.status != 0) GTEST_SKIP() << "tar cannot unpack .xz here: " << unpacked.errors;
   // Slices of one series are files of their own; the vertex comes first, so they are stacked from the neck.
   std::string whole;
-  for (int number = 113; number >= 1; --number) {
-    std::ifstream slice(folder_ / ("CThead/CThead." + std::to_string(number)), std::ios::binary);
-    whole.append(std::istreambuf_iterator<char>(slice), {});
-  }
+  for (int number = 113; number >= 1; --number)
+    whole += tests::bytes_of(folder_ / ("CThead/CThead." + std::to_string(number)));
   std::ofstream(folder_ / "head.raw", std::ios::binary) << whole;
   const std::string raw = quoted(folder_ / "head.raw");
   const std::string layout = " --raw 256x256x113 uint16 --big-endian --spacing 1,1,2";

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/report.h"
 
-#include <fstream>
 #include <gtest/gtest.h>
-#include <iterator>
 
 #include "planner/report_page.h"
+#include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
 
 namespace octotomy::planner {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 int times(const std::string& text, const std::string& part) {
   int count = 0;
@@ -61,7 +55,7 @@ class Report : public testing::Test {
 };
 
 TEST_F(Report, TheFolderHoldsWhatTheAnswerSays) {
-  EXPECT_EQ(Json::parse(text_of(folder_ / "out/result.json")), Json(json_));
+  EXPECT_EQ(Json::parse(tests::bytes_of(folder_ / "out/result.json")), Json(json_));
   for (const char* name : {"report.html", "pieces/cap.stl", "cap.nrrd", "cap.inp", "views/after_anterior.png",
                            "views/before_left.png"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
@@ -102,7 +96,7 @@ TEST_F(Report, AnswersHaveTheirKeysAndAMissingOneIsNull) {
 }
 
 TEST_F(Report, ThePageNeedsNothingElse) {
-  const std::string page = text_of(folder_ / "out/report.html");
+  const std::string page = tests::bytes_of(folder_ / "out/report.html");
   EXPECT_EQ(times(page, "http"), 0);
   EXPECT_EQ(times(page, "<script"), 0);
   EXPECT_EQ(times(page, "<link"), 0);
@@ -116,7 +110,7 @@ TEST_F(Report, ThePageNeedsNothingElse) {
 }
 
 TEST_F(Report, TextOfThePlanCannotBecomeMarkup) {
-  const std::string page = text_of(folder_ / "out/report.html");
+  const std::string page = tests::bytes_of(folder_ / "out/report.html");
   EXPECT_EQ(times(page, "<b>bold"), 0);
   EXPECT_NE(page.find("A &lt;b&gt;bold&lt;/b&gt; &amp; &quot;quoted&quot; plan"), std::string::npos);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // The verbs that draw, segment and prepare scans, as scripts see them.
+#include "tests/file_bytes.h"
 #include "tests/planner/command_line.h"
 #include "tests/reference_data.h"
 
@@ -236,10 +237,7 @@ TEST_F(Segments, AHeadrestIsRemovedKeptAndPutBack) {
   const Json back = json("prepare " + at("clean.nrrd") + " -o " + at("back.nrrd") +
                          " --step restore=" + at("removed.octree"));
   EXPECT_EQ(back["steps"][0]["samples_restored"], said["steps"][0]["samples_removed"]);
-  const auto bytes = [&](const char* name) {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(file), {});
-  };
+  const auto bytes = [&](const char* name) { return tests::bytes_of(folder_ / name); };
   EXPECT_EQ(bytes("back.nrrd"), bytes("scan.nrrd"));
   EXPECT_NE(bytes("clean.nrrd"), bytes("scan.nrrd"));
   expect_refused(run(clean + " --step remove_headrest"), "--removed");

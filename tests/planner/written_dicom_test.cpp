@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
 #include "tests/run_command.h"
@@ -101,8 +102,7 @@ TEST_F(WrittenDicom, IsHeldToTheStandard) {
                                folder_ / "alone.dcm", folder_ / "ball.dcm"})
     EXPECT_EQ(errors_of(file), "") << file;
   // The checker sees what is wrong: a type of segmentation that the standard does not know.
-  std::ifstream in(folder_ / "ball.dcm", std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(in), {});
+  std::string bytes = tests::bytes_of(folder_ / "ball.dcm");
   const std::size_t at = bytes.find("BINARY");
   ASSERT_NE(at, std::string::npos);
   std::ofstream(folder_ / "ball.dcm", std::ios::binary) << bytes.replace(at, 6, "TERNAR");

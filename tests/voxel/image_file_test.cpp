@@ -3,10 +3,10 @@
 
 #include <OpenImageIO/imageio.h>
 #include <cmath>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <stdexcept>
 
+#include "tests/file_bytes.h"
 #include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::voxel {
@@ -62,9 +62,8 @@ TEST(EncodeImage, GivesTheBytesThatWriteImageWrites) {
   for (const std::string format : {"png", "jpeg", "webp"}) {
     const std::vector<std::uint8_t> encoded = encode_image(format, size_px, ramp());
     write_image(folder / ("ramp." + format), size_px, ramp());
-    std::ifstream in(folder / ("ramp." + format), std::ios::binary);
-    const std::string written{std::istreambuf_iterator<char>(in), {}};
-    EXPECT_EQ(std::string(encoded.begin(), encoded.end()), written) << format;
+    EXPECT_EQ(std::string(encoded.begin(), encoded.end()), tests::bytes_of(folder / ("ramp." + format)))
+        << format;
   }
 }
 

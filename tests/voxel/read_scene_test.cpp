@@ -7,10 +7,10 @@
 #include <gdcmImageReader.h>
 #include <gdcmImageWriter.h>
 #include <gtest/gtest.h>
-#include <iterator>
 #include <stdexcept>
 #include <tbb/global_control.h>
 
+#include "tests/file_bytes.h"
 #include "tests/reference_data.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scratch_folder.h"
@@ -26,17 +26,13 @@ namespace octotomy::voxel {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::bytes_of;
 using tests::finding;
 using tests::linear_field;
 using tests::linear_scene;
 using tests::oblique_lattice;
 using tests::ScratchFolder;
 using tests::verdict;
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "tests/file_bytes.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/read_scene.h"
@@ -15,14 +16,10 @@ namespace octotomy::voxel {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::bytes_of;
 using tests::linear_scene;
 using tests::oblique_lattice;
 using tests::ScratchFolder;
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// Greatest distance between where two lattices put the corners of their index range.
 double worst_shift_mm(const Lattice& a, const Lattice& b) {
