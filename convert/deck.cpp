@@ -175,6 +175,53 @@ class Unfinished {
   bool renamed_ = false;
 };
 
+/// Bytes that a deck takes, for its progress: what text takes of a node with its coordinates, an element, a
+/// face or an entry of a set, about; binary parts are smaller, none is far larger.
+double bytes_about(const Tetrahedra& tetrahedra, const DeckOptions& options) {
+  std::size_t entries = tetrahedra.boundary_nodes.size();
+  for (const NodeSet& set : options.node_sets) entries += set.nodes.size();
+  for (const DeckSurface& surface : options.surfaces) entries += surface.faces.size();
+  for (const Prescribed& prescribed : options.prescribed) entries += 8 * prescribed.displacement_mm.size();
+  return 55.0 * static_cast<double>(tetrahedra.nodes_mm.size()) +
+         35.0 * static_cast<double>(tetrahedra.tets.size()) + 10.0 * static_cast<double>(entries);
+}
+
+/// How much of a deck's files is written.
+class Written {
+ public:
+  Written(const voxel::Progress& progress, double bytes_about)
+      : progress_(progress), bytes_about_(bytes_about) {}
+
+  /// Throws Stopped where the writing is to end.
+  void add(std::streamsize bytes) {
+    bytes_ += bytes;
+    if (bytes_ < next_) return;
+    constexpr std::streamsize look_every = 1 << 20;
+    next_ = bytes_ + look_every;
+    progress_.at(std::min(1.0, static_cast<double>(bytes_) / bytes_about_));
+  }
+
+ private:
+  const voxel::Progress& progress_;
+  double bytes_about_;
+  std::streamsize bytes_ = 0, next_ = 0;
+};
+
+/// A file that tells what is written to it: writers of formats need not know.
+class WatchedFile : public std::filebuf {
+ public:
+  explicit WatchedFile(Written& written) : written_(written) {}
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize count) override {
+    written_.add(count);
+    return std::filebuf::xsputn(text, count);
+  }
+
+ private:
+  Written& written_;
+};
+
 /// A face of an element by its corners, ascending.
 struct Sided {
   std::array<std::uint32_t, 3> corners;
@@ -291,13 +338,21 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     return;
   }
   std::vector<std::unique_ptr<Unfinished>> unfinished;
+  Written written(options.progress, bytes_about(tetrahedra, options));
   for (const Part& part : parts) {
     unfinished.push_back(std::make_unique<Unfinished>(part.path));
-    std::ofstream out(unfinished.back()->path(), std::ios::binary);
-    if (!out) throw std::runtime_error(part.path.string() + ": cannot be written: " + std::strerror(errno));
-    part.write(tetrahedra, options, out);
-    out.close();
-    if (!out)
+    WatchedFile file(written);
+    if (file.open(unfinished.back()->path(), std::ios::out | std::ios::binary) == nullptr)
+      throw std::runtime_error(part.path.string() + ": cannot be written: " + std::strerror(errno));
+    std::ostream out(&file);
+    out.exceptions(std::ios::badbit);  // else a stop would be lost in the stream
+    bool is_whole = true;
+    try {
+      part.write(tetrahedra, options, out);
+    } catch (const std::ios::failure&) {
+      is_whole = false;
+    }
+    if (file.close() == nullptr || !is_whole)
       throw std::runtime_error(part.path.string() + ": cannot be written to its end: is the disk full?");
   }
   for (std::size_t i = 0; i < parts.size(); ++i) unfinished[i]->rename_to(parts[i].path);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "convert/tetrahedra.h"
+#include "voxel/progress.h"
 
 namespace octotomy::convert {
 
@@ -72,6 +73,7 @@ struct DeckOptions {
   /// Ten-node tetrahedra in place of four-node ones (second_order.h): stiff by far less in bending and near
   /// incompressibility, with some seven times the nodes.
   bool second_order = false;
+  voxel::Progress progress{};  ///< of the writing, about
 };
 
 /// Writes a deck as its extension says, beside and renamed into place:
@@ -85,7 +87,7 @@ struct DeckOptions {
 /// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only.
 /// Throws std::runtime_error with path and reason; std::invalid_argument for another extension, no
 /// tetrahedra, an element without a node, sets and lists that do not fit, or options that a solver would
-/// refuse.
+/// refuse; Stopped where `progress` asks for it, and then there is no file.
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                 const DeckOptions& options = {});
 

@@ -208,7 +208,8 @@ Try try_once(const MesherInput& surface, const Given& given, const TetOptions& o
   Mesh3Sizes sizes;
   if (options.limit_volume) sizes.max_cell_mm = radius_of_volume(options.max_volume_mm3);
   Try t;
-  t.outcome = run_mesh3(surface, sizes, {options.time_limit, options.memory_limit_bytes, options.stop});
+  t.outcome = run_mesh3(surface, sizes,
+                        {options.time_limit, options.memory_limit_bytes, options.stop, options.report});
   if (!t.outcome.failure && t.outcome.tetrahedra.empty())
     t.outcome.failure = "CGAL's Mesh_3 gave no tetrahedra";
   if (t.outcome.failure) return t;

@@ -28,6 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 /// How often a running child is looked at: a hundredth of the shortest run that would be noticed as slow.
 constexpr std::chrono::milliseconds look_every{1};
+constexpr std::chrono::milliseconds report_every{200};
 /// How much of what TetGen printed is worth reading: its last words come last.
 constexpr std::size_t last_words_bytes = 400;
 
@@ -132,9 +133,15 @@ struct Ending {
 
 /// Waits for the child within the limits and ends it where they are passed; it is gone on return.
 Ending wait_within(pid_t child, const MesherLimits& limits) {
-  const Clock::time_point deadline = Clock::now() + limits.time;
+  const Clock::time_point started = Clock::now();
+  const Clock::time_point deadline = started + limits.time;
+  Clock::time_point next_report = started + report_every;
   Ending ending;
   for (;;) {
+    if (limits.report && Clock::now() >= next_report) {
+      next_report += report_every;
+      limits.report(std::min(1.0, std::chrono::duration<double>(Clock::now() - started) / limits.time));
+    }
     const pid_t gone = waitpid(child, &ending.status, ending.how == Ended::ByItself ? WNOHANG : 0);
     if (gone == child) return ending;
     if (gone < 0 && errno != EINTR) fail("TetGen's process is lost", errno);

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <stop_token>
@@ -57,6 +58,7 @@ struct MesherLimits {
   std::chrono::milliseconds time{60000};
   std::uint64_t memory_bytes = 4ull << 30;
   std::stop_token stop;
+  std::function<void(double)> report{};  ///< called now and then with the share of the time that is gone
 };
 struct MesherOutcome {
   /// How it ended when it did not do its work; then there are no tetrahedra.

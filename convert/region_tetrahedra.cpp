@@ -238,8 +238,8 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
   const LabelSizes sizes{options.size_mm,
                          std::max(0.5 * std::min({edge_mm.x, edge_mm.y, edge_mm.z}), 0.1 * options.size_mm),
                          1.5 * options.size_mm};
-  MesherOutcome outcome =
-      run_mesh3(image.image, sizes, {options.time_limit, options.memory_limit_bytes, options.stop});
+  MesherOutcome outcome = run_mesh3(
+      image.image, sizes, {options.time_limit, options.memory_limit_bytes, options.stop, options.report});
   if (outcome.failure) throw std::runtime_error("smooth_tetrahedra_of: " + *outcome.failure);
 
   Tetrahedra made;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <stop_token>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct RegionMeshOptions {
   std::chrono::milliseconds time_limit{300000};  ///< by the clock on the wall
   std::uint64_t memory_limit_bytes = 4ull << 30;
   std::stop_token stop;  ///< ends the run; then std::runtime_error says so
+  /// Called now and then while a mesher runs, with the share of its time limit that is gone.
+  std::function<void(double)> report{};
 };
 
 /// Quality tetrahedra of several regions of one universe with smooth surfaces, which share the nodes of their

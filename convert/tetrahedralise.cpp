@@ -239,7 +239,8 @@ std::optional<Tetrahedra> by_tetgen(const MesherInput& surface, double surface_m
                                     std::vector<std::string>& findings) {
   for (const std::string& switches : ladder(options)) {
     MesherOutcome outcome =
-        run_tetgen(surface, switches + "Q", {options.time_limit, options.memory_limit_bytes, options.stop});
+        run_tetgen(surface, switches + "Q",
+                   {options.time_limit, options.memory_limit_bytes, options.stop, options.report});
     if (!outcome.failure) {
       Tetrahedra made;
       made.nodes_mm = std::move(outcome.points_mm);

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -32,6 +33,8 @@ struct TetOptions {
   std::chrono::milliseconds time_limit{60000};    ///< of each run, by the clock on the wall
   std::uint64_t memory_limit_bytes = 4ull << 30;  ///< of each run
   std::stop_token stop;                           ///< ends a run; then std::runtime_error says so
+  /// Called now and then while a mesher runs, with the share of its time limit that is gone.
+  std::function<void(double)> report{};
 };
 
 /// The smallest dihedral angle that is fit for a solver. The largest eigenvalue of an element's stiffness

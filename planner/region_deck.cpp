@@ -86,6 +86,7 @@ void fill(const Evaluation& evaluation, const Regions& regions, const ExportStep
     convert::RegionMeshOptions options;
     options.size_mm = *step.smooth_mm;
     options.stop = progress.stop;
+    options.report = progress.report;
     options.finer = finer_places(evaluation, step);
     deck.tetrahedra = convert::smooth_tetrahedra_of(regions.octrees, options);
     why = convert::fault_in_shape(deck.tetrahedra).value_or("");

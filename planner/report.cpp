@@ -124,18 +124,16 @@ Json result_json(const Result& result) {
   return json;
 }
 
-Json write_result(Result& result, const std::filesystem::path& folder, const std::stop_token& stop) {
+Json write_result(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
   ResultFolder output(folder);
   {
     const Stopwatch watch(result.evaluation.timings, "measure");
     result.measurements = measurements_json(result.evaluation);
   }
-  Fillings fillings;
-  fillings.stop = stop;
+  Exporter exporter(result.plan, result.evaluation, output.path(), options);
   for (const Step& step : result.plan.steps)
-    if (const auto* to = std::get_if<ExportStep>(&step.action))
-      result.exported.push_back(
-          export_object(result.evaluation, step.id, *to, output.path(), fillings, result.evaluation.timings));
+    if (std::holds_alternative<ExportStep>(step.action)) result.exported.push_back(exporter.write(step));
+  for (const auto& [stage, spent_ms] : exporter.timings()) result.evaluation.timings[stage] += spent_ms;
   {
     const Stopwatch watch(result.evaluation.timings, "write");
     write_pictures(result, output.path() / "views");

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "planner/evaluate.h"
-#include "planner/export_object.h"
+#include "planner/exporter.h"
 #include "planner/scene_pictures.h"
 #include "voxel/scene.h"
 
@@ -54,8 +54,8 @@ nlohmann::ordered_json result_json(const Result& result);
 
 /// Writes a result's folder whole or not at all: its exports, views/*.png, report.html and result.json.
 /// Fills `result.exported` and `result.measurements`; returns what result.json holds. Throws as ResultFolder
-/// and the writers do, and Stopped where the stop token is set while an export is filled.
+/// and the writers do, and Stopped where the stop token is set while an export is filled or written.
 nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder,
-                                    const std::stop_token& stop = {});
+                                    const ExportOptions& options = {});
 
 }  // namespace octotomy::planner

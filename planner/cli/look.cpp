@@ -24,7 +24,7 @@ int look(Program& program, LookText& text) {
       if (finding.verdict != voxel::Verdict::Pass)
         warn(scan.path.string() + ": " + finding.check + ": " + finding.detail);
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
-  const Json json = write_result(result, text.out, program.stop.get_token());
+  const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Object& object : result.evaluation.objects)
     rows.emplace_back(

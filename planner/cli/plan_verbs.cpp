@@ -15,7 +15,7 @@ int run(Program& program, const RunText& text) {
   result.evaluation = evaluate(result.plan, evaluate_options(program));
   result.pictures = plan_pictures(result.plan, result.evaluation);
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
-  const Json json = write_result(result, text.out, program.stop.get_token());
+  const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
   std::string measured = verdict_text(result.evaluation);
   for (const Exported& exported : result.exported)
     for (const std::string& finding : exported.findings) warn(exported.path + ": " + finding);

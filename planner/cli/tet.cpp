@@ -19,6 +19,7 @@
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/figures.h"
+#include "planner/filling.h"
 #include "planner/landmarks_file.h"
 
 namespace octotomy::planner::cli {
@@ -191,6 +192,7 @@ Filled of_octrees(const Program& program, const TetText& text, Timings& timings)
     options.finer = text.options.finer;
     options.time_limit = text.options.time_limit;
     options.stop = text.options.stop;
+    options.report = text.options.report;
     fill(text, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
   } else {
     filled.fallback = "an octree was given without a size of elements";
@@ -221,11 +223,7 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
     deck.contacts.push_back({there, back, there});
   }
   if (text.contact) filled.tetrahedra = convert::separate_regions(filled.tetrahedra);
-  deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION,
-                "dihedral angles " + grouped(quality.min_dihedral_deg, 2) + " to " +
-                    grouped(quality.max_dihedral_deg, 2) + " degrees; radius-edge ratio up to " +
-                    grouped(quality.max_radius_edge, 2) + "; volume " + grouped(quality.volume_mm3, 3) +
-                    " mm3"};
+  deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION, quality_note(quality)};
   for (const std::string& finding : filled.findings) deck.notes.push_back(finding);
   if (text.scan.empty()) return deck;
   convert::MaterialOptions options = text.materials;
@@ -267,14 +265,16 @@ int tet(const Program& program, TetText text) {
     throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
   text.options.time_limit = std::chrono::seconds(static_cast<long>(text.seconds));
   text.options.stop = program.stop.get_token();
+  text.options.report = program.progress("filling, of the time allowed");
   Timings timings;
   Filled filled = is_octree(text.in) ? of_octrees(program, text, timings) : of_mesh(program, text, timings);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;
   const convert::TetQuality quality = convert::quality(tetrahedra);
-  const convert::DeckOptions deck = deck_of(program, text, filled, quality, timings);
+  convert::DeckOptions deck = deck_of(program, text, filled, quality, timings);
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
   {
     const Stopwatch watch(timings, "write");
+    deck.progress = {program.stop.get_token(), program.progress("writing")};
     convert::write_deck(tetrahedra, text.out, deck);
   }
   for (const std::string& finding : filled.findings) warn(finding);

@@ -9,7 +9,10 @@
 #include <sstream>
 #include <unistd.h>
 
+#include "convert/octree_tetrahedra.h"
 #include "tests/convert/surfaces.h"
+#include "tests/unit_universe.h"
+#include "voxel/combine.h"
 
 namespace octotomy::convert {
 namespace {
@@ -205,6 +208,33 @@ TEST(Deck, AFileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
   std::filesystem::create_directories(folder / "b.inp" / "full");
   EXPECT_THROW(write_deck(cube_in_five(), folder / "b.inp"), std::runtime_error);
   EXPECT_EQ(folder.file_count(), 1) << "the unfinished file is gone";
+}
+
+TEST(Deck, WritingTellsHowFarItIsAndAStopLeavesNoFile) {
+  const Folder folder;
+  const voxel::Universe universe = tests::unit_universe(5);
+  const Tetrahedra ball =
+      tetrahedra_of(voxel::combine(universe, voxel::Expression(voxel::Sphere{glm::dvec3(15.5), 15.0})),
+                    BoundaryCells::Voxels);
+  for (const char* name : {"ball.inp", "ball.feb", "ball.vtu", "ball.msh", "ball.node"}) {
+    DeckOptions options;
+    std::vector<double> fractions;
+    options.progress.report = [&](double fraction) { fractions.push_back(fraction); };
+    write_deck(ball, folder / name, options);
+    ASSERT_GE(fractions.size(), 3U) << name;
+    EXPECT_GT(fractions.back(), name == std::string("ball.node") ? 0.3 : 0.6) << name;
+    EXPECT_LE(fractions.back(), 1.0) << name;
+
+    std::filesystem::remove(folder / name);
+    const std::ptrdiff_t files = folder.file_count();
+    std::stop_source source;
+    options.progress.stop = source.get_token();
+    options.progress.report = [&](double fraction) {
+      if (fraction > 0.1) source.request_stop();
+    };
+    EXPECT_THROW(write_deck(ball, folder / name, options), voxel::Stopped) << name;
+    EXPECT_EQ(folder.file_count(), files) << name;
+  }
 }
 
 TEST(Deck, ReplacesAnEarlierFileAsAWhole) {

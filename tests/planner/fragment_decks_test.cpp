@@ -4,8 +4,10 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-#include "planner/export_object.h"
+#include "convert/tetrahedralise.h"
+#include "planner/exporter.h"
 #include "planner/random_plan.h"
+#include "planner/sha256.h"
 #include "tests/convert/surfaces.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
@@ -31,10 +33,7 @@ Plan with_deck(const RandomPlan& random, const std::filesystem::path& folder) {
 }
 
 Exported deck_of(const Plan& plan, const Evaluation& evaluation, const std::filesystem::path& folder) {
-  Fillings fillings;
-  Timings timings;
-  return export_object(evaluation, "deck", std::get<ExportStep>(plan.steps.back().action), folder, fillings,
-                       timings);
+  return Exporter(plan, evaluation, folder).write(plan.steps.back());
 }
 
 TEST(FragmentDecks, RandomFragmentsOfTheHeadAllBecomeDecksWithoutAnInvertedElement) {
@@ -125,6 +124,9 @@ TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAl
               static_cast<double>(evaluation.objects.front().octree.voxel_count()), 1e-6);
   const std::string header = tests::bytes_of(folder / "out/ball.inp");
   EXPECT_NE(header.find("fallback: it has no mesh"), std::string::npos) << "the deck itself says so";
+  EXPECT_NE(header.find("SHA-256 " + sha256_of(with.text)), std::string::npos);
+  EXPECT_NE(header.find("scan ct: SHA-256 " + sha256_of_path(folder / "ball.nrrd")), std::string::npos);
+  EXPECT_NE(header.find("radius-edge ratio up to"), std::string::npos);
 }
 
 TEST(FragmentDecks, AStepOfOrderTwoWritesElementsOfTenNodes) {
@@ -144,16 +146,13 @@ TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
   const BallFolder folder;
   std::stop_source source;
   source.request_stop();
-  Fillings fillings;
-  fillings.stop = source.get_token();
-  Timings timings;
   for (const char* keys : {"", R"(, "fallback": true)", R"(, "regions": ["lower"])",
                            R"(, "regions": ["lower"], "smooth_mm": 2.5)", R"(, "fixed": ["lower"])"}) {
     const Plan plan = folder.plan_of_half(R"("path": "ball.inp")" + std::string(keys));
     const Evaluation evaluation = evaluate(plan);
-    EXPECT_THROW(export_object(evaluation, "deck", std::get<ExportStep>(plan.steps.back().action),
-                               folder / "out", fillings, timings),
-                 Stopped)
+    EXPECT_THROW(
+        Exporter(plan, evaluation, folder / "out", {source.get_token(), {}}).write(plan.steps.back()),
+        Stopped)
         << keys;
     EXPECT_FALSE(std::filesystem::exists(folder / "out/ball.inp")) << keys;
   }
