@@ -196,7 +196,7 @@ class Written {
   void add(std::streamsize bytes) {
     bytes_ += bytes;
     if (bytes_ < next_) return;
-    constexpr std::streamsize look_every = 1 << 20;
+    constexpr std::streamsize look_every = 1 << 18;
     next_ = bytes_ + look_every;
     progress_.at(std::min(1.0, static_cast<double>(bytes_) / bytes_about_));
   }
