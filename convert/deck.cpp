@@ -420,7 +420,7 @@ std::string xml_escaped(const std::string& text) {
       result += "&lt;";
     } else if (c == '>') {
       result += "&gt;";
-    } else if (c == '-') {
+    } else if (c == '-' && !result.empty() && result.back() == '-') {
       result += "&#45;";  // "--" would end the comment
     } else {
       result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;

@@ -145,6 +145,17 @@ TEST(Deck, ATitleCannotBecomeAKeywordOrASecondLine) {
   EXPECT_EQ(deck.tetrahedra.nodes_mm.size(), 8U);
 }
 
+TEST(Deck, ATitleCannotEndACommentAndKeepsItsHyphens) {
+  const Folder folder;
+  for (const char* name : {"cube.vtu", "cube.feb"}) {
+    write_deck(cube_in_five(), folder / name, titled("SHA-256 a---b-->c"));
+    const std::string text = content(folder / name);
+    EXPECT_NE(text.find("SHA-256 a-&#45;-b-&#45;&gt;c"), std::string::npos) << name;
+    for (auto at = text.find("--"); at != std::string::npos; at = text.find("--", at + 2))
+      EXPECT_TRUE(text.compare(at - 2, 4, "<!--") == 0 || text.compare(at, 3, "-->") == 0) << name;
+  }
+}
+
 /// The appended block that a DataArray's offset names.
 template <typename T>
 std::vector<T> appended(const std::string& file, const std::string& name) {
