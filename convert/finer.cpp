@@ -31,6 +31,7 @@ constexpr double longest_share() {
 double least_count(const brep::Triangles& surface, const FinerSizes& sizes) {
   const auto& p = surface.points_mm;
   std::vector<glm::dvec3> middles_mm;
+  middles_mm.reserve(surface.faces.size());
   for (const auto& [a, b, c] : surface.faces) middles_mm.push_back((p[a] + p[b] + p[c]) / 3.0);
   const std::vector<double> sizes_mm = sizes.at_mm(middles_mm);
   double count = 0.0;
@@ -85,6 +86,7 @@ class Round {
     std::sort(sides.begin(), sides.end());
     sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
     std::vector<glm::dvec3> middles_mm;
+    middles_mm.reserve(sides.size());
     for (const Side& side : sides) middles_mm.push_back(0.5 * (at(side.first) + at(side.second)));
     const std::vector<double> sizes_mm = sizes.at_mm(middles_mm);
     for (std::size_t i = 0; i < sides.size(); ++i)

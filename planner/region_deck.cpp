@@ -142,7 +142,8 @@ void add_materials(const Regions& regions, const ExportStep& step, RegionDeck& d
         ": cortical bone's stiffness is taken; \"materials\" of the step gives each its own");
 }
 
-/// Pairs of regions that slide, by their numbers, the lower first.
+/// Pairs of regions that slide, by their numbers, the lower first: those that the step lists, in its order,
+/// and all where it wants contact everywhere.
 std::vector<convert::RegionPair> sliding_pairs(const Regions& regions, const ExportStep& step) {
   const auto number_of = [&](const std::string& name) {
     const auto found = std::find(regions.names.begin(), regions.names.end(), name);
@@ -188,27 +189,26 @@ void add_interfaces(const Regions& regions, const ExportStep& step, RegionDeck& 
   std::vector<convert::Interface> touching = convert::interfaces(deck.tetrahedra);
   const std::vector<convert::RegionPair> pairs = sliding_pairs(regions, step);
   if (!pairs.empty()) deck.tetrahedra = convert::separate_regions(deck.tetrahedra, pairs);
+  std::vector<convert::RegionPair> parted;
   for (convert::Interface& between : touching) {
-    const bool slides =
-        std::find(pairs.begin(), pairs.end(), convert::RegionPair(between.from, between.to)) != pairs.end();
+    const convert::RegionPair pair(between.from, between.to);
+    const bool slides = std::find(pairs.begin(), pairs.end(), pair) != pairs.end();
     if (slides) keep_parted(deck.tetrahedra, between);
+    if (between.faces.empty()) continue;
     const std::string name = regions.names[between.from] + "_TO_" + regions.names[between.to];
     options.surfaces.push_back({name, std::move(between.faces)});
     if (!slides) continue;
+    parted.push_back(pair);
     const std::string back = regions.names[between.to] + "_TO_" + regions.names[between.from];
     options.surfaces.push_back({back, std::move(between.opposite)});
     const bool first_is_softer =
         options.materials[between.from].youngs_modulus_mpa < options.materials[between.to].youngs_modulus_mpa;
     options.contacts.push_back({name, first_is_softer ? name : back, first_is_softer ? back : name});
   }
-  for (const auto& [one, other] : step.sliding) {
-    const auto is_pair = [&, a = one, b = other](const convert::ContactPair& pair) {
-      return pair.name == a + "_TO_" + b || pair.name == b + "_TO_" + a;
-    };
-    if (std::none_of(options.contacts.begin(), options.contacts.end(), is_pair))
-      throw std::runtime_error("'" + one + "' and '" + other +
-                               "' touch nowhere, so they cannot slide: leave the pair out of 'sliding'");
-  }
+  for (std::size_t i = 0; i < step.sliding.size(); ++i)
+    if (std::find(parted.begin(), parted.end(), pairs[i]) == parted.end())
+      throw std::runtime_error("'" + step.sliding[i].first + "' and '" + step.sliding[i].second +
+                               "' share no face that could slide: leave the pair out of 'sliding'");
 }
 
 }  // namespace
