@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -325,28 +326,40 @@ void test_intersections(const Triangles& triangles, const std::vector<std::uint8
     health.crossing.emplace_back(static_cast<int>(meeting[i].first), static_cast<int>(meeting[i].second));
 }
 
-void tell(Health& health, const Offenders& offenders, double volume_mm3) {
-  const auto say = [&](std::size_t count, const std::string& what, const std::string& first) {
-    if (count > 0) health.findings.push_back(std::to_string(count) + " " + what + " (first: " + first + ")");
+/// " at (12.5, -80.25, 3) mm", where a triangle's middle is.
+std::string place_of(const Triangles& triangles, std::uint32_t triangle) {
+  const auto& [a, b, c] = triangles.faces[triangle];
+  const glm::dvec3 middle = (triangles.points_mm[a] + triangles.points_mm[b] + triangles.points_mm[c]) / 3.0;
+  std::array<char, 96> place{};
+  std::snprintf(place.data(), place.size(), " at (%.6g, %.6g, %.6g) mm", middle.x, middle.y, middle.z);
+  return place.data();
+}
+
+void tell(const Triangles& triangles, Health& health, const Offenders& offenders, double volume_mm3) {
+  const auto say = [&](std::size_t count, const std::string& what, std::uint32_t first) {
+    if (count > 0)
+      health.findings.push_back(std::to_string(count) + " " + what + " (first: " + "triangle " +
+                                std::to_string(first) + place_of(triangles, first) + ")");
   };
-  const auto at = [](std::uint32_t triangle) { return "triangle " + std::to_string(triangle); };
   if (health.faces == 0) health.findings.emplace_back("no triangles");
-  say(health.boundary_edges, "edges with one triangle: the surface is open", at(offenders.boundary));
-  say(health.nonmanifold_edges, "edges with more than two triangles", at(offenders.nonmanifold_edge));
+  say(health.boundary_edges, "edges with one triangle: the surface is open", offenders.boundary);
+  say(health.nonmanifold_edges, "edges with more than two triangles", offenders.nonmanifold_edge);
   say(health.nonmanifold_vertices, "vertices where more than one fan of triangles meets",
-      at(offenders.nonmanifold_vertex));
-  say(health.misoriented_edges, "edges whose triangles wind against each other", at(offenders.misoriented));
-  say(health.degenerate_faces, "triangles without area", at(offenders.degenerate));
-  say(health.duplicate_faces, "pairs of triangles with the same points", at(offenders.duplicate));
+      offenders.nonmanifold_vertex);
+  say(health.misoriented_edges, "edges whose triangles wind against each other", offenders.misoriented);
+  say(health.degenerate_faces, "triangles without area", offenders.degenerate);
+  say(health.duplicate_faces, "pairs of triangles with the same points", offenders.duplicate);
   say(health.misplaced_shells, "shells that face the wrong way for the shells around them",
-      at(offenders.misplaced));
+      offenders.misplaced);
   if (health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0 && !(volume_mm3 > 0.0))
     health.findings.push_back("the volume is " + std::to_string(volume_mm3) +
                               " mm3: the triangles face inward or enclose nothing");
-  if (!health.crossing.empty())
-    say(health.self_intersections, "pairs of triangles that intersect",
-        "triangles " + std::to_string(health.crossing.front().first) + " and " +
-            std::to_string(health.crossing.front().second));
+  if (health.crossing.empty()) return;
+  const auto [one, other] = health.crossing.front();
+  health.findings.push_back(std::to_string(health.self_intersections) +
+                            " pairs of triangles that intersect (first: triangles " + std::to_string(one) +
+                            " and " + std::to_string(other) +
+                            place_of(triangles, static_cast<std::uint32_t>(other)) + ")");
 }
 
 }  // namespace
@@ -368,7 +381,7 @@ Health health(const Triangles& triangles, const HealthOptions& options) {
     health.oriented = health.misplaced_shells == 0 && volume_mm3 > 0.0;
   }
   if (options.self_intersections) test_intersections(triangles, degenerate, health);
-  tell(health, offenders, volume_mm3);
+  tell(triangles, health, offenders, volume_mm3);
   return health;
 }
 

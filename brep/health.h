@@ -38,7 +38,7 @@ struct Health {
   /// Neighbours agree; where closed, also every shell's outside is where the shells around it say, and the
   /// total volume is positive.
   bool oriented = false;
-  std::vector<std::string> findings;  ///< each names the first triangle, by number, that it is about
+  std::vector<std::string> findings;  ///< each names the first triangle that it is about, by number and place
 
   bool solid() const { return findings.empty(); }
 };

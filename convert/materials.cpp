@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
+#include "brep/distance.h"
+#include "convert/deck.h"
 #include "convert/scan_sampler.h"
 
 namespace octotomy::convert {
@@ -16,25 +18,95 @@ namespace {
 /// Points along an edge of an element at most.
 constexpr int most_points_an_edge = 9;
 
-/// The mean over an element; none where no point of it is in the scan. Points are the middles of the corners'
-/// lattice: with n an edge, barycentric coordinates (i + 1/4) / n that sum to 1, each as good as the others.
-std::optional<double> mean_over(const std::array<glm::dvec3, 4>& v, const ScanSampler& scan) {
+/// The points that stand for an element: the middles of the corners' lattice, with n an edge, barycentric
+/// coordinates (i + 1/4) / n that sum to 1, each as good as the others. Some two a voxel along its longest
+/// edge. Corners are in the scan's voxel indices.
+std::vector<glm::dvec3> points_over(const std::array<glm::dvec3, 4>& v) {
   double longest = 0.0;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, glm::distance(v[i], v[j]));
   const int n = std::clamp(static_cast<int>(std::ceil(2.0 * longest)), 1, most_points_an_edge);
-  double sum = 0.0;
-  int count = 0;
+  std::vector<glm::dvec3> points;
   for (int i = 0; i < n; ++i)
     for (int j = 0; i + j < n; ++j)
       for (int k = 0; i + j + k < n; ++k) {
         const int l = n - 1 - i - j - k;
-        const glm::dvec3 p = ((i + 0.25) * v[0] + (j + 0.25) * v[1] + (k + 0.25) * v[2] + (l + 0.25) * v[3]) /
-                             static_cast<double>(n);
-        if (!scan.holds(p)) continue;
-        sum += scan.at(p);
-        ++count;
+        points.push_back(((i + 0.25) * v[0] + (j + 0.25) * v[1] + (k + 0.25) * v[2] + (l + 0.25) * v[3]) /
+                         static_cast<double>(n));
       }
+  return points;
+}
+
+/// The surface of elements, from which depths are measured.
+class Depth {
+ public:
+  Depth(const Tetrahedra& tetrahedra, double depth_mm)
+      : surface_(surface_of(tetrahedra)), tree_(surface_), depth_mm_(depth_mm) {}
+
+  /// Moves points that are nearer to the surface straight away from their nearest point of it, to the depth.
+  /// False where none was.
+  bool sink(std::vector<glm::dvec3>& points_mm) const {
+    // Where a point lies no further from it than this share of the depth, the surface's normal says the way.
+    constexpr double too_near = 1e-6;
+    bool any = false;
+    const std::vector<brep::Foot> feet = tree_.feet(points_mm);
+    for (std::size_t i = 0; i < feet.size(); ++i) {
+      if (feet[i].distance_mm >= (1.0 - too_near) * depth_mm_) continue;
+      any = true;
+      const glm::dvec3 way = feet[i].distance_mm > too_near * depth_mm_
+                                 ? (points_mm[i] - feet[i].p_mm) / feet[i].distance_mm
+                                 : -normal(feet[i].face);
+      points_mm[i] = feet[i].p_mm + depth_mm_ * way;
+    }
+    return any;
+  }
+
+ private:
+  static brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
+    brep::Triangles surface{tetrahedra.nodes_mm, {}};
+    for (const ElementFace& face : surface_faces(tetrahedra))
+      surface.faces.push_back(corners_of(tetrahedra, face));
+    return surface;
+  }
+
+  /// Outward, of unit length; nothing where the triangle has no area.
+  glm::dvec3 normal(std::uint32_t face) const {
+    const auto& [a, b, c] = surface_.faces[face];
+    const auto& p = surface_.points_mm;
+    const glm::dvec3 outward = glm::cross(p[b] - p[a], p[c] - p[a]);
+    const double length = glm::length(outward);
+    return length > 0.0 ? outward / length : glm::dvec3(0.0);
+  }
+
+  brep::Triangles surface_;
+  brep::SurfaceTree tree_;
+  double depth_mm_;
+};
+
+/// The mean over an element; none where no point of it is in the scan.
+std::optional<double> mean_over(const std::array<glm::dvec3, 4>& corners_mm, const ScanSampler& scan,
+                                const std::optional<Depth>& depth) {
+  std::array<glm::dvec3, 4> v;
+  for (std::size_t i = 0; i < 4; ++i) v[i] = scan.voxel(corners_mm[i]);
+  const std::vector<glm::dvec3> points = points_over(v);
+  std::vector<double> values(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) values[i] = scan.at(points[i]);
+  if (depth) {
+    std::vector<glm::dvec3> sunk_mm;
+    for (const glm::dvec3& p : points) sunk_mm.push_back(scan.lps_mm(p));
+    // Below one face of a corner, a point may be near another.
+    constexpr int rounds = 3;
+    for (int round = 0; round < rounds && depth->sink(sunk_mm); ++round)
+      for (std::size_t i = 0; i < points.size(); ++i)
+        values[i] = std::max(values[i], scan.at(scan.voxel(sunk_mm[i])));
+  }
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!scan.holds(points[i])) continue;
+    sum += values[i];
+    ++count;
+  }
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
@@ -48,6 +120,8 @@ void check(const Tetrahedra& tetrahedra, const MaterialOptions& options) {
                               !std::isfinite(options.calibration->intercept_g_cm3) ||
                               options.calibration->slope_g_cm3_per_hu <= 0.0))
     throw std::invalid_argument("materials: a calibration's slope must be positive");
+  if (!(options.surface_depth_mm >= 0.0) || !std::isfinite(options.surface_depth_mm))
+    throw std::invalid_argument("materials: the depth below the surface must be 0 or more");
 }
 
 /// Bins of equal width in Young's modulus; those that hold no element are left out.
@@ -135,12 +209,13 @@ ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Sc
   result.density_g_cm3.resize(count);
   result.youngs_modulus_mpa.resize(count);
   std::atomic<std::size_t> outside{0};
+  std::optional<Depth> depth;
+  if (options.surface_depth_mm > 0.0) depth.emplace(tetrahedra, options.surface_depth_mm);
   const auto sample = [&](std::size_t t) {
-    std::array<glm::dvec3, 4> v;
-    for (std::size_t i = 0; i < 4; ++i) v[i] = sampler.voxel(tetrahedra.nodes_mm.at(tetrahedra.tets[t][i]));
-    const std::optional<double> mean = mean_over(v, sampler);
+    const TetCorners p_mm = corners_mm(tetrahedra, t);
+    const std::optional<double> mean = mean_over(p_mm, sampler, depth);
     if (!mean) ++outside;
-    result.hu[t] = mean ? *mean : sampler.at(0.25 * (v[0] + v[1] + v[2] + v[3]));
+    result.hu[t] = mean ? *mean : sampler.at(sampler.voxel(0.25 * (p_mm[0] + p_mm[1] + p_mm[2] + p_mm[3])));
     result.density_g_cm3[t] =
         std::max(0.0, calibration.intercept_g_cm3 + calibration.slope_g_cm3_per_hu * result.hu[t]);
     result.youngs_modulus_mpa[t] =

@@ -51,6 +51,11 @@ struct MaterialOptions {
   /// The least Young's modulus that an element gets, MPa: marrow and what lies at the surface's edge would
   /// else have none, or less.
   double least_mpa = 1.0;
+  /// Voxels at the surface hold bone and what is beside it. Points nearer to the surface than this have the
+  /// scan's value at this depth, straight away from their nearest point of it, where that is larger; 0: their
+  /// own. A voxel's diagonal goes below all such voxels; where bone is thinner than twice the depth, it may not
+  /// reach its middle.
+  double surface_depth_mm = 0.0;
   voxel::Progress progress{};  ///< of the elements; where it asks to stop, voxel::Stopped is thrown
 };
 

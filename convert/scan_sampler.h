@@ -17,6 +17,7 @@ class ScanSampler {
 
   /// Where an LPS point lies in the scan's voxel indices.
   glm::dvec3 voxel(const glm::dvec3& p_mm) const { return voxel_from_lps_ * glm::dvec4(p_mm, 1.0); }
+  glm::dvec3 lps_mm(const glm::dvec3& v) const { return scan_.lattice.lps_mm(v); }
   /// Whether a position is in one of the scan's voxels.
   bool holds(const glm::dvec3& v) const {
     return glm::all(glm::greaterThanEqual(v, glm::dvec3(-0.5))) &&

@@ -106,13 +106,18 @@ class Extraction {
   void find_words() {
     words_.resize(bits_.rows_y * bits_.planes_z);
     rows_.resize(bits_.rows_y * bits_.planes_z);
+    planes_.resize(bits_.planes_z);
     tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
+      Plane& plane = planes_[z];
       for (std::size_t y = 0; y < bits_.rows_y; ++y) {
         const std::uint64_t* row = bits_.row(y, z);
         std::uint64_t any = 0;
         for (std::size_t word = 0; word < bits_.words; ++word) any |= row[word];
         words_[bits_.row_number(y, z)] = any != 0 ? words_of(row) : no_words;
         rows_[bits_.row_number(y, z)] = RowCount{};
+        if (any == 0) continue;
+        if (plane.first_y == plane.end_y) plane.first_y = y;
+        plane.end_y = y + 1;
       }
     });
   }
@@ -124,6 +129,18 @@ class Extraction {
     return {begin > 0 ? begin - 1 : 0, end};
   }
 
+  /// Calls f(y) for the rows of cells above a plane that may be crossed: those with a sample inside. The
+  /// first row and plane of samples, and the last, have none.
+  template <typename F>
+  void for_rows_of_cells(std::size_t z, const F& f) const {
+    const Plane &below = planes_[z], &above = planes_[z + 1];
+    if (below.end_y == 0 && above.end_y == 0) return;
+    const std::size_t first = below.end_y == 0   ? above.first_y
+                              : above.end_y == 0 ? below.first_y
+                                                 : std::min(below.first_y, above.first_y);
+    for (std::size_t y = first - 1; y < std::max(below.end_y, above.end_y); ++y) f(y);
+  }
+
   /// Of the cells between four rows.
   Words words_of_cells(std::size_t y, std::size_t z) const {
     return both(both(words_[bits_.row_number(y, z)], words_[bits_.row_number(y + 1, z)]),
@@ -131,12 +148,9 @@ class Extraction {
   }
 
   void count() {
-    planes_.resize(bits_.planes_z);
     tbb::parallel_for(std::size_t{0}, bits_.planes_z - 1, [&](std::size_t z) {
-      for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
-        const Words within = words_of_cells(y, z);
-        if (within.begin < within.end) rows_[bits_.row_number(y, z)] = counted_row(y, z, within);
-      }
+      for_rows_of_cells(
+          z, [&](std::size_t y) { rows_[bits_.row_number(y, z)] = counted_row(y, z, words_of_cells(y, z)); });
     });
   }
 
@@ -191,11 +205,12 @@ class Extraction {
       throw std::length_error("the isosurface would have " + std::to_string(vertices) + " vertices and " +
                               std::to_string(triangles) +
                               " triangles, more than 32-bit numbers can name: crop or resample the scan");
-    tbb::parallel_for(std::size_t{0}, bits_.planes_z, [&](std::size_t z) {
+    tbb::parallel_for(std::size_t{0}, bits_.planes_z - 1, [&](std::size_t z) {
       auto vertex = static_cast<std::uint32_t>(planes_[z].vertices);
-      for (std::size_t y = 0; y < bits_.rows_y; ++y)
-        if (RowCount& row = rows_[bits_.row_number(y, z)]; row.cells != 0)
-          for (std::uint32_t& direction : row.vertices) vertex += std::exchange(direction, vertex);
+      for_rows_of_cells(z, [&](std::size_t y) {
+        for (std::uint32_t& direction : rows_[bits_.row_number(y, z)].vertices)
+          vertex += std::exchange(direction, vertex);
+      });
     });
     // New pages are half of what this costs.
     tbb::parallel_invoke([&] { surface_.points_mm.resize(vertices); },
@@ -236,8 +251,8 @@ class Extraction {
   std::vector<CrossedEdge> edges_of(std::size_t z) const {
     std::vector<CrossedEdge> edges(planes_[z + 1].vertices - planes_[z].vertices);
     CrossedEdge* edge = edges.data();
-    for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
-      if (rows_[bits_.row_number(y, z)].cells == 0) continue;
+    for_rows_of_cells(z, [&](std::size_t y) {
+      if (rows_[bits_.row_number(y, z)].cells == 0) return;
       const Words within = words_of_cells(y, z);
       const std::uint64_t* here = bits_.row(y, z);
       const std::array<const std::uint64_t*, 3> beyond = {nullptr, bits_.row(y + 1, z), bits_.row(y, z + 1)};
@@ -253,7 +268,7 @@ class Extraction {
             *edge++ = {{first_x + bit, row.y, row.z}, axis, ((inside >> bit) & 1) != 0};
           }
         }
-    }
+    });
     return edges;
   }
 
@@ -261,9 +276,9 @@ class Extraction {
     const Plane& plane = planes_[z];
     const std::uint8_t* cell = plane.cases.data();
     std::array<std::uint32_t, 3>* triangle = surface_.faces.data() + plane.triangles;
-    for (std::size_t y = 0; y + 1 < bits_.rows_y; ++y) {
+    for_rows_of_cells(z, [&](std::size_t y) {
       const RowCount& near = rows_[bits_.row_number(y, z)];
-      if (near.cells == 0) continue;
+      if (near.cells == 0) return;
       const RowCount& beside = rows_[bits_.row_number(y + 1, z)];
       const RowCount& above = rows_[bits_.row_number(y, z + 1)];
       const RowCount& across = rows_[bits_.row_number(y + 1, z + 1)];
@@ -281,11 +296,12 @@ class Extraction {
           *triangle++ = {vertex[edges[0]], vertex[edges[1]], vertex[edges[2]]};
         }
       }
-    }
+    });
   }
 
-  /// Of the cells and edges between two planes of samples.
+  /// A plane of samples, and of the cells and edges between it and the next.
   struct Plane {
+    std::size_t first_y = 0, end_y = 0;         ///< rows with a sample inside
     std::uint64_t vertices = 0, triangles = 0;  ///< counts, then first numbers
     std::vector<std::uint8_t> cases;            ///< of the cells, `cells` of them
     std::size_t cells = 0;

@@ -44,9 +44,9 @@ InsideBits inside_bits(const voxel::Octree& octree);
 
 /// The edge of a lattice from a voxel to the next one along an axis; one end is inside.
 struct CrossedEdge {
-  glm::ivec3 voxel{0};
-  std::uint8_t axis = 0;
-  bool first_inside = false;
+  glm::ivec3 voxel;
+  std::uint8_t axis;
+  bool first_inside;
 };
 
 /// Where edges are crossed: of each its part, strictly between 0 and 1. Called from several threads with some

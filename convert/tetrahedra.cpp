@@ -73,6 +73,9 @@ TetQuality quality(const Tetrahedra& tetrahedra) {
     q.min_dihedral_deg = std::min(q.min_dihedral_deg, glm::degrees(m.min_dihedral));
     q.max_dihedral_deg = std::max(q.max_dihedral_deg, glm::degrees(m.max_dihedral));
     q.max_radius_edge = std::max(q.max_radius_edge, m.radius_edge);
+    const auto step =
+        std::upper_bound(dihedral_steps_deg.begin(), dihedral_steps_deg.end(), glm::degrees(m.min_dihedral));
+    ++q.by_dihedral.at(static_cast<std::size_t>(step - dihedral_steps_deg.begin()));
   }
   return q;
 }

@@ -40,7 +40,12 @@ struct TetQuality {
   double min_dihedral_deg = 0.0;  ///< 70.53 for the regular tetrahedron, 0 for a flat one
   double max_dihedral_deg = 0.0;
   double max_radius_edge = 0.0;  ///< circumradius by shortest edge; 0.612 for the regular tetrahedron
+  /// How many elements have their smallest dihedral angle below each of `dihedral_steps_deg` and not below
+  /// the one before, and behind them those above all.
+  std::array<std::size_t, 6> by_dihedral{};
 };
+inline constexpr std::array<double, 5> dihedral_steps_deg{5.0, 10.0, 20.0, 30.0, 45.0};
+
 /// Volumes are summed in the tetrahedra's order. Throws std::invalid_argument where there are none.
 TetQuality quality(const Tetrahedra& tetrahedra);
 

@@ -51,10 +51,7 @@ void say_written(const convert::Tetrahedra& tetrahedra, const convert::TetQualit
     exported.details["node_sets"][set.name] = set.nodes.size();
   for (const convert::DeckSurface& surface : options.surfaces)
     exported.details["surfaces"][surface.name] = surface.faces.size();
-  exported.details["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
-                                 {"max_dihedral_deg", quality.max_dihedral_deg},
-                                 {"max_radius_edge", quality.max_radius_edge},
-                                 {"min_volume_mm3", quality.min_volume_mm3}};
+  exported.details["quality"] = quality_json(quality);
 }
 
 /// Why there is nothing to write, or an empty text.
@@ -192,7 +189,7 @@ void Exporter::write_deck(Export& to, const convert::Tetrahedra& tetrahedra, con
   options.progress = progress("writing " + to.exported.path);
   add_midline(tetrahedra, to.step, options, to.exported);
   options.notes = origins_of(plan_, evaluation_);
-  options.notes.push_back(quality_note(quality));
+  for (std::string& note : quality_notes(quality)) options.notes.push_back(std::move(note));
   options.notes.insert(options.notes.end(), to.exported.findings.begin(), to.exported.findings.end());
   convert::write_deck(tetrahedra, to.path, options);
   say_written(tetrahedra, quality, options, to.exported);

@@ -156,10 +156,24 @@ std::variant<Filling, std::string> filling_of(const Object& object, const Fillin
   return made;
 }
 
-std::string quality_note(const convert::TetQuality& quality) {
-  return "dihedral angles " + grouped(quality.min_dihedral_deg, 2) + " to " +
-         grouped(quality.max_dihedral_deg, 2) + " degrees; radius-edge ratio up to " +
-         grouped(quality.max_radius_edge, 2) + "; volume " + grouped(quality.volume_mm3, 3) + " mm3";
+std::vector<std::string> quality_notes(const convert::TetQuality& quality) {
+  std::string table = "elements by smallest dihedral angle:";
+  const auto& steps = convert::dihedral_steps_deg;
+  for (std::size_t i = 0; i < quality.by_dihedral.size(); ++i)
+    table += (i == 0             ? " under " + grouped(steps[0], 0)
+              : i < steps.size() ? "; " + grouped(steps[i - 1], 0) + " to " + grouped(steps[i], 0)
+                                 : "; from " + grouped(steps.back(), 0)) +
+             " degrees " + grouped(static_cast<double>(quality.by_dihedral.at(i)), 0);
+  return {"dihedral angles " + grouped(quality.min_dihedral_deg, 2) + " to " +
+              grouped(quality.max_dihedral_deg, 2) + " degrees; radius-edge ratio up to " +
+              grouped(quality.max_radius_edge, 2) + "; volume " + grouped(quality.volume_mm3, 3) + " mm3",
+          table};
+}
+
+nlohmann::ordered_json quality_json(const convert::TetQuality& quality) {
+  return {{"min_dihedral_deg", quality.min_dihedral_deg},      {"max_dihedral_deg", quality.max_dihedral_deg},
+          {"max_radius_edge", quality.max_radius_edge},        {"min_volume_mm3", quality.min_volume_mm3},
+          {"dihedral_steps_deg", convert::dihedral_steps_deg}, {"by_dihedral", quality.by_dihedral}};
 }
 
 }  // namespace octotomy::planner

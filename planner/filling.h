@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <variant>
 #include <vector>
@@ -35,7 +36,10 @@ struct FillingOptions {
 /// says why; without it, the former is answered as a text for people, the latter a finding. Throws Stopped.
 std::variant<Filling, std::string> filling_of(const Object& object, const FillingOptions& options);
 
-/// Angles, ratio of radius and edge, and volume, as a deck's header says them.
-std::string quality_note(const convert::TetQuality& quality);
+/// What a deck's header says of its elements: angles, ratio of radius and edge, and volume; then how many
+/// have which smallest dihedral angle.
+std::vector<std::string> quality_notes(const convert::TetQuality& quality);
+/// The same as JSON.
+nlohmann::ordered_json quality_json(const convert::TetQuality& quality);
 
 }  // namespace octotomy::planner

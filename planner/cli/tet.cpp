@@ -223,7 +223,8 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
     deck.contacts.push_back({there, back, there});
   }
   if (text.contact) filled.tetrahedra = convert::separate_regions(filled.tetrahedra);
-  deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION, quality_note(quality)};
+  deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION};
+  for (std::string& note : quality_notes(quality)) deck.notes.push_back(std::move(note));
   for (const std::string& finding : filled.findings) deck.notes.push_back(finding);
   if (text.scan.empty()) return deck;
   convert::MaterialOptions options = text.materials;
@@ -284,10 +285,7 @@ int tet(const Program& program, TetText text) {
   json["tets"] = tetrahedra.tets.size();
   json["regions"] = filled.regions;
   json["volume_mm3"] = quality.volume_mm3;
-  json["quality"] = {{"min_dihedral_deg", quality.min_dihedral_deg},
-                     {"max_dihedral_deg", quality.max_dihedral_deg},
-                     {"max_radius_edge", quality.max_radius_edge},
-                     {"min_volume_mm3", quality.min_volume_mm3}};
+  json["quality"] = quality_json(quality);
   json["order"] = text.order;
   json["method"] = tetrahedra.method;
   json["fallback"] = filled.fallback.has_value();

@@ -58,10 +58,10 @@ TEST(Health, NamesTheFirstTriangleOfEachFinding) {
   EXPECT_NE(flip.find("wind against each other (first: triangle "), flip.npos) << flip;
   twice.faces.push_back(twice.faces[7]);
   const std::string twin = told(health(twice));
-  EXPECT_NE(twin.find("same points (first: triangle 7)"), twin.npos) << twin;
+  EXPECT_NE(twin.find("same points (first: triangle 7 at ("), twin.npos) << twin;
   const Health meeting = health(crossed);
   EXPECT_NE(told(meeting).find("intersect (first: triangles " + std::to_string(meeting.crossing[0].first) +
-                               " and " + std::to_string(meeting.crossing[0].second)),
+                               " and " + std::to_string(meeting.crossing[0].second) + " at ("),
             std::string::npos);
   Triangles open = ball;
   open.faces.erase(open.faces.begin());
@@ -76,7 +76,8 @@ TEST(Health, NamesTheFirstTriangleOfEachFinding) {
     return common == 2;
   };
   const auto first = std::find_if(open.faces.begin(), open.faces.end(), sides_of_lost) - open.faces.begin();
-  EXPECT_NE(hole.findings.front().find("(first: triangle " + std::to_string(first) + ")"), std::string::npos)
+  EXPECT_NE(hole.findings.front().find("(first: triangle " + std::to_string(first) + " at ("),
+            std::string::npos)
       << hole.findings.front();
 }
 

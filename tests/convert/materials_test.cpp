@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "convert/materials.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -122,11 +123,36 @@ TEST(Materials, AirAndMetalStayStiffnessesAndWrongOptionsAreRefused) {
   EXPECT_THROW(element_materials({}, scan_of([](const glm::dvec3&) { return 0.0; })), std::invalid_argument);
 }
 
+TEST(Materials, VoxelsThatTheSurfaceSharesWithAirCountAsWhatIsBelowWhereAskedFor) {
+  const Tetrahedra t = block();
+  glm::dvec3 low(1e9), high(-1e9);
+  for (const glm::dvec3& p : t.nodes_mm) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  // Bone of 1000, blurred over a voxel at its surface.
+  const voxel::Scene scan = scan_of([&](const glm::dvec3& p) {
+    const glm::dvec3 in = glm::min(p - low, high - p);
+    return 1000.0 * std::clamp(0.5 + std::min({in.x, in.y, in.z}) / 1.5, 0.0, 1.0);
+  });
+  const ElementMaterials own = element_materials(t, scan);
+  EXPECT_LT(*std::min_element(own.hu.begin(), own.hu.end()), 750.0);
+  MaterialOptions options;
+  options.surface_depth_mm = 1.5 * std::sqrt(3.0);
+  const ElementMaterials corrected = element_materials(t, scan, options);
+  EXPECT_GT(*std::min_element(corrected.hu.begin(), corrected.hu.end()), 995.0);
+  for (std::size_t i = 0; i < own.hu.size(); ++i) ASSERT_GE(corrected.hu[i], own.hu[i]) << i;
+  options.surface_depth_mm = -1.0;
+  EXPECT_THROW(element_materials(t, scan, options), std::invalid_argument);
+}
+
 TEST(Materials, HaveTheSameBitsOnOneThreadAndMany) {
   const voxel::Scene scan = scan_of([](const glm::dvec3& p) { return 300.0 * std::sin(p.x) + 50.0 * p.y; });
-  const ElementMaterials many = element_materials(block(), scan);
+  MaterialOptions options;
+  options.surface_depth_mm = 1.0;
+  const ElementMaterials many = element_materials(block(), scan, options);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  EXPECT_EQ(element_materials(block(), scan).youngs_modulus_mpa, many.youngs_modulus_mpa);
+  EXPECT_EQ(element_materials(block(), scan, options).youngs_modulus_mpa, many.youngs_modulus_mpa);
 }
 
 }  // namespace
