@@ -18,6 +18,7 @@
 
 #include "convert/deck_format.h"
 #include "convert/second_order.h"
+#include "voxel/file_text.h"
 
 namespace octotomy::convert {
 namespace {
@@ -131,14 +132,8 @@ struct Part {
   Writer write;
 };
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 std::vector<Part> parts_of(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = voxel::extension_of(path);
   if (extension == ".inp") return {{path, write_inp}};
   if (extension == ".feb") return {{path, write_feb}};
   if (extension == ".vtu") return {{path, write_vtu}};
@@ -256,7 +251,7 @@ const std::string& deck_extensions() {
 }
 
 bool is_deck(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = voxel::extension_of(path);
   return extension == ".inp" || extension == ".feb" || extension == ".vtu" || extension == ".msh" ||
          extension == ".node" || extension == ".ele" || extension == ".face";
 }

@@ -93,6 +93,7 @@ std::optional<double> mean_over(const std::array<glm::dvec3, 4>& corners_mm, con
   for (std::size_t i = 0; i < points.size(); ++i) values[i] = scan.at(points[i]);
   if (depth) {
     std::vector<glm::dvec3> sunk_mm;
+    sunk_mm.reserve(points.size());
     for (const glm::dvec3& p : points) sunk_mm.push_back(scan.lps_mm(p));
     // Below one face of a corner, a point may be near another.
     constexpr int rounds = 3;

@@ -4,6 +4,7 @@
 #include "brep/health.h"
 #include "brep/read_mesh.h"
 #include "brep/write_mesh.h"
+#include "voxel/file_text.h"
 
 namespace octotomy::planner::cli {
 
@@ -33,7 +34,7 @@ void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Tim
 }
 
 void need_mesh_extension(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = voxel::extension_of(path);
   for (const char* known : {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"})
     if (extension == known) return;
   throw std::runtime_error(path.string() + ": a mesh is written as .stl, .ply, .obj, .off, .vtp or .glb");

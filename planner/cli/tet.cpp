@@ -317,6 +317,12 @@ void add_material_options(CLI::App& verb, TetText& text) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
       ->group(group);
+  verb.add_option("--surface-depth", text.materials.surface_depth_mm,
+                  "Take what is nearer to the surface than so many mm from this depth, as voxels there hold "
+                  "bone and what is beside it; 0: from where it is")
+      ->check(between(0.0, 20.0))
+      ->capture_default_str()
+      ->group(group);
   verb.add_option("--poisson", text.materials.poisson_ratio, "Poisson's ratio of them")
       ->check(between(0.0, 0.499))
       ->capture_default_str()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // The verbs that make, measure, change and fill surfaces, as scripts see them.
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -203,6 +204,40 @@ TEST_F(MeshVerbs, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFallb
   EXPECT_GT(std::filesystem::file_size(folder_ / "ten.vtu"),
             2 * std::filesystem::file_size(folder_ / "ball.vtu"));
   expect_refused(run("tet " + at("ball.off") + " -o " + at("ten.node") + " --order 2"), "linear");
+}
+
+TEST_F(MeshVerbs, ElementsAreFinerAtPointsLandmarksAndAlongMeshesAndStiffnessComesFromBelowTheSurface) {
+  ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 600").status, 0);
+  write("plate.off", "OFF\n3 1 0\n-9 -9 0\n9 -9 0\n0 9 0\n3 0 1 2\n");
+  write("marks.json", R"({ "landmarks": [ { "name": "apex", "point_mm": [0, 0, 12] } ] })");
+  const std::string tet = "tet " + at("ball.off") + " -o " + at("ball.vtu") + " --json";
+  const auto tets = [&](const std::string& options) {
+    const CommandAnswer answer = run(tet + options);
+    EXPECT_EQ(answer.status, 0) << answer.errors;
+    return Json::parse(answer.out)["tets"].get<int>();
+  };
+  const int even = tets("");
+  const int at_point = tets(" --finer 0,0,12=0.4");
+  EXPECT_GT(at_point, 1.2 * even);
+  EXPECT_EQ(tets(" --landmarks " + at("marks.json") + " --finer apex=0.4"), at_point);
+  EXPECT_GT(tets(" --finer 0,0,12=0.4 --finer " + at("plate.off") + "=1"), 1.2 * at_point);
+  expect_refused(run(tet + " --finer apex=0.4"), "--landmarks");
+  expect_refused(run(tet + " --finer 0,0,12"), "says no size");
+
+  const auto softest_mpa = [&](const std::string& options) {
+    const CommandAnswer answer =
+        run("tet " + at("ball.off") + " -o " + at("stiff.inp") + " --scan " + at("ball.nrrd") + options);
+    EXPECT_EQ(answer.status, 0) << answer.errors;
+    std::ifstream deck(folder_ / "stiff.inp");
+    double softest = 1e9;
+    for (std::string line; std::getline(deck, line);)
+      if (line == "*ELASTIC" && std::getline(deck, line)) softest = std::min(softest, std::stod(line));
+    return softest;
+  };
+  // 1000 HU are 0.8 g/cm3 by the default calibration.
+  const double bone_mpa = 6850.0 * std::pow(0.8, 1.49);
+  EXPECT_LT(softest_mpa(""), 0.5 * bone_mpa) << "elements at the surface hold air, too";
+  EXPECT_GT(softest_mpa(" --surface-depth 2"), 0.95 * bone_mpa);
 }
 
 TEST_F(MeshVerbs, OctreesBecomeRegionsOfSmoothElementsThatShareNodesOrTouch) {
