@@ -82,7 +82,7 @@ struct DeckOptions {
 /// .feb  FEBio 4: the same, prescribed displacements as maps over node sets.
 /// .vtu  VTK unstructured grid of tetrahedra, appended raw data; points in double precision, the nodes of the
 ///       surface marked by the point array `surface`, sets by arrays of their own; regions, materials and
-///       fields by elements.
+///       fields by elements, surfaces by bits of elements, bit i for the face opposite corner i.
 /// .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a physical surface a surface.
 /// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only.
 /// Throws std::runtime_error with path and reason; std::invalid_argument for another extension, no

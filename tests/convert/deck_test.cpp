@@ -187,6 +187,16 @@ TEST(Deck, AVtkGridHoldsEveryBitOfTheNodes) {
   EXPECT_EQ(appended<std::uint8_t>(file, "surface"), std::vector<std::uint8_t>(8, 1));
 }
 
+TEST(Deck, AVtkGridMarksTheFacesOfASurfaceByTheCornersAcross) {
+  const Folder folder;
+  DeckOptions options;
+  options.surfaces = {{"CUT", {{0, 3}, {0, 1}, {4, 0}}}, {"REST", {{2, 2}}}};
+  write_deck(cube_in_five(), folder / "cube.vtu", options);
+  const std::string file = content(folder / "cube.vtu");
+  EXPECT_EQ(appended<std::uint8_t>(file, "CUT"), (std::vector<std::uint8_t>{0b1010, 0, 0, 0, 0b0001}));
+  EXPECT_EQ(appended<std::uint8_t>(file, "REST"), (std::vector<std::uint8_t>{0, 0, 0b0100, 0, 0}));
+}
+
 TEST(Deck, WhatASolverWouldRefuseIsRefusedBeforeAnythingIsWritten) {
   const Folder folder;
   const Tetrahedra cube = cube_in_five();
