@@ -14,7 +14,13 @@ namespace octotomy::planner {
 using Json = nlohmann::json;
 
 void refuse(const std::string& where, const std::string& what) {
-  throw std::runtime_error(where + ": " + what);
+  throw std::runtime_error(where.empty() ? what : where + ": " + what);
+}
+
+std::string type_of(const Json& value) {
+  return value.is_number() ? "a number"
+         : value.is_null() ? "null"
+                           : "a JSON " + std::string(value.type_name());
 }
 
 Json read_json(const std::filesystem::path& path) {
@@ -49,8 +55,10 @@ const Json& need(const Json& object, const std::string& key, const std::string& 
 }
 
 double number_of(const Json& value, const std::string& where) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(where, "must be a finite number");
-  return value.get<double>();
+  if (!value.is_number()) refuse(where, "must be a number, not " + type_of(value));
+  const auto number = value.get<double>();
+  if (!std::isfinite(number)) refuse(where, "must be a finite number");
+  return number;
 }
 
 std::size_t count_of(const Json& value, const std::string& where) {

@@ -11,7 +11,11 @@
 // place in it.
 namespace octotomy::planner {
 
+/// `where` may be empty: then only what is wrong is said.
 [[noreturn]] void refuse(const std::string& where, const std::string& what);
+
+/// For a refusal: "a number", "a JSON array".
+std::string type_of(const nlohmann::json& value);
 
 nlohmann::json read_json(const std::filesystem::path& path);
 

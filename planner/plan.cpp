@@ -12,30 +12,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/export_step.h"
 #include "planner/nearest_name.h"
+#include "planner/plan_keys.h"
 
 namespace octotomy::planner {
 namespace {
 
 using Json = nlohmann::json;
-
-[[noreturn]] void refuse(const std::string& where, const std::string& what) {
-  throw std::runtime_error(where.empty() ? what : where + ": " + what);
-}
-
-std::string type_of(const Json& value) {
-  return value.is_number() ? "a number"
-         : value.is_null() ? "null"
-                           : "a JSON " + std::string(value.type_name());
-}
-
-/// The names of pairs or of a map's entries, in their order.
-template <typename Pairs>
-std::vector<std::string> names_of(const Pairs& pairs) {
-  std::vector<std::string> names(pairs.size());
-  std::transform(pairs.begin(), pairs.end(), names.begin(), [](const auto& pair) { return pair.first; });
-  return names;
-}
 
 /// Reads JSON, refusing keys that an object says twice, which would otherwise silently take the last.
 Json strict_json(const std::string& text) {
@@ -55,57 +39,6 @@ Json strict_json(const std::string& text) {
   }
 }
 
-/// One JSON object, read key by key; finish() refuses what nobody asked for.
-class Keys {
- public:
-  Keys(const Json& value, std::string where, std::vector<std::string> known)
-      : value_(value), where_(std::move(where)), known_(std::move(known)) {
-    if (!value.is_object()) refuse(where_, "must be an object in braces, not " + type_of(value));
-    std::sort(known_.begin(), known_.end());
-    for (const auto& [key, unused] : value.items())
-      if (!std::binary_search(known_.begin(), known_.end(), key))
-        refuse(where_, "unknown key '" + key + "'" + suggestion(key, known_));
-  }
-
-  const std::string& where() const { return where_; }
-  std::string at(const std::string& key) const { return where_.empty() ? key : where_ + ", " + key; }
-  const Json* find(const std::string& key) const {
-    const auto found = value_.find(key);
-    return found == value_.end() || found->is_null() ? nullptr : &*found;
-  }
-  const Json& need(const std::string& key) const {
-    const Json* found = find(key);
-    if (found == nullptr) refuse(where_, "'" + key + "' is missing: add it");
-    return *found;
-  }
-  std::string text(const std::string& key) const {
-    const Json& value = need(key);
-    if (!value.is_string()) refuse(at(key), "must be a text in quotes, not " + type_of(value));
-    if (value.get_ref<const std::string&>().empty()) refuse(at(key), "is empty: say what is meant");
-    return value.get<std::string>();
-  }
-  double number(const std::string& key) const { return number(need(key), at(key)); }
-  std::optional<double> number_if(const std::string& key) const {
-    return find(key) == nullptr ? std::nullopt : std::optional(number(key));
-  }
-  glm::dvec3 point(const std::string& key) const {
-    const Json& value = need(key);
-    if (!value.is_array() || value.size() != 3) refuse(at(key), "must be three numbers [x, y, z]");
-    return {number(value[0], at(key)), number(value[1], at(key)), number(value[2], at(key))};
-  }
-  static double number(const Json& value, const std::string& where) {
-    if (!value.is_number()) refuse(where, "must be a number, not " + type_of(value));
-    const double number = value.get<double>();
-    if (!std::isfinite(number)) refuse(where, "must be a finite number");
-    return number;
-  }
-
- private:
-  const Json& value_;
-  std::string where_;
-  std::vector<std::string> known_;
-};
-
 // In the order of Step::action's alternatives, so that an index tells the word.
 const std::vector<std::pair<std::string, std::vector<std::string>>> steps_known{
     {"window", {"id", "do", "scan", "low", "high"}},
@@ -122,52 +55,6 @@ std::vector<std::string> step_words() {
   return names_of(steps_known);
 }
 
-const std::array<std::pair<std::string, ExportKind>, 12> extensions{{{".stl", ExportKind::Mesh},
-                                                                     {".ply", ExportKind::Mesh},
-                                                                     {".obj", ExportKind::Mesh},
-                                                                     {".off", ExportKind::Mesh},
-                                                                     {".inp", ExportKind::Tetrahedra},
-                                                                     {".vtu", ExportKind::Tetrahedra},
-                                                                     {".feb", ExportKind::Tetrahedra},
-                                                                     {".msh", ExportKind::Tetrahedra},
-                                                                     {".node", ExportKind::Tetrahedra},
-                                                                     {".nrrd", ExportKind::Label},
-                                                                     {".nii.gz", ExportKind::Label},
-                                                                     {".mha", ExportKind::Label}}};
-
-/// Names that steps have bound so far; objects can be computed with, the rest only exists.
-class Bound {
- public:
-  void bind(const std::string& where, const std::string& id, const std::string& word) {
-    const bool letter_first =
-        !id.empty() && (std::isalpha(static_cast<unsigned char>(id[0])) || id[0] == '_');
-    const bool identifier = letter_first && std::all_of(id.begin(), id.end(), [](unsigned char c) {
-                              return c < 128 && (std::isalnum(c) || c == '_');
-                            });
-    if (!identifier)
-      refuse(where, "id '" + id + "' is not a name: use letters, digits and underscores, a letter first");
-    if (!words_.emplace(id, word).second)
-      refuse(where, "id '" + id + "' is taken by an earlier step: choose another");
-    if (word != "measure" && word != "export") objects_.push_back(id);
-  }
-  void need_moved(const std::string& where, const std::string& name) const {
-    need_object(where, name);
-    if (words_.at(name) != "move")
-      refuse(where, "'" + name + "' is a " + words_.at(name) +
-                        " step: name the result of a move step, or list it as fixed");
-  }
-  void need_object(const std::string& where, const std::string& name) const {
-    if (std::find(objects_.begin(), objects_.end(), name) != objects_.end()) return;
-    const auto found = words_.find(name);
-    if (found != words_.end()) refuse(where, "'" + name + "' is a " + found->second + " step, not an object");
-    refuse(where, "no earlier step is called '" + name + "'" + suggestion(name, objects_));
-  }
-
- private:
-  std::map<std::string, std::string> words_;
-  std::vector<std::string> objects_;
-};
-
 WindowStep window_step(const Keys& keys, const std::map<std::string, ScanSource>& scans) {
   WindowStep step{keys.text("scan"), keys.number("low"), keys.number_if("high")};
   const std::vector<std::string> names = names_of(scans);
@@ -181,11 +68,8 @@ WindowStep window_step(const Keys& keys, const std::map<std::string, ScanSource>
 std::vector<glm::dvec2> polygon_of(const Json& value, const std::string& where) {
   if (!value.is_array()) refuse(where, "must be a list of points [u, v]");
   std::vector<glm::dvec2> polygon;
-  for (const Json& point : value) {
-    const std::string at = where + "[" + std::to_string(polygon.size()) + "]";
-    if (!point.is_array() || point.size() != 2) refuse(at, "must be two numbers [u, v]");
-    polygon.emplace_back(Keys::number(point[0], at), Keys::number(point[1], at));
-  }
+  for (const Json& point : value)
+    polygon.push_back(point_of(point, where + "[" + std::to_string(polygon.size()) + "]"));
   return polygon;
 }
 
@@ -257,193 +141,8 @@ MoveStep move_step(const Keys& keys, const Bound& bound) {
   return step;
 }
 
-std::vector<std::string> names_in(const Keys& keys, const std::string& key) {
-  std::vector<std::string> names;
-  const Json* list = keys.find(key);
-  if (list == nullptr) return names;
-  if (!list->is_array()) refuse(keys.at(key), "must be a list of names of earlier steps");
-  for (const Json& name : *list) {
-    if (!name.is_string()) refuse(keys.at(key), "must hold names of earlier steps, not " + type_of(name));
-    names.push_back(name.get<std::string>());
-  }
-  return names;
-}
-
-RegionMaterial material_of(const Keys& material) {
-  const RegionMaterial read{material.number("youngs_modulus_mpa"), material.number("poisson_ratio")};
-  if (read.youngs_modulus_mpa <= 0.0)
-    refuse(material.at("youngs_modulus_mpa"), "must be above zero, for example 0.015");
-  if (read.poisson_ratio < 0.0 || read.poisson_ratio >= 0.5)
-    refuse(material.at("poisson_ratio"), "must be from 0 to less than 0.5, for example 0.45");
-  return read;
-}
-
-/// Pairs of a deck's regions that slide on each other.
-std::vector<std::pair<std::string, std::string>> sliding_of(const Keys& keys,
-                                                            const std::vector<std::string>& regions) {
-  std::vector<std::pair<std::string, std::string>> pairs;
-  const Json* list = keys.find("sliding");
-  if (list == nullptr) return pairs;
-  const std::string where = keys.at("sliding");
-  const char* const example = "must be a list of pairs of regions, as [[\"upper_lip\", \"lower_lip\"]]";
-  if (!list->is_array()) refuse(where, example);
-  for (const Json& pair : *list) {
-    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_string() || !pair[1].is_string())
-      refuse(where, example);
-    pairs.emplace_back(pair[0].get<std::string>(), pair[1].get<std::string>());
-    for (const std::string& name : {pairs.back().first, pairs.back().second})
-      if (std::find(regions.begin(), regions.end(), name) == regions.end())
-        refuse(where, "'" + name + "' is no region of this deck" + suggestion(name, regions));
-    if (pairs.back().first == pairs.back().second)
-      refuse(where, "'" + pairs.back().first + "' cannot slide on itself: cut it in two");
-  }
-  return pairs;
-}
-
-/// Elements of regions, and what holds them.
-void check_filling(const Keys& keys, const ExportStep& step) {
-  if (step.smooth_mm && *step.smooth_mm <= 0.0)
-    refuse(keys.at("smooth_mm"), "must be above zero, for example 3.0");
-  if (step.fallback && !step.smooth_mm)
-    refuse(keys.at("fallback"), "regions are made of voxels unless 'smooth_mm' is there: leave it out");
-  if (!step.smooth_mm) return;
-  if (step.attachment.element_mm)
-    refuse(keys.at("element_mm"), "is of voxels, and 'smooth_mm' of smooth elements: leave one out");
-  for (const std::vector<std::string>* holders : {&step.attachment.moved, &step.attachment.fixed})
-    for (const std::string& holder : *holders)
-      if (holder != step.object &&
-          std::find(step.regions.begin(), step.regions.end(), holder) == step.regions.end())
-        refuse(keys.at("smooth_mm"), "smooth elements do not lie on voxels: add '" + holder +
-                                         "', which holds them, to 'regions', or leave 'smooth_mm' out");
-}
-
-/// What only decks of several regions have.
-void read_regions(const Keys& keys, const Bound& bound, ExportStep& step) {
-  step.regions = names_in(keys, "regions");
-  for (const std::string& other : step.regions) bound.need_object(keys.at("regions"), other);
-  if (step.regions.empty()) {
-    for (const char* key : {"smooth_mm", "between", "sliding", "materials"})
-      if (keys.find(key) != nullptr)
-        refuse(keys.at(key), "is of several regions: add 'regions', or leave it out");
-    return;
-  }
-  if (step.kind != ExportKind::Tetrahedra)
-    refuse(keys.at("regions"), "only tetrahedra have regions: choose .inp, .feb, .vtu or .msh");
-  step.smooth_mm = keys.number_if("smooth_mm");
-  check_filling(keys, step);
-  if (keys.find("between") != nullptr) {
-    const std::string between = keys.text("between");
-    if (between != "shared" && between != "contact")
-      refuse(keys.at("between"), "must be \"shared\", nodes where regions touch, or \"contact\"");
-    step.contact = between == "contact";
-  }
-  std::vector<std::string> names = step.regions;
-  names.push_back(step.object);
-  step.sliding = sliding_of(keys, names);
-  if (const Json* materials = keys.find("materials")) {
-    const Keys by_name(*materials, keys.at("materials"), names);
-    for (const std::string& name : names)
-      if (const Json* value = by_name.find(name))
-        step.materials[name] =
-            material_of(Keys(*value, by_name.at(name), {"youngs_modulus_mpa", "poisson_ratio"}));
-  }
-}
-
-Attachment attachment_of(const Keys& keys, const Bound& bound) {
-  Attachment attachment{names_in(keys, "moved"), names_in(keys, "fixed"), keys.number_if("element_mm")};
-  for (const std::string& name : attachment.moved) bound.need_moved(keys.at("moved"), name);
-  for (const std::string& name : attachment.fixed) bound.need_object(keys.at("fixed"), name);
-  if (attachment.element_mm && *attachment.element_mm <= 0.0)
-    refuse(keys.at("element_mm"), "must be above zero, for example 3.0");
-  if (const Json* value = keys.find("material")) {
-    const RegionMaterial material =
-        material_of(Keys(*value, keys.at("material"), {"youngs_modulus_mpa", "poisson_ratio"}));
-    attachment.youngs_modulus_mpa = material.youngs_modulus_mpa;
-    attachment.poisson_ratio = material.poisson_ratio;
-  }
-  const bool any_text = keys.find("element_mm") != nullptr || keys.find("material") != nullptr;
-  if (any_text && !attachment.any())
-    refuse(keys.where(),
-           "'element_mm' and 'material' are of an object that others hold: add 'moved' or 'fixed'");
-  return attachment;
-}
-
-std::vector<FinerText> finer_of(const Keys& keys, const Bound& bound) {
-  std::vector<FinerText> places;
-  const Json* list = keys.find("finer");
-  if (list == nullptr) return places;
-  if (!list->is_array())
-    refuse(keys.at("finer"), "must be a list, as [{\"at\": [0, -80, 20], \"size_mm\": 0.5}]");
-  for (const Json& value : *list) {
-    const Keys place(value, keys.at("finer[" + std::to_string(places.size()) + "]"), {"at", "size_mm"});
-    FinerText text;
-    text.size_mm = place.number("size_mm");
-    if (text.size_mm <= 0.0) refuse(place.at("size_mm"), "must be above zero, for example 0.5");
-    if (place.need("at").is_string()) {
-      text.object = place.text("at");
-      bound.need_object(place.at("at"), text.object);
-    } else {
-      text.point_mm = place.point("at");
-    }
-    places.push_back(std::move(text));
-  }
-  return places;
-}
-
-ExportStep export_step(const Keys& keys, const Bound& bound, std::set<std::string>& taken) {
-  ExportStep step{keys.text("object"), keys.text("path")};
-  bound.need_object(keys.at("object"), step.object);
-  const std::string name = step.path.lexically_normal().generic_string();
-  const auto extension = std::find_if(extensions.begin(), extensions.end(),
-                                      [&](const auto& known) { return name.ends_with(known.first); });
-  const std::vector<std::string> known = names_of(extensions);
-  if (extension == extensions.end())
-    refuse(keys.at("path"),
-           "nothing can be written as '" + name + "'" + suggestion(step.path.extension().string(), known));
-  step.kind = extension->second;
-  if (step.path.is_absolute() || name.starts_with("..") || name.starts_with("views/"))
-    refuse(keys.at("path"), "'" + name + "' must be a path within the result folder, outside of views/");
-  if (!taken.insert(name).second)
-    refuse(keys.at("path"), "'" + name + "' is written by an earlier step: choose another");
-  step.path = name;
-  step.attachment = attachment_of(keys, bound);
-  if (step.attachment.any() && step.kind != ExportKind::Tetrahedra)
-    refuse(keys.at("path"), "only tetrahedra are moved and held by other objects: choose .inp, .feb or .vtu");
-  if (const Json* fallback = keys.find("fallback")) {
-    if (!fallback->is_boolean()) refuse(keys.at("fallback"), "must be true or false");
-    if (step.kind != ExportKind::Tetrahedra)
-      refuse(keys.at("fallback"),
-             "only tetrahedra have a fallback: leave it out, or choose .inp, .feb or .vtu");
-    if (step.attachment.any() && keys.find("smooth_mm") == nullptr)
-      refuse(keys.at("fallback"), "what others hold is made of its voxels anyhow: leave it out");
-    step.fallback = fallback->get<bool>();
-  }
-  if (const std::optional<double> order = keys.number_if("order")) {
-    if (*order != 1.0 && *order != 2.0)
-      refuse(keys.at("order"), "must be 1, four-node tetrahedra, or 2, ten-node ones");
-    if (step.kind != ExportKind::Tetrahedra || name.ends_with(".node"))
-      refuse(keys.at("order"), "is of tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
-    step.second_order = *order == 2.0;
-  }
-  if (const Json* value = keys.find("midline")) {
-    const Keys plane(*value, keys.at("midline"), {"point_mm", "normal"});
-    if (step.kind != ExportKind::Tetrahedra)
-      refuse(keys.at("midline"), "is a set of a deck's nodes: leave it out");
-    step.midline = PlaneText{plane.point("point_mm"), plane.point("normal")};
-    if (step.midline->normal == glm::dvec3(0.0))
-      refuse(plane.at("normal"), "has no direction: give for example [1, 0, 0]");
-  }
-  read_regions(keys, bound, step);
-  step.finer = finer_of(keys, bound);
-  if (!step.finer.empty() && step.kind != ExportKind::Tetrahedra)
-    refuse(keys.at("finer"), "is of a deck's elements: leave it out");
-  if (!step.finer.empty() && !step.smooth_mm && (step.attachment.any() || !step.regions.empty()))
-    refuse(keys.at("finer"), "is not of voxels' elements: add 'smooth_mm', or leave it out");
-  return step;
-}
-
 int whole_number(const Json& value, const std::string& where) {
-  const double number = Keys::number(value, where);
+  const double number = number_of(value, where);
   if (number != std::trunc(number) || std::abs(number) > std::numeric_limits<int>::max())
     refuse(where, "must be a whole number");
   return static_cast<int>(number);
@@ -464,10 +163,7 @@ voxel::ReadOptions read_options_of(const Keys& scan) {
     const std::optional<voxel::SampleType> type = voxel::sample_type(keys.text("type"));
     if (!type) refuse(keys.at("type"), "'" + keys.text("type") + "' is no type: use for example int16");
     raw.type = *type;
-    if (const Json* big_endian = keys.find("big_endian")) {
-      if (!big_endian->is_boolean()) refuse(keys.at("big_endian"), "must be true or false");
-      raw.big_endian = big_endian->get<bool>();
-    }
+    if (keys.find("big_endian") != nullptr) raw.big_endian = keys.flag("big_endian");
     if (const Json* offset = keys.find("offset")) {
       const int bytes = whole_number(*offset, keys.at("offset"));
       if (bytes < 0) refuse(keys.at("offset"), "must not be negative");
@@ -510,8 +206,7 @@ MeasureStep measure_step(const Keys& keys, const Bound& bound) {
     for (const Json& point : *points) {
       const std::string at = where + "[" + std::to_string(step.points_mm.size()) + "]";
       if (!point.is_array() || point.size() != 3) refuse(at, "must be three numbers [x, y, z]");
-      step.points_mm.emplace_back(Keys::number(point[0], at), Keys::number(point[1], at),
-                                  Keys::number(point[2], at));
+      step.points_mm.emplace_back(number_of(point[0], at), number_of(point[1], at), number_of(point[2], at));
     }
     if (step.points_mm.size() == 3 &&
         (step.points_mm[1] == step.points_mm[0] || step.points_mm[1] == step.points_mm[2]))
@@ -550,7 +245,7 @@ Step step_of(const Json& value, std::size_t index, const Plan& plan, Bound& boun
   if (word == "mask") step.action = mask_step(keys);
   if (word == "combine") step.action = combine_step(keys, bound);
   if (word == "move") step.action = move_step(keys, bound);
-  if (word == "export") step.action = export_step(keys, bound, taken);
+  if (word == "export") step.action = read_export_step(keys, bound, taken);
   if (word == "measure") step.action = measure_step(keys, bound);
   // Bound last, so that no step can name itself.
   bound.bind(where, step.id, word);
