@@ -66,7 +66,6 @@ class Round {
     }
     std::vector<Face> faces;
     for (const Face& face : surface_.faces) add(face, faces);
-    if (faces.size() > most_triangles) refuse_so_many();
     surface_.faces = std::move(faces);
     return true;
   }
@@ -179,10 +178,13 @@ std::vector<double> FinerSizes::at_mm(const std::vector<glm::dvec3>& points_mm) 
 }
 
 brep::Triangles finer_surface(const brep::Triangles& surface, const FinerSizes& sizes) {
-  if (least_count(surface, sizes) > static_cast<double>(most_triangles)) refuse_so_many();
   brep::Triangles finer = surface;
-  while (Round(finer, sizes).split()) {
-  }
+  do {
+    // The smaller triangles are, the more is known of how many there will be.
+    if (finer.faces.size() > most_triangles ||
+        least_count(finer, sizes) > static_cast<double>(most_triangles))
+      refuse_so_many();
+  } while (Round(finer, sizes).split());
   return finer;
 }
 
