@@ -11,7 +11,8 @@
 
 namespace octotomy::convert {
 
-/// Where elements are to be finer than elsewhere: about landmarks, or along a surface.
+/// Where elements are to be finer than elsewhere: about landmarks, or along a surface. What fills a solid
+/// from its surface divides that, so that places deep within it are seen by smooth_tetrahedra_of() alone.
 struct Finer {
   std::vector<glm::dvec3> points_mm;
   brep::Triangles surface{};  ///< may be open; none where there are no triangles

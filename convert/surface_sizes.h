@@ -14,9 +14,8 @@ double mean_side_mm(const MesherInput& surface);
 
 /// What sizes are held to beside the triangles' own.
 struct SizeLimits {
-  std::optional<double>
-      mean_mm;                  ///< in place of the surface's mean_side_mm(), where parts of it were divided
-  std::vector<double> most_mm;  ///< at each point, or none
+  std::optional<double> mean_mm{};  ///< for mean_side_mm(), where the surface was divided in parts
+  std::vector<double> most_mm{};    ///< at each point, or none
 };
 
 /// How large triangles are about each point of a surface, and how a mesher's may be: lengths in mm at the
