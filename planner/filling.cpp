@@ -152,8 +152,12 @@ std::variant<Filling, std::string> filling_of(const Object& object, const Fillin
       return *why +
              (options.fallback ? "; and it has no voxel" : "; \"fallback\": true takes its voxels' elements");
   }
-  if (why && has_fallback) return fallback_of(object, *why, options.progress);
-  return made;
+  if (!why || !has_fallback) return made;
+  Filling voxels = fallback_of(object, *why, options.progress);
+  if (const auto* filling = std::get_if<Filling>(&made))
+    for (const std::string& finding : filling->tetrahedra.findings)
+      voxels.findings.push_back("before: " + finding);
+  return voxels;
 }
 
 std::vector<std::string> quality_notes(const convert::TetQuality& quality) {

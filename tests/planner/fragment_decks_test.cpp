@@ -174,6 +174,7 @@ TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
   ASSERT_TRUE(deck.written);
   EXPECT_TRUE(deck.details["fallback"].get<bool>());
   EXPECT_NE(deck.findings.front().find("fit for a solver"), std::string::npos) << deck.findings.front();
+  EXPECT_EQ(deck.findings.back().substr(0, 8), "before: ") << deck.findings.back();
   EXPECT_GT(deck.details["quality"]["min_dihedral_deg"].get<double>(), convert::fit_dihedral_deg());
 }
 
