@@ -31,40 +31,52 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
+/// The samples about a place on a lattice, x fastest, and their trilinear shares of it.
+struct Eight {
+  std::array<std::size_t, 8> number{};
+  std::array<double, 8> share{};
+};
+
+/// Precondition: the place is within 0..count - 1 along each axis, of two samples at least.
+Eight eight_about(const std::array<double, 3>& place, const std::array<std::size_t, 3>& count) {
+  std::array<std::size_t, 3> low{};
+  std::array<double, 3> along{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    low[i] = std::min(static_cast<std::size_t>(place[i]), count[i] - 2);
+    along[i] = place[i] - static_cast<double>(low[i]);
+  }
+  Eight eight;
+  for (std::size_t k = 0; k < 8; ++k) {
+    eight.share[k] = 1.0;
+    for (std::size_t i = 3; i-- > 0;) {
+      const std::size_t step = (k >> i) & 1;
+      eight.number[k] = eight.number[k] * count[i] + low[i] + step;
+      eight.share[k] *= step == 1 ? along[i] : 1.0 - along[i];
+    }
+  }
+  return eight;
+}
+
 /// An image of labels, 0 outside of all regions; voxel (0, 0, 0) has its centre in the origin.
 struct Labels {
-  std::array<std::int64_t, 3> dims{};
+  std::array<std::size_t, 3> dims{};
   std::array<double, 3> spacing_mm{};
   std::vector<std::uint8_t> of_voxel;
   std::vector<Point> start;
-  std::vector<double> shares;
+  std::vector<double> size_shares;  ///< what sizes are multiplied by, at every `share_step`-th voxel
   int share_step = 1;
 
   /// That with the largest trilinear share of the eight samples about a point, the lowest of several:
   /// surfaces between labels are smooth where the voxels' are in steps.
   int at(const Point& p) const {
-    std::array<std::int64_t, 3> low{};
-    std::array<double, 3> along{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<std::size_t>(axis);
-      const double place = p[axis] / spacing_mm[i];
-      if (!(place >= 0.0 && place <= static_cast<double>(dims[i] - 1))) return 0;
-      low[i] = std::min(static_cast<std::int64_t>(place), dims[i] - 2);
-      along[i] = place - static_cast<double>(low[i]);
+    std::array<double, 3> place{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      place[i] = p[static_cast<int>(i)] / spacing_mm[i];
+      if (!(place[i] >= 0.0 && place[i] <= static_cast<double>(dims[i] - 1))) return 0;
     }
+    const auto [number, shares] = eight_about(place, dims);
     std::array<std::uint8_t, 8> labels{};
-    std::array<double, 8> shares{};
-    for (std::size_t k = 0; k < 8; ++k) {
-      std::size_t voxel = 0;
-      double share = 1.0;
-      for (std::size_t i = 3; i-- > 0;) {
-        const auto step = static_cast<std::int64_t>((k >> i) & 1);
-        voxel = voxel * static_cast<std::size_t>(dims[i]) + static_cast<std::size_t>(low[i] + step);
-        share *= step == 1 ? along[i] : 1.0 - along[i];
-      }
-      labels[k] = of_voxel[voxel];
-      shares[k] = share;
-    }
+    for (std::size_t k = 0; k < 8; ++k) labels[k] = of_voxel[number[k]];
     int best = labels[0];
     double most = -1.0;
     for (std::size_t k = 0; k < 8; ++k) {
@@ -92,29 +104,18 @@ struct Length {
 
   /// Between the eight samples about a point, trilinear.
   double share(const Point& p) const {
-    if (labels.shares.empty()) return 1.0;
-    std::array<std::size_t, 3> low{}, count{};
-    std::array<double, 3> along{};
+    if (labels.size_shares.empty()) return 1.0;
+    std::array<std::size_t, 3> count{};
+    std::array<double, 3> place{};
     for (std::size_t i = 0; i < 3; ++i) {
       count[i] =
           static_cast<std::size_t>(convert::share_count(static_cast<int>(labels.dims[i]), labels.share_step));
-      const double last = static_cast<double>(count[i] - 1);
-      const double place =
-          std::clamp(p[static_cast<int>(i)] / (labels.spacing_mm[i] * labels.share_step), 0.0, last);
-      low[i] = std::min(static_cast<std::size_t>(place), count[i] - 2);
-      along[i] = place - static_cast<double>(low[i]);
+      place[i] = std::clamp(p[static_cast<int>(i)] / (labels.spacing_mm[i] * labels.share_step), 0.0,
+                            static_cast<double>(count[i] - 1));
     }
+    const Eight eight = eight_about(place, count);
     double sum = 0.0;
-    for (std::size_t k = 0; k < 8; ++k) {
-      std::size_t number = 0;
-      double weight = 1.0;
-      for (std::size_t i = 3; i-- > 0;) {
-        const std::size_t step = (k >> i) & 1;
-        number = number * count[i] + low[i] + step;
-        weight *= step == 1 ? along[i] : 1.0 - along[i];
-      }
-      sum += weight * labels.shares[number];
-    }
+    for (std::size_t k = 0; k < 8; ++k) sum += eight.share[k] * labels.size_shares[eight.number[k]];
     return sum;
   }
 };
@@ -130,16 +131,16 @@ bool read(const MesherRequest& request, Labels& labels, LabelSizes& sizes) {
     return false;
   std::uint64_t voxels = 1, shares = 1;
   for (std::size_t i = 0; i < 3; ++i) {
-    labels.dims[i] = request.dims[i];
-    labels.spacing_mm[i] = request.spacing_mm[i];
     if (request.dims[i] < 2 || request.dims[i] > 65536) return false;
+    labels.dims[i] = static_cast<std::size_t>(request.dims[i]);
+    labels.spacing_mm[i] = request.spacing_mm[i];
     voxels *= static_cast<std::uint64_t>(request.dims[i]);
     shares *= static_cast<std::uint64_t>(convert::share_count(request.dims[i], labels.share_step));
   }
   if (voxels != request.labels || (request.sizes != 0 && request.sizes != shares)) return false;
   if (!convert::read_points(request.holes, labels.start)) return false;
-  labels.shares.resize(request.sizes);
-  if (!read_all(labels.shares.data(), labels.shares.size() * sizeof(double))) return false;
+  labels.size_shares.resize(request.sizes);
+  if (!read_all(labels.size_shares.data(), labels.size_shares.size() * sizeof(double))) return false;
   labels.of_voxel.resize(voxels);
   return read_all(labels.of_voxel.data(), voxels);
 }
