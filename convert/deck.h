@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "convert/element_faces.h"
 #include "convert/tetrahedra.h"
 #include "voxel/progress.h"
 
@@ -24,11 +25,6 @@ struct NodeSet {
   std::vector<std::uint32_t> nodes;  ///< ascending
 };
 
-/// The face of an element opposite one of its corners, outward where it is on the surface.
-struct ElementFace {
-  std::uint32_t tet = 0;
-  std::uint8_t opposite = 0;  ///< 0..3
-};
 /// A face may be in several surfaces; Gmsh, where elements have one place, then holds it more than once.
 struct DeckSurface {
   std::string name;
@@ -94,20 +90,5 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
 /// Extensions that write_deck() takes, for a refusal: ".inp, .feb, .vtu, .msh or .node".
 const std::string& deck_extensions();
 bool is_deck(const std::filesystem::path& path);
-
-/// The faces that only one element has, in the elements' order.
-std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
-/// The faces between two regions, as those of the first's elements, outward.
-struct Interface {
-  std::uint32_t from = 0, to = 0;  ///< regions, from < to
-  std::vector<ElementFace> faces;
-  std::vector<ElementFace> opposite;  ///< the same as faces of the second's elements, in the same order
-};
-/// Interfaces that there are, by their regions; faces in the elements' order. Cost: n log n.
-std::vector<Interface> interfaces(const Tetrahedra& tetrahedra);
-/// Corners of a face, counter-clockwise seen from outside its element.
-std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const ElementFace& face);
-/// The nodes in the middle of a face's sides, from its first corner on. Precondition: there are such nodes.
-std::array<std::uint32_t, 3> middles_of(const Tetrahedra& tetrahedra, const ElementFace& face);
 
 }  // namespace octotomy::convert

@@ -31,7 +31,6 @@ std::array<char, 32> full_number(double value);
 std::string region_name(std::uint32_t region);
 /// How many regions there are: one more than the largest number.
 std::uint32_t region_count(const Tetrahedra& tetrahedra);
-std::uint32_t region_of(const Tetrahedra& tetrahedra, std::size_t tet);
 /// An element's nodes as most formats have them: corners, then the middles of sides, if any.
 std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t tet);
 /// A face's nodes: corners, then the middles of sides, if any.

@@ -7,19 +7,11 @@
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
-#include "convert/deck.h"
+#include "convert/element_faces.h"
 #include "convert/scan_sampler.h"
 
 namespace octotomy::convert {
 namespace {
-
-brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
-  brep::Triangles surface;
-  surface.points_mm = tetrahedra.nodes_mm;
-  for (const ElementFace& face : surface_faces(tetrahedra))
-    surface.faces.push_back(corners_of(tetrahedra, face));
-  return surface;
-}
 
 const Tetrahedra& checked(const Tetrahedra& tetrahedra, std::size_t displacements) {
   if (tetrahedra.tets.empty()) throw std::invalid_argument("a displacement field needs elements");

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
 #include "brep/distance.h"
-#include "convert/deck.h"
+#include "convert/element_faces.h"
 #include "convert/scan_sampler.h"
 
 namespace octotomy::convert {
@@ -62,13 +63,6 @@ class Depth {
   }
 
  private:
-  static brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
-    brep::Triangles surface{tetrahedra.nodes_mm, {}};
-    for (const ElementFace& face : surface_faces(tetrahedra))
-      surface.faces.push_back(corners_of(tetrahedra, face));
-    return surface;
-  }
-
   /// Outward, of unit length; nothing where the triangle has no area.
   glm::dvec3 normal(std::uint32_t face) const {
     const auto& [a, b, c] = surface_.faces[face];
@@ -89,9 +83,9 @@ std::optional<double> mean_over(const std::array<glm::dvec3, 4>& corners_mm, con
   std::array<glm::dvec3, 4> v;
   for (std::size_t i = 0; i < 4; ++i) v[i] = scan.voxel(corners_mm[i]);
   const std::vector<glm::dvec3> points = points_over(v);
-  std::vector<double> values(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) values[i] = scan.at(points[i]);
+  std::vector<double> below;  // the largest value that a point is sunk to
   if (depth) {
+    below.assign(points.size(), -std::numeric_limits<double>::infinity());
     std::vector<glm::dvec3> sunk_mm;
     sunk_mm.reserve(points.size());
     for (const glm::dvec3& p : points) sunk_mm.push_back(scan.lps_mm(p));
@@ -99,13 +93,14 @@ std::optional<double> mean_over(const std::array<glm::dvec3, 4>& corners_mm, con
     constexpr int rounds = 3;
     for (int round = 0; round < rounds && depth->sink(sunk_mm); ++round)
       for (std::size_t i = 0; i < points.size(); ++i)
-        values[i] = std::max(values[i], scan.at(scan.voxel(sunk_mm[i])));
+        below[i] = std::max(below[i], scan.at(scan.voxel(sunk_mm[i])));
   }
   double sum = 0.0;
   int count = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!scan.holds(points[i])) continue;
-    sum += values[i];
+    const double own = scan.at(points[i]);
+    sum += depth ? std::max(own, below[i]) : own;
     ++count;
   }
   return count > 0 ? std::optional(sum / count) : std::nullopt;

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "brep/distance.h"
-#include "convert/deck.h"
+#include "convert/element_faces.h"
 #include "convert/improve_tetrahedra.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until the surface's facets and the cells are of the sizes asked
@@ -37,13 +37,6 @@ double radius_of_volume(double mm3) {
 /// that of the ball about an equilateral triangle of that side.
 double facet_radius_by_side() {
   return 1.5 / std::sqrt(3.0);
-}
-
-brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
-  brep::Triangles surface{tetrahedra.nodes_mm, {}};
-  for (const ElementFace& face : surface_faces(tetrahedra))
-    surface.faces.push_back(corners_of(tetrahedra, face));
-  return surface;
 }
 
 /// The normals of the surface's nodes, not of unit length, and the areas of their triangles' thirds.

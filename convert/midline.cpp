@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "convert/deck.h"
+#include "convert/element_faces.h"
 
 namespace octotomy::convert {
 

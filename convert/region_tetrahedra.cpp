@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "convert/deck.h"
+#include "convert/element_faces.h"
 #include "convert/improve_tetrahedra.h"
 #include "convert/mesher_process.h"
 #include "voxel/slice_bits.h"

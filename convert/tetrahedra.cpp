@@ -50,6 +50,10 @@ TetMeasures measures_of(const TetCorners& p) {
 
 }  // namespace
 
+std::uint32_t region_of(const Tetrahedra& tetrahedra, std::size_t tet) {
+  return tetrahedra.region_of_tet.empty() ? 0 : tetrahedra.region_of_tet[tet];
+}
+
 TetCorners corners_mm(const Tetrahedra& tetrahedra, std::size_t tet) {
   TetCorners corners;
   for (std::size_t i = 0; i < 4; ++i) corners.at(i) = tetrahedra.nodes_mm.at(tetrahedra.tets.at(tet).at(i));

@@ -28,6 +28,9 @@ struct Tetrahedra {
 inline constexpr std::array<std::pair<std::uint8_t, std::uint8_t>, 6> sides_of_tet{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
+/// The region of an element, 0 where all are one.
+std::uint32_t region_of(const Tetrahedra& tetrahedra, std::size_t tet);
+
 /// Where the four corners of one lie.
 using TetCorners = std::array<glm::dvec3, 4>;
 TetCorners corners_mm(const Tetrahedra& tetrahedra, std::size_t tet);

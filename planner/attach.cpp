@@ -52,21 +52,15 @@ class Attacher {
   }
 
  private:
-  /// The number of the region that a holder is, or `nobody`.
-  int region_of(const Holder& holder) const {
-    const auto found = std::find(names_.begin(), names_.end(), holder.id);
-    return found != names_.end() ? static_cast<int>(found - names_.begin()) : nobody;
-  }
-  bool is_in_region(std::size_t tet, int region) const {
-    return region >= 0 && (tetrahedra_.region_of_tet.empty() ? 0U : tetrahedra_.region_of_tet[tet]) ==
-                              static_cast<std::uint32_t>(region);
-  }
-
   void find_holders() {
+    for (const Holder& holder : holders_) {
+      const auto found = std::find(names_.begin(), names_.end(), holder.id);
+      region_of_holder_.push_back(found != names_.end() ? static_cast<int>(found - names_.begin()) : nobody);
+    }
     holder_of_node_.assign(tetrahedra_.nodes_mm.size(), nobody);
     for (std::size_t h = 0; h < holders_.size(); ++h)
-      if (const int region = region_of(holders_[h]); region != nobody)
-        hold_region(static_cast<int>(h), region);
+      if (const int region = region_of_holder_[h]; region != nobody)
+        hold_region(static_cast<int>(h), static_cast<std::uint32_t>(region));
       else
         hold_boundary(static_cast<int>(h));
   }
@@ -75,9 +69,9 @@ class Attacher {
     if (holder_of_node_[node] == nobody) holder_of_node_[node] = holder;
   }
 
-  void hold_region(int holder, int region) {
+  void hold_region(int holder, std::uint32_t region) {
     for (std::size_t t = 0; t < tetrahedra_.tets.size(); ++t)
-      if (is_in_region(t, region))
+      if (convert::region_of(tetrahedra_, t) == region)
         for (const std::uint32_t node : tetrahedra_.tets[t]) hold(node, holder);
   }
 
@@ -166,7 +160,7 @@ class Attacher {
   int holder_of(const convert::ElementFace& face) const {
     const auto corners = convert::corners_of(tetrahedra_, face);
     const int holder = holder_of_node_[corners[0]];
-    if (holder == nobody || region_of(holders_[static_cast<std::size_t>(holder)]) != nobody) return nobody;
+    if (holder == nobody || region_of_holder_[static_cast<std::size_t>(holder)] != nobody) return nobody;
     const bool all = std::all_of(corners.begin(), corners.end(),
                                  [&](std::uint32_t node) { return holder_of_node_[node] == holder; });
     return all ? holder : nobody;
@@ -207,6 +201,7 @@ class Attacher {
   const std::vector<std::string>& names_;
   convert::Tetrahedra& tetrahedra_;
   convert::DeckOptions& options_;
+  std::vector<int> region_of_holder_;  ///< its number, or `nobody` where it is outside of the deck
   std::vector<int> holder_of_node_;
 };
 

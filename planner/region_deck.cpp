@@ -178,7 +178,7 @@ void add_free_surfaces(const Regions& regions, RegionDeck& deck) {
   for (const std::string& name : regions.names)
     free.push_back({regions.names.size() == 1 ? "FREE" : "FREE_" + name, {}});
   for (const convert::ElementFace& face : convert::surface_faces(deck.tetrahedra))
-    free[regions.names.size() == 1 ? 0 : deck.tetrahedra.region_of_tet[face.tet]].faces.push_back(face);
+    free[convert::region_of(deck.tetrahedra, face.tet)].faces.push_back(face);
   for (convert::DeckSurface& surface : free)
     if (!surface.faces.empty()) deck.options.surfaces.push_back(std::move(surface));
 }

@@ -8,7 +8,7 @@
 #include "brep/decimate.h"
 #include "brep/distance.h"
 #include "brep/measure.h"
-#include "convert/deck.h"
+#include "convert/element_faces.h"
 #include "convert/isosurface.h"
 #include "tests/convert/surfaces.h"
 #include "tests/reference_data.h"
@@ -109,9 +109,7 @@ TEST(Mesh3Tetrahedra, AThinSpikeThatNoElementStandsInIsToldWithItsLength) {
   const std::size_t tip = 7;
   surface.points_mm[tip] *= 2.0;
   const Tetrahedra t = by_mesh3(surface);
-  brep::Triangles own{t.nodes_mm, {}};
-  for (const ElementFace& face : surface_faces(t)) own.faces.push_back(corners_of(t, face));
-  const double away_mm = brep::SurfaceTree(own).distances_mm({surface.points_mm[tip]}).front();
+  const double away_mm = brep::SurfaceTree(surface_of(t)).distances_mm({surface.points_mm[tip]}).front();
   ASSERT_GT(away_mm, 0.4) << "the spike was not lost: make it thinner";
   const std::string& said = t.findings.back();
   EXPECT_NEAR(std::stod(said.substr(said.rfind("within ") + 7)), away_mm, 0.01 * away_mm) << said;
