@@ -48,6 +48,7 @@ std::vector<std::size_t> cuts_of(const brep::Triangles& surface, const std::vect
 
 std::vector<convert::DeckSurface> cut_surfaces(const Object& object, const convert::Tetrahedra& tetrahedra) {
   const std::vector<convert::ElementFace> faces = convert::surface_faces(tetrahedra);
+  if (object.cuts.empty()) return {{"OUTER", faces}};
   const brep::Triangles surface = brep::triangles_of(*object.mesh);
   const std::vector<std::size_t> cut_of = cuts_of(surface, object.cuts);
   std::vector<glm::dvec3> middles_mm;

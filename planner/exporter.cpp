@@ -12,6 +12,7 @@
 #include "planner/finer_places.h"
 #include "planner/region_deck.h"
 #include "planner/sha256.h"
+#include "voxel/label_map.h"
 #include "voxel/write_scene.h"
 
 namespace octotomy::planner {
@@ -114,18 +115,10 @@ void Exporter::write_mesh(Export& to) {
 void Exporter::write_label(Export& to) {
   const Stopwatch watch(timings_, "write");
   const voxel::Octree& octree = to.object.octree;
-  voxel::Scene scene;
-  scene.lattice = octree.universe().lattice();
-  scene.meaning = voxel::Meaning::Label;
-  scene.source = to.object.id;
-  voxel::Int16Samples labels(scene.lattice.sample_count(), 0);
-  std::size_t at = 0;
-  const int side = octree.universe().side();
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) labels[at++] = octree.contains({x, y, z}) ? 1 : 0;
-  scene.samples = std::move(labels);
-  voxel::write_scene(scene, to.path);
+  voxel::LabelMap map =
+      voxel::label_map(octree.universe().lattice(), {&octree, 1}, progress("labelling " + to.object.id));
+  map.scene.source = to.object.id;
+  voxel::write_scene(map.scene, to.path);
   to.exported.written = true;
   to.exported.content = grouped(static_cast<double>(octree.voxel_count()), 0) + " voxels labelled 1";
   to.exported.details = {{"voxels", octree.voxel_count()},
@@ -134,7 +127,7 @@ void Exporter::write_label(Export& to) {
 
 void Exporter::write_filled(Export& to) {
   const std::string key = to.object.id + (to.step.fallback ? " or its voxels" : "") + finer_key(to.step);
-  if (!fillings_.contains(key)) {
+  if (!filled_.contains(key)) {
     const Stopwatch watch(timings_, "tetrahedralise");
     FillingOptions options;
     options.fallback = to.step.fallback;
@@ -152,15 +145,18 @@ void Exporter::write_filled(Export& to) {
       to.exported.findings.push_back("not written: " + *why);
       return;
     }
-    fillings_.emplace(key, std::get<Filling>(std::move(filling)));
+    Filled filled{std::get<Filling>(std::move(filling)), {}};
+    if (to.object.mesh && to.object.mesh->n_faces() > 0)
+      filled.surfaces = cut_surfaces(to.object, filled.filling.tetrahedra);
+    filled_.emplace(key, std::move(filled));
   }
-  const auto& [tetrahedra, bodies, fallback, findings] = fillings_.at(key);
-  to.exported.details["regions"] = bodies;
-  to.exported.details["fallback"] = fallback;
-  to.exported.findings = findings;
+  const auto& [filling, surfaces] = filled_.at(key);
+  to.exported.details["regions"] = filling.bodies;
+  to.exported.details["fallback"] = filling.fallback;
+  to.exported.findings = filling.findings;
   convert::DeckOptions options;
-  if (to.object.mesh && to.object.mesh->n_faces() > 0) options.surfaces = cut_surfaces(to.object, tetrahedra);
-  write_deck(to, tetrahedra, std::move(options));
+  options.surfaces = surfaces;
+  write_deck(to, filling.tetrahedra, std::move(options));
 }
 
 void Exporter::write_regions(Export& to) {

@@ -72,8 +72,13 @@ class Exporter {
   std::filesystem::path folder_;
   ExportOptions options_;
   Timings timings_;
+  /// A filling that decks of one object share.
+  struct Filled {
+    Filling filling;
+    std::vector<convert::DeckSurface> surfaces;
+  };
   /// By the objects' names, whether the fallback was allowed, and where elements are finer.
-  std::map<std::string, Filling> fillings_;
+  std::map<std::string, Filled> filled_;
 };
 
 }  // namespace octotomy::planner
