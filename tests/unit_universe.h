@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "voxel/lattice.h"
+#include "voxel/space/lattice.h"
 
 namespace octotomy::tests {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// What counting centres does to a boundary, triangle by triangle, in voxels of the lattice ("index space"):
+// The effect of counting centres on a boundary, triangle by triangle, in voxels of the lattice ("index
+// space"):
 //
 // planes   A plane whose normal n is a vector of small integers errs coherently: centres lie on lattice
 //          planes 1 / |n| apart, and the digitised plane lies half-way between two of them. Where it lies is
@@ -34,6 +35,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -42,8 +44,8 @@
 #include <utility>
 #include <vector>
 
-#include "brep/disjoint_sets.h"
-#include "brep/triangles.h"
+#include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/triangles.h"
 #include "verify/facet_count.h"
 
 namespace octotomy::verify {
@@ -86,11 +88,11 @@ struct LatticePlane {
   double offset = 0.0;
 };
 
-/// A plane counts as one of the lattice's where its points leave it by less than this, in voxels: a thousand
-/// times what coordinates of a universe of 4096 voxels round to.
+/// The largest distance, in voxels, of a lattice plane's points from it: a thousand times the rounding of
+/// coordinates in a universe of 4096 voxels.
 constexpr double flatness_voxels = 1000.0 * 4096.0 * std::numeric_limits<double>::epsilon();
-/// Integers up to here: a plane of a larger normal errs by less than h / 8 in each voxel, and no longer all
-/// in step.
+/// The largest integer of a normal: planes with larger normals err by less than h / 8 in each voxel, and not
+/// coherently.
 constexpr int largest_index = 3;
 
 std::optional<LatticePlane> lattice_plane(const std::array<glm::dvec3, 3>& q) {
@@ -239,7 +241,7 @@ class Modeller {
     return at_voxel;
   }
 
-  /// What of the boundary is in no such plane: flat facets by their transforms, the rest by its normals.
+  /// The boundary outside such planes: flat facets by their transforms, the rest by its normals.
   void add_counts() {
     const std::vector<std::uint32_t> set = flat_sets();
     std::vector<double> area(set.size(), 0.0);
@@ -401,7 +403,7 @@ class Modeller {
     }
     add_bends(std::move(bends));
   }
-  /// What two displaced planes gain at their common edge beyond what each gains by itself.
+  /// The volume that two displaced planes gain at their common edge beyond their own gains.
   void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
     if (!(std::abs(std::sin(angle)) > flatness_voxels)) return;
     const double mm2 = (a.mm * b.mm - 0.5 * (a.mm * a.mm + b.mm * b.mm) * std::cos(angle)) / std::sin(angle);
@@ -457,6 +459,8 @@ class Modeller {
 }  // namespace
 
 BoundaryModel boundary_model(const brep::Mesh& mesh, const BoundaryFrame& frame) {
+  assert(std::none_of(mesh.faces_begin(), mesh.faces_end(),
+                      [&](const auto face) { return mesh.status(face).deleted(); }));
   return Modeller(mesh, frame).run();
 }
 

@@ -3,14 +3,14 @@
 
 #include <glm/glm.hpp>
 
-#include "brep/mesh.h"
-#include "voxel/lattice.h"
+#include "brep/mesh/mesh.h"
+#include "voxel/space/lattice.h"
 
-// What theory says of the boundary of a solid when its inside is counted in voxels and when it is itself an
-// isosurface of samples. Derivations are in the source.
+// The theory of a solid's boundary when voxels count its inside, and when it is an isosurface of samples. The
+// source has the derivations.
 namespace octotomy::verify {
 
-/// Volumes that a boundary may gain or lose, and their first moment about a point.
+/// A signed volume that a boundary gains, and its first moment about a point.
 struct VolumeShift {
   double mm3 = 0.0;
   glm::dvec3 mm4{0.0};
@@ -20,7 +20,7 @@ struct VolumeShift {
   }
 };
 
-/// The same without direction: an amount, and the amount times its arm and its arm squared.
+/// An unsigned volume, and the volume times its arm and its arm squared.
 struct VolumeSpread {
   double mm3 = 0.0;
   double mm4 = 0.0;
@@ -34,37 +34,35 @@ struct VolumeSpread {
 
 struct BoundaryModel {
   double area_mm2 = 0.0;
-  glm::dvec3 flat_mm2{0.0};   ///< of planes along the universe's own, by the axis of their normal
+  glm::dvec3 flat_mm2{0.0};   ///< of planes along the universe's planes, by the axis of their normal
   double coherent_mm2 = 0.0;  ///< of all planes whose normal has small integers in voxels
-  /// Planes of small integers, by where counting centres puts them: exact, with its sign.
+  /// Displacement of planes of small integers by counting centres: exact, with its sign.
   VolumeShift planes;
   VolumeSpread planes_without_sign;
-  double rims_mm2 =
-      0.0;  ///< length of such planes' rims times their displacement: what areas beside them gain
-  /// Of the same kind without sign: planes through voxel centres, and rims
-  /// of planes, which an isosurface chamfers over the width of a sample so that they are not seen flat.
+  double rims_mm2 = 0.0;  ///< length of such planes' rims times their displacement: area gained beside them
+  /// Displacement of unknown sign: planes through voxel centres, and rims of planes, which an isosurface
+  /// chamfers over the width of a sample so that they are not found flat.
   VolumeSpread unsure;
-  double tied_mm3 = 0.0;  ///< of which planes through voxel centres: half a layer of voxels
-  /// The variance of a count over all places of the lattice, of the boundary that is in no such plane: mm6,
-  /// and the same times the arm squared and to the fourth.
+  double tied_mm3 = 0.0;  ///< the part of planes through voxel centres: half a layer of voxels
+  /// The variance of a count over all positions of the lattice, of boundary outside such planes: in mm6,
+  /// times the arm squared, and times its fourth power.
   double count_mm6 = 0.0, count_mm8 = 0.0, count_mm10 = 0.0;
-  /// Half the sum over edges of length times angle times the squared spacing of samples across the edge: the
-  /// integral of mean curvature in units of samples. With its sign, and as the sum of what cells of three
-  /// samples have: positive where the solid is convex.
+  /// The integral of mean curvature in units of samples: half the sum over edges of length times angle times
+  /// the squared spacing of samples across the edge, positive for convex edges. With its sign, and as the sum
+  /// of the absolute values of cells of three samples.
   VolumeShift bent;
   VolumeSpread bent_without_sign;
-  double curvature_mm = 0.0;  ///< the integral of mean curvature without sign, by the same cells
-  /// What the Crofton formula with 13 directions answers for these triangles, in the limit of fine voxels.
+  double curvature_mm = 0.0;  ///< the integral of absolute mean curvature, by the same cells
+  /// The Crofton formula with 13 directions on these triangles, in the limit of fine voxels.
   double crofton13_mm2 = 0.0;
 };
 
-/// Precondition: nothing is marked as deleted. `samples` are those that the mesh is an isosurface of: edges
-/// of its cells along LPS axes. Moments are about `about_mm`. Cost: n log n in the mesh's edges.
 struct BoundaryFrame {
-  voxel::Lattice lattice;             ///< that the inside is counted in
-  glm::dvec3 sample_spacing_mm{1.0};  ///< along the LPS axes
-  glm::dvec3 about_mm{0.0};
+  voxel::Lattice lattice;             ///< whose centres count the inside
+  glm::dvec3 sample_spacing_mm{1.0};  ///< of the isosurface's samples, along the LPS axes
+  glm::dvec3 about_mm{0.0};           ///< origin of the moments
 };
+/// Precondition: no element of the mesh is marked as deleted. Cost: n log n in the mesh's edges.
 BoundaryModel boundary_model(const brep::Mesh& mesh, const BoundaryFrame& frame);
 
 }  // namespace octotomy::verify

@@ -7,16 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "brep/mesh.h"
-#include "voxel/octree.h"
+#include "brep/mesh/mesh.h"
+#include "voxel/space/scene.h"
+#include "voxel/tree/octree.h"
 
 namespace octotomy::verify {
 
-enum class Tier { Exact, Bounded, ClosedForm };
-/// BelowResolution: the object's smallest extent is under six voxels, agreement proves nothing.
-enum class Agreement { Pass, Warn, Fail, BelowResolution };
+using voxel::Verdict;
 
-/// One kernel's answer and where it comes from.
+enum class Tier { Exact, Bounded, ClosedForm };
+
+/// One kernel's answer and its lineage.
 struct Answer {
   std::string lineage;
   double volume_mm3 = 0.0;
@@ -24,10 +25,11 @@ struct Answer {
   std::optional<glm::dvec3> centroid_mm;
 };
 
-/// One source of difference that theory allows, with its formula.
+/// One source of difference that theory allows.
 struct ToleranceTerm {
-  std::string name;
-  std::string formula;
+  std::string name;     ///< a key: "count", "flat", ...
+  std::string cause;    ///< a sentence for people
+  std::string formula;  ///< its size, in symbols that the source explains
   double value_mm3 = 0.0;
 };
 
@@ -35,13 +37,31 @@ struct ToleranceTerm {
 struct Comparison {
   std::string quantity;  ///< "volume", "centroid", "euler", ...
   std::string unit;      ///< "mm3", "mm2", "mm", "mm5"; empty for a count
-  /// Both answers, where the quantity is a number of each; a distance between them has neither.
+  /// Both answers. None of a quantity that is a difference itself, such as a distance between the two.
   std::optional<double> voxel = {}, mesh = {};
-  double difference = 0.0;               ///< what is held against the tolerance, not negative
-  std::optional<double> tolerance = {};  ///< none: theory gives no bound, the numbers are told and not judged
+  double difference = 0.0;               ///< compared with the tolerance, not negative
+  std::optional<double> tolerance = {};  ///< none: theory gives no bound, and there is no verdict
   std::string formula = {};              ///< the tolerance's, or why there is none
-  Agreement agreement = Agreement::Pass;
+  /// The reason's first clause if the difference is too large, with % for it: "The centroids are % apart".
+  /// Empty: both answers are quoted.
+  std::string statement = {};
+  Verdict verdict = Verdict::Pass;
 };
+
+/// An object that is too small or too thin for its voxels: a PASS proves little, a FAIL stays one.
+struct Unresolved {
+  double extent_voxels = 0.0;  ///< the smallest extent of its box, or its mean thickness
+  std::string reason;          ///< a clause: "the object's smallest extent is 2.4 voxels, six are needed"
+};
+
+/// Where the two answers differ most.
+struct WorstPlace {
+  glm::dvec3 at_mm{0.0};
+  double size_mm = 0.0;  ///< how far the surfaces are apart there, or how large the differing part is
+  std::string what;      ///< a clause: "the mesh has a part there that the voxels lack"
+};
+inline constexpr const char* part_of_mesh_only = "the mesh has a part there that the voxels lack";
+inline constexpr const char* part_of_voxels_only = "the voxels have a part there that the mesh lacks";
 
 /// Both kernels' answers to one question, the difference, what theory allows, and a verdict.
 struct Certificate {
@@ -58,42 +78,33 @@ struct Certificate {
   std::optional<double> centroid_tolerance_mm;
   std::optional<double> hausdorff_mm;    ///< largest, both directions, voxel faces to triangles and back
   std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
-  std::vector<Comparison> comparisons;   ///< every quantity that was looked at
-  Agreement agreement = Agreement::Pass;
+  std::optional<WorstPlace> worst;       ///< none: the answers are equal, or there is no mesh to compare
+  std::vector<Comparison> comparisons;   ///< every quantity that was compared
+  Verdict verdict = Verdict::Pass;
   std::vector<std::string> reasons;  ///< why not PASS
+  std::optional<Unresolved> unresolved;
   double milliseconds = 0.0;
+
+  bool resolved() const { return !unresolved; }
 };
 
-/// Adds a comparison and sets its verdict: PASS up to the tolerance, WARN up to twice that, FAIL beyond and
-/// where the difference is no number. The certificate's verdict becomes the worse of the two, with a reason.
-void add_comparison(Certificate& certificate, Comparison comparison);
+/// Adds a comparison and sets its verdict: PASS up to the tolerance, WARN up to twice that, FAIL beyond it
+/// and if the difference is not a number, but no worse than `worst_verdict`. Lowers the certificate's verdict
+/// to that, with a reason.
+void add_comparison(Certificate& certificate, Comparison comparison, Verdict worst_verdict = Verdict::Fail);
 /// Lowers the certificate's verdict, never raises it, and says why.
-void lower(Certificate& certificate, Agreement agreement, const std::string& reason);
+void lower(Certificate& certificate, Verdict verdict, const std::string& reason);
 
-/// What the bound is made of beyond what the two objects show themselves.
-struct BoundInputs {
-  std::string operation;
-  std::string voxel_lineage;
-  std::string mesh_lineage;
-  glm::dvec3 scan_spacing_mm{1.0};  ///< of the samples that the isosurface was made from
-  /// Area of flat cuts by direction of their normal (x, y, z): only what lies along the universe's planes.
-  glm::dvec3 flat_cut_mm2{0.0};
-  /// What the scan's voxels fill, where the solid may end with the scan.
-  std::optional<voxel::Box> scan_box_mm = {};
-  /// Every voxel's centre is a sample, and the object is one window of them: topology must agree then.
-  bool voxels_are_samples = false;
-};
+/// "The two surfaces differ by up to 6.04 mm near (12, -80, 44): the mesh has a part there that the voxels
+/// lack."
+std::string text_of(const WorstPlace& worst);
 
-/// Compares an octree with a solid that has another lineage (tier Bounded). Derivation of the terms is in the
-/// source. An empty mesh has no faces.
-Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs);
-
-/// The largest share of its tolerance that a quantity takes up: 1 and less is PASS. Where nothing is allowed,
-/// 0 without a difference and infinity with one.
+/// The largest share of its tolerance that a quantity takes up: up to 1 is PASS. With tolerance zero it is 0
+/// without a difference and infinite with one.
 double worst_share(const Certificate& certificate);
 
-/// Whether the verdict is worse or, of the same verdict, the share larger. What is below resolution proves
-/// nothing and is never worse than what is not.
+/// Whether the verdict is worse. Of equal verdicts a resolved object's counts as worse than an unresolved
+/// one's, then the larger share.
 bool is_worse(const Certificate& a, const Certificate& b);
 
 /// A certificate's objects, kept for pictures.
@@ -106,6 +117,8 @@ struct Contested {
 void keep_worse(std::optional<Contested>& kept, const Contested& found);
 
 std::string to_string(Tier tier);
-std::string to_string(Agreement agreement);
+std::string to_string(Verdict verdict);
+/// "FAIL", or "PASS, not resolved: the object's smallest extent is 2.4 voxels, six are needed".
+std::string verdict_text(const Certificate& certificate);
 
 }  // namespace octotomy::verify

@@ -7,26 +7,32 @@
 #include <string>
 #include <vector>
 
-#include "brep/distance.h"
-#include "brep/measure.h"
-#include "convert/voxelise.h"
-#include "voxel/combine.h"
-#include "voxel/distance_map.h"
-#include "voxel/measure.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/measure.h"
+#include "convert/voxel/voxelise.h"
+#include "voxel/measure/distance_map.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {
 
-/// How near to a surface a voxel's centre may be for rounding to decide on which side it is: a few units in
-/// the last place of coordinates of that reach, or what corefinement moved an operand by where it had to
-/// (brep::Booleans: 4e-6 of the extent a step, up to three).
+/// The distance from a surface within which rounding decides on which side a voxel's centre lies: a few units
+/// in the last place of the largest coordinate, or the distance by which corefinement had to move an operand
+/// (brep::Booleans: 4e-6 of the extent a step, up to three steps).
 double undecided_mm(double reach_mm, bool shifted) {
   return shifted ? 3.0 * 0x1p-18 * 2.0 * reach_mm : 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
-/// Centres of voxels on which the kernels differ although they are not within that distance of the result's
-/// surface, counted.
-std::size_t differing_centres(const voxel::Octree& differing, const brep::Mesh& result, double within_mm) {
+/// Voxels' centres on which the kernels differ, further than `within_mm` from the result's surface.
+struct DifferingCentres {
+  std::size_t count = 0;
+  glm::dvec3 farthest_mm{0.0};
+  double distance_mm = 0.0;  ///< of the farthest
+};
+
+DifferingCentres differing_centres(const voxel::Octree& differing, const brep::Mesh& result,
+                                   double within_mm) {
   const voxel::Lattice lattice = differing.universe().lattice();
   std::vector<glm::dvec3> centres_mm;
   const voxel::VoxelRange range = voxel::range_of(differing);
@@ -34,10 +40,18 @@ std::size_t differing_centres(const voxel::Octree& differing, const brep::Mesh& 
     for (int y = range.low.y; y <= range.high.y; ++y)
       for (int x = range.low.x; x <= range.high.x; ++x)
         if (differing.contains({x, y, z})) centres_mm.push_back(lattice.lps_mm({x, y, z}));
-  if (centres_mm.empty() || result.n_faces() == 0) return centres_mm.size();
+  if (centres_mm.empty()) return {};
+  if (result.n_faces() == 0) {
+    const glm::ivec3 dims = range.dims();
+    return {centres_mm.size(), centres_mm[centres_mm.size() / 2],
+            lattice.spacing_mm().x * std::max({dims.x, dims.y, dims.z})};
+  }
   const std::vector<double> distances_mm = brep::SurfaceTree(result).distances_mm(centres_mm);
-  return static_cast<std::size_t>(std::count_if(distances_mm.begin(), distances_mm.end(),
-                                                [&](double distance_mm) { return distance_mm > within_mm; }));
+  const auto farthest = std::max_element(distances_mm.begin(), distances_mm.end());
+  return {
+      static_cast<std::size_t>(std::count_if(distances_mm.begin(), distances_mm.end(),
+                                             [&](double distance_mm) { return distance_mm > within_mm; })),
+      centres_mm[static_cast<std::size_t>(farthest - distances_mm.begin())], *farthest};
 }
 
 voxel::Expression expression_of(const voxel::Octree& a, brep::Operation operation, const voxel::Octree& b) {
@@ -65,11 +79,12 @@ Certificate compared(const voxel::Octree& octree, const brep::Mesh& mesh,
   certificate.mesh = {"corefinement of both meshes", triangles.volume_mm3, triangles.area_mm2,
                       triangles.centroid_mm};
   certificate.difference_mm3 = voxels.volume_mm3 - triangles.volume_mm3;
-  // A plane along voxels errs coherently; nothing is known of a user's mesh that would rule it out.
+  // A plane along the voxels errs coherently, and a user's mesh may have such planes.
   const double coherent_mm3 = glm::dot(voxels.exposed_mm2, glm::dvec3(0.5 * h));
-  certificate.terms = {{"sampling", "h/2 * area of exposed voxel faces", coherent_mm3}};
+  certificate.terms = {
+      {"sampling", "Voxels are sampled at their centres.", "h/2 * area of exposed voxel faces", coherent_mm3},
+      {"voxel", "One voxel more or less.", "h^3", lattice.voxel_mm3()}};
   certificate.tolerance_mm3 = coherent_mm3 + lattice.voxel_mm3();
-  certificate.terms.push_back({"voxel", "h^3", lattice.voxel_mm3()});
   add_comparison(certificate,
                  {"volume", "mm3", voxels.volume_mm3, triangles.volume_mm3,
                   std::abs(certificate.difference_mm3), certificate.tolerance_mm3, "sum of the terms"});
@@ -81,15 +96,20 @@ Certificate compared(const voxel::Octree& octree, const brep::Mesh& mesh,
     return finding.rfind("shifted", 0) == 0;
   });
   const double reach_mm = glm::length(glm::max(glm::abs(triangles.low_mm), glm::abs(triangles.high_mm)));
-  const auto beyond =
-      static_cast<double>(differing_centres(differing, mesh, undecided_mm(reach_mm, shifted)));
-  add_comparison(certificate, {"centres of voxels on different sides",
-                               "",
-                               {},
-                               {},
-                               beyond,
-                               0.0,
-                               "none that is further from the surface than rounding"});
+  const DifferingCentres beyond = differing_centres(differing, mesh, undecided_mm(reach_mm, shifted));
+  add_comparison(certificate, {.quantity = "centres of voxels on different sides",
+                               .unit = "",
+                               .difference = static_cast<double>(beyond.count),
+                               .tolerance = 0.0,
+                               .formula = "0: none further from the surface than rounding reaches",
+                               .statement = "Centres of % voxels are inside for one kernel only"});
+  if (beyond.count > 0) {
+    const glm::dvec3 p_voxel = glm::inverse(lattice.lps_from_voxel) * glm::dvec4(beyond.farthest_mm, 1.0);
+    certificate.worst = {
+        beyond.farthest_mm, beyond.distance_mm,
+        octree.contains(glm::ivec3(glm::round(p_voxel))) ? part_of_voxels_only : part_of_mesh_only};
+    certificate.reasons.push_back(text_of(*certificate.worst));
+  }
   for (const std::string& finding : findings) certificate.reasons.push_back(finding);
   return certificate;
 }
@@ -106,14 +126,21 @@ OperationAnswers certify_operation(const brep::Mesh& a, brep::Operation operatio
   box = {box.low_mm - voxel_mm, box.high_mm + voxel_mm};
   const voxel::Universe universe = voxel::universe_around(box, voxel_mm);
   OperationAnswers answers;
-  answers.octree = voxel::combine(
-      universe, expression_of(convert::voxelise(universe, a), operation, convert::voxelise(universe, b)));
+  const voxel::Progress& progress = options.progress;
+  progress.at(0.0);
+  const voxel::Octree voxels_of_a = convert::voxelise(universe, a);
+  progress.at(0.15);
+  answers.octree =
+      voxel::combine(universe, expression_of(voxels_of_a, operation, convert::voxelise(universe, b)));
+  progress.at(0.3);
   brep::BooleanResult result = brep::boolean(a, operation, b);
   answers.mesh = std::move(result.mesh);
+  progress.at(0.7);
   answers.certificate = compared(*answers.octree, answers.mesh, result.findings);
   answers.certificate.operation = operation == brep::Operation::Union          ? "a | b"
                                   : operation == brep::Operation::Intersection ? "a & b"
                                                                                : "a - b";
+  progress.at(1.0);
   return answers;
 }
 

@@ -3,8 +3,9 @@
 
 #include <optional>
 
-#include "brep/boolean.h"
+#include "brep/boolean/boolean.h"
 #include "verify/certificate.h"
+#include "voxel/space/progress.h"
 
 namespace octotomy::verify {
 
@@ -15,14 +16,15 @@ struct OperationAnswers {
 };
 
 struct MeshOperationOptions {
-  std::optional<double> voxel_mm;  ///< edge; none: a 128th of both operands' largest extent
+  std::optional<double> voxel_mm;  ///< edge; none: 1/128 of the largest extent of both operands
+  voxel::Progress progress{};
 };
-/// A Boolean of two solids in both kernels: by corefinement, and by voxelising each (D3) and combining the
-/// octrees; tier Bounded. Both have the very same surfaces, so that no voxel's centre may be inside of one
-/// answer and outside of the other, but where it is as near to the surface as rounding, or the shift that
-/// corefinement told, can decide. Volumes are compared loosely, by what sampling at centres can be off.
-/// Throws as brep::boolean() and convert::voxelise(), std::length_error where the voxels are too small for a
-/// universe.
+/// A Boolean of two solids in both kernels (tier Bounded): by corefinement, and by voxelising each operand
+/// (D3) and combining the octrees. Both kernels have the same surfaces, so no voxel's centre may be inside
+/// one answer and outside the other. Exempt are centres so near the surface that rounding, or the shift that
+/// corefinement reported, decides. Volumes are compared loosely, by the error of sampling at centres. Throws
+/// as brep::boolean() and convert::voxelise(), std::length_error if the voxels are too small for a universe,
+/// voxel::Stopped.
 OperationAnswers certify_operation(const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
                                    const MeshOperationOptions& options = {});
 

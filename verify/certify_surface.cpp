@@ -3,13 +3,13 @@
 
 #include <stdexcept>
 
-#include "brep/health.h"
-#include "voxel/measure.h"
+#include "brep/mesh/health.h"
+#include "voxel/measure/measure.h"
 
 namespace octotomy::verify {
 namespace {
 
-/// A certificate with the octree's answer and none of the mesh.
+/// A certificate with the octree's answer alone.
 Certificate without_mesh(const voxel::Octree& octree, const BoundInputs& inputs) {
   const voxel::Measures voxels = voxel::measure(octree);
   Certificate certificate;
@@ -25,16 +25,16 @@ Certificate without_mesh(const voxel::Octree& octree, const BoundInputs& inputs)
 }  // namespace
 
 Certificate certify_surface(const voxel::Octree& octree, const brep::Triangles& triangles,
-                            const BoundInputs& inputs) {
-  if (triangles.faces.empty()) return certify_bounded(octree, brep::Mesh(), inputs);
+                            const BoundInputs& inputs, const voxel::Progress& progress) {
+  if (triangles.faces.empty()) return certify_bounded(octree, brep::Mesh(), inputs, progress);
   const brep::Health health = brep::health(triangles, {.self_intersections = false});
   Certificate certificate = without_mesh(octree, inputs);
-  // A mesh of halfedges cannot hold some of these faults, and an open one has no inside.
+  // A halfedge mesh cannot hold some of these faults, and an open mesh has no inside.
   if (health.closed && health.manifold && health.misoriented_edges == 0)
-    certificate = certify_bounded(octree, brep::mesh_of(triangles), inputs);
+    certificate = certify_bounded(octree, brep::mesh_of(triangles), inputs, progress);
   if (!health.closed || !health.manifold || !health.oriented || health.duplicate_faces > 0)
     for (const std::string& finding : health.findings)
-      lower(certificate, Agreement::Fail, "the mesh is no solid: " + finding);
+      lower(certificate, Verdict::Fail, "The mesh is no solid: " + finding);
   return certificate;
 }
 

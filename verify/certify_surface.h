@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "brep/triangles.h"
-#include "verify/certificate.h"
+#include "brep/mesh/triangles.h"
+#include "verify/certify_bounded.h"
 
 namespace octotomy::verify {
 
-/// As certify_bounded(), of triangles of which nothing is known: where they are no closed and oriented
-/// manifold surface, the certificate fails and says why, with what can still be compared. Cost: that of
-/// brep::health() without intersections besides.
+/// certify_bounded() for any triangles. The certificate fails and says why if they are not a closed, oriented
+/// manifold surface; then it compares what it can. Cost: brep::health() without intersections in addition.
 Certificate certify_surface(const voxel::Octree& octree, const brep::Triangles& triangles,
-                            const BoundInputs& inputs);
+                            const BoundInputs& inputs, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::verify

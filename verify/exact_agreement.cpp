@@ -1,30 +1,35 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// Why the surfaces are manifold: each occurrence of a leaf is a set of its own in general position, so a
-// formula of intersections, unions, differences and complements mentions every surface once. Where two
-// surfaces cross, such a formula depends on them as an intersection or a union of the two (or not at all),
-// and neither leaves two wedges that meet at the line only. An exclusive or does exactly that. It is answered
-// by solids with disjoint insides, a - b and b - a, and whatever is then done to it is done to each of them
-// and to what they leave, by cases: see Pieces.
+// Why the surfaces are manifold: each occurrence of a leaf is a set of its own in general position, so an
+// expression of intersections, unions, differences and complements has every surface once. At the line along
+// which two surfaces cross, such an expression is their intersection or union, or independent of them.
+// Neither leaves two wedges that meet only at the line. An exclusive or does. Its answer is therefore two
+// solids with disjoint insides, a - b and b - a, and later operators treat each of them and their complement
+// by cases: see Pieces.
 #include "verify/exact_agreement.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
-#include "brep/boolean.h"
-#include "brep/health.h"
-#include "brep/measure.h"
-#include "brep/move.h"
-#include "brep/prism.h"
-#include "convert/voxelise.h"
-#include "voxel/combine.h"
-#include "voxel/cuberille_faces.h"
-#include "voxel/progress.h"
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/move.h"
+#include "brep/shape/prism.h"
+#include "convert/voxel/voxelise.h"
+#include "voxel/codes/cuberille_faces.h"
+#include "voxel/measure/distance_map.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/term_walk.h"
+#include "voxel/space/rounded.h"
+#include "voxel/space/shared_progress.h"
 
 namespace octotomy::verify {
 namespace {
@@ -32,9 +37,9 @@ namespace {
 using voxel::Expression;
 using Term = Expression::Term;
 
-/// How far a whole number may be from its double after corefinement: some roundings of coordinates of up to
-/// `reach`. Points that are not whole have denominators below the third power of the lattice's side, hence
-/// lie a thousand times further off.
+/// The largest distance of an integer coordinate from its double after corefinement: some roundings of
+/// coordinates up to `reach`. Coordinates that are not integers have denominators below the third power of
+/// the lattice's side, so they lie a thousand times further off.
 double whole_within(double reach) {
   return 64.0 * std::numeric_limits<double>::epsilon() * std::max(reach, 1.0);
 }
@@ -46,7 +51,7 @@ double reach_of(const brep::Mesh& mesh) {
   return reach;
 }
 
-/// Puts coordinates that are whole but for rounding back, so that faces lie in their planes exactly.
+/// Rounds coordinates that are integers but for rounding errors, so that faces lie exactly in their planes.
 brep::Mesh with_whole_numbers(brep::Mesh mesh) {
   const double tolerance = whole_within(reach_of(mesh));
   for (const auto v : mesh.vertices()) {
@@ -64,18 +69,18 @@ struct Piece {
   bool complement = false;
 };
 
-/// The leaves of an expression in the order that a walk meets them, and the same expression with others.
-void collect_leaves(const Term& term, std::vector<voxel::Octree>& sets) {
-  if (term.leaf) {
-    const auto* octree = std::get_if<voxel::Octree>(&*term.leaf);
+/// The leaves of an expression in reading order.
+std::vector<voxel::Octree> leaves_of(const Expression& expression) {
+  std::vector<voxel::Octree> sets;
+  voxel::for_each_term(expression, [&](const voxel::MetTerm& met) {
+    if (!met.term.leaf) return;
+    const auto* octree = std::get_if<voxel::Octree>(&*met.term.leaf);
     if (octree == nullptr)
       throw std::invalid_argument("exact agreement: leaf " + std::to_string(sets.size() + 1) +
                                   " is no octree; only sets of voxels are the same in both kernels");
     sets.push_back(*octree);
-    return;
-  }
-  collect_leaves(*term.left, sets);
-  if (term.right) collect_leaves(*term.right, sets);
+  });
+  return sets;
 }
 
 /// A motion of the refined lattice.
@@ -95,34 +100,30 @@ glm::dmat4 refined_motion(const Term& term, const voxel::Universe& own, int refi
 /// Evaluates an expression over operands in general position, in both kernels.
 class Evaluation {
  public:
-  Evaluation(const voxel::Universe& own, const GeneralPosition& position, std::stop_token stop)
-      : own_(own), position_(position), stop_(std::move(stop)) {}
+  Evaluation(const voxel::Universe& own, const GeneralPosition& position, const voxel::Progress& progress)
+      : own_(own), position_(position), progress_(progress) {}
 
   /// The expression with its leaves replaced.
-  Expression on_octrees(const Term& term) {
-    switch (term.kind) {
-      case Expression::Kind::Leaf:
-        return position_.operands[next_++].octree;
-      case Expression::Kind::Moved: {
-        const Expression still = on_octrees(*term.left);
-        return moved(still, refined_motion(term, own_, position_.refinement));
-      }
-      case Expression::Kind::Not:
-        return ~on_octrees(*term.left);
-      default:
-        break;
-    }
-    const Expression left = on_octrees(*term.left), right = on_octrees(*term.right);
-    switch (term.kind) {
-      case Expression::Kind::And:
-        return left & right;
-      case Expression::Kind::Or:
-        return left | right;
-      case Expression::Kind::Minus:
-        return left - right;
-      default:
-        return left ^ right;
-    }
+  Expression on_octrees(const Expression& expression) {
+    std::size_t next = 0;
+    return voxel::evaluate_terms<Expression>(
+        expression, [&](const Term&) { return Expression(position_.operands[next++].octree); },
+        [&](const Term& term, const Expression& part) {
+          if (term.kind == Expression::Kind::Not) return ~part;
+          return moved(part, refined_motion(term, own_, position_.refinement));
+        },
+        [](const Term& term, const Expression& left, const Expression& right) {
+          switch (term.kind) {
+            case Expression::Kind::And:
+              return left & right;
+            case Expression::Kind::Or:
+              return left | right;
+            case Expression::Kind::Minus:
+              return left - right;
+            default:
+              return left ^ right;
+          }
+        });
   }
 
   /// Both sides of an expression as pieces whose insides do not meet.
@@ -130,44 +131,29 @@ class Evaluation {
     std::vector<Piece> in, out;
     bool single() const { return in.size() == 1 && out.size() == 1; }
   };
-  Sides on_meshes(const Term& term) {
-    switch (term.kind) {
-      case Expression::Kind::Leaf:
-        return both({position_.operands[next_++].solid, false});
-      case Expression::Kind::Moved: {
-        const glm::dmat4 motion = refined_motion(term, own_, position_.refinement);
-        Sides sides = on_meshes(*term.left);
-        for (std::vector<Piece>* side : {&sides.in, &sides.out})
-          for (Piece& piece : *side)
-            if (piece.mesh->n_faces() > 0)
-              piece.mesh = std::make_shared<const brep::Mesh>(brep::moved(*piece.mesh, motion));
-        return sides;
-      }
-      case Expression::Kind::Not:
-        return other(on_meshes(*term.left));
-      default:
-        break;
-    }
-    const Sides left = on_meshes(*term.left), right = on_meshes(*term.right);
-    switch (term.kind) {
-      case Expression::Kind::And:
-        return intersection(left, right);
-      case Expression::Kind::Or:
-        return other(intersection(other(left), other(right)));
-      case Expression::Kind::Minus:
-        return intersection(left, other(right));
-      default:
-        areas_add_up_ = areas_add_up_ && left.single() && right.single();
-        return {joined(pairs(left.in, right.out), pairs(left.out, right.in)),
-                joined(pairs(left.in, right.in), pairs(left.out, right.out))};
-    }
+  Sides on_meshes(const Expression& expression) {
+    std::size_t next = 0;
+    return voxel::evaluate_terms<Sides>(
+        expression,
+        [&](const Term&) {
+          return both({position_.operands[next++].solid, false});
+        },
+        [&](const Term& term, Sides part) {
+          if (term.kind == Expression::Kind::Not) return other(std::move(part));
+          const glm::dmat4 motion = refined_motion(term, own_, position_.refinement);
+          for (std::vector<Piece>* side : {&part.in, &part.out})
+            for (Piece& piece : *side)
+              if (piece.mesh->n_faces() > 0)
+                piece.mesh = std::make_shared<const brep::Mesh>(brep::moved(*piece.mesh, motion));
+          return part;
+        },
+        [&](const Term& term, const Sides& left, const Sides& right) { return joined(term, left, right); });
   }
 
-  void start() { next_ = 0; }
   bool areas_add_up() const { return areas_add_up_; }
   std::vector<std::string> findings() { return std::move(findings_); }
 
-  /// What of a piece is in the universe.
+  /// The part of a piece in the universe.
   brep::Mesh within_universe(const Piece& piece) {
     const double side = position_.universe.side();
     const Piece world{std::make_shared<const brep::Mesh>(
@@ -188,6 +174,20 @@ class Evaluation {
   }
 
  private:
+  Sides joined(const Term& term, const Sides& left, const Sides& right) {
+    switch (term.kind) {
+      case Expression::Kind::And:
+        return intersection(left, right);
+      case Expression::Kind::Or:
+        return other(intersection(other(left), other(right)));
+      case Expression::Kind::Minus:
+        return intersection(left, other(right));
+      default:
+        areas_add_up_ = areas_add_up_ && left.single() && right.single();
+        return {joined(pairs(left.in, right.out), pairs(left.out, right.in)),
+                joined(pairs(left.in, right.in), pairs(left.out, right.out))};
+    }
+  }
   static Sides both(const Piece& piece) { return {{piece}, {{piece.mesh, !piece.complement}}}; }
   static Sides other(Sides sides) {
     std::swap(sides.in, sides.out);
@@ -208,7 +208,7 @@ class Evaluation {
   }
   Sides intersection(const Sides& left, const Sides& right) {
     if (left.single() && right.single()) return both(intersection(left.in.front(), right.in.front()));
-    // The outside: what is out of the left, and what is in the left and out of the right, which share faces.
+    // The outside is the left's outside, and the left's inside outside the right; these two share faces.
     areas_add_up_ = false;
     return {pairs(left.in, right.in), joined(left.out, pairs(left.in, right.out))};
   }
@@ -222,7 +222,9 @@ class Evaluation {
   std::shared_ptr<const brep::Mesh> boolean(const std::shared_ptr<const brep::Mesh>& a,
                                             brep::Operation operation,
                                             const std::shared_ptr<const brep::Mesh>& b) {
-    if (stop_.stop_requested()) throw voxel::Stopped("stopped: the expression is not evaluated");
+    ++corefined_;
+    progress_.at(static_cast<double>(corefined_) /
+                 static_cast<double>(corefined_ + position_.operands.size()));
     brep::BooleanResult result = brep::boolean(*a, operation, *b);
     findings_.insert(findings_.end(), result.findings.begin(), result.findings.end());
     return std::make_shared<const brep::Mesh>(with_whole_numbers(std::move(result.mesh)));
@@ -230,8 +232,8 @@ class Evaluation {
 
   const voxel::Universe& own_;
   const GeneralPosition& position_;
-  std::stop_token stop_;
-  std::size_t next_ = 0;
+  const voxel::Progress& progress_;
+  std::size_t corefined_ = 0;
   bool areas_add_up_ = true;
   std::vector<std::string> findings_;
 };
@@ -250,22 +252,43 @@ std::string text_of(const Expression& expression) {
   return voxel::print_expression(expression, labels);
 }
 
+/// The differing voxel nearest to the middle of their box, and the box's largest side.
+WorstPlace worst_of(const ExactAnswers& answers, const voxel::Octree& differing) {
+  const voxel::VoxelRange range = voxel::range_of(differing);
+  glm::ivec3 found = range.low;
+  int nearest = std::numeric_limits<int>::max();
+  for (int z = range.low.z; z <= range.high.z; ++z)
+    for (int y = range.low.y; y <= range.high.y; ++y)
+      for (int x = range.low.x; x <= range.high.x; ++x) {
+        const glm::ivec3 off = glm::abs(2 * glm::ivec3(x, y, z) - range.low - range.high);
+        const int distance = off.x + off.y + off.z;
+        if (distance >= nearest || !differing.contains({x, y, z})) continue;
+        nearest = distance;
+        found = {x, y, z};
+      }
+  const glm::ivec3 dims = range.dims();
+  return {answers.lps_from_unit * glm::dvec4(glm::dvec3(found) + 0.5, 1.0),
+          std::max({dims.x, dims.y, dims.z}) * std::cbrt(answers.unit_mm3),
+          answers.octree.contains(found) ? part_of_voxels_only : part_of_mesh_only};
+}
+
 }  // namespace
 
-ExactAnswers exact_answers(const Expression& expression, const std::stop_token& stop) {
-  std::vector<voxel::Octree> sets;
-  collect_leaves(expression.term(), sets);
+ExactAnswers exact_answers(const Expression& expression, const voxel::Progress& progress) {
+  const std::vector<voxel::Octree> sets = leaves_of(expression);
   const voxel::Universe own = sets.front().universe();
-  const GeneralPosition position = general_position(sets);
-  Evaluation evaluation(own, position, stop);
-  ExactAnswers answers{voxel::combine(position.universe, evaluation.on_octrees(expression.term())),
-                       {},
-                       text_of(expression),
-                       own.lattice().voxel_mm3() / std::pow(position.refinement, 3),
-                       true,
-                       {}};
-  evaluation.start();
-  for (const Piece& piece : evaluation.on_meshes(expression.term()).in) {
+  const GeneralPosition position = general_position(sets, voxel::part_of(progress, 0.0, 0.5));
+  const voxel::Progress evaluating = voxel::part_of(progress, 0.5, 1.0);
+  Evaluation evaluation(own, position, evaluating);
+  ExactAnswers answers{
+      voxel::combine(position.universe, evaluation.on_octrees(expression)),
+      {},
+      text_of(expression),
+      own.lattice().voxel_mm3() / std::pow(position.refinement, 3),
+      glm::scale(glm::translate(own.lps_from_voxel, glm::dvec3(-0.5)), glm::dvec3(1.0 / position.refinement)),
+      true,
+      {}};
+  for (const Piece& piece : evaluation.on_meshes(expression).in) {
     brep::Mesh solid = evaluation.within_universe(piece);
     if (solid.n_faces() > 0) answers.solids.push_back(std::move(solid));
   }
@@ -309,10 +332,7 @@ Certificate certify_exact(const ExactAnswers& answers) {
   Certificate certificate;
   certificate.operation = answers.operation;
   certificate.tier = Tier::Exact;
-  const auto fail = [&](const std::string& reason) {
-    certificate.agreement = Agreement::Fail;
-    certificate.reasons.push_back(reason);
-  };
+  const auto fail = [&](const std::string& reason) { lower(certificate, Verdict::Fail, reason); };
   const double unit_mm2 = std::pow(answers.unit_mm3, 2.0 / 3.0);
   const auto voxels = static_cast<std::int64_t>(answers.octree.voxel_count());
   const auto faces = static_cast<double>(voxel::cuberille_faces(answers.octree).face_count());
@@ -326,8 +346,8 @@ Certificate certify_exact(const ExactAnswers& answers) {
   for (const brep::Mesh& solid : answers.solids) {
     const brep::Health health = brep::health(solid, {.self_intersections = false});
     if (!health.closed || !health.oriented) {
-      fail("a solid is not closed and oriented" +
-           (health.findings.empty() ? "" : ": " + health.findings.front()));
+      fail("A solid of the mesh kernel is not closed and oriented" +
+           (health.findings.empty() ? "." : ": " + health.findings.front()));
       if (!health.closed) continue;
     }
     area += brep::measure(solid).area_mm2;
@@ -341,25 +361,28 @@ Certificate certify_exact(const ExactAnswers& answers) {
   certificate.mesh.volume_mm3 = (volume ? static_cast<double>(*volume) : float_volume) * answers.unit_mm3;
   certificate.mesh.area_mm2 = area * unit_mm2;
   certificate.difference_mm3 = certificate.voxel.volume_mm3 - certificate.mesh.volume_mm3;
-  certificate.symmetric_difference_mm3 =
-      static_cast<double>(
-          voxel::combine(answers.octree.universe(), Expression(answers.octree) ^ Expression(united))
-              .voxel_count()) *
-      answers.unit_mm3;
+  const voxel::Octree differing =
+      voxel::combine(answers.octree.universe(), Expression(answers.octree) ^ Expression(united));
+  certificate.symmetric_difference_mm3 = static_cast<double>(differing.voxel_count()) * answers.unit_mm3;
 
-  if (!volume) fail("the mesh's volume is no whole number of voxels");
+  if (!volume) fail("The mesh kernel's volume is not a whole number of voxels.");
   if (volume && *volume != voxels)
-    fail("the mesh has the volume of " + std::to_string(*volume) + " voxels, the octree has " +
-         std::to_string(voxels));
-  if (certificate.symmetric_difference_mm3 > 0.0)
-    fail("voxelised, the mesh differs by " + std::to_string(certificate.symmetric_difference_mm3) + " mm3");
-  if (filled != united.voxel_count()) fail("solids overlap that should not");
+    fail("The mesh kernel's volume is " + std::to_string(*volume) + " refined voxels, the voxel kernel's " +
+         std::to_string(voxels) + ".");
+  if (!differing.is_empty()) {
+    certificate.worst = worst_of(answers, differing);
+    fail("Voxels of " + voxel::rounded(certificate.symmetric_difference_mm3) +
+         " mm3 are inside for one kernel only, over " + voxel::rounded(certificate.worst->size_mm) +
+         " mm about " + voxel::rounded(certificate.worst->at_mm) + ": " + certificate.worst->what + ".");
+  }
+  if (filled != united.voxel_count()) fail("Solids of the mesh kernel overlap that should only touch.");
   // Areas are whole, too; they are summed as square roots, each good to a unit in the last place.
   if (answers.areas_add_up && std::abs(area - faces) > 1e-9 * (faces + 1.0))
-    fail("the mesh's area is " + std::to_string(area) + " faces of voxels, the octree has " +
-         std::to_string(faces));
+    fail("The mesh kernel's area differs from the voxel kernel's by " + voxel::rounded(area - faces) +
+         " faces of refined voxels.");
   for (const std::string& finding : answers.findings)
-    if (finding.rfind("shifted", 0) == 0) fail("operands in general position were moved: " + finding);
+    if (finding.rfind("shifted", 0) == 0)
+      fail("Corefinement moved operands that are in general position: " + finding);
   certificate.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return certificate;

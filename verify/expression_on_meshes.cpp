@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 A recursive descent over the expression's text: one function a level of precedence, weakest first: union,
-//   exclusive or, intersection, minus, and last complement and parentheses, as Python has them.
-// 2 An expression that names a solid twice would let its surface meet itself: (a ^ b) & a has all of what
-//   remains of it twice. It is written anew with each name once, where that can be done.
-// 3 Corefinements, from the leaves up, each answer a solid or the complement of one.
+// 1 Recursive descent over the expression's text, one function for each level of precedence, weakest first:
+// union,
+//   exclusive or, intersection, minus, then complement and parentheses, as in Python.
+// 2 An expression that names a solid twice would corefine its surface with itself: (a ^ b) & a has a twice.
+// If
+//   there is a read-once expression of the same function, that is evaluated instead.
+// 3 Corefinements from the leaves up; each gives a solid or the complement of one.
 #include "verify/expression_on_meshes.h"
 
 #include <algorithm>
@@ -20,8 +22,8 @@ class Parser {
  public:
   explicit Parser(std::string_view text) : text_(text) {}
 
-  Tree whole() {
-    Tree answer = either();
+  ExpressionTree whole() {
+    ExpressionTree answer = either();
     skip_blanks();
     if (at_ < text_.size()) expected("an operator or the end");
     return answer;
@@ -30,30 +32,31 @@ class Parser {
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  Tree either() {
-    Tree left = one_of();
-    while (take('|')) left = {'|', 0, {left, one_of()}};
-    return left;
+  ExpressionTree either() { return chain('|', &Parser::one_of); }
+  ExpressionTree one_of() { return chain('^', &Parser::both); }
+  ExpressionTree both() { return chain('&', &Parser::minus); }
+  ExpressionTree minus() { return chain('-', &Parser::single); }
+
+  /// What one operator joins is one tree, so that a long chain is no deep one.
+  ExpressionTree chain(char symbol, ExpressionTree (Parser::*part)()) {
+    ExpressionTree first = (this->*part)();
+    if (!take(symbol)) return first;
+    ExpressionTree all{symbol, 0, {std::move(first)}};
+    do all.parts.push_back((this->*part)());
+    while (take(symbol));
+    return all;
   }
-  Tree one_of() {
-    Tree left = both();
-    while (take('^')) left = {'^', 0, {left, both()}};
-    return left;
+  ExpressionTree single() {
+    if (++depth_ > most_nested)
+      expected("an expression nested at most " + std::to_string(most_nested) + " deep");
+    ExpressionTree tree = nested();
+    --depth_;
+    return tree;
   }
-  Tree both() {
-    Tree left = minus();
-    while (take('&')) left = {'&', 0, {left, minus()}};
-    return left;
-  }
-  Tree minus() {
-    Tree left = single();
-    while (take('-')) left = {'-', 0, {left, single()}};
-    return left;
-  }
-  Tree single() {
+  ExpressionTree nested() {
     if (take('~')) return {'~', 0, {single()}};
     if (take('(')) {
-      Tree inner = either();
+      ExpressionTree inner = either();
       if (!take(')')) expected("')'");
       return inner;
     }
@@ -79,13 +82,20 @@ class Parser {
     return true;
   }
   [[noreturn]] void expected(const std::string& what) const {
-    throw std::invalid_argument("expression '" + std::string(text_) + "', position " +
-                                std::to_string(at_ + 1) + ": " + what + " expected");
+    constexpr std::size_t most_quoted = 200;
+    const std::string quoted =
+        text_.size() <= most_quoted ? std::string(text_) : std::string(text_.substr(0, most_quoted)) + "...";
+    throw std::invalid_argument("expression '" + quoted + "', position " + std::to_string(at_ + 1) + ": " +
+                                what + " expected");
   }
+
+  /// Deeper than any plan's, and far from the end of the stack.
+  static constexpr int most_nested = 200;
 
   std::string_view text_;
   std::vector<std::string> names_;
   std::size_t at_ = 0;
+  int depth_ = 0;
 };
 
 }  // namespace
@@ -94,33 +104,40 @@ SharedMesh MeshExpressions::evaluate(std::string_view text,
                                      const std::function<SharedMesh(std::string_view)>& lookup) {
   findings_.clear();
   Parser parser(text);
-  Tree tree = parser.whole();
+  ExpressionTree tree = parser.whole();
   std::vector<SharedMesh> leaves;
   for (const std::string& name : parser.names()) leaves.push_back(lookup(name));
-  // As it stands where no name repeats: earlier answers are used again.
+  // Without a repeated name the expression stays as it is, so that earlier answers serve again.
   if (tree.leaf_count() > static_cast<int>(leaves.size()))
-    if (std::optional<Tree> once = mentioned_once(tree)) tree = std::move(*once);
+    if (std::optional<ExpressionTree> once = read_once(tree)) tree = std::move(*once);
   const Signed answer = value(tree, leaves);
   return answer.complement ? boolean(world_, brep::Operation::Difference, answer.mesh) : answer.mesh;
 }
 
-MeshExpressions::Signed MeshExpressions::value(const Tree& tree, const std::vector<SharedMesh>& leaves) {
+MeshExpressions::Signed MeshExpressions::value(const ExpressionTree& tree,
+                                               const std::vector<SharedMesh>& leaves) {
   const auto complement = [](Signed a) { return Signed{std::move(a.mesh), !a.complement}; };
   if (tree.parts.empty()) return {leaves[static_cast<std::size_t>(tree.leaf)], false};
-  const Signed a = value(tree.parts[0], leaves);
+  Signed a = value(tree.parts[0], leaves);
   if (tree.symbol == '~') return complement(a);
-  const Signed b = value(tree.parts[1], leaves);
-  const auto any = [&] { return complement(intersection(complement(a), complement(b))); };
-  switch (tree.symbol) {
-    case '&':
-      return intersection(a, b);
-    case '|':
-      return any();
-    case '-':
-      return intersection(a, complement(b));
-    default:
-      return intersection(any(), complement(intersection(a, b)));
+  for (std::size_t i = 1; i < tree.parts.size(); ++i) {
+    const Signed b = value(tree.parts[i], leaves);
+    const auto any = [&] { return complement(intersection(complement(a), complement(b))); };
+    switch (tree.symbol) {
+      case '&':
+        a = intersection(a, b);
+        break;
+      case '|':
+        a = any();
+        break;
+      case '-':
+        a = intersection(a, complement(b));
+        break;
+      default:
+        a = intersection(any(), complement(intersection(a, b)));
+    }
   }
+  return a;
 }
 
 MeshExpressions::Signed MeshExpressions::intersection(const Signed& a, const Signed& b) {
@@ -161,7 +178,7 @@ void MeshExpressions::corefine(const SharedMesh& a, brep::Operation operation, c
     learn(answers);
     if (known.contains(operation)) return;
   } catch (const std::runtime_error&) {
-    // One that nobody asked for may be what cannot be represented.
+    // Perhaps only an answer that nobody asked for cannot be represented. A stop ends the next call, too.
   }
   brep::Booleans answers =
       brep::booleans(*a, *b,

@@ -9,33 +9,32 @@
 #include <utility>
 #include <vector>
 
-#include "brep/boolean.h"
-#include "brep/mesh.h"
-#include "verify/formula.h"
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/mesh.h"
+#include "verify/expression_tree.h"
 
 namespace octotomy::verify {
 
 using SharedMesh = std::shared_ptr<const brep::Mesh>;
 
-/// Evaluates Boolean expressions on solids: the second lineage of what voxel::combine answers on octrees.
-/// Text, precedence and names are those of voxel::parse_expression, read here by a parser of its own, so that
-/// a wrong precedence in one of them shows as disagreement.
+/// Evaluates Boolean expressions on solids, as the second lineage beside voxel::combine() on octrees. The
+/// grammar is that of voxel::parse_expression(), with a parser of its own, so that a wrong precedence in one
+/// of them shows as disagreement.
 ///
-/// Complements are carried symbolically (a & ~b is a - b, ~a & ~b is ~(a | b)), so no mesh is ever turned
-/// inside out; one that is left at the end is taken within `world`. An expression that names a solid several
-/// times is written with each name once where that can be done, so that no surface meets itself. a ^ b is (a
-/// | b) - (a & b). Every operand pair is corefined once and answers its union, intersection and difference
-/// from then on.
+/// Complements stay symbolic (a & ~b is a - b, ~a & ~b is ~(a | b)), so no mesh is ever inside out. A
+/// complement left at the end is taken within `world`. An expression that names a solid several times is
+/// replaced by a read-once one if there is one, so that no surface meets itself. a ^ b is (a | b) - (a & b).
+/// Every pair of operands is corefined once; its union, intersection and difference are kept.
 class MeshExpressions {
  public:
   /// `world` is the solid that the complement of everything is taken in: the universe's box.
   explicit MeshExpressions(SharedMesh world) : world_(std::move(world)) {}
 
-  /// The solid of the expression; without faces where the set is empty. Throws std::invalid_argument naming
-  /// position and what was expected, what `lookup` throws, and what brep::boolean throws.
+  /// The solid of the expression; without faces if the set is empty. Throws std::invalid_argument with the
+  /// position and the expected symbol; as `lookup` and brep::boolean().
   SharedMesh evaluate(std::string_view text, const std::function<SharedMesh(std::string_view name)>& lookup);
 
-  /// Doubts that corefinements of the last evaluate() left.
+  /// Doubts of the corefinements in the last evaluate().
   const std::vector<std::string>& findings() const { return findings_; }
 
  private:
@@ -43,15 +42,15 @@ class MeshExpressions {
     SharedMesh mesh;
     bool complement = false;
   };
-  Signed value(const Tree& tree, const std::vector<SharedMesh>& leaves);
+  Signed value(const ExpressionTree& tree, const std::vector<SharedMesh>& leaves);
   SharedMesh boolean(const SharedMesh& a, brep::Operation operation, const SharedMesh& b);
-  /// Adds what one corefinement answers to what is known of the pair; the operation asked for is among it.
+  /// Adds the answers of one corefinement to the known ones of the pair, `operation` among them.
   void corefine(const SharedMesh& a, brep::Operation operation, const SharedMesh& b,
                 std::map<brep::Operation, SharedMesh>& known);
   Signed intersection(const Signed& a, const Signed& b);
 
   SharedMesh world_;
-  /// By operands and operation; the operands are kept alive with the answers, so that no address is reused.
+  /// By operands and operation. Keeps the operands alive, so that no address is reused.
   std::map<std::pair<SharedMesh, SharedMesh>, std::map<brep::Operation, SharedMesh>> answers_;
   std::vector<std::string> findings_;
 };

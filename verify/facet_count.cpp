@@ -3,10 +3,11 @@
 // By the divergence theorem, F(k) = i / (2 pi |k|^2) * sum over facets of (k . n) T(k), T the integral of
 // exp(-2 pi i k . x) over the facet; and once more in the facet's plane, with t the part of k in it,
 // T(k) = i / (2 pi |t|^2) * sum over sides of (t . m) L exp(-2 pi i k . middle) sinc(k . side), m the side's
-// outward normal in the plane. Where t vanishes all of the facet is in phase, and T is its area.
+// outward normal in the plane. If t vanishes, all of the facet is in phase, and T is its area.
 #include "verify/facet_count.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -77,8 +78,11 @@ void add_along(const glm::dvec3& normal, std::vector<glm::ivec3>& vectors) {
   }
 }
 
-/// Where the transform is looked at, each pair of k and -k once, in order. Precondition: large facets first.
+/// The vectors k of the sum, one of each pair k and -k, in order. Precondition: large facets first.
 std::vector<glm::ivec3> vectors_of(const std::vector<Facet>& facets) {
+  assert(std::is_sorted(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) {
+    return glm::dot(a.area, a.area) > glm::dot(b.area, b.area);
+  }));
   std::vector<glm::ivec3> vectors;
   for (int z = -reach; z <= reach; ++z)
     for (int y = -reach; y <= reach; ++y)

@@ -14,16 +14,16 @@ struct Facet {
   std::vector<std::array<glm::dvec3, 2>> sides;
 };
 
-/// The variance, in voxels squared, that facets add to a count of lattice points over all places of the
-/// lattice: of a polyhedron the sum over integer vectors k of |F(k)|^2, F its indicator's Fourier transform,
-/// which is a sum over facets. Summed up to 6 along each axis and, near the normals of the 32 largest facets,
-/// where a facet's points are in phase, up to 64; the rest, of other facets, as if normals were spread
-/// evenly. So facets that run along the lattice or are parallel err in step, as they do. Precondition: no
-/// facet has its normal along one of the vectors of small integers that a digitised plane follows exactly,
-/// where the sum is right over all places but says nothing of one place. Cost: 1098 sines and cosines a side,
-/// and up to 576 more for each of those normals; parallel; the same bits on any number of threads. Source:
-/// Kendall, "On the number of lattice points inside a random oval", 1948; the transform of a polygon by its
-/// sides: Lee and Mittra, "Fourier transform of a polygonal shape function", 1983.
+/// The variance, in voxels squared, that facets add to a count of lattice points over all positions of the
+/// lattice. For a polyhedron it is the sum over integer vectors k of |F(k)|^2, F the Fourier transform of its
+/// indicator, which is a sum over facets. The sum runs to 6 along each axis, and to 64 near the normals of
+/// the 32 largest facets, where a facet's points are in phase; the rest assumes evenly spread normals. So
+/// facets along the lattice, or parallel ones, err coherently, as they do. Precondition: no facet has its
+/// normal along a vector of small integers, which a digitised plane follows exactly: there the sum is right
+/// over all positions and says nothing of a single one. Cost: 1098 sines and cosines a side, and up to 576
+/// more for each of those normals; parallel; the same bits on any number of threads. Source: Kendall, "On the
+/// number of lattice points inside a random oval", 1948; the transform of a polygon by its sides: Lee and
+/// Mittra, "Fourier transform of a polygonal shape function", 1983.
 double count_variance(const std::vector<Facet>& facets);
 
 }  // namespace octotomy::verify

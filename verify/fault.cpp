@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 A subject is a scan; the question is (window - box) under a rigid motion. Making holds all that either
-//   kernel is told about it, so that a fault of understanding is a kernel that was told something else.
-// 2 Both kernels answer the clean question. Faults of understanding are answered anew by one of them; faults
-//   of execution are done to the clean mesh or octree.
-// 3 Each pair is certified as any other.
+// 1 A subject is a scan; the question is (window - box) under a rigid motion. Making holds the question's
+//   parameters, so a misunderstanding is a kernel with another Making.
+// 2 Both kernels answer the clean question. For a misunderstanding one of them answers again; faults of
+// execution
+//   change the clean mesh or octree.
+// 3 Each pair is certified like any other.
 #include "verify/fault.h"
 
 #include <algorithm>
@@ -12,31 +13,30 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <tbb/parallel_for.h>
 
-#include "brep/boolean.h"
-#include "brep/move.h"
-#include "brep/prism.h"
-#include "brep/triangles.h"
-#include "convert/isosurface.h"
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/move.h"
+#include "brep/mesh/triangles.h"
+#include "brep/shape/prism.h"
+#include "convert/surface/isosurface.h"
 #include "verify/certify_surface.h"
 #include "verify/exact_agreement.h"
-#include "verify/form.h"
-#include "verify/phantom.h"
+#include "verify/head_phantom.h"
+#include "verify/implicit_solid.h"
 #include "verify/random_expression.h"
-#include "voxel/combine.h"
-#include "voxel/digitise.h"
-#include "voxel/progress.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/digitise.h"
+#include "voxel/space/shared_progress.h"
 
 namespace octotomy::verify {
 namespace {
 
 using voxel::Expression;
 
-/// What a kernel is told of the question.
+/// The question as one kernel understands it.
 struct Making {
   double low = 0.0;           ///< of the window
   double slices_apart = 1.0;  ///< times the true distance
@@ -143,7 +143,7 @@ voxel::Octree mirrored(const voxel::Octree& octree) {
   return on_lattice(octree, mirror);
 }
 
-/// Names of the library, where trials are made.
+/// Names of faults.
 constexpr const char* flipped_normal = "flipped normal";
 constexpr const char* flipped_shell = "flipped shell";
 constexpr const char* lost_triangle = "lost triangle";
@@ -258,7 +258,8 @@ voxel::Scene scan_of(const voxel::Universe& universe, const voxel::Shape& shape)
   return scan;
 }
 
-/// Subjects have no symmetry that would hide a mirrored axis or swapped operands: off the middle, askew, cut.
+/// Subjects without a symmetry that would hide a mirrored axis or swapped operands: off the middle, askew,
+/// cut.
 Subject shape_subject(const std::string& name, int voxels) {
   Subject subject;
   subject.name = name;
@@ -293,7 +294,7 @@ Subject head_subject(int voxels) {
   return subject;
 }
 
-/// Faults that make sense in the exact tier, whose answers are whole: a shift is by one refined voxel.
+/// Faults for the exact tier, whose answers have integer coordinates: a shift is by one refined voxel.
 std::vector<FaultTrial> exact_trials(int voxels) {
   voxel::Universe universe;
   while ((1 << universe.depth) > voxels) --universe.depth;
@@ -324,9 +325,12 @@ std::vector<FaultTrial> exact_trials(int voxels) {
     try {
       spoiled.solids[0] = brep::mesh_of(spoil(brep::triangles_of(clean.solids[0])));
       certify(fault, "mesh", spoiled);
+    } catch (const voxel::Stopped&) {
+      throw;
     } catch (const std::runtime_error& error) {
       certify(fault, "mesh", clean);
-      lower(trials.back().certificate, Agreement::Fail, std::string("no mesh: ") + error.what());
+      lower(trials.back().certificate, Verdict::Fail,
+            std::string("The spoiled mesh cannot be built: ") + error.what());
     }
   };
   spoil_mesh(flipped_normal, with_flipped_triangle);
@@ -385,14 +389,13 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
     if (voxels <= resolved_size) work.push_back({"voxel sets", voxels});
   }
   std::vector<std::vector<FaultTrial>> parts(work.size());
-  std::mutex reporting;
-  std::size_t done = 0;
-  // The large ones first, or the last would be waited for.
+  voxel::SharedProgress work_done(options.progress, work.size());
+  // The large ones first, so that the last ones end together.
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, work.size(), 1),
       [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          if (options.stop.stop_requested()) throw voxel::Stopped("stopped between faults");
+          work_done.one_more();
           const std::size_t number = work.size() - 1 - i;
           const auto& [subject, voxels] = work[number];
           if (subject == "voxel sets")
@@ -401,11 +404,6 @@ std::vector<FaultTrial> try_faults(const FaultOptions& options) {
             parts[number] =
                 Trials(subject == "head" ? head_subject(voxels) : shape_subject(subject, voxels), voxels)
                     .run();
-          const std::lock_guard lock(reporting);
-          ++done;
-          if (options.progress)
-            options.progress("faults, " + subject + " at " + std::to_string(voxels),
-                             static_cast<double>(done) / static_cast<double>(work.size()));
         }
       },
       tbb::simple_partitioner());
@@ -433,7 +431,7 @@ std::vector<DetectionPower> detection_power(const std::vector<FaultTrial>& trial
       power.voxels = trial.voxels;
       ++power.trials;
       power.caught += trial.caught();
-      power.doubted += trial.certificate.agreement == Agreement::Warn;
+      power.doubted += trial.certificate.verdict == Verdict::Warn;
     }
     for (const auto& [voxels, power] : by_size) table.push_back(power);
   }
@@ -443,8 +441,8 @@ std::vector<DetectionPower> detection_power(const std::vector<FaultTrial>& trial
 bool detection_holds(const std::vector<FaultTrial>& trials) {
   return !trials.empty() && std::all_of(trials.begin(), trials.end(), [](const FaultTrial& trial) {
     if (trial.fault.empty())
-      return trial.certificate.agreement == Agreement::Pass ||
-             (trial.certificate.agreement == Agreement::BelowResolution && trial.voxels < resolved_size);
+      return trial.certificate.verdict == Verdict::Pass &&
+             (trial.certificate.resolved() || trial.voxels < resolved_size);
     return !trial.must_be_caught || trial.voxels < resolved_size || trial.caught();
   });
 }

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 On a lattice of two cells a voxel, a set is kept where all of the eight voxels about a cell's corner that
-//   the cell touches are inside: cells 2k + 1 are the middle of voxel k, cells 2k the middle of the wall
-//   between voxels k - 1 and k. As sets of unit cells this is the intersection of the doubled set's eight
-//   translates by 0 or 1. It is well composed: two cells of the kept set that meet at an edge or corner only
-//   would have a cell between them that touches no voxel that they do not.
+// 1 On a lattice of two cells a voxel, a cell is kept if all voxels that it touches are inside: cells 2k + 1
+// are
+//   the middle of voxel k, cells 2k the middle of the wall between voxels k - 1 and k. As sets of unit cells
+//   this is the intersection of the doubled set's eight translates by 0 or 1. The kept set is well composed:
+//   if two of its cells met only at an edge or corner, a cell between them would touch no other voxels than
+//   they do.
 // 2 A cell becomes `cell` refined voxels a side, cell a power of two above the number of sets; set i is
 //   shifted by i + 1 refined voxels downwards. Its planes then lie at -(i + 1) modulo `cell`: no two sets
 //   share one, and none lies on the border, which is 0. The shift is at most half a voxel, which step 1 left
 //   free at the low end.
-// All cells are cubes, so that diagonals of their faces have slope one and meet every plane in whole numbers.
+// All cells are cubes, so diagonals of their faces have slope one and meet every plane at integers.
 #include "verify/general_position.h"
 
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "brep/triangles.h"
-#include "convert/cuberille.h"
-#include "voxel/combine.h"
+#include "brep/mesh/triangles.h"
+#include "convert/surface/cuberille.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {
 
-/// A universe with voxels of so many millimetres, whose first voxel's corner is at (first_mm, first_mm,
-/// first_mm).
+/// A universe with voxels of `edge_mm`, the first one's corner at (first_mm, first_mm, first_mm).
 voxel::Universe cubes(int depth, double edge_mm, double first_mm) {
   voxel::Universe universe;
   universe.depth = depth;
@@ -54,16 +54,17 @@ voxel::Octree parted(const voxel::Octree& set) {
 
 }  // namespace
 
-GeneralPosition general_position(const std::vector<voxel::Octree>& sets) {
+GeneralPosition general_position(const std::vector<voxel::Octree>& sets, const voxel::Progress& progress) {
   if (sets.empty()) throw std::invalid_argument("general position: there is no set of voxels");
   const int depth = sets.front().universe().depth;
   int cell = 2, doublings = 2;
   for (; cell <= static_cast<int>(sets.size()); cell *= 2) ++doublings;
   if (depth + doublings > voxel::Universe::max_depth)
-    throw std::length_error("general position of " + std::to_string(sets.size()) +
-                            " sets takes a lattice of 2^" + std::to_string(depth + doublings) +
-                            " voxels a side, 2^" + std::to_string(voxel::Universe::max_depth) +
-                            " is the most: take fewer operands or a smaller universe");
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       "general position of " + std::to_string(sets.size()) + " sets takes a lattice of 2^" +
+                           std::to_string(depth + doublings) + " voxels a side, 2^" +
+                           std::to_string(voxel::Universe::max_depth) +
+                           " is the largest: take fewer operands or a smaller universe");
   GeneralPosition position;
   position.refinement = 2 * cell;
   position.universe = cubes(depth + doublings, 1.0, 0.0);
@@ -71,6 +72,7 @@ GeneralPosition general_position(const std::vector<voxel::Octree>& sets) {
   for (const voxel::Octree& set : sets) {
     if (!(set.universe() == sets.front().universe()))
       throw std::invalid_argument("general position: the sets are of different universes");
+    progress.at(static_cast<double>(shift) / static_cast<double>(sets.size()));
     ++shift;
     const voxel::Octree cells = parted(set);
     const voxel::Universe placed = cubes(depth + 1, cell, -shift);

@@ -2,13 +2,15 @@
 //
 // Scans the head's closed forms.
 // 1 The lattice covers head_bounds(), tilted or not.
-// 2 Blocks of up to 4^3 voxels prune the forms of their brick to what can matter in the block; a field whose
-// value
-//   exceeds the block's radius is decided for all of it.
-// 3 A voxel near a surface is halved three times; a part whose fields are decided counts at once, and what
-//   is left at the third halving is one sample at its centre: the same count as 8^3 samples, as no decided
+// 2 Blocks of up to 4^3 voxels prune the solids of their brick to those that matter in the block. A field
+// whose
+//   value exceeds the block's radius is decided for the whole block.
+// 3 A voxel near a surface is halved three times. A part whose fields are decided counts at once; a part left
+//   after the third halving is one sample at its centre. The count equals that of 8^3 samples, as no decided
 //   part holds a surface.
 // 4 Blur, noise, rounding.
+
+#include "verify/head_phantom.h"
 
 #include <algorithm>
 #include <array>
@@ -19,8 +21,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "verify/head_form.h"
-#include "verify/phantom.h"
+#include "verify/head_solids.h"
+#include "voxel/space/rounded.h"
+#include "voxel/space/shared_progress.h"
 
 namespace octotomy::verify {
 namespace {
@@ -33,7 +36,7 @@ using Places = HeadBricks::Places;
 constexpr std::array scanned{HeadBricks::Skin, HeadBricks::Headrest, HeadBricks::Air, HeadBricks::ToothCore,
                              HeadBricks::Bone};
 
-// None where an undecided field matters. Asked at every sample: no loop over the fields.
+// None if an undecided field matters. Evaluated at every sample, hence no loop over the fields.
 inline std::optional<Tissue> tissue(const Places& places) {
   if (places[HeadBricks::Skin] == 0) {
     if (places[HeadBricks::Headrest] < 0) return std::nullopt;
@@ -101,7 +104,7 @@ class Scanner {
     halve(centre_mm, 0, places, pruned, count);
   }
 
-  // Prunes what is not decided to a smaller ball, until the tissue is known.
+  // Prunes undecided fields to a smaller ball until the tissue is known.
   static void narrow(const glm::dvec3& centre_mm, double radius_mm, const HeadBricks::Fields& fields,
                      Places& places, HeadBricks::Fields& pruned) {
     for (const HeadBricks::Field field : scanned) {
@@ -169,7 +172,7 @@ voxel::Lattice scan_lattice(const HeadOptions& options) {
 
 void check_options(const HeadOptions& options) {
   const auto refuse = [](const std::string& what, double value) {
-    throw std::invalid_argument("head phantom: " + what + ", not " + std::to_string(value));
+    throw std::invalid_argument("head phantom: " + what + ", not " + voxel::rounded(value));
   };
   const double slice_mm = options.slice_mm.value_or(options.voxel_mm);
   if (!(options.voxel_mm > 0.0)) refuse("voxel_mm must be positive", options.voxel_mm);
@@ -188,7 +191,8 @@ void check_options(const HeadOptions& options) {
     refuse("more than 2^31 voxels; voxel_mm is too small", options.voxel_mm);
 }
 
-voxel::FloatSamples scanned_samples(const voxel::Lattice& lattice, const HeadTissues& tissues) {
+voxel::FloatSamples scanned_samples(const voxel::Lattice& lattice, const HeadTissues& tissues,
+                                    const voxel::Progress& progress) {
   std::array<double, tissue_count> hounsfield{};
   hounsfield[AirTissue] = tissues.air;
   hounsfield[HeadrestTissue] = tissues.headrest;
@@ -199,7 +203,9 @@ voxel::FloatSamples scanned_samples(const voxel::Lattice& lattice, const HeadTis
   voxel::FloatSamples samples(lattice.sample_count());
   const int block = scanner.block_side();
   const glm::ivec3 blocks = (lattice.dims + block - 1) / block;
+  voxel::SharedProgress rows_done(progress, static_cast<std::size_t>(blocks.z * blocks.y));
   tbb::parallel_for(0, blocks.z * blocks.y, [&](int row) {
+    rows_done.one_more();
     for (int x = 0; x < blocks.x; ++x) {
       const glm::ivec3 first = glm::ivec3(x, row % blocks.y, row / blocks.y) * block;
       scanner.scan_block(first, glm::min(first + block, lattice.dims),
@@ -218,8 +224,8 @@ voxel::FloatSamples scanned_samples(const voxel::Lattice& lattice, const HeadTis
   return samples;
 }
 
-// Gaussian along one axis of the lattice, cut off where it has fallen below a thousandth of a Hounsfield
-// unit of a step of 4000 (5 sigma). Beyond the border the border's sample is repeated.
+// Gaussian along one axis of the lattice, cut off at 5 sigma, where a step of 4000 HU leaves less than a
+// thousandth of a Hounsfield unit. The border's sample repeats beyond the border.
 void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, double sigma_voxels) {
   const int reach = static_cast<int>(std::ceil(5.0 * sigma_voxels));
   const int tap_count = 2 * reach + 1;
@@ -253,7 +259,7 @@ void blur_axis(voxel::FloatSamples& samples, const glm::ivec3& dims, int axis, d
   });
 }
 
-// A counter-based generator: the seed and the sample's index alone give the value, whichever thread asks.
+// A counter-based generator: the value depends on the seed and the sample's index alone, on any thread.
 // Source: the finaliser of SplitMix64 (Steele, Lea, Flood 2014), twice.
 std::uint64_t scrambled(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
@@ -289,18 +295,21 @@ bool head_contains(HeadPart part, const glm::dvec3& p_mm) {
   return brick.places[field] < 0 ? value(brick.steps[field], p_mm) < 0.0 : brick.places[field] == 1;
 }
 
-voxel::Scene head_phantom(const HeadOptions& options) {
+voxel::Scene head_phantom(const HeadOptions& options, const voxel::Progress& progress) {
   check_options(options);
   voxel::Scene scene;
   scene.lattice = scan_lattice(options);
   scene.meaning = voxel::Meaning::Hounsfield;
   scene.modality = "CT";
   scene.source = "head phantom";
-  voxel::FloatSamples samples = scanned_samples(scene.lattice, options.tissues);
+  voxel::FloatSamples samples =
+      scanned_samples(scene.lattice, options.tissues, voxel::part_of(progress, 0.0, 0.8));
   if (options.point_spread_sigma_mm > 0.0)
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis) {
+      progress.at(0.8 + 0.05 * axis);
       blur_axis(samples, scene.lattice.dims, axis,
                 options.point_spread_sigma_mm / scene.lattice.spacing_mm()[axis]);
+    }
   voxel::Int16Samples rounded(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     double sample = samples[i];

@@ -2,25 +2,21 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "verify/certificate.h"
+#include "voxel/space/progress.h"
 
-// Both kernels on solids whose truth is known: whether the certificates' bounds hold, and whether they are
-// tight.
+// Both kernels on solids of known volume and area: do the certificates' bounds hold, and are they tight?
 namespace octotomy::verify {
 
 struct PhantomSuiteOptions {
-  int poses =
-      6;  ///< of each solid at each spacing and sampling, 1..1000; the calibration takes as many others
+  int poses = 6;  ///< of each solid at each spacing and sampling, 1..1000; calibration uses as many others
   std::uint64_t seed = 1;
   std::optional<std::string> solid = {};  ///< this kind only: "sphere", "box, turned", ...
-  std::function<void(const std::string& doing, double fraction)> progress = {};
-  std::stop_token stop = {};
+  voxel::Progress progress = {};
 };
 
 /// One solid in one pose: the kernels against each other, and each against the truth.
@@ -34,15 +30,15 @@ struct PhantomCase {
 struct Tightness {
   std::string spacing, sampling;
   int cases = 0;             ///< resolved ones: at least six voxels across
-  double worst_share = 0.0;  ///< the largest |difference| / tolerance: above 1 is no PASS
-  double p99_share = 0.0;    ///< the 99th percentile; 1/3 and more: the tolerance is at most three times it
+  double worst_share = 0.0;  ///< the largest |difference| / tolerance; above 1 it is no PASS
+  double p99_share = 0.0;    ///< the 99th percentile; from 1/3 on, the tolerance is at most three times it
 };
 
-/// A constant that the tolerances use, beside what other seeds than the cases' show it must be.
+/// A constant of the tolerances, and the value that poses of other seeds than the cases' ask for.
 struct Calibration {
   std::string constant;
   double in_use = 0.0;
-  double p99 = 0.0;  ///< what 99 of 100 calibration poses need at most
+  double p99 = 0.0;  ///< enough for 99 of 100 calibration poses
   int poses = 0;
 };
 
@@ -52,7 +48,7 @@ struct Convergence {
   std::string quantity;
   std::vector<double> radii_voxels, errors_percent;
   double order = 0.0;
-  double least_order = 0.0;  ///< that theory asks for, less what a fit over few poses scatters
+  double least_order = 0.0;  ///< the order of theory less the scatter of a fit over few poses
 };
 
 /// A sentence that is true or not.
@@ -69,15 +65,15 @@ struct PhantomSuite {
   std::vector<Convergence> convergences;
   std::vector<SuiteCheck> checks;
   std::optional<Contested> worst;  ///< of the bounded certificates
-  /// The largest error of area on solids with edges at a radius of six voxels: told, as edges are cut off.
+  /// The largest error of area on solids with edges at a radius of six voxels. Not judged: edges are cut off.
   double area_with_edges_percent = 0.0;
 };
 
 /// Spheres, ellipsoids, tori, boxes along the lattice and turned, cylinders, plates of one to three voxels,
-/// lenses, cut spheres and shells, off the lattice's points by chance, at spacings 1:1:1, 2:1:1 and 5:1:1, in
-/// voxels by their centre, by their filled share, and as a window on a blurred scan with noise; the mesh is
-/// the isosurface of the filled shares, or of that scan. Throws std::invalid_argument where an option is out
-/// of its range; voxel::Stopped. Same answer on any thread count. Cost: some 50 ms a case.
+/// lenses, cut spheres and shells in random poses, at spacings 1:1:1, 2:1:1 and 5:1:1. Voxels come from
+/// centres, from filled shares, and from a window on a blurred scan with noise; the mesh is the isosurface of
+/// the shares, or of that scan. Throws std::invalid_argument if an option is out of its range;
+/// voxel::Stopped. Same answer on any thread count. Cost: about 50 ms a case.
 PhantomSuite phantom_suite(const PhantomSuiteOptions& options = {});
 
 }  // namespace octotomy::verify

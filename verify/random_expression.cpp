@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 
-#include "verify/form.h"
-#include "verify/phantom.h"
-#include "voxel/build.h"
-#include "voxel/combine.h"
-#include "voxel/digitise.h"
+#include "verify/head_phantom.h"
+#include "verify/implicit_solid.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/digitise.h"
+#include "voxel/tree/build.h"
 
 namespace octotomy::verify {
 namespace {
@@ -18,9 +19,10 @@ namespace {
 /// Noise of a larger set would be nothing but surface.
 constexpr int largest_noise_side = 16;
 
-/// A tree of exactly so many leaves, no deeper than that. Precondition: leaves <= 2^depth.
-Tree tree_of(Random& random, int leaves, int depth, int names, int& xors) {
-  Tree tree;
+/// A tree of exactly `leaves` leaves, at most `depth` deep. Precondition: leaves <= 2^depth.
+ExpressionTree tree_of(Random& random, int leaves, int depth, int names, int& xors) {
+  assert(leaves >= 1 && names >= 1 && (depth > 20 || leaves <= 1 << depth));
+  ExpressionTree tree;
   if (leaves == 1) {
     tree.leaf = random_int(random, 0, names - 1);
     if (depth > 0 && random_int(random, 0, 7) == 0) return {'~', 0, {tree}};
@@ -108,7 +110,7 @@ voxel::Octree solid(Random& random, const voxel::Universe& universe, int side, i
   }
 }
 
-/// The head at voxels of six millimetres, by closed form; a part of it where the set has fewer voxels.
+/// The head at voxels of six millimetres, by closed form; a part of it for a smaller side.
 voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
   constexpr int head_side = largest_random_side;
   static const std::vector<bool> bone = [] {
@@ -123,7 +125,7 @@ voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
     return inside;
   }();
   const int room = head_side - side;
-  // Braces: in order, whatever the compiler.
+  // Braces fix the order of evaluation.
   const glm::ivec3 from{random_int(random, 0, room), random_int(random, 0, room),
                         random_int(random, 0, room)};
   return where(universe, side, [&](const glm::ivec3& v) { return bone[index_in(v + from, head_side)]; });
@@ -132,6 +134,7 @@ voxel::Octree head(Random& random, const voxel::Universe& universe, int side) {
 }  // namespace
 
 int random_int(Random& random, int low, int high) {
+  assert(low <= high);
   return low + static_cast<int>(random() % static_cast<std::uint64_t>(high - low + 1));
 }
 
@@ -139,7 +142,8 @@ double random_real(Random& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-Tree random_tree(Random& random, const RandomTreeOptions& options) {
+ExpressionTree random_tree(Random& random, const RandomTreeOptions& options) {
+  assert(options.leaves >= 1 && options.names >= 1);
   int xors = options.xors;
   const int most = std::min(options.leaves, 1 << std::min(options.depth, 20));
   return tree_of(random, random_int(random, std::min(2, most), most), options.depth, options.names, xors);

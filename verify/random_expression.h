@@ -5,12 +5,11 @@
 #include <random>
 #include <string>
 
-#include "verify/formula.h"
-#include "voxel/octree.h"
+#include "verify/expression_tree.h"
+#include "voxel/tree/octree.h"
 
-// Random questions for two kernels: Boolean expressions, and sets of voxels to ask them of. The same seed
-// gives the same question on any machine: the standard fixes the generator, and no distribution of the
-// library's is used.
+// Random questions for two kernels: Boolean expressions and sets of voxels. The same seed gives the same
+// question on any machine: the standard fixes the generator, and the library's distributions are not used.
 namespace octotomy::verify {
 
 using Random = std::mt19937_64;
@@ -27,17 +26,17 @@ struct RandomTreeOptions {
   int xors = 2;    ///< at most
 };
 /// Precondition: one leaf and one name at least.
-Tree random_tree(Random& random, const RandomTreeOptions& options = {});
+ExpressionTree random_tree(Random& random, const RandomTreeOptions& options = {});
 
-/// A set of voxels, and in words how it was made.
+/// A set of voxels and its recipe in words.
 struct RandomSet {
   voxel::Octree octree;
   std::string recipe;
 };
 inline constexpr int largest_random_side = 48;
-/// White noise, blobs, ellipsoids, boxes, rings, rods and the bone of the head phantom: voxels of the
-/// universe below `side` along each axis. Noise, whose surface is its volume, only up to 16 a side. Never
-/// empty. Throws std::invalid_argument where the side is beyond the universe's or largest_random_side.
+/// White noise, blobs, ellipsoids, boxes, rings, rods or the bone of the head phantom, in voxels of the
+/// universe below `side` along each axis. Never empty. Noise, whose surface is its volume, only up to 16 a
+/// side. Throws std::invalid_argument if the side is larger than the universe's or largest_random_side.
 RandomSet random_set(Random& random, const voxel::Universe& universe, int side);
 
 }  // namespace octotomy::verify

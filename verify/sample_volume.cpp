@@ -5,13 +5,13 @@
 // independently, each by a fraction of h^3, and there are about S / h^2 of them). S is taken from the faces
 // between unequal neighbours, which overstate an isotropic boundary by 3/2.
 
+#include "verify/sample_volume.h"
+
 #include <cmath>
 #include <oneapi/tbb/parallel_for.h>
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include "verify/phantom.h"
 
 namespace octotomy::verify {
 namespace {

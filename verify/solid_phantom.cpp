@@ -8,7 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "voxel/combine.h"
+#include "voxel/solid/clip_partial.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {
@@ -17,7 +18,7 @@ using std::numbers::pi;
 
 constexpr int chequers = 8;  // cells a side: the nodes of level 3 (thesis 3.3.3)
 
-/// What a kind's builder needs: the size in millimetres, and where.
+/// Size and place for a kind's builder.
 struct Place {
   double radius_mm;
   glm::dvec3 centre_mm;
@@ -70,9 +71,9 @@ double ellipsoid_mm2(glm::dvec3 radii_mm) {
   return 2.0 * pi * c * c + 2.0 * pi * a * b / sine * (second * sine * sine + first * cosine * cosine);
 }
 
-using Builder = Solid (*)(const Place&);
+using Builder = SolidPhantom (*)(const Place&);
 
-Solid sphere(const Place& place) {
+SolidPhantom sphere(const Place& place) {
   return {place.universe,
           voxel::Sphere{place.centre_mm, place.radius_mm},
           std::nullopt,
@@ -81,7 +82,7 @@ Solid sphere(const Place& place) {
           place.centre_mm};
 }
 
-Solid ellipsoid(const Place& place) {
+SolidPhantom ellipsoid(const Place& place) {
   const glm::dvec3 radii_mm = place.radius_mm * glm::dvec3(1.0, 0.75, 0.5);
   return {place.universe,
           voxel::Ellipsoid{place.centre_mm, radii_mm, place.lps_from_axes},
@@ -91,7 +92,7 @@ Solid ellipsoid(const Place& place) {
           place.centre_mm};
 }
 
-Solid cuboid(const Place& place, const glm::dvec3& half_mm) {
+SolidPhantom cuboid(const Place& place, const glm::dvec3& half_mm) {
   return {place.universe,
           voxel::OrientedBox{place.centre_mm, half_mm, place.lps_from_axes},
           std::nullopt,
@@ -100,17 +101,17 @@ Solid cuboid(const Place& place, const glm::dvec3& half_mm) {
           place.centre_mm};
 }
 
-Solid box(const Place& place) {
+SolidPhantom box(const Place& place) {
   return cuboid(place, place.radius_mm * glm::dvec3(1.0, 0.75, 0.5));
 }
 
-Solid plate(const Place& place) {
+SolidPhantom plate(const Place& place) {
   const glm::dvec3 spacing_mm = place.universe.lattice().spacing_mm();
   const double voxel_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   return cuboid(place, {place.radius_mm, 0.75 * place.radius_mm, voxel_mm});
 }
 
-Solid cylinder(const Place& place) {
+SolidPhantom cylinder(const Place& place) {
   const double r = 0.5 * place.radius_mm;
   const double height = 2.0 * place.radius_mm;
   return {place.universe,
@@ -121,7 +122,7 @@ Solid cylinder(const Place& place) {
           place.centre_mm};
 }
 
-Solid torus(const Place& place) {
+SolidPhantom torus(const Place& place) {
   const double ring = place.radius_mm;
   const double tube = place.radius_mm / 3.0;
   return {place.universe,
@@ -132,7 +133,7 @@ Solid torus(const Place& place) {
           place.centre_mm};
 }
 
-Solid shell(const Place& place) {
+SolidPhantom shell(const Place& place) {
   const double inner = 0.75 * place.radius_mm;
   return {
       place.universe,
@@ -143,7 +144,7 @@ Solid shell(const Place& place) {
       place.centre_mm};
 }
 
-Solid lens(const Place& place) {
+SolidPhantom lens(const Place& place) {
   const double r = place.radius_mm;
   const glm::dvec3 aside = place.lps_from_axes * glm::dvec3(0.5 * r, 0, 0);
   return {place.universe,
@@ -154,7 +155,7 @@ Solid lens(const Place& place) {
           place.centre_mm};
 }
 
-Solid cut_sphere(const Place& place) {
+SolidPhantom cut_sphere(const Place& place) {
   const double r = place.radius_mm;
   const double height = r / 3.0;  // of the cap that is cut away
   const glm::dvec3 normal = place.lps_from_axes[2];
@@ -188,10 +189,10 @@ voxel::Octree chequerboard(const voxel::Universe& universe) {
 /// A reflection in any axis swaps the board's cells and keeps the ball, so half of the volume and of the
 /// sphere is in. Any wall between two cells has one of them in: all the ball's discs in planes between cells
 /// are boundary. The centroid of the cells that are in is the middle's: two reflections keep the board.
-Solid chequered_sphere(const Place& place) {
+SolidPhantom chequered_sphere(const Place& place) {
   if (place.universe.side() < chequers)
     throw std::invalid_argument("a chequered sphere takes at least 8 voxels a side, for its 8 cells");
-  Solid solid = sphere(place);
+  SolidPhantom solid = sphere(place);
   solid.within = chequerboard(place.universe);
   solid.volume_mm3 *= 0.5;
   solid.area_mm2 *= 0.5;
@@ -207,7 +208,7 @@ Solid chequered_sphere(const Place& place) {
 
 /// The runs of ones that section 3.2.3 prints for figure 3.1's array of 4 x 4 x 4 voxels; in a larger
 /// universe every voxel is a cube of so many.
-Solid figure_3_1(const Place& place) {
+SolidPhantom figure_3_1(const Place& place) {
   constexpr std::array<int, 13> ones{8, 9, 12, 13, 23, 24, 25, 26, 28, 29, 41, 44, 57};
   const voxel::Box bounds = voxel::bounds(place.universe.lattice());
   const glm::dvec3 cell_mm = (bounds.high_mm - bounds.low_mm) / 4.0;
@@ -221,12 +222,12 @@ Solid figure_3_1(const Place& place) {
     in[static_cast<std::size_t>(one)] = true;
     sum += 0.5 * (cell.low_mm + cell.high_mm);
   }
-  Solid solid{place.universe,
-              voxel::Shape(bounds),
-              voxel::combine(place.universe, *cells),
-              static_cast<double>(ones.size()) * cell_mm.x * cell_mm.y * cell_mm.z,
-              0.0,
-              sum / static_cast<double>(ones.size())};
+  SolidPhantom solid{place.universe,
+                     voxel::Shape(bounds),
+                     voxel::combine(place.universe, *cells),
+                     static_cast<double>(ones.size()) * cell_mm.x * cell_mm.y * cell_mm.z,
+                     0.0,
+                     sum / static_cast<double>(ones.size())};
   for (int axis = 0; axis < 3; ++axis) {
     const int stride = 1 << (2 * axis);
     const double face_mm2 = cell_mm.x * cell_mm.y * cell_mm.z / cell_mm[axis];
@@ -240,7 +241,7 @@ Solid figure_3_1(const Place& place) {
 }
 
 struct Kind {
-  SolidKind said;
+  SolidPhantomKind said;
   Builder build;
   double reach;  ///< farthest point from the centre, in radii; 0 for what fills its universe by itself
   bool on_lattice = false;
@@ -263,7 +264,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-voxel::Universe universe_of(const SolidOptions& options) {
+voxel::Universe universe_of(const SolidPhantomOptions& options) {
   const auto side = static_cast<unsigned>(std::max(options.voxels, 0));
   if (!std::has_single_bit(side) || side < 4 || side > (1U << voxel::Universe::max_depth))
     throw std::invalid_argument("a universe has 4, 8, 16 ... 4096 voxels a side, not " +
@@ -291,16 +292,16 @@ void check_fit(const Kind& kind, const Place& place) {
 
 }  // namespace
 
-const std::vector<SolidKind>& solid_kinds() {
-  static const std::vector<SolidKind> said = [] {
-    std::vector<SolidKind> all;
+const std::vector<SolidPhantomKind>& solid_phantom_kinds() {
+  static const std::vector<SolidPhantomKind> said = [] {
+    std::vector<SolidPhantomKind> all;
     for (const Kind& kind : kinds()) all.push_back(kind.said);
     return all;
   }();
   return said;
 }
 
-Solid solid_phantom(std::string_view kind, const SolidOptions& options) {
+SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& options) {
   const auto found =
       std::find_if(kinds().begin(), kinds().end(), [&](const Kind& k) { return k.said.name == kind; });
   if (found == kinds().end()) throw std::invalid_argument("there is no solid called " + std::string(kind));
@@ -318,13 +319,13 @@ Solid solid_phantom(std::string_view kind, const SolidOptions& options) {
   return found->build(place);
 }
 
-voxel::Octree digitise(const Solid& solid, voxel::Digitisation digitisation) {
+voxel::Octree digitise(const SolidPhantom& solid, voxel::Digitisation digitisation) {
   voxel::Octree octree = voxel::digitise(solid.universe, solid.shape, digitisation);
   if (!solid.within) return octree;
   return voxel::combine(solid.universe, voxel::Expression(std::move(octree)) & *solid.within);
 }
 
-voxel::PartialOctree digitise_partial(const Solid& solid) {
+voxel::PartialOctree digitise_partial(const SolidPhantom& solid) {
   voxel::PartialOctree partial = voxel::digitise_partial(solid.universe, solid.shape);
   return solid.within ? voxel::within(partial, *solid.within) : partial;
 }

@@ -8,15 +8,15 @@
 #include <variant>
 #include <vector>
 
-#include "voxel/digitise.h"
-#include "voxel/octree.h"
-#include "voxel/partial_octree.h"
-#include "voxel/shape.h"
+#include "voxel/solid/digitise.h"
+#include "voxel/solid/shape.h"
+#include "voxel/tree/octree.h"
+#include "voxel/tree/partial_octree.h"
 
 namespace octotomy::verify {
 
-/// Where a solid lies and how large it is. The universe's middle is the LPS origin.
-struct SolidOptions {
+/// Place and size of a solid. The universe's middle is the LPS origin.
+struct SolidPhantomOptions {
   int voxels = 256;                     ///< a side of the universe: a power of two, 4 to 4096
   std::optional<double> radius_voxels;  ///< the solid's size, in the least spacing; default voxels / 4
   glm::dvec3 spacing_mm{1.0};
@@ -24,8 +24,8 @@ struct SolidOptions {
   glm::dmat3 lps_from_axes{1.0};  ///< a turn of the solid about its centre
 };
 
-/// A solid whose volume and area are known: a shape, or the part of it in certain whole voxels.
-struct Solid {
+/// A solid of known volume and area: a shape, or the part of it in certain whole voxels.
+struct SolidPhantom {
   voxel::Universe universe;
   voxel::Shape shape;
   std::optional<voxel::Octree> within;  ///< the solid is the shape in these voxels only
@@ -34,21 +34,21 @@ struct Solid {
   glm::dvec3 centroid_mm{0.0};
 };
 
-/// The kinds there are, with what each is; R is the radius.
-struct SolidKind {
+/// All kinds, each with a description in which R is the radius.
+struct SolidPhantomKind {
   std::string_view name;
   std::string_view what;
 };
-const std::vector<SolidKind>& solid_kinds();
+const std::vector<SolidPhantomKind>& solid_phantom_kinds();
 
-/// A solid of that kind. Volume, area and centroid are closed forms; an ellipsoid's area is an integral whose
-/// remaining error is below 1e-9 of it. Throws std::invalid_argument where the kind is none, an option is out
-/// of its range, or the solid does not fit its universe; `chequered_sphere` and `figure_3_1` are bound to the
+/// A solid of that kind. Volume, area and centroid are closed forms; an ellipsoid's area is an integral with
+/// a relative error below 1e-9. Throws std::invalid_argument if the kind is unknown, an option is out of its
+/// range, or the solid does not fit its universe. `chequered_sphere` and `figure_3_1` are bound to the
 /// lattice: they take no turn and no other centre, and figure_3_1 no radius.
-Solid solid_phantom(std::string_view kind, const SolidOptions& options = {});
+SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& options = {});
 
 /// Its voxels by one of D1 to D4, or with the share of every boundary voxel.
-voxel::Octree digitise(const Solid& solid, voxel::Digitisation digitisation);
-voxel::PartialOctree digitise_partial(const Solid& solid);
+voxel::Octree digitise(const SolidPhantom& solid, voxel::Digitisation digitisation);
+voxel::PartialOctree digitise_partial(const SolidPhantom& solid);
 
 }  // namespace octotomy::verify

@@ -7,17 +7,17 @@
 #include <set>
 
 #include "verify/solid_phantom.h"
-#include "voxel/binary_array.h"
-#include "voxel/combine.h"
-#include "voxel/cuberille_faces.h"
-#include "voxel/digitise.h"
-#include "voxel/linear_octree.h"
-#include "voxel/marginal_index.h"
-#include "voxel/object_normals.h"
-#include "voxel/octal_code.h"
-#include "voxel/run_length.h"
-#include "voxel/segment_index.h"
-#include "voxel/treecode.h"
+#include "voxel/codes/binary_array.h"
+#include "voxel/codes/cuberille_faces.h"
+#include "voxel/codes/linear_octree.h"
+#include "voxel/codes/marginal_index.h"
+#include "voxel/codes/octal_code.h"
+#include "voxel/codes/run_length.h"
+#include "voxel/codes/segment_index.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/digitise.h"
+#include "voxel/tree/treecode.h"
+#include "voxel/view/object_normals.h"
 
 namespace octotomy::verify {
 namespace {
@@ -26,7 +26,7 @@ using voxel::Expression;
 using voxel::Octree;
 
 std::vector<ThesisEntry> figure_3_1() {
-  SolidOptions options;
+  SolidPhantomOptions options;
   options.voxels = 4;
   const Octree object = digitise(solid_phantom("figure_3_1", options), voxel::Digitisation::Centre);
   return {{"section 3.1.2.2", "face lists of figure 3.1",
@@ -136,7 +136,7 @@ std::vector<ThesisEntry> table_5_1() {
     int multiplicity = 0;
     for (unsigned state = 0; state < 16; ++state) {
       bool meant = true;
-      // The voxel, and its like to South and North, where the surface goes on.
+      // The voxel, and its neighbours of the surface to the South and North.
       Expression object = Expression(at({3, 3, 3})) | at({3, 2, 3}) | at({3, 4, 3});
       for (std::size_t i = 0; i < 4; ++i) {
         const bool full = (state >> i) & 1;

@@ -10,22 +10,22 @@ namespace octotomy::verify {
 struct ThesisEntry {
   std::string where;    ///< "table 3.1, sphere"
   std::string item;     ///< "level 4, Partial"
-  std::string printed;  ///< as printed, blanks and commas within numbers taken out
+  std::string printed;  ///< as printed, without blanks and commas in numbers
   std::string ours;
-  std::string note = {};  ///< where the print needs reading
+  std::string note = {};  ///< how the print was read, if that is not obvious
 
   bool agrees() const { return printed == ours; }
 };
 
-/// What is printed and not recomputed, and why not.
+/// A printed value that is not recomputed.
 struct ThesisGap {
   std::string where;
   std::string why;
 };
 
-/// Recomputes the tables and worked examples that depend on nothing but what is printed with them: figure
-/// 3.1's object in every representation, the sphere of table 3.1, the octal codes of figure 4.6, the shading
-/// cases of table 5.1 and the Boolean rules of table 7.1. Cost: a second, for the sphere's fractions.
+/// Recomputes the tables and worked examples whose inputs are printed: figure 3.1's object in every
+/// representation, the sphere of table 3.1, the octal codes of figure 4.6, the shading cases of table 5.1 and
+/// the Boolean rules of table 7.1. Cost: a second, for the sphere's fractions.
 std::vector<ThesisEntry> thesis_tables();
 const std::vector<ThesisGap>& thesis_gaps();
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <oneapi/tbb/parallel_for.h>
 
-#include "voxel/octree_node.h"
+#include "voxel/tree/octree_node.h"
 
 namespace octotomy::verify {
 namespace {

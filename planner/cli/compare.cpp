@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
-#include "brep/boolean.h"
-#include "brep/difference.h"
-#include "brep/health.h"
-#include "brep/measure.h"
-#include "brep/write_mesh.h"
-#include "planner/answer.h"
+#include "brep/boolean/boolean.h"
+#include "brep/io/write_mesh.h"
+#include "brep/measure/difference.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
-#include "planner/distance_histogram.h"
-#include "planner/figures.h"
-#include "voxel/image_file.h"
+#include "planner/measure/result_json.h"
+#include "planner/report/distance_histogram.h"
+#include "planner/table/number_format.h"
+#include "voxel/scan/image_file.h"
 
 namespace octotomy::planner::cli {
 namespace {

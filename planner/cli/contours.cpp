@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <limits>
 
-#include "brep/contour.h"
-#include "planner/answer.h"
+#include "brep/contour/contour.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
-#include "planner/drawn_regions.h"
-#include "planner/figures.h"
-#include "planner/json_file.h"
-#include "planner/slice_contours.h"
+#include "planner/measure/result_json.h"
+#include "planner/plan/region_file.h"
+#include "planner/plan/slice_contours.h"
+#include "planner/table/json_file.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {

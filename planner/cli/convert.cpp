@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <array>
 
-#include "planner/answer.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
-#include "planner/octree_answer.h"
-#include "voxel/write_dicom_seg.h"
-#include "voxel/write_scene.h"
+#include "planner/measure/result_json.h"
+#include "planner/plan/octree_summary.h"
+#include "voxel/scan/write_dicom_seg.h"
+#include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -52,7 +52,7 @@ int convert_octree(const Program& program, const ConvertText& text) {
   voxel::DicomSegOptions options;
   options.label = !text.label.empty() ? text.label : file.name.empty() ? "Object" : file.name.substr(0, 64);
   options.series_description = "Octotomy, segmented";
-  options.stop = program.stop.get_token();
+  options.progress.stop = program.stop.get_token();
   {
     const Stopwatch watch(timings, "source");
     options.source = source_of(program, text, false);

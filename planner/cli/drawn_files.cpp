@@ -5,14 +5,14 @@
 
 #include "planner/cli/scan_verbs.h"
 #include "planner/cli/verb.h"
-#include "voxel/combine.h"
-#include "voxel/octree_file.h"
+#include "voxel/solid/combine.h"
+#include "voxel/tree/octree_file.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 /// The object that a grey octree's window is.
-void set_window(voxel::Drawn& object, const voxel::GreyOctree& grey, const WindowText& window) {
+void set_window(voxel::DrawnObject& object, const voxel::GreyOctree& grey, const WindowText& window) {
   voxel::Window leaf{grey, window.low};
   if (window.high) leaf.high = *window.high;
   object.octree = voxel::combine(grey.universe(), voxel::Expression(leaf));
@@ -29,11 +29,11 @@ std::string name_of(const std::filesystem::path& path) {
 }
 
 /// What a file holds, as it is to be drawn.
-voxel::Drawn drawn_of_file(const std::filesystem::path& path, const DrawnText& text,
-                           const std::optional<voxel::Universe>& universe, Timings& timings) {
+voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const DrawnText& text,
+                                 const std::optional<voxel::Universe>& universe, Timings& timings) {
   if (is_mesh(path)) throw std::runtime_error(path.string() + ": meshes are not drawn; voxelise it first");
   const WindowText window = parse_window(text.window);
-  voxel::Drawn object{name_of(path), voxel::Octree::empty({})};
+  voxel::DrawnObject object{name_of(path), voxel::Octree::empty({})};
   if (is_octree(path)) {
     const voxel::OctreeFile file = [&] {
       const Stopwatch watch(timings, "read");
@@ -73,15 +73,15 @@ voxel::Drawn drawn_of_file(const std::filesystem::path& path, const DrawnText& t
 
 }  // namespace
 
-std::vector<voxel::Drawn> drawn_of_files(const DrawnText& text, Timings& timings) {
+std::vector<voxel::DrawnObject> drawn_of_files(const DrawnText& text, Timings& timings) {
   if (text.colours.size() > text.files.size() || text.opacities.size() > text.files.size())
     throw CLI::ValidationError("--colour and --opacity", "give at most one of each a file");
-  std::vector<voxel::Drawn> objects;
+  std::vector<voxel::DrawnObject> objects;
   for (std::size_t i = 0; i < text.files.size(); ++i) {
     std::optional<voxel::Universe> universe;
     if (i > 0) universe = objects.front().octree.universe();
     objects.push_back(drawn_of_file(text.files[i], text, universe, timings));
-    voxel::Drawn& object = objects.back();
+    voxel::DrawnObject& object = objects.back();
     if (universe && object.octree.universe() != *universe) {
       // Samples of another lattice cannot be followed along this one's columns.
       object.octree = voxel::combine(*universe, voxel::Expression(object.octree));

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "planner/evaluate.h"
-#include "voxel/drawn.h"
-#include "voxel/read_scene.h"
+#include "planner/plan/evaluate.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/view/drawn_object.h"
 
 namespace octotomy::planner::cli {
 
@@ -25,6 +25,6 @@ struct DrawnText {
 /// What the files hold, all in the first one's universe, named as the files are, without folder and ending.
 /// Throws CLI::ValidationError for what is not a window, a colour or as many as there are files,
 /// std::runtime_error for files that cannot be drawn, with the path.
-std::vector<voxel::Drawn> drawn_of_files(const DrawnText& text, Timings& timings);
+std::vector<voxel::DrawnObject> drawn_of_files(const DrawnText& text, Timings& timings);
 
 }  // namespace octotomy::planner::cli

@@ -4,12 +4,12 @@
 #include <map>
 
 #include "planner/cli/octree_out.h"
-#include "planner/nearest_name.h"
-#include "voxel/combine.h"
-#include "voxel/combine_grey.h"
-#include "voxel/combine_shares.h"
-#include "voxel/expression.h"
-#include "voxel/measure.h"
+#include "planner/table/nearest_name.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/combine_grey.h"
+#include "voxel/solid/combine_shares.h"
+#include "voxel/solid/expression.h"
 
 namespace octotomy::planner::cli {
 namespace {

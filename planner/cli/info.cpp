@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "brep/health.h"
-#include "brep/read_mesh.h"
-#include "planner/answer.h"
+#include "brep/io/read_mesh.h"
+#include "brep/mesh/health.h"
 #include "planner/cli/scan_in.h"
-#include "planner/figures.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {

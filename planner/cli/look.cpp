@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/numbers.h"
 #include "planner/cli/scan_in.h"
-#include "planner/figures.h"
-#include "planner/first_look.h"
+#include "planner/report/first_look.h"
+#include "planner/report/result_folder.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -15,6 +16,7 @@ struct LookText {
 };
 
 int look(Program& program, LookText& text) {
+  need_result_folder(text.out, {"report.html", "result.json"});
   text.options.evaluation = {program.stop.get_token(), program.progress(), true};
   text.options.read = read_options(program, text.in);
   Result result = first_look(text.scan, text.options);
@@ -29,11 +31,11 @@ int look(Program& program, LookText& text) {
   for (const Object& object : result.evaluation.objects)
     rows.emplace_back(
         object.id,
-        grouped(object.voxel_measures.volume_mm3, 0) + " mm\u00b3 (voxels)" +
-            (object.mesh_measures ? ", " + grouped(object.mesh_measures->volume_mm3, 0) + " mm\u00b3 and " +
-                                        grouped(object.mesh_measures->area_mm2, 0) + " mm\u00b2 (mesh)"
+        grouped(object.voxel.measures.volume_mm3, 0) + " mm\u00b3 (voxels)" +
+            (object.mesh.measures ? ", " + grouped(object.mesh.measures->volume_mm3, 0) + " mm\u00b3 and " +
+                                        grouped(object.mesh.measures->area_mm2, 0) + " mm\u00b2 (mesh)"
                                   : "") +
-            (object.certificate ? ", " + verify::to_string(object.certificate->agreement) : ""));
+            (object.certificate ? ", " + verify::verdict_text(*object.certificate) : ""));
   for (const Parts& parts : result.parts)
     rows.emplace_back(parts.object + " parts", std::to_string(parts.volumes_mm3.size()));
   rows.emplace_back("written", (text.out / "report.html").string());
@@ -51,7 +53,9 @@ void add_look(Program& program) {
   verb.add_option("scan", text->scan, "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, or a raw file")
       ->required()
       ->check(scan_path());
-  verb.add_option("-o,--out", text->out, "The result's folder: new, empty, or an earlier result")->required();
+  verb.add_option("-o,--out", text->out,
+                  "The result's folder: new, empty, or an earlier result; files that you put there stay")
+      ->required();
   verb.add_option("--bone", text->options.bone_low, "Lower bound of bone in sample units; default 300 HU")
       ->check(finite())
       ->type_name("LOW");

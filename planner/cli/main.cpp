@@ -22,9 +22,11 @@
 #include <thread>
 #include <vector>
 
+#include "planner/cli/manual.h"
+#include "planner/cli/operation_verb.h"
 #include "planner/cli/scan_verbs.h"
 #include "planner/cli/verb.h"
-#include "planner/nearest_name.h"
+#include "planner/table/nearest_name.h"
 
 namespace {
 
@@ -118,6 +120,7 @@ int parse_and_run(int count, char** arguments) {
       "  octotomy run planner/le_fort_i.plan.json --scan ct=head.nrrd -o report\n"
       "Exit status: 0 done, 1 the kernels disagree, 2 wrong usage or bad input, 3 out of time, memory or "
       "disk.");
+  cli::add_manual(app);
   Program program(app);
   cli::add_look(program);
   cli::add_plan_verbs(program);
@@ -138,8 +141,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_register(program);
   cli::add_mirror(program);
   cli::add_repair(program);
-  cli::add_offset(program);
-  cli::add_saw(program);
+  cli::add_operation_verbs(program);
   cli::add_compare(program);
   cli::add_octree(program);
   cli::add_eval(program);

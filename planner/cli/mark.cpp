@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/mark.h"
+#include "voxel/view/mark.h"
 
-#include "planner/answer.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/verb.h"
-#include "planner/figures.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {

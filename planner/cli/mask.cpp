@@ -4,9 +4,9 @@
 
 #include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
-#include "planner/drawn_regions.h"
-#include "voxel/combine.h"
-#include "voxel/read_scene.h"
+#include "planner/plan/region_file.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "brep/measure.h"
+#include "brep/mesh/measure.h"
 
 #include <limits>
 
-#include "brep/components.h"
-#include "brep/health.h"
-#include "brep/read_mesh.h"
-#include "convert/isosurface.h"
-#include "planner/answer.h"
+#include "brep/io/read_mesh.h"
+#include "brep/mesh/components.h"
+#include "brep/mesh/health.h"
+#include "convert/surface/isosurface.h"
 #include "planner/cli/measure_surface.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
-#include "planner/figures.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
 #include "verify/boundary_model.h"
-#include "voxel/cell_counts.h"
-#include "voxel/combine.h"
-#include "voxel/components.h"
-#include "voxel/measure.h"
-#include "voxel/octree_file.h"
-#include "voxel/partial_volume.h"
+#include "voxel/filter/components.h"
+#include "voxel/measure/cell_counts.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/partial_volume.h"
+#include "voxel/tree/octree_file.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -7,17 +7,17 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "brep/cross_section.h"
-#include "brep/curvature.h"
-#include "brep/gap.h"
-#include "brep/measure.h"
-#include "brep/oriented_box.h"
-#include "brep/shortest_path.h"
-#include "brep/thickness.h"
-#include "brep/write_mesh.h"
+#include "brep/align/oriented_box.h"
+#include "brep/contour/cross_section.h"
+#include "brep/io/write_mesh.h"
+#include "brep/measure/curvature.h"
+#include "brep/measure/gap.h"
+#include "brep/measure/shortest_path.h"
+#include "brep/measure/thickness.h"
+#include "brep/mesh/measure.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
-#include "planner/figures.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "brep/mesh.h"
-#include "planner/answer.h"
+#include "brep/mesh/mesh.h"
 #include "planner/cli/verb.h"
+#include "planner/measure/result_json.h"
 
 namespace octotomy::planner::cli {
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <limits>
 
-#include "brep/decimate.h"
-#include "brep/health.h"
-#include "brep/measure.h"
-#include "brep/smooth.h"
-#include "convert/cuberille.h"
-#include "convert/expression_surface.h"
-#include "convert/isosurface.h"
-#include "convert/partial_surface.h"
-#include "convert/trace_contours.h"
-#include "planner/answer.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "brep/shape/decimate.h"
+#include "brep/shape/smooth.h"
+#include "convert/surface/cuberille.h"
+#include "convert/surface/expression_surface.h"
+#include "convert/surface/isosurface.h"
+#include "convert/surface/partial_surface.h"
+#include "convert/surface/trace_contours.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
-#include "planner/figures.h"
-#include "voxel/combine.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner::cli {
 namespace {

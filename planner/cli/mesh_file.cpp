@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/mesh_file.h"
 
-#include "brep/health.h"
-#include "brep/read_mesh.h"
-#include "brep/write_mesh.h"
-#include "voxel/file_text.h"
+#include "brep/io/read_mesh.h"
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/health.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 

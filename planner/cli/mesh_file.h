@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "brep/mesh.h"
-#include "planner/answer.h"
+#include "brep/mesh/mesh.h"
 #include "planner/cli/verb.h"
+#include "planner/measure/result_json.h"
 
 // What the verbs that read or write meshes have in common.
 namespace octotomy::planner::cli {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "brep/boolean.h"
-#include "brep/exact_boolean.h"
-#include "brep/health.h"
-#include "brep/measure.h"
-#include "brep/smooth.h"
-#include "planner/answer.h"
+#include "brep/boolean/boolean.h"
+#include "brep/boolean/exact_boolean.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
-#include "planner/figures.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -77,37 +76,6 @@ int boolean(const Program& program, const BooleanText& text) {
   return done;
 }
 
-struct SmoothText {
-  std::filesystem::path mesh, out;
-  brep::SmoothOptions options;
-};
-
-int smooth(const Program& program, const SmoothText& text) {
-  need_mesh_extension(text.out);
-  need_folder_of(text.out);
-  Timings timings;
-  const brep::Mesh solid = read_solid(text.mesh, timings);
-  brep::Mesh smoothed;
-  {
-    const Stopwatch watch(timings, "smooth");
-    smoothed = brep::smooth(solid, text.options);
-  }
-  const brep::Health health = brep::health(smoothed);
-  const brep::Measures measures = brep::measure(smoothed);
-  write_surface(smoothed, text.out, timings);
-  for (const std::string& finding : health.findings) warn(finding);
-  const double change_mm3 = measures.volume_mm3 - brep::volume_mm3(solid);
-  Json json = answer(timings);
-  json["path"] = text.out.string();
-  json.update(to_json(health));
-  json.update(to_json(measures));
-  json["volume_change_mm3"] = change_mm3;
-  program.say(json, lines({{"written", text.out.string()},
-                           {"volume", grouped(measures.volume_mm3, 3) + " mm\u00b3"},
-                           {"gained", grouped(change_mm3, 3) + " mm\u00b3"}}));
-  return done;
-}
-
 }  // namespace
 
 void add_mesh_verbs(Program& program) {
@@ -131,27 +99,6 @@ void add_mesh_verbs(Program& program) {
   boolean_verb.add_flag(
       "--exact", to_combine->exact,
       "New points as exact numbers, and proof that the volumes add up as rationals; slower");
-
-  const auto to_smooth = std::make_shared<SmoothText>();
-  CLI::App& smooth_verb = program.verb("smooth", "Takes noise off a solid's surface and keeps its volume",
-                                       "octotomy smooth skull.stl -o smooth.stl --rounds 10 --json",
-                                       [&program, to_smooth] { return smooth(program, *to_smooth); });
-  smooth_verb.add_option("mesh", to_smooth->mesh, "A closed mesh")->required()->check(CLI::ExistingFile);
-  smooth_verb.add_option("-o,--out", to_smooth->out, "A .stl, .ply, .obj, .off, .vtp or .glb file")
-      ->required();
-  smooth_verb.add_option("--rounds", to_smooth->options.rounds, "Steps in and out again")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  smooth_verb
-      .add_option("--pass-band", to_smooth->options.pass_band,
-                  "Waves below it stay: 0.1 keeps those over about 10 edges long")
-      ->check(between(0.001, 0.999))
-      ->capture_default_str();
-  smooth_verb
-      .add_option("--max-volume-share", to_smooth->options.max_volume_share,
-                  "Share of the volume that may be gained or lost; above it nothing is written")
-      ->check(above_zero())
-      ->capture_default_str();
 }
 
 }  // namespace octotomy::planner::cli

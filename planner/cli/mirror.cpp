@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "brep/mirror.h"
+#include "brep/align/mirror.h"
 
-#include "planner/answer.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
-#include "planner/figures.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {

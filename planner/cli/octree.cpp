@@ -8,11 +8,11 @@
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
-#include "planner/octree_answer.h"
-#include "planner/representation.h"
-#include "voxel/combine.h"
-#include "voxel/expression.h"
-#include "voxel/staging.h"
+#include "planner/plan/octree_summary.h"
+#include "planner/plan/representation.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/expression.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void write_content(const std::string& content, const fs::path& path) {
-  voxel::Staging staging(path.parent_path());
+  voxel::StagedFiles staging(path.parent_path());
   const fs::path staged = staging.folder() / path.filename();
   std::FILE* const stream = std::fopen(staged.c_str(), "wb");
   bool written =

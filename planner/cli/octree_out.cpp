@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/octree_out.h"
 
-#include "planner/octree_answer.h"
-#include "voxel/file_text.h"
+#include "planner/plan/octree_summary.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 

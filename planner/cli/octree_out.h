@@ -2,7 +2,7 @@
 #pragma once
 
 #include "planner/cli/verb.h"
-#include "voxel/octree_file.h"
+#include "voxel/tree/octree_file.h"
 
 // What the verbs that write an .octree file have in common.
 namespace octotomy::planner::cli {

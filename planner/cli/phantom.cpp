@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "verify/phantom.h"
-
-#include "planner/answer.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/verb.h"
-#include "planner/figures.h"
-#include "planner/octree_answer.h"
-#include "verify/form.h"
+#include "planner/measure/result_json.h"
+#include "planner/plan/octree_summary.h"
+#include "planner/table/number_format.h"
+#include "verify/head_phantom.h"
+#include "verify/implicit_solid.h"
+#include "verify/sample_volume.h"
 #include "verify/solid_phantom.h"
-#include "voxel/write_scene.h"
+#include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -72,8 +72,8 @@ int head(const Program& program, const PhantomText& text) {
   return done;
 }
 
-verify::Solid solid_of(const PhantomText& text) {
-  verify::SolidOptions options;
+verify::SolidPhantom solid_of(const PhantomText& text) {
+  verify::SolidPhantomOptions options;
   if (text.kind == "figure_3_1") options.voxels = 4;
   if (text.voxels) options.voxels = *text.voxels;
   options.radius_voxels = text.radius_voxels;
@@ -83,7 +83,7 @@ verify::Solid solid_of(const PhantomText& text) {
   return verify::solid_phantom(text.kind, options);
 }
 
-decltype(voxel::OctreeFile::tree) digitised(const verify::Solid& solid, const std::string& how) {
+decltype(voxel::OctreeFile::tree) digitised(const verify::SolidPhantom& solid, const std::string& how) {
   using enum voxel::Digitisation;
   if (how == "partial") return verify::digitise_partial(solid);
   return verify::digitise(solid, how == "inside"     ? Inside
@@ -100,7 +100,7 @@ int solid(const Program& program, const PhantomText& text) {
   Json truth;
   {
     const Stopwatch watch(timings, "phantom");
-    const verify::Solid solid = solid_of(text);
+    const verify::SolidPhantom solid = solid_of(text);
     file.tree = digitised(solid, text.digitise);
     truth = {{"volume_mm3", solid.volume_mm3},
              {"area_mm2", solid.area_mm2},
@@ -139,14 +139,14 @@ int phantom(const Program& program, const PhantomText& text) {
 
 std::string kinds_said() {
   std::string said = "head: a CT of a head; or an octree of a solid:";
-  for (const verify::SolidKind& kind : verify::solid_kinds())
+  for (const verify::SolidPhantomKind& kind : verify::solid_phantom_kinds())
     said.append("\n").append(kind.name).append(": ").append(kind.what);
   return said;
 }
 
 std::vector<std::string> kind_names() {
   std::vector<std::string> names{"head"};
-  for (const verify::SolidKind& kind : verify::solid_kinds()) names.emplace_back(kind.name);
+  for (const verify::SolidPhantomKind& kind : verify::solid_phantom_kinds()) names.emplace_back(kind.name);
   return names;
 }
 

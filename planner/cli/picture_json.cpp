@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "planner/colour.h"
+#include "planner/report/colour.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -33,7 +33,7 @@ Json depth_range_json(const voxel::Picture& picture) {
   return high < low ? Json(nullptr) : Json::array({low, high});
 }
 
-Json objects_json(const std::vector<voxel::Drawn>& objects, const voxel::Picture& picture) {
+Json objects_json(const std::vector<voxel::DrawnObject>& objects, const voxel::Picture& picture) {
   std::vector<std::uint64_t> lit(objects.size(), 0);
   for (const std::int16_t object : picture.object)
     if (object >= 0) ++lit[static_cast<std::size_t>(object)];
@@ -46,7 +46,7 @@ Json objects_json(const std::vector<voxel::Drawn>& objects, const voxel::Picture
   return list;
 }
 
-Json picks_json(const std::vector<glm::ivec2>& pixels, const std::vector<voxel::Drawn>& objects,
+Json picks_json(const std::vector<glm::ivec2>& pixels, const std::vector<voxel::DrawnObject>& objects,
                 const voxel::Picture& picture) {
   Json list = Json::array();
   for (const glm::ivec2& pixel : pixels) {
@@ -65,7 +65,8 @@ Json picks_json(const std::vector<glm::ivec2>& pixels, const std::vector<voxel::
   return list;
 }
 
-Json distances_json(const voxel::Drawn& object, const std::string& other, const voxel::Picture& picture) {
+Json distances_json(const voxel::DrawnObject& object, const std::string& other,
+                    const voxel::Picture& picture) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int y = 0; y < picture.size_px.y; ++y)
     for (int x = 0; x < picture.size_px.x; ++x) {

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <map>
 
-#include "planner/answer.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/picture_json.h"
 #include "planner/cli/ray_pictures.h"
 #include "planner/cli/scan_in.h"
-#include "planner/figures.h"
-#include "voxel/image_file.h"
-#include "voxel/render.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "voxel/scan/image_file.h"
+#include "voxel/view/render.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -48,9 +48,10 @@ std::string name_of(const std::map<std::string, Value>& values, Value value) {
 }
 
 /// The samples that cut faces show, and what is black and white of them.
-voxel::CutTones cut_tones_of(const RenderText& text, const std::vector<voxel::Drawn>& objects) {
-  const auto with_samples = std::find_if(objects.begin(), objects.end(),
-                                         [](const voxel::Drawn& object) { return object.grey.has_value(); });
+voxel::CutTones cut_tones_of(const RenderText& text, const std::vector<voxel::DrawnObject>& objects) {
+  const auto with_samples =
+      std::find_if(objects.begin(), objects.end(),
+                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
   if (with_samples == objects.end())
     throw std::runtime_error(
         "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
@@ -95,7 +96,7 @@ std::filesystem::path other_of(const std::string& text) {
 /// The objects of the files; the first one coloured by its distance to another file's, where that is asked
 /// for.
 struct Scene {
-  std::vector<voxel::Drawn> objects;
+  std::vector<voxel::DrawnObject> objects;
   std::string coloured_by;  ///< the other one's name
 };
 Scene scene_of(const RenderText& text, Timings& timings) {
@@ -103,11 +104,11 @@ Scene scene_of(const RenderText& text, Timings& timings) {
   DrawnText all = text.drawn;
   all.files.push_back(other_of(text.colour_by));
   Scene scene{drawn_of_files(all, timings), {}};
-  const voxel::Drawn other = scene.objects.back();
+  const voxel::DrawnObject other = scene.objects.back();
   scene.objects.pop_back();
   scene.coloured_by = other.name;
   const Stopwatch watch(timings, "distance");
-  voxel::Drawn& object = scene.objects.front();
+  voxel::DrawnObject& object = scene.objects.front();
   object.scalar = std::make_shared<const voxel::SurfaceScalar>(
       voxel::distance_to(other.octree, object.octree, text.range_mm.value_or(5.0)));
   return scene;
@@ -156,7 +157,7 @@ int render(const Program& program, const RenderText& text) {
   for (const std::string& pick : text.picks) picks.push_back(pixel_of(pick, options.size_px));
   Timings timings;
   const Scene scene = scene_of(text, timings);
-  const std::vector<voxel::Drawn>& objects = scene.objects;
+  const std::vector<voxel::DrawnObject>& objects = scene.objects;
   if (text.cut_face == "grey") options.cut_tones = cut_tones_of(text, objects);
   voxel::Picture picture, right_eye;
   {

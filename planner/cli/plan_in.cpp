@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/plan_in.h"
 
-#include "planner/figures.h"
-#include "planner/nearest_name.h"
-#include "planner/report.h"
+#include "planner/report/report.h"
+#include "planner/table/nearest_name.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 
@@ -49,12 +49,12 @@ std::string verdict_text(const Evaluation& evaluation) {
     std::string line = "no certificate";
     if (object.certificate) {
       const verify::Certificate& c = *object.certificate;
-      line = verify::to_string(c.agreement) + "  voxel " + grouped(c.voxel.volume_mm3, 1) + ", mesh " +
+      line = verify::verdict_text(c) + "  voxel " + grouped(c.voxel.volume_mm3, 1) + ", mesh " +
              grouped(c.mesh.volume_mm3, 1) + " mm\u00b3, difference " + grouped(c.difference_mm3, 1) +
              " of " + grouped(c.tolerance_mm3, 1) + " allowed";
       for (const std::string& reason : c.reasons) line += "; " + reason;
     }
-    if (object.kind != "mask" || object.certificate) rows.emplace_back(object.id, line);
+    if (!object.is_tool || object.certificate) rows.emplace_back(object.id, line);
     for (const std::string& finding : object.findings) warn(object.id + ": " + finding);
   }
   return lines(rows);

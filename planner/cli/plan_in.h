@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "planner/cli/scan_in.h"
-#include "planner/evaluate.h"
-#include "planner/plan.h"
+#include "planner/plan/evaluate.h"
+#include "planner/plan/plan.h"
 
 // What the verbs that replay a plan have in common.
 namespace octotomy::planner::cli {

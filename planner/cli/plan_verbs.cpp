@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/plan_in.h"
-#include "planner/report.h"
+#include "planner/report/report.h"
+#include "planner/report/result_folder.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -12,6 +13,7 @@ struct RunText : PlanIn {
 int run(Program& program, const RunText& text) {
   Result result;
   result.plan = plan_of(program, text);
+  need_result_folder(text.out, result_names(result.plan));
   result.evaluation = evaluate(result.plan, evaluate_options(program));
   result.pictures = plan_pictures(result.plan, result.evaluation);
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
@@ -26,6 +28,12 @@ int run(Program& program, const RunText& text) {
 }  // namespace
 
 void add_plan_verbs(Program& program) {
+  program.verb("schema", "The JSON schema of plans, from the table of operations",
+               "octotomy schema > plan.schema.json", [&program] {
+                 const std::string text = plan_schema().dump(2) + "\n";
+                 program.say(plan_schema(), text);
+                 return static_cast<int>(done);
+               });
   const auto text = std::make_shared<RunText>();
   CLI::App& verb =
       program.verb("run", "Replays a plan and writes result.json, report.html, pictures and exports",
@@ -33,7 +41,9 @@ void add_plan_verbs(Program& program) {
                    [&program, text] { return run(program, *text); });
   verb.add_option("plan", text->plan, "A .plan.json")->required()->check(CLI::ExistingFile);
   add_plan_options(verb, *text);
-  verb.add_option("-o,--out", text->out, "The result's folder: new, empty, or an earlier result")->required();
+  verb.add_option("-o,--out", text->out,
+                  "The result's folder: new, empty, or an earlier result; files that you put there stay")
+      ->required();
 }
 
 }  // namespace octotomy::planner::cli

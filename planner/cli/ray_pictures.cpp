@@ -5,12 +5,12 @@
 #include <cmath>
 #include <optional>
 
-#include "planner/answer.h"
-#include "planner/figures.h"
-#include "planner/transfer_file.h"
-#include "voxel/composite.h"
-#include "voxel/image_file.h"
-#include "voxel/radiograph.h"
+#include "planner/measure/result_json.h"
+#include "planner/report/transfer_file.h"
+#include "planner/table/number_format.h"
+#include "voxel/scan/image_file.h"
+#include "voxel/view/composite.h"
+#include "voxel/view/radiograph.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -92,7 +92,7 @@ int render_rays(const Program& program, const RenderText& text) {
     drawn.window = std::to_string(voxel::visible_from(composite.transfer)) + ":";
   }
   Timings timings;
-  const std::vector<voxel::Drawn> objects = drawn_of_files(drawn, timings);
+  const std::vector<voxel::DrawnObject> objects = drawn_of_files(drawn, timings);
   if (objects.size() != 1 || !objects.front().grey)
     throw std::runtime_error("--shading " + text.shading +
                              " needs the samples of one scan or grey octree, and a --window LOW:");
@@ -102,15 +102,15 @@ int render_rays(const Program& program, const RenderText& text) {
   voxel::Frame frame = voxel::frame_about(objects, view, size_px);
   if (text.width_mm) frame.width_mm = *text.width_mm;
   const voxel::ImagePlane plane = voxel::image_plane(grey.universe(), view, size_px, frame);
-  const std::stop_token stop = program.stop.get_token();
+  const voxel::Progress progress{program.stop.get_token(), {}};
   RayPicture picture;
   {
     const Stopwatch watch(timings, "render");
     if (text.shading == "composite")
-      picture = picture_of(voxel::composite(grey, plane, composite, stop));
+      picture = picture_of(voxel::composite(grey, plane, composite, progress));
     else
-      picture = picture_of(text.shading == "mip" ? voxel::maximum_intensity(grey, plane, stop)
-                                                 : voxel::radiograph(grey, plane, stop));
+      picture = picture_of(text.shading == "mip" ? voxel::maximum_intensity(grey, plane, progress)
+                                                 : voxel::radiograph(grey, plane, progress));
   }
   {
     const Stopwatch watch(timings, "write");

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 
-#include "brep/move.h"
-#include "brep/register_landmarks.h"
-#include "brep/register_surfaces.h"
-#include "brep/write_mesh.h"
-#include "planner/answer.h"
+#include "brep/align/register_landmarks.h"
+#include "brep/align/register_surfaces.h"
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/move.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
-#include "planner/figures.h"
-#include "planner/landmarks_file.h"
+#include "planner/measure/result_json.h"
+#include "planner/plan/landmarks_file.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -20,8 +20,8 @@ glm::ivec2 size_of(const RenderText& render) {
   return {width, height};
 }
 
-std::vector<voxel::Cut> cuts_of(const RenderText& text) {
-  std::vector<voxel::Cut> cuts;
+std::vector<voxel::Cutaway> cuts_of(const RenderText& text) {
+  std::vector<voxel::Cutaway> cuts;
   for (const std::string& plane : text.cut_planes) {
     const auto n = numbers_of<4>("--cut-plane", plane, "1,0,0,12.5");
     const glm::dvec3 normal(n[0], n[1], n[2]);
@@ -39,10 +39,10 @@ std::vector<voxel::Cut> cuts_of(const RenderText& text) {
   return cuts;
 }
 
-voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::Drawn>& objects) {
+voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::DrawnObject>& objects) {
   voxel::Annotation annotation;
   annotation.title = text.title.empty() ? text.view : text.title;
-  for (const voxel::Drawn& object : objects)
+  for (const voxel::DrawnObject& object : objects)
     if (object.opacity > 0.0f && !object.scalar) annotation.legend.push_back({object.name, object.colour});
   return annotation;
 }

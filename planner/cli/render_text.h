@@ -3,8 +3,8 @@
 
 #include "planner/cli/drawn_files.h"
 #include "planner/cli/scan_in.h"
-#include "voxel/annotation.h"
-#include "voxel/cut.h"
+#include "voxel/view/annotation.h"
+#include "voxel/view/cutaway.h"
 
 namespace octotomy::planner::cli {
 
@@ -35,8 +35,8 @@ struct RenderText {
 /// WxH in pixels.
 glm::ivec2 size_of(const RenderText& text);
 /// Normals are made unit.
-std::vector<voxel::Cut> cuts_of(const RenderText& text);
+std::vector<voxel::Cutaway> cuts_of(const RenderText& text);
 /// Title, sides, scale, and a legend of the objects that are neither hidden nor coloured by a scalar.
-voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::Drawn>& objects);
+voxel::Annotation annotation_of(const RenderText& text, const std::vector<voxel::DrawnObject>& objects);
 
 }  // namespace octotomy::planner::cli

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "brep/repair.h"
+#include "brep/shape/repair.h"
 
-#include "brep/health.h"
-#include "brep/read_mesh.h"
-#include "planner/answer.h"
+#include "brep/io/read_mesh.h"
+#include "brep/mesh/health.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
-#include "planner/figures.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -68,8 +68,8 @@ voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
   if (!in.raw.empty()) options.raw = layout_of(in);
   if (in.raw.empty() && (in.big_endian || in.offset != 0))
     throw CLI::ValidationError("--offset", "--offset and --big-endian are of raw files: give --raw too");
-  options.stop = program.stop.get_token();
-  options.progress = program.progress("reading");
+  options.progress.stop = program.stop.get_token();
+  options.progress.report = program.progress("reading");
   return options;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "planner/cli/verb.h"
-#include "voxel/read_scene.h"
+#include "voxel/scan/read_scene.h"
 
 // What the verbs that read a scan have in common.
 namespace octotomy::planner::cli {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "planner/colour.h"
-#include "voxel/tissue.h"
+#include "planner/report/colour.h"
+#include "voxel/filter/tissue.h"
 
 namespace octotomy::planner::cli {
 

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "planner/cli/verb.h"
-#include "voxel/scene.h"
+#include "voxel/space/scene.h"
 
 // The verbs that draw, segment and prepare scans, and what verbs ask of samples and options alike.
 namespace octotomy::planner::cli {

@@ -7,9 +7,9 @@
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
-#include "planner/figures.h"
-#include "voxel/image_file.h"
-#include "voxel/reformat.h"
+#include "planner/table/number_format.h"
+#include "voxel/scan/image_file.h"
+#include "voxel/view/reformat.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -62,7 +62,7 @@ Subject subject_of(const Program& program, const SliceText& text, Timings& timin
 }
 
 /// Which sheet is drawn, in words and in millimetres.
-struct Cut {
+struct CutSheet {
   std::string plane;
   std::optional<double> position_mm;  ///< none for a curve
   voxel::Sheet sheet;
@@ -122,7 +122,7 @@ std::vector<glm::dvec3> curve_points(const std::vector<std::string>& texts) {
   return points;
 }
 
-Cut cut_of(const SliceText& text, const voxel::Lattice& lattice) {
+CutSheet cut_of(const SliceText& text, const voxel::Lattice& lattice) {
   const glm::dvec3 spacing_mm = lattice.spacing_mm();
   const double pixel_mm = text.pixel_mm.value_or(std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z}));
   std::optional<glm::dvec3> up;
@@ -181,9 +181,9 @@ voxel::SheetSamples samples_of(const Program& program, const SliceText& text, co
     return samples;
   }
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&subject.samples))
-    return voxel::sample(*grey, sheet, interpolation, program.stop.get_token());
+    return voxel::sample(*grey, sheet, interpolation, {program.stop.get_token(), {}});
   return voxel::sample(std::get<voxel::Scene>(subject.samples), sheet, interpolation,
-                       program.stop.get_token());
+                       {program.stop.get_token(), {}});
 }
 
 /// Black and white, in sample units.
@@ -259,7 +259,7 @@ Json draw_outlines(const SliceText& text, const voxel::Sheet& sheet, std::vector
 }
 
 /// From (column, row, 0, 1) to LPS; null for a curve.
-Json lps_from_pixel(const Cut& cut) {
+Json lps_from_pixel(const CutSheet& cut) {
   if (!cut.position_mm) return nullptr;
   const voxel::Sheet& sheet = cut.sheet;
   const glm::dvec3 right = sheet.columns_mm.size() > 1
@@ -275,7 +275,7 @@ Json lps_from_pixel(const Cut& cut) {
   return to_json(matrix);
 }
 
-Json said_of(const SliceText& text, const Subject& subject, const Cut& cut,
+Json said_of(const SliceText& text, const Subject& subject, const CutSheet& cut,
              const voxel::SheetSamples& samples, const voxel::Range& shown) {
   Json json{{"path", text.out.string()}, {"source", text.file.string()}, {"plane", cut.plane}};
   json["position_mm"] = cut.position_mm ? Json(*cut.position_mm) : Json(nullptr);
@@ -305,7 +305,7 @@ int slice(const Program& program, const SliceText& text) {
   if (!text.window.empty()) parse_window(text.window);
   Timings timings;
   const Subject subject = subject_of(program, text, timings);
-  const Cut cut = cut_of(text, subject.lattice);
+  const CutSheet cut = cut_of(text, subject.lattice);
   voxel::SheetSamples samples;
   {
     const Stopwatch watch(timings, "slice");

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <cmath>
 
-#include "brep/components.h"
-#include "brep/health.h"
-#include "brep/measure.h"
-#include "brep/read_mesh.h"
-#include "convert/deck.h"
-#include "convert/materials.h"
-#include "convert/octree_tetrahedra.h"
-#include "convert/region_tetrahedra.h"
-#include "convert/separate_regions.h"
-#include "convert/tetrahedralise.h"
-#include "convert/voxelise.h"
-#include "convert/winding_number.h"
-#include "planner/answer.h"
+#include "brep/io/read_mesh.h"
+#include "brep/mesh/components.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "convert/deck/deck.h"
+#include "convert/deck/materials.h"
+#include "convert/tet/octree_tetrahedra.h"
+#include "convert/tet/region_tetrahedra.h"
+#include "convert/tet/separate_regions.h"
+#include "convert/tet/tetrahedralise.h"
+#include "convert/voxel/voxelise.h"
+#include "convert/voxel/winding_number.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
-#include "planner/figures.h"
-#include "planner/filling.h"
-#include "planner/landmarks_file.h"
+#include "planner/deck/filling.h"
+#include "planner/measure/result_json.h"
+#include "planner/plan/landmarks_file.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -43,10 +43,10 @@ struct TetText {
 };
 
 /// Places of --finer: WHERE=SIZE, where a place is a point, a landmark's name or a mesh file.
-std::vector<convert::Finer> finer_places(const TetText& text) {
+std::vector<convert::Refinement> refinements(const TetText& text) {
   std::vector<brep::Landmark> landmarks;
   if (!text.landmarks.empty()) landmarks = read_landmarks(text.landmarks);
-  std::vector<convert::Finer> places;
+  std::vector<convert::Refinement> places;
   for (const std::string& word : text.finer) {
     const std::size_t equals = word.rfind('=');
     const std::optional<double> size_mm =
@@ -57,7 +57,7 @@ std::vector<convert::Finer> finer_places(const TetText& text) {
     const std::string where = word.substr(0, equals);
     const auto landmark = std::find_if(landmarks.begin(), landmarks.end(),
                                        [&](const brep::Landmark& known) { return known.name == where; });
-    convert::Finer place;
+    convert::Refinement place;
     place.size_mm = *size_mm;
     if (landmark != landmarks.end())
       place.points_mm = {landmark->p_mm};
@@ -115,9 +115,9 @@ void fill(const TetText& text, Filled& filled, const std::function<convert::Tetr
       filled.findings.push_back(*unfit + (is_octree(text.in)
                                               ? ": take another --size, or --fallback"
                                               : ": mend or simplify the surface, or take --fallback"));
+  } catch (const Stopped&) {
+    throw Stopped("stopped before " + text.out.string() + " was written");
   } catch (const std::runtime_error& error) {
-    if (text.options.stop.stop_requested())
-      throw Stopped("stopped before " + text.out.string() + " was written");
     if (!text.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
     filled.fallback = error.what();
   }
@@ -191,8 +191,7 @@ Filled of_octrees(const Program& program, const TetText& text, Timings& timings)
     options.min_dihedral_deg = text.options.min_dihedral_deg;
     options.finer = text.options.finer;
     options.time_limit = text.options.time_limit;
-    options.stop = text.options.stop;
-    options.report = text.options.report;
+    options.progress = text.options.progress;
     fill(text, filled, [&] { return convert::smooth_tetrahedra_of(octrees, options); });
   } else {
     filled.fallback = "an octree was given without a size of elements";
@@ -254,19 +253,15 @@ int tet(const Program& program, TetText text) {
   if (!is_octree(text.in) && (!text.regions.empty() || text.size_mm || text.contact))
     throw std::runtime_error("--region, --size and --contact are of octrees: make one of " +
                              text.in.string() + " by octotomy voxelise");
-  if (text.max_volume_mm3) {
-    text.options.limit_volume = true;
-    text.options.max_volume_mm3 = *text.max_volume_mm3;
-  }
+  text.options.max_volume_mm3 = text.max_volume_mm3;
   text.options.mesher = text.mesher == "tetgen"  ? convert::Mesher::TetGen
                         : text.mesher == "mesh3" ? convert::Mesher::Mesh3
                                                  : convert::Mesher::Best;
-  text.options.finer = finer_places(text);
+  text.options.finer = refinements(text);
   if (!text.finer.empty() && is_octree(text.in) && !text.size_mm)
     throw std::runtime_error("--finer is not of voxels' own elements: give --size, too");
   text.options.time_limit = std::chrono::seconds(static_cast<long>(text.seconds));
-  text.options.stop = program.stop.get_token();
-  text.options.report = program.progress("filling, of the time allowed");
+  text.options.progress = {program.stop.get_token(), program.progress("filling, of the time allowed")};
   Timings timings;
   Filled filled = is_octree(text.in) ? of_octrees(program, text, timings) : of_mesh(program, text, timings);
   const convert::Tetrahedra& tetrahedra = filled.tetrahedra;

@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include "planner/cli/numbers.h"
-#include "planner/nearest_name.h"
-#include "voxel/file_text.h"
-#include "voxel/tissue.h"
+#include "planner/table/nearest_name.h"
+#include "voxel/filter/tissue.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 namespace {

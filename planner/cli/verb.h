@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "planner/answer.h"
-#include "planner/evaluate.h"
-#include "voxel/lattice.h"
+#include "planner/measure/result_json.h"
+#include "planner/plan/evaluate.h"
+#include "voxel/space/lattice.h"
 
 // What the verbs of the command line have in common: one file a verb group adds its verbs to the program.
 namespace octotomy::planner::cli {
@@ -58,12 +58,10 @@ void add_voxelise(Program& program);
 void add_register(Program& program);
 void add_repair(Program& program);
 void add_mirror(Program& program);
-void add_saw(Program& program);
 void add_compare(Program& program);
 void add_contours(Program& program);
 void add_warp(Program& program);
 void add_octree(Program& program);
-void add_offset(Program& program);
 void add_eval(Program& program);
 void add_mark(Program& program);
 void add_mask(Program& program);

@@ -22,8 +22,7 @@ std::string table(const std::vector<verify::DetectionPower>& powers) {
 
 SuiteAnswer run(Program& program, const VerifyText&) {
   verify::FaultOptions options;
-  options.stop = program.stop.get_token();
-  options.progress = program.progress();
+  options.progress = {program.stop.get_token(), program.progress("faults")};
   SuiteAnswer answer;
   std::vector<verify::FaultTrial> trials;
   {
@@ -46,13 +45,14 @@ SuiteAnswer run(Program& program, const VerifyText&) {
                      {"kernel", trial.kernel},
                      {"subject", trial.subject},
                      {"voxels", trial.voxels},
-                     {"verdict", verify::to_string(trial.certificate.agreement)},
+                     {"verdict", verify::to_string(trial.certificate.verdict)},
+                     {"resolved", trial.certificate.resolved()},
                      {"reasons", trial.certificate.reasons}};
     tried.push_back(place);
     if (trial.fault.empty()) {
       // The clean twins are what the kernels really say.
       answer.certificates.push_back(to_json(trial.certificate));
-      add(answer.counts, trial.certificate.agreement);
+      add(answer.counts, trial.certificate);
     } else if (trial.must_be_caught && trial.voxels >= verify::resolved_size && !trial.caught()) {
       missed.push_back(place);
     }

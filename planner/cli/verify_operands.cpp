@@ -2,12 +2,12 @@
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/verify_suites.h"
-#include "planner/figures.h"
+#include "planner/table/number_format.h"
 #include "verify/certify_operation.h"
 #include "verify/exact_agreement.h"
-#include "voxel/combine.h"
-#include "voxel/label_map.h"
-#include "voxel/read_scene.h"
+#include "voxel/filter/label_map.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -52,7 +52,7 @@ LabelMaps of_label_maps(Program& program, const std::filesystem::path& a, brep::
                                        : operation == brep::Operation::Intersection ? left & right
                                                                                     : left - right;
   const voxel::Universe universe = voxel::universe_on(lattice_a);
-  return {verify::certify_exact(verify::exact_answers(expression, program.stop.get_token())),
+  return {verify::certify_exact(verify::exact_answers(expression, {program.stop.get_token(), {}})),
           static_cast<double>(voxel::combine(universe, expression).voxel_count()) * lattice_a.voxel_mm3()};
 }
 
@@ -66,7 +66,7 @@ std::string what_of(const verify::Certificate& certificate) {
        grouped(certificate.mesh.volume_mm3, 3) + " mm\u00b3 (" + certificate.mesh.lineage + ")"},
       {"difference", grouped(certificate.difference_mm3, 3) + " mm\u00b3, " +
                          grouped(certificate.tolerance_mm3, 3) + " mm\u00b3 allowed"},
-      {"verdict", verify::to_string(certificate.agreement)}};
+      {"verdict", verify::verdict_text(certificate)}};
   for (const std::string& reason : certificate.reasons) rows.emplace_back("reason", reason);
   return lines(rows);
 }
@@ -83,8 +83,8 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
   if (is_mesh(a)) {
     const brep::Mesh left = read_solid(a, answer.timings), right = read_solid(b, answer.timings);
     const Stopwatch watch(answer.timings, "verify");
-    verify::OperationAnswers answers =
-        verify::certify_operation(left, operation, right, {text.operand_voxel_mm});
+    verify::OperationAnswers answers = verify::certify_operation(
+        left, operation, right, {text.operand_voxel_mm, {program.stop.get_token(), {}}});
     certificate = answers.certificate;
     if (answers.octree)
       answer.worst = {certificate, *answers.octree,
@@ -100,7 +100,7 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
   }
   certificate.operation = a.string() + " " + text.subject[1] + " " + b.string();
   answer.certificates.push_back(planner::to_json(certificate));
-  add(answer.counts, certificate.agreement);
+  add(answer.counts, certificate);
   answer.text += what_of(certificate);
   return answer;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/verify_suites.h"
-#include "planner/figures.h"
+#include "planner/table/number_format.h"
 #include "verify/phantom_suite.h"
 
 namespace octotomy::planner::cli {
@@ -44,8 +44,7 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
   SuiteAnswer answer;
   verify::PhantomSuiteOptions options;
   options.poses = text.poses;
-  options.progress = program.progress();
-  options.stop = program.stop.get_token();
+  options.progress = {program.stop.get_token(), program.progress("phantoms")};
   verify::PhantomSuite suite;
   {
     const Stopwatch watch(answer.timings, "phantoms");
@@ -54,9 +53,9 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
   std::vector<std::pair<std::string, std::string>> rows;
   for (const verify::PhantomCase& one : suite.cases)
     for (const verify::Certificate* certificate : {&one.bounded, &one.closed_form}) {
-      add(answer.counts, certificate->agreement);
+      add(answer.counts, *certificate);
       answer.certificates.push_back(case_json(one, *certificate));
-      if (certificate->agreement != verify::Agreement::Fail) continue;
+      if (certificate->verdict != verify::Verdict::Fail) continue;
       for (const std::string& reason : certificate->reasons)
         rows.emplace_back("FAIL", certificate->operation + ": " + reason);
     }
@@ -70,10 +69,7 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
         check.held ? "holds" : "DOES NOT HOLD",
         check.statement + ": " + three_figures(check.found) + ", limit " + three_figures(check.allowed));
   }
-  const VerdictCounts& counts = answer.counts;
-  rows.emplace_back("verdicts", std::to_string(counts.pass) + " PASS, " + std::to_string(counts.warn) +
-                                    " WARN, " + std::to_string(counts.fail) + " FAIL, " +
-                                    std::to_string(counts.below_resolution) + " BELOW_RESOLUTION");
+  rows.emplace_back("verdicts", text_of(answer.counts));
   answer.worst = std::move(suite.worst);
   answer.more = study_json(suite);
   answer.text = lines(rows);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/verify_suites.h"
-#include "planner/figures.h"
-#include "planner/random_suite.h"
+#include "planner/report/random_suite.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -17,18 +17,12 @@ Json to_json(const RandomTier& tier) {
 void append(SuiteAnswer& answer, const RandomTier& tier) {
   for (const verify::Certificate& certificate : tier.results)
     answer.certificates.push_back(planner::to_json(certificate));
-  answer.counts.pass += tier.verdicts.pass;
-  answer.counts.warn += tier.verdicts.warn;
-  answer.counts.fail += tier.verdicts.fail;
-  answer.counts.below_resolution += tier.verdicts.below_resolution;
+  answer.counts += tier.verdicts;
 }
 
 std::string told(const std::string& unit, const RandomTier& tier) {
-  const VerdictCounts& counts = tier.verdicts;
-  return std::to_string(tier.asked) + " asked; " + unit + ": " + std::to_string(counts.pass) + " PASS, " +
-         std::to_string(counts.warn) + " WARN, " + std::to_string(counts.fail) + " FAIL, " +
-         std::to_string(counts.below_resolution) + " BELOW_RESOLUTION; " + std::to_string(tier.no_answer) +
-         " without a mesh";
+  return std::to_string(tier.asked) + " asked; " + unit + ": " + text_of(tier.verdicts) + "; " +
+         std::to_string(tier.no_answer) + " without a mesh";
 }
 
 SuiteAnswer run(Program& program, const VerifyText& text) {
@@ -52,7 +46,7 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
       {"exact tier", told("questions", suite.exact)},
       {"bounded tier", told("objects", suite.bounded)},
       {"of substance", grouped(100.0 * suite.substance(), 1) +
-                           " % of results (neither empty nor an operand), " +
+                           " % of results (resolved, neither empty nor an operand), " +
                            grouped(100.0 * least_substance, 0) + " % are needed"}};
   for (const Disagreement& found : suite.disagreements) {
     disagreements.push_back({{"seed", found.seed},

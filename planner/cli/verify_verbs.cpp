@@ -2,7 +2,8 @@
 #include "planner/cli/verify_verbs.h"
 
 #include "planner/cli/verify_suites.h"
-#include "planner/verification.h"
+#include "planner/report/result_folder.h"
+#include "planner/report/verification.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -24,10 +25,10 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   answer.text = verdict_text(result.evaluation);
   for (const Object& object : result.evaluation.objects) {
     if (object.certificate)
-      verify::keep_worse(answer.worst, {*object.certificate, object.octree, object.mesh});
+      verify::keep_worse(answer.worst, {*object.certificate, object.voxel.octree, object.mesh.within});
     else
       answer.not_covered.push_back(object.id + ", " + object.definition + ": " +
-                                   (object.kind == "mask"     ? "a mask is certified with what it cuts"
+                                   (object.is_tool            ? "a mask is certified with what it cuts"
                                     : object.findings.empty() ? "there is no mesh"
                                                               : object.findings.front()));
   }
@@ -70,7 +71,7 @@ std::string subject_of(const VerifyText& text, const std::vector<CLI::Option*>& 
 }
 
 int verify(Program& program, VerifyText& text, const std::vector<CLI::Option*>& named) {
-  if (text.report) need_folder_of(*text.report);
+  if (text.report) need_result_folder(*text.report, {"report.html", "result.json"});
   SuiteAnswer found = chosen(program, text, named);
   Json json = answer(found.timings);
   json["certificates"] = found.certificates;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "planner/answer.h"
 #include "planner/cli/plan_in.h"
-#include "planner/report.h"
+#include "planner/measure/result_json.h"
+#include "planner/report/report.h"
 
 // `octotomy verify`: a plan's certificates, or one of the suites that test the verifier itself.
 namespace octotomy::planner::cli {

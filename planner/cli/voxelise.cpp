@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "convert/voxelise.h"
+#include "convert/voxel/voxelise.h"
 
-#include "brep/health.h"
-#include "brep/read_mesh.h"
-#include "convert/voxelise_partial.h"
-#include "convert/winding_number.h"
-#include "planner/answer.h"
+#include "brep/io/read_mesh.h"
+#include "brep/mesh/health.h"
+#include "convert/voxel/voxelise_partial.h"
+#include "convert/voxel/winding_number.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
-#include "planner/figures.h"
-#include "voxel/label_map.h"
-#include "voxel/volume_header.h"
-#include "voxel/write_scene.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "voxel/filter/label_map.h"
+#include "voxel/scan/volume_header.h"
+#include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -75,10 +75,9 @@ voxel::Universe universe_of(const VoxeliseText& text, const std::vector<Subject>
 }
 
 decltype(voxel::OctreeFile::tree) of_solid(const voxel::Universe& universe, const brep::Mesh& solid,
-                                           const std::string& digitise,
-                                           const convert::VoxeliseOptions& options) {
-  if (digitise == "centre") return convert::voxelise(universe, solid);
-  voxel::PartialOctree partial = convert::voxelise_partial(universe, solid, options);
+                                           const std::string& digitise, const voxel::Progress& progress) {
+  if (digitise == "centre") return convert::voxelise(universe, solid, progress);
+  voxel::PartialOctree partial = convert::voxelise_partial(universe, solid, progress);
   if (digitise == "inside") return partial.inside;
   if (digitise == "touching") return partial.touching;
   if (digitise == "half") return voxel::at_least_half(partial);
@@ -93,13 +92,11 @@ bool is_nothing(const decltype(voxel::OctreeFile::tree)& tree) {
 decltype(voxel::OctreeFile::tree) voxelised(const Program& program, const VoxeliseText& text,
                                             const Subject& subject, const voxel::Universe& universe,
                                             Timings& timings) {
-  convert::VoxeliseOptions options;
-  options.stop = program.stop.get_token();
-  options.progress = program.progress("voxelising");
+  const voxel::Progress progress{program.stop.get_token(), program.progress("voxelising")};
   const Stopwatch watch(timings, "voxelise");
   decltype(voxel::OctreeFile::tree) tree =
-      subject.health.solid() ? of_solid(universe, brep::mesh_of(subject.triangles), text.digitise, options)
-                             : convert::voxelise_by_winding_number(universe, subject.triangles, options);
+      subject.health.solid() ? of_solid(universe, brep::mesh_of(subject.triangles), text.digitise, progress)
+                             : convert::voxelise_by_winding_number(universe, subject.triangles, progress);
   if (is_nothing(tree))
     throw std::runtime_error(subject.path.string() +
                              ": encloses no voxel: take smaller voxels by --voxel; where the mesh is inside "

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "convert/calculix_result.h"
-#include "convert/displacement_field.h"
-#include "planner/answer.h"
+#include "convert/deck/calculix_result.h"
+#include "convert/deck/displacement_field.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/scan_in.h"
-#include "planner/figures.h"
-#include "voxel/write_scene.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner::cli {
 namespace {

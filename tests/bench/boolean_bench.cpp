@@ -9,7 +9,7 @@
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/dense_bits.h"
 #include "tests/bench/pairs.h"
-#include "voxel/combine.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::bench {
 namespace {

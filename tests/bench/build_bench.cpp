@@ -2,7 +2,7 @@
 
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/subjects.h"
-#include "voxel/build.h"
+#include "voxel/tree/build.h"
 
 namespace octotomy::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "brep/triangles.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::bench {
 

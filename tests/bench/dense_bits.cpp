@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "voxel/slice_bits.h"
+#include "voxel/tree/slice_bits.h"
 
 namespace octotomy::bench {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "voxel/octree.h"
+#include "voxel/tree/octree.h"
 
 namespace octotomy::bench {
 

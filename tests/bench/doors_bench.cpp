@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "convert/isosurface.h"
-#include "convert/voxelise.h"
+#include "convert/surface/isosurface.h"
+#include "convert/voxel/voxelise.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/picture_plane.h"
 #include "tests/bench/subjects.h"

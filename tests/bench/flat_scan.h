@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "tests/bench/picture_plane.h"
-#include "voxel/scene.h"
+#include "voxel/space/scene.h"
 
 namespace octotomy::bench {
 

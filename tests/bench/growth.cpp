@@ -11,7 +11,7 @@
 #include "tests/bench/dense_bits.h"
 #include "tests/bench/log_plot.h"
 #include "tests/bench/subjects.h"
-#include "voxel/combine.h"
+#include "voxel/solid/combine.h"
 
 namespace {
 

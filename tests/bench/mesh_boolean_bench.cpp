@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "brep/boolean.h"
-#include "brep/measure.h"
-#include "convert/isosurface.h"
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/measure.h"
+#include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/subjects.h"
 #include "tests/brep/shapes.h"

@@ -7,7 +7,7 @@
 #include "tests/bench/dense_bits.h"
 #include "tests/bench/pairs.h"
 #include "tests/bench/subjects.h"
-#include "voxel/combine.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::bench {
 namespace {

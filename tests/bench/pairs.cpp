@@ -2,7 +2,7 @@
 #include "tests/bench/pairs.h"
 
 #include "tests/bench/subjects.h"
-#include "voxel/combine.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::bench {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "voxel/expression.h"
-#include "voxel/octree.h"
+#include "voxel/solid/expression.h"
+#include "voxel/tree/octree.h"
 
 namespace octotomy::bench {
 

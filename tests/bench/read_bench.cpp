@@ -7,9 +7,9 @@
 #ifdef OCTOTOMY_HAS_ITK
 #include "tests/bench/itk_peer.h"
 #endif
-#include "voxel/grey_octree.h"
-#include "voxel/read_scene.h"
-#include "voxel/write_scene.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/tree/grey_octree.h"
 
 namespace octotomy::bench {
 namespace {

@@ -6,14 +6,14 @@
 #include <string>
 #include <tbb/global_control.h>
 
-#include "convert/isosurface.h"
+#include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/picture_plane.h"
 #include "tests/bench/subjects.h"
-#include "voxel/camera.h"
-#include "voxel/combine.h"
-#include "voxel/expression.h"
-#include "voxel/render.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/expression.h"
+#include "voxel/view/camera.h"
+#include "voxel/view/render.h"
 #ifdef OCTOTOMY_HAS_EMBREE
 #include "tests/bench/embree_peer.h"
 #endif
@@ -44,23 +44,23 @@ struct Case {
   voxel::View axes() const { return voxel::parse_view(view == "oblique" ? "35,15" : view); }
 };
 
-voxel::Drawn drawn_skull(int side) {
+voxel::DrawnObject drawn_skull(int side) {
   const voxel::GreyOctree grey = grey_skull(side);
   return {"skull", voxel::combine(universe(side), voxel::Window{grey, bone_hu, 32767.0}), {}, grey, bone_hu};
 }
 
 /// The skull with its upper jaw cut off by a mask of two regions and moved: made anew for every picture, as
 /// when a piece is under the hand.
-std::vector<voxel::Drawn> planned_skull(const voxel::Drawn& skull) {
+std::vector<voxel::DrawnObject> planned_skull(const voxel::DrawnObject& skull) {
   static const voxel::Expression cut(
       voxel::RegionMask{{{voxel::parse_view("anterior"), {{{{-40, -60}, {40, -60}, {40, -25}, {-40, -25}}}}},
                          {voxel::parse_view("left"), {{{{-90, -60}, {-20, -60}, {-20, -25}, {-90, -25}}}}}}});
   static const glm::dmat4 advance = voxel::moved_from_still({{0, -6, 2}, 5.0, {1, 0, 0}, {0, -40, -30}});
   const voxel::Universe& universe = skull.octree.universe();
   const voxel::Expression bone(skull.octree);
-  voxel::Drawn rest = skull;
+  voxel::DrawnObject rest = skull;
   rest.octree = voxel::combine(universe, bone - cut);
-  voxel::Drawn jaw = skull;
+  voxel::DrawnObject jaw = skull;
   jaw.name = "jaw";
   jaw.octree = voxel::combine(universe, voxel::moved(bone & cut, advance));
   jaw.moved_from_still = advance;
@@ -77,7 +77,7 @@ voxel::RenderOptions options_of(const Case& the) {
 }
 
 void run(benchmark::State& state, const Case& the) {
-  const std::vector<voxel::Drawn> objects{drawn_skull(the.side)};
+  const std::vector<voxel::DrawnObject> objects{drawn_skull(the.side)};
   voxel::RenderOptions options = options_of(the);
   const voxel::Frame frame = voxel::frame_about(objects, options.view, options.size_px);
   options.centre_mm = frame.centre_mm;
@@ -94,7 +94,7 @@ void run(benchmark::State& state, const Case& the) {
 
 // Where no peer is installed nobody asks for these.
 [[maybe_unused]] PicturePlane plane_of(const Case& the) {
-  const std::vector<voxel::Drawn> objects{{"skull", skull(the.side)}};
+  const std::vector<voxel::DrawnObject> objects{{"skull", skull(the.side)}};
   const glm::ivec2 size_px(the.side_px);
   const voxel::Frame frame = voxel::frame_about(objects, the.axes(), size_px);
   const voxel::ImagePlane image = voxel::image_plane(universe(the.side), the.axes(), size_px, frame);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <map>
 
-#include "verify/phantom.h"
-#include "voxel/combine.h"
+#include "verify/head_phantom.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::bench {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "voxel/expression.h"
-#include "voxel/grey_octree.h"
-#include "voxel/octree.h"
-#include "voxel/scene.h"
+#include "voxel/solid/expression.h"
+#include "voxel/space/scene.h"
+#include "voxel/tree/grey_octree.h"
+#include "voxel/tree/octree.h"
 
 // What is measured: objects that fill a universe in the same way at every size, so that sizes can be
 // compared.

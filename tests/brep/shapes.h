@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "brep/triangles.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep::shapes {
 

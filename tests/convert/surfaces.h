@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "brep/triangles.h"
+#include "brep/mesh/triangles.h"
 #include "tests/brep/shapes.h"
 
 // Closed surfaces with known volumes, and an independent proof of closedness.

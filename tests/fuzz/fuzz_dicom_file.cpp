@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "voxel/dicom_file.h"
+#include "voxel/scan/dicom_file.h"
 
 namespace {
 
@@ -22,7 +22,7 @@ void need(bool holds) {
 /// Asks for all that a slice's reader asks for, in sequences as well.
 void ask(const DicomFile& file, std::size_t file_bytes, int depth) {
   for (const DicomTag tag : {0x00080005u, 0x00080008u, 0x00080060u, 0x0008103eu, 0x00281054u})
-    need(file.readable_text(tag).size() <= 2 * file_bytes);
+    need(file.readable_text(tag).size() <= 3 * file_bytes);
   for (const DicomTag tag : {0x00200032u, 0x00200037u, 0x00280030u, 0x00281052u, 0x00281053u})
     if (const auto numbers = file.decimals(tag)) need(!numbers->empty());
   for (const DicomTag tag : {0x00280010u, 0x00280011u, 0x00280100u}) file.unsigned_short(tag);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "voxel/expression.h"
+#include "voxel/solid/expression.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
-#include "voxel/octree_file.h"
+#include "voxel/tree/octree_file.h"
 
 namespace {
 

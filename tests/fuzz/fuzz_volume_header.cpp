@@ -11,7 +11,7 @@
 #include <string>
 #include <unistd.h>
 
-#include "voxel/volume_header.h"
+#include "voxel/scan/volume_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace fs = std::filesystem;

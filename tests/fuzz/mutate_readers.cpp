@@ -21,7 +21,7 @@
 
 #include "tests/file_bytes.h"
 #include "tests/fuzz/mutation.h"
-#include "tests/voxel/dicom_frames.h"
+#include "tests/voxel/scan/dicom_frames.h"
 #include "tests/voxel/scratch_folder.h"
 
 namespace {

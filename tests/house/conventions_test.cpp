@@ -4,14 +4,14 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
-#include "brep/measure.h"
-#include "brep/triangles.h"
-#include "convert/isosurface.h"
-#include "convert/voxelise.h"
-#include "voxel/combine.h"
-#include "voxel/octree_node.h"
-#include "voxel/scene.h"
-#include "voxel/view.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/triangles.h"
+#include "convert/surface/isosurface.h"
+#include "convert/voxel/voxelise.h"
+#include "voxel/solid/combine.h"
+#include "voxel/space/scene.h"
+#include "voxel/space/view.h"
+#include "voxel/tree/octree_node.h"
 
 namespace octotomy {
 namespace {

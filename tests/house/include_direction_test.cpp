@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The folders depend in one direction: voxel and brep, which never meet, then convert, verify, planner,
-// tests.
+// The house's order, as rooms.txt declares it: folders and rooms depend one way, files form no cycles, no
+// room is overfull, and tests stand where their subjects do. Every rule is a function from the sources to its
+// offences, so that each has a twin with spoiled sources.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,77 +19,385 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::map<std::string, std::set<std::string>> allowed{
-    {"voxel", {"voxel"}},
-    {"brep", {"brep"}},
-    {"convert", {"convert", "voxel", "brep"}},
-    {"verify", {"verify", "convert", "voxel", "brep"}},
-    {"planner", {"planner", "verify", "convert", "voxel", "brep"}},
-};
+using Names = std::set<std::string>;
+using Offences = std::vector<std::string>;
+/// Paths within the repository, and what each includes.
+using Sources = std::map<std::string, std::vector<std::string>>;
 
-// The folders that a source text includes from, with the lines that do.
-std::vector<std::pair<std::string, std::string>> project_includes(const std::string& text) {
-  static const std::regex include(R"re((?:^|\n)\s*#\s*include\s*"(\w+)/([^"]*)")re");
-  std::vector<std::pair<std::string, std::string>> found;
-  for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end; ++match)
-    found.emplace_back((*match)[1], (*match)[1].str() + "/" + (*match)[2].str());
-  return found;
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-std::string forbidden_arrows(const std::string& folder, const std::string& text) {
-  std::string arrows;
-  for (const auto& [to, path] : project_includes(text))
-    if (!allowed.at(folder).contains(to)) arrows += " \"" + path + "\"";
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+/// What rooms.txt says: by folder or room, all that it may reach, itself included.
+struct Arrows {
+  std::map<std::string, Names> folders;
+  std::map<std::string, Names> rooms;  ///< "voxel/tree": "voxel/tree", "voxel/space"
+
+  bool has_rooms(const std::string& folder) const {
+    const auto first = rooms.lower_bound(folder + "/");
+    return first != rooms.end() && first->first.starts_with(folder + "/");
+  }
+};
+
+Arrows arrows_of(const std::string& text) {
+  Arrows arrows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t colon = line.find(':');
+    if (line.empty() || line[0] == '#' || colon == std::string::npos) continue;
+    const std::string from = line.substr(0, colon);
+    const std::size_t stroke = from.find('/');
+    const bool is_room = stroke != std::string::npos;
+    Names& to = (is_room ? arrows.rooms : arrows.folders)[from];
+    to.insert(from);
+    for (const std::string& name : words_of(line.substr(colon + 1)))
+      to.insert(is_room ? from.substr(0, stroke + 1) + name : name);
+  }
   return arrows;
 }
 
-TEST(IncludeDirection, NoSourceReachesAgainstTheArrows) {
-  int sources = 0;
-  int includes = 0;
-  for (const auto& [folder, may] : allowed)
-    for (const fs::directory_entry& entry :
-         fs::recursive_directory_iterator(fs::path(OCTOTOMY_SOURCE_DIR) / folder)) {
-      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-      std::ifstream file(entry.path());
-      const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-      EXPECT_EQ(forbidden_arrows(folder, text), "") << entry.path();
-      ++sources;
-      includes += static_cast<int>(project_includes(text).size());
+const Arrows& arrows() {
+  static const Arrows read = arrows_of(text_of(fs::path(OCTOTOMY_SOURCE_DIR) / "tests/house/rooms.txt"));
+  return read;
+}
+
+std::string folder_of(const std::string& path) {
+  return path.substr(0, path.find('/'));
+}
+
+std::string room_of(const std::string& path) {
+  return path.substr(0, path.rfind('/'));
+}
+
+std::string stem_of(const std::string& path) {
+  const std::size_t first = path.rfind('/') + 1;
+  return path.substr(first, path.rfind('.') - first);
+}
+
+/// The project's files that a source text includes.
+std::vector<std::string> project_includes(const std::string& text) {
+  static const std::regex include(R"re((?:^|\n)\s*#\s*include\s*"(\w+/[^"]*)")re");
+  std::vector<std::string> found;
+  for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end; ++match)
+    found.push_back((*match)[1]);
+  return found;
+}
+
+/// The sources of the folders that rooms.txt names.
+const Sources& house() {
+  static const Sources sources = [] {
+    Sources found;
+    for (const auto& [folder, may] : arrows().folders)
+      for (const fs::directory_entry& entry :
+           fs::recursive_directory_iterator(fs::path(OCTOTOMY_SOURCE_DIR) / folder)) {
+        if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+        found[fs::relative(entry.path(), OCTOTOMY_SOURCE_DIR).generic_string()] =
+            project_includes(text_of(entry.path()));
+      }
+    return found;
+  }();
+  return sources;
+}
+
+/// Whether one may reach another; either is a path of a source, or of a folder or room with a stroke behind.
+bool may_reach(const std::string& from, const std::string& to) {
+  if (folder_of(from) != folder_of(to)) return arrows().folders.at(folder_of(from)).contains(folder_of(to));
+  if (!arrows().has_rooms(folder_of(from))) return true;
+  const auto found = arrows().rooms.find(room_of(from));
+  return found != arrows().rooms.end() && found->second.contains(room_of(to));
+}
+
+Offences forbidden_arrows(const Sources& sources) {
+  Offences offences;
+  for (const auto& [from, includes] : sources)
+    for (const std::string& to : includes)
+      if (!may_reach(from, to)) offences.push_back(from + " -> " + to);
+  return offences;
+}
+
+/// The first cycle that a walk from each file finds, its files in order.
+Offences cycles(const Sources& sources) {
+  enum class Seen { Not, Open, Done };
+  std::map<std::string, Seen> seen;
+  std::vector<std::string> open;
+  Offences offences;
+  const std::function<void(const std::string&)> walk = [&](const std::string& path) {
+    const auto found = sources.find(path);
+    if (found == sources.end() || seen[path] == Seen::Done) return;
+    if (seen[path] == Seen::Open) {
+      std::string cycle;
+      for (auto at = std::find(open.begin(), open.end(), path); at != open.end(); ++at) cycle += *at + " -> ";
+      offences.push_back(cycle + path);
+      return;
     }
-  EXPECT_GT(sources, 40) << "the test looks in the wrong place";
-  EXPECT_GT(includes, 100);
+    seen[path] = Seen::Open;
+    open.push_back(path);
+    for (const std::string& next : found->second) walk(next);
+    open.pop_back();
+    seen[path] = Seen::Done;
+  };
+  for (const auto& [path, includes] : sources) walk(path);
+  return offences;
 }
 
-TEST(IncludeDirection, AnArrowBetweenTheKernelsIsSeen) {
-  EXPECT_EQ(forbidden_arrows("voxel", "#pragma once\n#include \"brep/mesh.h\"\n"), " \"brep/mesh.h\"");
-  EXPECT_EQ(forbidden_arrows("brep", "#include <vector>\n  # include \"voxel/scene.h\""),
-            " \"voxel/scene.h\"");
-  EXPECT_EQ(forbidden_arrows("convert", "#include \"planner/plan.h\""), " \"planner/plan.h\"");
-  EXPECT_EQ(forbidden_arrows("convert", "#include \"brep/mesh.h\"\n#include \"voxel/scene.h\""), "");
+/// Stems that a room may hold. The program has one file a verb, hence more.
+std::size_t most_stems(const std::string& room) {
+  return room == "planner/cli" ? 48 : 40;
 }
 
-// Libraries, too: what one folder's target links decides what its sources could reach.
-TEST(IncludeDirection, NoTargetLinksAgainstTheArrows) {
-  static const std::regex link(R"(octotomy_(voxel|brep|convert|verify|planner)\b)");
-  for (const auto& [folder, may] : allowed) {
-    std::ifstream file(fs::path(OCTOTOMY_SOURCE_DIR) / folder / "CMakeLists.txt");
-    std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    ASSERT_FALSE(text.empty()) << folder;
-    text = std::regex_replace(text, std::regex("#[^\n]*"), "");
-    for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match)
-      EXPECT_TRUE(may.contains((*match)[1])) << folder << "/CMakeLists.txt names octotomy_" << (*match)[1];
+Offences overfull_rooms(const Sources& sources) {
+  std::map<std::string, Names> stems;
+  for (const auto& [path, includes] : sources) stems[room_of(path)].insert(stem_of(path));
+  Offences offences;
+  for (const auto& [room, names] : stems)
+    if (names.size() > most_stems(room)) offences.push_back(room + ": " + std::to_string(names.size()));
+  return offences;
+}
+
+std::string page_of(const std::string& room) {
+  return text_of(fs::path(OCTOTOMY_SOURCE_DIR) / room / "README.md");
+}
+
+/// Headers that other rooms include though their room's page does not offer them: it names those that may be
+/// called before it comes to what is private.
+Offences unnamed_headers(const Sources& sources, const std::function<std::string(const std::string&)>& page) {
+  Offences offences;
+  for (const auto& [from, includes] : sources)
+    for (const std::string& to : includes) {
+      if (room_of(to) == room_of(from)) continue;
+      const std::string text = page(room_of(to));
+      const std::string offered = text.substr(0, text.find("## Private"));
+      if (offered.find("`" + stem_of(to) + ".h`") == std::string::npos)
+        offences.push_back(to + ", of " + from);
+    }
+  return offences;
+}
+
+/// The first #include of a text, with its brackets or quotes.
+std::string first_include(const std::string& text) {
+  static const std::regex include(R"re((?:^|\n)\s*#\s*include\s*([<"][^>"]*[>"]))re");
+  std::smatch match;
+  return std::regex_search(text, match, include) ? match[1].str() : "";
+}
+
+/// Sources that include something before the header of their own stem; by path, the first of their includes.
+Offences headers_not_first(const std::map<std::string, std::string>& first_includes) {
+  Offences offences;
+  for (const auto& [path, first] : first_includes) {
+    const std::string header = room_of(path) + "/" + stem_of(path) + ".h";
+    if (path.ends_with(".cpp") && first_includes.contains(header) && first != "\"" + header + "\"")
+      offences.push_back(path + ": " + first);
   }
+  return offences;
+}
+
+/// Sources beside the rooms of their folder, or in one that rooms.txt does not name.
+Offences homeless(const Sources& sources) {
+  Offences offences;
+  for (const auto& [path, includes] : sources) {
+    const bool is_at_home = arrows().has_rooms(folder_of(path)) ? arrows().rooms.contains(room_of(path))
+                                                                : room_of(path) == folder_of(path);
+    if (!is_at_home) offences.push_back(path);
+  }
+  return offences;
+}
+
+/// Tests, named by their paths under tests/, that stand in no room, or in another than the source of their
+/// stem.
+Offences misplaced_tests(const Names& tests, const Sources& sources) {
+  std::map<std::string, Names> rooms_of_stem;  // "voxel/octree": "voxel/tree"
+  for (const auto& [path, includes] : sources)
+    rooms_of_stem[folder_of(path) + "/" + stem_of(path)].insert(room_of(path));
+  Offences offences;
+  for (const std::string& test : tests) {
+    const std::string stem = stem_of(test).substr(0, stem_of(test).rfind("_test"));
+    const auto found = rooms_of_stem.find(folder_of(test) + "/" + stem);
+    const bool is_in_room = arrows().has_rooms(folder_of(test)) ? arrows().rooms.contains(room_of(test))
+                                                                : room_of(test) == folder_of(test);
+    if (!is_in_room || (found != rooms_of_stem.end() && !found->second.contains(room_of(test))))
+      offences.push_back(test);
+  }
+  return offences;
+}
+
+Names tests_of_rooms() {
+  Names tests;
+  const fs::path root = fs::path(OCTOTOMY_SOURCE_DIR) / "tests";
+  for (const auto& [folder, may] : arrows().folders)
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.path().filename().string().ends_with("_test.cpp"))
+        tests.insert(fs::relative(entry.path(), root).generic_string());
+  return tests;
+}
+
+/// Folders and rooms, each with a stroke behind, whose targets a list of sources names.
+Names targets_in(const std::string& cmake) {
+  static const std::regex target(R"(octotomy_(voxel|brep|convert|verify|planner)(?:_(\w+))?)");
+  const std::string text = std::regex_replace(cmake, std::regex("#[^\n]*"), "");
+  Names found;
+  for (std::sregex_iterator match(text.begin(), text.end(), target), end; match != end; ++match)
+    found.insert((*match)[1].str() + "/" + ((*match)[2].matched ? (*match)[2].str() + "/" : ""));
+  return found;
+}
+
+TEST(Rooms, TheDeclaredArrowsFormNoCycle) {
+  EXPECT_GT(arrows().rooms.size(), 15u) << "rooms.txt was not read";
+  for (const auto* declared : {&arrows().folders, &arrows().rooms}) {
+    Sources graph;
+    for (const auto& [from, may] : *declared)
+      for (const std::string& to : may) {
+        EXPECT_TRUE(declared->contains(to)) << from << ": there is no " << to;
+        if (to != from) graph[from].push_back(to);
+      }
+    EXPECT_EQ(cycles(graph), Offences{});
+  }
+}
+
+TEST(Rooms, NoSourceReachesAgainstTheArrows) {
+  std::size_t includes = 0;
+  for (const auto& [path, to] : house()) includes += to.size();
+  EXPECT_GT(house().size(), 400u) << "the test looks in the wrong place";
+  EXPECT_GT(includes, 1000u);
+  EXPECT_EQ(forbidden_arrows(house()), Offences{});
+}
+
+TEST(Rooms, AForbiddenArrowIsSeen) {
+  const auto arrow = [](const std::string& from, const std::string& text) {
+    return forbidden_arrows({{from, project_includes(text)}});
+  };
+  EXPECT_EQ(arrow("voxel/tree/octree.h", "#pragma once\n#include \"brep/mesh/mesh.h\"\n").size(), 1u);
+  EXPECT_EQ(arrow("brep/mesh/mesh.h", "#include <vector>\n  # include \"voxel/space/scene.h\"").size(), 1u);
+  EXPECT_EQ(arrow("convert/tet/tetrahedra.h", "#include \"planner/plan/plan.h\"").size(), 1u);
+  EXPECT_EQ(arrow("voxel/tree/octree.h", "#include \"voxel/solid/combine.h\"").size(), 1u);
+  EXPECT_EQ(arrow("voxel/filter/smooth.cpp", "#include \"voxel/scan/read_scene.h\"").size(), 1u);
+  EXPECT_EQ(arrow("voxel/cellar/wine.h", "#include \"voxel/tree/octree.h\"").size(), 1u);
+  EXPECT_EQ(arrow("voxel/solid/combine.h", "#include \"voxel/tree/octree.h\"").size(), 0u);
+  EXPECT_EQ(
+      arrow("convert/voxel/voxelise.h", "#include \"brep/mesh/mesh.h\"\n#include \"voxel/tree/octree.h\"")
+          .size(),
+      0u);
+}
+
+// So its source proves that the header compiles alone, wherever no precompiled header stands before it; those
+// without a source are compiled by the target `headers`.
+TEST(Rooms, AHeaderIsTheFirstThatItsSourceIncludes) {
+  std::map<std::string, std::string> first;
+  for (const auto& [path, includes] : house())
+    first[path] = first_include(text_of(fs::path(OCTOTOMY_SOURCE_DIR) / path));
+  EXPECT_EQ(headers_not_first(first), Offences{});
+  EXPECT_EQ(first_include("// a\n#include <map>\n#include \"a/b.h\"\n"), "<map>");
+  EXPECT_EQ(headers_not_first({{"a/b.h", ""}, {"a/b.cpp", "<map>"}, {"a/c.cpp", "<map>"}}),
+            Offences{"a/b.cpp: <map>"});
+  EXPECT_EQ(headers_not_first({{"a/b.h", ""}, {"a/b.cpp", "\"a/b.h\""}}), Offences{});
+}
+
+TEST(Rooms, FilesFormNoCycle) {
+  EXPECT_EQ(cycles(house()), Offences{});
+}
+
+TEST(Rooms, ACycleIsSeen) {
+  EXPECT_EQ(cycles({{"a/a.h", {"a/b.h"}}, {"a/b.h", {"a/c.h"}}, {"a/c.h", {"a/b.h"}}}),
+            Offences{"a/b.h -> a/c.h -> a/b.h"});
+}
+
+TEST(Rooms, NoneIsOverfull) {
+  EXPECT_EQ(overfull_rooms(house()), Offences{});
+}
+
+TEST(Rooms, AnOverfullOneIsSeen) {
+  Sources sources;
+  for (int i = 0; i < 41; ++i) {
+    sources["voxel/tree/stem" + std::to_string(i) + ".h"];
+    sources["voxel/tree/stem" + std::to_string(i) + ".cpp"];
+  }
+  EXPECT_EQ(overfull_rooms(sources), Offences{"voxel/tree: 41"});
+  sources.erase("voxel/tree/stem40.h");
+  sources.erase("voxel/tree/stem40.cpp");
+  EXPECT_EQ(overfull_rooms(sources), Offences{});
+}
+
+TEST(Rooms, EverySourceHasOneAndEveryRoomAPage) {
+  EXPECT_EQ(homeless(house()), Offences{});
+  EXPECT_EQ(homeless({{"voxel/loose.h", {}}, {"brep/cellar/wine.h", {}}, {"verify/implicit_solid.h", {}}}),
+            (Offences{"brep/cellar/wine.h", "voxel/loose.h"}));
+  for (const auto& [room, may] : arrows().rooms) EXPECT_NE(page_of(room), "") << room;
+  for (const auto& [folder, may] : arrows().folders) {
+    if (arrows().has_rooms(folder)) continue;
+    EXPECT_NE(page_of(folder), "") << folder;
+  }
+}
+
+TEST(Rooms, APageNamesEveryHeaderThatOthersInclude) {
+  EXPECT_EQ(unnamed_headers(house(), page_of), Offences{});
+}
+
+TEST(Rooms, AHeaderMissingFromItsPageIsSeen) {
+  const auto page = [](const std::string&) {
+    return std::string("- `octree.h`: the tree.\n## Private\n`leaf.h`\n");
+  };
+  EXPECT_EQ(
+      unnamed_headers({{"voxel/solid/combine.cpp", {"voxel/tree/octree.h", "voxel/solid/combine.h"}}}, page),
+      Offences{});
+  EXPECT_EQ(unnamed_headers({{"voxel/solid/combine.cpp", {"voxel/tree/leaf.h"}}}, page),
+            Offences{"voxel/tree/leaf.h, of voxel/solid/combine.cpp"});
+}
+
+TEST(Rooms, TestsMirrorThem) {
+  EXPECT_GT(tests_of_rooms().size(), 150u) << "the test looks in the wrong place";
+  EXPECT_EQ(misplaced_tests(tests_of_rooms(), house()), Offences{});
+}
+
+TEST(Rooms, AMisplacedTestIsSeen) {
+  const Sources sources{{"voxel/tree/octree.h", {}}, {"verify/implicit_solid.h", {}}};
+  EXPECT_EQ(
+      misplaced_tests({"voxel/solid/octree_test.cpp", "voxel/octree_test.cpp", "voxel/tree/octree_test.cpp",
+                       "voxel/solid/set_identities_test.cpp", "verify/implicit_solid_test.cpp"},
+                      sources),
+      (Offences{"voxel/octree_test.cpp", "voxel/solid/octree_test.cpp"}));
+}
+
+// Libraries, too: what a target links decides what its sources could reach.
+TEST(Rooms, NoTargetLinksAgainstTheArrows) {
+  int links = 0;
+  for (const auto* declared : {&arrows().folders, &arrows().rooms})
+    for (const auto& [place, may] : *declared) {
+      const std::string text = text_of(fs::path(OCTOTOMY_SOURCE_DIR) / place / "CMakeLists.txt");
+      ASSERT_FALSE(text.empty()) << place;
+      for (const std::string& target : targets_in(text)) {
+        ++links;
+        const bool is_own_folder = target == folder_of(place) + "/";
+        const bool is_own_room = target.starts_with(place + "/");
+        EXPECT_TRUE(is_own_folder ? place == folder_of(place) || place == "planner/cli"
+                                  : is_own_room || may_reach(place + "/", target))
+            << place << "/CMakeLists.txt names " << target;
+      }
+    }
+  EXPECT_GT(links, 40);
+}
+
+TEST(Rooms, ATargetIsSeen) {
+  EXPECT_EQ(
+      targets_in("target_link_libraries(a octotomy_brep PRIVATE octotomy_voxel_tree) # octotomy_verify"),
+      (Names{"brep/", "voxel/tree/"}));
+  EXPECT_FALSE(may_reach("voxel/tree/", "voxel/solid/"));
+  EXPECT_FALSE(may_reach("voxel/tree/", "brep/"));
 }
 
 TEST(TopLevel, HoldsWhatTheHouseNamesAndNothingElse) {
-  const std::set<std::string> house{"CMakeLists.txt", "README.md", "LICENSE", "voxel", "brep",
-                                    "convert",        "verify",    "planner", "tests"};
+  const Names top{"CMakeLists.txt", "README.md", "LICENSE", "voxel", "brep",
+                  "convert",        "verify",    "planner", "tests"};
   for (const fs::directory_entry& entry : fs::directory_iterator(OCTOTOMY_SOURCE_DIR)) {
     const std::string name = entry.path().filename();
     if (name.starts_with(".") || name == "build") continue;
-    EXPECT_TRUE(house.contains(name)) << name;
+    EXPECT_TRUE(top.contains(name)) << name;
   }
-  for (const std::string& name : house) EXPECT_TRUE(fs::exists(fs::path(OCTOTOMY_SOURCE_DIR) / name)) << name;
+  for (const std::string& name : top) EXPECT_TRUE(fs::exists(fs::path(OCTOTOMY_SOURCE_DIR) / name)) << name;
 }
 
 }  // namespace

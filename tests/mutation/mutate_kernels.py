@@ -24,13 +24,13 @@ import tempfile
 
 # The tests of each source's own; verify --random is asked after them.
 SOURCES = {
-    "voxel/combine.cpp": [("voxel_tests", "Combine*:Moved*:Octree*"), ("expression_tests", "SetIdentities*:Resampling*:CombineGrey*")],
-    "voxel/combine_grey.cpp": [("voxel_tests", "*Grey*:Combine*"), ("expression_tests", "Resampling*:CombineGrey*")],
-    "voxel/combine_shares.cpp": [("expression_tests", "CombineShares*")],
-    "brep/boolean.cpp": [("brep_tests", "*Boolean*")],
-    "brep/corefine.cpp": [("brep_tests", "*Boolean*")],
-    "brep/meeting.cpp": [("brep_tests", "Meeting*:*Boolean*")],
-    "brep/near_boolean.cpp": [("brep_tests", "*Boolean*")],
+    "voxel/solid/combine.cpp": [("voxel_tests", "Combine*:Moved*:Octree*"), ("expression_tests", "SetIdentities*:Resampling*:CombineGrey*")],
+    "voxel/solid/combine_grey.cpp": [("voxel_tests", "*Grey*:Combine*"), ("expression_tests", "Resampling*:CombineGrey*")],
+    "voxel/solid/combine_shares.cpp": [("expression_tests", "CombineShares*")],
+    "brep/boolean/boolean.cpp": [("brep_tests", "*Boolean*")],
+    "brep/boolean/corefine.cpp": [("brep_tests", "*Boolean*")],
+    "brep/mesh/intersecting_triangles.cpp": [("brep_tests", "IntersectingTriangles*:*Boolean*")],
+    "brep/boolean/near_boolean.cpp": [("brep_tests", "*Boolean*")],
 }
 # What is looked for in a line of code, and what it becomes.
 CHANGES = [
@@ -72,8 +72,8 @@ def command_for(build, target):
 
 
 def compile_command(build, path):
-    library = path.split("/")[0]
-    object_path = f"{library}/CMakeFiles/octotomy_{library}.dir/{path.split('/')[1]}.o"
+    folder, room, source = path.split("/")
+    object_path = f"{folder}/{room}/CMakeFiles/octotomy_{folder}_{room}.dir/{source}.o"
     return command_for(build, object_path), object_path
 
 

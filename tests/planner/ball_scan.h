@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "voxel/scene.h"
-#include "voxel/write_scene.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/space/scene.h"
 
 namespace octotomy::tests {
 

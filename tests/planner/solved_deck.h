@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "convert/calculix_result.h"
-#include "planner/region_deck.h"
+#include "convert/deck/calculix_result.h"
+#include "planner/deck/region_deck.h"
 #include "tests/run_command.h"
 
 namespace octotomy::tests {

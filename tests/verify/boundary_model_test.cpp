@@ -6,12 +6,12 @@
 #include <numbers>
 #include <vector>
 
-#include "brep/measure.h"
-#include "brep/move.h"
-#include "brep/prism.h"
-#include "convert/partial_surface.h"
-#include "convert/voxelise.h"
-#include "verify/form.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/move.h"
+#include "brep/shape/prism.h"
+#include "convert/surface/partial_surface.h"
+#include "convert/voxel/voxelise.h"
+#include "verify/implicit_solid.h"
 #include "verify/solid_phantom.h"
 
 namespace octotomy::verify {
@@ -22,7 +22,7 @@ voxel::Lattice unit_lattice() {
 }
 
 brep::Mesh surface_of(const char* kind, double radius, const glm::dvec3& centre, const glm::dmat3& turn) {
-  SolidOptions options;
+  SolidPhantomOptions options;
   options.voxels = 64;
   options.radius_voxels = radius;
   options.centre_mm = centre;

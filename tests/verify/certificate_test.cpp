@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "verify/certificate.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,13 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "brep/boolean.h"
-#include "brep/measure.h"
-#include "brep/move.h"
-#include "brep/prism.h"
-#include "brep/triangles.h"
-#include "convert/isosurface.h"
-#include "voxel/combine.h"
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/move.h"
+#include "brep/mesh/triangles.h"
+#include "brep/shape/prism.h"
+#include "convert/surface/isosurface.h"
+#include "verify/certify_bounded.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {
@@ -91,12 +90,12 @@ Certificate certify(const Pair& pair) {
 
 std::string told(const Certificate& certificate) {
   char text[512];
-  std::snprintf(
-      text, sizeof text, "%s dV %.3f of %.3f, XOR %.3f of %.3f, centroid %.5f of %.5f, H95 %.3f H %.3f",
-      to_string(certificate.agreement).c_str(), certificate.difference_mm3, certificate.tolerance_mm3,
-      certificate.symmetric_difference_mm3, certificate.symmetric_difference_tolerance_mm3,
-      certificate.centroid_distance_mm.value_or(-1), certificate.centroid_tolerance_mm.value_or(-1),
-      certificate.hausdorff95_mm.value_or(-1), certificate.hausdorff_mm.value_or(-1));
+  std::snprintf(text, sizeof text,
+                "%s dV %.3f of %.3f, XOR %.3f of %.3f, centroid %.5f of %.5f, H95 %.3f H %.3f",
+                to_string(certificate.verdict).c_str(), certificate.difference_mm3, certificate.tolerance_mm3,
+                certificate.symmetric_difference_mm3, certificate.symmetric_difference_tolerance_mm3,
+                certificate.centroid_distance_mm.value_or(-1), certificate.centroid_tolerance_mm.value_or(-1),
+                certificate.hausdorff95_mm.value_or(-1), certificate.hausdorff_mm.value_or(-1));
   std::string result = text;
   for (const ToleranceTerm& term : certificate.terms)
     result += "; " + term.name + " " + std::to_string(term.value_mm3);
@@ -130,9 +129,8 @@ TEST(CertifyBounded, RightAnswersPassAtSeveralResolutions) {
     for (const double spacing_mm : {1.0, 0.7, 0.5})
       for (const double voxel_mm : {1.0, 0.6}) {
         const Certificate certificate = certify(both_kernels(phantom.distance, spacing_mm, voxel_mm, 18.0));
-        EXPECT_EQ(certificate.agreement, Agreement::Pass)
-            << phantom.name << ", samples " << spacing_mm << ", voxels " << voxel_mm << ": "
-            << told(certificate);
+        EXPECT_EQ(certificate.verdict, Verdict::Pass) << phantom.name << ", samples " << spacing_mm
+                                                      << ", voxels " << voxel_mm << ": " << told(certificate);
       }
 }
 
@@ -143,15 +141,15 @@ TEST(CertifyBounded, AShiftOfHalfAVoxelDoesNotPassOnAnyPhantom) {
     // one.
     pair.mesh = brep::moved(pair.mesh, shifted({phantom.name == "box" ? 1.0 : 0.5, 0, 0}));
     const Certificate certificate = certify(pair);
-    EXPECT_NE(certificate.agreement, Agreement::Pass) << phantom.name << ": " << told(certificate);
+    EXPECT_NE(certificate.verdict, Verdict::Pass) << phantom.name << ": " << told(certificate);
   }
 }
 
-Agreement verdict_on(const Certificate& certificate, const std::string& quantity) {
+Verdict verdict_on(const Certificate& certificate, const std::string& quantity) {
   for (const Comparison& comparison : certificate.comparisons)
-    if (comparison.quantity == quantity) return comparison.agreement;
+    if (comparison.quantity == quantity) return comparison.verdict;
   ADD_FAILURE() << quantity << " was not compared";
-  return Agreement::Fail;
+  return Verdict::Fail;
 }
 
 TEST(CertifyBounded, AShiftThatNoVolumeSeesHasVerdictsOfItsOwn) {
@@ -159,12 +157,12 @@ TEST(CertifyBounded, AShiftThatNoVolumeSeesHasVerdictsOfItsOwn) {
   const Certificate right = certify(pair);
   for (const char* quantity :
        {"volume", "symmetric difference", "centroid", "area", "inertia", "hausdorff95", "mean distance"})
-    EXPECT_EQ(verdict_on(right, quantity), Agreement::Pass) << quantity;
+    EXPECT_EQ(verdict_on(right, quantity), Verdict::Pass) << quantity;
   pair.mesh = brep::moved(pair.mesh, shifted({0.5, 0, 0}));
   const Certificate wrong = certify(pair);
-  EXPECT_EQ(verdict_on(wrong, "volume"), Agreement::Pass);
-  EXPECT_EQ(verdict_on(wrong, "area"), Agreement::Pass);
-  EXPECT_EQ(verdict_on(wrong, "centroid"), Agreement::Fail) << told(wrong);
+  EXPECT_EQ(verdict_on(wrong, "volume"), Verdict::Pass);
+  EXPECT_EQ(verdict_on(wrong, "area"), Verdict::Pass);
+  EXPECT_EQ(verdict_on(wrong, "centroid"), Verdict::Fail) << told(wrong);
 }
 
 TEST(CertifyBounded, TheVolumesToleranceIsWithinThreeTimesWhatSpheresShow) {
@@ -173,7 +171,7 @@ TEST(CertifyBounded, TheVolumesToleranceIsWithinThreeTimesWhatSpheresShow) {
     const glm::dvec3 centre =
         glm::fract(glm::dvec3(i) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
     const Certificate certificate = certify(both_kernels(ball(centre, 12.0 + 0.09 * i), 1.0, 1.0, 16.0));
-    ASSERT_EQ(certificate.agreement, Agreement::Pass) << told(certificate);
+    ASSERT_EQ(certificate.verdict, Verdict::Pass) << told(certificate);
     worst = std::max(worst, std::abs(certificate.difference_mm3) / certificate.tolerance_mm3);
   }
   EXPECT_GT(worst, 1.0 / 3.0);
@@ -191,16 +189,16 @@ TEST(CertifyBounded, WhereVoxelsAreTheSamplesTopologyIsCertifiedAndALostHandleFa
   inputs.voxels_are_samples = true;
   const Certificate right =
       certify_bounded(octree, brep::mesh_of(convert::isosurface(scan, 0.0, 32767.0)), inputs);
-  EXPECT_EQ(verdict_on(right, "euler"), Agreement::Pass) << told(right);
+  EXPECT_EQ(verdict_on(right, "euler"), Verdict::Pass) << told(right);
   const voxel::Scene plug = scan_of(either(ring, ball({0, 0, 0}, 8.0)), 1.0, 16.0);
   const Certificate wrong =
       certify_bounded(octree, brep::mesh_of(convert::isosurface(plug, 0.0, 32767.0)), inputs);
-  EXPECT_EQ(verdict_on(wrong, "euler"), Agreement::Fail) << told(wrong);
-  EXPECT_EQ(verdict_on(right, "components"), Agreement::Pass) << told(right);
+  EXPECT_EQ(verdict_on(wrong, "euler"), Verdict::Fail) << told(wrong);
+  EXPECT_EQ(verdict_on(right, "components"), Verdict::Pass) << told(right);
   const voxel::Scene stray = scan_of(either(ring, ball({0, 0, 0}, 3.0)), 1.0, 16.0);
   const Certificate parted =
       certify_bounded(octree, brep::mesh_of(convert::isosurface(stray, 0.0, 32767.0)), inputs);
-  EXPECT_EQ(verdict_on(parted, "components"), Agreement::Fail) << told(parted);
+  EXPECT_EQ(verdict_on(parted, "components"), Verdict::Fail) << told(parted);
 }
 
 TEST(CertifyBounded, AMeshTurnedInsideOutFails) {
@@ -208,14 +206,63 @@ TEST(CertifyBounded, AMeshTurnedInsideOutFails) {
   brep::Triangles triangles = brep::triangles_of(pair.mesh);
   for (auto& face : triangles.faces) std::swap(face[0], face[1]);
   pair.mesh = brep::mesh_of(triangles);
-  EXPECT_EQ(certify(pair).agreement, Agreement::Fail);
+  EXPECT_EQ(certify(pair).verdict, Verdict::Fail);
 }
 
 TEST(CertifyBounded, ASmallLostComponentDoesNotPass) {
   Pair pair = both_kernels(either(ball({-4, 0, 0}, 11.0), ball({14.2, 1.1, 0.4}, 2.4)), 1.0, 1.0, 18.0);
-  EXPECT_EQ(certify(pair).agreement, Agreement::Pass) << told(certify(pair));
+  EXPECT_EQ(certify(pair).verdict, Verdict::Pass) << told(certify(pair));
   pair.mesh = both_kernels(ball({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0).mesh;
-  EXPECT_NE(certify(pair).agreement, Agreement::Pass) << told(certify(pair));
+  EXPECT_NE(certify(pair).verdict, Verdict::Pass) << told(certify(pair));
+}
+
+TEST(CertifyBounded, NamesThePlaceThatDiffersMostAndTheKernelThatHasAPartThere) {
+  const glm::dvec3 lost_mm(14.2, 1.1, 0.4);
+  const Pair both = both_kernels(either(ball({-4, 0, 0}, 11.0), ball(lost_mm, 2.4)), 1.0, 1.0, 18.0);
+  const Pair one = both_kernels(ball({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0);
+  const auto expect_at = [&](const Pair& pair, const std::string& what) {
+    const Certificate certificate = certify(pair);
+    ASSERT_TRUE(certificate.worst);
+    EXPECT_LT(glm::distance(certificate.worst->at_mm, lost_mm), 4.0) << told(certificate);
+    EXPECT_DOUBLE_EQ(certificate.worst->size_mm, *certificate.hausdorff_mm);
+    EXPECT_EQ(certificate.worst->what, what);
+    const std::string place = text_of(*certificate.worst);
+    EXPECT_EQ(std::count(certificate.reasons.begin(), certificate.reasons.end(), place), 1)
+        << told(certificate);
+  };
+  expect_at({both.octree, one.mesh, 1.0}, part_of_voxels_only);
+  expect_at({one.octree, both.mesh, 1.0}, part_of_mesh_only);
+  EXPECT_EQ(text_of({{12.2, -80.0, 43.9}, 6.035699, part_of_mesh_only}),
+            "The two surfaces differ by up to 6.04 mm near (12, -80, 44): the mesh has a part there that the "
+            "voxels "
+            "lack.");
+}
+
+TEST(CertifyBounded, ReasonsQuoteBothKernelsInRoundedNumbersWithUnits) {
+  Certificate certificate;
+  add_comparison(certificate, {"volume", "mm3", 768.0, 807.573, 39.573, 12.3456});
+  EXPECT_EQ(certificate.verdict, Verdict::Fail);
+  EXPECT_EQ(certificate.reasons.back(),
+            "The volume is 768 mm3 in the voxel kernel and 808 mm3 in the mesh kernel, 39.6 mm3 apart; "
+            "theory allows "
+            "12.3 mm3.");
+  add_comparison(certificate, {.quantity = "centroid",
+                               .unit = "mm",
+                               .difference = 0.861389,
+                               .tolerance = 0.524624,
+                               .statement = "The centroids are % apart"});
+  EXPECT_EQ(certificate.reasons.back(), "The centroids are 0.861 mm apart; theory allows 0.525 mm.");
+}
+
+TEST(CertifyBounded, StopsWhenAsked) {
+  const Pair pair = both_kernels(ball({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
+  std::stop_source source;
+  int reports = 0;
+  const voxel::Progress progress{source.get_token(), [&](double) {
+                                   if (++reports == 3) source.request_stop();
+                                 }};
+  EXPECT_THROW(certify_bounded(pair.octree, pair.mesh, {}, progress), voxel::Stopped);
+  EXPECT_EQ(reports, 3);
 }
 
 TEST(CertifyBounded, ADifferenceOfMeshesPassesAndItsSwappedOperandsFail) {
@@ -224,9 +271,9 @@ TEST(CertifyBounded, ADifferenceOfMeshesPassesAndItsSwappedOperandsFail) {
   const voxel::Octree octree =
       voxel::combine(a.octree.universe(), voxel::Expression(a.octree) - voxel::Expression(b.octree));
   const Pair right{octree, brep::boolean(a.mesh, brep::Operation::Difference, b.mesh).mesh, 1.0};
-  EXPECT_EQ(certify(right).agreement, Agreement::Pass) << told(certify(right));
+  EXPECT_EQ(certify(right).verdict, Verdict::Pass) << told(certify(right));
   const Pair swapped{octree, brep::boolean(b.mesh, brep::Operation::Difference, a.mesh).mesh, 1.0};
-  EXPECT_EQ(certify(swapped).agreement, Agreement::Fail) << told(certify(swapped));
+  EXPECT_EQ(certify(swapped).verdict, Verdict::Fail) << told(certify(swapped));
 }
 
 TEST(CertifyBounded, ACutAt45DegreesErrsInStepAndIsAllowedThatNoMore) {
@@ -244,26 +291,70 @@ TEST(CertifyBounded, ACutAt45DegreesErrsInStepAndIsAllowedThatNoMore) {
         a.octree.universe(), voxel::Expression(a.octree) & voxel::HalfSpace{diagonal, offset_mm});
     const brep::Mesh mesh = brep::boolean(a.mesh, brep::Operation::Intersection, brep::mesh_of(prism)).mesh;
     const Certificate certificate = certify({octree, mesh, 1.0});
-    EXPECT_EQ(certificate.agreement, Agreement::Pass) << offset_mm << ": " << told(certificate);
+    EXPECT_EQ(certificate.verdict, Verdict::Pass) << offset_mm << ": " << told(certificate);
     // The twin: the mesh is cut a millimetre further on.
     prism.polygons_mm[0][2].y = prism.polygons_mm[0][3].y = offset_mm + 1.0;
     const brep::Mesh wrong = brep::boolean(a.mesh, brep::Operation::Intersection, brep::mesh_of(prism)).mesh;
-    EXPECT_NE(certify({octree, wrong, 1.0}).agreement, Agreement::Pass) << offset_mm;
+    EXPECT_NE(certify({octree, wrong, 1.0}).verdict, Verdict::Pass) << offset_mm;
   }
 }
 
 TEST(CertifyBounded, AFewVoxelsProveNothing) {
   const Certificate certificate = certify(both_kernels(ball({0, 0, 0}, 2.5), 1.0, 1.0, 6.0));
-  EXPECT_EQ(certificate.agreement, Agreement::BelowResolution);
-  EXPECT_FALSE(certificate.reasons.empty());
+  EXPECT_EQ(certificate.verdict, Verdict::Pass) << told(certificate);
+  ASSERT_FALSE(certificate.resolved());
+  EXPECT_NEAR(certificate.unresolved->extent_voxels, 4.0, 0.1);
+  EXPECT_EQ(verdict_text(certificate),
+            "PASS, not resolved: the object's smallest extent is 4 voxels, six are needed");
+}
+
+TEST(CertifyBounded, HalfOfAnObjectThatIsNotResolvedMissingDoesNotPass) {
+  // A ball of five voxels, a sheet of three and one thinner than a voxel.
+  const std::vector<Named> small{{"ball", ball({0.1, 0, 0.2}, 2.5)},
+                                 {"sheet", box({0.2, 0.3, 0.1}, {8.2, 9.1, 1.6})},
+                                 {"thin sheet", box({0.2, 0.3, 0.1}, {8.2, 9.1, 0.4})}};
+  for (const Named& object : small) {
+    const Pair whole = both_kernels(object.distance, 1.0, 1.0, 12.0);
+    const Certificate right = certify(whole);
+    EXPECT_FALSE(right.resolved()) << object.name << ": " << told(right);
+    EXPECT_EQ(right.verdict, Verdict::Pass) << object.name << ": " << told(right);
+    const Pair half = both_kernels(cut_by(object.distance, {1, 0, 0}, 0.2), 1.0, 1.0, 12.0);
+    for (const Pair& spoiled : {Pair{half.octree, whole.mesh, 1.0}, Pair{whole.octree, half.mesh, 1.0}}) {
+      const Certificate wrong = certify(spoiled);
+      EXPECT_FALSE(wrong.resolved()) << object.name << ": " << told(wrong);
+      EXPECT_NE(wrong.verdict, Verdict::Pass) << object.name << ": " << told(wrong);
+    }
+  }
+}
+
+TEST(CertifyBounded, AFailureOfWhatIsNotResolvedStaysAFailure) {
+  Pair pair = both_kernels(ball({0, 0, 0}, 2.5), 1.0, 1.0, 6.0);
+  brep::Triangles triangles = brep::triangles_of(pair.mesh);
+  for (auto& face : triangles.faces) std::swap(face[0], face[1]);
+  pair.mesh = brep::mesh_of(triangles);
+  const Certificate certificate = certify(pair);
+  EXPECT_EQ(certificate.verdict, Verdict::Fail);
+  EXPECT_FALSE(certificate.resolved());
+  EXPECT_EQ(verdict_text(certificate).substr(0, 20), "FAIL, not resolved: ");
+}
+
+TEST(Certificates, AreRankedByVerdictThenByWhetherVoxelsResolveThem) {
+  Certificate pass, unresolved, warn, unresolved_fail;
+  unresolved.unresolved = unresolved_fail.unresolved = Unresolved{2.0, ""};
+  warn.verdict = Verdict::Warn;
+  unresolved_fail.verdict = Verdict::Fail;
+  EXPECT_TRUE(is_worse(unresolved_fail, warn));
+  EXPECT_TRUE(is_worse(warn, pass));
+  EXPECT_TRUE(is_worse(pass, unresolved));
+  EXPECT_FALSE(is_worse(unresolved, pass));
 }
 
 TEST(CertifyBounded, NothingAgreesWithNothingOnly) {
   const Pair something = both_kernels(ball({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
   const voxel::Octree none = voxel::Octree::empty(something.octree.universe());
-  EXPECT_EQ(certify({none, brep::Mesh(), 1.0}).agreement, Agreement::Pass);
-  EXPECT_EQ(certify({none, something.mesh, 1.0}).agreement, Agreement::Fail);
-  EXPECT_EQ(certify({something.octree, brep::Mesh(), 1.0}).agreement, Agreement::Fail);
+  EXPECT_EQ(certify({none, brep::Mesh(), 1.0}).verdict, Verdict::Pass);
+  EXPECT_EQ(certify({none, something.mesh, 1.0}).verdict, Verdict::Fail);
+  EXPECT_EQ(certify({something.octree, brep::Mesh(), 1.0}).verdict, Verdict::Fail);
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "brep/triangles.h"
-#include "convert/cuberille.h"
-#include "voxel/digitise.h"
+#include "brep/mesh/triangles.h"
+#include "convert/surface/cuberille.h"
+#include "voxel/solid/digitise.h"
 
 namespace octotomy::verify {
 namespace {
@@ -25,11 +25,21 @@ TEST_P(Operations, OfTerracedSolidsAgreeAtEveryCentreWhateverTheVoxels) {
   const brep::Mesh a = ellipsoid({15, 15, 15}, {11, 8, 6}), b = ellipsoid({19.3, 16, 13}, {6, 7, 9});
   for (const double voxel_mm : {0.37, 0.8, 1.3}) {
     const OperationAnswers answers = certify_operation(a, GetParam(), b, {voxel_mm});
-    EXPECT_EQ(answers.certificate.agreement, Agreement::Pass)
+    EXPECT_EQ(answers.certificate.verdict, Verdict::Pass)
         << voxel_mm << ": "
         << (answers.certificate.reasons.empty() ? "" : answers.certificate.reasons.front());
     EXPECT_FALSE(answers.octree->is_empty());
   }
+}
+
+TEST(CertifyOperation, StopsWhenAsked) {
+  const brep::Mesh a = ellipsoid({15, 15, 15}, {11, 8, 6}), b = ellipsoid({19.3, 16, 13}, {6, 7, 9});
+  std::stop_source source;
+  MeshOperationOptions options;
+  options.progress = {source.get_token(), [&](double fraction) {
+                        if (fraction >= 0.3) source.request_stop();
+                      }};
+  EXPECT_THROW(certify_operation(a, brep::Operation::Union, b, options), voxel::Stopped);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Operations,

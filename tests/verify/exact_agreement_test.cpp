@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "brep/move.h"
-#include "brep/triangles.h"
+#include "brep/mesh/move.h"
+#include "brep/mesh/triangles.h"
 #include "verify/random_expression.h"
-#include "voxel/combine.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {
@@ -54,7 +54,7 @@ TEST(ExactAgreement, HoldsForExpressionsOfAnySetsOfVoxelsNoiseIncluded) {
     const Case tested = random_case(seed, 3, 7, {.depth = 6, .leaves = 5, .names = 3});
     const ExactAnswers answers = exact_answers(tested.expression);
     const Certificate certificate = certify_exact(answers);
-    EXPECT_EQ(certificate.agreement, Agreement::Pass) << tested.told << ": " << why(certificate);
+    EXPECT_EQ(certificate.verdict, Verdict::Pass) << tested.told << ": " << why(certificate);
     of_substance += !answers.octree.is_empty();
     in_pieces += answers.solids.size() > 1;
   }
@@ -74,9 +74,9 @@ TEST(ExactAgreement, HoldsUnderMotionsByWholeVoxelsThatPushSetsOutOfTheUniverse)
         glm::dvec4(random_int(random, -5, 5), random_int(random, -5, 5), random_int(random, -5, 5), 1);
     const auto shifted = voxel::moved(voxel::Expression(a) | voxel::Expression(b), motion);
     const ExactAnswers answers = exact_answers(shifted - ~voxel::Expression(b));
-    EXPECT_EQ(certify_exact(answers).agreement, Agreement::Pass) << i << why(certify_exact(answers));
+    EXPECT_EQ(certify_exact(answers).verdict, Verdict::Pass) << i << why(certify_exact(answers));
     const ExactAnswers whole = exact_answers(shifted);
-    EXPECT_EQ(certify_exact(whole).agreement, Agreement::Pass) << i << why(certify_exact(whole));
+    EXPECT_EQ(certify_exact(whole).verdict, Verdict::Pass) << i << why(certify_exact(whole));
     cut += 8 * whole.octree.voxel_count() < 8 * exact_answers(voxel::Expression(a) | b).octree.voxel_count();
   }
   EXPECT_GT(cut, 3);
@@ -98,7 +98,7 @@ class SpoiledAnswers : public testing::Test {
     return exact_answers(voxel::parse_expression(words, names));
   }
   void expect_fails(const ExactAnswers& answers) const {
-    EXPECT_EQ(certify_exact(answers).agreement, Agreement::Fail);
+    EXPECT_EQ(certify_exact(answers).verdict, Verdict::Fail);
   }
 
   Random random_{3};
@@ -108,7 +108,7 @@ class SpoiledAnswers : public testing::Test {
 };
 
 TEST_F(SpoiledAnswers, PassUnspoiled) {
-  EXPECT_EQ(certify_exact(answers("a - b")).agreement, Agreement::Pass);
+  EXPECT_EQ(certify_exact(answers("a - b")).verdict, Verdict::Pass);
 }
 
 TEST_F(SpoiledAnswers, FailWhereOperandsWereSwapped) {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <stdexcept>
 
-#include "brep/measure.h"
-#include "brep/prism.h"
+#include "brep/mesh/measure.h"
+#include "brep/shape/prism.h"
 
 namespace octotomy::verify {
 namespace {
@@ -48,6 +48,23 @@ TEST_F(MeshExpression, TheFourOperationsHaveTheirVolumes) {
   EXPECT_NEAR(volume_mm3("a | b"), 72.0, rounding_mm3);
   EXPECT_NEAR(volume_mm3("a - b"), 56.0, rounding_mm3);
   EXPECT_NEAR(volume_mm3("b - a"), 8.0, rounding_mm3);
+}
+
+TEST_F(MeshExpression, OfFiftyThousandOperandsIsNoDeepTree) {
+  std::string text = "a";
+  for (int i = 1; i < 50'000; ++i) text += i % 2 == 0 ? " | a" : " | b";
+  EXPECT_NEAR(volume_mm3(text), 72.0, rounding_mm3);
+}
+
+TEST_F(MeshExpression, NestedTooDeepIsRefusedWithTheDepthThatIsAllowed) {
+  for (const char symbol : {'(', '~'}) {
+    try {
+      volume_mm3(std::string(100'000, symbol) + "a");
+      FAIL() << "read 100,000 of " << symbol;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("nested at most 200 deep"), std::string::npos);
+    }
+  }
 }
 
 TEST_F(MeshExpression, OperatorsBindAsInPython) {

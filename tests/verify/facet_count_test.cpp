@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "verify/form.h"
+#include "verify/implicit_solid.h"
 
 namespace octotomy::verify {
 namespace {

@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "brep/triangles.h"
-#include "convert/cuberille.h"
+#include "brep/mesh/triangles.h"
+#include "convert/surface/cuberille.h"
 #include "verify/certify_surface.h"
 
 namespace octotomy::verify {
@@ -14,7 +14,7 @@ namespace {
 
 std::string told(const FaultTrial& trial) {
   std::string text = trial.fault + " in " + trial.kernel + ", " + trial.subject + ": " +
-                     to_string(trial.certificate.agreement);
+                     to_string(trial.certificate.verdict);
   for (const std::string& reason : trial.certificate.reasons) text += "; " + reason;
   return text;
 }
@@ -37,7 +37,7 @@ TEST_F(SmallFaults, LeaveTheirCleanTwinsAlone) {
   for (const FaultTrial& trial : trials())
     if (trial.fault.empty()) {
       ++clean;
-      EXPECT_EQ(trial.certificate.agreement, Agreement::Pass) << told(trial);
+      EXPECT_EQ(trial.certificate.verdict, Verdict::Pass) << told(trial);
     }
   EXPECT_EQ(clean, 3);
 }
@@ -63,12 +63,12 @@ TEST(DetectionPowerTable, CountsByFaultAndSizeAndHoldsOnlyWhereEverythingIsCaugh
   clean.voxels = caught.voxels = missed.voxels = resolved_size;
   caught.fault = missed.fault = "lost triangle";
   caught.must_be_caught = missed.must_be_caught = true;
-  caught.certificate.agreement = Agreement::Fail;
+  caught.certificate.verdict = Verdict::Fail;
   EXPECT_TRUE(detection_holds({clean, caught}));
   EXPECT_FALSE(detection_holds({clean, caught, missed}));
   EXPECT_FALSE(detection_holds({}));
   FaultTrial doubted = clean;
-  doubted.certificate.agreement = Agreement::Warn;
+  doubted.certificate.verdict = Verdict::Warn;
   EXPECT_FALSE(detection_holds({doubted, caught}));
   missed.voxels = resolved_size / 2;
   EXPECT_TRUE(detection_holds({clean, caught, missed}));
@@ -86,15 +86,15 @@ TEST(CertifySurface, SaysWhatIsWrongWithTrianglesThatAreNoSolid) {
   const voxel::Octree full = voxel::Octree::full(universe);
   const brep::Triangles cube = convert::triangles_of(convert::cuberille(full));
   BoundInputs inputs;
-  EXPECT_EQ(certify_surface(full, cube, inputs).agreement, Agreement::Pass);
+  EXPECT_EQ(certify_surface(full, cube, inputs).verdict, Verdict::Pass);
   brep::Triangles open = cube;
   open.faces.pop_back();
   const Certificate certificate = certify_surface(full, open, inputs);
-  EXPECT_EQ(certificate.agreement, Agreement::Fail);
+  EXPECT_EQ(certificate.verdict, Verdict::Fail);
   EXPECT_EQ(certificate.voxel.volume_mm3, 512.0);
   ASSERT_FALSE(certificate.reasons.empty());
   EXPECT_NE(certificate.reasons.front().find("no solid"), std::string::npos);
-  EXPECT_EQ(certify_surface(full, {}, inputs).agreement, Agreement::Fail);
+  EXPECT_EQ(certify_surface(full, {}, inputs).verdict, Verdict::Fail);
 }
 
 }  // namespace

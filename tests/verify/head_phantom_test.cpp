@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/head_phantom.h"
+
 #include <array>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include "verify/head_form.h"
-#include "verify/phantom.h"
+#include "verify/head_solids.h"
+#include "verify/sample_volume.h"
 
 namespace octotomy::verify {
 namespace {
@@ -114,7 +116,7 @@ TEST(HeadPhantom, TiltedSlicesHoldTheSameBoneOnASkewLattice) {
 }
 
 TEST(HeadPhantom, EveryVoxelIsTheMeanOf512SamplesAsIfNoneHadBeenSkipped) {
-  const HeadForms& head = head_forms();
+  const HeadSolids& head = head_solids();
   const HeadTissues tissues;
   const auto hounsfield = [&](const glm::dvec3& p) {
     if (head.skin(p) >= 0.0) return head.headrest(p) < 0.0 ? tissues.headrest : tissues.air;

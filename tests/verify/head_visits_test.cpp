@@ -2,11 +2,11 @@
 // Appendix A of the thesis on the head phantom: what each way of drawing its skull visits.
 #include <gtest/gtest.h>
 
-#include "verify/phantom.h"
-#include "voxel/back_to_front.h"
-#include "voxel/combine.h"
-#include "voxel/counted_trace.h"
-#include "voxel/front_to_back.h"
+#include "verify/head_phantom.h"
+#include "voxel/solid/combine.h"
+#include "voxel/view/back_to_front.h"
+#include "voxel/view/counted_trace.h"
+#include "voxel/view/front_to_back.h"
 
 namespace octotomy::verify {
 namespace {
@@ -14,11 +14,11 @@ namespace {
 constexpr double bone_hu = 300.0;
 
 /// The skull of a head scanned at 1 mm, as a window of its grey octree.
-const voxel::Drawn& skull() {
-  static const voxel::Drawn drawn = [] {
+const voxel::DrawnObject& skull() {
+  static const voxel::DrawnObject drawn = [] {
     const voxel::Universe universe = voxel::universe_around(head_bounds(), 1.0);
     const voxel::GreyOctree grey = voxel::grey_octree_of(universe, head_phantom());
-    voxel::Drawn object{"skull", voxel::combine(universe, voxel::Window{grey, bone_hu, 32767.0})};
+    voxel::DrawnObject object{"skull", voxel::combine(universe, voxel::Window{grey, bone_hu, 32767.0})};
     object.grey = grey;
     object.threshold = bone_hu;
     return object;
@@ -26,9 +26,9 @@ const voxel::Drawn& skull() {
   return drawn;
 }
 
-voxel::Visits visits_of(const voxel::Drawn& object,
-                        voxel::ColumnMap (*draw)(const std::vector<voxel::Drawn>&, const voxel::AxisView&,
-                                                 voxel::Visits*)) {
+voxel::Visits visits_of(const voxel::DrawnObject& object,
+                        voxel::ColumnMap (*draw)(const std::vector<voxel::DrawnObject>&,
+                                                 const voxel::AxisView&, voxel::Visits*)) {
   const voxel::AxisView axes =
       voxel::axis_view(object.octree.universe(), voxel::parse_view("anterior")).value();
   voxel::Visits visits;
@@ -55,7 +55,7 @@ TEST(HeadVisits, FallFromBackToFrontByFrontToBackToNodeTracingInTheBinaryOctree)
 }
 
 TEST(HeadVisits, ReachLessThanATenthOfAMinMaxTreeByNodeTracing) {
-  voxel::Drawn object = skull();
+  voxel::DrawnObject object = skull();
   object.counted_in_grey = true;
   const voxel::Visits trace = visits_of(object, voxel::quadtree_trace);
   EXPECT_GT(trace.unvisited_fraction().value(), 0.9);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-#include "voxel/read_scene.h"
+#include "voxel/scan/read_scene.h"
 
 namespace octotomy::verify {
 namespace {
@@ -19,9 +19,9 @@ TEST(PhantomSuite, NoRightAnswerFailsAndEverySamplingIsThere) {
   int resolved = 0;
   for (const PhantomCase& one : suite.cases) {
     samplings.insert(one.sampling + one.spacing);
-    resolved += one.bounded.agreement != Agreement::BelowResolution;
+    resolved += one.bounded.resolved();
     for (const Certificate* certificate : {&one.bounded, &one.closed_form})
-      EXPECT_NE(certificate->agreement, Agreement::Fail)
+      EXPECT_NE(certificate->verdict, Verdict::Fail)
           << certificate->operation << ": "
           << (certificate->reasons.empty() ? "" : certificate->reasons.front());
   }
@@ -31,11 +31,27 @@ TEST(PhantomSuite, NoRightAnswerFailsAndEverySamplingIsThere) {
     EXPECT_GE(found.order, found.least_order) << found.quantity;
 }
 
+TEST(PhantomSuite, PlatesOfOneVoxelAreNotResolvedAndNoneFails) {
+  PhantomSuiteOptions options;
+  options.poses = 2;
+  options.solid = "plate, 1 voxel";
+  const PhantomSuite suite = phantom_suite(options);
+  EXPECT_EQ(suite.cases.size(), 2U * 3U * 3U);
+  for (const PhantomCase& one : suite.cases)
+    for (const Certificate* certificate : {&one.bounded, &one.closed_form}) {
+      EXPECT_FALSE(certificate->resolved());
+      EXPECT_NE(certificate->verdict, Verdict::Fail)
+          << certificate->operation << ": "
+          << (certificate->reasons.empty() ? "" : certificate->reasons.front());
+    }
+  // Nothing that is not resolved counts where tolerances are shown to be tight.
+  for (const Tightness& tight : suite.tightness) EXPECT_EQ(tight.cases, 0);
+}
+
 TEST(PhantomSuite, StopsWhenAsked) {
   std::stop_source source;
   PhantomSuiteOptions options;
-  options.stop = source.get_token();
-  options.progress = [&](const std::string&, double) { source.request_stop(); };
+  options.progress = {source.get_token(), [&](double) { source.request_stop(); }};
   EXPECT_THROW(phantom_suite(options), voxel::Stopped);
 }
 

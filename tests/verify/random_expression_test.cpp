@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verify/truth_value.h"
-#include "voxel/expression.h"
+#include "voxel/solid/expression.h"
 
 namespace octotomy::verify {
 namespace {
@@ -14,9 +14,9 @@ std::string name_of(int leaf) {
   return std::string(1, static_cast<char>('a' + leaf));
 }
 
-int count(const Tree& tree, char symbol) {
+int count(const ExpressionTree& tree, char symbol) {
   int found = tree.symbol == symbol;
-  for (const Tree& part : tree.parts) found += count(part, symbol);
+  for (const ExpressionTree& part : tree.parts) found += count(part, symbol);
   return found;
 }
 
@@ -38,7 +38,7 @@ TEST(RandomTree, KeepsItsLimitsReachesThemAndUsesEveryOperator) {
   std::string seen;
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     Random random(seed);
-    const Tree tree = random_tree(random, {.depth = 6, .leaves = 9, .names = 4, .xors = 2});
+    const ExpressionTree tree = random_tree(random, {.depth = 6, .leaves = 9, .names = 4, .xors = 2});
     deepest = std::max(deepest, tree.depth());
     most = std::max(most, tree.leaf_count());
     EXPECT_LE(count(tree, '^'), 2) << seed;
@@ -55,7 +55,7 @@ TEST(RandomTree, AsTextMeansTheSameToTheParser) {
   names.object = [](std::string_view name) { return voxel::Sphere{{}, static_cast<double>(name[0] - 'a')}; };
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
-    const Tree tree = random_tree(random, {.depth = 6, .leaves = 8, .names = 5, .xors = 3});
+    const ExpressionTree tree = random_tree(random, {.depth = 6, .leaves = 8, .names = 5, .xors = 3});
     const std::string words = text(tree, name_of);
     const voxel::Expression parsed = voxel::parse_expression(words, names);
     for (unsigned values = 0; values < 32; ++values)

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/sample_volume.h"
+
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
-#include "verify/phantom.h"
+#include "verify/head_phantom.h"
 
 namespace octotomy::verify {
 namespace {

@@ -10,12 +10,13 @@
 
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scratch_folder.h"
-#include "verify/phantom.h"
-#include "voxel/combine.h"
-#include "voxel/measure.h"
-#include "voxel/partial_volume.h"
-#include "voxel/read_scene.h"
-#include "voxel/write_scene.h"
+#include "verify/head_phantom.h"
+#include "verify/sample_volume.h"
+#include "voxel/measure/measure.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/partial_volume.h"
 
 namespace octotomy::verify {
 namespace {

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "verify/form.h"
-#include "voxel/measure.h"
+#include "verify/implicit_solid.h"
+#include "voxel/measure/measure.h"
 
 namespace octotomy::verify {
 namespace {
 
 using voxel::Digitisation;
 
-SolidOptions of(int voxels) {
-  SolidOptions options;
+SolidPhantomOptions of(int voxels) {
+  SolidPhantomOptions options;
   options.voxels = voxels;
   return options;
 }
@@ -26,8 +26,8 @@ bool on_lattice(const std::string& kind) {
 
 // Off the lattice and oblique to it where that can be: a solid in the middle has eight like octants, whose
 // errors add up instead of levelling out.
-Solid askew(const std::string& kind) {
-  SolidOptions options = of(64);
+SolidPhantom askew(const std::string& kind) {
+  SolidPhantomOptions options = of(64);
   if (!on_lattice(kind)) {
     options.centre_mm = {0.21, -0.37, 0.11};
     options.lps_from_axes = turned({20, -35, 50});
@@ -36,7 +36,7 @@ Solid askew(const std::string& kind) {
 }
 
 TEST_P(EverySolid, HasTheVolumeAndCentroidOfItsFractions) {
-  const Solid solid = askew(GetParam());
+  const SolidPhantom solid = askew(GetParam());
   const voxel::PartialOctree partial = digitise_partial(solid);
   EXPECT_NEAR(voxel::volume_mm3(partial) / solid.volume_mm3, 1.0, 1e-3);
   const voxel::Measures measures = voxel::measure(voxel::at_least_half(partial));
@@ -53,7 +53,7 @@ TEST_P(EverySolid, HasTheVolumeAndCentroidOfItsFractions) {
 }
 
 TEST_P(EverySolid, HasAnAreaThatCroftonConfirmsUpToItsLossOnFlats) {
-  const Solid solid = solid_phantom(GetParam(), of(128));
+  const SolidPhantom solid = solid_phantom(GetParam(), of(128));
   const double area = voxel::measure(digitise(solid, Digitisation::Centre)).area_crofton13_mm2;
   // 13 directions lose up to 9 % on flats along the axes, and more where flats meet in edges.
   EXPECT_GT(area, (on_lattice(GetParam()) ? 0.85 : 0.9) * solid.area_mm2);
@@ -62,14 +62,14 @@ TEST_P(EverySolid, HasAnAreaThatCroftonConfirmsUpToItsLossOnFlats) {
 
 std::vector<std::string> names() {
   std::vector<std::string> all;
-  for (const SolidKind& kind : solid_kinds()) all.emplace_back(kind.name);
+  for (const SolidPhantomKind& kind : solid_phantom_kinds()) all.emplace_back(kind.name);
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, EverySolid, testing::ValuesIn(names()),
                          [](const auto& tested) { return tested.param; });
 
 TEST(SolidPhantom, AnEllipsoidsAreaIsTheSpheresAndTheSpheroidsWhereItIsThose) {
-  const Solid solid = solid_phantom("ellipsoid", of(256));
+  const SolidPhantom solid = solid_phantom("ellipsoid", of(256));
   const double a = 64, b = 48, c = 32;
   // Thomsen's formula is within 1.061 % of every ellipsoid: a wrong sign or axis is not.
   const double p = 1.6075;
@@ -91,12 +91,12 @@ TEST(SolidPhantom, AnEllipsoidsAreaIsTheSpheresAndTheSpheroidsWhereItIsThose) {
 }
 
 TEST(SolidPhantom, TurnsAndMovesWithoutChangingItsTruth) {
-  SolidOptions options = of(64);
+  SolidPhantomOptions options = of(64);
   options.lps_from_axes = turned({20, -35, 50});
   options.centre_mm = {2.3, -1.1, 0.7};
   for (const char* kind : {"box", "ellipsoid", "torus", "cylinder", "lens", "cut_sphere", "plate"}) {
-    const Solid straight = solid_phantom(kind, of(64));
-    const Solid turned_solid = solid_phantom(kind, options);
+    const SolidPhantom straight = solid_phantom(kind, of(64));
+    const SolidPhantom turned_solid = solid_phantom(kind, options);
     EXPECT_EQ(straight.volume_mm3, turned_solid.volume_mm3) << kind;
     const voxel::PartialOctree partial = digitise_partial(turned_solid);
     EXPECT_NEAR(voxel::volume_mm3(partial) / turned_solid.volume_mm3, 1.0, 2e-3) << kind;
@@ -110,7 +110,7 @@ TEST(SolidPhantom, TurnsAndMovesWithoutChangingItsTruth) {
 TEST(SolidPhantom, SaysWhatDoesNotFit) {
   EXPECT_THROW(solid_phantom("spher", of(64)), std::invalid_argument);
   EXPECT_THROW(solid_phantom("sphere", of(100)), std::invalid_argument);
-  SolidOptions options = of(64);
+  SolidPhantomOptions options = of(64);
   options.radius_voxels = 33;
   EXPECT_THROW(solid_phantom("sphere", options), std::invalid_argument);
   options.radius_voxels = 20;

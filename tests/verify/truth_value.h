@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "verify/formula.h"
+#include "verify/expression_tree.h"
 
 namespace octotomy::verify::tests {
 
 /// The answer of a formula where leaf i is bit i of `values`.
-inline bool truth_value(const Tree& tree, unsigned values) {
+inline bool truth_value(const ExpressionTree& tree, unsigned values) {
   if (tree.parts.empty()) return (values >> tree.leaf) & 1;
   const bool a = truth_value(tree.parts[0], values);
   if (tree.symbol == '~') return !a;

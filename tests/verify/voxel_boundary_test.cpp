@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit_universe.h"
-#include "voxel/combine.h"
-#include "voxel/measure.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {

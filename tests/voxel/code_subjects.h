@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "tests/voxel/dense.h"
-#include "voxel/combine.h"
-#include "voxel/octree.h"
+#include "voxel/solid/combine.h"
+#include "voxel/tree/octree.h"
 
-// What every representation of an object is tried on.
+// The subjects on which every representation of an object is tested.
 namespace octotomy::tests {
 
 inline voxel::Universe universe_of(int depth) {
@@ -51,7 +51,7 @@ inline std::vector<voxel::Octree> sparse_subjects() {
           box_of(universe, {2040, 2043, 2046}, {2055, 2050, 2049})};
 }
 
-/// Calls `with` for random objects of every depth from 2 to 6; figure 3.1, nothing and everything among them.
+/// Calls `with` for random objects of every depth from 2 to 6, and for figure 3.1, empty and full objects.
 inline void for_each_subject(const std::function<void(const Dense&, const voxel::Octree&)>& with) {
   for (int depth = 2; depth <= 6; ++depth)
     for (std::uint64_t seed = 0; seed < (depth < 6 ? 24 : 8); ++seed) {
@@ -65,7 +65,7 @@ inline void for_each_subject(const std::function<void(const Dense&, const voxel:
     }
 }
 
-/// A text or code with a few bytes changed, put in, taken out, doubled or cut off.
+/// A text or code with a few bytes changed, inserted, removed, doubled or cut off.
 template <typename Code>
 Code mutated(Code code, std::mt19937_64& random, const std::string& alphabet) {
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
@@ -120,7 +120,7 @@ inline void fuzz_text(const std::string& start, const std::string& what, const s
   EXPECT_GT(accepted, 0);
 }
 
-/// What a call refuses with; empty where it does not.
+/// The message of a call's refusal; empty if it succeeds.
 inline std::string refusal(const std::function<void()>& call) {
   try {
     call();

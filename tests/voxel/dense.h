@@ -6,12 +6,12 @@
 #include <random>
 #include <vector>
 
-#include "voxel/build.h"
-#include "voxel/octree.h"
+#include "voxel/tree/build.h"
+#include "voxel/tree/octree.h"
 
 namespace octotomy::tests {
 
-/// A plain array of voxels: what every octree operation is compared with.
+/// A plain array of voxels, the reference for every octree operation.
 struct Dense {
   int side = 0;
   std::vector<std::uint8_t> voxels;
@@ -44,7 +44,7 @@ inline Dense dense_of(const voxel::Octree& octree) {
   return dense;
 }
 
-/// Few balls and boxes, now and then inverted: homogeneous parts at all levels and curved and flat boundary.
+/// A few balls and boxes, sometimes inverted: homogeneous parts at all levels, curved and flat boundary.
 /// One seed in eight gives a single voxel, nothing, everything, or noise.
 inline Dense random_dense(int side, std::uint64_t seed) {
   std::mt19937_64 random(seed);

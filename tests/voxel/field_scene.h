@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "voxel/scene.h"
+#include "voxel/space/scene.h"
 
 namespace octotomy::tests {
 

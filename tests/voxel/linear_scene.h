@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "tests/voxel/field_scene.h"
-#include "voxel/scene.h"
+#include "voxel/space/scene.h"
 
 namespace octotomy::tests {
 
-/// A field that linear interpolation reproduces and that no flip, turn or exchange of axes leaves as it is.
+/// A field that linear interpolation reproduces, and that every flip, turn or exchange of axes changes.
 /// Over a head it runs through air, -1000, as a CT does.
 inline double linear_field(const glm::dvec3& p_mm) {
   return -700.0 + 17.0 * p_mm.x - 5.0 * p_mm.y + 3.0 * p_mm.z;
@@ -34,7 +34,7 @@ inline const voxel::Finding* finding(const voxel::Scene& scene, const std::strin
   return nullptr;
 }
 
-/// The verdict of a check, and the detail for the message; a check that was not made is a failure to say so.
+/// The verdict of a check; a missing check fails the test.
 inline voxel::Verdict verdict(const voxel::Scene& scene, const std::string& check) {
   const voxel::Finding* line = finding(scene, check);
   if (line == nullptr) throw std::logic_error("the audit has no check '" + check + "'");

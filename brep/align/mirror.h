@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+
+namespace octotomy::brep {
+
+/// A plane of LPS millimetres by a point and a unit normal.
+struct MirrorPlane {
+  glm::dvec3 point_mm{0.0}, normal{1, 0, 0};
+};
+
+/// The mesh mirrored about a plane, its triangles outward still. Throws std::invalid_argument where the
+/// normal has no length.
+Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
+
+struct MirrorFitOptions {
+  /// Near which the plane lies, to some 20 degrees; none tries those square to the surface's three axes.
+  std::optional<MirrorPlane> start = std::nullopt;
+  /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: what is
+  /// missing or crooked on one side must be less than the rest.
+  double overlap = 0.7;
+  std::stop_token stop = {};
+  std::function<void(double)> progress = {};  ///< is called with 0..1
+};
+
+struct MirrorFit {
+  MirrorPlane
+      plane;  ///< through the surface's centre as far as it can be; its normal's largest part positive
+  double rms_mm = 0.0;  ///< of the mirrored surface from the surface, of the samples kept
+  double kept_share = 0.0;
+  /// What is left of the motion that would lay the mirror image on the surface best: a plane's mirror image
+  /// takes none, so both are near zero where there is a mid-plane.
+  double twist_deg = 0.0, slide_mm = 0.0;
+  std::vector<std::string> findings;
+};
+
+/// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces(). Cost:
+/// that of one such fit from a start, three without. Source: Benz et al., "The symmetry of faces", VMV 2002:
+/// mirror about any plane, register, and take the plane half way between points and their images.
+MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options = {});
+
+}  // namespace octotomy::brep

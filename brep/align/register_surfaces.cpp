@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 spread samples over the moving surface; 2 where no start is given, refine each of a set of turns shortly
+// with few samples and keep the best; 3 refine those with all samples: find feet, drop what has no
+// counterpart, trim the furthest, solve the linearised motion that brings the rest onto the planes at their
+// feet, until nothing moves; 4 go on with all
+// samples within the noise of those, a departure from trimming that uses the whole overlap. Sums run in the
+// order of the samples.
+#include "brep/align/register_surfaces.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include "brep/mesh/move.h"
+#include "brep/mesh/oriented_surface.h"
+#include "brep/mesh/sample_surface.h"
+
+namespace octotomy::brep {
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+constexpr std::size_t search_samples = 500;
+constexpr int search_rounds = 12;
+constexpr std::size_t finalists = 6;
+constexpr int finalist_rounds = 30;
+
+/// Normals further apart than this belong to different sheets of a surface, of a thin bone for example.
+constexpr double least_normal_cosine() {
+  return 0.5;
+}
+
+/// The share of the samples' spread by which a round may still move them and count as at rest: 10 nm on a
+/// head of 100 mm, below what any number of samples of a scan determines, far above rounding.
+constexpr double rest_share() {
+  return 1e-7;
+}
+
+/// Modes softer than this share of the stiffest are left alone: a step along one would be rounding divided by
+/// nearly nothing. Eigenvalues of sums of some 1e4 terms are good to 1e-12 of the largest.
+constexpr double softest_share() {
+  return 1e-9;
+}
+
+/// Where noise ends and what has no counterpart begins, from the median distance of the nearest: three
+/// standard deviations, of which normal noise has a median of 0.6745.
+double noise_limit_mm(double median_mm) {
+  return 3.0 / 0.6745 * median_mm;
+}
+
+/// Below it the surfaces count as sliding: a millimetre along the softest motion changes distances by less
+/// than a twentieth of what one along the stiffest does, so that noise of 0.1 mm leaves it open by 2 mm a
+/// sample. The facets of a sphere of some thousand triangles reach 0.02, a face of a person 0.35.
+constexpr double sliding_stiffness() {
+  return 0.05;
+}
+
+struct Cloud {
+  std::vector<glm::dvec3> points_mm, normals;
+  glm::dvec3 centre_mm{0.0};
+  double spread_mm = 0.0;  ///< root mean square distance from the centre
+  glm::dmat3 axes{1.0};    ///< columns, by falling spread, right-handed
+};
+
+/// So many samples, each for the same area.
+Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which) {
+  double area = 0.0;
+  for (const auto f : mesh.faces()) area += mesh.calc_face_area(f);
+  if (!(area > 0.0)) throw std::invalid_argument("register: the " + which + " surface has no area");
+  const SurfaceSamples samples = sample_surface(mesh, std::sqrt(2.0 * area / static_cast<double>(count)));
+  Cloud cloud;
+  const double whole = std::accumulate(samples.areas_mm2.begin(), samples.areas_mm2.end(), 0.0);
+  const double each = whole / static_cast<double>(count);
+  double passed = 0.0;
+  for (std::size_t i = 0; i < samples.points_mm.size(); ++i) {
+    passed += samples.areas_mm2[i];
+    if (passed <= (static_cast<double>(cloud.points_mm.size()) + 0.5) * each) continue;
+    cloud.points_mm.push_back(samples.points_mm[i]);
+    cloud.normals.push_back(samples.normals[i]);
+  }
+  const auto n = static_cast<double>(cloud.points_mm.size());
+  for (const glm::dvec3& p : cloud.points_mm) cloud.centre_mm += p / n;
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const glm::dvec3& p : cloud.points_mm) {
+    const Eigen::Vector3d d(p.x - cloud.centre_mm.x, p.y - cloud.centre_mm.y, p.z - cloud.centre_mm.z);
+    moments += d * d.transpose() / n;
+  }
+  cloud.spread_mm = std::sqrt(moments.trace());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector3d axis = solver.eigenvectors().col(2 - k);
+    cloud.axes[k] = {axis[0], axis[1], axis[2]};
+  }
+  cloud.axes[2] = glm::cross(cloud.axes[0], cloud.axes[1]);
+  return cloud;
+}
+
+glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p) {
+  return glm::dvec3(motion * glm::dvec4(p, 1.0));
+}
+
+/// Both clouds' centres and axes on each other, with a turn between.
+glm::dmat4 laid_on(const Cloud& moving, const Cloud& fixed, const glm::dmat3& turn) {
+  const glm::dmat3 rotation = fixed.axes * turn * glm::transpose(moving.axes);
+  glm::dmat4 motion(rotation);
+  motion[3] = glm::dvec4(fixed.centre_mm - rotation * moving.centre_mm, 1.0);
+  return motion;
+}
+
+/// The 60 rotations of an icosahedron: neighbours are 72 degrees or less apart. Built from a turn about a
+/// vertex by a fifth and one about the middle of an edge at it by a half, until no new ones come.
+std::vector<glm::dmat3> icosahedral_turns() {
+  const double phi = std::numbers::phi;
+  const glm::dmat3 fifth(
+      glm::rotate(glm::dmat4(1.0), 0.4 * std::numbers::pi, glm::normalize(glm::dvec3(0.0, 1.0, phi))));
+  const glm::dmat3 half(glm::rotate(glm::dmat4(1.0), std::numbers::pi, glm::dvec3(0.0, 0.0, 1.0)));
+  std::vector<glm::dmat3> turns = {glm::dmat3(1.0)};
+  const auto known = [&](const glm::dmat3& turn) {
+    return std::any_of(turns.begin(), turns.end(), [&](const glm::dmat3& other) {
+      // The trace of the turn between them; the smallest turn of the group is 72 degrees.
+      return glm::dot(turn[0], other[0]) + glm::dot(turn[1], other[1]) + glm::dot(turn[2], other[2]) > 2.5;
+    });
+  };
+  for (std::size_t i = 0; i < turns.size(); ++i)
+    for (const glm::dmat3& step : {fifth, half}) {
+      const glm::dmat3 turn = step * turns[i];
+      if (!known(turn)) turns.push_back(turn);
+    }
+  return turns;
+}
+
+/// One state of the refinement.
+struct Fit {
+  glm::dmat4 motion{1.0};
+  double rms_mm = 0.0;                                        ///< of the samples kept
+  double limit_mm = std::numeric_limits<double>::infinity();  ///< samples further off do not count
+  double score_mm = 0.0;  ///< rms of the nearest `overlap` of all samples, counterpart or not
+  std::size_t kept = 0;
+  double stiffness = 0.0;
+  int rounds = 0;
+  bool converged = false;
+};
+
+/// The samples under a motion, what they meet, and which of them count.
+class Refinement {
+ public:
+  Refinement(const Cloud& moving, const OrientedSurface& fixed, double overlap, std::stop_token stop)
+      : moving_(moving), fixed_(fixed), overlap_(overlap), stop_(std::move(stop)) {}
+
+  Fit run(const glm::dmat4& start, int rounds) const {
+    Fit fit;
+    fit.motion = start;
+    refine(fit, rounds);
+    judge(fit);
+    return fit;
+  }
+
+  /// Goes on with all samples within the noise of those that were kept, whatever their share.
+  Fit widened(Fit fit, int rounds) const {
+    const std::vector<Meeting> meetings = meet(fit.motion);
+    std::vector<double> distances;
+    for (const std::size_t i : kept(meetings, fit))
+      distances.push_back(std::abs(meetings[i].foot.distance_mm));
+    if (distances.empty()) return fit;
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    fit.limit_mm = std::max(noise_limit_mm(*middle), rest_share() * moving_.spread_mm);
+    fit.converged = false;
+    refine(fit, rounds);
+    judge(fit);
+    return fit;
+  }
+
+ private:
+  void refine(Fit& fit, int rounds) const {
+    for (int round = 0; round < rounds && !fit.converged; ++round, ++fit.rounds) {
+      if (stop_.stop_requested()) throw std::runtime_error("register: stopped");
+      if (!step(fit)) break;
+    }
+  }
+
+  struct Meeting {
+    glm::dvec3 p_mm{0.0};
+    SignedFoot foot;
+    bool counterpart = false;
+  };
+
+  std::vector<Meeting> meet(const glm::dmat4& motion) const {
+    std::vector<glm::dvec3> placed(moving_.points_mm.size());
+    for (std::size_t i = 0; i < placed.size(); ++i) placed[i] = through(motion, moving_.points_mm[i]);
+    const std::vector<SignedFoot> feet = fixed_.feet(placed);
+    std::vector<Meeting> meetings(placed.size());
+    const glm::dmat3 turn(motion);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+      meetings[i] = {
+          placed[i], feet[i],
+          !feet[i].on_border && glm::dot(turn * moving_.normals[i], feet[i].normal) >= least_normal_cosine()};
+    return meetings;
+  }
+
+  std::size_t wanted() const {
+    return static_cast<std::size_t>(std::ceil(overlap_ * static_cast<double>(moving_.points_mm.size())));
+  }
+
+  /// Those with a counterpart, the furthest trimmed until a limit says how far, in the order of the samples.
+  std::vector<std::size_t> kept(const std::vector<Meeting>& meetings, const Fit& fit) const {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < meetings.size(); ++i)
+      if (meetings[i].counterpart && std::abs(meetings[i].foot.distance_mm) <= fit.limit_mm)
+        order.push_back(i);
+    if (fit.limit_mm == std::numeric_limits<double>::infinity() && order.size() > wanted()) {
+      const auto nearer = [&](std::size_t i, std::size_t j) {
+        const double a = std::abs(meetings[i].foot.distance_mm), b = std::abs(meetings[j].foot.distance_mm);
+        return a != b ? a < b : i < j;
+      };
+      std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(wanted()), order.end(),
+                       nearer);
+      order.resize(wanted());
+      std::sort(order.begin(), order.end());
+    }
+    return order;
+  }
+
+  /// Moves the fit by one linearised motion; false where too few samples have a counterpart to say which.
+  bool step(Fit& fit) const {
+    const std::vector<Meeting> meetings = meet(fit.motion);
+    const std::vector<std::size_t> chosen = kept(meetings, fit);
+    if (chosen.size() < 6) return false;
+    const glm::dvec3 centre = through(fit.motion, moving_.centre_mm);
+    Matrix6 normal = Matrix6::Zero();
+    Vector6 pull = Vector6::Zero();
+    for (const std::size_t i : chosen) {
+      const Meeting& m = meetings[i];
+      const glm::dvec3 lever = glm::cross(m.p_mm - centre, m.foot.normal) / moving_.spread_mm;
+      Vector6 row;
+      row << lever.x, lever.y, lever.z, m.foot.normal.x, m.foot.normal.y, m.foot.normal.z;
+      normal += row * row.transpose();
+      pull -= row * glm::dot(m.foot.normal, m.p_mm - m.foot.p_mm);
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(normal);
+    const Vector6& values = solver.eigenvalues();
+    fit.stiffness = values[5] > 0.0 ? std::sqrt(std::max(0.0, values[0]) / values[5]) : 0.0;
+    Vector6 motion = Vector6::Zero();
+    for (int k = 0; k < 6; ++k)
+      if (values[k] > softest_share() * values[5])
+        motion += solver.eigenvectors().col(k) * (solver.eigenvectors().col(k).dot(pull) / values[k]);
+
+    const glm::dvec3 turn = glm::dvec3(motion[0], motion[1], motion[2]) / moving_.spread_mm;
+    const double angle = glm::length(turn);
+    glm::dmat4 change = glm::translate(glm::dmat4(1.0), centre + glm::dvec3(motion[3], motion[4], motion[5]));
+    if (angle > 0.0) change = glm::rotate(change, angle, turn / angle);
+    fit.motion = rigid(glm::translate(change, -centre) * fit.motion);
+    fit.converged = motion.norm() <= rest_share() * moving_.spread_mm;
+    return true;
+  }
+
+  /// Gram and Schmidt once more, so that many rounds do not add up to a shear.
+  static glm::dmat4 rigid(glm::dmat4 motion) {
+    const glm::dvec3 x = glm::normalize(glm::dvec3(motion[0]));
+    const glm::dvec3 z = glm::normalize(glm::cross(x, glm::dvec3(motion[1])));
+    motion[0] = glm::dvec4(x, 0.0);
+    motion[1] = glm::dvec4(glm::cross(z, x), 0.0);
+    motion[2] = glm::dvec4(z, 0.0);
+    return motion;
+  }
+
+  void judge(Fit& fit) const {
+    const std::vector<Meeting> meetings = meet(fit.motion);
+    const std::vector<std::size_t> chosen = kept(meetings, fit);
+    fit.kept = chosen.size();
+    double squares = 0.0;
+    for (const std::size_t i : chosen) squares += std::pow(meetings[i].foot.distance_mm, 2);
+    fit.rms_mm = chosen.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(chosen.size()));
+    std::vector<double> all(meetings.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = std::pow(meetings[i].foot.distance_mm, 2);
+    std::sort(all.begin(), all.end());
+    all.resize(wanted());
+    fit.score_mm = std::sqrt(std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size()));
+    // Laid on with its inside out, a sheet is as near as laid on rightly.
+    if (fit.kept < wanted() / 2) fit.score_mm = std::numeric_limits<double>::infinity();
+  }
+
+  const Cloud& moving_;
+  const OrientedSurface& fixed_;
+  double overlap_;
+  std::stop_token stop_;
+};
+
+void sort_by_score(std::vector<Fit>& fits) {
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const Fit& a, const Fit& b) { return a.score_mm < b.score_mm; });
+}
+
+/// The best of all turns, refined with few samples.
+glm::dmat4 search(const Mesh& moving, const Cloud& fixed, const OrientedSurface& surface,
+                  const SurfaceFitOptions& options) {
+  const Cloud cloud = cloud_of(moving, search_samples, "moving");
+  const Refinement refinement(cloud, surface, options.overlap, options.stop);
+  std::vector<Fit> fits = {refinement.run(glm::dmat4(1.0), search_rounds)};
+  const std::vector<glm::dmat3> turns = icosahedral_turns();
+  for (const glm::dmat3& turn : turns) {
+    fits.push_back(refinement.run(laid_on(cloud, fixed, turn), search_rounds));
+    if (options.progress)
+      options.progress(0.5 * static_cast<double>(fits.size()) / static_cast<double>(turns.size() + 1));
+  }
+  sort_by_score(fits);
+  fits.resize(finalists);
+  for (Fit& fit : fits) fit = refinement.run(fit.motion, finalist_rounds);
+  sort_by_score(fits);
+  return fits.front().motion;
+}
+
+void check(const SurfaceFitOptions& options) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("register: " + why); };
+  if (!(options.overlap > 0.0 && options.overlap <= 1.0)) refuse("the overlap must be above 0 and at most 1");
+  if (options.samples < 100) refuse("at least 100 samples are needed");
+  if (options.max_rounds < 1) refuse("there must be at least one round");
+  if (options.overlap * static_cast<double>(search_samples) < 6.0)
+    refuse("the overlap keeps fewer than six samples: place landmarks instead");
+}
+
+}  // namespace
+
+SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options) {
+  check(options);
+  const Cloud cloud = cloud_of(moving, options.samples, "moving");
+  const Cloud fixed_cloud = cloud_of(fixed, options.samples, "fixed");
+  const OrientedSurface surface(fixed);
+  const glm::dmat4 start = options.start ? *options.start : search(moving, fixed_cloud, surface, options);
+  const Refinement refinement(cloud, surface, options.overlap, options.stop);
+  const Fit fit = refinement.widened(refinement.run(start, options.max_rounds), options.max_rounds);
+
+  SurfaceFit answer{
+      fit.motion, fit.rms_mm,    static_cast<double>(fit.kept) / static_cast<double>(cloud.points_mm.size()),
+      fit.rounds, fit.converged, fit.stiffness,
+      {}};
+  if (!fit.converged)
+    answer.findings.push_back("the motion still moved after " + std::to_string(fit.rounds) +
+                              " rounds: start it nearer, by landmarks, or allow more rounds");
+  if (fit.stiffness < sliding_stiffness())
+    answer.findings.emplace_back(
+        "the surfaces slide on each other, as spheres and planes do: a part of the motion is open; add "
+        "landmarks");
+  if (answer.kept_share < 0.9 * options.overlap)
+    answer.findings.push_back("only " + std::to_string(answer.kept_share) +
+                              " of the surface found a counterpart, less than the overlap asked for");
+  if (options.progress) options.progress(1.0);
+  return answer;
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+
+namespace octotomy::brep {
+
+struct SurfaceFitOptions {
+  /// Where to begin, fixed from moving. None searches: the surfaces' centres and axes are laid on each other
+  /// and turned through the 60 rotations of an icosahedron, which finds any turn but of little overlap.
+  std::optional<glm::dmat4> start = std::nullopt;
+  /// Share of the moving surface's area that has a counterpart in the fixed one, above 0 to 1. Too
+  /// large a share lets what is missing pull; a smaller one is safe down to a third of the truth.
+  double overlap = 0.7;
+  std::size_t samples = 5000;  ///< of the moving surface, at least 100; the error falls with its root
+  int max_rounds = 100;        ///< of each of the last two refinements, at least 1
+  std::stop_token stop = {};
+  std::function<void(double)> progress = {};  ///< is called with 0..1
+};
+
+struct SurfaceFit {
+  glm::dmat4 fixed_from_moving{1.0};  ///< rigid
+  double rms_mm = 0.0;                ///< point to surface, of the samples kept
+  double kept_share = 0.0;            ///< of the samples
+  int rounds = 0;                     ///< of the last two refinements
+  bool converged = false;             ///< the last round moved nothing by more than rounding can tell
+  /// How far the worst determined motion moves the surface along itself for one unit of distance, as a share
+  /// of the best determined one's: near zero where the surfaces slide, as spheres and planes do.
+  double stiffness = 0.0;
+  std::vector<std::string> findings;
+};
+
+/// The rigid motion that lays the moving surface on the fixed one, both in LPS millimetres, where part of
+/// either may be missing: samples whose nearest point lies on the other's border, or whose normal looks the
+/// other way, have no counterpart, and of the rest the furthest are trimmed; at last all within three
+/// standard deviations of those kept count. Throws std::invalid_argument where a surface has no area, an
+/// option is out of its range, or the overlap keeps fewer than six samples; std::runtime_error where stopped.
+/// The same bits on any number of threads. Cost: some 70 short searches of 500 samples, then about 50 rounds
+/// of `samples`: a second for heads. Source: Chen and Medioni, "Object modelling by registration of multiple
+/// range images", IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of 3D point
+/// sets: the trimmed iterative closest point algorithm", IVC 23, 2005; Turk and Levoy 1994 (borders).
+SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options = {});
+
+}  // namespace octotomy::brep

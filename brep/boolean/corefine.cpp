@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/boolean/corefine.h"
+
+// CGAL checks its invariants in every build: where operands are all but degenerate, one without checks goes
+// on with what it broke, to wrong memory. A check that fails is an exception, told and remedied as others.
+#define CGAL_DEBUG
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+#include "brep/mesh/coordinate_order.h"
+#include "brep/mesh/flat_triangles.h"
+#include "brep/mesh/triangles.h"
+
+// One of those checks is not worth its price: after each point on a side of a triangle it asks whether the
+// whole triangulation of that triangle is Delaunay in exact numbers, more than half of all time. What
+// protects memory is that its links are sound; points in a wrong order show in the results' volumes.
+namespace CGAL {
+using CutTraits = Projection_traits_3<Exact_predicates_exact_constructions_kernel>;
+using CutLinks = Triangulation_data_structure_2<Triangulation_vertex_base_with_info_2<std::size_t, CutTraits>,
+                                                Constrained_triangulation_face_base_2<CutTraits>>;
+template <>
+inline bool Constrained_Delaunay_triangulation_2<CutTraits, CutLinks>::is_valid(bool verbose,
+                                                                                int level) const {
+  return this->tds().is_valid(verbose, level);
+}
+}  // namespace CGAL
+
+namespace octotomy::brep {
+
+/// Steps along halfedges that the corefinement under way may still take, and what may end it before.
+struct StepBudget {
+  static thread_local std::size_t left;
+  static thread_local std::stop_token stop;
+};
+thread_local std::size_t StepBudget::left = 0;
+thread_local std::stop_token StepBudget::stop;
+
+// CGAL finds these for our mesh instead of its own.
+// Its output builder distrusts open surfaces as operands: it would refuse what it has classified by edges
+// alone, which is all that patches of solids need. Solids are known to be closed and outward before they come
+// here, and patches wind as their solids do.
+inline bool is_closed(const Mesh&) {
+  return true;
+}
+template <typename Parameters>
+bool is_outward_oriented(const Mesh&, const Parameters&) {
+  return true;
+}
+// Where surfaces all but coincide it may link halfedges into rings that its walks never leave.
+inline void take_step() {
+  if (StepBudget::left == 0) throw std::runtime_error("its walk along the surface does not end");
+  constexpr std::size_t between_looks = 1 << 12;
+  if (StepBudget::left % between_looks == 0 && StepBudget::stop.stop_requested()) throw BooleanStopped();
+  --StepBudget::left;
+}
+inline OpenMesh::HalfedgeHandle next(OpenMesh::HalfedgeHandle h, const Mesh& mesh) {
+  take_step();
+  return mesh.next_halfedge_handle(h);
+}
+inline OpenMesh::HalfedgeHandle prev(OpenMesh::HalfedgeHandle h, const Mesh& mesh) {
+  take_step();
+  return mesh.prev_halfedge_handle(h);
+}
+
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// The mesh's points as CGAL's. CGAL's own map of OpenMesh points writes them through float.
+struct PointMap {
+  using category = boost::read_write_property_map_tag;
+  using key_type = boost::graph_traits<Mesh>::vertex_descriptor;
+  using value_type = Kernel::Point_3;
+  using reference = Kernel::Point_3;
+  Mesh* mesh = nullptr;
+
+  friend reference get(const PointMap& map, key_type v) {
+    const Mesh::Point& p = map.mesh->point(v);
+    return {p[0], p[1], p[2]};
+  }
+  friend void put(const PointMap& map, key_type v, const value_type& p) {
+    map.mesh->set_point(v, Mesh::Point(p.x(), p.y(), p.z()));
+  }
+};
+
+/// Edges that lie on the cut, by number; edges come to be while it is made.
+struct CutEdges {
+  using category = boost::read_write_property_map_tag;
+  using key_type = boost::graph_traits<Mesh>::edge_descriptor;
+  using value_type = bool;
+  using reference = bool;
+  std::vector<bool>* on_cut = nullptr;
+
+  friend bool get(const CutEdges& map, key_type e) {
+    const auto i = static_cast<std::size_t>(e.idx());
+    return i < map.on_cut->size() && (*map.on_cut)[i];
+  }
+  friend void put(const CutEdges& map, key_type e, bool is_on_cut) {
+    const auto i = static_cast<std::size_t>(e.idx());
+    if (i >= map.on_cut->size()) map.on_cut->resize(i + 1, false);
+    (*map.on_cut)[i] = is_on_cut;
+  }
+};
+
+/// How far apart sheets may lie that would coincide but for rounding. The operands' points are rounded by
+/// half a unit of the last place of their largest coordinate, and a face lies where its corners do, however
+/// near to the origin the film itself is; new points add as much again.
+double film_thickness(const Mesh& a, const Mesh& b) {
+  double reach = 0.0;
+  for (const Mesh* mesh : {&a, &b})
+    for (const auto v : mesh->vertices()) reach = std::max(reach, mesh->point(v).max_abs());
+  return 4.0 * std::numeric_limits<double>::epsilon() * reach;
+}
+
+struct Films {
+  std::size_t dropped = 0;
+  bool has_open = false;  ///< some part with a border is no wider
+};
+
+/// Deletes the closed shells that are films, whose volume is no more than the thickness over their area.
+Films drop_films(Mesh& mesh, double thickness) {
+  std::vector<bool> seen(mesh.n_faces(), false);
+  std::vector<Mesh::FaceHandle> shell;
+  Films films;
+  for (const auto seed : mesh.faces()) {
+    if (seen[static_cast<std::size_t>(seed.idx())]) continue;
+    seen[static_cast<std::size_t>(seed.idx())] = true;
+    shell.assign(1, seed);
+    const Mesh::Point origin = mesh.point(mesh.to_vertex_handle(mesh.halfedge_handle(seed)));
+    double volume = 0.0, area = 0.0, border = 0.0;
+    for (std::size_t next = 0; next < shell.size(); ++next) {
+      Mesh::HalfedgeHandle h = mesh.halfedge_handle(shell[next]);
+      std::array<Mesh::Point, 3> p;
+      for (Mesh::Point& corner : p) {
+        corner = mesh.point(mesh.to_vertex_handle(h)) - origin;
+        const Mesh::FaceHandle beyond = mesh.opposite_face_handle(h);
+        if (!beyond.is_valid()) border += mesh.calc_edge_length(h);
+        if (beyond.is_valid() && !seen[static_cast<std::size_t>(beyond.idx())]) {
+          seen[static_cast<std::size_t>(beyond.idx())] = true;
+          shell.push_back(beyond);
+        }
+        h = mesh.next_halfedge_handle(h);
+      }
+      const Mesh::Point normal = OpenMesh::cross(p[1] - p[0], p[2] - p[0]);
+      volume += OpenMesh::dot(p[0], normal) / 6.0;
+      area += 0.5 * normal.norm();
+    }
+    films.has_open = films.has_open || (border > 0.0 && area <= thickness * border);
+    if (border > 0.0 || std::abs(volume) > thickness * area) continue;
+    ++films.dropped;
+    for (const Mesh::FaceHandle face : shell) mesh.delete_face(face, true);
+  }
+  return films;
+}
+
+/// Whether some part connected across edges has none on the cut.
+bool has_uncut_part(const Mesh& mesh, const std::vector<bool>& on_cut) {
+  std::vector<bool> seen(mesh.n_faces(), false);
+  std::vector<Mesh::FaceHandle> flood;
+  for (const auto seed : mesh.faces()) {
+    if (seen[static_cast<std::size_t>(seed.idx())]) continue;
+    seen[static_cast<std::size_t>(seed.idx())] = true;
+    flood.assign(1, seed);
+    bool is_cut = false;
+    while (!flood.empty()) {
+      const Mesh::FaceHandle face = flood.back();
+      flood.pop_back();
+      for (auto side = mesh.cfh_begin(face); side != mesh.cfh_end(face); ++side) {
+        const auto edge = static_cast<std::size_t>(mesh.edge_handle(*side).idx());
+        is_cut = is_cut || (edge < on_cut.size() && on_cut[edge]);
+        const Mesh::FaceHandle beyond = mesh.opposite_face_handle(*side);
+        if (!beyond.is_valid() || seen[static_cast<std::size_t>(beyond.idx())]) continue;
+        seen[static_cast<std::size_t>(beyond.idx())] = true;
+        flood.push_back(beyond);
+      }
+    }
+    if (!is_cut) return true;
+  }
+  return false;
+}
+
+/// A result in an order of its own, without triangles that rounding left without area: a further Boolean
+/// would break off at them. From the first ordering on, nothing hangs on addresses.
+Triangles finished(const Mesh& mesh) {
+  Triangles triangles = in_coordinate_order(mesh);
+  if (!has_flat_triangles(triangles)) return triangles;
+  Mesh ordered = mesh_of(triangles);
+  take_out_flat_triangles(ordered);
+  return in_coordinate_order(ordered);
+}
+
+/// What a sound corefinement stays far below: measured are some 100 steps a triangle.
+std::size_t step_limit(const Mesh& a, const Mesh& b) {
+  return 10'000 * (a.n_faces() + b.n_faces() + 1000);
+}
+
+/// Corefines copies of the operands.
+Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_intersection) {
+  static_assert(int{pmp::Corefinement::UNION} == int{of_union} &&
+                int{pmp::Corefinement::INTERSECTION} == int{of_intersection} &&
+                int{pmp::Corefinement::TM1_MINUS_TM2} == int{of_a_minus_b} &&
+                int{pmp::Corefinement::TM2_MINUS_TM1} == int{of_b_minus_a});
+  Corefined corefined;
+  for (Mesh* operand : {&a, &b}) corefined.flat += take_out_flat_triangles(*operand).taken();
+  std::array<Mesh, 4> meshes;
+  std::array<boost::optional<Mesh*>, 4> output;
+  for (std::size_t i = 0; i < output.size(); ++i)
+    if (wanted[i]) output[i] = &meshes[i];
+  const auto to = [&](std::size_t i) { return CGAL::parameters::vertex_point_map(PointMap{&meshes[i]}); };
+  const double thickness = film_thickness(a, b);
+  std::vector<bool> cut_a, cut_b;
+  StepBudget::left = step_limit(a, b);
+  const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
+      a, b, output,
+      CGAL::parameters::vertex_point_map(PointMap{&a})
+          .edge_is_constrained_map(CutEdges{&cut_a})
+          .throw_on_self_intersection(refuse_self_intersection),
+      CGAL::parameters::vertex_point_map(PointMap{&b}).edge_is_constrained_map(CutEdges{&cut_b}),
+      std::make_tuple(to(0), to(1), to(2), to(3)));
+
+  for (std::size_t i = 0; i < output.size(); ++i) {
+    if (!output[i] || !manifold[i]) continue;
+    meshes[i].garbage_collection();
+    check_joins(triangles_of(meshes[i]));
+    const Films films = drop_films(meshes[i], thickness);
+    if (films.dropped > 0) meshes[i].garbage_collection();
+    corefined.films[i] = films.dropped;
+    corefined.has_open_film = corefined.has_open_film || films.has_open;
+    corefined.results[i] = finished(meshes[i]);
+  }
+  corefined.has_uncut_part = has_uncut_part(a, cut_a) || has_uncut_part(b, cut_b);
+  return corefined;
+}
+
+}  // namespace
+
+/// CGAL tells three troubles by exceptions: an operand that meets itself, constraints that cross within a
+/// triangle (the same, seen later), and broken invariants.
+Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop) {
+  Corefined failed;
+  StepBudget::stop = stop;
+  for (const bool strict : {true, false}) {
+    try {
+      Corefined corefined = attempt(a, b, wanted, strict);
+      corefined.meets_itself = !strict;
+      return corefined;
+    } catch (const BooleanStopped&) {
+      throw;
+    } catch (const pmp::Corefinement::Self_intersection_exception&) {
+      failed.failure = "an operand meets itself where the other cuts it";
+    } catch (const std::exception& e) {
+      failed.failure = std::string("corefinement broke off: ") + e.what();
+    }
+  }
+  return failed;
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/boolean/exact_boolean.h"
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <array>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+#include "brep/mesh/coordinate_order.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/surface_mesh.h"
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+using Rational = Kernel::Exact_kernel::FT;
+
+Surface surface_of(const Mesh& mesh, const std::string& name) {
+  const Triangles triangles = triangles_of(mesh);
+  for (const auto h : mesh.halfedges())
+    if (mesh.is_boundary(h))
+      throw std::invalid_argument("operand " + name + " is open at triangle " +
+                                  std::to_string(mesh.opposite_face_handle(h).idx()) +
+                                  "; a Boolean takes solids, close the surface first");
+  if (size_of(triangles).volume_mm3 < 0.0)
+    throw std::invalid_argument("operand " + name + "'s triangles face inward; turn them round first");
+  return surface_mesh_of<Kernel::Point_3>(triangles);
+}
+
+/// Halves added to halves, so that most sums are of numbers of like length.
+Rational sum_of(const std::vector<Rational>& terms, std::size_t begin, std::size_t end) {
+  if (end - begin == 0) return Rational(0);
+  if (end - begin == 1) return terms[begin];
+  const std::size_t middle = begin + (end - begin) / 2;
+  return sum_of(terms, begin, middle) + sum_of(terms, middle, end);
+}
+
+/// Six times the volume.
+Rational six_volumes(const Surface& surface) {
+  std::vector<Rational> terms;
+  for (const auto f : surface.faces()) {
+    std::array<std::array<Rational, 3>, 3> p;
+    auto corner = p.begin();
+    for (const auto v : surface.vertices_around_face(surface.halfedge(f))) {
+      const Kernel::Point_3& point = surface.point(v);
+      *corner++ = {CGAL::exact(point.x()), CGAL::exact(point.y()), CGAL::exact(point.z())};
+    }
+    terms.push_back(p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+                    p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+                    p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]));
+  }
+  return sum_of(terms, 0, terms.size());
+}
+
+double mm3_of(const Rational& six) {
+  return CGAL::to_double(six) / 6.0;
+}
+
+void prove(const Rational& whole, const Rational& parts, const std::string& identity) {
+  if (whole == parts) return;
+  throw std::runtime_error("exact volumes do not add up: " + identity + " misses by " +
+                           std::to_string(mm3_of(whole - parts)) +
+                           " mm3; an operand meets itself: ask for its health");
+}
+
+Mesh rounded(const Surface& surface, std::size_t& moved) {
+  Triangles triangles;
+  std::vector<std::uint32_t> number(surface.num_vertices());
+  for (const auto v : surface.vertices()) {
+    const Kernel::Point_3& p = surface.point(v);
+    number[v] = static_cast<std::uint32_t>(triangles.points_mm.size());
+    const glm::dvec3 near(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+    moved += p != Kernel::Point_3(near.x, near.y, near.z);
+    triangles.points_mm.push_back(near);
+  }
+  for (const auto f : surface.faces()) {
+    std::array<std::uint32_t, 3> face{};
+    auto corner = face.begin();
+    for (const auto v : surface.vertices_around_face(surface.halfedge(f))) *corner++ = number[v];
+    triangles.faces.push_back(face);
+  }
+  // CGAL's order hangs on addresses.
+  return mesh_of(in_coordinate_order(mesh_of(triangles)));
+}
+
+/// What CGAL tells while it works: meeting edges and faces are half of the work, cutting faces the other.
+struct Watched : pmp::Corefinement::Default_visitor<Surface> {
+  const Watch* watch = nullptr;
+  std::size_t steps = 0, step = 0;
+  double from = 0.0;
+
+  void begin(std::size_t count, double share) {
+    steps = std::max(count, std::size_t{1});
+    step = 0;
+    from = share;
+  }
+  void advance() {
+    if (watch->stop.stop_requested()) throw std::runtime_error("the exact Boolean was stopped");
+    if (watch->progress)
+      watch->progress(from + 0.45 * static_cast<double>(++step) / static_cast<double>(steps));
+  }
+  void start_handling_edge_face_intersections(std::size_t count) { begin(count, 0.0); }
+  void edge_face_intersections_step() { advance(); }
+  void start_triangulating_faces(std::size_t count) { begin(count, 0.45); }
+  void triangulating_faces_step() { advance(); }
+};
+
+}  // namespace
+
+ExactBoolean exact_boolean(const Mesh& a, Operation operation, const Mesh& b, const Watch& watch) {
+  Surface exact_a = surface_of(a, "a"), exact_b = surface_of(b, "b");
+  const Rational of_a = six_volumes(exact_a), of_b = six_volumes(exact_b);
+  std::array<Surface, 4> results;
+  std::array<boost::optional<Surface*>, 4> output;
+  const std::size_t wanted = operation == Operation::Union          ? pmp::Corefinement::UNION
+                             : operation == Operation::Intersection ? pmp::Corefinement::INTERSECTION
+                                                                    : pmp::Corefinement::TM1_MINUS_TM2;
+  for (const std::size_t r :
+       {wanted, std::size_t{pmp::Corefinement::UNION}, std::size_t{pmp::Corefinement::INTERSECTION}})
+    output[r] = &results[r];
+  Watched watched;
+  watched.watch = &watch;
+  const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
+      exact_a, exact_b, output, CGAL::parameters::visitor(watched));
+  for (std::size_t r = 0; r < output.size(); ++r)
+    if (output[r] && !manifold[r])
+      throw std::runtime_error(
+          "no exact Boolean: a result would not be manifold, as the surfaces only touch; without exactness "
+          "one is moved by far less than matters");
+
+  if (watch.progress) watch.progress(0.9);
+  const Rational united = six_volumes(results[pmp::Corefinement::UNION]);
+  const Rational common = six_volumes(results[pmp::Corefinement::INTERSECTION]);
+  prove(of_a + of_b, united + common, "|A| + |B| = |A u B| + |A n B|");
+  const Rational result = operation == Operation::Union          ? united
+                          : operation == Operation::Intersection ? common
+                                                                 : six_volumes(results[wanted]);
+  if (operation == Operation::Difference) prove(of_a, result + common, "|A| = |A - B| + |A n B|");
+
+  std::size_t moved = 0;
+  const Mesh mesh = rounded(results[wanted], moved);
+  const double rounding = mesh.n_faces() == 0 ? 0.0 : volume_mm3(mesh) - mm3_of(result);
+  return {mesh, mm3_of(of_a), mm3_of(of_b), mm3_of(united), mm3_of(common), mm3_of(result), rounding, moved};
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 find the triangles that meet; 2 corefine these near patches; 3 let each border
+// between near and far say whether the far part beyond it is inside the other solid: the results have its
+// edges or not; 4 confirm by a ray from each far part, which alone decides for parts that nothing touches;
+// 5 sew: far triangles keep their points, near ones take those of their borders by place.
+// A border belongs to a triangle that does not meet the other surface, so no cut reaches it.
+#include "brep/boolean/near_boolean.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/intersecting_triangles.h"
+#include "brep/mesh/measure.h"
+
+namespace octotomy::brep {
+namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+/// Probes for which building a tree (n log n) costs less than passing all triangles for each.
+constexpr std::size_t probes_worth_a_tree = 64;
+
+using Place = std::array<double, 3>;
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+Place place_of(const glm::dvec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+Edge edge_of(std::uint32_t v, std::uint32_t w) {
+  return {std::min(v, w), std::max(v, w)};
+}
+
+/// What keeps a Boolean from being made near the cut only.
+struct Obstacle : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One operand, told apart into near triangles and far parts.
+struct Side {
+  std::vector<std::uint8_t> near;         ///< 1 for each near triangle
+  std::vector<std::uint32_t> near_faces;  ///< ascending
+  std::vector<std::uint32_t> part;        ///< of each point that far triangles have; none else
+  std::vector<std::uint32_t> first;       ///< a point of each part
+  std::vector<double> volumes_mm3;        ///< of the cones over each part
+  std::map<Edge, std::uint32_t> border;   ///< the part beyond each edge between near and far, by its points
+  std::map<Place, std::uint32_t> border_points;
+  std::vector<std::uint8_t> inside;  ///< 1 for each part inside the other solid
+  std::vector<std::uint8_t> known;   ///< 1 for each part that a border has placed
+
+  /// Of a far triangle.
+  std::uint32_t part_of(const std::array<std::uint32_t, 3>& face) const { return part[face[0]]; }
+};
+
+double cone_mm3(const Triangles& triangles, const std::array<std::uint32_t, 3>& face, const glm::dvec3& tip) {
+  const glm::dvec3 a = triangles.points_mm[face[0]] - tip, b = triangles.points_mm[face[1]] - tip,
+                   c = triangles.points_mm[face[2]] - tip;
+  return glm::dot(a, glm::cross(b, c)) / 6.0;
+}
+
+/// Marks the triangles that meet, and all about points where these would be two fans: corefinement takes
+/// points for different ones where a surface has two at one place.
+void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting, Side& side) {
+  const Mesh& mesh = operand.mesh;
+  side.near.assign(operand.triangles.faces.size(), 0);
+  std::vector<std::uint32_t> unseen;
+  const auto mark = [&](std::uint32_t f) {
+    if (side.near[f]) return;
+    side.near[f] = 1;
+    side.near_faces.push_back(f);
+    const auto& face = operand.triangles.faces[f];
+    unseen.insert(unseen.end(), face.begin(), face.end());
+  };
+  for (const std::uint32_t f : meeting) mark(f);
+  while (!unseen.empty()) {
+    const Mesh::VertexHandle v(static_cast<int>(unseen.back()));
+    unseen.pop_back();
+    int fans = 0;
+    for (auto h = mesh.cvoh_begin(v); h != mesh.cvoh_end(v); ++h)
+      fans += side.near[static_cast<std::size_t>(mesh.face_handle(*h).idx())] &&
+              !side.near[static_cast<std::size_t>(mesh.opposite_face_handle(*h).idx())];
+    if (fans < 2) continue;
+    for (auto f = mesh.cvf_begin(v); f != mesh.cvf_end(v); ++f) mark(static_cast<std::uint32_t>(f->idx()));
+  }
+  std::sort(side.near_faces.begin(), side.near_faces.end());
+}
+
+/// Joins the far triangles into parts wherever they share a point: no far point lies on the other surface, so
+/// each is wholly inside or outside, and so are all triangles about it.
+void find_parts(const Operand& operand, Side& side) {
+  const auto& faces = operand.triangles.faces;
+  DisjointSets parts(operand.triangles.points_mm.size());
+  side.part.assign(operand.triangles.points_mm.size(), none);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (side.near[f]) continue;
+    parts.join(faces[f][0], faces[f][1]);
+    parts.join(faces[f][1], faces[f][2]);
+    for (const std::uint32_t v : faces[f]) side.part[v] = 0;
+  }
+  // A part is named by its least point, so it is numbered before the others.
+  for (std::uint32_t v = 0; v < side.part.size(); ++v) {
+    if (side.part[v] == none) continue;
+    if (parts.set_of(v) == v) {
+      side.part[v] = static_cast<std::uint32_t>(side.first.size());
+      side.first.push_back(v);
+    } else {
+      side.part[v] = side.part[parts.set_of(v)];
+    }
+  }
+  side.inside.assign(side.first.size(), 0);
+  side.known.assign(side.first.size(), 0);
+}
+
+void find_border(const Operand& operand, Side& side) {
+  const Mesh& mesh = operand.mesh;
+  for (const std::uint32_t f : side.near_faces) {
+    Mesh::HalfedgeHandle h = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
+    for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
+      if (side.near[static_cast<std::size_t>(mesh.opposite_face_handle(h).idx())]) continue;
+      const auto from = static_cast<std::uint32_t>(mesh.from_vertex_handle(h).idx());
+      const auto to = static_cast<std::uint32_t>(mesh.to_vertex_handle(h).idx());
+      side.border[edge_of(from, to)] = side.part[from];
+      for (const std::uint32_t v : {from, to}) {
+        const auto [known, is_new] =
+            side.border_points.try_emplace(place_of(operand.triangles.points_mm[v]), v);
+        if (known->second != v) throw Obstacle("sheets of an operand touch at a border");
+      }
+    }
+  }
+}
+
+/// Compensated, as one part may be nearly all of an operand (Neumaier 1974).
+void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
+  side.volumes_mm3.assign(side.first.size(), 0.0);
+  std::vector<double> lost(side.first.size(), 0.0);
+  for (std::size_t f = 0; f < side.near.size(); ++f) {
+    if (side.near[f]) continue;
+    const auto& face = operand.triangles.faces[f];
+    const std::uint32_t part = side.part_of(face);
+    const double term = cone_mm3(operand.triangles, face, tip), sum = side.volumes_mm3[part] + term;
+    lost[part] += std::abs(side.volumes_mm3[part]) >= std::abs(term) ? (side.volumes_mm3[part] - sum) + term
+                                                                     : (term - sum) + side.volumes_mm3[part];
+    side.volumes_mm3[part] = sum;
+  }
+  for (std::size_t part = 0; part < lost.size(); ++part) side.volumes_mm3[part] += lost[part];
+}
+
+Mesh patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) {
+  Triangles patch;
+  std::vector<std::uint32_t> number(operand.triangles.points_mm.size(), none);
+  for (const std::uint32_t f : faces) {
+    std::array<std::uint32_t, 3> face = operand.triangles.faces[f];
+    for (std::uint32_t& v : face) {
+      if (number[v] == none) {
+        number[v] = static_cast<std::uint32_t>(patch.points_mm.size());
+        patch.points_mm.push_back(operand.triangles.points_mm[v]);
+      }
+      v = number[v];
+    }
+    patch.faces.push_back(face);
+  }
+  return mesh_of(patch);
+}
+
+/// A near result's points that lie on a border, as points of an operand.
+struct Seam {
+  std::vector<std::uint32_t> on_a, on_b;  ///< of each point; none
+  std::set<Edge> edges_a, edges_b;        ///< where the result ends
+};
+
+Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
+  Seam seam;
+  seam.on_a.assign(result.points_mm.size(), none);
+  seam.on_b.assign(result.points_mm.size(), none);
+  const auto find = [&](const Side& side, std::uint32_t v) {
+    const auto found = side.border_points.find(place_of(result.points_mm[v]));
+    return found == side.border_points.end() ? none : found->second;
+  };
+  std::map<Edge, int> sides;
+  for (const auto& face : result.faces)
+    for (std::size_t k = 0; k < 3; ++k) ++sides[edge_of(face[k], face[(k + 1) % 3])];
+  for (const auto& [edge, count] : sides) {
+    if (count != 1) continue;
+    // Only ends of such edges: a new point may have been rounded to the place of one.
+    for (const std::uint32_t v : {edge.first, edge.second}) {
+      seam.on_a[v] = find(a, v);
+      seam.on_b[v] = find(b, v);
+    }
+    const Edge in_a = edge_of(seam.on_a[edge.first], seam.on_a[edge.second]);
+    const Edge in_b = edge_of(seam.on_b[edge.first], seam.on_b[edge.second]);
+    const bool is_a = a.border.contains(in_a), is_b = b.border.contains(in_b);
+    if (is_a == is_b) throw Obstacle("a result ends where no border is");
+    (is_a ? seam.edges_a : seam.edges_b).insert(is_a ? in_a : in_b);
+  }
+  return seam;
+}
+
+/// Whether the edges that a result has are those of inside parts, for an operand.
+bool takes_inside(std::size_t result, bool of_a) {
+  return result == of_intersection || result == (of_a ? of_b_minus_a : of_a_minus_b);
+}
+
+/// Whether the result turns the operand's parts round.
+bool turns_round(std::size_t result, bool of_a) {
+  return result == (of_a ? of_b_minus_a : of_a_minus_b);
+}
+
+/// Sets each part's place by the borders of one result, or checks it by a further one.
+void place_parts(const std::set<Edge>& edges, bool inside_where_there, Side& side) {
+  for (const auto& [edge, part] : side.border) {
+    const bool inside = edges.contains(edge) == inside_where_there;
+    if (side.known[part] && (side.inside[part] != 0) != inside)
+      throw Obstacle("the borders of a part disagree about its place");
+    side.inside[part] = inside;
+    side.known[part] = 1;
+  }
+}
+
+/// A ray from each part; it decides where no border did.
+void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
+  std::vector<glm::dvec3> probes;
+  for (const std::uint32_t v : side.first) probes.push_back(operand.triangles.points_mm[v]);
+  std::vector<std::uint8_t> inside;
+  if (probes.size() >= probes_worth_a_tree)
+    inside = SurfaceTree(other.triangles).inside(probes);
+  else
+    for (const glm::dvec3& probe : probes) inside.push_back(is_inside(probe, other.triangles));
+  for (std::size_t part = 0; part < inside.size(); ++part) {
+    if (side.known[part] && inside[part] != side.inside[part])
+      throw Obstacle("a ray and the borders of a part disagree about its place");
+    side.inside[part] = inside[part];
+  }
+}
+
+/// The far triangles of one operand that belong to a result, and the near result's points that are theirs.
+class Sewing {
+ public:
+  void add_far(const Operand& operand, const Side& side, std::size_t result, bool of_a) {
+    const bool inside = takes_inside(result, of_a), turned = turns_round(result, of_a);
+    std::vector<std::uint32_t>& numbers = of_a ? number_a_ : number_b_;
+    numbers.assign(operand.triangles.points_mm.size(), none);
+    for (std::uint32_t v = 0; v < numbers.size(); ++v) {
+      if (side.part[v] == none || (side.inside[side.part[v]] != 0) != inside) continue;
+      numbers[v] = static_cast<std::uint32_t>(sewn_.points_mm.size());
+      sewn_.points_mm.push_back(operand.triangles.points_mm[v]);
+    }
+    for (std::uint32_t f = 0; f < side.near.size(); ++f) {
+      const auto& face = operand.triangles.faces[f];
+      if (side.near[f] || numbers[face[0]] == none) continue;
+      const std::size_t second = turned ? 2 : 1;
+      sewn_.faces.push_back({numbers[face[0]], numbers[face[second]], numbers[face[3 - second]]});
+    }
+  }
+
+  void add_near(const Triangles& near, const Seam& seam) {
+    std::vector<std::uint32_t> numbers(near.points_mm.size(), none);
+    for (std::size_t v = 0; v < numbers.size(); ++v) {
+      if (seam.on_a[v] != none) numbers[v] = number_a_[seam.on_a[v]];
+      if (seam.on_b[v] != none) numbers[v] = number_b_[seam.on_b[v]];
+      if (numbers[v] != none) continue;
+      numbers[v] = static_cast<std::uint32_t>(sewn_.points_mm.size());
+      sewn_.points_mm.push_back(near.points_mm[v]);
+    }
+    for (std::array<std::uint32_t, 3> face : near.faces) {
+      for (std::uint32_t& v : face) v = numbers[v];
+      sewn_.faces.push_back(face);
+    }
+  }
+
+  Triangles take() { return std::move(sewn_); }
+
+ private:
+  std::vector<std::uint32_t> number_a_, number_b_;
+  Triangles sewn_;
+};
+
+double volume_of(const Triangles& near, const glm::dvec3& tip, std::size_t result,
+                 const std::array<Side, 2>& sides) {
+  double volume = 0.0;
+  for (const auto& face : near.faces) volume += cone_mm3(near, face, tip);
+  for (std::size_t s = 0; s < 2; ++s)
+    for (std::size_t part = 0; part < sides[s].first.size(); ++part)
+      if ((sides[s].inside[part] != 0) == takes_inside(result, s == 0))
+        volume += turns_round(result, s == 0) ? -sides[s].volumes_mm3[part] : sides[s].volumes_mm3[part];
+  return volume;
+}
+
+/// The near triangles of both, apart.
+std::array<Side, 2> sides_of(const Operand& a, const Operand& b) {
+  std::array<Side, 2> sides;
+  const IntersectingTriangles meeting = intersecting_triangles(a.triangles, b.triangles);
+  mark_near(a, meeting.of_a, sides[0]);
+  mark_near(b, meeting.of_b, sides[1]);
+  const std::size_t near = sides[0].near_faces.size() + sides[1].near_faces.size();
+  if (2 * near > a.triangles.faces.size() + b.triangles.faces.size())
+    throw Obstacle("more than half of the triangles are near the cut");
+  for (std::size_t s = 0; s < 2; ++s) {
+    find_parts(s == 0 ? a : b, sides[s]);
+    find_border(s == 0 ? a : b, sides[s]);
+  }
+  return sides;
+}
+
+Corefined corefine_near(const Operand& a, const Operand& b, const std::array<Side, 2>& sides,
+                        const Wanted& wanted, const std::stop_token& stop) {
+  Corefined corefined;
+  if (sides[0].near_faces.empty() && sides[1].near_faces.empty()) {
+    corefined.results.fill(Triangles());
+    return corefined;
+  }
+  corefined = corefine(patch_of(a, sides[0].near_faces), patch_of(b, sides[1].near_faces),
+                       {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
+  if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
+  if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
+    throw Obstacle("faces coincide but for rounding, near the cut and perhaps beyond");
+  if (corefined.has_uncut_part) throw Obstacle("the surfaces touch without cutting");
+  return corefined;
+}
+
+void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::stop_token& stop,
+         NearBoolean& answer) {
+  std::array<Side, 2> sides = sides_of(a, b);
+  const Corefined corefined = corefine_near(a, b, sides, wanted, stop);
+  answer.meets_itself = corefined.meets_itself;
+  answer.flat = corefined.flat;
+
+  std::array<std::optional<Seam>, 4> seams;
+  for (std::size_t r = 0; r < seams.size(); ++r) {
+    if (!corefined.results[r]) continue;
+    seams[r] = seam_of(*corefined.results[r], sides[0], sides[1]);
+    place_parts(seams[r]->edges_a, takes_inside(r, true), sides[0]);
+    place_parts(seams[r]->edges_b, takes_inside(r, false), sides[1]);
+  }
+  confirm_parts(a, b, sides[0]);
+  confirm_parts(b, a, sides[1]);
+
+  const glm::dvec3 tip = a.triangles.points_mm.empty() ? glm::dvec3(0.0) : a.triangles.points_mm.front();
+  measure_parts(a, tip, sides[0]);
+  measure_parts(b, tip, sides[1]);
+  for (std::size_t r = 0; r < seams.size(); ++r) {
+    if (!seams[r] && wanted[r]) throw Obstacle("a result would not be manifold");
+    if (!seams[r]) continue;
+    if (!wanted[r]) {
+      answer.volumes_mm3[r] = volume_of(*corefined.results[r], tip, r, sides);
+      continue;
+    }
+    Sewing sewing;
+    sewing.add_far(a, sides[0], r, true);
+    sewing.add_far(b, sides[1], r, false);
+    sewing.add_near(*corefined.results[r], *seams[r]);
+    answer.results[r] = sewing.take();
+    answer.volumes_mm3[r] = size_of(*answer.results[r]).volume_mm3;
+  }
+}
+
+}  // namespace
+
+NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted,
+                         const std::stop_token& stop) {
+  NearBoolean answer;
+  try {
+    sew(a, b, wanted, stop, answer);
+    return answer;
+  } catch (const Obstacle& obstacle) {
+    answer = {};
+    answer.obstacle = obstacle.what();
+    return answer;
+  }
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Following, in passes: 1 each cell of four samples joins its crossed edges by directed segments, object on
+// the left; 2 open chains are walked from the edges no segment leads to; 3 what is left is loops. An edge is
+// crossed at most once and has at most one segment on either side, so chains cannot fork.
+#include "brep/contour/contour.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace octotomy::brep {
+namespace {
+
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// How near to a sample, in parts of an edge, a crossing may come. A sample exactly at the threshold would
+/// otherwise draw the crossings of all its edges into one point, where contours touch. A thousandth of a
+/// sample is far below what a scan resolves, and far above the rounding of coordinates (2^-52 times the
+/// number of samples along a side).
+constexpr double least_fraction() {
+  return 1.0 / 1024.0;
+}
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+void check(const Slice& slice, const FollowOptions& options) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("follow: " + why); };
+  if (slice.samples.size() != std::size_t{slice.width} * slice.height)
+    refuse(std::to_string(slice.width) + " x " + std::to_string(slice.height) + " samples were promised, " +
+           std::to_string(slice.samples.size()) + " are there");
+  for (const double step : {slice.spacing_mm.x, slice.spacing_mm.y})
+    if (!(step > 0.0) || !std::isfinite(step)) refuse("the spacing must be positive");
+  if (!std::isfinite(options.threshold)) refuse("the threshold is not finite");
+  for (std::size_t s = 0; s < slice.samples.size(); ++s)
+    if (!std::isfinite(slice.samples[s]))
+      refuse("sample (" + std::to_string(s % slice.width) + ", " + std::to_string(s / slice.width) +
+             ") is not finite: fill such samples first");
+}
+
+/// Edges of the lattice with one more ring of nodes about it: node (i, j) is sample (i - 1, j - 1), edge
+/// 2 * node runs from it along x and 2 * node + 1 along y.
+class Follower {
+ public:
+  Follower(const Slice& slice, const FollowOptions& options)
+      : slice_(slice),
+        options_(options),
+        columns_(std::size_t{slice.width} + 2),
+        next_(2 * columns_ * (std::size_t{slice.height} + 2), none),
+        led_to_(next_.size(), 0) {}
+
+  std::vector<Contour> run() {
+    const std::size_t first = options_.border == Border::close ? 0 : 1;
+    for (std::size_t j = first; j + first <= slice_.height; ++j)
+      for (std::size_t i = first; i + first <= slice_.width; ++i) join_cell(i, j);
+    std::vector<Contour> contours;
+    for (std::size_t e = 0; e < next_.size(); ++e)
+      if (next_[e] != none && !led_to_[e]) contours.push_back(walk(e));
+    for (std::size_t e = 0; e < next_.size(); ++e)
+      if (next_[e] != none) contours.push_back(walk(e));
+    return contours;
+  }
+
+ private:
+  bool sampled(std::size_t i, std::size_t j) const {
+    return i >= 1 && j >= 1 && i <= slice_.width && j <= slice_.height;
+  }
+
+  /// Above the threshold by how much; any negative number beyond the samples.
+  double above(std::size_t i, std::size_t j) const {
+    if (!sampled(i, j)) return -1.0;
+    return slice_.samples[(j - 1) * slice_.width + (i - 1)] - options_.threshold;
+  }
+
+  void link(std::size_t from, std::size_t to) {
+    next_[from] = to;
+    led_to_[to] = 1;
+  }
+
+  void join_cell(std::size_t i, std::size_t j) {
+    const std::array<double, 4> d = {above(i, j), above(i + 1, j), above(i + 1, j + 1), above(i, j + 1)};
+    const std::size_t node = j * columns_ + i;
+    const std::array<std::size_t, 4> edge = {2 * node, 2 * (node + 1) + 1, 2 * (node + columns_),
+                                             2 * node + 1};
+    std::array<std::size_t, 2> leaving{};
+    std::size_t crossings = 0, entering = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool inside = d[k] >= 0.0, beyond = d[(k + 1) % 4] >= 0.0;
+      if (inside && !beyond) leaving[crossings++] = k;
+      if (!inside && beyond) entering = k;
+    }
+    if (crossings == 1) link(edge[leaving[0]], edge[entering]);
+    if (crossings != 2) return;
+    // The saddle of the bilinear interpolant is inside where the inner corners outweigh the outer ones. No
+    // cell at the border is a saddle, as its corners without samples lie side by side.
+    const double even = d[0] * d[2], odd = d[1] * d[3];
+    const bool joined = d[0] >= 0.0 ? even >= odd : odd >= even;
+    for (const std::size_t k : leaving) link(edge[k], edge[(k + (joined ? 1 : 3)) % 4]);
+  }
+
+  glm::dvec2 crossing_mm(std::size_t e) const {
+    const std::size_t node = e / 2, i = node % columns_, j = node / columns_;
+    const std::size_t i2 = i + (e % 2 == 0 ? 1 : 0), j2 = j + (e % 2);
+    double fraction = 0.5;
+    if (sampled(i, j) && sampled(i2, j2)) {
+      const double a = above(i, j), b = above(i2, j2);
+      fraction = std::clamp(a / (a - b), least_fraction(), 1.0 - least_fraction());
+    }
+    glm::dvec2 p(static_cast<double>(i) - 1.0, static_cast<double>(j) - 1.0);
+    (e % 2 == 0 ? p.x : p.y) += fraction;
+    return p * slice_.spacing_mm;
+  }
+
+  Contour walk(std::size_t start) {
+    Contour contour;
+    std::size_t e = start;
+    do {
+      contour.points_mm.push_back(crossing_mm(e));
+      e = std::exchange(next_[e], none);
+    } while (e != start && next_[e] != none);
+    contour.closed = e == start;
+    if (!contour.closed) contour.points_mm.push_back(crossing_mm(e));
+    return contour;
+  }
+
+  const Slice& slice_;
+  const FollowOptions& options_;
+  std::size_t columns_;
+  std::vector<std::size_t> next_;
+  std::vector<std::uint8_t> led_to_;
+};
+
+/// Parity of a ray towards +x; a vertex at the ray's height counts as above it.
+bool encloses(const Contour& contour, const glm::dvec2& p) {
+  bool inside = false;
+  const auto& q = contour.points_mm;
+  for (std::size_t a = q.size() - 1, b = 0; b < q.size(); a = b++) {
+    if ((q[a].y > p.y) == (q[b].y > p.y)) continue;
+    const bool rising = q[b].y > q[a].y;
+    if ((cross(q[b] - q[a], p - q[a]) > 0.0) == rising) inside = !inside;
+  }
+  return inside;
+}
+
+double distance_to_piece(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 along = b - a;
+  const double length2 = glm::dot(along, along);
+  const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
+  return glm::distance(p, a + t * along);
+}
+
+void require_closed(const Contour& contour, const std::string& who) {
+  if (!contour.closed)
+    throw std::invalid_argument(who + ": the contour is open: follow it with its border closed");
+}
+
+/// A point that a closed contour encloses, however others touch it: half way along the lowest line that runs
+/// between two heights of its points. The first point where rounding leaves no such line.
+glm::dvec2 point_within(const Contour& contour) {
+  const auto& points = contour.points_mm;
+  double lowest = std::numeric_limits<double>::infinity(), next = lowest;
+  for (const glm::dvec2& p : points) lowest = std::min(lowest, p.y);
+  for (const glm::dvec2& p : points)
+    if (p.y > lowest) next = std::min(next, p.y);
+  const double y = 0.5 * lowest + 0.5 * next;
+  std::vector<double> crossings;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const glm::dvec2 &a = points[i], &b = points[(i + 1) % points.size()];
+    if ((a.y <= y) != (b.y <= y)) crossings.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+  }
+  std::sort(crossings.begin(), crossings.end());
+  return crossings.size() < 2 ? points.front() : glm::dvec2(0.5 * crossings[0] + 0.5 * crossings[1], y);
+}
+
+}  // namespace
+
+std::vector<Contour> follow(const Slice& slice, const FollowOptions& options) {
+  check(slice, options);
+  return Follower(slice, options).run();
+}
+
+double signed_area_mm2(const Contour& contour) {
+  require_closed(contour, "area");
+  double twice = 0.0;
+  const auto& p = contour.points_mm;
+  for (std::size_t k = 2; k < p.size(); ++k) twice += cross(p[k - 1] - p[0], p[k] - p[0]);
+  return 0.5 * twice;
+}
+
+double perimeter_mm(const Contour& contour) {
+  const auto& p = contour.points_mm;
+  double length = 0.0;
+  for (std::size_t k = 1; k < p.size(); ++k) length += glm::distance(p[k - 1], p[k]);
+  if (contour.closed && !p.empty()) length += glm::distance(p.back(), p.front());
+  return length;
+}
+
+std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contours) {
+  struct Extent {
+    glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+    double area = 0.0;
+  };
+  std::vector<Extent> extents(contours.size());
+  for (std::size_t c = 0; c < contours.size(); ++c) {
+    extents[c].area = std::abs(signed_area_mm2(contours[c]));
+    for (const glm::dvec2& p : contours[c].points_mm) {
+      extents[c].low = glm::min(extents[c].low, p);
+      extents[c].high = glm::max(extents[c].high, p);
+    }
+  }
+  std::vector<std::optional<std::size_t>> around(contours.size());
+  for (std::size_t c = 0; c < contours.size(); ++c) {
+    if (contours[c].points_mm.empty()) continue;
+    const glm::dvec2 p = point_within(contours[c]);
+    for (std::size_t o = 0; o < contours.size(); ++o) {
+      if (o == c || !(extents[o].area > extents[c].area) || glm::any(glm::lessThan(p, extents[o].low)) ||
+          glm::any(glm::greaterThan(p, extents[o].high)))
+        continue;
+      if (around[c] && extents[o].area >= extents[*around[c]].area) continue;
+      if (encloses(contours[o], p)) around[c] = o;
+    }
+  }
+  return around;
+}
+
+std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& around) {
+  std::vector<std::size_t> depths(around.size(), 0);
+  for (std::size_t c = 0; c < around.size(); ++c)
+    for (auto outer = around[c]; outer; outer = around[*outer]) ++depths[c];
+  return depths;
+}
+
+Contour thin(const Contour& contour, double max_distance_mm) {
+  if (!(max_distance_mm >= 0.0) || !std::isfinite(max_distance_mm))
+    throw std::invalid_argument("thin: the distance must be 0 or more");
+  const auto& p = contour.points_mm;
+  const std::size_t least = contour.closed ? 3 : 2;
+  if (p.size() <= least) return contour;
+  const std::size_t end = contour.closed ? p.size() : p.size() - 1;
+  Contour kept;
+  kept.closed = contour.closed;
+  for (std::size_t anchor = 0; anchor < end;) {
+    kept.points_mm.push_back(p[anchor]);
+    std::size_t reached = anchor + 1;
+    const auto fits = [&](std::size_t candidate) {
+      for (std::size_t k = anchor + 1; k < candidate; ++k)
+        if (distance_to_piece(p[k], p[anchor], p[candidate % p.size()]) > max_distance_mm) return false;
+      return true;
+    };
+    while (reached < end && fits(reached + 1)) ++reached;
+    anchor = reached;
+  }
+  if (!contour.closed) kept.points_mm.push_back(p.back());
+  return kept.points_mm.size() < least ? contour : kept;
+}
+
+Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
+  using Complex = std::complex<double>;
+  require_closed(contour, "fourier_smooth");
+  if (options.harmonics < 1) throw std::invalid_argument("fourier_smooth: keep at least one harmonic");
+  if (options.points <= 2 * options.harmonics)
+    throw std::invalid_argument("fourier_smooth: " + std::to_string(options.points) +
+                                " points cannot carry " + std::to_string(options.harmonics) + " harmonics");
+  const double length = perimeter_mm(contour);
+  if (!(length > 0.0)) throw std::invalid_argument("fourier_smooth: the contour has no length");
+  const auto& p = contour.points_mm;
+
+  const auto wave = [&](double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * turns); };
+  const auto kept = static_cast<std::ptrdiff_t>(options.harmonics);
+  std::vector<Complex> coefficients(2 * options.harmonics + 1);
+  for (std::ptrdiff_t k = -kept; k <= kept; ++k) {
+    Complex sum = 0.0;
+    double along = 0.0;
+    const auto turns = static_cast<double>(k) / length;
+    for (std::size_t a = 0; a < p.size(); ++a) {
+      const glm::dvec2 from = p[a], to = p[(a + 1) % p.size()];
+      const double step = glm::distance(from, to);
+      if (step == 0.0) continue;
+      const Complex middle(0.5 * (from.x + to.x), 0.5 * (from.y + to.y));
+      const Complex slope = Complex(to.x - from.x, to.y - from.y) / step;
+      sum += k == 0 ? middle * step : slope * (wave(-turns * (along + step)) - wave(-turns * along));
+      along += step;
+    }
+    const double angular = 2.0 * std::numbers::pi * static_cast<double>(k);
+    coefficients[static_cast<std::size_t>(k + kept)] =
+        k == 0 ? sum / length : sum * (length / (angular * angular));
+  }
+  Contour smooth;
+  for (std::size_t n = 0; n < options.points; ++n) {
+    Complex z = 0.0;
+    for (std::ptrdiff_t k = -kept; k <= kept; ++k)
+      z += coefficients[static_cast<std::size_t>(k + kept)] *
+           wave(static_cast<double>(k) * static_cast<double>(n) / static_cast<double>(options.points));
+    smooth.points_mm.emplace_back(z.real(), z.imag());
+  }
+  return smooth;
+}
+
+}  // namespace octotomy::brep

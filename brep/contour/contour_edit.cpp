@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/contour/contour_edit.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Segment_2.h>
+#include <CGAL/intersections.h>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace octotomy::brep {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+std::size_t piece_count(const Contour& contour) {
+  const std::size_t points = contour.points_mm.size();
+  return contour.closed || points == 0 ? points : points - 1;
+}
+
+void need_number(std::size_t number, std::size_t count, const char* what) {
+  if (number >= count)
+    throw std::invalid_argument("contour: there is no " + std::string(what) + " " + std::to_string(number) +
+                                ", it has " + std::to_string(count));
+}
+
+void need_finite(const glm::dvec2& p) {
+  if (!std::isfinite(p.x) || !std::isfinite(p.y))
+    throw std::invalid_argument("contour: a point is not finite");
+}
+
+Contour whole(Contour contour) {
+  const std::size_t least = contour.closed ? 3 : 2;
+  if (contour.points_mm.size() < least)
+    throw std::invalid_argument("contour: " + std::to_string(contour.points_mm.size()) +
+                                " points would be left, " + std::to_string(least) + " are the fewest");
+  return contour;
+}
+
+/// The points from one to another along a closed contour, both included.
+std::vector<glm::dvec2> run(const Contour& contour, std::size_t from, std::size_t to) {
+  const std::size_t count = contour.points_mm.size();
+  std::vector<glm::dvec2> points = {contour.points_mm[from]};
+  while (from != to) {
+    from = (from + 1) % count;
+    points.push_back(contour.points_mm[from]);
+  }
+  return points;
+}
+
+}  // namespace
+
+Contour point_moved(const Contour& contour, std::size_t point, const glm::dvec2& to_mm) {
+  need_number(point, contour.points_mm.size(), "point");
+  need_finite(to_mm);
+  Contour edited = contour;
+  edited.points_mm[point] = to_mm;
+  return edited;
+}
+
+Contour point_inserted(const Contour& contour, std::size_t piece, const glm::dvec2& at_mm) {
+  need_number(piece, piece_count(contour), "piece");
+  need_finite(at_mm);
+  Contour edited = contour;
+  edited.points_mm.insert(edited.points_mm.begin() + static_cast<std::ptrdiff_t>(piece) + 1, at_mm);
+  return edited;
+}
+
+Contour point_deleted(const Contour& contour, std::size_t point) {
+  need_number(point, contour.points_mm.size(), "point");
+  Contour edited = contour;
+  edited.points_mm.erase(edited.points_mm.begin() + static_cast<std::ptrdiff_t>(point));
+  return whole(std::move(edited));
+}
+
+std::pair<Contour, Contour> split(const Contour& contour, std::size_t first, std::size_t second) {
+  need_number(first, contour.points_mm.size(), "point");
+  need_number(second, contour.points_mm.size(), "point");
+  if (!contour.closed) throw std::invalid_argument("contour: an open one is split at one point");
+  return {whole({run(contour, first, second), true}), whole({run(contour, second, first), true})};
+}
+
+std::pair<Contour, Contour> split(const Contour& contour, std::size_t point) {
+  need_number(point, contour.points_mm.size(), "point");
+  if (contour.closed) throw std::invalid_argument("contour: a closed one is split between two points");
+  const auto at = contour.points_mm.begin() + static_cast<std::ptrdiff_t>(point);
+  return {whole({{contour.points_mm.begin(), at + 1}, false}), whole({{at, contour.points_mm.end()}, false})};
+}
+
+Contour joined(const Contour& a, std::size_t piece_of_a, const Contour& b, std::size_t piece_of_b) {
+  if (!a.closed || !b.closed) throw std::invalid_argument("contour: two closed ones are joined by pieces");
+  need_number(piece_of_a, piece_count(a), "piece");
+  need_number(piece_of_b, piece_count(b), "piece");
+  Contour both{run(a, (piece_of_a + 1) % a.points_mm.size(), piece_of_a), true};
+  const std::vector<glm::dvec2> other = run(b, (piece_of_b + 1) % b.points_mm.size(), piece_of_b);
+  both.points_mm.insert(both.points_mm.end(), other.begin(), other.end());
+  return whole(std::move(both));
+}
+
+Contour joined(const Contour& a, const Contour& b) {
+  if (a.closed || b.closed) throw std::invalid_argument("contour: two open ones are joined end to start");
+  Contour both = a;
+  both.points_mm.insert(both.points_mm.end(), b.points_mm.begin(), b.points_mm.end());
+  return whole(std::move(both));
+}
+
+Contour closed(const Contour& contour) {
+  Contour edited = contour;
+  edited.closed = true;
+  return whole(std::move(edited));
+}
+
+std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour& contour) {
+  const std::size_t count = piece_count(contour), points = contour.points_mm.size();
+  const auto point = [&](std::size_t i) {
+    const glm::dvec2& p = contour.points_mm[i % points];
+    return Kernel::Point_2(p.x, p.y);
+  };
+  const auto piece = [&](std::size_t i) { return Kernel::Segment_2(point(i), point(i + 1)); };
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const bool follows = j == i + 1, closes = contour.closed && i == 0 && j + 1 == count;
+      if (!follows && !closes) {
+        if (CGAL::do_intersect(piece(i), piece(j))) return std::pair(i, j);
+        continue;
+      }
+      // Neighbours have a corner in common; more only where one runs back over the other.
+      if ((follows && piece(j).has_on(point(i))) || (follows && piece(i).has_on(point(j + 1))) ||
+          (closes && piece(j).has_on(point(1))) || (closes && piece(0).has_on(point(j))))
+        return std::pair(i, j);
+    }
+  return std::nullopt;
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A strip is a path in a graph: node (i, j) is the span from the lower ring's point i to the upper's j, and a
+// step to (i + 1, j) or (i, j + 1) is a triangle. Costs of triangles alone: every strip has a span at the
+// lower ring's first point, so 1 find the paths of least cost from (0, 0) and from (0, n), the same once
+// round, to (m, n) and (m, 2n); 2 find the one that starts half way between two known, which need not cross
+// them, and so on; 3 write the triangles of the best. Else: 1 find the start; 2 walk greedily, or find the
+// path of least cost from there.
+#include "brep/contour/tile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace octotomy::brep {
+namespace {
+
+enum Step : std::uint8_t { along_lower, along_upper };
+
+struct Triangle {
+  glm::dvec3 a, b, c;
+  glm::dvec3 normal() const { return glm::cross(b - a, c - a); }
+};
+
+/// The rings with both starts turned to their first point.
+struct Pair {
+  std::vector<glm::dvec3> lower, upper;  ///< the first point once more at the end
+
+  /// The triangle of a step from a span.
+  Triangle triangle(std::size_t i, std::size_t j, Step step) const {
+    return step == along_lower ? Triangle{lower[i], lower[i + 1], upper[j]}
+                               : Triangle{upper[j + 1], upper[j], lower[i]};
+  }
+  std::size_t m() const { return lower.size() - 1; }
+  std::size_t n() const { return upper.size() - 1; }
+};
+
+/// The points moved and scaled so that their box is the unit square.
+std::vector<glm::dvec2> in_unit_square(const std::vector<glm::dvec2>& points) {
+  glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const glm::dvec2& p : points) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::dvec2 extent = glm::max(high - low, glm::dvec2(std::numeric_limits<double>::min()));
+  std::vector<glm::dvec2> scaled;
+  scaled.reserve(points.size());
+  for (const glm::dvec2& p : points) scaled.push_back((p - low) / extent);
+  return scaled;
+}
+
+std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper) {
+  const auto a = in_unit_square(lower.points_mm), b = in_unit_square(upper.points_mm);
+  std::array<std::size_t, 2> start{};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const glm::dvec2 d = b[j] - a[i];
+      if (glm::dot(d, d) >= least) continue;
+      least = glm::dot(d, d);
+      start = {i, j};
+    }
+  return start;
+}
+
+std::vector<glm::dvec3> turned(const Ring& ring, std::size_t start) {
+  std::vector<glm::dvec3> points;
+  for (std::size_t k = 0; k <= ring.points_mm.size(); ++k)
+    points.emplace_back(ring.points_mm[(start + k) % ring.points_mm.size()], ring.z_mm);
+  return points;
+}
+
+std::vector<Step> greedy_steps(const Ring& lower, const Ring& upper, std::array<std::size_t, 2> start) {
+  const auto a = turned({in_unit_square(lower.points_mm), 0.0}, start[0]);
+  const auto b = turned({in_unit_square(upper.points_mm), 0.0}, start[1]);
+  std::vector<Step> steps;
+  for (std::size_t i = 0, j = 0; i + 1 < a.size() || j + 1 < b.size();) {
+    const bool lower_left = i + 1 < a.size(), upper_left = j + 1 < b.size();
+    const bool lower_is_nearer =
+        lower_left && upper_left && glm::distance(a[i + 1], b[j]) <= glm::distance(a[i], b[j + 1]);
+    steps.push_back(!upper_left || lower_is_nearer ? along_lower : along_upper);
+    ++(steps.back() == along_lower ? i : j);
+  }
+  return steps;
+}
+
+/// A path once round both rings from node (0, start): the last column it has in each row.
+struct Path {
+  std::size_t start = 0;
+  double cost = 0.0;
+  std::vector<std::size_t> last;
+
+  std::size_t first(std::size_t row) const { return row == 0 ? start : last[row - 1]; }
+};
+
+/// The path of least cost among all starts (Fuchs, Kedem and Uselton 1977).
+class LeastPath {
+ public:
+  LeastPath(const Pair& pair, TileCost cost) : m_(pair.m()), n_(pair.n()) {
+    const glm::dvec3 tip = pair.lower.front();
+    const auto cost_of = [&](const Triangle& t) {
+      return cost == TileCost::least_area ? 0.5 * glm::length(t.normal())
+                                          : -glm::dot(t.a - tip, t.normal()) / 6.0;
+    };
+    for (const Step step : {along_lower, along_upper}) {
+      costs_[step].resize((m_ + 1) * (n_ + 1));
+      for (std::size_t i = 0; i + (step == along_lower) <= m_; ++i)
+        for (std::size_t j = 0; j + (step == along_upper) <= n_; ++j)
+          costs_[step][i * (n_ + 1) + j] = cost_of(pair.triangle(i, j, step));
+    }
+  }
+
+  Path find() const {
+    const Path low = from(0, nullptr, nullptr);
+    Path high = low, best = low;
+    high.start += n_;
+    for (std::size_t& column : high.last) column += n_;
+    search(low, high, best);
+    return best;
+  }
+
+ private:
+  /// Columns run on once round.
+  double cost(std::size_t i, std::size_t j, Step step) const {
+    return costs_[step][i * (n_ + 1) + (j < n_ ? j : j - n_)];
+  }
+
+  void search(const Path& low, const Path& high, Path& best) const {
+    if (high.start - low.start < 2) return;
+    const Path middle = from((low.start + high.start) / 2, &low, &high);
+    if (middle.cost < best.cost || (middle.cost == best.cost && middle.start < best.start)) best = middle;
+    search(low, middle, best);
+    search(middle, high, best);
+  }
+
+  /// The least from a start that stays between two others, where they are given.
+  Path from(std::size_t start, const Path* low, const Path* high) const {
+    const auto begin = [&](std::size_t i) { return low ? std::max(low->first(i), start) : start; };
+    const auto end = [&](std::size_t i) { return high ? std::min(high->last[i], start + n_) : start + n_; };
+    std::vector<std::vector<Step>> came(m_ + 1);
+    std::vector<double> row, above;
+    for (std::size_t i = 0; i <= m_; ++i) {
+      above.swap(row);
+      row.assign(end(i) - begin(i) + 1, std::numeric_limits<double>::infinity());
+      came[i].assign(row.size(), along_upper);
+      for (std::size_t j = begin(i); j <= end(i); ++j) {
+        double& least = row[j - begin(i)];
+        if (i == 0 && j == start) least = 0.0;
+        if (j > begin(i)) least = std::min(least, row[j - 1 - begin(i)] + cost(i, j - 1, along_upper));
+        if (i == 0 || j < begin(i - 1) || j > end(i - 1)) continue;
+        const double by_lower = above[j - begin(i - 1)] + cost(i - 1, j, along_lower);
+        if (by_lower >= least) continue;
+        least = by_lower;
+        came[i][j - begin(i)] = along_lower;
+      }
+    }
+    Path path{start, row.back(), std::vector<std::size_t>(m_ + 1)};
+    path.last[m_] = start + n_;
+    for (std::size_t i = m_, j = start + n_; i > 0;) {
+      if (came[i][j - begin(i)] == along_upper) {
+        --j;
+        continue;
+      }
+      path.last[--i] = j;
+    }
+    return path;
+  }
+
+  std::size_t m_, n_;
+  std::array<std::vector<double>, 2> costs_;  ///< of the step from (i, j), at i * (n + 1) + j
+};
+
+std::vector<Step> steps_of(const Path& path) {
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i < path.last.size(); ++i) {
+    if (i > 0) steps.push_back(along_lower);
+    steps.insert(steps.end(), path.last[i] - path.first(i), along_upper);
+  }
+  return steps;
+}
+
+/// Angle between the planes of two triangles; none where one has no area.
+double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
+  return std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
+}
+
+/// The path from (0, 0) with the least sum of angles. A node has a sum for each step that may have led to it,
+/// as an angle is between the triangle of that step and the next.
+std::vector<Step> least_angle_steps(const Pair& pair) {
+  const std::size_t m = pair.m(), n = pair.n();
+  constexpr double far = std::numeric_limits<double>::infinity();
+  using Sums = std::array<double, 2>;
+  std::vector<Sums> row(n + 1, {far, far}), above;
+  std::vector<std::array<Step, 2>> came((m + 1) * (n + 1));
+  for (std::size_t i = 0; i <= m; ++i) {
+    above = row;
+    for (std::size_t j = 0; j <= n; ++j) {
+      if (i == 0 && j == 0) {
+        row[0] = {0.0, 0.0};
+        continue;
+      }
+      row[j] = {far, far};
+      for (const Step step : {along_lower, along_upper}) {
+        if (step == along_lower ? i == 0 : j == 0) continue;
+        const std::size_t from_i = step == along_lower ? i - 1 : i, from_j = step == along_lower ? j : j - 1;
+        const Sums& from = step == along_lower ? above[j] : row[j - 1];
+        const Triangle here = pair.triangle(from_i, from_j, step);
+        for (const Step before : {along_lower, along_upper}) {
+          if (from[before] == far) continue;
+          double total = from[before];
+          if (from_i > 0 || from_j > 0) {
+            const Triangle last = before == along_lower ? pair.triangle(from_i - 1, from_j, before)
+                                                        : pair.triangle(from_i, from_j - 1, before);
+            total += angle_between(last.normal(), here.normal());
+          }
+          if (total >= row[j][step]) continue;
+          row[j][step] = total;
+          came[i * (n + 1) + j][step] = before;
+        }
+      }
+    }
+  }
+  std::vector<Step> steps;
+  Step step = row[n][along_lower] <= row[n][along_upper] ? along_lower : along_upper;
+  for (std::size_t i = m, j = n; i > 0 || j > 0;) {
+    steps.push_back(step);
+    const Step before = came[i * (n + 1) + j][step];
+    --(step == along_lower ? i : j);
+    step = before;
+  }
+  return {steps.rbegin(), steps.rend()};
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost) {
+  for (const Ring* ring : {&lower, &upper})
+    if (ring->points_mm.size() < 3)
+      throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
+                                  " points, three are needed");
+  if (!(lower.z_mm < upper.z_mm)) throw std::invalid_argument("tile: the lower ring must lie lower");
+  std::array<std::size_t, 2> start{};
+  std::vector<Step> steps;
+  if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {
+    const Path path = LeastPath({turned(lower, 0), turned(upper, 0)}, cost).find();
+    start[1] = path.start;
+    steps = steps_of(path);
+  } else {
+    start = start_of(lower, upper);
+    steps = cost == TileCost::shortest_span
+                ? greedy_steps(lower, upper, start)
+                : least_angle_steps({turned(lower, start[0]), turned(upper, start[1])});
+  }
+
+  const std::size_t m = lower.points_mm.size(), n = upper.points_mm.size();
+  const auto lower_point = [&](std::size_t i) { return static_cast<std::uint32_t>((start[0] + i) % m); };
+  const auto upper_point = [&](std::size_t j) { return static_cast<std::uint32_t>(m + (start[1] + j) % n); };
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  std::size_t i = 0, j = 0;
+  for (const Step step : steps) {
+    if (step == along_lower) {
+      faces.push_back({lower_point(i), lower_point(i + 1), upper_point(j)});
+      ++i;
+    } else {
+      faces.push_back({upper_point(j + 1), upper_point(j), lower_point(i)});
+      ++j;
+    }
+  }
+  return faces;
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 turn all contours with the object on their left and move every other section a little; 2 for each slab
+// overlay its sections, then put strips where a contour has one counterpart, and take back those that cross
+// anything; 3 number all points in one row.
+#include "brep/contour/tile_sections.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <tbb/parallel_for.h>
+
+#include "brep/contour/slab.h"
+#include "brep/mesh/health.h"
+
+namespace octotomy::brep {
+namespace {
+
+using FaceList = std::vector<std::array<std::uint32_t, 3>>;
+
+std::string name(const Section& section, std::size_t s, std::size_t contour) {
+  return "contour " + std::to_string(contour) + " of section " + std::to_string(s) + " at " +
+         std::to_string(section.z_mm) + " mm";
+}
+
+void check(const std::vector<Section>& sections) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("tile_sections: " + why); };
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    if (!std::isfinite(sections[s].z_mm) || (s > 0 && !(sections[s - 1].z_mm < sections[s].z_mm)))
+      refuse("section " + std::to_string(s) + " is not higher than the one before it: sort them by height");
+    for (std::size_t c = 0; c < sections[s].contours.size(); ++c) {
+      const Contour& contour = sections[s].contours[c];
+      if (!contour.closed) refuse(name(sections[s], s, c) + " is open: close it or leave it out");
+      if (contour.points_mm.size() < 3) refuse(name(sections[s], s, c) + " has fewer than three points");
+      for (const glm::dvec2& p : contour.points_mm)
+        if (!std::isfinite(p.x) || !std::isfinite(p.y))
+          refuse(name(sections[s], s, c) + " has a point that is not finite");
+    }
+  }
+}
+
+/// How far every other section is moved, and where to: a share of the largest coordinate that is 2^22 units
+/// of its last place, so that no crossing is lost in rounding, and far below what any scan resolves.
+/// Directions have nothing in common with anything likely; a further attempt takes another.
+glm::dvec2 shift_mm(const std::vector<Section>& sections, int attempt) {
+  double reach = 0.0;
+  for (const Section& section : sections)
+    for (const Contour& contour : section.contours)
+      for (const glm::dvec2& p : contour.points_mm) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
+  const double angle = 0.7351 + 1.9 * attempt;
+  return 0x1p-30 * reach * glm::dvec2(std::cos(angle), std::sin(angle));
+}
+constexpr int attempt_count = 4;
+
+/// Contours at even depth run counter-clockwise, holes clockwise.
+std::vector<Contour> directed(const std::vector<Contour>& contours, const glm::dvec2& shift) {
+  const std::vector<std::size_t> depth = depths(nest(contours));
+  std::vector<Contour> turned = contours;
+  for (std::size_t c = 0; c < turned.size(); ++c) {
+    if ((signed_area_mm2(turned[c]) > 0.0) != (depth[c] % 2 == 0))
+      std::reverse(turned[c].points_mm.begin(), turned[c].points_mm.end());
+    for (glm::dvec2& p : turned[c].points_mm) p += shift;
+  }
+  return turned;
+}
+
+std::uint32_t point_count(const std::vector<Contour>& contours) {
+  std::size_t count = 0;
+  for (const Contour& contour : contours) count += contour.points_mm.size();
+  return static_cast<std::uint32_t>(count);
+}
+
+/// One slab's surface and how it came to be.
+struct Tiled {
+  SlabSurface surface;
+  std::size_t strips = 0, crossed_strips = 0, overlaid = 0;
+};
+
+/// Puts strips into a slab's surface.
+class Strips {
+ public:
+  Strips(const Slab& slab, TileCost cost, SlabSurface& surface)
+      : slab_(slab), surface_(surface), strips_(surface.groups.size()) {
+    for (std::size_t g = 0; g < strips_.size(); ++g)
+      if (is_pair(surface.groups[g])) strips_[g] = strip_of(surface.groups[g], cost);
+  }
+
+  std::size_t count() const {
+    return static_cast<std::size_t>(
+        std::count_if(strips_.begin(), strips_.end(), [](const FaceList& strip) { return !strip.empty(); }));
+  }
+
+  /// Drops the strips that cross anything until none does.
+  void settle() {
+    while (count() > 0) {
+      std::vector<std::uint32_t> group;
+      const Triangles all = with_strips(group);
+      const Health found = health(all, {.self_intersections = true});
+      bool dropped = false;
+      for (const auto& [f, g] : found.crossing)
+        for (const int face : {f, g}) {
+          FaceList& strip = strips_[group[static_cast<std::size_t>(face)]];
+          dropped = dropped || !strip.empty();
+          strip.clear();
+        }
+      if (!dropped) break;
+    }
+    std::vector<std::uint32_t> group;
+    surface_.faces = with_strips(group).faces;
+    surface_.group = std::move(group);
+  }
+
+ private:
+  /// One contour below and one above, both outlines or both holes.
+  bool is_pair(const SlabSurface::Group& group) const {
+    return group.lower.size() == 1 && group.upper.size() == 1 &&
+           (signed_area_mm2(slab_.lower[group.lower[0]]) > 0.0) ==
+               (signed_area_mm2(slab_.upper[group.upper[0]]) > 0.0);
+  }
+
+  FaceList strip_of(const SlabSurface::Group& group, TileCost cost) const {
+    const auto first_of = [](const std::vector<Contour>& section, std::uint32_t contour) {
+      std::size_t first = 0;
+      for (std::uint32_t c = 0; c < contour; ++c) first += section[c].points_mm.size();
+      return static_cast<std::uint32_t>(first);
+    };
+    const Contour &lower = slab_.lower[group.lower[0]], &upper = slab_.upper[group.upper[0]];
+    FaceList strip = tile({lower.points_mm, slab_.low_mm}, {upper.points_mm, slab_.high_mm}, cost);
+    const auto m = static_cast<std::uint32_t>(lower.points_mm.size());
+    const std::uint32_t of_lower = first_of(slab_.lower, group.lower[0]);
+    const std::uint32_t of_upper = point_count(slab_.lower) + first_of(slab_.upper, group.upper[0]);
+    for (auto& face : strip)
+      for (std::uint32_t& v : face) v = v < m ? of_lower + v : of_upper + (v - m);
+    return strip;
+  }
+
+  Triangles with_strips(std::vector<std::uint32_t>& group) const {
+    Triangles all;
+    for (const auto& [section, z] :
+         {std::pair(&slab_.lower, slab_.low_mm), std::pair(&slab_.upper, slab_.high_mm)})
+      for (const Contour& contour : *section)
+        for (const glm::dvec2& p : contour.points_mm) all.points_mm.emplace_back(p, z);
+    all.points_mm.insert(all.points_mm.end(), surface_.inner_mm.begin(), surface_.inner_mm.end());
+    for (std::size_t f = 0; f < surface_.faces.size(); ++f) {
+      if (!strips_[surface_.group[f]].empty()) continue;
+      all.faces.push_back(surface_.faces[f]);
+      group.push_back(surface_.group[f]);
+    }
+    for (std::uint32_t g = 0; g < strips_.size(); ++g) {
+      all.faces.insert(all.faces.end(), strips_[g].begin(), strips_[g].end());
+      group.insert(group.end(), strips_[g].size(), g);
+    }
+    return all;
+  }
+
+  const Slab& slab_;
+  SlabSurface& surface_;
+  std::vector<FaceList> strips_;  ///< of each group; empty where overlay()'s stands
+};
+
+Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
+  Tiled tiled;
+  tiled.surface = overlay(slab);
+  tiled.overlaid = tiled.surface.groups.size();
+  if (!cost) return tiled;
+  Strips strips(slab, *cost, tiled.surface);
+  const std::size_t wanted = strips.count();
+  strips.settle();
+  tiled.strips = strips.count();
+  tiled.crossed_strips = wanted - tiled.strips;
+  tiled.overlaid -= wanted;
+  return tiled;
+}
+
+/// All slabs, those beyond the ends too. Throws SectionsCoincide where another shift is needed.
+std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
+                              const std::vector<double>& heights_mm, const TileSectionsOptions& options) {
+  std::vector<Tiled> slabs(contours.size() - 1);
+  std::atomic<std::size_t> finished = 0;
+  std::mutex telling;
+  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+    if (options.stop.stop_requested()) return;
+    slabs[s] = tile_slab({contours[s], contours[s + 1], heights_mm[s], heights_mm[s + 1]}, options.cost);
+    const std::size_t count = ++finished;
+    if (!options.progress) return;
+    const std::lock_guard lock(telling);
+    options.progress(static_cast<double>(count) / static_cast<double>(slabs.size()));
+  });
+  if (options.stop.stop_requested()) throw std::runtime_error("tiling was stopped");
+  return slabs;
+}
+
+TiledSections joined(const std::vector<std::vector<Contour>>& contours, const std::vector<double>& heights_mm,
+                     std::vector<Tiled> slabs) {
+  TiledSections tiled;
+  std::vector<std::uint32_t> first;
+  for (std::size_t s = 0; s < contours.size(); ++s) {
+    first.push_back(static_cast<std::uint32_t>(tiled.surface.points_mm.size()));
+    for (const Contour& contour : contours[s])
+      for (const glm::dvec2& p : contour.points_mm) tiled.surface.points_mm.emplace_back(p, heights_mm[s]);
+  }
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    const std::uint32_t lower = point_count(contours[s]), upper = lower + point_count(contours[s + 1]);
+    const auto inner = static_cast<std::uint32_t>(tiled.surface.points_mm.size());
+    // Points of an overlay that a strip took the place of are left out.
+    std::vector<std::uint32_t> number(slabs[s].surface.inner_mm.size(), 0);
+    for (const auto& face : slabs[s].surface.faces)
+      for (const std::uint32_t v : face)
+        if (v >= upper) number[v - upper] = 1;
+    std::uint32_t kept = 0;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] == 0) continue;
+      number[v] = inner + kept++;
+      tiled.surface.points_mm.push_back(slabs[s].surface.inner_mm[v]);
+    }
+    for (auto face : slabs[s].surface.faces) {
+      for (std::uint32_t& v : face)
+        v = v < lower ? first[s] + v : v < upper ? first[s + 1] + (v - lower) : number[v - upper];
+      tiled.surface.faces.push_back(face);
+    }
+    tiled.strips += slabs[s].strips;
+    tiled.crossed_strips += slabs[s].crossed_strips;
+    tiled.overlaid += slabs[s].overlaid;
+  }
+  return tiled;
+}
+
+}  // namespace
+
+TiledSections tile_sections(const std::vector<Section>& sections, const TileSectionsOptions& options) {
+  check(sections);
+  if (sections.empty()) return {};
+  std::vector<double> heights_mm;
+  for (const Section& section : sections) heights_mm.push_back(section.z_mm);
+  constexpr double lone_mm = 1.0;
+  const std::size_t count = heights_mm.size();
+  const double below = count > 1 ? heights_mm[1] - heights_mm[0] : lone_mm;
+  const double above = count > 1 ? heights_mm[count - 1] - heights_mm[count - 2] : lone_mm;
+  heights_mm.insert(heights_mm.begin(), heights_mm.front() - below);
+  heights_mm.push_back(heights_mm.back() + above);
+
+  std::string trouble;
+  for (int attempt = 0; attempt < attempt_count; ++attempt) {
+    const glm::dvec2 shift = shift_mm(sections, attempt);
+    std::vector<std::vector<Contour>> contours(1);
+    for (std::size_t s = 0; s < count; ++s)
+      contours.push_back(directed(sections[s].contours, static_cast<double>(s % 2) * shift));
+    contours.emplace_back();
+    try {
+      return joined(contours, heights_mm, tile_slabs(contours, heights_mm, options));
+    } catch (const SectionsCoincide& coincide) {
+      trouble = coincide.what();
+    }
+  }
+  throw std::runtime_error("tile_sections: " + trouble + " wherever they are moved to: move one by hand");
+}
+
+}  // namespace octotomy::brep

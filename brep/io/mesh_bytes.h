@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/triangles.h"
+
+// The formats that carry normals, as the bytes of a file. What is said of vertices fits the triangles.
+namespace octotomy::brep {
+
+/// VTK's XML polydata with raw data appended: points and vertex data as doubles, normals in single precision.
+std::string vtp_of(const Triangles& triangles, const VertexData& data);
+
+/// glTF 2.0, binary: single precision millimetres, and a node that turns them to the format's metres with y
+/// to the head and z to the front. Scalars have no place in it.
+std::string glb_of(const Triangles& triangles, const VertexData& data);
+
+/// Unit normals of the points, those of the triangles about each weighted by area; (0, 0, 1), as formats want
+/// unit length, where they cancel or there are none.
+std::vector<glm::vec3> vertex_normals(const Triangles& triangles);
+
+/// Appends a number's bytes, least significant first.
+template <typename T>
+void append_little(std::string& bytes, T value) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, &value, sizeof(T));
+  if constexpr (std::endian::native == std::endian::big) std::reverse(raw, raw + sizeof(T));
+  bytes.append(raw, sizeof(T));
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/io/mesh_scanner.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+namespace octotomy::brep {
+namespace {
+
+bool is_space(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+std::uint32_t checked_corner(const Triangles& triangles, long long corner) {
+  if (corner < 0 || corner >= static_cast<long long>(triangles.points_mm.size()))
+    throw std::runtime_error("triangle " + std::to_string(triangles.faces.size()) + " refers to point " +
+                             std::to_string(corner) + " of " + std::to_string(triangles.points_mm.size()));
+  return static_cast<std::uint32_t>(corner);
+}
+
+}  // namespace
+
+void MeshScanner::fail(const std::string& why) const {
+  const auto passed = bytes_.substr(0, std::min(at_, bytes_.size()));
+  throw std::runtime_error(
+      binary_ ? "byte " + std::to_string(at_) + ": " + why
+              : "line " + std::to_string(1 + std::count(passed.begin(), passed.end(), '\n')) + ": " + why);
+}
+
+std::string_view MeshScanner::line() {
+  const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
+  std::string_view text = bytes_.substr(at_, end - at_);
+  at_ = std::min(end + 1, bytes_.size());
+  if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+  return text;
+}
+
+std::string_view MeshScanner::word(bool within_line) {
+  while (at_ < bytes_.size()) {
+    if (bytes_[at_] == '\n' && within_line) return {};
+    if (is_space(bytes_[at_])) {
+      ++at_;
+    } else if (hash_comments_ && bytes_[at_] == '#') {
+      at_ = std::min(bytes_.find('\n', at_), bytes_.size());
+    } else {
+      break;
+    }
+  }
+  const std::size_t begin = at_;
+  while (at_ < bytes_.size() && !is_space(bytes_[at_])) ++at_;
+  return bytes_.substr(begin, at_ - begin);
+}
+
+double number_of(std::string_view word) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  // A number too small for a double is zero to any purpose here.
+  if (error == std::errc::result_out_of_range && end == word.data() + word.size() && std::abs(value) < 1.0)
+    return 0.0;
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+    throw std::runtime_error("'" + std::string(word.substr(0, 40)) + "' where a number should be");
+  return value;
+}
+
+long long integer_of(std::string_view word) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  long long value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size())
+    throw std::runtime_error("'" + std::string(word.substr(0, 40)) + "' where a whole number should be");
+  return value;
+}
+
+double MeshScanner::number() {
+  const std::string_view text = word();
+  if (text.empty()) fail("the file ends where a number should be");
+  try {
+    return number_of(text);
+  } catch (const std::runtime_error& e) {
+    fail(e.what());
+  }
+}
+
+long long MeshScanner::integer() {
+  const std::string_view text = word();
+  if (text.empty()) fail("the file ends where a whole number should be");
+  try {
+    return integer_of(text);
+  } catch (const std::runtime_error& e) {
+    fail(e.what());
+  }
+}
+
+std::size_t MeshScanner::bounded(long long count, std::size_t bytes_each) const {
+  if (count < 0 || static_cast<unsigned long long>(count) > rest() / bytes_each)
+    fail("a count of " + std::to_string(count) + " is more than the rest of the file, " +
+         std::to_string(rest()) + " bytes, can hold; it is cut short or damaged");
+  return static_cast<std::size_t>(count);
+}
+
+std::size_t MeshScanner::count(std::size_t bytes_each) {
+  return bounded(integer(), bytes_each);
+}
+
+void MeshScanner::skip(std::size_t byte_count) {
+  if (byte_count > rest()) fail("the file ends too early");
+  at_ += byte_count;
+}
+
+void add_fan(Triangles& triangles, const std::vector<long long>& corners) {
+  if (corners.size() < 3)
+    throw std::runtime_error("a polygon of " + std::to_string(corners.size()) + " corners after triangle " +
+                             std::to_string(triangles.faces.size()));
+  for (std::size_t i = 2; i < corners.size(); ++i)
+    triangles.faces.push_back({checked_corner(triangles, corners[0]),
+                               checked_corner(triangles, corners[i - 1]),
+                               checked_corner(triangles, corners[i])});
+}
+
+void add_strip(Triangles& triangles, const std::vector<long long>& corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    std::array<std::uint32_t, 3> face{checked_corner(triangles, corners[i - 2]),
+                                      checked_corner(triangles, corners[i - 1]),
+                                      checked_corner(triangles, corners[i])};
+    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) continue;
+    if (i % 2 == 1) std::swap(face[0], face[1]);
+    triangles.faces.push_back(face);
+  }
+}
+
+}  // namespace octotomy::brep

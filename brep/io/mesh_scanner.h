@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+
+/// Walks over the bytes of a mesh file, as text or as numbers. What cannot be there is a std::runtime_error
+/// that says the line (or the byte, once binary numbers were read).
+class MeshScanner {
+ public:
+  explicit MeshScanner(std::string_view bytes) : bytes_(bytes) {}
+
+  bool at_end() const { return at_ >= bytes_.size(); }
+  std::size_t rest() const { return bytes_.size() - at_; }
+  /// Text from here to the end of the line, which is passed.
+  std::string_view line();
+  /// The next word; empty at the end. With `within_line` also empty at the end of the line, which is not
+  /// passed. A # starts a comment where the format has those.
+  std::string_view word(bool within_line = false);
+  void comments_start_with_hash() { hash_comments_ = true; }
+  double number();
+  long long integer();
+  /// A count of things that take at least `bytes_each`: never more than the rest of the file can hold.
+  std::size_t count(std::size_t bytes_each);
+  std::size_t bounded(long long count, std::size_t bytes_each) const;
+
+  /// A number of the file's byte order.
+  template <typename T>
+  T binary(std::endian order) {
+    binary_ = true;
+    if (rest() < sizeof(T)) fail("the file ends too early");
+    char raw[sizeof(T)];
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      raw[i] = bytes_[at_ + (order == std::endian::native ? i : sizeof(T) - 1 - i)];
+    at_ += sizeof(T);
+    T value;
+    std::memcpy(&value, raw, sizeof(T));
+    return value;
+  }
+  void skip(std::size_t byte_count);
+
+  [[noreturn]] void fail(const std::string& why) const;
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+  bool hash_comments_ = false;
+  bool binary_ = false;
+};
+
+/// A word as a number; throws std::runtime_error without place.
+double number_of(std::string_view word);
+long long integer_of(std::string_view word);
+
+/// Adds a polygon as a fan; throws std::runtime_error where it has too few corners or a corner is no point.
+void add_fan(Triangles& triangles, const std::vector<long long>& corners);
+/// Adds a strip of triangles; ones that repeat a point only turn the strip and are left out.
+void add_strip(Triangles& triangles, const std::vector<long long>& corners);
+
+/// The formats that fill a source of their own. All throw std::runtime_error without the path.
+Triangles read_ply(std::string_view bytes);
+Triangles read_vtk(std::string_view bytes);
+Triangles read_vtp(std::string_view bytes);
+
+}  // namespace octotomy::brep

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/io/read_mesh.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+
+#include "brep/io/mesh_scanner.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Gives equal points one number, in the order they are met.
+class Welder {
+ public:
+  explicit Welder(Triangles& triangles) : triangles_(triangles) {}
+  std::uint32_t number_of(const glm::dvec3& p) {
+    // Adding zero makes -0 and 0 one point.
+    const glm::dvec3 key = p + 0.0;
+    const auto [entry, is_new] =
+        numbers_.try_emplace(key, static_cast<std::uint32_t>(triangles_.points_mm.size()));
+    if (is_new) triangles_.points_mm.push_back(key);
+    return entry->second;
+  }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const glm::dvec3& p) const {
+      std::uint64_t hash = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis])) * 0x9E3779B97F4A7C15ull;
+        hash ^= hash >> 29;
+      }
+      return hash;
+    }
+  };
+  Triangles& triangles_;
+  std::unordered_map<glm::dvec3, std::uint32_t, Hash> numbers_;
+};
+
+constexpr std::size_t stl_header_bytes = 84, stl_triangle_bytes = 50;
+
+Triangles read_binary_stl(std::string_view bytes) {
+  MeshScanner scanner(bytes);
+  scanner.skip(80);
+  const std::size_t count =
+      scanner.bounded(scanner.binary<std::uint32_t>(std::endian::little), stl_triangle_bytes);
+  Triangles triangles;
+  triangles.faces.reserve(count);
+  Welder welder(triangles);
+  for (std::size_t i = 0; i < count; ++i) {
+    scanner.skip(12);
+    std::array<std::uint32_t, 3> face{};
+    for (std::uint32_t& corner : face) {
+      glm::dvec3 p;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.binary<float>(std::endian::little);
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        scanner.fail("triangle " + std::to_string(i) + " has a point that is not finite");
+      corner = welder.number_of(p);
+    }
+    scanner.skip(2);
+    triangles.faces.push_back(face);
+  }
+  return triangles;
+}
+
+Triangles read_ascii_stl(std::string_view bytes) {
+  MeshScanner scanner(bytes);
+  scanner.line();
+  Triangles triangles;
+  Welder welder(triangles);
+  std::vector<std::uint32_t> corners;
+  bool ended = false;
+  for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
+    if (word == "vertex") {
+      glm::dvec3 p;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
+      corners.push_back(welder.number_of(p));
+    } else if (word == "endloop") {
+      if (corners.size() != 3)
+        scanner.fail("a facet of " + std::to_string(corners.size()) + " vertices; STL has triangles only");
+      triangles.faces.push_back({corners[0], corners[1], corners[2]});
+      corners.clear();
+    } else if (word == "solid" || word == "endsolid") {
+      ended = word == "endsolid";
+      scanner.line();
+    } else if (word == "facet") {
+      scanner.line();
+    } else if (word != "outer" && word != "loop" && word != "endfacet") {
+      scanner.fail("'" + std::string(word.substr(0, 40)) + "' is no word of STL");
+    }
+  }
+  if (!ended) scanner.fail("the file ends without 'endsolid': it is cut short");
+  return triangles;
+}
+
+/// The size decides, as binary files that start with "solid" are common.
+Triangles read_stl(std::string_view bytes) {
+  if (bytes.size() >= stl_header_bytes) {
+    MeshScanner scanner(bytes);
+    scanner.skip(80);
+    const std::uint64_t count = scanner.binary<std::uint32_t>(std::endian::little);
+    if (stl_header_bytes + count * stl_triangle_bytes == bytes.size()) return read_binary_stl(bytes);
+  }
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  if (start != std::string_view::npos && bytes.substr(start).starts_with("solid"))
+    return read_ascii_stl(bytes.substr(start));
+  if (bytes.size() < stl_header_bytes) throw std::runtime_error("too short for an STL file");
+  return read_binary_stl(bytes);
+}
+
+Triangles read_obj(std::string_view bytes) {
+  MeshScanner scanner(bytes);
+  scanner.comments_start_with_hash();
+  Triangles triangles;
+  std::vector<long long> corners;
+  while (!scanner.at_end()) {
+    const std::string_view key = scanner.word();
+    if (key == "v") {
+      glm::dvec3 p;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
+      triangles.points_mm.push_back(p);
+    } else if (key == "f") {
+      corners.clear();
+      for (std::string_view word = scanner.word(true); !word.empty(); word = scanner.word(true)) {
+        if (word == "\\") {
+          scanner.line();
+          continue;
+        }
+        // Negative numbers count back from the last point read.
+        const long long given = integer_of(word.substr(0, word.find('/')));
+        if (given == 0) scanner.fail("a face refers to point 0; OBJ counts from 1");
+        corners.push_back(given > 0 ? given - 1 : given + static_cast<long long>(triangles.points_mm.size()));
+      }
+      try {
+        add_fan(triangles, corners);
+      } catch (const std::runtime_error& e) {
+        scanner.fail(e.what());
+      }
+    }
+    scanner.line();
+  }
+  return triangles;
+}
+
+Triangles read_off(std::string_view bytes) {
+  MeshScanner scanner(bytes);
+  scanner.comments_start_with_hash();
+  // Prefixes tell of colours (C), normals (N), textures (ST) behind each point; 4 and n change the dimension.
+  const std::string_view magic = scanner.word();
+  if (!magic.ends_with("OFF") || magic.find_first_of("4n") != std::string_view::npos)
+    scanner.fail("an OFF file of points in space starts with OFF, COFF, NOFF or STOFF");
+  const long long point_count = scanner.integer(), face_count = scanner.integer();
+  scanner.line();  // the number of edges, which nobody keeps right
+  Triangles triangles;
+  // The least row of a point is "0 0 0", of a face "1 0", each with the end of its line.
+  const std::size_t points = scanner.bounded(point_count, 5);
+  triangles.points_mm.reserve(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    glm::dvec3 p;
+    for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
+    triangles.points_mm.push_back(p);
+    scanner.line();
+  }
+  const std::size_t faces = scanner.bounded(face_count, 3);
+  std::vector<long long> corners;
+  for (std::size_t i = 0; i < faces; ++i) {
+    const std::size_t corner_count = scanner.count(1);
+    corners.clear();
+    for (std::size_t k = 0; k < corner_count; ++k) corners.push_back(scanner.integer());
+    try {
+      add_fan(triangles, corners);
+    } catch (const std::runtime_error& e) {
+      scanner.fail(e.what());
+    }
+    scanner.line();
+  }
+  return triangles;
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!file || error) throw std::runtime_error("cannot be read; check its name and rights");
+  std::string bytes(size, '\0');
+  if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
+    throw std::runtime_error("reading broke off");
+  return bytes;
+}
+
+}  // namespace
+
+Triangles read_triangles(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  try {
+    if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".off" &&
+        extension != ".vtk" && extension != ".vtp")
+      throw std::runtime_error("'" + extension +
+                               "' is no mesh format that is read; use .stl, .ply, .obj, .off, .vtk or .vtp");
+    const std::string bytes = bytes_of(path);
+    if (bytes.empty()) throw std::runtime_error("the file is empty");
+    if (extension == ".stl") return read_stl(bytes);
+    if (extension == ".ply") return read_ply(bytes);
+    if (extension == ".obj") return read_obj(bytes);
+    if (extension == ".off") return read_off(bytes);
+    return extension == ".vtk" ? read_vtk(bytes) : read_vtp(bytes);
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error(path.string() + ": " + e.what());
+  }
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// VTK's XML polydata ("VTK XML file formats", The VTK User's Guide): numbers as text, as base64 within their
+// element, or appended at the end, raw or base64; plain or in blocks of zlib. An array starts with a header:
+// its length, or of blocks their count, size, last size and compressed sizes. The XML is scanned for the few
+// elements that matter rather than parsed: raw appended data are no XML.
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <zlib.h>
+
+#include "brep/io/mesh_scanner.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// A tag and what stands before the next one.
+struct Element {
+  std::string_view name;
+  std::map<std::string_view, std::string_view> attributes;
+  std::string_view content;
+
+  std::string_view get(std::string_view key, std::string_view otherwise = "") const {
+    const auto found = attributes.find(key);
+    return found == attributes.end() ? otherwise : found->second;
+  }
+};
+
+constexpr std::string_view blanks = " \t\r\n";
+
+Element element_of(std::string_view tag, std::string_view content) {
+  Element element;
+  element.content = content;
+  element.name = tag.substr(0, tag.find_first_of(" \t\r\n/", 1));
+  for (std::size_t at = element.name.size(); at < tag.size();) {
+    const std::size_t key = tag.find_first_not_of(" \t\r\n/", at), equals = tag.find('=', at);
+    if (key == tag.npos || equals == tag.npos || equals < key) break;
+    const std::size_t open = tag.find_first_of("\"'", equals);
+    const std::size_t close = open == tag.npos ? tag.npos : tag.find(tag[open], open + 1);
+    if (close == tag.npos)
+      throw std::runtime_error("an attribute of <" + std::string(element.name) + "> does not end");
+    element.attributes[tag.substr(key, tag.find_last_not_of(blanks, equals - 1) + 1 - key)] =
+        tag.substr(open + 1, close - open - 1);
+    at = close + 1;
+  }
+  return element;
+}
+
+std::string from_base64(std::string_view text, std::size_t most) {
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    int value = -1;
+    if (c >= 'A' && c <= 'Z') value = c - 'A';
+    if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
+    if (c >= '0' && c <= '9') value = c - '0' + 52;
+    if (c == '+') value = 62;
+    if (c == '/') value = 63;
+    if (value < 0 || bytes.size() >= most) break;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    if (++count % 4 != 1) bytes += static_cast<char>(bits >> (count % 4 == 2 ? 4 : count % 4 == 3 ? 2 : 0));
+  }
+  return bytes;
+}
+
+/// Characters of base64 that stand for so many bytes, padding included.
+std::size_t base64_length(std::size_t bytes) {
+  return (bytes + 2) / 3 * 4;
+}
+
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+
+  Triangles run() {
+    for (std::size_t at = bytes_.find('<'); at != bytes_.npos;) {
+      const std::size_t end = bytes_.find('>', at), next = end == bytes_.npos ? end : bytes_.find('<', end);
+      if (end == bytes_.npos) throw std::runtime_error("a tag does not end");
+      const Element element = element_of(bytes_.substr(at + 1, end - at - 1),
+                                         bytes_.substr(end + 1, next == bytes_.npos ? next : next - end - 1));
+      if (element.name == "AppendedData") {
+        appended_ = bytes_.substr(end + 1);
+        appended_.remove_prefix(std::min(appended_.find('_'), appended_.size() - 1) + 1);
+        appended_is_raw_ = element.get("encoding") == "raw";
+        break;
+      }
+      take(element);
+      at = next;
+    }
+    if (!is_polydata_) throw std::runtime_error("the data set is not PolyData; export a surface");
+    for (const Piece& piece : pieces_) add(piece);
+    return std::move(triangles_);
+  }
+
+ private:
+  struct Piece {
+    Element points;
+    std::map<std::string_view, Element> polys, strips;
+  };
+
+  void take(const Element& element) {
+    if (element.name == "VTKFile") {
+      is_polydata_ = element.get("type") == "PolyData";
+      order_ =
+          element.get("byte_order", "LittleEndian") == "BigEndian" ? std::endian::big : std::endian::little;
+      wide_header_ = element.get("header_type", "UInt32") == "UInt64";
+      const std::string_view compressor = element.get("compressor");
+      is_compressed_ = !compressor.empty();
+      if (is_compressed_ && compressor != "vtkZLibDataCompressor")
+        throw std::runtime_error("data compressed by " + std::string(compressor.substr(0, 40)) +
+                                 " are not read; write them with zlib or plain");
+    }
+    if (element.name == "Piece") pieces_.emplace_back();
+    if (element.name == "/DataArray") return;
+    if (element.name != "DataArray") {
+      section_ = element.name;
+      return;
+    }
+    if (pieces_.empty()) return;
+    if (section_ == "Points") pieces_.back().points = element;
+    if (section_ == "Polys") pieces_.back().polys[element.get("Name")] = element;
+    if (section_ == "Strips") pieces_.back().strips[element.get("Name")] = element;
+  }
+
+  void add(const Piece& piece) {
+    if (piece.points.name.empty()) return;
+    const std::vector<double> numbers = numbers_of<double>(piece.points);
+    if (numbers.size() % 3 != 0)
+      throw std::runtime_error("points have " + std::to_string(numbers.size()) + " numbers");
+    const auto first = static_cast<long long>(triangles_.points_mm.size());
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+      if (!std::isfinite(numbers[i]) || !std::isfinite(numbers[i + 1]) || !std::isfinite(numbers[i + 2]))
+        throw std::runtime_error("point " + std::to_string(i / 3) + " is not finite");
+      triangles_.points_mm.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+    }
+    for (const auto& corners : cells_of(piece.polys, first)) add_fan(triangles_, corners);
+    for (const auto& corners : cells_of(piece.strips, first)) add_strip(triangles_, corners);
+  }
+
+  std::vector<std::vector<long long>> cells_of(const std::map<std::string_view, Element>& arrays,
+                                               long long first) {
+    if (!arrays.contains("connectivity") || !arrays.contains("offsets")) return {};
+    const std::vector<long long> list = numbers_of<long long>(arrays.at("connectivity"));
+    std::vector<std::vector<long long>> cells;
+    long long begin = 0;
+    for (const long long end : numbers_of<long long>(arrays.at("offsets"))) {
+      if (end < begin || end > static_cast<long long>(list.size()))
+        throw std::runtime_error("a cell reaches beyond the list of cells");
+      cells.emplace_back(list.begin() + begin, list.begin() + end);
+      for (long long& corner : cells.back()) {
+        if (corner < 0) throw std::runtime_error("a corner is numbered " + std::to_string(corner));
+        corner += first;
+      }
+      begin = end;
+    }
+    return cells;
+  }
+
+  template <typename Number>
+  std::vector<Number> numbers_of(const Element& array) const {
+    const std::string_view type = array.get("type");
+    std::vector<Number> numbers;
+    if (array.get("format", "ascii") == "ascii") {
+      MeshScanner scanner(array.content);
+      for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
+        if constexpr (std::is_floating_point_v<Number>)
+          numbers.push_back(number_of(word));
+        else
+          numbers.push_back(integer_of(word));
+      }
+      return numbers;
+    }
+    const std::string data = data_of(array);
+    MeshScanner scanner(data);
+    const auto read = [&]<typename Stored>(Stored) {
+      numbers.reserve(data.size() / sizeof(Stored));
+      while (scanner.rest() >= sizeof(Stored))
+        numbers.push_back(static_cast<Number>(scanner.binary<Stored>(order_)));
+    };
+    if (type == "Float32")
+      read(float{});
+    else if (type == "Float64")
+      read(double{});
+    else if (type == "Int32")
+      read(std::int32_t{});
+    else if (type == "UInt32")
+      read(std::uint32_t{});
+    else if (type == "Int64")
+      read(std::int64_t{});
+    else if (type == "UInt64")
+      read(std::uint64_t{});
+    else
+      throw std::runtime_error("numbers of type '" + std::string(type.substr(0, 40)) + "' are not read");
+    return numbers;
+  }
+
+  std::size_t header_number(std::string_view header, std::size_t index) const {
+    MeshScanner scanner(header);
+    scanner.skip(index * header_bytes());
+    return wide_header_ ? static_cast<std::size_t>(scanner.binary<std::uint64_t>(order_))
+                        : scanner.binary<std::uint32_t>(order_);
+  }
+  std::size_t header_bytes() const { return wide_header_ ? 8 : 4; }
+
+  /// An array's bytes, without its header.
+  std::string data_of(const Element& array) const {
+    std::string_view source = array.content;
+    bool raw = false;
+    if (array.get("format") == "appended") {
+      const long long offset = integer_of(array.get("offset"));
+      if (offset < 0 || static_cast<std::size_t>(offset) >= appended_.size())
+        throw std::runtime_error("an array lies beyond the end of the file");
+      source = appended_.substr(static_cast<std::size_t>(offset));
+      raw = appended_is_raw_;
+    } else {
+      source.remove_prefix(std::min(source.find_first_not_of(blanks), source.size()));
+    }
+    // So many bytes from the start, and where the rest begins: of blocks, base64 is broken after the header.
+    const auto head = [&](std::size_t count) {
+      return raw ? std::string(source.substr(0, count)) : from_base64(source, count);
+    };
+    if (!is_compressed_) {
+      const std::size_t length = header_number(head(header_bytes()), 0);
+      const std::size_t most = source.size();
+      if (length > most) throw std::runtime_error("the file ends too early");
+      const std::string all = head(header_bytes() + length);
+      if (all.size() < header_bytes() + length) throw std::runtime_error("the file ends too early");
+      return all.substr(header_bytes());
+    }
+    const std::size_t blocks = header_number(head(header_bytes()), 0);
+    if (blocks > source.size()) throw std::runtime_error("the file ends too early");
+    const std::size_t header_length = (3 + blocks) * header_bytes();
+    const std::string header = head(header_length);
+    source.remove_prefix(std::min(source.size(), raw ? header_length : base64_length(header_length)));
+    return inflated(header, blocks, raw ? std::string(source) : from_base64(source, source.size()));
+  }
+
+  std::string inflated(const std::string& header, std::size_t blocks, const std::string& packed) const {
+    const std::size_t size = header_number(header, 1), last = header_number(header, 2);
+    std::string bytes;
+    std::size_t at = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const std::size_t length = header_number(header, 3 + b);
+      const std::size_t wanted = b + 1 == blocks && last > 0 ? last : size;
+      // zlib packs no more than 1032 bytes into one.
+      if (at > packed.size() || length > packed.size() - at || wanted / 1032 > length)
+        throw std::runtime_error("a compressed block is longer than the file");
+      std::string block(wanted, '\0');
+      uLongf got = wanted;
+      if (uncompress(reinterpret_cast<Bytef*>(block.data()), &got,
+                     reinterpret_cast<const Bytef*>(packed.data() + at), length) != Z_OK ||
+          got != wanted)
+        throw std::runtime_error("a compressed block is damaged");
+      bytes += block;
+      at += length;
+    }
+    return bytes;
+  }
+
+  std::string_view bytes_, appended_, section_;
+  bool is_polydata_ = false, wide_header_ = false, is_compressed_ = false, appended_is_raw_ = false;
+  std::endian order_ = std::endian::little;
+  std::vector<Piece> pieces_;
+  Triangles triangles_;
+};
+
+}  // namespace
+
+Triangles read_vtp(std::string_view bytes) {
+  return Reader(bytes).run();
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The glTF 2.0 specification, Khronos Group. Colours are linear there, so sRGB is undone, in 16 bits a
+// channel to keep its dark steps.
+#include <cmath>
+#include <limits>
+
+#include "brep/io/mesh_bytes.h"
+
+namespace octotomy::brep {
+namespace {
+
+std::uint16_t linear_of(std::uint8_t srgb) {
+  const double share = srgb / 255.0;
+  const double linear = share <= 0.04045 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+  return static_cast<std::uint16_t>(std::lround(65535.0 * linear));
+}
+
+/// The binary chunk and what the JSON says of it.
+struct Buffer {
+  std::string bytes, views, accessors;
+  int count = 0;
+
+  /// Ends an array that began at `from`; `more` is the accessor's own.
+  void close(std::size_t from, int target, const std::string& more) {
+    const std::string comma = count == 0 ? "" : ",";
+    views += comma + "{\"buffer\":0,\"byteOffset\":" + std::to_string(from) +
+             ",\"byteLength\":" + std::to_string(bytes.size() - from) +
+             ",\"target\":" + std::to_string(target) + "}";
+    accessors += comma + "{\"bufferView\":" + std::to_string(count) + "," + more + "}";
+    ++count;
+  }
+};
+
+constexpr int of_vertices = 34962, of_indices = 34963;
+
+std::string text_of(const glm::vec3& p) {
+  const auto number = [](float value) {
+    std::string text(32, '\0');
+    text.resize(static_cast<std::size_t>(
+        std::snprintf(text.data(), text.size(), "%.9g", static_cast<double>(value))));
+    return text;
+  };
+  return "[" + number(p.x) + "," + number(p.y) + "," + number(p.z) + "]";
+}
+
+void add_points(const Triangles& triangles, Buffer& buffer) {
+  glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
+  for (const glm::dvec3& point : triangles.points_mm) {
+    const glm::vec3 p(point);
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+    for (int axis = 0; axis < 3; ++axis) append_little(buffer.bytes, p[axis]);
+  }
+  const std::string count = "\"count\":" + std::to_string(triangles.points_mm.size());
+  buffer.close(0, of_vertices,
+               "\"componentType\":5126,\"type\":\"VEC3\"," + count + ",\"min\":" + text_of(low) +
+                   ",\"max\":" + text_of(high));
+  const std::size_t normals = buffer.bytes.size();
+  for (const glm::vec3& n : vertex_normals(triangles))
+    for (int axis = 0; axis < 3; ++axis) append_little(buffer.bytes, n[axis]);
+  buffer.close(normals, of_vertices, "\"componentType\":5126,\"type\":\"VEC3\"," + count);
+}
+
+void add_chunk(std::string& file, const char* kind, std::string chunk, char fill) {
+  while (chunk.size() % 4 != 0) chunk += fill;
+  append_little(file, static_cast<std::uint32_t>(chunk.size()));
+  file.append(kind, 4);
+  file += chunk;
+}
+
+}  // namespace
+
+std::vector<glm::vec3> vertex_normals(const Triangles& triangles) {
+  std::vector<glm::dvec3> sums(triangles.points_mm.size(), glm::dvec3(0.0));
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3& a = triangles.points_mm[face[0]];
+    const glm::dvec3 twice = glm::cross(triangles.points_mm[face[1]] - a, triangles.points_mm[face[2]] - a);
+    for (const std::uint32_t v : face) sums[v] += twice;
+  }
+  std::vector<glm::vec3> normals;
+  normals.reserve(sums.size());
+  for (const glm::dvec3& sum : sums) {
+    const double length = glm::length(sum);
+    normals.emplace_back(length > 0.0 ? sum / length : glm::dvec3(0, 0, 1));
+  }
+  return normals;
+}
+
+std::string glb_of(const Triangles& triangles, const VertexData& data) {
+  Buffer buffer;
+  std::string mesh;
+  // The format has no mesh without points; a scene without nodes stands for it.
+  const bool is_empty = triangles.faces.empty();
+  if (!is_empty) {
+    add_points(triangles, buffer);
+    std::string attributes = "\"POSITION\":0,\"NORMAL\":1";
+    if (!data.colours.empty()) {
+      attributes += ",\"COLOR_0\":2";
+      const std::size_t colours = buffer.bytes.size();
+      for (const glm::u8vec3& colour : data.colours) {
+        for (int channel = 0; channel < 3; ++channel) append_little(buffer.bytes, linear_of(colour[channel]));
+        append_little(buffer.bytes, std::uint16_t{65535});
+      }
+      buffer.close(colours, of_vertices,
+                   "\"componentType\":5123,\"normalized\":true,\"type\":\"VEC4\",\"count\":" +
+                       std::to_string(data.colours.size()));
+    }
+    const std::size_t corners = buffer.bytes.size();
+    for (const auto& face : triangles.faces)
+      for (const std::uint32_t v : face) append_little(buffer.bytes, v);
+    buffer.close(
+        corners, of_indices,
+        "\"componentType\":5125,\"type\":\"SCALAR\",\"count\":" + std::to_string(3 * triangles.faces.size()));
+    mesh =
+        ",\"nodes\":[{\"mesh\":0,\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{" +
+        attributes + "},\"indices\":" + std::to_string(buffer.count - 1) +
+        ",\"material\":0}]}],\"materials\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
+        "\"roughnessFactor\":0.7}}],\"buffers\":[{\"byteLength\":" +
+        std::to_string(buffer.bytes.size()) + "}],\"bufferViews\":[" + buffer.views + "],\"accessors\":[" +
+        buffer.accessors + "]";
+  }
+  std::string chunks;
+  add_chunk(chunks, "JSON",
+            "{\"asset\":{\"version\":\"2.0\",\"generator\":\"octotomy\"},\"scene\":0,\"scenes\":[{" +
+                std::string(is_empty ? "" : "\"nodes\":[0]") + "}]" + mesh + "}",
+            ' ');
+  if (!is_empty) add_chunk(chunks, "BIN\0", buffer.bytes, '\0');
+  std::string file = "glTF";
+  append_little(file, std::uint32_t{2});
+  append_little(file, static_cast<std::uint32_t>(12 + chunks.size()));
+  return file + chunks;
+}
+
+}  // namespace octotomy::brep

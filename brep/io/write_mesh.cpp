@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/io/write_mesh.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <unistd.h>
+
+#include "brep/io/mesh_bytes.h"
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Appends the shortest text that reads back to the same number.
+template <typename T>
+void append_text(std::string& bytes, T value) {
+  char buffer[40];
+  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
+  bytes.append(buffer, result.ptr);
+}
+
+void append_point(std::string& bytes, const glm::dvec3& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0) bytes += ' ';
+    append_text(bytes, p[axis]);
+  }
+  bytes += '\n';
+}
+
+std::string stl_of(const Triangles& triangles) {
+  std::string bytes = "octotomy, binary STL, LPS millimetres";
+  bytes.resize(80, ' ');
+  append_little(bytes, static_cast<std::uint32_t>(triangles.faces.size()));
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
+                     &c = triangles.points_mm[face[2]];
+    glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double length = glm::length(normal);
+    // The format's own word for "no normal" is zero.
+    normal = length > 0.0 ? normal / length : glm::dvec3(0.0);
+    for (const glm::dvec3& v : {normal, a, b, c})
+      for (int axis = 0; axis < 3; ++axis) append_little(bytes, static_cast<float>(v[axis]));
+    append_little(bytes, std::uint16_t{0});
+  }
+  return bytes;
+}
+
+std::string ply_of(const Triangles& triangles, const VertexData& data) {
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\ncomment octotomy, LPS millimetres\nelement vertex ";
+  append_text(bytes, triangles.points_mm.size());
+  bytes += "\nproperty double x\nproperty double y\nproperty double z";
+  if (!data.colours.empty()) bytes += "\nproperty uchar red\nproperty uchar green\nproperty uchar blue";
+  if (!data.scalars.empty()) bytes += "\nproperty double " + data.scalar_name;
+  bytes += "\nelement face ";
+  append_text(bytes, triangles.faces.size());
+  bytes += "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (std::size_t v = 0; v < triangles.points_mm.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis) append_little(bytes, triangles.points_mm[v][axis]);
+    if (!data.colours.empty())
+      for (int channel = 0; channel < 3; ++channel) append_little(bytes, data.colours[v][channel]);
+    if (!data.scalars.empty()) append_little(bytes, data.scalars[v]);
+  }
+  for (const auto& face : triangles.faces) {
+    append_little(bytes, std::uint8_t{3});
+    for (const std::uint32_t corner : face) append_little(bytes, static_cast<std::int32_t>(corner));
+  }
+  return bytes;
+}
+
+std::string obj_of(const Triangles& triangles) {
+  std::string bytes = "# octotomy, LPS millimetres\n";
+  for (const glm::dvec3& p : triangles.points_mm) {
+    bytes += "v ";
+    append_point(bytes, p);
+  }
+  for (const auto& face : triangles.faces) {
+    bytes += 'f';
+    for (const std::uint32_t corner : face) {
+      bytes += ' ';
+      append_text(bytes, corner + 1);
+    }
+    bytes += '\n';
+  }
+  return bytes;
+}
+
+std::string off_of(const Triangles& triangles) {
+  std::string bytes = "OFF\n# octotomy, LPS millimetres\n";
+  append_text(bytes, triangles.points_mm.size());
+  bytes += ' ';
+  append_text(bytes, triangles.faces.size());
+  bytes += " 0\n";
+  for (const glm::dvec3& p : triangles.points_mm) append_point(bytes, p);
+  for (const auto& face : triangles.faces) {
+    bytes += '3';
+    for (const std::uint32_t corner : face) {
+      bytes += ' ';
+      append_text(bytes, corner);
+    }
+    bytes += '\n';
+  }
+  return bytes;
+}
+
+void replace_file(const std::filesystem::path& path, const std::string& bytes) {
+  std::filesystem::path beside = path;
+  beside += "." + std::to_string(::getpid()) + ".part";
+  std::error_code ignored, error;
+  {
+    std::ofstream file(beside, std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) {
+      std::filesystem::remove(beside, ignored);
+      throw std::runtime_error(
+          path.string() + ": cannot be written; check that its folder exists, may be written and has room");
+    }
+  }
+  std::filesystem::rename(beside, path, error);
+  if (error) {
+    std::filesystem::remove(beside, ignored);
+    throw std::runtime_error(path.string() + ": cannot be replaced: " + error.message());
+  }
+}
+
+void check(const VertexData& data, std::size_t vertex_count) {
+  const auto fits = [&](std::size_t count) { return count == 0 || count == vertex_count; };
+  if (!fits(data.colours.size()) || !fits(data.scalars.size()))
+    throw std::invalid_argument("write_mesh: vertex data are for another number of vertices than " +
+                                std::to_string(vertex_count));
+  const bool is_word = !data.scalar_name.empty() &&
+                       std::all_of(data.scalar_name.begin(), data.scalar_name.end(),
+                                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  if (!data.scalars.empty() && !is_word)
+    throw std::invalid_argument("write_mesh: '" + data.scalar_name + "' is no name for scalars");
+}
+
+}  // namespace
+
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexData& data) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const Triangles triangles = triangles_of(mesh);
+  check(data, triangles.points_mm.size());
+  if (extension == ".ply") return replace_file(path, ply_of(triangles, data));
+  if (extension == ".vtp") return replace_file(path, vtp_of(triangles, data));
+  if (extension == ".glb" && data.scalars.empty()) return replace_file(path, glb_of(triangles, data));
+  if (!data.colours.empty() || !data.scalars.empty())
+    throw std::runtime_error(path.string() +
+                             ": colours of vertices go into .ply, .vtp and .glb, scalars into .ply and "
+                             ".vtp");
+  if (extension == ".stl") return replace_file(path, stl_of(triangles));
+  if (extension == ".obj") return replace_file(path, obj_of(triangles));
+  if (extension == ".off") return replace_file(path, off_of(triangles));
+  throw std::runtime_error(path.string() + ": '" + extension +
+                           "' is no mesh format that is written; use .stl, .ply, .obj, .off, .vtp or .glb");
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/io/mesh_bytes.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Arrays appended behind the XML, each with its length before it.
+class Appended {
+ public:
+  /// The element that refers to an array, which `write` appends to the bytes.
+  template <typename Write>
+  std::string array(const std::string& type, const std::string& name, int components, const Write& write) {
+    std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                          std::to_string(components) + "\" format=\"appended\" offset=\"" +
+                          std::to_string(bytes_.size()) + "\"/>\n";
+    std::string values;
+    write(values);
+    append_little(bytes_, static_cast<std::uint64_t>(values.size()));
+    bytes_ += values;
+    return element;
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+}  // namespace
+
+std::string vtp_of(const Triangles& triangles, const VertexData& data) {
+  Appended appended;
+  std::string xml =
+      "<?xml version=\"1.0\"?>\n<!-- octotomy, LPS millimetres -->\n"
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+      "<PolyData>\n<Piece NumberOfPoints=\"" +
+      std::to_string(triangles.points_mm.size()) +
+      "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+      std::to_string(triangles.faces.size()) + "\">\n<PointData Normals=\"Normals\">\n";
+  xml += appended.array("Float32", "Normals", 3, [&](std::string& values) {
+    for (const glm::vec3& n : vertex_normals(triangles))
+      for (int axis = 0; axis < 3; ++axis) append_little(values, n[axis]);
+  });
+  if (!data.colours.empty())
+    xml += appended.array("UInt8", "Colours", 3, [&](std::string& values) {
+      for (const glm::u8vec3& colour : data.colours)
+        for (int channel = 0; channel < 3; ++channel) append_little(values, colour[channel]);
+    });
+  if (!data.scalars.empty())
+    xml += appended.array("Float64", data.scalar_name, 1, [&](std::string& values) {
+      for (const double scalar : data.scalars) append_little(values, scalar);
+    });
+  xml += "</PointData>\n<Points>\n";
+  xml += appended.array("Float64", "Points", 3, [&](std::string& values) {
+    for (const glm::dvec3& p : triangles.points_mm)
+      for (int axis = 0; axis < 3; ++axis) append_little(values, p[axis]);
+  });
+  xml += "</Points>\n<Polys>\n";
+  xml += appended.array("Int64", "connectivity", 1, [&](std::string& values) {
+    for (const auto& face : triangles.faces)
+      for (const std::uint32_t v : face) append_little(values, static_cast<std::int64_t>(v));
+  });
+  xml += appended.array("Int64", "offsets", 1, [&](std::string& values) {
+    for (std::size_t f = 1; f <= triangles.faces.size(); ++f)
+      append_little(values, static_cast<std::int64_t>(3 * f));
+  });
+  xml += "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+  return xml + appended.bytes() + "\n</AppendedData>\n</VTKFile>\n";
+}
+
+}  // namespace octotomy::brep

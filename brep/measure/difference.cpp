@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 spread samples over both surfaces; 2 find the foot of every sample and vertex on the other surface;
+// 3 weigh the distances by area, sorted where a percentile is asked for. Sums run in the order of the
+// samples.
+#include "brep/measure/difference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include "brep/mesh/measure.h"
+#include "brep/mesh/oriented_surface.h"
+#include "brep/mesh/sample_surface.h"
+
+namespace octotomy::brep {
+namespace {
+
+constexpr double samples_wanted = 200'000.0;
+
+/// A triangle's share of the area is half its side's square at most, so that this side gives the samples
+/// wanted where triangles are large; where they are small each has its own.
+double spacing_mm(double area_mm2) {
+  return std::sqrt(2.0 * area_mm2 / samples_wanted);
+}
+
+void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm2) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("difference: " + why); };
+  if (!(area_a_mm2 > 0.0)) refuse("the first surface has no area");
+  if (!(area_b_mm2 > 0.0)) refuse("the second surface has no area");
+  if (options.spacing_mm && !(*options.spacing_mm > 0.0)) refuse("the spacing must be positive");
+  if (options.bins < 1) refuse("a histogram has at least one bin");
+  double last = 0.0;
+  for (const double tolerance : options.tolerances_mm) {
+    if (!(tolerance > last)) refuse("tolerances must be positive and rise");
+    last = tolerance;
+  }
+}
+
+/// Signed distances of samples, and those of the same surface's vertices.
+struct Distances {
+  std::vector<double> areas_mm2, sample_mm, vertex_mm;
+  double reach_mm = 0.0;
+  std::size_t on_border_count = 0;
+};
+
+std::vector<double> signed_mm(const std::vector<SignedFoot>& feet) {
+  std::vector<double> distances(feet.size());
+  std::transform(feet.begin(), feet.end(), distances.begin(),
+                 [](const SignedFoot& foot) { return foot.distance_mm; });
+  return distances;
+}
+
+Distances distances_to(const Mesh& from, const OrientedSurface& to, double spacing) {
+  const SurfaceSamples samples = sample_surface(from, spacing);
+  std::vector<glm::dvec3> vertices;
+  for (const auto v : from.vertices()) {
+    const Mesh::Point& p = from.point(v);
+    vertices.emplace_back(p[0], p[1], p[2]);
+  }
+  const std::vector<SignedFoot> feet = to.feet(samples.points_mm);
+  const auto on_border =
+      std::count_if(feet.begin(), feet.end(), [](const SignedFoot& foot) { return foot.on_border; });
+  return {samples.areas_mm2, signed_mm(feet), signed_mm(to.feet(vertices)), samples.reach_mm,
+          static_cast<std::size_t>(on_border)};
+}
+
+double percentile_mm(const Distances& distances, double share) {
+  std::vector<std::size_t> order(distances.sample_mm.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto size = [&](std::size_t i) { return std::abs(distances.sample_mm[i]); };
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t i, std::size_t j) { return size(i) != size(j) ? size(i) < size(j) : i < j; });
+  double whole = 0.0, reached = 0.0;
+  for (const std::size_t i : order) whole += distances.areas_mm2[i];
+  for (const std::size_t i : order) {
+    reached += distances.areas_mm2[i];
+    if (reached >= share * whole) return size(i);
+  }
+  return size(order.back());
+}
+
+OneWay one_way(const Distances& distances, const std::vector<double>& tolerances) {
+  OneWay way;
+  way.within.assign(tolerances.size(), 0.0);
+  double whole = 0.0;
+  for (std::size_t i = 0; i < distances.sample_mm.size(); ++i) {
+    const double d = distances.sample_mm[i], area = distances.areas_mm2[i];
+    whole += area;
+    way.mean_mm += area * std::abs(d);
+    way.signed_mean_mm += area * d;
+    way.rms_mm += area * d * d;
+    way.max_mm = std::max(way.max_mm, std::abs(d));
+    for (std::size_t k = 0; k < tolerances.size(); ++k)
+      if (std::abs(d) <= tolerances[k]) way.within[k] += area;
+  }
+  for (const double d : distances.vertex_mm) way.max_mm = std::max(way.max_mm, std::abs(d));
+  way.mean_mm /= whole;
+  way.signed_mean_mm /= whole;
+  way.rms_mm = std::sqrt(way.rms_mm / whole);
+  for (double& share : way.within) share /= whole;
+  way.p95_mm = percentile_mm(distances, 0.95);
+  return way;
+}
+
+/// Bins lie evenly about zero and reach as far as the largest distance.
+DistanceHistogram histogram_of(const Distances& distances, double max_mm, std::size_t bins) {
+  DistanceHistogram histogram;
+  histogram.low_mm = -max_mm;
+  histogram.width_mm = 2.0 * max_mm / static_cast<double>(bins);
+  histogram.shares.assign(bins, 0.0);
+  double whole = 0.0;
+  for (std::size_t i = 0; i < distances.sample_mm.size(); ++i) {
+    const double place = max_mm > 0.0 ? (distances.sample_mm[i] + max_mm) / histogram.width_mm
+                                      : 0.5 * static_cast<double>(bins);
+    const auto bin = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(bins - 1)));
+    histogram.shares[bin] += distances.areas_mm2[i];
+    whole += distances.areas_mm2[i];
+  }
+  for (double& share : histogram.shares) share /= whole;
+  return histogram;
+}
+
+double area_of(const Distances& distances) {
+  return std::accumulate(distances.areas_mm2.begin(), distances.areas_mm2.end(), 0.0);
+}
+
+}  // namespace
+
+Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& options) {
+  const double area_a = measure(a).area_mm2, area_b = measure(b).area_mm2;
+  check(options, area_a, area_b);
+  const double spacing = options.spacing_mm.value_or(spacing_mm(std::max(area_a, area_b)));
+  const Distances from_a = distances_to(a, OrientedSurface(b), spacing);
+  const Distances from_b = distances_to(b, OrientedSurface(a), spacing);
+
+  Difference answer;
+  answer.a_to_b = one_way(from_a, options.tolerances_mm);
+  answer.b_to_a = one_way(from_b, options.tolerances_mm);
+  answer.hausdorff_mm = std::max(answer.a_to_b.max_mm, answer.b_to_a.max_mm);
+  answer.hausdorff95_mm = std::max(answer.a_to_b.p95_mm, answer.b_to_a.p95_mm);
+  const double share_a = area_of(from_a) / (area_of(from_a) + area_of(from_b)), share_b = 1.0 - share_a;
+  answer.mean_mm = share_a * answer.a_to_b.mean_mm + share_b * answer.b_to_a.mean_mm;
+  answer.rms_mm = std::sqrt(share_a * answer.a_to_b.rms_mm * answer.a_to_b.rms_mm +
+                            share_b * answer.b_to_a.rms_mm * answer.b_to_a.rms_mm);
+  answer.hausdorff_short_by_mm = std::max(from_a.reach_mm, from_b.reach_mm);
+  answer.histogram = histogram_of(from_a, answer.a_to_b.max_mm, options.bins);
+  answer.vertex_mm = from_a.vertex_mm;
+  answer.sample_count = from_a.sample_mm.size() + from_b.sample_mm.size();
+  answer.on_border_count = from_a.on_border_count + from_b.on_border_count;
+  answer.spacing_mm = spacing;
+  return answer;
+}
+
+}  // namespace octotomy::brep

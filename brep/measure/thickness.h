@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <stop_token>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+
+namespace octotomy::brep {
+
+/// A point of a solid's surface and the unit normal there, outward. LPS millimetres.
+struct SurfacePoint {
+  glm::dvec3 p_mm{0.0}, normal{0.0};
+};
+
+/// How thick a solid is inward of a surface point, by two definitions that differ where walls are not
+/// parallel.
+struct Thickness {
+  /// Straight along the normal to where the surface is met again.
+  double ray_mm = 0.0;
+  /// Diameter of the largest ball that touches the surface at the point from inside and holds no more of it.
+  double ball_mm = 0.0;
+};
+
+struct ThicknessOptions {
+  /// Surface that the ball's centre sees within this of the point belongs to the point's own sheet, 1..120: a
+  /// smaller angle heeds flatter ridges, and the facets of a curved sheet, whose depth h it makes some
+  /// h / (1 - cos angle) of radius.
+  double least_angle_deg = 30.0;
+  std::function<void(double)> progress = {};  ///< is called with 0..1, from any thread, one at a time
+  std::stop_token stop = {};
+};
+
+/// The thickness at each point. Balls shrink from the ray's half until no other sheet lies in them; towards a
+/// sharp edge they shrink to nothing, as a ball does that is to touch both its sides. Both are good to 2^-30
+/// of the solid's extent. Precondition: closed and oriented; a point lies on the surface. Throws
+/// std::invalid_argument where there are no triangles, the angle is out of its range, or a ray leaves without
+/// meeting the surface, naming the point; std::runtime_error where stopped. The same bits on any number of
+/// threads. Cost: about log n a point for the ray, and for each step of the ball; parallel.
+/// Source: Ma, Bae and Choi, "3D medial axis point approximation using nearest neighbors and the normal
+/// field", The Visual Computer 28, 2012, with triangles for points.
+std::vector<Thickness> thickness(const Mesh& solid, const std::vector<SurfacePoint>& points,
+                                 const ThicknessOptions& options = {});
+
+}  // namespace octotomy::brep

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+
+namespace octotomy::brep {
+
+/// A connected piece of a solid: one outer shell and the shells of the cavities in it.
+struct Component {
+  std::vector<std::uint32_t> faces;  ///< of the mesh, ascending
+  double volume_mm3 = 0.0;           ///< cavities taken off; negative for a shell turned inside out
+  double area_mm2 = 0.0;
+  std::size_t cavities = 0;
+};
+
+/// The pieces of a closed mesh, largest volume first, equal ones by their first face. Shells are connected
+/// across edges. A shell of negative volume is a cavity of the smallest shell around it; one that has none
+/// around it stands alone with its negative volume. Throws std::invalid_argument where the mesh is open.
+/// Cost: n log n, one ray a shell.
+std::vector<Component> components(const Mesh& mesh);
+
+/// The mesh of some of a mesh's faces, in the order given, without other vertices.
+Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces);
+
+/// The component of largest volume with its cavities; no faces where the mesh has none.
+Mesh largest_component(const Mesh& mesh);
+
+}  // namespace octotomy::brep

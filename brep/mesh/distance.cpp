@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A binary tree of axis-aligned boxes, split at the median centre along the longest axis. Nearest point of a
+// triangle: Ericson, Real-Time Collision Detection, 2005, 5.1.5. Crossings: a triangle is passed where an odd
+// number of its edges, projected along x, run past the point on one side; each edge is judged from its lower
+// end whichever triangle asks, so neighbours agree and no ray slips between them.
+#include "brep/mesh/distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include "brep/mesh/orientation.h"
+
+namespace octotomy::brep {
+namespace {
+
+constexpr std::uint32_t leaf_size = 4;
+
+struct Corners {
+  glm::dvec3 a, b, c;
+};
+
+struct TreeBox {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+  void add(const Corners& t) {
+    low = glm::min(low, glm::min(t.a, glm::min(t.b, t.c)));
+    high = glm::max(high, glm::max(t.a, glm::max(t.b, t.c)));
+  }
+  double squared_distance(const glm::dvec3& p) const {
+    const glm::dvec3 d = glm::max(glm::max(low - p, p - high), glm::dvec3(0.0));
+    return glm::dot(d, d);
+  }
+};
+
+/// Share of the way from a to b at which a segment is nearest.
+double share_along(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 along = b - a;
+  const double length2 = glm::dot(along, along);
+  return length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
+}
+
+double squared_distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 d = p - (a + share_along(p, a, b) * (b - a));
+  return glm::dot(d, d);
+}
+
+double squared_distance_to_triangle(const glm::dvec3& p, const Corners& t) {
+  const glm::dvec3 ab = t.b - t.a, ac = t.c - t.a, normal = glm::cross(ab, ac);
+  const double normal2 = glm::dot(normal, normal);
+  if (normal2 > 0.0) {
+    // Barycentric coordinates of the foot in the plane; inside, the height is the distance.
+    const glm::dvec3 ap = p - t.a;
+    const double v = glm::dot(glm::cross(ap, ac), normal), w = glm::dot(glm::cross(ab, ap), normal);
+    if (v >= 0.0 && w >= 0.0 && v + w <= normal2) {
+      const double height = glm::dot(ap, normal);
+      return height * height / normal2;
+    }
+  }
+  return std::min({squared_distance_to_segment(p, t.a, t.b), squared_distance_to_segment(p, t.b, t.c),
+                   squared_distance_to_segment(p, t.c, t.a)});
+}
+
+/// Barycentric coordinates of the triangle's nearest point, by the cases of squared_distance_to_triangle().
+glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
+  const glm::dvec3 ab = t.b - t.a, ac = t.c - t.a, normal = glm::cross(ab, ac);
+  const double normal2 = glm::dot(normal, normal);
+  if (normal2 > 0.0) {
+    const glm::dvec3 ap = p - t.a;
+    const double v = glm::dot(glm::cross(ap, ac), normal), w = glm::dot(glm::cross(ab, ap), normal);
+    if (v >= 0.0 && w >= 0.0 && v + w <= normal2)
+      return {(normal2 - v - w) / normal2, v / normal2, w / normal2};
+  }
+  const double sides[] = {squared_distance_to_segment(p, t.a, t.b), squared_distance_to_segment(p, t.b, t.c),
+                          squared_distance_to_segment(p, t.c, t.a)};
+  const auto side = std::min_element(std::begin(sides), std::end(sides)) - std::begin(sides);
+  const glm::dvec3 corners[] = {t.a, t.b, t.c};
+  const double share = share_along(p, corners[side], corners[(side + 1) % 3]);
+  glm::dvec3 weights(0.0);
+  weights[static_cast<int>(side)] = 1.0 - share;
+  weights[static_cast<int>((side + 1) % 3)] = share;
+  return weights;
+}
+
+/// As the ray along x sees it.
+glm::dvec2 projected(const glm::dvec3& p) {
+  return {p.y, p.z};
+}
+
+/// Whether the projected edge, which straddles the point's z by the half-open rule, runs past its larger y.
+/// Exactly, as all of passes(): one wrong crossing turns a whole part of a solid inside out.
+bool edge_passes(const glm::dvec3& p, const glm::dvec3& from, const glm::dvec3& to) {
+  if ((from.z <= p.z) == (to.z <= p.z)) return false;
+  if (from.y <= p.y && to.y <= p.y) return false;
+  if (from.y > p.y && to.y > p.y) return true;
+  const glm::dvec3 &low = from.z < to.z ? from : to, &high = from.z < to.z ? to : from;
+  return orientation(projected(low), projected(high), projected(p)) > 0;
+}
+
+bool passes(const glm::dvec3& p, const Corners& t) {
+  const bool in_projection = edge_passes(p, t.a, t.b) != edge_passes(p, t.b, t.c) ? !edge_passes(p, t.c, t.a)
+                                                                                  : edge_passes(p, t.c, t.a);
+  if (!in_projection) return false;
+  if (t.a.x <= p.x && t.b.x <= p.x && t.c.x <= p.x) return false;
+  if (t.a.x > p.x && t.b.x > p.x && t.c.x > p.x) return true;
+  // Along +x the plane lies ahead where the point is not on the side that the normal says.
+  const int normal_x = orientation(projected(t.a), projected(t.b), projected(t.c));
+  return orientation(t.a, t.b, t.c, p) * normal_x < 0;
+}
+
+}  // namespace
+
+bool is_inside(const glm::dvec3& p_mm, const Triangles& surface) {
+  const auto passed = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, surface.faces.size(), 4096), std::size_t{0},
+      [&](const auto& range, std::size_t count) {
+        for (std::size_t f = range.begin(); f != range.end(); ++f) {
+          const auto& face = surface.faces[f];
+          count += passes(
+              p_mm, {surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]});
+        }
+        return count;
+      },
+      std::plus<>());
+  return passed % 2 == 1;
+}
+
+struct SurfaceTree::Tree {
+  /// A leaf holds `count` triangles from `first`; an inner node's children are the next one and `first`.
+  struct Node {
+    TreeBox box;
+    std::uint32_t first = 0, count = 0;
+  };
+  std::vector<Corners> triangles;  ///< in the order of the leaves
+  std::vector<std::uint32_t> faces;
+  std::vector<Node> nodes;
+
+  explicit Tree(const Triangles& source) {
+    faces.resize(source.faces.size());
+    std::iota(faces.begin(), faces.end(), 0u);
+    std::vector<Corners> unordered;
+    std::vector<glm::dvec3> centres;
+    for (const auto& f : source.faces) {
+      unordered.push_back({source.points_mm[f[0]], source.points_mm[f[1]], source.points_mm[f[2]]});
+      TreeBox box;
+      box.add(unordered.back());
+      centres.push_back(0.5 * box.low + 0.5 * box.high);
+    }
+    if (!faces.empty()) build(unordered, centres, 0, static_cast<std::uint32_t>(faces.size()));
+    for (const std::uint32_t f : faces) triangles.push_back(unordered[f]);
+  }
+
+  void build(const std::vector<Corners>& unordered, const std::vector<glm::dvec3>& centres,
+             std::uint32_t begin, std::uint32_t end) {
+    const std::size_t self = nodes.size();
+    nodes.emplace_back();
+    TreeBox box;
+    glm::dvec3 low = centres[faces[begin]], high = low;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      box.add(unordered[faces[i]]);
+      low = glm::min(low, centres[faces[i]]);
+      high = glm::max(high, centres[faces[i]]);
+    }
+    nodes[self].box = box;
+    if (end - begin <= leaf_size) {
+      nodes[self].first = begin;
+      nodes[self].count = end - begin;
+      return;
+    }
+    const glm::dvec3 extent = high - low;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(faces.begin() + begin, faces.begin() + middle, faces.begin() + end,
+                     [&](std::uint32_t f, std::uint32_t g) {
+                       return centres[f][axis] != centres[g][axis] ? centres[f][axis] < centres[g][axis]
+                                                                   : f < g;
+                     });
+    build(unordered, centres, begin, middle);
+    nodes[self].first = static_cast<std::uint32_t>(nodes.size());
+    build(unordered, centres, middle, end);
+  }
+
+  /// `nearest_triangle` is where to look first, and becomes the one found: neighbours in a list of points are
+  /// often neighbours in space.
+  double distance(const glm::dvec3& p, std::uint32_t& nearest_triangle) const {
+    double nearest = squared_distance_to_triangle(p, triangles[nearest_triangle]);
+    // Depth is at most 32 and each level leaves one node waiting.
+    std::array<std::pair<std::uint32_t, double>, 64> waiting;
+    std::size_t top = 0;
+    waiting[top++] = {0, nodes[0].box.squared_distance(p)};
+    while (top > 0) {
+      const auto [index, bound] = waiting[--top];
+      if (bound >= nearest) continue;
+      const Node& node = nodes[index];
+      if (node.count > 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          const double squared = squared_distance_to_triangle(p, triangles[i]);
+          if (squared >= nearest) continue;
+          nearest = squared;
+          nearest_triangle = i;
+        }
+        continue;
+      }
+      std::pair<std::uint32_t, double> near{index + 1, nodes[index + 1].box.squared_distance(p)};
+      std::pair<std::uint32_t, double> far{node.first, nodes[node.first].box.squared_distance(p)};
+      if (far.second < near.second) std::swap(near, far);
+      waiting[top++] = far;
+      waiting[top++] = near;
+    }
+    return std::sqrt(nearest);
+  }
+
+  /// Calls found(i, distance, triangle) for each point, in parallel.
+  template <typename Found>
+  void search(const std::vector<glm::dvec3>& points_mm, const Found& found) const {
+    if (nodes.empty())
+      throw std::invalid_argument(
+          "there is no distance to a surface without triangles; ask whether it is empty first");
+    // Blocks are fixed, so that where each search starts does not depend on the threads.
+    constexpr std::size_t block = 256;
+    tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
+      std::uint32_t triangle = 0;
+      for (std::size_t i = b * block; i < std::min((b + 1) * block, points_mm.size()); ++i) {
+        const double distance_mm = distance(points_mm[i], triangle);
+        found(i, distance_mm, triangle);
+      }
+    });
+  }
+
+  template <typename Visit>
+  void visit_crossings(const glm::dvec3& p, Visit visit) const {
+    if (nodes.empty()) return;
+    std::array<std::uint32_t, 64> waiting;
+    std::size_t top = 0;
+    waiting[top++] = 0;
+    while (top > 0) {
+      const std::uint32_t index = waiting[--top];
+      const Node& node = nodes[index];
+      if (node.box.high.x < p.x || node.box.low.y > p.y || node.box.high.y < p.y || node.box.low.z > p.z ||
+          node.box.high.z < p.z)
+        continue;
+      if (node.count == 0) {
+        waiting[top++] = node.first;
+        waiting[top++] = index + 1;
+        continue;
+      }
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        if (passes(p, triangles[i])) visit(i);
+    }
+  }
+};
+
+SurfaceTree::SurfaceTree(const Triangles& triangles) : tree_(std::make_unique<Tree>(triangles)) {}
+SurfaceTree::SurfaceTree(const Mesh& mesh) : SurfaceTree(triangles_of(mesh)) {}
+SurfaceTree::~SurfaceTree() = default;
+SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
+SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
+
+std::vector<double> SurfaceTree::distances_mm(const std::vector<glm::dvec3>& points_mm) const {
+  std::vector<double> distances(points_mm.size());
+  tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t) { distances[i] = distance; });
+  return distances;
+}
+
+std::vector<Foot> SurfaceTree::feet(const std::vector<glm::dvec3>& points_mm) const {
+  std::vector<Foot> feet(points_mm.size());
+  tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t triangle) {
+    const Corners& t = tree_->triangles[triangle];
+    const glm::dvec3 weights = nearest_weights(points_mm[i], t);
+    feet[i] = {weights.x * t.a + weights.y * t.b + weights.z * t.c, distance, tree_->faces[triangle],
+               weights};
+  });
+  return feet;
+}
+
+std::vector<std::uint8_t> SurfaceTree::inside(const std::vector<glm::dvec3>& points_mm) const {
+  std::vector<std::uint8_t> inside(points_mm.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_mm.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      tree_->visit_crossings(points_mm[i], [&](std::uint32_t) { inside[i] ^= 1u; });
+  });
+  return inside;
+}
+
+std::vector<Crossing> SurfaceTree::crossings(const glm::dvec3& p_mm) const {
+  std::vector<Crossing> crossings;
+  tree_->visit_crossings(p_mm, [&](std::uint32_t i) {
+    const Corners& t = tree_->triangles[i];
+    crossings.push_back({tree_->faces[i], glm::cross(t.b - t.a, t.c - t.a).x > 0.0});
+  });
+  std::sort(crossings.begin(), crossings.end(),
+            [](const Crossing& a, const Crossing& b) { return a.face < b.face; });
+  return crossings;
+}
+
+}  // namespace octotomy::brep

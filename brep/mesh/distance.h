@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+
+/// Whether a point is inside a closed surface, as SurfaceTree::inside() says, but without a tree: linear in
+/// the triangles, parallel, and so the better way for a few points.
+bool is_inside(const glm::dvec3& p_mm, const Triangles& surface);
+
+/// A triangle that a ray towards +x passes.
+struct Crossing {
+  std::uint32_t face = 0;
+  bool leaving = false;  ///< from the inside out, as the triangle winds
+};
+
+/// The nearest point of a surface to a point.
+struct Foot {
+  glm::dvec3 p_mm{0.0};
+  double distance_mm = 0.0;  ///< unsigned
+  std::uint32_t face = 0;    ///< one of the nearest, where several are equally near
+  glm::dvec3 weights{
+      0.0};  ///< of the face's corners: the foot's barycentric coordinates, exact zeros on sides
+};
+
+/// A tree of boxes over a surface's triangles, copied, that answers questions about points in LPS
+/// millimetres. Answers do not depend on the number of threads. Building: n log n, about 150 bytes a
+/// triangle.
+class SurfaceTree {
+ public:
+  explicit SurfaceTree(const Mesh& mesh);
+  explicit SurfaceTree(const Triangles& triangles);
+  ~SurfaceTree();
+  SurfaceTree(SurfaceTree&&) noexcept;
+  SurfaceTree& operator=(SurfaceTree&&) noexcept;
+
+  /// The unsigned distance of each point to the nearest point of the surface. Throws std::invalid_argument
+  /// where the surface has no triangles. Cost: about log n a point, parallel.
+  std::vector<double> distances_mm(const std::vector<glm::dvec3>& points_mm) const;
+
+  /// The foot of each point, by the same search. Throws as distances_mm() and costs as much.
+  std::vector<Foot> feet(const std::vector<glm::dvec3>& points_mm) const;
+
+  /// 1 for each point inside, 0 outside, by parity along +x: a ray through an edge or vertex counts once, by
+  /// the half-open rule, and exactly, however near the surface the point is; on it, it may be either.
+  /// Precondition: closed. Parallel.
+  std::vector<std::uint8_t> inside(const std::vector<glm::dvec3>& points_mm) const;
+
+  /// The triangles that a ray from a point towards +x passes, by face number, by the same rule.
+  std::vector<Crossing> crossings(const glm::dvec3& p_mm) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<const Tree> tree_;
+};
+
+}  // namespace octotomy::brep

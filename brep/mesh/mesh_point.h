@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "brep/mesh/mesh.h"
+
+namespace octotomy::brep {
+
+/// A mesh's point as everything else has points.
+inline glm::dvec3 glm_of(const Mesh::Point& p) {
+  return {p[0], p[1], p[2]};
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/mesh/move.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace octotomy::brep {
+namespace {
+
+/// How far the columns may be from orthonormal: their products are off by at most this. A matrix printed with
+/// ten digits is off by less than 2e-10 in each; a volume moved by one off by t changes by less than 3 t of
+/// itself, far below any bound that a voxel allows.
+constexpr double rigid_tolerance() {
+  return 1e-9;
+}
+
+void check_rigid(const glm::dmat4& m) {
+  const auto refuse = [](const std::string& why) {
+    throw std::invalid_argument("the motion is not rigid: " + why +
+                                "; give a rotation without scale or mirror, then a translation");
+  };
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!std::isfinite(m[column][row])) refuse("an entry is not finite");
+  for (int column = 0; column < 4; ++column)
+    if (m[column][3] != (column == 3 ? 1.0 : 0.0)) refuse("its last row is not 0 0 0 1");
+  const glm::dmat3 r(m);
+  const glm::dmat3 products = glm::transpose(r) * r;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double off = std::abs(products[i][j] - (i == j ? 1.0 : 0.0));
+      if (off > rigid_tolerance())
+        refuse("columns " + std::to_string(i) + " and " + std::to_string(j) + " are off orthonormal by " +
+               std::to_string(off));
+    }
+  if (glm::determinant(r) < 0.0) refuse("it mirrors");
+}
+
+}  // namespace
+
+Mesh moved(const Mesh& mesh, const glm::dmat4& moved_from_still) {
+  check_rigid(moved_from_still);
+  const glm::dmat3 rotation(moved_from_still);
+  const glm::dvec3 translation(moved_from_still[3]);
+  Mesh result = mesh;
+  for (const auto v : result.all_vertices()) {
+    const Mesh::Point& p = mesh.point(v);
+    const glm::dvec3 q = rotation * glm::dvec3(p[0], p[1], p[2]) + translation;
+    result.set_point(v, Mesh::Point(q.x, q.y, q.z));
+  }
+  return result;
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/mesh/oriented_surface.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "brep/mesh/distance.h"
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+namespace {
+
+glm::dvec3 unit(const glm::dvec3& v) {
+  const double length = glm::length(v);
+  return length > 0.0 ? v / length : glm::dvec3(0.0);
+}
+
+/// The angle between two sides; atan2 keeps small ones exact where acos does not.
+double angle_between(const glm::dvec3& u, const glm::dvec3& v) {
+  return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
+}
+
+std::size_t index(OpenMesh::BaseHandle handle) {
+  return static_cast<std::size_t>(handle.idx());
+}
+
+}  // namespace
+
+struct OrientedSurface::Surface {
+  /// What lies across a triangle's sides and about its corners; side k runs from corner k to the next.
+  struct Face {
+    glm::dvec3 normal{0.0};
+    std::array<std::uint32_t, 3> corners{}, across{};
+  };
+  static constexpr std::uint32_t nothing = ~std::uint32_t{0};
+
+  SurfaceTree tree;
+  std::vector<Face> faces;
+  std::vector<glm::dvec3> corner_normals;
+  std::vector<std::uint8_t> corner_on_border;
+
+  explicit Surface(const Mesh& mesh)
+      : tree(mesh),
+        faces(mesh.n_faces()),
+        corner_normals(mesh.n_vertices(), glm::dvec3(0.0)),
+        corner_on_border(mesh.n_vertices(), 0) {
+    const Triangles triangles = triangles_of(mesh);
+    for (const auto f : mesh.faces()) {
+      Face& face = faces[index(f)];
+      face.corners = triangles.faces[index(f)];
+      std::array<glm::dvec3, 3> p;
+      for (std::size_t k = 0; k < 3; ++k) p[k] = triangles.points_mm[face.corners[k]];
+      face.normal = unit(glm::cross(p[1] - p[0], p[2] - p[0]));
+      Mesh::HalfedgeHandle side = mesh.halfedge_handle(f);
+      for (std::size_t k = 0; k < 3; ++k, side = mesh.next_halfedge_handle(side)) {
+        const Mesh::FaceHandle beyond = mesh.opposite_face_handle(side);
+        face.across[k] = beyond.is_valid() ? static_cast<std::uint32_t>(beyond.idx()) : nothing;
+        const glm::dvec3 &here = p[k], &next = p[(k + 1) % 3], &last = p[(k + 2) % 3];
+        corner_normals[face.corners[k]] += angle_between(next - here, last - here) * face.normal;
+        if (beyond.is_valid()) continue;
+        corner_on_border[face.corners[k]] = corner_on_border[face.corners[(k + 1) % 3]] = 1;
+      }
+    }
+    for (glm::dvec3& normal : corner_normals) normal = unit(normal);
+  }
+
+  SignedFoot signed_foot(const glm::dvec3& p_mm, const Foot& foot) const {
+    const Face& face = faces[foot.face];
+    SignedFoot answer{foot.p_mm, face.normal, foot.distance_mm, false};
+    std::size_t zeros = 0, zero = 0, full = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (foot.weights[static_cast<int>(k)] == 0.0) {
+        ++zeros;
+        zero = k;
+      } else {
+        full = k;
+      }
+    }
+    if (zeros == 2) {
+      answer.normal = corner_normals[face.corners[full]];
+      answer.on_border = corner_on_border[face.corners[full]] != 0;
+    } else if (zeros == 1) {
+      const std::uint32_t beyond = face.across[(zero + 1) % 3];
+      answer.on_border = beyond == nothing;
+      if (beyond != nothing) answer.normal = unit(face.normal + faces[beyond].normal);
+    }
+    if (glm::dot(p_mm - foot.p_mm, answer.normal) < 0.0) answer.distance_mm = -answer.distance_mm;
+    return answer;
+  }
+};
+
+OrientedSurface::OrientedSurface(const Mesh& mesh) : surface_(std::make_unique<Surface>(mesh)) {}
+OrientedSurface::~OrientedSurface() = default;
+OrientedSurface::OrientedSurface(OrientedSurface&&) noexcept = default;
+OrientedSurface& OrientedSurface::operator=(OrientedSurface&&) noexcept = default;
+
+std::vector<SignedFoot> OrientedSurface::feet(const std::vector<glm::dvec3>& points_mm) const {
+  const std::vector<Foot> feet = surface_->tree.feet(points_mm);
+  std::vector<SignedFoot> signed_feet(feet.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, feet.size(), 1024), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      signed_feet[i] = surface_->signed_foot(points_mm[i], feet[i]);
+  });
+  return signed_feet;
+}
+
+}  // namespace octotomy::brep

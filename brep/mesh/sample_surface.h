@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+
+namespace octotomy::brep {
+
+/// Points spread over a surface, each standing for some of its area.
+struct SurfaceSamples {
+  std::vector<glm::dvec3> points_mm;
+  std::vector<glm::dvec3> normals;  ///< unit, of the points' triangles
+  std::vector<double> areas_mm2;
+  double reach_mm = 0.0;  ///< no point of the surface lies further than this from a sample
+};
+
+/// Splits each triangle into n * n equal ones with sides of at most `spacing_mm` and takes their centres, by
+/// triangle. Triangles without area get none. Throws std::invalid_argument where the spacing is not positive.
+/// Cost: linear in the samples, 56 bytes each; at least one a triangle.
+SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
+
+}  // namespace octotomy::brep

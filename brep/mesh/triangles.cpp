@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/mesh/triangles.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+// The halfedge structure is written directly rather than by add_face, which prints to the standard error,
+// depends on the order of the triangles at vertices where several fans meet, and cannot say what is wrong.
+// 1 refuse triangles that are none; 2 pair halfedges by sorting those of each point; 3 tell the fans at each
+// point apart; 4 write edges, faces and the loops along the boundary.
+
+namespace octotomy::brep {
+namespace {
+
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+std::uint32_t next_corner(std::uint32_t corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+std::uint32_t previous_corner(std::uint32_t corner) {
+  return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
+
+[[noreturn]] void refuse(std::size_t face, const std::string& why, const std::string& advice) {
+  throw std::runtime_error("triangle " + std::to_string(face) + " " + why + "; " + advice);
+}
+
+void check_triangles(const Triangles& triangles) {
+  // Three corners of each triangle are numbered in 32 bits.
+  if (triangles.faces.size() >= none / 3 || triangles.points_mm.size() >= none / 2)
+    throw std::runtime_error("a mesh of " + std::to_string(triangles.faces.size()) +
+                             " triangles is more than 32-bit numbers hold; reduce it first");
+  for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
+    const auto& face = triangles.faces[f];
+    for (const std::uint32_t v : face) {
+      if (v >= triangles.points_mm.size())
+        refuse(f,
+               "refers to point " + std::to_string(v) + " of " + std::to_string(triangles.points_mm.size()),
+               "the file or generator is at fault");
+      const glm::dvec3& p = triangles.points_mm[v];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        refuse(f, "has a point that is not finite", "the file or generator is at fault");
+    }
+    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
+      refuse(f, "repeats a point", "remove triangles without area first");
+  }
+}
+
+/// For each halfedge, numbered by the corner it leaves, the one along the same edge the other way, or none.
+std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
+  struct Side {
+    std::uint32_t low, high, corner;
+  };
+  const auto corner_count = static_cast<std::uint32_t>(3 * triangles.faces.size());
+  const auto side_of = [&](std::uint32_t c) {
+    const std::uint32_t from = triangles.faces[c / 3][c % 3], to = triangles.faces[c / 3][(c + 1) % 3];
+    return Side{std::min(from, to), std::max(from, to), c};
+  };
+  // Sides are laid out by their lower point, then the few of each point are sorted.
+  std::vector<std::uint32_t> begin(triangles.points_mm.size() + 1, 0);
+  for (std::uint32_t c = 0; c < corner_count; ++c) ++begin[side_of(c).low + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Side> sides(corner_count);
+  std::vector<std::uint32_t> place(begin.begin(), begin.end() - 1);
+  for (std::uint32_t c = 0; c < corner_count; ++c) {
+    const Side side = side_of(c);
+    sides[place[side.low]++] = side;
+  }
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, triangles.points_mm.size(), 4096), [&](const auto& range) {
+        for (std::size_t v = range.begin(); v != range.end(); ++v)
+          std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1], [](const Side& a, const Side& b) {
+            return std::tie(a.high, a.corner) < std::tie(b.high, b.corner);
+          });
+      });
+
+  std::vector<std::uint32_t> opposite(corner_count, none);
+  std::uint32_t offender = none;
+  bool too_many = false;
+  for (std::size_t i = 0, j; i < sides.size(); i = j) {
+    for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;) ++j;
+    if (j - i == 1) continue;
+    const std::uint32_t first = sides[i].corner, second = sides[i + 1].corner;
+    const bool same_way = triangles.faces[first / 3][first % 3] == triangles.faces[second / 3][second % 3];
+    if (same_way || j - i > 2) {
+      const std::uint32_t culprit = (same_way ? second : sides[i + 2].corner) / 3;
+      if (culprit < offender) {
+        offender = culprit;
+        too_many = !same_way;
+      }
+      continue;
+    }
+    opposite[first] = second;
+    opposite[second] = first;
+  }
+  if (offender != none)
+    refuse(offender,
+           too_many ? "is the third along one of its edges" : "runs along an edge the same way as another",
+           "ask for the health of the triangles and repair or separate them first");
+  return opposite;
+}
+
+/// Adds a vertex for each point and for each further fan about it; returns the vertex of each corner. The fan
+/// whose corner comes first has the point's own.
+std::vector<Mesh::VertexHandle> place_corners(const Triangles& triangles,
+                                              const std::vector<std::uint32_t>& opposite,
+                                              std::vector<glm::dvec3>& copies_mm) {
+  std::vector<std::uint8_t> has_fan(triangles.points_mm.size(), 0);
+  std::vector<Mesh::VertexHandle> of_corner(opposite.size());
+  for (std::uint32_t c = 0; c < opposite.size(); ++c) {
+    if (of_corner[c].is_valid()) continue;
+    const std::uint32_t v = triangles.faces[c / 3][c % 3];
+    Mesh::VertexHandle vertex(static_cast<int>(v));
+    if (has_fan[v]) {
+      vertex = Mesh::VertexHandle(static_cast<int>(triangles.points_mm.size() + copies_mm.size()));
+      copies_mm.push_back(triangles.points_mm[v]);
+    }
+    has_fan[v] = 1;
+    // All round the point one way; at a boundary the rest of the fan lies the other way.
+    std::uint32_t turning = c;
+    do {
+      of_corner[turning] = vertex;
+      turning = opposite[turning] == none ? none : next_corner(opposite[turning]);
+    } while (turning != none && turning != c);
+    for (turning = turning == none ? opposite[previous_corner(c)] : none; turning != none;
+         turning = opposite[previous_corner(turning)])
+      of_corner[turning] = vertex;
+  }
+  return of_corner;
+}
+
+}  // namespace
+
+void check_joins(const Triangles& triangles) {
+  check_triangles(triangles);
+  pair_halfedges(triangles);
+}
+
+Mesh mesh_of(const Triangles& triangles) {
+  check_triangles(triangles);
+  const std::vector<std::uint32_t> opposite = pair_halfedges(triangles);
+  std::vector<glm::dvec3> copies_mm;
+  const std::vector<Mesh::VertexHandle> vertex = place_corners(triangles, opposite, copies_mm);
+
+  // An edge is numbered by the first of its corners, whose halfedge is the edge's first.
+  std::vector<Mesh::HalfedgeHandle> halfedge(opposite.size());
+  int edge_count = 0;
+  for (std::uint32_t c = 0; c < opposite.size(); ++c)
+    halfedge[c] = opposite[c] < c ? Mesh::HalfedgeHandle(halfedge[opposite[c]].idx() + 1)
+                                  : Mesh::HalfedgeHandle(2 * edge_count++);
+
+  const std::size_t point_count = triangles.points_mm.size();
+  Mesh mesh;
+  mesh.resize(point_count + copies_mm.size(), static_cast<std::size_t>(edge_count), triangles.faces.size());
+  for (std::size_t v = 0; v < point_count + copies_mm.size(); ++v) {
+    const glm::dvec3& p = v < point_count ? triangles.points_mm[v] : copies_mm[v - point_count];
+    mesh.set_point(Mesh::VertexHandle(static_cast<int>(v)), Mesh::Point(p.x, p.y, p.z));
+  }
+  std::vector<Mesh::HalfedgeHandle> boundary;
+  for (std::uint32_t c = 0; c < opposite.size(); ++c) {
+    const Mesh::FaceHandle face(static_cast<int>(c / 3));
+    if (c % 3 == 0) mesh.set_halfedge_handle(face, halfedge[c]);
+    mesh.set_vertex_handle(halfedge[c], vertex[next_corner(c)]);
+    mesh.set_face_handle(halfedge[c], face);
+    mesh.set_next_halfedge_handle(halfedge[c], halfedge[next_corner(c)]);
+    mesh.set_halfedge_handle(vertex[c], halfedge[c]);
+    if (opposite[c] != none) continue;
+    boundary.push_back(mesh.opposite_halfedge_handle(halfedge[c]));
+    mesh.set_vertex_handle(boundary.back(), vertex[c]);
+  }
+
+  // As every fan has its own vertex, at most one boundary halfedge leaves each; a vertex must point to it.
+  for (const Mesh::HalfedgeHandle outside : boundary) {
+    mesh.set_boundary(outside);
+    mesh.set_halfedge_handle(mesh.from_vertex_handle(outside), outside);
+  }
+  for (const Mesh::HalfedgeHandle outside : boundary)
+    mesh.set_next_halfedge_handle(outside, mesh.halfedge_handle(mesh.to_vertex_handle(outside)));
+  return mesh;
+}
+
+Triangles triangles_of(const Mesh& mesh) {
+  Triangles triangles;
+  triangles.points_mm.resize(mesh.n_vertices());
+  triangles.faces.resize(mesh.n_faces());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.n_vertices(), 4096), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) {
+      assert(!mesh.status(Mesh::VertexHandle(static_cast<int>(v))).deleted());
+      const Mesh::Point& p = mesh.point(Mesh::VertexHandle(static_cast<int>(v)));
+      triangles.points_mm[v] = {p[0], p[1], p[2]};
+    }
+  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.n_faces(), 4096), [&](const auto& range) {
+    for (std::size_t f = range.begin(); f != range.end(); ++f) {
+      const Mesh::FaceHandle face(static_cast<int>(f));
+      assert(!mesh.status(face).deleted());
+      const Mesh::HalfedgeHandle h = mesh.halfedge_handle(face);
+      const auto number = [&](Mesh::HalfedgeHandle to) {
+        return static_cast<std::uint32_t>(mesh.to_vertex_handle(to).idx());
+      };
+      triangles.faces[f] = {number(mesh.prev_halfedge_handle(h)), number(h),
+                            number(mesh.next_halfedge_handle(h))};
+    }
+  });
+  return triangles;
+}
+
+}  // namespace octotomy::brep

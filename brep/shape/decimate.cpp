@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/shape/decimate.h"
+
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/health.h"
+
+namespace octotomy::brep {
+namespace {
+
+using Decimater = OpenMesh::Decimater::DecimaterT<Mesh>;
+
+/// How far about a triangle that intersects another its vertices' forebears are locked, by the triangle's own
+/// reach: the triangles that stood in its place lay within that reach, those that touched them within half
+/// as much again.
+constexpr double lock_reach() {
+  return 1.5;
+}
+
+void check(const Mesh& mesh, const DecimateOptions& options) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("decimate: " + why); };
+  if (!(options.max_error_mm > 0.0) || !std::isfinite(options.max_error_mm))
+    refuse("the largest error must be positive");
+  if (!(options.max_normal_deviation_deg > 0.0 && options.max_normal_deviation_deg <= 90.0))
+    refuse("the normals' deviation must be above 0 and at most 90 degrees");
+  if (!(options.max_aspect > 1.0)) refuse("the aspect ratio must be above 1");
+  if (options.max_rounds < 1) refuse("there must be at least one round");
+  for (const auto halfedge : mesh.halfedges())
+    if (mesh.is_boundary(halfedge))
+      refuse("the mesh is open at vertex " + std::to_string(mesh.to_vertex_handle(halfedge).idx()) +
+             ": close its holes first");
+}
+
+Mesh round_of_collapses(const Mesh& mesh, const DecimateOptions& options, const std::vector<bool>& locked) {
+  Mesh coarse = mesh;
+  coarse.request_face_normals();
+  coarse.update_face_normals();
+  for (const auto vertex : coarse.vertices())
+    coarse.status(vertex).set_locked(locked[static_cast<std::size_t>(vertex.idx())]);
+
+  Decimater decimater(coarse);
+  OpenMesh::Decimater::ModQuadricT<Mesh>::Handle quadric;
+  decimater.add(quadric);
+  decimater.module(quadric).set_max_err(options.max_error_mm * options.max_error_mm, false);
+  OpenMesh::Decimater::ModNormalFlippingT<Mesh>::Handle normals;
+  decimater.add(normals);
+  decimater.module(normals).set_max_normal_deviation(options.max_normal_deviation_deg);
+  OpenMesh::Decimater::ModAspectRatioT<Mesh>::Handle aspect;
+  decimater.add(aspect);
+  decimater.module(aspect).set_aspect_ratio(options.max_aspect);
+  decimater.initialize();
+  decimater.decimate_to_faces(0, options.faces.value_or(0));
+
+  coarse.garbage_collection();
+  for (const auto vertex : coarse.vertices()) coarse.status(vertex).set_locked(false);
+  coarse.release_face_normals();
+  return coarse;
+}
+
+/// Locks the vertices of `mesh` about a triangle of `coarse`; how many that are that were not.
+std::size_t lock_about(const Mesh& coarse, int face, const Mesh& mesh, std::vector<bool>& locked) {
+  OpenMesh::Vec3d centre(0.0, 0.0, 0.0);
+  for (const auto vertex : coarse.fv_range(OpenMesh::FaceHandle(face))) centre += coarse.point(vertex) / 3.0;
+  double reach = 0.0;
+  for (const auto vertex : coarse.fv_range(OpenMesh::FaceHandle(face)))
+    reach = std::max(reach, (coarse.point(vertex) - centre).norm());
+  reach *= lock_reach();
+  std::size_t count = 0;
+  for (const auto vertex : mesh.vertices()) {
+    const auto number = static_cast<std::size_t>(vertex.idx());
+    if (locked[number] || (mesh.point(vertex) - centre).sqrnorm() > reach * reach) continue;
+    locked[number] = true;
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
+  check(mesh, options);
+  std::vector<bool> locked(mesh.n_vertices(), false);
+  std::size_t intersections = 0;
+  for (int round = 0; round < options.max_rounds; ++round) {
+    Mesh coarse = round_of_collapses(mesh, options, locked);
+    const Health found = health(coarse);
+    intersections = found.self_intersections;
+    if (intersections == 0) return coarse;
+    std::size_t more = 0;
+    for (const auto& [a, b] : found.crossing)
+      more += lock_about(coarse, a, mesh, locked) + lock_about(coarse, b, mesh, locked);
+    if (more == 0) break;
+  }
+  throw std::runtime_error(
+      "decimate: " + std::to_string(intersections) +
+      " pairs of triangles intersect and stay: does the mesh intersect itself before, by "
+      "its health? If not, allow less error or more rounds");
+}
+
+}  // namespace octotomy::brep

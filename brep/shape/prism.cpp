@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Caps by constrained Delaunay triangulation without new points; the walls stand on the edges between inside
+// and outside by the even-odd rule, so that the polygons' own winding plays no part.
+#include "brep/shape/prism.h"
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+constexpr int unseen = -1;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
+/// A face's info is the number of polygon edges between it and infinity.
+using FaceBase =
+    CGAL::Constrained_triangulation_face_base_2<Kernel,
+                                                CGAL::Triangulation_face_base_with_info_2<int, Kernel>>;
+using Triangulation =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel,
+                                               CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>>;
+
+struct Side {
+  Kernel::Point_2 from, to;
+  std::size_t polygon = 0, index = 0, side_count = 0;
+  double low_u() const { return std::min(from.x(), to.x()); }
+  double high_u() const { return std::max(from.x(), to.x()); }
+  double low_v() const { return std::min(from.y(), to.y()); }
+  double high_v() const { return std::max(from.y(), to.y()); }
+};
+
+std::string name_of(std::size_t polygon) {
+  return "polygon " + std::to_string(polygon);
+}
+
+/// The frame's products may be off by this: its vectors come from closed forms or from trigonometry, both
+/// good to a few units of the last place, and a shear by it is far below the resolution of a micron per
+/// metre.
+constexpr double frame_tolerance() {
+  return 1e-9;
+}
+
+void check_frame(const Prism& prism) {
+  const auto off = [](double value, double wanted) {
+    return !(std::abs(value - wanted) <= frame_tolerance());
+  };
+  const glm::dvec3 right = glm::cross(prism.look, prism.up);
+  if (off(glm::length(prism.look), 1) || off(glm::length(prism.up), 1) || off(glm::length(right), 1) ||
+      off(glm::distance(right, prism.right), 0))
+    throw std::invalid_argument(
+        "a prism's look, up and right must be orthonormal with right = look x up; normalise them first");
+  if (!std::isfinite(prism.from_mm) || !std::isfinite(prism.to_mm) || !(prism.from_mm < prism.to_mm))
+    throw std::invalid_argument("a prism reaches from " + std::to_string(prism.from_mm) + " to " +
+                                std::to_string(prism.to_mm) +
+                                " mm; the second must be larger and both finite");
+  if (prism.polygons_mm.empty()) throw std::invalid_argument("a prism needs at least one polygon");
+}
+
+/// A polygon's points without those that repeat the one before them.
+std::vector<glm::dvec2> distinct_points(const std::vector<glm::dvec2>& polygon, std::size_t number) {
+  std::vector<glm::dvec2> points;
+  for (const glm::dvec2& p : polygon) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y))
+      throw std::invalid_argument(name_of(number) + " has a point that is not finite");
+    if (points.empty() || points.back() != p) points.push_back(p);
+  }
+  while (points.size() > 1 && points.back() == points.front()) points.pop_back();
+  if (points.size() < 3)
+    throw std::invalid_argument(name_of(number) + " has fewer than three distinct points");
+  return points;
+}
+
+bool follows(const Side& a, const Side& b) {
+  return a.polygon == b.polygon && (a.index + 1) % a.side_count == b.index;
+}
+
+/// Whether two sides meet elsewhere than at the end of one that starts the next.
+bool collide(const Side& a, const Side& b) {
+  if (follows(b, a) && !follows(a, b)) return collide(b, a);
+  if (!follows(a, b))
+    return CGAL::do_intersect(Kernel::Segment_2(a.from, a.to), Kernel::Segment_2(b.from, b.to));
+  // They share a.to: they overlap only if b turns back along a.
+  return CGAL::collinear(a.from, a.to, b.to) &&
+         !CGAL::collinear_are_strictly_ordered_along_line(a.from, a.to, b.to);
+}
+
+/// Sweeps along u. Cost: pairs of sides whose ranges of u overlap.
+void check_crossings(std::vector<Side> sides) {
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::make_tuple(a.low_u(), a.polygon, a.index) < std::make_tuple(b.low_u(), b.polygon, b.index);
+  });
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    for (std::size_t j = i + 1; j < sides.size() && sides[j].low_u() <= sides[i].high_u(); ++j) {
+      if (sides[j].low_v() > sides[i].high_v() || sides[i].low_v() > sides[j].high_v()) continue;
+      if (!collide(sides[i], sides[j])) continue;
+      const Side &a = sides[i], &b = sides[j];
+      throw std::invalid_argument(
+          name_of(a.polygon) +
+          (a.polygon == b.polygon ? " crosses or touches itself"
+                                  : " crosses or touches " + name_of(b.polygon)) +
+          ": side " + std::to_string(a.index) + " from (" + std::to_string(a.from.x()) + ", " +
+          std::to_string(a.from.y()) + ") mm meets side " + std::to_string(b.index) + " from (" +
+          std::to_string(b.from.x()) + ", " + std::to_string(b.from.y()) + ") mm; draw them apart");
+    }
+}
+
+/// Counts for every face the polygon edges between it and infinity, one flood per nesting level.
+void count_nesting(Triangulation& triangulation) {
+  for (auto face : triangulation.all_face_handles()) face->info() = unseen;
+  std::deque<std::pair<Triangulation::Face_handle, int>> borders{{triangulation.infinite_face(), 0}};
+  while (!borders.empty()) {
+    const auto [start, level] = borders.front();
+    borders.pop_front();
+    if (start->info() != unseen) continue;
+    start->info() = level;
+    std::vector<Triangulation::Face_handle> flood{start};
+    while (!flood.empty()) {
+      const auto face = flood.back();
+      flood.pop_back();
+      for (int i = 0; i < 3; ++i) {
+        const auto beyond = face->neighbor(i);
+        if (beyond->info() != unseen) continue;
+        if (face->is_constrained(i)) {
+          borders.emplace_back(beyond, level + 1);
+        } else {
+          beyond->info() = level;
+          flood.push_back(beyond);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Mesh mesh_of(const Prism& prism) {
+  check_frame(prism);
+
+  // Gather points and sides; refuse what is no polygon.
+  std::vector<std::vector<glm::dvec2>> polygons;
+  std::vector<Side> sides;
+  for (std::size_t n = 0; n < prism.polygons_mm.size(); ++n) {
+    polygons.push_back(distinct_points(prism.polygons_mm[n], n));
+    const auto& points = polygons.back();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const glm::dvec2 &p = points[i], &q = points[(i + 1) % points.size()];
+      sides.push_back({{p.x, p.y}, {q.x, q.y}, n, i, points.size()});
+    }
+  }
+  check_crossings(sides);
+
+  Triangulation triangulation;
+  std::vector<glm::dvec2> uv;
+  for (const auto& points : polygons) {
+    std::vector<Triangulation::Vertex_handle> ring;
+    for (const glm::dvec2& p : points) {
+      ring.push_back(triangulation.insert({p.x, p.y}));
+      ring.back()->info() = static_cast<std::uint32_t>(uv.size());
+      uv.push_back(p);
+    }
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      triangulation.insert_constraint(ring[i], ring[(i + 1) % ring.size()]);
+  }
+  count_nesting(triangulation);
+
+  // A polygon's triangles wind counter-clockwise in (right, up), whose normal is -look: they face out of the
+  // near cap and, turned round, of the far one.
+  Triangles triangles;
+  const auto count = static_cast<std::uint32_t>(uv.size());
+  for (const double depth : {prism.from_mm, prism.to_mm})
+    for (const glm::dvec2& p : uv)
+      triangles.points_mm.push_back(prism.right * p.x + prism.up * p.y + prism.look * depth);
+  for (auto face : triangulation.finite_face_handles()) {
+    if (face->info() % 2 == 0) continue;
+    const std::array<std::uint32_t, 3> v{face->vertex(0)->info(), face->vertex(1)->info(),
+                                         face->vertex(2)->info()};
+    triangles.faces.push_back({v[0], v[1], v[2]});
+    triangles.faces.push_back({v[0] + count, v[2] + count, v[1] + count});
+    for (int i = 0; i < 3; ++i) {
+      if (face->neighbor(i)->info() % 2 != 0) continue;
+      const std::uint32_t a = v[(i + 1) % 3], b = v[(i + 2) % 3];
+      triangles.faces.push_back({b, a, a + count});
+      triangles.faces.push_back({b, a + count, b + count});
+    }
+  }
+  return mesh_of(triangles);
+}
+
+}  // namespace octotomy::brep

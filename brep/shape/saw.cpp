@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/shape/saw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "brep/shape/prism.h"
+
+namespace octotomy::brep {
+namespace {
+
+glm::dvec2 left_of(const glm::dvec2& along) {
+  return glm::dvec2(-along.y, along.x) / glm::length(along);
+}
+
+/// The line moved by `side` to its left; at a corner both moved pieces meet.
+std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double side) {
+  std::vector<glm::dvec2> moved;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const glm::dvec2 before = left_of(k > 0 ? line[k] - line[k - 1] : line[1] - line[0]);
+    const glm::dvec2 after = left_of(k + 1 < line.size() ? line[k + 1] - line[k] : line[k] - line[k - 1]);
+    // Both sides lie at `side` from the corner's point: m . before = m . after = side.
+    const double share = 1.0 + glm::dot(before, after);
+    if (!(share > 0.0))
+      throw std::invalid_argument("saw_blade: the line turns back on itself at point " + std::to_string(k));
+    moved.push_back(line[k] + side * (before + after) / share);
+  }
+  return moved;
+}
+
+}  // namespace
+
+Mesh saw_blade(const SawCut& cut) {
+  if (!(glm::length(cut.direction) > 0.0)) throw std::invalid_argument("saw_blade: there is no direction");
+  if (!(cut.depth_mm > 0.0) || !(cut.kerf_mm > 0.0))
+    throw std::invalid_argument("saw_blade: depth and kerf must be positive");
+  Prism prism;
+  prism.look = glm::normalize(cut.direction);
+  // Any axis will do that the direction is not along.
+  const glm::dvec3 aside = std::abs(prism.look.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  prism.right = glm::normalize(glm::cross(prism.look, aside));
+  prism.up = glm::cross(prism.right, prism.look);
+
+  std::vector<glm::dvec2> line;
+  prism.from_mm = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& p : cut.line_mm) {
+    const glm::dvec2 q(glm::dot(p, prism.right), glm::dot(p, prism.up));
+    if (line.empty() || q != line.back()) line.push_back(q);
+    prism.from_mm = std::min(prism.from_mm, glm::dot(p, prism.look));
+  }
+  if (line.size() < 2)
+    throw std::invalid_argument(
+        "saw_blade: the line needs two points that lie apart as seen along the direction");
+  prism.to_mm = prism.from_mm + cut.depth_mm;
+
+  std::vector<glm::dvec2> outline = moved_aside(line, -0.5 * cut.kerf_mm);
+  const std::vector<glm::dvec2> other = moved_aside(line, 0.5 * cut.kerf_mm);
+  outline.insert(outline.end(), other.rbegin(), other.rend());
+  prism.polygons_mm = {outline};
+  return mesh_of(prism);
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/shape/smooth.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/measure.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Taubin's step in: the largest at which no wave (eigenvalues 0..2 of the umbrella operator) changes sign.
+constexpr double step_in() {
+  return 0.5;
+}
+
+/// The step out that leaves waves at `pass_band` unchanged: 1 / step_in + 1 / step_out = pass_band.
+double step_out(double pass_band) {
+  return 1.0 / (pass_band - 1.0 / step_in());
+}
+
+void check(const Mesh& mesh, const SmoothOptions& options) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("smooth: " + why); };
+  if (options.rounds < 1) refuse("there must be at least one round");
+  if (!(options.pass_band > 0.0 && options.pass_band < 1.0)) refuse("the pass band must be between 0 and 1");
+  if (!(options.max_volume_share > 0.0)) refuse("the share of volume that may change must be positive");
+  for (const auto halfedge : mesh.halfedges())
+    if (mesh.is_boundary(halfedge))
+      refuse("the mesh is open at vertex " + std::to_string(mesh.to_vertex_handle(halfedge).idx()) +
+             ": close its holes first");
+}
+
+/// Moves every vertex by a share of the way to its neighbours' mean, all from the places before.
+void step(Mesh& mesh, double share, std::vector<Mesh::Point>& before) {
+  before.resize(mesh.n_vertices());
+  for (const auto vertex : mesh.vertices())
+    before[static_cast<std::size_t>(vertex.idx())] = mesh.point(vertex);
+  for (const auto vertex : mesh.vertices()) {
+    Mesh::Point sum(0.0, 0.0, 0.0);
+    double count = 0.0;
+    for (auto beside = mesh.cvv_begin(vertex); beside != mesh.cvv_end(vertex); ++beside, count += 1.0)
+      sum += before[static_cast<std::size_t>(beside->idx())];
+    if (count == 0.0) continue;
+    const Mesh::Point& here = before[static_cast<std::size_t>(vertex.idx())];
+    mesh.set_point(vertex, here + (sum / count - here) * share);
+  }
+}
+
+}  // namespace
+
+Mesh smooth(const Mesh& mesh, const SmoothOptions& options) {
+  check(mesh, options);
+  Mesh smoothed = mesh;
+  std::vector<Mesh::Point> before;
+  for (int round = 0; round < options.rounds; ++round) {
+    step(smoothed, step_in(), before);
+    step(smoothed, step_out(options.pass_band), before);
+  }
+  const double volume = volume_mm3(mesh), now = volume_mm3(smoothed);
+  if (!(std::abs(now - volume) <= options.max_volume_share * std::abs(volume)))
+    throw std::runtime_error("smooth: the volume went from " + std::to_string(volume) + " to " +
+                             std::to_string(now) +
+                             " mm3, more than its share: ask for fewer rounds or a "
+                             "wider pass band, or allow a larger share");
+  return smoothed;
+}
+
+}  // namespace octotomy::brep

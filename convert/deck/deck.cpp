@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/deck/deck.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include "convert/deck/deck_format.h"
+#include "convert/deck/second_order.h"
+#include "voxel/space/file_text.h"
+#include "voxel/space/staged_files.h"
+
+namespace octotomy::convert {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw std::invalid_argument(path.string() + ": " + why);
+}
+
+void check_name(const std::filesystem::path& path, const std::string& what, const std::string& name) {
+  const auto fits = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+  };
+  if (name.empty() || name.size() > 80 || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
+      !std::all_of(name.begin(), name.end(), fits))
+    refuse(path,
+           what + " '" + name +
+               "' is no name that Abaqus and CalculiX take: a letter, then letters, digits, '_', '-', at "
+               "most 80 in all");
+}
+
+void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path) {
+  if (tetrahedra.tets.empty()) refuse(path, "there are no tetrahedra to write");
+  const auto nodes = tetrahedra.nodes_mm.size();
+  for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t)
+    for (const std::uint32_t node : tetrahedra.tets[t])
+      if (node >= nodes)
+        refuse(path, "tetrahedron " + std::to_string(t) + " names node " + std::to_string(node) + " of " +
+                         std::to_string(nodes));
+  for (const std::uint32_t node : tetrahedra.boundary_nodes)
+    if (node >= nodes)
+      refuse(path, "the surface names node " + std::to_string(node) + " of " + std::to_string(nodes));
+  for (const glm::dvec3& p : tetrahedra.nodes_mm)
+    if (!std::isfinite(p.x + p.y + p.z)) refuse(path, "a node is not finite");
+  if (!tetrahedra.mid_nodes.empty() && tetrahedra.mid_nodes.size() != tetrahedra.tets.size())
+    refuse(path, "nodes on sides are given of " + std::to_string(tetrahedra.mid_nodes.size()) + " of " +
+                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+  for (const auto& middles : tetrahedra.mid_nodes)
+    for (const std::uint32_t node : middles)
+      if (node >= nodes)
+        refuse(path, "a side names node " + std::to_string(node) + " of " + std::to_string(nodes));
+  if (!tetrahedra.region_of_tet.empty() && tetrahedra.region_of_tet.size() != tetrahedra.tets.size())
+    refuse(path, "regions are given of " + std::to_string(tetrahedra.region_of_tet.size()) + " of " +
+                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+}
+
+void check_materials(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
+                     const DeckOptions& options) {
+  if (options.materials.empty()) refuse(path, "there is no material");
+  for (const DeckMaterial& material : options.materials) {
+    check_name(path, "material", material.name);
+    if (!(material.youngs_modulus_mpa > 0.0) || !std::isfinite(material.youngs_modulus_mpa))
+      refuse(path, "Young's modulus of " + material.name + " must be positive");
+    if (!(material.poisson_ratio > -1.0 && material.poisson_ratio < 0.5))
+      refuse(path, "Poisson's ratio of " + material.name + " must lie between -1 and 0.5");
+  }
+  if (!options.material_of_tet.empty() && options.material_of_tet.size() != tetrahedra.tets.size())
+    refuse(path, "materials are given of " + std::to_string(options.material_of_tet.size()) + " of " +
+                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+  for (const std::uint32_t material : options.material_of_tet)
+    if (material >= options.materials.size())
+      refuse(path, "a tetrahedron names a material that is not there");
+}
+
+void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
+  check_name(path, "element set", options.element_set);
+  check_name(path, "node set", options.surface_node_set);
+  for (const NodeSet& set : options.node_sets) {
+    check_name(path, "node set", set.name);
+    for (const std::uint32_t node : set.nodes)
+      if (node >= tetrahedra.nodes_mm.size())
+        refuse(path, "set " + set.name + " names a node that is not there");
+  }
+  for (const DeckSurface& surface : options.surfaces) {
+    check_name(path, "surface", surface.name);
+    for (const ElementFace& face : surface.faces)
+      if (face.tet >= tetrahedra.tets.size() || face.opposite > 3)
+        refuse(path, "surface " + surface.name + " names a face that is not there");
+  }
+  for (const ContactPair& pair : options.contacts) {
+    check_name(path, "contact pair", pair.name);
+    for (const std::string& name : {pair.slave, pair.master})
+      if (std::none_of(options.surfaces.begin(), options.surfaces.end(),
+                       [&](const DeckSurface& surface) { return surface.name == name; }))
+        refuse(path, "contact pair " + pair.name + " names a surface '" + name + "' that is not there");
+  }
+  for (const Prescribed& prescribed : options.prescribed) {
+    const auto set = std::find_if(options.node_sets.begin(), options.node_sets.end(),
+                                  [&](const NodeSet& s) { return s.name == prescribed.node_set; });
+    if (set == options.node_sets.end())
+      refuse(path, "displacements are prescribed of a set '" + prescribed.node_set + "' that is not there");
+    if (!prescribed.displacement_mm.empty() && prescribed.displacement_mm.size() != set->nodes.size())
+      refuse(path, "set " + set->name + " has " + std::to_string(set->nodes.size()) + " nodes and " +
+                       std::to_string(prescribed.displacement_mm.size()) + " displacements");
+    for (const glm::dvec3& u : prescribed.displacement_mm)
+      if (!std::isfinite(u.x + u.y + u.z))
+        refuse(path, "a displacement of set " + set->name + " is not finite");
+  }
+  for (const ElementField& field : options.fields) {
+    check_name(path, "field", field.name);
+    if (field.values.size() != tetrahedra.tets.size())
+      refuse(path, "field " + field.name + " has " + std::to_string(field.values.size()) + " values for " +
+                       std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+  }
+}
+
+using Writer = void (*)(const Tetrahedra&, const DeckOptions&, std::ostream&);
+
+/// The files that make a deck.
+struct Part {
+  std::filesystem::path path;
+  Writer write;
+};
+
+std::vector<Part> parts_of(const std::filesystem::path& path) {
+  const std::string extension = voxel::extension_of(path);
+  if (extension == ".inp") return {{path, write_inp}};
+  if (extension == ".feb") return {{path, write_feb}};
+  if (extension == ".vtu") return {{path, write_vtu}};
+  if (extension == ".msh") return {{path, write_msh}};
+  if (extension == ".node" || extension == ".ele" || extension == ".face") {
+    const auto with = [&](const char* other) { return std::filesystem::path(path).replace_extension(other); };
+    return {{with(".node"), write_tetgen_node},
+            {with(".ele"), write_tetgen_ele},
+            {with(".face"), write_tetgen_face}};
+  }
+  refuse(path, "'" + extension + "' is no deck this program writes: " + deck_extensions());
+}
+
+/// The approximate size of a deck in bytes, for its progress: text of nodes, elements and entries of sets.
+/// Binary parts are smaller.
+double bytes_about(const Tetrahedra& tetrahedra, const DeckOptions& options) {
+  std::size_t entries = tetrahedra.boundary_nodes.size();
+  for (const NodeSet& set : options.node_sets) entries += set.nodes.size();
+  for (const DeckSurface& surface : options.surfaces) entries += surface.faces.size();
+  for (const Prescribed& prescribed : options.prescribed) entries += 8 * prescribed.displacement_mm.size();
+  return 55.0 * static_cast<double>(tetrahedra.nodes_mm.size()) +
+         35.0 * static_cast<double>(tetrahedra.tets.size()) + 10.0 * static_cast<double>(entries);
+}
+
+/// Counts the bytes written to a deck's files.
+class Written {
+ public:
+  Written(const voxel::Progress& progress, double bytes_about)
+      : progress_(progress), bytes_about_(bytes_about) {}
+
+  /// Throws voxel::Stopped.
+  void add(std::streamsize bytes) {
+    bytes_ += bytes;
+    if (bytes_ < next_) return;
+    constexpr std::streamsize look_every = 1 << 18;
+    next_ = bytes_ + look_every;
+    progress_.at(std::min(1.0, static_cast<double>(bytes_) / bytes_about_));
+  }
+
+ private:
+  const voxel::Progress& progress_;
+  double bytes_about_;
+  std::streamsize bytes_ = 0, next_ = 0;
+};
+
+/// A file that counts the bytes written to it.
+class WatchedFile : public std::filebuf {
+ public:
+  explicit WatchedFile(Written& written) : written_(written) {}
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize count) override {
+    written_.add(count);
+    return std::filebuf::xsputn(text, count);
+  }
+
+ private:
+  Written& written_;
+};
+
+}  // namespace
+
+const std::string& deck_extensions() {
+  static const std::string extensions = ".inp, .feb, .vtu, .msh or .node";
+  return extensions;
+}
+
+bool is_deck(const std::filesystem::path& path) {
+  const std::string extension = voxel::extension_of(path);
+  return extension == ".inp" || extension == ".feb" || extension == ".vtu" || extension == ".msh" ||
+         extension == ".node" || extension == ".ele" || extension == ".face";
+}
+
+void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
+  const std::vector<Part> parts = parts_of(path);
+  check_nodes(tetrahedra, path);
+  check_materials(tetrahedra, path, options);
+  check_sets(tetrahedra, path, options);
+  if (options.second_order) {
+    if (parts.size() > 1) refuse(path, "TetGen's files are of linear elements: choose another deck");
+    const SecondOrder made = second_order(tetrahedra, options);
+    write_deck(made.tetrahedra, path, made.options);
+    return;
+  }
+  voxel::StagedFiles staged_files(path.has_parent_path() ? path.parent_path() : ".");
+  Written written(options.progress, bytes_about(tetrahedra, options));
+  for (const Part& part : parts) {
+    WatchedFile file(written);
+    const auto fail = [&](const char* what) {
+      const int number = errno;
+      throw voxel::Error(voxel::code_of_errno(number),
+                         part.path.string() + ": " + what + ": " + std::strerror(number));
+    };
+    errno = 0;
+    if (file.open(staged_files.folder() / part.path.filename(), std::ios::out | std::ios::binary) == nullptr)
+      fail("cannot be written");
+    std::ostream out(&file);
+    out.exceptions(std::ios::badbit);  // else the stream would swallow a stop
+    bool complete = true;
+    try {
+      part.write(tetrahedra, options, out);
+    } catch (const std::ios::failure&) {
+      complete = false;
+    }
+    if (file.close() == nullptr || !complete) fail("cannot be written to its end; is the disk full?");
+  }
+  staged_files.commit();
+}
+
+std::array<char, 32> deck_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.12g", value);
+  return text;
+}
+
+std::array<char, 32> full_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text;
+}
+
+std::string region_name(std::uint32_t region) {
+  return "REGION" + std::to_string(region + 1);
+}
+
+std::uint32_t region_count(const Tetrahedra& tetrahedra) {
+  const auto& regions = tetrahedra.region_of_tet;
+  return regions.empty() ? 1 : *std::max_element(regions.begin(), regions.end()) + 1;
+}
+
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t tet) {
+  std::vector<std::uint32_t> nodes(tetrahedra.tets[tet].begin(), tetrahedra.tets[tet].end());
+  if (!tetrahedra.mid_nodes.empty())
+    nodes.insert(nodes.end(), tetrahedra.mid_nodes[tet].begin(), tetrahedra.mid_nodes[tet].end());
+  return nodes;
+}
+
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementFace& face) {
+  const auto corners = corners_of(tetrahedra, face);
+  std::vector<std::uint32_t> nodes(corners.begin(), corners.end());
+  if (tetrahedra.mid_nodes.empty()) return nodes;
+  const auto middles = middles_of(tetrahedra, face);
+  nodes.insert(nodes.end(), middles.begin(), middles.end());
+  return nodes;
+}
+
+double contact_stiffness(const DeckOptions& options) {
+  constexpr double moduli = 10.0;
+  double largest_mpa = 0.0;
+  for (const DeckMaterial& material : options.materials)
+    largest_mpa = std::max(largest_mpa, material.youngs_modulus_mpa);
+  return moduli * largest_mpa;
+}
+
+std::uint32_t material_of(const DeckOptions& options, std::size_t tet) {
+  return options.material_of_tet.empty() ? 0 : options.material_of_tet[tet];
+}
+
+std::string xml_escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '>') {
+      result += "&gt;";
+    } else if (c == '-' && !result.empty() && result.back() == '-') {
+      result += "&#45;";  // "--" would end the comment
+    } else {
+      result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+  }
+  return result;
+}
+
+}  // namespace octotomy::convert

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "convert/deck/deck.h"
+
+namespace octotomy::convert {
+
+// One writer for each format. deck.cpp opens and checks the stream. Elements with nodes on their sides are of
+// second order.
+
+void write_inp(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_feb(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_vtu(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_msh(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_tetgen_node(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_tetgen_ele(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+void write_tetgen_face(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+
+/// A number for the solvers, in 12 digits. CalculiX reads at most 20 characters of a field; these are 19 with
+/// sign, point and exponent.
+std::array<char, 32> deck_number(double value);
+/// All digits of a double.
+std::array<char, 32> full_number(double value);
+
+/// "REGION1", ... by the element's region.
+std::string region_name(std::uint32_t region);
+/// One more than the largest region number.
+std::uint32_t region_count(const Tetrahedra& tetrahedra);
+/// An element's nodes in the order of most formats: corners, then the middles of sides if there are any.
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, std::size_t tet);
+/// A face's nodes: corners, then the middles of sides if there are any.
+std::vector<std::uint32_t> nodes_of(const Tetrahedra& tetrahedra, const ElementFace& face);
+std::uint32_t material_of(const DeckOptions& options, std::size_t tet);
+/// Contact pressure per overclosure, MPa a millimetre: ten times the largest Young's modulus; CalculiX's
+/// manual advises 5 to 50 times. A strain of a tenth of a millimetre over ten millimetres then overlaps by
+/// under a hundredth of it.
+double contact_stiffness(const DeckOptions& options);
+/// Text escaped for XML: it cannot end a comment or break a line.
+std::string xml_escaped(const std::string& text);
+
+}  // namespace octotomy::convert

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "convert/deck/deck.h"
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::convert {
+
+/// Density in g/cm3 as a linear function of Hounsfield units, from a phantom scanned with the patient.
+struct DensityCalibration {
+  double slope_g_cm3_per_hu = 0.0008;
+  double intercept_g_cm3 = 0.0;
+};
+
+/// The density of a law: apparent (wet mass per whole volume) or ash (mineral mass per whole volume).
+enum class DensityKind { Apparent, Ash };
+
+/// Piecewise E = a + b rho^c in MPa, rho in g/cm3.
+struct StiffnessLaw {
+  struct Piece {
+    double from_g_cm3 = 0.0;  ///< up to the next piece's
+    double a_mpa = 0.0;
+    double b = 0.0;
+    double c = 1.0;
+  };
+  std::string name;
+  std::string source;
+  DensityKind density = DensityKind::Apparent;
+  std::vector<Piece> pieces;  ///< from_g_cm3 ascending, the first from 0
+};
+
+/// The published laws: morgan2003-femoral-neck, morgan2003-pooled, carter-hayes1977, keller1994, keyak1998.
+/// Each names its source.
+const std::vector<StiffnessLaw>& stiffness_laws();
+/// Throws std::invalid_argument that lists the laws.
+const StiffnessLaw& stiffness_law(const std::string& name);
+/// Young's modulus at a density. Precondition: rho >= 0.
+double youngs_modulus_mpa(const StiffnessLaw& law, double rho_g_cm3);
+
+struct MaterialOptions {
+  std::string law = "morgan2003-femoral-neck";
+  /// None: the scan is not calibrated. A default applies and a finding says so.
+  std::optional<DensityCalibration> calibration;
+  int bins = 20;  ///< materials by stiffness, 1..1000; more is finer
+  double poisson_ratio = 0.3;
+  /// The smallest Young's modulus of an element, MPa: that of marrow and of elements at the surface's edge
+  /// could otherwise be zero or negative.
+  double least_mpa = 1.0;
+  /// Voxels at the surface hold bone and its surroundings. A point nearer to the surface than this depth
+  /// takes the scan's value at this depth, straight away from its nearest point of the surface, if that value
+  /// is larger. 0: its own value. A voxel's diagonal passes below all such voxels. In bone thinner than twice
+  /// the depth it may not reach the middle.
+  double surface_depth_mm = 0.0;
+  voxel::Progress progress{};  ///< of the elements
+};
+
+/// The scan's values and stiffness by element, and the materials made of them.
+struct ElementMaterials {
+  std::vector<double> hu;             ///< mean over the element
+  std::vector<double> density_g_cm3;  ///< never negative
+  std::vector<double> youngs_modulus_mpa;
+  std::vector<DeckMaterial> materials;  ///< one a bin that holds elements: their mean
+  std::vector<std::uint32_t> material_of_tet;
+  std::vector<std::string> findings;
+};
+
+/// Samples the scan over each element: the mean of the trilinear interpolant at points spread evenly over it,
+/// half a voxel apart or less, at most 165 (elements up to five voxels large). Points outside the scan do not
+/// count. An element without a point inside takes the nearest sample to its middle, and a finding counts
+/// them. Throws std::invalid_argument if an option is out of range, the law is unknown, or there are no
+/// elements; voxel::Stopped. Parallel; same bits on any thread count. Cost: the points. Source: Taddei et
+/// al., "The material mapping strategy influences the accuracy of CT-based finite element models of bones",
+/// Med. Eng. Phys. 29, 2007: integration over elements instead of nodes or centroids.
+ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Scene& scan,
+                                   const MaterialOptions& options = {});
+
+}  // namespace octotomy::convert

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace octotomy::convert {
+
+// The cases of marching cubes, for the isosurface's source and its proofs.
+//
+// Corner number of a cube = x + 2y + 4z, as octants are numbered. Edge number: along x 0..3 = y + 2z, along y
+// 4..7 = 4 + x + 2z, along z 8..11 = 8 + x + 2y. Face number = 2 axis + side.
+
+/// The two corners of an edge, the lower coordinate first.
+std::array<int, 2> corners_of_edge(int edge);
+/// The edges of a face, counter-clockwise seen from outside the cube.
+std::array<int, 4> edges_of_face(int face);
+
+/// Triangles for one pattern of inside corners.
+struct MarchingCubesCase {
+  std::uint16_t crossed = 0;  ///< bit e: edge e joins an inside corner to an outside one
+  /// Closed lines through the crossings, each edge in exactly one loop, counter-clockwise seen from outside.
+  std::vector<std::vector<int>> loops;
+  /// Edge numbers, counter-clockwise seen from the outside corners.
+  std::vector<std::array<std::uint8_t, 3>> triangles;
+};
+
+/// The case of the inside corners, bit c for corner c. Derived once, on first use.
+const MarchingCubesCase& marching_cubes_case(int inside_corners);
+
+}  // namespace octotomy::convert

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tet/improve_tetrahedra.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace octotomy::convert {
+namespace {
+
+using Corners = std::array<glm::dvec3, 4>;
+
+/// The cosine of the smallest dihedral angle: 1 of a flat element, 1/3 of the regular one; 2 of one that has
+/// no volume or is turned inside out.
+double flatness(const Corners& p) {
+  const glm::dvec3 a = p[1] - p[0];
+  const glm::dvec3 b = p[2] - p[0];
+  const glm::dvec3 c = p[3] - p[0];
+  const std::array<glm::dvec3, 4> normals{glm::cross(c - a, b - a), glm::cross(b, c), glm::cross(c, a),
+                                          glm::cross(a, b)};
+  if (!(glm::dot(normals[3], c) > 0.0)) return 2.0;
+  // The first three point inward as the last does, so that two of them enclose pi less the dihedral angle.
+  double largest = -1.0;
+  std::array<double, 4> lengths{};
+  for (std::size_t i = 0; i < 4; ++i) lengths.at(i) = glm::length(normals.at(i));
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = i + 1; j < 4; ++j)
+      largest = std::max(largest, -glm::dot(normals.at(i), normals.at(j)) / (lengths.at(i) * lengths.at(j)));
+  return largest;
+}
+
+/// The elements about each node, ascending.
+class Stars {
+ public:
+  explicit Stars(const Tetrahedra& tetrahedra) : first_(tetrahedra.nodes_mm.size() + 1, 0) {
+    for (const auto& tet : tetrahedra.tets)
+      for (const std::uint32_t v : tet) ++first_[v + 1];
+    for (std::size_t v = 1; v < first_.size(); ++v) first_[v] += first_[v - 1];
+    tets_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t t = 0; t < tetrahedra.tets.size(); ++t)
+      for (const std::uint32_t v : tetrahedra.tets[t]) tets_[next[v]++] = t;
+  }
+  const std::uint32_t* begin(std::uint32_t v) const { return tets_.data() + first_[v]; }
+  const std::uint32_t* end(std::uint32_t v) const { return tets_.data() + first_[v + 1]; }
+
+ private:
+  std::vector<std::size_t> first_;
+  std::vector<std::uint32_t> tets_;
+};
+
+/// To the corners and the faces' middles of a cube.
+const std::array<glm::dvec3, 14>& directions() {
+  static const std::array<glm::dvec3, 14> all = [] {
+    std::array<glm::dvec3, 14> made;
+    std::size_t n = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {-1.0, 1.0}) {
+        made.at(n) = glm::dvec3(0.0);
+        made.at(n++)[axis] = sign;
+      }
+    for (int k = 0; k < 8; ++k)
+      made.at(n++) =
+          glm::normalize(glm::dvec3((k & 1) * 2.0 - 1.0, ((k >> 1) & 1) * 2.0 - 1.0, (k >> 2) * 2.0 - 1.0));
+    return made;
+  }();
+  return all;
+}
+
+class Improving {
+ public:
+  Improving(Tetrahedra& tetrahedra, const ImproveOptions& options)
+      : t_(tetrahedra),
+        options_(options),
+        goal_(std::cos(glm::radians(options.min_dihedral_deg))),
+        stars_(tetrahedra),
+        given_mm_(tetrahedra.nodes_mm),
+        play_mm_(tetrahedra.nodes_mm.size(), std::numeric_limits<double>::infinity()) {
+    for (std::size_t i = 0; i < tetrahedra.boundary_nodes.size(); ++i)
+      play_mm_[tetrahedra.boundary_nodes[i]] =
+          options.surface_play_mm.empty() ? 0.0 : options.surface_play_mm[i];
+  }
+
+  void run() {
+    for (int round = 0; round < options_.rounds; ++round) {
+      options_.progress.at(static_cast<double>(round) / options_.rounds);
+      if (!mend_all()) return;
+    }
+  }
+
+ private:
+  Corners corners_of(std::uint32_t tet) const {
+    Corners p;
+    for (std::size_t i = 0; i < 4; ++i) p.at(i) = t_.nodes_mm[t_.tets[tet].at(i)];
+    return p;
+  }
+
+  /// Whether anything has moved.
+  bool mend_all() {
+    std::vector<std::pair<double, std::uint32_t>> flat;
+    for (std::uint32_t t = 0; t < t_.tets.size(); ++t)
+      if (const double f = flatness(corners_of(t)); f > goal_) flat.emplace_back(-f, t);
+    std::sort(flat.begin(), flat.end());
+    bool moved = false;
+    for (const auto& [before, tet] : flat)
+      for (const std::uint32_t v : t_.tets[tet]) {
+        if (flatness(corners_of(tet)) <= goal_) break;
+        moved = mend(v) || moved;
+      }
+    return moved;
+  }
+
+  /// The flattest of a node's elements were the node there.
+  double flattest(std::uint32_t v, const glm::dvec3& p_mm) const {
+    double largest = -1.0;
+    for (const std::uint32_t* t = stars_.begin(v); t != stars_.end(v); ++t) {
+      Corners p = corners_of(*t);
+      for (std::size_t i = 0; i < 4; ++i)
+        if (t_.tets[*t].at(i) == v) p.at(i) = p_mm;
+      largest = std::max(largest, flatness(p));
+    }
+    return largest;
+  }
+
+  double shortest_edge(std::uint32_t v) const {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t* t = stars_.begin(v); t != stars_.end(v); ++t)
+      for (const std::uint32_t other : t_.tets[*t])
+        if (other != v) shortest = std::min(shortest, glm::distance(t_.nodes_mm[other], t_.nodes_mm[v]));
+    return shortest;
+  }
+
+  bool mend(std::uint32_t v) {
+    if (play_mm_[v] <= 0.0) return false;
+    glm::dvec3 best_mm = t_.nodes_mm[v];
+    double best = flattest(v, best_mm);
+    const double before = best;
+    const double length = shortest_edge(v);
+    double step = std::min(0.5 * length, play_mm_[v]);
+    for (int halvings = 0; halvings < 7 && best > goal_;) {
+      glm::dvec3 found_mm = best_mm;
+      for (const glm::dvec3& direction : directions()) {
+        const glm::dvec3 p_mm = best_mm + step * direction;
+        if (glm::distance(p_mm, given_mm_[v]) > play_mm_[v]) continue;
+        if (const double f = flattest(v, p_mm); f < best) {
+          best = f;
+          found_mm = p_mm;
+        }
+      }
+      if (found_mm == best_mm) {
+        step *= 0.5;
+        ++halvings;
+      }
+      best_mm = found_mm;
+    }
+    t_.nodes_mm[v] = best_mm;
+    return best < before;
+  }
+
+  Tetrahedra& t_;
+  const ImproveOptions& options_;
+  double goal_;
+  Stars stars_;
+  std::vector<glm::dvec3> given_mm_;
+  std::vector<double> play_mm_;  ///< how far a node may move from its given place; infinite for inner nodes
+};
+
+}  // namespace
+
+void improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
+  if (!(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 60.0))
+    throw std::invalid_argument("improve: the dihedral angle to reach must be 0 to 60 degrees");
+  if (!options.surface_play_mm.empty() && options.surface_play_mm.size() != tetrahedra.boundary_nodes.size())
+    throw std::invalid_argument(
+        "improve: the surface's play must have one value for each of its nodes, or none");
+  if (std::any_of(options.surface_play_mm.begin(), options.surface_play_mm.end(),
+                  [](double play_mm) { return !(play_mm >= 0.0); }) ||
+      options.rounds < 1)
+    throw std::invalid_argument("improve: the surface's play must not be negative, rounds at least 1");
+  Improving(tetrahedra, options).run();
+}
+
+}  // namespace octotomy::convert

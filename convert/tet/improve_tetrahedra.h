@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "convert/tet/tetrahedra.h"
+#include "voxel/space/progress.h"
+
+namespace octotomy::convert {
+
+struct ImproveOptions {
+  double min_dihedral_deg = 8.0;  ///< goal for every element, 0..60; better ones stay as they are
+  /// How far each node of the surface may move, in the order of `boundary_nodes`. Empty: they stay, to the
+  /// bit.
+  std::vector<double> surface_play_mm{};
+  int rounds = 10;             ///< over all elements below the goal, at least 1
+  voxel::Progress progress{};  ///< of the rounds
+};
+
+/// Moves nodes so that the smallest dihedral angles of the flattest elements grow. A move never lowers the
+/// smallest angle about its node, and makes no volume zero or negative. Elements, their order and their
+/// nodes' numbers stay. Elements that no move of a single node can improve stay too: see quality(). Throws
+/// std::invalid_argument if an option is out of range; voxel::Stopped. Deterministic. Cost: linear, and about
+/// 50 us a flat element and round.
+/// Source: after Freitag and Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",
+/// IJNME 40, 1997. Departure: the search takes steps in fixed directions, as the smallest angle has no
+/// gradient.
+void improve(Tetrahedra& tetrahedra, const ImproveOptions& options);
+
+}  // namespace octotomy::convert

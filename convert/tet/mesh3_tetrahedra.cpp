@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tet/mesh3_tetrahedra.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "brep/mesh/distance.h"
+#include "convert/tet/element_faces.h"
+#include "convert/tet/improve_tetrahedra.h"
+#include "voxel/space/rounded.h"
+
+// 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the sizes asked for, and exudes
+// slivers. 2 The nodes of its surface lie on the given one, so its facets are chords: it loses volume on
+// convex surface
+//   and gains some on hollow surface. Every node of the surface moves along its normal by the same share of
+//   the distance that a facet's middle may have there. A larger share would mean that something else was
+//   lost.
+// 3 Nodes move to mend flat elements (improve_tetrahedra.h).
+// 4 The answer counts only if the volumes are positive, their sum is the surface's, and each point of the
+// given
+//   surface is near the new one: a thin spike that no cell met would otherwise be lost unseen.
+
+namespace octotomy::convert {
+namespace {
+
+using voxel::rounded;
+
+/// The largest tetrahedron in a ball of radius R has a volume of 8 R^3 / (9 sqrt 3).
+double radius_of_volume(double mm3) {
+  return std::cbrt(mm3 * 9.0 * std::sqrt(3.0) / 8.0);
+}
+
+/// The radius of the ball about a facet per side of the given triangles there: 1.5 times that of the ball
+/// about an equilateral triangle.
+double facet_radius_by_side() {
+  return 1.5 / std::sqrt(3.0);
+}
+
+/// The normals of the surface's nodes, not of unit length, and the areas of their triangles' thirds.
+struct NodeNormals {
+  std::vector<glm::dvec3> normals;
+  std::vector<double> area_mm2;
+};
+NodeNormals node_normals(const Tetrahedra& tetrahedra, const brep::Triangles& surface) {
+  NodeNormals at{std::vector<glm::dvec3>(tetrahedra.nodes_mm.size(), glm::dvec3(0.0)),
+                 std::vector<double>(tetrahedra.nodes_mm.size(), 0.0)};
+  const auto& p = tetrahedra.nodes_mm;
+  for (const auto& [a, b, c] : surface.faces) {
+    const glm::dvec3 normal = glm::cross(p[b] - p[a], p[c] - p[a]);
+    for (const std::uint32_t v : {a, b, c}) {
+      at.normals[v] += normal;
+      at.area_mm2[v] += glm::length(normal) / 6.0;
+    }
+  }
+  return at;
+}
+
+/// Moves the nodes of inverted elements back to where they were, until no element is inverted.
+void undo_inversions(Tetrahedra& tetrahedra, const std::vector<glm::dvec3>& before_mm) {
+  for (bool turned = true; turned;) {
+    turned = false;
+    for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t) {
+      if (six_volumes(corners_mm(tetrahedra, t)) > 0.0) continue;
+      for (const std::uint32_t v : tetrahedra.tets[t]) {
+        turned = turned || tetrahedra.nodes_mm[v] != before_mm[v];
+        tetrahedra.nodes_mm[v] = before_mm[v];
+      }
+    }
+  }
+}
+
+/// Pass 2: moves nodes of the surface by a share of their play, which is in the order of `boundary_nodes`.
+/// Returns the share, positive outward. It takes some rounds: the volume is the area's integral to first
+/// order only, and some nodes move back.
+double restore_volume(Tetrahedra& tetrahedra, double volume_mm3, const std::vector<double>& play_mm) {
+  constexpr int rounds = 4;
+  const brep::Triangles surface = surface_of(tetrahedra);
+  double moved = 0.0;
+  for (int i = 0; i < rounds; ++i) {
+    const NodeNormals at = node_normals(tetrahedra, surface);
+    double whole_play_mm3 = 0.0;
+    for (std::size_t k = 0; k < play_mm.size(); ++k)
+      whole_play_mm3 += play_mm[k] * at.area_mm2[tetrahedra.boundary_nodes[k]];
+    const double by = (volume_mm3 - quality(tetrahedra).volume_mm3) / whole_play_mm3;
+    moved += by;
+    if (!(std::abs(moved) <= 1.0)) return moved;
+    const std::vector<glm::dvec3> before_mm = tetrahedra.nodes_mm;
+    for (std::size_t k = 0; k < play_mm.size(); ++k) {
+      const std::uint32_t v = tetrahedra.boundary_nodes[k];
+      if (const double length = glm::length(at.normals[v]); length > 0.0)
+        tetrahedra.nodes_mm[v] += by * play_mm[k] / length * at.normals[v];
+    }
+    undo_inversions(tetrahedra, before_mm);
+  }
+  return moved;
+}
+
+struct Apart {
+  double max_mm = 0.0;
+  double p95_mm = 0.0;
+};
+Apart apart(std::vector<double> distances_mm) {
+  std::sort(distances_mm.begin(), distances_mm.end());
+  return {distances_mm.back(), distances_mm[distances_mm.size() * 95 / 100]};
+}
+
+std::vector<glm::dvec3> boundary_mm(const Tetrahedra& tetrahedra) {
+  std::vector<glm::dvec3> points;
+  for (const std::uint32_t v : tetrahedra.boundary_nodes) points.push_back(tetrahedra.nodes_mm[v]);
+  return points;
+}
+
+/// The share of the given surface's triangles that may be lost: enough for needles of noise, too little for a
+/// part of the bone.
+constexpr double lost_share() {
+  return 1e-3;
+}
+
+/// One try: its elements if there are any, how they are wrong, and the points of the given surface it lost.
+struct Try {
+  MesherOutcome outcome;
+  Tetrahedra made;
+  std::vector<std::uint32_t> lost;
+};
+
+/// The given surface, and the sizes of facets at its points that bind every try.
+struct Given {
+  const MesherInput& surface;
+  double volume_mm3 = 0.0;
+  std::vector<double> facet_mm;
+  brep::SurfaceTree tree;
+};
+
+/// How far each node of the surface may move: as far as a facet's middle may lie from the surface there.
+std::vector<double> play_mm(const Given& given, const std::vector<brep::Foot>& feet) {
+  std::vector<double> play;
+  for (const brep::Foot& foot : feet) {
+    double facet_mm = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      facet_mm +=
+          foot.weights[static_cast<int>(i)] * given.facet_mm[given.surface.triangles[foot.face].at(i)];
+    play.push_back(Mesh3Sizes{}.distance * facet_mm);
+  }
+  return play;
+}
+
+/// Finds the points of the given surface that are further from the new one than a facet is large: they stand
+/// on a lost detail. Returns why that is too much, if it is: the tip of a spike may be lost, triangles may
+/// not.
+std::optional<std::string> lost_details(Try& t, const Given& given, const std::vector<double>& to_own_mm) {
+  std::vector<bool> is_lost(to_own_mm.size(), false);
+  for (std::uint32_t i = 0; i < to_own_mm.size(); ++i)
+    if (to_own_mm[i] > given.facet_mm[i]) {
+      t.lost.push_back(i);
+      is_lost[i] = true;
+    }
+  const auto& triangles = given.surface.triangles;
+  const auto gone = std::count_if(triangles.begin(), triangles.end(), [&](const auto& corners) {
+    return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_lost[v]; });
+  });
+  if (static_cast<double>(gone) <= lost_share() * static_cast<double>(triangles.size())) return std::nullopt;
+  const glm::dvec3& first_mm = given.surface.points_mm[t.lost.front()];
+  return "lost details: " + std::to_string(gone) + " of " + std::to_string(triangles.size()) +
+         " triangles of the given surface are further from the new one than a facet is large, the first at " +
+         rounded(first_mm) + " mm";
+}
+
+/// Passes 2 to 4 over the elements of Mesh_3.
+std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& options) {
+  ImproveOptions improving;
+  improving.surface_play_mm = play_mm(given, given.tree.feet(boundary_mm(t.made)));
+  improving.min_dihedral_deg = options.min_dihedral_deg;
+  improving.progress.stop = options.progress.stop;
+  // Surface nodes that move to mend an element change the volume again, by less each time.
+  constexpr int rounds = 3;
+  std::optional<std::string> fault;
+  for (int i = 0; i < rounds && (i == 0 || fault); ++i) {
+    const double moved = restore_volume(t.made, given.volume_mm3, improving.surface_play_mm);
+    if (!(std::abs(moved) <= 1.0))
+      return "misses the volume by " + rounded(std::abs(moved)) +
+             " times the amount that its facets' distances from the surface allow";
+    improve(t.made, improving);
+    fault = fault_in_filling(t.made, given.volume_mm3, own_surface_volume_tolerance());
+  }
+
+  const std::vector<double> to_own_mm =
+      brep::SurfaceTree(surface_of(t.made)).distances_mm(given.surface.points_mm);
+  const Apart own = apart(to_own_mm);
+  const Apart nodes = apart(given.tree.distances_mm(boundary_mm(t.made)));
+  t.made.findings.push_back("Mesh_3 made a surface of its own: its nodes are within " +
+                            rounded(nodes.max_mm) +
+                            " mm of the given one; 95 % of the given points are within " +
+                            rounded(own.p95_mm) + " mm of it, all within " + rounded(own.max_mm) + " mm");
+  if (std::optional<std::string> lost = lost_details(t, given, to_own_mm)) return lost;
+  return fault;
+}
+
+Try try_once(const MesherInput& surface, const Given& given, const TetOptions& options) {
+  Mesh3Sizes sizes;
+  if (options.max_volume_mm3) sizes.max_cell_mm = radius_of_volume(*options.max_volume_mm3);
+  Try t;
+  t.outcome = run_mesh3(surface, sizes, {options.time_limit, options.memory_limit_bytes, options.progress});
+  if (!t.outcome.failure && t.outcome.tetrahedra.empty())
+    t.outcome.failure = "CGAL's Mesh_3 gave no tetrahedra";
+  if (t.outcome.failure) return t;
+  t.made.nodes_mm = std::move(t.outcome.points_mm);
+  t.made.tets = std::move(t.outcome.tetrahedra);
+  t.made.boundary_nodes = boundary_nodes(t.made.tets);
+  t.made.method = "Mesh_3";
+  if (const std::optional<std::string> fault = finish(t, given, options))
+    t.outcome.failure = "CGAL's Mesh_3 " + *fault;
+  return t;
+}
+
+}  // namespace
+
+Mesh3Filling fill_by_mesh3(const MesherInput& given, const SizeLimits& limits, double surface_mm3,
+                           const TetOptions& options) {
+  constexpr int tries = 4;
+  // Facets may not have longer sides than the refinements ask for.
+  SizeLimits by_facets = limits;
+  for (double& most_mm : by_facets.most_mm) most_mm /= std::sqrt(3.0) * facet_radius_by_side();
+  SurfaceSizes sizes(given, Mesh3Sizes{}.grading, by_facets);
+  sizes.scale(facet_radius_by_side());
+  const Given first{given, surface_mm3, sizes.at_points_mm(),
+                    brep::SurfaceTree(brep::Triangles{given.points_mm, given.triangles})};
+  MesherInput surface = given;
+  Mesh3Filling filling;
+  for (int i = 0; i < tries; ++i) {
+    surface.sizes_mm = sizes.at_points_mm();
+    Try t = try_once(surface, first, options);
+    if (!t.outcome.failure) {
+      filling.tetrahedra = std::move(t.made);
+      return filling;
+    }
+    filling.findings.push_back(*t.outcome.failure);
+    filling.code = t.outcome.code;
+    // Smaller elements help if something was missed, not if time or memory was short.
+    if (t.made.tets.empty()) break;
+    if (t.lost.empty()) sizes.scale(0.7);
+    sizes.halve(t.lost);
+    for (const std::uint32_t v : sizes.thinned(t.lost)) surface.holes_mm.push_back(given.points_mm[v]);
+  }
+  return filling;
+}
+
+}  // namespace octotomy::convert

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "convert/tet/mesher_process.h"
+#include "convert/tet/surface_sizes.h"
+#include "convert/tet/tetrahedralise.h"
+
+namespace octotomy::convert {
+
+/// Largest relative difference of the total volume from the surface's if the mesher makes a surface of its
+/// own: a tenth of what a scan's voxels leave unknown of a bone's volume at best.
+constexpr double own_surface_volume_tolerance() {
+  return 1e-3;
+}
+
+/// An answer of Mesh_3, or none.
+struct Mesh3Filling {
+  std::optional<Tetrahedra> tetrahedra;
+  std::vector<std::string> findings;                   ///< of the failed tries, then of the answer
+  voxel::ErrorCode code = voxel::ErrorCode::Geometry;  ///< of the last failure
+};
+
+/// Fills a closed surface by CGAL's Mesh_3, in a process of its own. Mesh_3 makes its own surface with
+/// triangles about as large as the given ones (surface_sizes.h), within a tenth of their circumradius. Nodes
+/// move to mend slivers, those of the surface by no more than that. The surface moves along its normals until
+/// the volume is the given one. `surface.holes_mm` are start points, some on every connected part. If more
+/// than thin spikes of the surface is lost, another try starts there with finer elements. Guaranteed of an
+/// answer: all volumes positive, total volume within own_surface_volume_tolerance(). Findings say how far the
+/// surfaces lie apart. Throws as run_mesh3().
+Mesh3Filling fill_by_mesh3(const MesherInput& surface, const SizeLimits& limits, double surface_mm3,
+                           const TetOptions& options);
+
+}  // namespace octotomy::convert

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "convert/tet/tetrahedra.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::convert {
+
+/// The size of elements at the boundary: that of the octree's nodes, or one voxel, so that anything else that
+/// ends at the boundary ends at corners of elements.
+enum class BoundaryCells { Nodes, Voxels };
+
+/// Tetrahedra, in LPS millimetres, that fill the voxels of an octree exactly: its Full nodes, divided until
+/// neighbours differ by one level at most, each cut from its middle. Always succeeds. Elements are large
+/// inside and voxel-sized at the boundary, which keeps the voxels' steps: displacements and stiffness are
+/// useful, stresses at the surface are not. Conforming: elements share whole faces; parts that touch share
+/// nodes. With cubic voxels every dihedral angle is at least 30 degrees. `method` is "octree". Throws
+/// std::invalid_argument if the octree is empty; voxel::Error (Resource) if 32 bits do not number the nodes;
+/// voxel::Stopped. Deterministic. Cost a voxel at the boundary: about 12 elements of 300 bytes each.
+Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary = BoundaryCells::Nodes,
+                         const voxel::Progress& progress = {});
+
+/// Fills several regions of one universe. Elements of touching regions have the same corners on the
+/// interface, and none reaches into two regions. A voxel in several regions belongs to the first.
+/// `region_of_tet` numbers regions in the order given. Cells at interfaces count as boundary cells;
+/// `boundary_nodes` are those of the outside alone. Throws std::invalid_argument also if there is no region
+/// or their universes differ.
+Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions,
+                         BoundaryCells boundary = BoundaryCells::Nodes, const voxel::Progress& progress = {});
+
+}  // namespace octotomy::convert

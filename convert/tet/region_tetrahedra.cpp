@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tet/region_tetrahedra.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+#include "convert/tet/element_faces.h"
+#include "convert/tet/improve_tetrahedra.h"
+#include "convert/tet/mesher_process.h"
+#include "voxel/space/rounded.h"
+#include "voxel/tree/slice_bits.h"
+#include "voxel/tree/slice_build.h"
+
+// 1 The regions' voxels become an image of labels: their box and a voxel all round.
+// 2 Mesh_3 starts from the middles between voxels of different labels, a size apart, so that it misses no
+// region
+//   and no part of one. Denser start points would show it the voxels' steps, on which refinement for good
+//   angles never ends.
+// 3 The nodes are moved to the patient's frame, and then to mend flat elements.
+// 4 The answer counts only if all volumes are positive and each region's is near that of its voxels.
+
+namespace octotomy::convert {
+namespace {
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw std::invalid_argument("smooth_tetrahedra_of: " + why);
+}
+
+using voxel::rounded;
+
+void check(const std::vector<voxel::Octree>& regions, const RegionMeshOptions& options) {
+  if (regions.empty()) refuse("there is no region");
+  if (regions.size() > std::numeric_limits<std::uint8_t>::max()) refuse("there are over 255 regions");
+  for (const voxel::Octree& region : regions) {
+    if (region.is_empty()) refuse("a region is empty");
+    if (!(region.universe() == regions.front().universe()))
+      refuse("regions are of different universes: evaluate them in one");
+  }
+  if (!(options.size_mm > 0.0) || !std::isfinite(options.size_mm)) refuse("the size must be positive");
+  if (!(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 30.0))
+    refuse("the smallest dihedral angle to reach must be 0 to 30 degrees");
+}
+
+/// Calls f(voxel, how many along x) for each run of a region's voxels.
+template <typename F>
+void for_each_run(const voxel::Octree& region, const F& f) {
+  voxel::for_each_slice(region, [&](int z, const voxel::SliceBits& slice) {
+    for (int y = 0; y < slice.side; ++y)
+      for (int first = 0, last = -1; voxel::next_run(slice, y, last + 1, first, last);)
+        f(glm::ivec3(first, y, z), last - first + 1);
+  });
+}
+
+/// Pass 1.
+struct Labelled {
+  LabelImage image;
+  glm::ivec3 first_voxel{0};  ///< of the universe, at the image's (0, 0, 0)
+
+  std::size_t number(const glm::ivec3& v) const {
+    return (static_cast<std::size_t>(v.z) * static_cast<std::size_t>(image.dims.y) +
+            static_cast<std::size_t>(v.y)) *
+               static_cast<std::size_t>(image.dims.x) +
+           static_cast<std::size_t>(v.x);
+  }
+};
+
+Labelled labelled(const std::vector<voxel::Octree>& regions) {
+  glm::ivec3 low(std::numeric_limits<int>::max()), high(0);
+  for (const voxel::Octree& region : regions)
+    for_each_run(region, [&](const glm::ivec3& v, int count) {
+      low = glm::min(low, v);
+      high = glm::max(high, v + glm::ivec3(count - 1, 0, 0));
+    });
+  Labelled made;
+  made.first_voxel = low - 1;
+  made.image.dims = high - low + 3;
+  made.image.spacing_mm = regions.front().universe().lattice().spacing_mm();
+  made.image.labels.assign(made.number(made.image.dims - 1) + 1, 0);
+  for (std::size_t r = regions.size(); r-- > 0;)  // the first region overwrites the others
+    for_each_run(regions[r], [&](const glm::ivec3& v, int count) {
+      std::fill_n(made.image.labels.begin() + static_cast<std::ptrdiff_t>(made.number(v - made.first_voxel)),
+                  count, static_cast<std::uint8_t>(r + 1));
+    });
+  return made;
+}
+
+glm::dvec3 lps_mm(const Labelled& labelled, const voxel::Lattice& lattice, const glm::dvec3& image_mm) {
+  return lattice.lps_mm(image_mm / labelled.image.spacing_mm + glm::dvec3(labelled.first_voxel));
+}
+
+/// The factors of the sizes at the refinements.
+void add_shares(Labelled& labelled, const voxel::Lattice& lattice, const RegionMeshOptions& options) {
+  if (options.finer.empty()) return;
+  LabelImage& image = labelled.image;
+  const SizingField sizes(options.finer);
+  const glm::dvec3& edge_mm = image.spacing_mm;
+  // Sizes grow by a quarter between shares that are one element apart.
+  image.share_step =
+      static_cast<int>(std::clamp(sizes.least_mm() / std::max({edge_mm.x, edge_mm.y, edge_mm.z}), 2.0, 8.0));
+  glm::ivec3 count;
+  for (int axis = 0; axis < 3; ++axis) count[axis] = share_count(image.dims[axis], image.share_step);
+  std::vector<glm::dvec3> points_mm;
+  for (int z = 0; z < count.z; ++z)
+    for (int y = 0; y < count.y; ++y)
+      for (int x = 0; x < count.x; ++x)
+        points_mm.push_back(
+            lps_mm(labelled, lattice, static_cast<double>(image.share_step) * glm::dvec3(x, y, z) * edge_mm));
+  image.shares = sizes.at_mm(points_mm);
+  // The bound is on a facet's ball; no side in it is longer than that of an equilateral facet.
+  for (double& share : image.shares) share = std::min(1.0, share / (std::sqrt(3.0) * options.size_mm));
+}
+
+/// A region's voxels and their exposed faces.
+struct Counted {
+  std::uint64_t voxels = 0;
+  double exposed_mm2 = 0.0;  ///< faces towards other labels
+};
+
+/// Seed points on the interface of one label pair are at least `size_mm` apart.
+class Starts {
+ public:
+  explicit Starts(double size_mm) : size_mm_(size_mm) {}
+
+  /// Adds a point unless another of its pair is nearer than the size; true if added.
+  bool add(const glm::dvec3& p_mm, std::uint8_t one, std::uint8_t other) {
+    const glm::ivec3 cell(glm::floor(p_mm / size_mm_));
+    const Pair pair(std::min(one, other), std::max(one, other));
+    for (int n = 0; n < 27; ++n) {
+      const glm::ivec3 c = cell + glm::ivec3(n % 3, (n / 3) % 3, n / 9) - 1;
+      const auto [first, end] = in_cell_.equal_range({pair, c.x, c.y, c.z});
+      for (auto at = first; at != end; ++at)
+        if (glm::distance(at->second, p_mm) < size_mm_) return false;
+    }
+    in_cell_.emplace(Key{pair, cell.x, cell.y, cell.z}, p_mm);
+    return true;
+  }
+
+ private:
+  using Pair = std::pair<std::uint8_t, std::uint8_t>;
+  using Key = std::tuple<Pair, int, int, int>;
+  double size_mm_;
+  std::multimap<Key, glm::dvec3> in_cell_;
+};
+
+/// Pass 2. Counts each region in the same walk.
+std::vector<Counted> add_starts(Labelled& labelled, double size_mm, std::size_t regions) {
+  LabelImage& image = labelled.image;
+  std::vector<Counted> counted(regions + 1);
+  Starts starts(size_mm);
+  const glm::dvec3& edge_mm = image.spacing_mm;
+  for (int z = 0; z < image.dims.z; ++z)
+    for (int y = 0; y < image.dims.y; ++y)
+      for (int x = 0; x < image.dims.x; ++x) {
+        const glm::ivec3 v(x, y, z);
+        const std::uint8_t label = image.labels[labelled.number(v)];
+        ++counted[label].voxels;
+        for (int axis = 0; axis < 3; ++axis) {
+          glm::ivec3 beside = v;
+          if (++beside[axis] >= image.dims[axis]) continue;
+          const std::uint8_t other = image.labels[labelled.number(beside)];
+          if (label == other) continue;
+          for (const std::uint8_t one : {label, other})
+            counted[one].exposed_mm2 += edge_mm[(axis + 1) % 3] * edge_mm[(axis + 2) % 3];
+          const glm::dvec3 p_mm = 0.5 * (glm::dvec3(v) + glm::dvec3(beside)) * edge_mm;
+          if (starts.add(p_mm, label, other)) image.start_mm.push_back(p_mm);
+        }
+      }
+  return counted;
+}
+
+/// Pass 3. Nodes of interfaces count as nodes of surfaces.
+void mend(Tetrahedra& made, const RegionMeshOptions& options) {
+  std::vector<std::uint32_t> outer = made.boundary_nodes;
+  for (const Interface& between : interfaces(made))
+    for (const ElementFace& face : between.faces)
+      for (const std::uint32_t v : corners_of(made, face)) made.boundary_nodes.push_back(v);
+  std::sort(made.boundary_nodes.begin(), made.boundary_nodes.end());
+  made.boundary_nodes.erase(std::unique(made.boundary_nodes.begin(), made.boundary_nodes.end()),
+                            made.boundary_nodes.end());
+  constexpr double play_share = 0.1;
+  ImproveOptions improving;
+  improving.min_dihedral_deg = options.min_dihedral_deg;
+  improving.surface_play_mm.assign(made.boundary_nodes.size(), play_share * options.size_mm);
+  improving.rounds = 30;
+  improving.progress.stop = options.progress.stop;
+  improve(made, improving);
+  made.boundary_nodes = std::move(outer);
+}
+
+/// Pass 4.
+void check_volumes(Tetrahedra& made, const std::vector<Counted>& counted, const Labelled& labelled) {
+  const glm::dvec3& edge_mm = labelled.image.spacing_mm;
+  const double voxel_mm3 = edge_mm.x * edge_mm.y * edge_mm.z;
+  const double off_mm = 0.25 * std::max({edge_mm.x, edge_mm.y, edge_mm.z});
+  std::vector<double> volume_mm3(counted.size(), 0.0);
+  for (std::size_t t = 0; t < made.tets.size(); ++t) {
+    const double six = six_volumes(corners_mm(made, t));
+    if (!(six > 0.0))
+      throw voxel::Error(voxel::ErrorCode::Geometry, "smooth_tetrahedra_of: tetrahedron " +
+                                                         std::to_string(t) + " has a volume of " +
+                                                         rounded(six / 6.0) + " mm3: take another size");
+    volume_mm3[made.region_of_tet[t] + 1] += six / 6.0;
+  }
+  for (std::size_t label = 1; label < counted.size(); ++label) {
+    const double voxels_mm3 = static_cast<double>(counted[label].voxels) * voxel_mm3;
+    const std::string volumes = "region " + std::to_string(label) + " has " + rounded(volume_mm3[label]) +
+                                " mm3, its voxels " + rounded(voxels_mm3) + " mm3";
+    if (std::abs(volume_mm3[label] - voxels_mm3) > off_mm * counted[label].exposed_mm2)
+      throw voxel::Error(
+          voxel::ErrorCode::Geometry,
+          "smooth_tetrahedra_of: " + volumes +
+              ": parts of it are thinner than elements: take smaller elements, or the voxels' own");
+    made.findings.push_back(volumes);
+  }
+}
+
+}  // namespace
+
+Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const RegionMeshOptions& options) {
+  check(regions, options);
+  Labelled image = labelled(regions);
+  const voxel::Lattice lattice = regions.front().universe().lattice();
+  add_shares(image, lattice, options);
+  const std::vector<Counted> counted = add_starts(image, options.size_mm, regions.size());
+  for (std::size_t label = 1; label < counted.size(); ++label)
+    if (counted[label].voxels == 0)
+      refuse("region " + std::to_string(label) + " lies wholly within the regions before it");
+
+  const glm::dvec3& edge_mm = image.image.spacing_mm;
+  // The voxels' steps, which are to be smoothed, are half a voxel off. A cell twice as large as a facet still
+  // has its size.
+  const LabelSizes sizes{options.size_mm,
+                         std::max(0.5 * std::min({edge_mm.x, edge_mm.y, edge_mm.z}), 0.1 * options.size_mm),
+                         1.5 * options.size_mm};
+  MesherOutcome outcome =
+      run_mesh3(image.image, sizes, {options.time_limit, options.memory_limit_bytes, options.progress});
+  if (outcome.failure) throw voxel::Error(outcome.code, "smooth_tetrahedra_of: " + *outcome.failure);
+
+  Tetrahedra made;
+  made.method = "Mesh_3 of labels";
+  made.tets = std::move(outcome.tetrahedra);
+  for (const std::uint32_t label : outcome.labels) made.region_of_tet.push_back(label - 1);
+  for (const glm::dvec3& p_mm : outcome.points_mm) made.nodes_mm.push_back(lps_mm(image, lattice, p_mm));
+  if (!lattice.right_handed())
+    for (auto& tet : made.tets) std::swap(tet[0], tet[1]);
+  made.boundary_nodes = boundary_nodes(made.tets);
+  mend(made, options);
+  check_volumes(made, counted, image);
+  return made;
+}
+
+}  // namespace octotomy::convert

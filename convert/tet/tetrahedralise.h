@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/mesh.h"
+#include "convert/tet/sizing_field.h"
+#include "convert/tet/tetrahedra.h"
+#include "voxel/space/progress.h"
+
+namespace octotomy::convert {
+
+/// TetGen keeps the surface, to the bit with `keep_boundary`. Mesh3 (CGAL's Mesh_3, mesh3_tetrahedra.h) makes
+/// a surface of its own and so has no flat elements. Best runs TetGen, and Mesh3 if TetGen fails or leaves a
+/// dihedral angle under `min_dihedral_deg`; it returns the answer whose smallest angle is larger.
+enum class Mesher { TetGen, Mesh3, Best };
+
+struct TetOptions {
+  Mesher mesher = Mesher::TetGen;
+  double min_dihedral_deg = 8.0;  ///< goal, 0..30; a kept surface may make it unreachable
+  double radius_edge = 1.4;       ///< TetGen's -q, 1 or more; 1.2 is hard, 2 is easy
+  /// TetGen's -a, above 0. A few tetrahedra beside a kept boundary stay larger.
+  std::optional<double> max_volume_mm3{};
+  bool keep_boundary = true;                    ///< TetGen's -Y: no new points on the surface
+  std::vector<Refinement> finer{};              ///< divides the surface first; elements follow its triangles
+  std::chrono::milliseconds time_limit{60000};  ///< wall-clock time of each run
+  std::uint64_t memory_limit_bytes = 4ull << 30;  ///< of each run
+  voxel::Progress progress{};                     ///< reports the share of a run's time limit that is gone
+};
+
+/// The smallest dihedral angle that is fit for a solver. The largest eigenvalue of an element's stiffness
+/// grows as the cotangent of the angle: at 5 degrees it is cot(5) / cot(70.5) = 32 times the regular
+/// element's, so a conjugate gradient takes sqrt(32), under 6 times, as many steps; at 0.1 degrees 40 times.
+/// Source: Shewchuk, "What is a good linear finite element?", 2002, section 3.
+constexpr double fit_dihedral_deg() {
+  return 5.0;
+}
+/// Why elements are too flat for a solver, with the angle and the mesher; none if they are fit.
+std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
+
+/// Fills a solid with tetrahedra. The mesher runs in a process of its own, so its crashes, loops and memory
+/// stay there.
+///
+/// If TetGen fails it runs again with fewer demands: with quality (-pYq), without (-pY), with new points on
+/// the surface (-p); `method` and `findings` say which. Nodes inside then move to improve flat elements
+/// (improve_tetrahedra.h). Short edges of an isosurface make quality expensive: run brep::decimate() first.
+/// Refinements divide the surface's triangles in their planes, and elements grow inward from there.
+///
+/// Guaranteed: all volumes positive; the total volume is the surface's to 1e-9 by TetGen, to 1e-3 by Mesh_3.
+/// Throws voxel::Error: Geometry if the mesh is open, inside out, flat or tiny, or the meshers fail on it;
+/// Resource if a limit of time or memory ends the last of them, or a mesher is not installed beside the
+/// running program. The message names the switches tried and what to try next. Throws std::invalid_argument
+/// if an option is out of range; voxel::Stopped.
+/// Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM TOMS 41(2), 2015.
+Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options = {});
+
+/// What is wrong with tetrahedra that should fill a surface of this volume within a relative tolerance: there
+/// are none, one has no positive volume, or the total differs. None if nothing is.
+std::optional<std::string> fault_in_filling(const Tetrahedra& tetrahedra, double surface_mm3,
+                                            double tolerance);
+
+}  // namespace octotomy::convert

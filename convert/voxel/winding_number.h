@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "brep/mesh/triangles.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::convert {
+
+/// How often the surface winds about a point in LPS millimetres, by solid angles: 1 inside a closed surface,
+/// 0 outside, in between near holes. Cost: every triangle.
+/// Source: Jacobson, Kavan, Sorkine-Hornung, "Robust inside-outside segmentation using generalized winding
+/// numbers", SIGGRAPH 2013.
+double winding_number(const brep::Triangles& triangles, const glm::dvec3& p_mm);
+
+/// The voxels about whose centre the triangles wind more than a half: what a surface encloses although it has
+/// holes, crosses itself, or has edges of one, three or contrary triangles. For a closed surface these are
+/// the voxels that it encloses at least once. A surface that is inside out encloses nothing. A centre exactly
+/// on the surface is inside if the solid lies further along x, y or z. Throws voxel::Error (Geometry) if a
+/// triangle names no point or a point is not finite; voxel::Stopped. Parallel over slabs; same bits on any
+/// thread count. Cost: the triangles' footprint in the yz plane, 4 bytes a voxel of sixteen layers a thread.
+/// Holes add the voxels near their rims and the sheet across them, each times the rims' edges.
+voxel::Octree voxelise_by_winding_number(const voxel::Universe& universe, const brep::Triangles& triangles,
+                                         const voxel::Progress& progress = {});
+
+}  // namespace octotomy::convert

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// A verb made from an operation:
+//   1 The words of its options become the JSON of a step, read as a plan's step is.
+//   2 The files that it names become objects: meshes proven solid, or octrees.
+//   3 The kernel that the output's kind asks for answers; with --certify both do, and are compared.
+//   4 The answer is written, measured and told.
+#include "planner/cli/operation_verb.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "convert/voxel/voxelise.h"
+#include "planner/cli/mesh_file.h"
+#include "planner/cli/numbers.h"
+#include "planner/cli/octree_out.h"
+#include "planner/measure/result_json.h"
+#include "planner/operation/trace.h"
+#include "planner/table/field_json.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+#include "verify/certify_bounded.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the command line says.
+struct OperationText {
+  std::map<std::string, std::vector<std::string>> words;  ///< by field
+  fs::path out;
+  std::optional<double> voxel_mm;
+  bool certify = false;
+};
+
+/// A field's option: its name without the unit, words joined by hyphens.
+std::string option_of(const Field& field) {
+  std::string name = field.option.empty() ? field.name : field.option;
+  for (const char* ending : {"_mm", "_mm2", "_mm3", "_deg"})
+    if (field.option.empty() && name.ends_with(ending)) name.resize(name.size() - std::string(ending).size());
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+/// The sentence of a field with its unit and default.
+std::string help_of(const Field& field, void* fresh) {
+  std::string text = field.says;
+  if (const std::string unit = field.unit(); !unit.empty()) text += " In " + unit + ".";
+  if (field.is_required || is_flag(field, fresh)) return text;
+  const auto printed = print_fields({field}, fresh);
+  return printed.empty() ? text : text + " Default: " + printed.begin()->dump() + ".";
+}
+
+Action read_action(const Operation& operation, const OperationText& text) {
+  Action action(operation);
+  nlohmann::json step = nlohmann::json::object();
+  for (const Field& field : operation.fields) {
+    const auto words = text.words.find(field.name);
+    if (words == text.words.end() || words->second.empty()) continue;
+    try {
+      step[field.name] = json_of_words(field, action.value(), words->second);
+      read_fields({field}, {{field.name, step[field.name]}}, Action(operation).value(), {});
+    } catch (const std::runtime_error& error) {
+      throw CLI::ValidationError(field.argument.value_or(option_of(field)), error.what());
+    }
+  }
+  read_fields(operation.fields, step, action.value(), {operation.name});
+  if (operation.check) operation.check(action.value(), {operation.name});
+  return action;
+}
+
+/// One run of a verb.
+class OperationRun {
+ public:
+  OperationRun(const Program& program, const Action& action, const OperationText& text)
+      : program_(program), action_(action), operation_(action.operation()), text_(text) {}
+
+  int run() {
+    const bool wants_octree = is_octree(text_.out);
+    if (!wants_octree) need_mesh_extension(text_.out);
+    need_folder_of(text_.out);
+    read_objects();
+    const bool with_voxels = wants_octree || text_.certify;
+    if (with_voxels) choose_universe();
+    for (Object& object : inputs_) {
+      if (with_voxels) add_voxels(object);
+      objects_.add(std::move(object));
+    }
+    Object made("answer", operation_.name, universe_);
+    made.definition = operation_.definition(action_.value(), objects_);
+    if (with_voxels) {
+      if (!operation_.voxel)
+        throw std::runtime_error(operation_.name + " is done by the mesh kernel alone: write a mesh, .stl");
+      operation_.voxel(action_.value(), {universe_, objects_, no_scan_, timings_, progress()}, made.voxel);
+    }
+    if (!wants_octree || text_.certify) answer_by_mesh(made);
+    if (text_.certify) certify(made);
+    return wants_octree ? write_voxels(made) : write_mesh(made);
+  }
+
+ private:
+  voxel::Progress progress() const { return {program_.stop.get_token(), program_.progress(operation_.name)}; }
+
+  void read_objects() {
+    for (const std::string& path : objects_used(action_)) {
+      Object object(path, "file", universe_);
+      object.definition = fs::path(path).filename().string();
+      if (is_octree(path)) {
+        voxel::OctreeFile file = read_timed(path, timings_);
+        auto* octree = std::get_if<voxel::Octree>(&file.tree);
+        if (octree == nullptr)
+          throw std::runtime_error(path + ": only a binary octree is an object: make one by octotomy octree");
+        object.voxel.octree = std::move(*octree);
+        object.voxel.symbol = voxel::Expression(object.voxel.octree);
+        object.voxel.lineage = "voxels of " + object.definition;
+        universe_ = object.voxel.octree.universe();
+        has_octree_ = true;
+      } else {
+        object.mesh.whole = shared(read_solid(path, timings_));
+        object.mesh.lineage = "triangles of " + object.definition;
+      }
+      inputs_.push_back(std::move(object));
+    }
+  }
+
+  /// Without an octree among the operands: voxels of --voxel, or a 128th of the meshes' extent, around them
+  /// and as much room again as margins may need.
+  void choose_universe() {
+    if (has_octree_) return;
+    voxel::Box box{glm::dvec3(1e300), glm::dvec3(-1e300)};
+    for (const Object& object : inputs_) {
+      const brep::Size size = brep::size_of(*object.mesh.whole);
+      box = {glm::min(box.low_mm, size.low_mm), glm::max(box.high_mm, size.high_mm)};
+    }
+    const glm::dvec3 extent = box.high_mm - box.low_mm;
+    const double longest_mm = std::max({extent.x, extent.y, extent.z});
+    const double voxel_mm = text_.voxel_mm.value_or(longest_mm / 128.0);
+    universe_ =
+        voxel::universe_around({box.low_mm - 0.25 * longest_mm, box.high_mm + 0.25 * longest_mm}, voxel_mm);
+  }
+
+  void add_voxels(Object& object) {
+    if (object.voxel.symbol) return;
+    const Stopwatch watch(timings_, "voxelise");
+    object.voxel.octree = convert::voxelise(universe_, *object.mesh.whole);
+    object.voxel.symbol = voxel::Expression(object.voxel.octree);
+    object.voxel.lineage = "voxel centres inside of " + object.definition;
+  }
+
+  void answer_by_mesh(Object& made) {
+    for (const Object& object : objects_)
+      if (!object.mesh.whole)
+        throw std::runtime_error(object.id +
+                                 ": is an octree: write an .octree, or make its mesh first by octotomy mesh");
+    const voxel::Box box = voxel::bounds(universe_.lattice());
+    verify::MeshExpressions expressions(nullptr);
+    operation_.mesh(action_.value(),
+                    {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
+                    made.mesh);
+    made.findings = made.mesh.findings;
+    if (made.mesh.whole->n_faces() == 0)
+      throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
+  }
+
+  void certify(Object& made) {
+    const Stopwatch watch(timings_, "certify");
+    operation_.bound(action_.value(), {universe_, objects_, no_scan_}, made);
+    verify::BoundInputs inputs;
+    inputs.operation = operation_.name + " = " + made.definition;
+    inputs.voxel_lineage = made.voxel.lineage;
+    inputs.mesh_lineage = made.mesh.lineage;
+    inputs.scan_spacing_mm = glm::dvec3(0.0);
+    inputs.flat_cut_mm2 = area_on_planes(*made.mesh.whole, made.bound.planes);
+    made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.whole, inputs);
+  }
+
+  int status(const Object& made) const {
+    if (!made.certificate || made.certificate->verdict != verify::Verdict::Fail) return done;
+    warn("the kernels disagree (a FAIL verdict)");
+    return disagreement;
+  }
+
+  int write_voxels(const Object& made) {
+    const voxel::OctreeFile file{
+        made.voxel.octree, text_.out.stem().string(),
+        Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"operation", made.definition}}
+            .dump()};
+    Json more = Json::object();
+    if (made.certificate) more["certificate"] = to_json(*made.certificate);
+    write_and_say(program_, file, text_.out, timings_, made.findings, more);
+    return status(made);
+  }
+
+  int write_mesh(const Object& made) {
+    const brep::Mesh& mesh = *made.mesh.whole;
+    const brep::Health health = brep::health(mesh);
+    const brep::Measures measures = brep::measure(mesh);
+    write_surface(mesh, text_.out, timings_);
+    for (const std::string& finding : made.findings) warn(finding);
+    Json json = answer(timings_);
+    json["path"] = text_.out.string();
+    json.update(to_json(health));
+    json.update(to_json(measures));
+    json["area_estimator"] = "triangles";
+    json["health"] = to_json(health);
+    json.update(made.mesh.details);
+    if (made.certificate) json["certificate"] = to_json(*made.certificate);
+    json["findings"] = made.findings;
+    std::vector<std::pair<std::string, std::string>> rows{
+        {"written", text_.out.string()},
+        {"volume", grouped(measures.volume_mm3, 3) + " mm\u00b3"},
+        {"area", grouped(measures.area_mm2, 3) + " mm\u00b2"}};
+    if (made.certificate) rows.emplace_back("verdict", verify::to_string(made.certificate->verdict));
+    program_.say(json, lines(rows));
+    return status(made);
+  }
+
+  const Program& program_;
+  const Action& action_;
+  const Operation& operation_;
+  const OperationText& text_;
+  const Scans no_scan_ = [](const std::string& name) -> const LoadedScan& {
+    throw std::invalid_argument("there is no scan called '" + name + "'");
+  };
+  Timings timings_;
+  voxel::Universe universe_;
+  bool has_octree_ = false;
+  std::vector<Object> inputs_;
+  Objects objects_;
+};
+
+void add_verb(Program& program, const Operation& operation) {
+  const auto text = std::make_shared<OperationText>();
+  std::string says = operation.says;
+  says.pop_back();
+  CLI::App& verb = program.verb(operation.name, says, operation.verb_example, [&program, &operation, text] {
+    const Action action = read_action(operation, *text);
+    return OperationRun(program, action, *text).run();
+  });
+  const std::shared_ptr<void> fresh = operation.fresh();
+  for (const Field& field : operation.fields) {
+    std::vector<std::string>& words = text->words[field.name];
+    CLI::Option* option = nullptr;
+    if (is_flag(field, fresh.get())) {
+      option = verb.add_flag_callback(
+          option_of(field), [&words] { words = {"true"}; }, field.says);
+      continue;
+    }
+    option = verb.add_option(field.argument.value_or(option_of(field)), words, help_of(field, fresh.get()));
+    option->type_name(word_form(field, fresh.get()));
+    if (takes_several(field, fresh.get()))
+      option->expected(static_cast<int>(field.least.value_or(1.0)), -1);
+    else
+      option->expected(1);
+    option->required(field.is_required);
+    if (field.argument) option->check(CLI::ExistingFile);
+  }
+  verb.add_option(
+          "-o,--out", text->out,
+          "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file by the mesh kernel, or an .octree by "
+          "the voxel kernel")
+      ->required();
+  verb.add_option("--voxel", text->voxel_mm,
+                  "Edge of a voxel, mm, for the voxel kernel; default: a 128th of the objects' extent")
+      ->check(above_zero());
+  verb.add_flag("--certify", text->certify, "Let both kernels answer and tell their certificate");
+}
+
+}  // namespace
+
+void add_operation_verbs(Program& program) {
+  for (const Operation& operation : operations())
+    if (!operation.verb_example.empty()) add_verb(program, operation);
+}
+
+}  // namespace octotomy::planner::cli

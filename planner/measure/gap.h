@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "brep/mesh/mesh.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::planner {
+
+/// The least distance between two objects, in both kernels.
+struct Gap {
+  double voxel_mm = 0.0;          ///< between voxels' faces; 0 where the objects share a voxel or touch
+  std::optional<double> mesh_mm;  ///< between triangles; 0 where the solids overlap or touch
+  /// What they share; a gap of 0 says how much.
+  double overlap_mm3 = 0.0;
+  glm::dvec3 from_mm{0.0}, to_mm{0.0};  ///< the nearest voxels' centres
+};
+
+/// Precondition: neither octree is empty and both are of one universe. The mesh kernel answers where both
+/// meshes are given; they must be closed. Cost: a distance map over the first object's extents; brep::gap().
+Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const brep::Mesh* mesh_a,
+                const brep::Mesh* mesh_b);
+
+}  // namespace octotomy::planner

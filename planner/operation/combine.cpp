@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/combine.h"
+
+#include "planner/operation/trace.h"
+#include "planner/table/operation.h"
+#include "voxel/solid/expression.h"
+
+namespace octotomy::planner {
+namespace {
+
+std::vector<std::string> uses(const Combine& combine) {
+  return voxel::names_in(combine.expression);
+}
+
+void check(const Combine& combine, const Place& place) {
+  const Place at = place.at("expression");
+  // Any object will do to check the grammar and the names; motions are steps of their own.
+  voxel::Names names;
+  names.object = [&](std::string_view name) -> voxel::Expression {
+    at.need_object(std::string(name));
+    return voxel::Sphere{};
+  };
+  try {
+    voxel::parse_expression(combine.expression, names);
+  } catch (const std::invalid_argument& error) {
+    at.refuse(error.what());
+  }
+}
+
+std::string definition(const Combine& combine, const Objects&) {
+  return combine.expression;
+}
+
+void voxels(const Combine& combine, const VoxelBench& bench, VoxelSide& made) {
+  voxel::Names operands, symbols;
+  operands.object = [&](std::string_view name) {
+    // A mask decides voxels by their centre just as its octree does, and needs no walk over a tree.
+    const VoxelSide& operand = bench.object(std::string(name));
+    return bench.is_tool(std::string(name)) ? *operand.symbol : voxel::Expression(operand.octree);
+  };
+  symbols.object = [&](std::string_view name) { return *bench.object(std::string(name)).symbol; };
+  made.octree = bench.combined(voxel::parse_expression(combine.expression, operands));
+  made.symbol = bench.within_universe(voxel::parse_expression(combine.expression, symbols));
+  made.lineage = "Boolean of octrees";
+}
+
+void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "boolean_mesh");
+  made.whole = bench.expressions.evaluate(
+      combine.expression, [&](std::string_view name) { return bench.object(std::string(name)); });
+  made.findings = bench.expressions.findings();
+  made.lineage = "corefinement of meshes";
+}
+
+void bound(const Combine& combine, const BoundBench& bench, Object& made) {
+  const std::vector<std::string> names = uses(combine);
+  made.shown = shown_in_common(bench.objects, names);
+  for (const std::string& name : names) inherit(bench.objects.at(name), made);
+  // An expression ends with the universe, in both kernels alike, also when it moves on.
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation combine_operation() {
+  return Describe<Combine>("combine", "Combines earlier objects by a Boolean expression.", Makes::Object)
+      .takes(field("expression", &Combine::expression,
+                   "Names of objects under & (and), | (or), - (less), ^ (either), ~ (not) and parentheses.")
+                 .required())
+      .example(R"({"id": "maxilla", "do": "combine", "expression": "skull & cut"})")
+      .check(check)
+      .definition(definition)
+      .uses(uses)
+      .voxel(voxels)
+      .mesh(triangles)
+      .bound(bound);
+}
+
+}  // namespace octotomy::planner

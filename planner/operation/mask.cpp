@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/mask.h"
+
+#include "brep/boolean/boolean.h"
+#include "brep/shape/prism.h"
+#include "planner/operation/trace.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+#include "voxel/solid/region_mask.h"
+#include "voxel/space/view.h"
+
+namespace octotomy::planner {
+namespace {
+
+voxel::RegionMask mask_of(const Mask& mask) {
+  voxel::RegionMask made;
+  for (const Mask::Region& region : mask.regions)
+    made.regions.push_back({voxel::parse_view(region.view), region.polygons_mm});
+  return made;
+}
+
+/// A region's prism reaches beyond both ends of the universe by more than its size, so that no end of it
+/// comes into the universe, not even after a motion.
+brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const glm::dvec3& high_mm) {
+  const voxel::View view = voxel::parse_view(region.view);
+  const double size_mm = glm::length(high_mm - low_mm);
+  const double middle_mm = glm::dot(view.look, (low_mm + high_mm) * 0.5);
+  return {view.look,
+          view.up,
+          view.right,
+          region.polygons_mm,
+          middle_mm - 1.6 * size_mm,
+          middle_mm + 1.6 * size_mm};
+}
+
+void check(const Mask& mask, const Place& place) {
+  std::size_t index = 0;
+  for (const Mask::Region& region : mask.regions) try {
+      voxel::parse_view(region.view);
+      ++index;
+    } catch (const std::invalid_argument& error) {
+      place.at("regions[" + std::to_string(index) + "]").at("view").refuse(error.what());
+    }
+  try {
+    voxel::check(mask_of(mask));
+    for (const Mask::Region& region : mask.regions)
+      brep::mesh_of(prism_of(region, glm::dvec3(0.0), glm::dvec3(1.0)));
+  } catch (const std::invalid_argument& error) {
+    place.at("regions").refuse(error.what());
+  }
+}
+
+std::string definition(const Mask& mask, const Objects&) {
+  std::string views;
+  for (const Mask::Region& region : mask.regions)
+    views += (views.empty() ? "regions in " : ", ") + region.view;
+  return views;
+}
+
+void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
+  made.symbol = voxel::Expression(mask_of(mask));
+  made.octree = bench.combined(*made.symbol);
+  made.lineage = "regions projected at voxel centres";
+  if (made.octree.is_empty())
+    throw std::runtime_error(
+        "the mask holds no voxel: its regions miss each other or the universe, which spans " +
+        plain(bench.box_mm()) + "; draw them within it");
+}
+
+void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "boolean_mesh");
+  const auto prism = [&](const Mask::Region& region) {
+    return brep::mesh_of(prism_of(region, bench.low_mm, bench.high_mm));
+  };
+  brep::Mesh solid = prism(mask.regions.front());
+  for (std::size_t i = 1; i < mask.regions.size(); ++i)
+    solid =
+        brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop).mesh;
+  made.whole = shared(std::move(solid));
+  made.lineage = "prisms of the regions";
+}
+
+void bound(const Mask& mask, const BoundBench&, Object& made) {
+  made.bound.planes = planes_of(mask_of(mask));
+  if (made.mesh.whole) made.walls = {{made.id, made.mesh.whole}};
+}
+
+}  // namespace
+
+Operation mask_operation() {
+  return Describe<Mask>("mask", "Makes a volume of interest from regions drawn in views.", Makes::Object)
+      .takes(records("regions", &Mask::regions,
+                     "The regions; the mask is what all of their back-projections enclose.",
+                     {field("view", &Mask::Region::view, "The view in which the region is drawn.").required(),
+                      field("polygons_mm", &Mask::Region::polygons_mm,
+                            "Closed polygons of points [u, v] in the view's millimetres.")
+                          .required()})
+                 .required()
+                 .from(1))
+      .example(R"({"id": "cut", "do": "mask", "regions": [
+        {"view": "anterior", "polygons_mm": [[[-40, -60], [40, -60], [40, -25], [-40, -25]]]},
+        {"view": "left", "polygons_mm": [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]]}]})")
+      .tool()
+      .check(check)
+      .definition(definition)
+      .voxel(voxels)
+      .mesh(triangles)
+      .bound(bound);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The size of an object, the gap between two, the distance of two points or the angle of three; every number
+// with its half-width and the terms that make it.
+#include <cmath>
+
+#include "planner/measure/gap.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Measure {
+  std::optional<ObjectName> object, to;
+  std::vector<glm::dvec3> points_mm;
+};
+
+void check(const Measure& measure, const Place& place) {
+  const Place points = place.at("points_mm");
+  if (measure.points_mm.empty()) {
+    if (!measure.object) place.refuse("'object' is missing: add it");
+    if (measure.to && measure.to->name == measure.object->name)
+      place.at("to").refuse("is the object itself: name another, to which the gap is measured");
+    return;
+  }
+  if (measure.object || measure.to)
+    points.refuse("stands alone: measure an object or points, in a step each");
+  if (measure.points_mm.size() != 2 && measure.points_mm.size() != 3)
+    points.refuse("must be two points [x, y, z] for a distance, or three for the angle at the second");
+  if (measure.points_mm.size() == 3 &&
+      (measure.points_mm[1] == measure.points_mm[0] || measure.points_mm[1] == measure.points_mm[2]))
+    points.refuse("has its second point twice: an angle needs two legs");
+}
+
+/// How finely the plan's universe and its scans tell places apart.
+Digitised digitised_of(const AnswerBench& bench) {
+  Digitised digitised{bench.universe.lattice().spacing_mm()};
+  for (const ScanRecord& scan : bench.scans)
+    digitised.sample_mm = glm::max(digitised.sample_mm, scan.lattice.spacing_mm());
+  return digitised;
+}
+
+/// What the object's scan and window make doubtful.
+Digitised digitised_of(const AnswerBench& bench, const Object& object) {
+  Digitised digitised = digitised_of(bench);
+  if (object.shown) digitised.shift_mm = window_shift_mm({object.shown->grey, object.shown->threshold});
+  return digitised;
+}
+
+Json points_json(const Measure& asked, const AnswerBench& bench) {
+  const Digitised digitised = digitised_of(bench);
+  const std::vector<glm::dvec3>& p = asked.points_mm;
+  Json json{{"points_mm", Json::array()}};
+  for (const glm::dvec3& point : p) json["points_mm"].push_back(to_json(point));
+  if (p.size() == 2) {
+    const HalfWidth width = distance_half_width({p[0], p[1]}, digitised);
+    json["distance_mm"] = glm::distance(p[0], p[1]);
+    json["distance_half_width_mm"] = width.value;
+    json["distance_half_width_terms"] = to_json(width);
+  } else {
+    const HalfWidth width = angle_half_width({p[0], p[1], p[2]}, digitised);
+    const glm::dvec3 first = p[0] - p[1], last = p[2] - p[1];
+    json["angle_deg"] = glm::degrees(std::atan2(glm::length(glm::cross(first, last)), glm::dot(first, last)));
+    json["angle_half_width_deg"] = width.value;
+    json["angle_half_width_terms"] = to_json(width);
+  }
+  return json;
+}
+
+Json gap_json(const Measure& asked, const AnswerBench& bench) {
+  const Object &object = bench.objects.at(asked.object->name), &other = bench.objects.at(asked.to->name);
+  Json json{
+      {"object", object.id},          {"to", other.id},        {"gap_mm", nullptr}, {"gap_mesh_mm", nullptr},
+      {"gap_half_width_mm", nullptr}, {"overlap_mm3", nullptr}};
+  if (object.voxel.octree.is_empty() || other.voxel.octree.is_empty()) {
+    json["finding"] =
+        "there is no gap: " + (object.voxel.octree.is_empty() ? object.id : other.id) + " is empty";
+    return json;
+  }
+  const Gap gap =
+      gap_between(object.voxel.octree, other.voxel.octree, object.mesh.within.get(), other.mesh.within.get());
+  const HalfWidth width =
+      gap_half_width(gap.to_mm - gap.from_mm, digitised_of(bench, object), digitised_of(bench, other));
+  json["gap_mm"] = gap.voxel_mm;
+  json["gap_estimator"] = "faces of the two voxels whose centres are nearest";
+  if (gap.mesh_mm) json["gap_mesh_mm"] = *gap.mesh_mm;
+  json["gap_half_width_mm"] = width.value;
+  json["gap_half_width_terms"] = to_json(width);
+  json["overlap_mm3"] = gap.overlap_mm3;
+  json["from_mm"] = to_json(gap.from_mm);
+  json["to_mm"] = to_json(gap.to_mm);
+  return json;
+}
+
+Json size_json(const Measure& asked, const AnswerBench& bench) {
+  const Object& object = bench.objects.at(asked.object->name);
+  const double voxels_mm3 = object.voxel.measures.volume_mm3;
+  Json json{{"object", object.id},
+            {"volume_mm3", voxels_mm3},
+            {"volume_estimator", "voxels counted"},
+            {"area_mm2", nullptr},
+            {"area_estimator", mesh_area_estimator},
+            {"centroid_mm", to_json(object.voxel.measures.centroid_mm)},
+            {"voxel", to_json(object.voxel.measures)},
+            {"mesh", nullptr},
+            {"difference_mm3", nullptr},
+            {"difference_percent", nullptr}};
+  const HalfWidth width = volume_half_width(object.voxel.measures, digitised_of(bench, object));
+  json["volume_half_width_mm3"] = width.value;
+  json["volume_half_width_terms"] = to_json(width);
+  json["area_half_width_mm2"] = nullptr;
+  if (object.certificate)
+    for (const verify::Comparison& comparison : object.certificate->comparisons)
+      if (comparison.quantity == "area" && comparison.tolerance)
+        json["area_half_width_mm2"] = *comparison.tolerance;
+  if (object.mesh.measures) {
+    const double mesh_mm3 = object.mesh.measures->volume_mm3;
+    json["area_mm2"] = object.mesh.measures->area_mm2;
+    json["mesh"] = to_json(*object.mesh.measures);
+    json["difference_mm3"] = voxels_mm3 - mesh_mm3;
+    if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;
+  } else {
+    json["area_mm2"] = object.voxel.measures.area_crofton13_mm2;
+    json["area_estimator"] = voxel_area_estimator;
+  }
+  return json;
+}
+
+Json measure(const Measure& asked, const AnswerBench& bench) {
+  return !asked.points_mm.empty() ? points_json(asked, bench)
+         : asked.to               ? gap_json(asked, bench)
+                                  : size_json(asked, bench);
+}
+
+}  // namespace
+
+Operation measure_operation() {
+  return Describe<Measure>("measure", "Measures an object, the gap between two, or a distance or angle.",
+                           Makes::Measurement)
+      .takes(field("object", &Measure::object, "The object whose volume, area and extents are wanted."))
+      .takes(field("to", &Measure::to, "A second object: the gap between the two is wanted instead."))
+      .takes(field("points_mm", &Measure::points_mm,
+                   "Two points, for their distance, or three, for the angle at the second."))
+      .example(R"({"id": "maxilla_size", "do": "measure", "object": "maxilla"})")
+      .check(check)
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The solid within a distance of an object, or its points farther than that from its outside. Distances
+// between voxel centres tell this only to half a voxel, so the mesh kernel answers alone.
+#include "brep/shape/offset.h"
+
+#include <algorithm>
+
+#include "brep/mesh/measure.h"
+#include "planner/operation/trace.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Offset {
+  ObjectName object;
+  double by_mm = 0.0;
+  std::optional<double> cell_mm;
+};
+
+/// Fine enough for the offset's own roundness, and no finer than some 200 cells along the solid.
+double cell_for(const brep::Mesh& solid, double by_mm) {
+  const brep::Size size = brep::size_of(solid);
+  const glm::dvec3 extent = size.high_mm - size.low_mm;
+  return std::max(0.25 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 200.0);
+}
+
+std::string definition(const Offset& offset, const Objects&) {
+  return offset.object.name + " offset by " + plain(offset.by_mm) + " mm";
+}
+
+void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "offset");
+  const brep::Mesh& solid = *bench.object(offset.object.name);
+  brep::OffsetOptions options{.by_mm = offset.by_mm,
+                              .cell_mm = offset.cell_mm.value_or(cell_for(solid, offset.by_mm))};
+  options.stop = bench.progress.stop;
+  options.progress = bench.progress.report;
+  brep::Mesh moved = brep::offset(solid, options);
+  made.details = {{"by_mm", offset.by_mm},
+                  {"cell_mm", options.cell_mm},
+                  {"volume_change_mm3", brep::volume_mm3(moved) - brep::volume_mm3(solid)}};
+  made.whole = shared(std::move(moved));
+  made.lineage = "level set of the distance to the mesh";
+}
+
+void bound(const Offset& offset, const BoundBench& bench, Object& made) {
+  made.bound.spacing_mm = bench.objects.at(offset.object.name).bound.spacing_mm;
+  made.ends_with_universe = true;
+}
+
+}  // namespace
+
+Operation offset_operation() {
+  return Describe<Offset>("offset", "Moves an object's surface outward, or inward: margins and clearances.",
+                          Makes::Object)
+      .takes(field("object", &Offset::object, "The object.").required().positional("solid"))
+      .takes(field("by_mm", &Offset::by_mm, "The distance outward; below 0 it goes inward.").required())
+      .takes(
+          field("cell_mm", &Offset::cell_mm,
+                "About the edge of the mesh's triangles. Default: a quarter of the distance, or a 200th of "
+                "the object, whichever is larger.")
+              .greater_than(0.0))
+      .example(R"({"id": "margin", "do": "offset", "object": "tumour", "by_mm": 5})")
+      .on_files(
+          "octotomy offset tumour.stl --by 5 -o margin.stl\n"
+          "  octotomy offset skull.stl --by -1 --cell 0.4 -o core.ply --json")
+      .definition(definition)
+      .mesh(triangles)
+      .bound(bound);
+}
+
+}  // namespace octotomy::planner

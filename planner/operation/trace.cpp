@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace octotomy::planner {
+namespace {
+
+/// The distance that a vertex on a plane may have from it after rigid motions of coordinates as large as
+/// `reach_mm`: a few roundings of a dot product of three terms.
+double on_plane_mm(double reach_mm) {
+  return 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
+}
+
+/// The planes of a scan's ends: there mesh and voxels end up to half a sample apart, not half a voxel.
+std::vector<CutPlane> ends_of(const voxel::Box& scan, const glm::dvec3& sample_mm,
+                              const glm::dvec3& voxel_mm) {
+  std::vector<CutPlane> planes;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double at_mm : {scan.low_mm[axis], scan.high_mm[axis]}) {
+      glm::dvec3 normal(0.0);
+      normal[axis] = 1.0;
+      planes.push_back({axis, normal, at_mm, sample_mm[axis] / voxel_mm[axis]});
+    }
+  return planes;
+}
+
+std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat4& moved_from_still) {
+  for (CutPlane& plane : planes) {
+    const glm::dvec3 point = glm::dvec3(moved_from_still * glm::dvec4(plane.normal * plane.offset_mm, 1.0));
+    plane.normal = glm::dmat3(moved_from_still) * plane.normal;
+    plane.offset_mm = glm::dot(plane.normal, point);
+  }
+  return planes;
+}
+
+}  // namespace
+
+SharedMesh shared(brep::Mesh mesh) {
+  return std::make_shared<const brep::Mesh>(std::move(mesh));
+}
+
+bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe) {
+  const glm::dvec3 first = scan.voxel(universe.lps_mm(glm::dvec3(0.0)));
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 step(0.0);
+    step[axis] = 1.0;
+    const glm::dvec3 next = scan.voxel(universe.lps_mm(step)) - first;
+    // A dot product of three terms, in voxels of the largest universe.
+    constexpr double rounding = 4096.0 * 64.0 * std::numeric_limits<double>::epsilon();
+    if (glm::distance(next, step) > rounding / 4096.0) return false;
+    if (std::abs(first[axis] - std::round(first[axis])) > rounding) return false;
+  }
+  return true;
+}
+
+std::vector<CutPlane> planes_of(const voxel::RegionMask& mask) {
+  constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+  std::vector<CutPlane> planes;
+  for (const voxel::Region& region : mask.regions)
+    for (const auto& polygon : region.polygons_mm)
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec2 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        if (a == b) continue;
+        const glm::dvec2 across = glm::normalize(glm::dvec2(a.y - b.y, b.x - a.x));
+        const glm::dvec3 normal = across.x * region.view.right + across.y * region.view.up;
+        for (int axis = 0; axis < 3; ++axis)
+          if (std::abs(normal[axis]) >= 1.0 - rounding) planes.push_back({axis, normal, glm::dot(across, a)});
+      }
+  return planes;
+}
+
+void inherit(const Object& operand, Object& made) {
+  made.walls.insert(made.walls.end(), operand.walls.begin(), operand.walls.end());
+  const BoundTerms& from = operand.bound;
+  BoundTerms& to = made.bound;
+  to.planes.insert(to.planes.end(), from.planes.begin(), from.planes.end());
+  to.spacing_mm = glm::max(to.spacing_mm, from.spacing_mm);
+  if (from.scan_box_mm) to.scan_box_mm = from.scan_box_mm;
+}
+
+void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel::Universe& universe,
+           Object& made) {
+  made.moved = Object::Moved{still.id, moved_from_still};
+  made.walls = still.walls;
+  for (CutWall& wall : made.walls) wall.moved_from_still = moved_from_still * wall.moved_from_still;
+  made.shown = still.shown;
+  if (made.shown) made.shown->moved_from_still = moved_from_still * made.shown->moved_from_still;
+  made.bound.spacing_mm = still.bound.spacing_mm;
+  made.bound.planes = still.bound.planes;
+  if (still.bound.scan_box_mm) {
+    const auto ends =
+        ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, universe.lattice().spacing_mm());
+    made.bound.planes.insert(made.bound.planes.end(), ends.begin(), ends.end());
+  }
+  made.bound.planes = moved_planes(std::move(made.bound.planes), moved_from_still);
+}
+
+std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<std::string>& names) {
+  const Shown* source = nullptr;
+  for (const std::string& name : names) {
+    const Object& operand = objects.at(name);
+    if (operand.is_tool) continue;
+    if (!operand.shown) return std::nullopt;
+    const Shown& shown = *operand.shown;
+    if (source != nullptr && (shown.threshold != source->threshold || shown.scan != source->scan ||
+                              shown.moved_from_still != source->moved_from_still))
+      return std::nullopt;
+    source = &shown;
+  }
+  return source == nullptr ? std::nullopt : std::optional(*source);
+}
+
+glm::dvec3 area_on_planes(const brep::Mesh& mesh, const std::vector<CutPlane>& planes) {
+  glm::dvec3 area_mm2(0.0);
+  if (planes.empty()) return area_mm2;
+  for (const auto face : mesh.faces()) {
+    glm::dvec3 corner[3];
+    int count = 0;
+    for (const auto vertex : face.vertices()) {
+      const auto& p = mesh.point(vertex);
+      corner[count++] = glm::dvec3(p[0], p[1], p[2]);
+    }
+    const double reach_mm = glm::length(corner[0]) + glm::length(corner[1]) + glm::length(corner[2]);
+    for (const CutPlane& plane : planes) {
+      const auto off = [&](const glm::dvec3& p) {
+        return std::abs(glm::dot(plane.normal, p) - plane.offset_mm);
+      };
+      if (std::max({off(corner[0]), off(corner[1]), off(corner[2])}) > on_plane_mm(reach_mm)) continue;
+      area_mm2[plane.axis] +=
+          plane.voxels * 0.5 * glm::length(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+      break;
+    }
+  }
+  return area_mm2;
+}
+
+}  // namespace octotomy::planner

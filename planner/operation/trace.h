@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/table/object.h"
+#include "voxel/solid/region_mask.h"
+
+// What an object inherits from those it is made of: the planes that cut it, its scan and spacing, the walls
+// of masks, and the samples that show its surface.
+namespace octotomy::planner {
+
+SharedMesh shared(brep::Mesh mesh);
+
+/// Whether every voxel's centre within the scan is one of its samples, but for rounding.
+bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe);
+
+/// The planes through a mask's edges that are normal to an axis of the universe, but for the rounding of a
+/// view's unit vectors.
+std::vector<CutPlane> planes_of(const voxel::RegionMask& mask);
+
+/// Adds an operand's walls and bound terms to those of an object made of it.
+void inherit(const Object& operand, Object& made);
+
+/// The same for an object that is one moved: its walls, planes and samples move along.
+void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel::Universe& universe,
+           Object& made);
+
+/// The samples that show the surface of an object made of several: those of its operands, where they agree.
+/// Masks have none. A union of several windows, or of pieces moved apart, does not lie where one scan says.
+std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<std::string>& names);
+
+/// Area of a mesh's triangles on the planes, by the planes' axes and weighted by their errors.
+glm::dvec3 area_on_planes(const brep::Mesh& mesh, const std::vector<CutPlane>& planes);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The samples of a scan from one value to another.
+#include <cmath>
+#include <limits>
+
+#include "brep/mesh/triangles.h"
+#include "convert/surface/isosurface.h"
+#include "planner/operation/trace.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Window {
+  ScanName scan;
+  double low = 300.0;
+  std::optional<double> high;
+};
+
+void check(const Window& window, const Place& place) {
+  if (window.high && *window.high < window.low)
+    place.at("high").refuse("is below 'low': nothing would be in the window, swap them");
+}
+
+std::string unit_of(const voxel::Scene& scene) {
+  return voxel::unit(scene) == "1" ? "" : " " + voxel::unit(scene);
+}
+
+voxel::Window leaf_of(const Window& window, const voxel::GreyOctree& grey) {
+  voxel::Window leaf{grey, window.low};
+  if (window.high) leaf.high = *window.high;
+  return leaf;
+}
+
+std::string definition(const Window& window, const Objects&) {
+  return window.scan.name + " from " + plain(window.low) + (window.high ? " to " + plain(*window.high) : "");
+}
+
+void voxels(const Window& window, const VoxelBench& bench, VoxelSide& made) {
+  const LoadedScan& scan = bench.loaded(window.scan.name);
+  const voxel::Expression leaf(leaf_of(window, scan.grey));
+  {
+    const Stopwatch watch(bench.timings, "octree");
+    made.octree = voxel::combine(bench.universe, leaf);
+  }
+  made.symbol = bench.within_universe(leaf);
+  made.lineage = "window on a grey octree of the scan";
+  if (!made.octree.is_empty()) return;
+  const voxel::Range range = voxel::range(scan.scene);
+  throw std::runtime_error("no voxel of scan '" + window.scan.name +
+                           "' is in the window; its samples are from " + plain(range.low) + " to " +
+                           plain(range.high) + unit_of(scan.scene) + ": choose within them");
+}
+
+void triangles(const Window& window, const MeshBench& bench, MeshSide& made) {
+  const Stopwatch watch(bench.timings, "isosurface");
+  const double high = window.high.value_or(std::numeric_limits<double>::infinity());
+  made.whole = shared(brep::mesh_of(convert::isosurface(bench.samples(window.scan.name), window.low, high)));
+  made.lineage = "isosurface of the scan's own samples";
+}
+
+void bound(const Window& window, const BoundBench& bench, Object& made) {
+  const LoadedScan& scan = bench.scan(window.scan.name);
+  made.definition += unit_of(scan.scene);
+  const voxel::Lattice& lattice = scan.scene.lattice;
+  made.bound.spacing_mm = lattice.spacing_mm();
+  made.bound.scan_box_mm = voxel::bounds(lattice);
+  made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
+  // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
+  if (!window.high) made.shown = Shown{scan.grey, window.low, window.scan.name};
+}
+
+}  // namespace
+
+Operation window_operation() {
+  return Describe<Window>("window", "Makes an object of a scan's samples from one value to another.",
+                          Makes::Object)
+      .takes(field("scan", &Window::scan, "The scan.").required())
+      .takes(field("low", &Window::low, "The lowest sample that belongs to the object, in the scan's unit.")
+                 .required())
+      .takes(field("high", &Window::high, "The highest sample that belongs to it. Default: no upper limit."))
+      .example(R"({"id": "skull", "do": "window", "scan": "ct", "low": 300})")
+      .check(check)
+      .definition(definition)
+      .voxel(voxels)
+      .mesh(triangles)
+      .bound(bound);
+}
+
+}  // namespace octotomy::planner

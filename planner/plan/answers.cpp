@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/answers.h"
+
+#include <nlohmann/json.hpp>
+
+#include "planner/plan/sha256.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Kept = std::map<std::string, std::shared_ptr<const void>>;
+
+/// Where a file comes from, for its header.
+std::vector<std::string> origins_of(const Plan& plan, const Evaluation& evaluation) {
+  std::vector<std::string> lines{std::string("octotomy ") + OCTOTOMY_VERSION,
+                                 "plan: " + plan.name + ", SHA-256 " + sha256_of(plan.text)};
+  for (const ScanRecord& scan : evaluation.scans)
+    lines.push_back("scan " + scan.name + ": SHA-256 " + scan.sha256);
+  return lines;
+}
+
+}  // namespace
+
+Json measurements_json(const Plan& plan, const Evaluation& evaluation) {
+  Json all = Json::array();
+  Timings timings;
+  Kept kept;
+  const AnswerBench bench{.universe = evaluation.universe,
+                          .objects = evaluation.objects,
+                          .scans = evaluation.scans,
+                          .timings = timings,
+                          .kept = kept};
+  for (const Step& step : plan.steps) {
+    if (step.action.operation().makes != Makes::Measurement) continue;
+    Json json{{"id", step.id}};
+    json.update(step.action.operation().measure(step.action.value(), bench));
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
+Exported write_file(const Plan& plan, const Evaluation& evaluation, const Step& step,
+                    const std::filesystem::path& folder, Timings& timings, Kept& kept,
+                    const ExportOptions& options) {
+  const AnswerBench bench{.universe = evaluation.universe,
+                          .objects = evaluation.objects,
+                          .scans = evaluation.scans,
+                          .timings = timings,
+                          .stop = options.stop,
+                          .report = options.progress,
+                          .folder = folder,
+                          .origins = origins_of(plan, evaluation),
+                          .kept = kept};
+  Exported exported;
+  exported.id = step.id;
+  step.action.operation().write(step.action.value(), bench, exported);
+  if (exported.written) exported.details["bytes"] = std::filesystem::file_size(folder / exported.path);
+  return exported;
+}
+
+std::vector<Exported> write_files(const Plan& plan, const Evaluation& evaluation,
+                                  const std::filesystem::path& folder, Timings& timings,
+                                  const ExportOptions& options) {
+  std::vector<Exported> files;
+  Kept kept;
+  for (const Step& step : plan.steps)
+    if (step.action.operation().makes == Makes::File)
+      files.push_back(write_file(plan, evaluation, step, folder, timings, kept, options));
+  return files;
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Steps are evaluated in order, each in both kernels before the next:
+//   1 Read every scan once; sample it into a grey octree, keep its samples until the last step that uses
+//   them. 2 Voxel kernel: the operation's answer from other voxel answers. 3 Mesh kernel: the operation's
+//   answer from other mesh answers and the scan's own samples. 4 Certify: only here do the two answers meet.
+// Invariant: the benches of steps 2 and 3 show one kernel each.
+#include "planner/plan/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/triangles.h"
+#include "brep/shape/prism.h"
+#include "convert/voxel/voxelise.h"
+#include "planner/operation/trace.h"
+#include "planner/plan/sha256.h"
+#include "planner/table/number_format.h"
+#include "verify/certify_bounded.h"
+#include "voxel/scan/read_image_stack.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::planner {
+namespace {
+
+brep::Prism prism_of(const voxel::Box& box) {
+  const glm::dvec3 a = box.low_mm, b = box.high_mm;
+  return {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y};
+}
+
+/// The samples beyond the scan have the least value that the scan has: air.
+std::int16_t background_of(const voxel::Scene& scene) {
+  const double low = std::floor(std::min(voxel::range(scene).low, -1024.0));
+  return static_cast<std::int16_t>(std::max(low, -32768.0));
+}
+
+ScanRecord record_of(const std::string& name, const std::filesystem::path& path, const voxel::Scene& scene) {
+  ScanRecord record;
+  record.name = name;
+  record.path = path;
+  record.lattice = scene.lattice;
+  record.meaning = scene.meaning;
+  record.modality = scene.modality;
+  record.unit = voxel::unit(scene);
+  record.range = voxel::range(scene);
+  record.audit = scene.audit;
+  return record;
+}
+
+/// One evaluation in progress.
+class Evaluator {
+ public:
+  Evaluator(const Plan& plan, const EvaluateOptions& options) : plan_(plan), options_(options) {}
+
+  Evaluation run() {
+    read_scans();
+    std::size_t done = 0;
+    for (const Step& step : plan_.steps) {
+      report(verb(step) + " " + step.id,
+             static_cast<double>(done++) / static_cast<double>(plan_.steps.size()));
+      if (step.action.operation().makes != Makes::Object) continue;
+      try {
+        make(step);
+      } catch (const Stopped&) {
+        throw;
+      } catch (const std::runtime_error& error) {
+        throw std::runtime_error("step '" + step.id + "': " + error.what());
+      } catch (const std::invalid_argument& error) {
+        throw std::runtime_error("step '" + step.id + "': " + error.what());
+      }
+      for (const std::string& scan : scans_used(step.action))
+        if (--uses_left_[scan] == 0) loaded_.erase(scan);
+    }
+    report("evaluated", 1.0);
+    return std::move(result_);
+  }
+
+ private:
+  void report(const std::string& doing, double fraction) const {
+    if (options_.stop.stop_requested()) throw Stopped("stopped before '" + doing + "': nothing was written");
+    if (options_.progress) options_.progress(doing, fraction);
+  }
+
+  /// The scans that steps use, the first step's first: it fixes the universe.
+  std::vector<std::string> scans_in_use() {
+    std::vector<std::string> names;
+    for (const Step& step : plan_.steps)
+      for (const std::string& scan : scans_used(step.action))
+        if (uses_left_[scan]++ == 0) names.push_back(scan);
+    if (names.empty()) names.push_back(plan_.scans.begin()->first);
+    return names;
+  }
+
+  voxel::Scene read(const std::string& name, const ScanSource& source, std::string& sha256) {
+    const Stopwatch watch(result_.timings, "read");
+    const std::filesystem::path path = scan_path(plan_, source);
+    if (!std::filesystem::exists(path) && voxel::image_files(path).empty())
+      throw std::runtime_error("scan '" + name + "': " + path.string() +
+                               ": no such file or folder; correct the plan or use --scan " + name + "=PATH");
+    sha256 = sha256_of_path(path);
+    if (source.sha256 && *source.sha256 != sha256)
+      throw std::runtime_error("scan '" + name + "': " + path.string() + " has SHA-256 " + sha256 +
+                               ", the plan wants " + *source.sha256 + ": it is another scan");
+    voxel::ReadOptions options = source.read;
+    options.progress.stop = options_.stop;
+    voxel::Scene scene = voxel::read_scene(path, options);
+    voxel::check(scene);
+    return scene;
+  }
+
+  void read_scans() {
+    for (const std::string& name : scans_in_use()) {
+      report("read " + name, 0.0);
+      const ScanSource& source = plan_.scans.at(name);
+      std::string sha256;
+      voxel::Scene scene = read(name, source, sha256);
+      if (result_.scans.empty()) {
+        result_.universe = universe_of(scene.lattice, plan_.voxel_mm);
+        box_ = voxel::bounds(result_.universe.lattice());
+        world_ = shared(brep::mesh_of(prism_of(box_)));
+        expressions_ = std::make_unique<verify::MeshExpressions>(world_);
+      }
+      result_.scans.push_back(record_of(name, source.path, scene));
+      result_.scans.back().sha256 = std::move(sha256);
+      const Stopwatch watch(result_.timings, "octree");
+      voxel::GreyOctree grey = voxel::grey_octree_of(result_.universe, scene, background_of(scene));
+      loaded_.emplace(name, LoadedScan{std::move(scene), std::move(grey)});
+    }
+  }
+
+  /// Makes an object in both kernels and certifies it.
+  void make(const Step& step) {
+    const Operation& operation = step.action.operation();
+    const void* value = step.action.value();
+    Object object(step.id, operation.name, result_.universe);
+    object.is_tool = operation.is_tool;
+    object.definition = operation.definition(value, result_.objects);
+    if (operation.voxel)
+      operation.voxel(value, {result_.universe, result_.objects, scan_, result_.timings, {options_.stop, {}}},
+                      object.voxel);
+    make_mesh(step, object);
+    if (!operation.voxel) voxelise(object);
+    operation.bound(value, {result_.universe, result_.objects, scan_}, object);
+    take_within(object);
+    object.voxel.measures = voxel::measure(object.voxel.octree);
+    if (object.mesh.within) object.mesh.measures = brep::measure(*object.mesh.within);
+    if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) certify(object);
+    if (object.ends_with_universe) object.mesh.whole = object.mesh.within;
+    result_.objects.add(std::move(object));
+  }
+
+  /// The voxels of an answer that only the mesh kernel has.
+  void voxelise(Object& object) {
+    if (!object.mesh.whole)
+      throw std::runtime_error(object.findings.empty() ? "there is no mesh to make voxels of"
+                                                       : object.findings.front());
+    const Stopwatch watch(result_.timings, "voxelise");
+    object.voxel.octree = convert::voxelise(result_.universe, *object.mesh.whole);
+    object.voxel.symbol = voxel::Expression(object.voxel.octree);
+    object.voxel.lineage = "the mesh kernel's answer, voxelised";
+    object.findings.emplace_back(
+        "no certificate: only the mesh kernel does this, and its voxels are its mesh's");
+  }
+
+  /// The mesh kernel's answer; a finding where it has none.
+  void make_mesh(const Step& step, Object& object) {
+    const Operation& operation = step.action.operation();
+    if (!operation.mesh) return object.findings.push_back("no mesh: the mesh kernel does not do this");
+    for (const std::string& name : objects_used(step.action))
+      if (!result_.object(name).mesh.whole)
+        return object.findings.push_back("no mesh, as '" + name + "' has none");
+    try {
+      operation.mesh(step.action.value(),
+                     {box_.low_mm,
+                      box_.high_mm,
+                      result_.objects,
+                      scan_,
+                      *expressions_,
+                      result_.timings,
+                      {options_.stop, {}},
+                      plan_.folder},
+                     object.mesh);
+      object.findings = object.mesh.findings;
+    } catch (const std::runtime_error& error) {
+      if (options_.stop.stop_requested()) throw Stopped(error.what());
+      object.findings.push_back(std::string("the mesh kernel has no answer: ") + error.what());
+    }
+  }
+
+  /// Cuts the mesh at the universe's border, where its voxels end. Masks reach beyond by their nature; a
+  /// piece that comes from a scan and does has lost voxels, which is a finding.
+  void take_within(Object& object) {
+    object.mesh.within = object.mesh.whole;
+    if (!object.mesh.whole || object.mesh.whole->n_faces() == 0) return;
+    const brep::Measures measures = brep::measure(*object.mesh.whole);
+    const bool inside = glm::all(glm::greaterThanEqual(measures.low_mm, box_.low_mm)) &&
+                        glm::all(glm::lessThanEqual(measures.high_mm, box_.high_mm));
+    if (inside) return;
+    const Stopwatch watch(result_.timings, "boolean_mesh");
+    try {
+      object.mesh.within = shared(
+          brep::boolean(*object.mesh.whole, brep::Operation::Intersection, *world_, options_.stop).mesh);
+    } catch (const std::runtime_error& error) {
+      if (options_.stop.stop_requested()) throw Stopped(error.what());
+      object.mesh.within = nullptr;
+      object.findings.push_back(std::string("the mesh kernel cannot cut it at the universe's border: ") +
+                                error.what());
+    }
+    if (object.bound.spacing_mm != glm::dvec3(0.0))
+      object.findings.push_back(
+          "a part lies outside of the universe (" + plain(box_) +
+          ") and is left out of every number and picture: move less, or use a scan with more room");
+  }
+
+  void certify(Object& object) {
+    const Stopwatch watch(result_.timings, "certify");
+    verify::BoundInputs inputs;
+    inputs.operation = object.id + " = " + object.definition;
+    inputs.voxel_lineage = object.voxel.lineage;
+    inputs.mesh_lineage = object.mesh.lineage;
+    inputs.scan_spacing_mm = object.bound.spacing_mm;
+    inputs.flat_cut_mm2 = area_on_planes(*object.mesh.within, object.bound.planes);
+    inputs.scan_box_mm = object.bound.scan_box_mm;
+    inputs.voxels_are_samples = object.bound.voxels_are_samples;
+    object.certificate =
+        verify::certify_bounded(object.voxel.octree, *object.mesh.within, inputs, {options_.stop, {}});
+  }
+
+  const Plan& plan_;
+  const EvaluateOptions& options_;
+  Evaluation result_;
+  std::map<std::string, LoadedScan> loaded_;
+  std::map<std::string, std::size_t> uses_left_;
+  const Scans scan_ = [this](const std::string& name) -> const LoadedScan& { return loaded_.at(name); };
+  voxel::Box box_;  ///< of the universe
+  SharedMesh world_;
+  std::unique_ptr<verify::MeshExpressions> expressions_;
+};
+
+}  // namespace
+
+voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm) {
+  const voxel::Box box = voxel::bounds(scan);
+  const glm::dvec3 spacing_mm = scan.spacing_mm();
+  const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
+  constexpr double most_a_side = 512.0;
+  const double finest_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
+  const double edge_mm = voxel_mm.value_or(std::max(finest_mm, longest_mm / most_a_side));
+  voxel::Universe universe = voxel::universe_around(box, edge_mm);
+  // A universe around an odd number of samples lies half a voxel off them, and resampling would blur what
+  // need not be touched: put a voxel's centre on the first sample, where the box stays inside.
+  const glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
+  const double spare_voxels = 0.5 * universe.side();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double shift = first[axis] - std::floor(first[axis] + 0.5);
+    if (0.5 * extent_mm[axis] / edge_mm + std::abs(shift) <= spare_voxels)
+      universe.lps_from_voxel[3][axis] += shift * edge_mm;
+  }
+  return universe;
+}
+
+Evaluation evaluate(const Plan& plan, const EvaluateOptions& options) {
+  return Evaluator(plan, options).run();
+}
+
+}  // namespace octotomy::planner

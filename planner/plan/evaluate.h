@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "planner/plan/plan.h"
+#include "planner/table/bench.h"
+#include "planner/table/object.h"
+#include "planner/table/stopwatch.h"
+
+namespace octotomy::planner {
+
+/// What a plan's steps made, in both kernels.
+struct Evaluation {
+  std::vector<ScanRecord> scans;
+  voxel::Universe universe;
+  Objects objects;  ///< in the order of their steps
+  Timings timings;
+
+  const Object& object(const std::string& id) const { return objects.at(id); }
+};
+
+/// The stop token was set: nothing was decided, nothing is written.
+using voxel::Stopped;
+
+struct EvaluateOptions {
+  std::stop_token stop;
+  /// Called with what is being done and the fraction of the steps done, 0..1.
+  std::function<void(const std::string& doing, double fraction)> progress;
+  bool certify = true;
+};
+
+/// The universe a plan is evaluated in: around the scan's bounds, voxels of the asked edge; by default the
+/// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger. A voxel's centre
+/// lies on the scan's first sample, so that samples as far apart as voxels are taken over as they are.
+voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
+
+/// Evaluates every step that makes an object, in the voxel kernel and in the mesh kernel, as its operation
+/// says (planner/operation), and certifies their agreement object by object. Neither kernel sees the other's
+/// answer before both are there. A moved object keeps its motion symbolic, so that moving it again samples
+/// the still object once.
+///
+/// Throws std::runtime_error with step and reason where a scan cannot be read, is not the one whose SHA-256
+/// is given, or an operation refuses; Stopped. An object whose operation the mesh kernel cannot do keeps its
+/// voxel answer, has no mesh and a finding; so do the objects that depend on it. Memory: the largest scan,
+/// its grey octree, and one mesh and octree an object.
+Evaluation evaluate(const Plan& plan, const EvaluateOptions& options = {});
+
+}  // namespace octotomy::planner

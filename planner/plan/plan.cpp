@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "planner/plan/plan_keys.h"
+#include "planner/table/field_json.h"
+#include "planner/table/nearest_name.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::json;
+using Ordered = nlohmann::ordered_json;
+
+/// Reads JSON, refusing keys that an object says twice, which would otherwise silently take the last.
+Json strict_json(const std::string& text) {
+  std::vector<std::set<std::string>> open;
+  const auto watch = [&open](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) open.emplace_back();
+    if (event == Json::parse_event_t::object_end) open.pop_back();
+    if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
+      throw std::runtime_error("the key '" + parsed.get<std::string>() +
+                               "' is said twice in one object: keep one");
+    return true;
+  };
+  try {
+    return Json::parse(text, watch);
+  } catch (const Json::exception& error) {
+    throw std::runtime_error("not JSON: " + std::string(error.what()));
+  }
+}
+
+int whole_number(const Json& value, const std::string& where) {
+  const double number = number_of(value, where);
+  if (number != std::trunc(number) || std::abs(number) > std::numeric_limits<int>::max())
+    refuse(where, "must be a whole number");
+  return static_cast<int>(number);
+}
+
+/// How a scan is read: its series, and what images and raw files do not say of themselves.
+voxel::ReadOptions read_options_of(const Keys& scan) {
+  voxel::ReadOptions read;
+  if (scan.find("series") != nullptr) read.series = scan.text("series");
+  if (scan.find("spacing_mm") != nullptr) read.spacing_mm = scan.point("spacing_mm");
+  if (const Json* value = scan.find("raw")) {
+    const Keys keys(*value, scan.at("raw"), {"dims", "type", "big_endian", "offset"});
+    voxel::RawLayout raw;
+    const Json& dims = keys.need("dims");
+    if (!dims.is_array() || dims.size() != 3) refuse(keys.at("dims"), "must be three numbers [x, y, z]");
+    for (int axis = 0; axis < 3; ++axis)
+      raw.dims[axis] = whole_number(dims[static_cast<std::size_t>(axis)], keys.at("dims"));
+    const std::optional<voxel::SampleType> type = voxel::sample_type(keys.text("type"));
+    if (!type) refuse(keys.at("type"), "'" + keys.text("type") + "' is no type: use for example int16");
+    raw.type = *type;
+    if (keys.find("big_endian") != nullptr) raw.big_endian = keys.flag("big_endian");
+    if (const Json* offset = keys.find("offset")) {
+      const int bytes = whole_number(*offset, keys.at("offset"));
+      if (bytes < 0) refuse(keys.at("offset"), "must not be negative");
+      raw.offset = static_cast<std::uint64_t>(bytes);
+    }
+    read.raw = raw;
+  }
+  return read;
+}
+
+std::map<std::string, ScanSource> scans_of(const Keys& top) {
+  const Json& value = top.need("scans");
+  if (!value.is_object() || value.empty())
+    refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
+  std::map<std::string, ScanSource> scans;
+  for (const auto& [name, entry] : value.items()) {
+    const Keys keys(entry, "scans, " + name, {"path", "sha256", "series", "spacing_mm", "raw"});
+    ScanSource source{keys.text("path"), std::nullopt, read_options_of(keys)};
+    if (keys.find("sha256") != nullptr) {
+      source.sha256 = keys.text("sha256");
+      const bool hex = source.sha256->size() == 64 &&
+                       source.sha256->find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
+      if (!hex) refuse(keys.at("sha256"), "must be 64 hexadecimal digits, or null");
+      for (char& digit : *source.sha256)
+        digit = static_cast<char>(std::tolower(static_cast<unsigned char>(digit)));
+    }
+    scans.emplace(name, std::move(source));
+  }
+  return scans;
+}
+
+/// What a step may do: the operations, and "export".
+std::vector<std::string> step_words() {
+  std::vector<std::string> words;
+  for (const Operation& operation : operations()) words.push_back(operation.name);
+  words.emplace_back("export");
+  return words;
+}
+
+/// The operation of a step that does "export": the one that writes its path's extension.
+const char* export_of(const Json& step) {
+  const auto path = step.find("path");
+  const std::string name = path != step.end() && path->is_string() ? path->get<std::string>() : "";
+  for (const char* ending : {".inp", ".vtu", ".feb", ".msh", ".node"})
+    if (name.ends_with(ending)) return "deck";
+  for (const char* ending : {".nrrd", ".nii.gz", ".mha"})
+    if (name.ends_with(ending)) return "label_map";
+  return "surface";
+}
+
+Step step_of(const Json& value, std::size_t index, Scope& scope) {
+  Place place{"step " + std::to_string(index + 1), &scope};
+  if (!value.is_object()) place.refuse("must be an object in braces, not " + type_of(value));
+  if (const auto id = value.find("id"); id != value.end() && id->is_string())
+    place.where = "step '" + id->get<std::string>() + "'";
+  const auto found = value.find("do");
+  if (found == value.end() || !found->is_string())
+    place.refuse("'do' is missing" + suggestion("", step_words()));
+  const std::string word = found->get<std::string>();
+  const Operation* operation = find_operation(word == "export" ? export_of(value) : word);
+  if (operation == nullptr)
+    place.at("do").refuse("unknown step '" + word + "'" + suggestion(word, step_words()));
+  const auto id = value.find("id");
+  if (id == value.end() || id->is_null()) place.refuse("'id' is missing: add it");
+  if (!id->is_string()) place.at("id").refuse("must be a text in quotes, not " + type_of(*id));
+  Step step{id->get<std::string>(), Action(*operation)};
+  read_fields(operation->fields, value, step.action.value(), place, {"id", "do"});
+  if (operation->check) operation->check(step.action.value(), place);
+  // Bound last, so that no step can name itself.
+  scope.bind(place.where, step.id, *operation);
+  return step;
+}
+
+/// The schema of one operation's step.
+Ordered step_schema(const Operation& operation) {
+  Ordered schema{{"title", operation.name}, {"description", operation.says}};
+  schema.update(fields_schema(operation.fields, operation.fresh().get()));
+  Ordered properties{{"id", {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}},
+                     {"do", {{"const", operation.name}}}};
+  properties.update(schema["properties"]);
+  schema["properties"] = properties;
+  Ordered required{"id", "do"};
+  for (const Ordered& name : schema.value("required", Ordered::array())) required.push_back(name);
+  schema["required"] = required;
+  schema["examples"] = Ordered::array({Ordered::parse(operation.example)});
+  return schema;
+}
+
+}  // namespace
+
+Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
+  const Json root = strict_json(json);
+  const Keys top(root, "", {"octotomy_plan", "name", "scans", "universe", "steps"});
+  const Json& version = top.need("octotomy_plan");
+  if (!version.is_number_integer() || version.get<std::int64_t>() != 1)
+    refuse("octotomy_plan", "must be 1, the only version of plans there is");
+  Plan plan;
+  plan.text = json;
+  plan.folder = folder;
+  plan.name = top.text("name");
+  plan.scans = scans_of(top);
+  if (const Json* universe = top.find("universe")) {
+    const Keys keys(*universe, "universe", {"voxel_mm"});
+    plan.voxel_mm = keys.number_if("voxel_mm");
+    if (plan.voxel_mm && *plan.voxel_mm <= 0.0)
+      refuse(keys.at("voxel_mm"), "must be above zero, for example 1.0");
+  }
+  const Json& steps = top.need("steps");
+  if (!steps.is_array() || steps.empty()) refuse("steps", "must be a list of at least one step");
+  Scope scope(names_of(plan.scans));
+  for (const Json& step : steps) plan.steps.push_back(step_of(step, plan.steps.size(), scope));
+  return plan;
+}
+
+Plan read_plan(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path))
+    throw std::runtime_error(path.string() + ": cannot be opened as a plan: check the path");
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  try {
+    Plan plan = parse_plan(text, std::filesystem::absolute(path).parent_path());
+    plan.file = path;
+    return plan;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
+std::filesystem::path scan_path(const Plan& plan, const ScanSource& scan) {
+  return scan.path.is_absolute() ? scan.path : plan.folder / scan.path;
+}
+
+std::string verb(const Step& step) {
+  return step.action.operation().name;
+}
+
+Ordered plan_schema() {
+  const Ordered vector{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+  const Ordered raw{{"type", "object"},
+                    {"properties",
+                     {{"dims", vector},
+                      {"type", {{"type", "string"}}},
+                      {"big_endian", {{"type", "boolean"}}},
+                      {"offset", {{"type", "integer"}, {"minimum", 0}}}}},
+                    {"required", {"dims", "type"}},
+                    {"additionalProperties", false}};
+  const Ordered scan{{"type", "object"},
+                     {"properties",
+                      {{"path", {{"type", "string"}, {"minLength", 1}}},
+                       {"sha256", {{"type", {"string", "null"}}, {"pattern", "^[0-9a-fA-F]{64}$"}}},
+                       {"series", {{"type", "string"}}},
+                       {"spacing_mm", vector},
+                       {"raw", raw}}},
+                     {"required", {"path"}},
+                     {"additionalProperties", false}};
+  Ordered steps = Ordered::array();
+  for (const Operation& operation : operations()) steps.push_back(step_schema(operation));
+  // "export" stands for the operation that writes the path's extension.
+  for (const char* name : {"surface", "deck", "label_map"}) {
+    Ordered schema = step_schema(*find_operation(name));
+    schema["title"] = std::string("export, as ") + name;
+    schema["properties"]["do"] = {{"const", "export"}};
+    schema["examples"][0]["do"] = "export";
+    steps.push_back(schema);
+  }
+  return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+          {"title", "Octotomy plan"},
+          {"description", "Ordered steps on scans. Lengths are in mm, angles in degrees, coordinates LPS."},
+          {"type", "object"},
+          {"properties",
+           {{"octotomy_plan", {{"const", 1}}},
+            {"name", {{"type", "string"}, {"minLength", 1}}},
+            {"scans", {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", scan}}},
+            {"universe",
+             {{"type", "object"},
+              {"properties", {{"voxel_mm", {{"type", "number"}, {"exclusiveMinimum", 0}}}}},
+              {"additionalProperties", false}}},
+            {"steps", {{"type", "array"}, {"minItems", 1}, {"items", {{"anyOf", steps}}}}}}},
+          {"required", {"octotomy_plan", "name", "scans", "steps"}},
+          {"additionalProperties", false}};
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/report/first_look.h"
+
+#include <cmath>
+
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "voxel/filter/otsu.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr int picture_px = 400;
+
+/// A scan as a plan names it.
+Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
+  Json entry{{"path", std::filesystem::absolute(scan).lexically_normal().string()}};
+  if (!read.series.empty()) entry["series"] = read.series;
+  if (read.spacing_mm) entry["spacing_mm"] = to_json(*read.spacing_mm);
+  if (read.raw)
+    entry["raw"] = {{"dims", {read.raw->dims.x, read.raw->dims.y, read.raw->dims.z}},
+                    {"type", voxel::name_of(read.raw->type)},
+                    {"big_endian", read.raw->big_endian},
+                    {"offset", read.raw->offset}};
+  return entry;
+}
+
+}  // namespace
+
+Thresholds thresholds_of(const voxel::Scene& scene) {
+  const std::vector<double> found = voxel::otsu_thresholds(voxel::histogram(scene), 3);
+  return {std::ceil(found[0]), std::ceil(found[1])};
+}
+
+Result first_look(const std::filesystem::path& scan, const LookOptions& options) {
+  Result result;
+  double bone_low = options.bone_low.value_or(300.0), skin_low = options.skin_low.value_or(-300.0);
+  if (!options.bone_low || !options.skin_low) {
+    const voxel::Scene scene = voxel::read_scene(scan, options.read);
+    if (scene.meaning != voxel::Meaning::Hounsfield) {
+      const Thresholds thresholds = thresholds_of(scene);
+      bone_low = options.bone_low.value_or(thresholds.upper);
+      skin_low = options.skin_low.value_or(thresholds.lower);
+      result.findings.push_back(
+          {"thresholds", voxel::Verdict::Warn,
+           "the samples are not Hounsfield units, so bone was taken from " + grouped(bone_low, 0) +
+               " and skin from " + grouped(skin_low, 0) +
+               " (three classes of least variance, Otsu 1979): look at the pictures, and set --bone and "
+               "--skin" +
+               (scene.modality == "MR" ? "; in MR, bone is as dark as air and this is no bone" : "")});
+    }
+  }
+  const std::string name =
+      scan.filename().empty() ? scan.parent_path().filename().string() : scan.filename().string();
+  Json plan{{"octotomy_plan", 1},
+            {"name", "First look at " + (name.empty() ? scan.string() : name)},
+            {"scans", {{"scan", scan_entry(scan, options.read)}}},
+            {"steps", Json::array()}};
+  plan["steps"].push_back({{"id", "bone"}, {"do", "window"}, {"scan", "scan"}, {"low", bone_low}});
+  plan["steps"].push_back({{"id", "skin"}, {"do", "window"}, {"scan", "scan"}, {"low", skin_low}});
+  plan["steps"].push_back({{"id", "bone_size"}, {"do", "measure"}, {"object", "bone"}});
+  plan["steps"].push_back({{"id", "skin_size"}, {"do", "measure"}, {"object", "skin"}});
+  result.plan = parse_plan(plan.dump(2), std::filesystem::current_path());
+  result.evaluation = evaluate(result.plan, options.evaluation);
+
+  {
+    const Stopwatch watch(result.evaluation.timings, "components");
+    result.parts.push_back(parts_of(result.evaluation.object("bone")));
+  }
+  const Stopwatch watch(result.evaluation.timings, "render");
+  const voxel::DrawnObject bone = drawn(result.evaluation.object("bone"), {0.91f, 0.87f, 0.79f});
+  const voxel::DrawnObject skin = drawn(result.evaluation.object("skin"), {0.88f, 0.72f, 0.63f});
+  for (const voxel::DrawnObject& object : {bone, skin}) {
+    result.pictures.push_back({object.name, object.name == "bone" ? "Bone" : "Skin", {object}, {}});
+    draw(result.pictures.back(), all_views(), {skin}, picture_px);
+  }
+  return result;
+}
+
+}  // namespace octotomy::planner

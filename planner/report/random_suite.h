@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "planner/report/report.h"
+#include "verify/certificate.h"
+#include "voxel/solid/expression.h"
+
+namespace octotomy::planner {
+
+struct RandomSuiteOptions {
+  int count = 1000;        ///< questions to each tier
+  std::uint64_t seed = 1;  ///< of the first; question i has seed + i
+  /// Where plans of disagreements are written, a folder each; made when there is one.
+  std::filesystem::path failures = "disagreements";
+  std::stop_token stop{};
+  std::function<void(const std::string& doing, double share)> progress{};
+};
+
+/// A question on which the kernels disagree, made as simple as it stays one.
+struct Disagreement {
+  std::uint64_t seed = 0;
+  std::string tier;
+  std::string question;  ///< the simplified expression, or plan
+  std::vector<std::string> reasons;
+  std::filesystem::path plan;  ///< where it was written
+};
+
+/// How one tier's questions were answered.
+struct RandomTier {
+  VerdictCounts verdicts;  ///< exact: a question each; bounded: every object of every plan
+  int asked = 0;
+  int of_substance = 0;  ///< results that voxels resolve and that are neither empty nor an operand
+  int no_answer = 0;     ///< the mesh kernel had none, and said so
+  int refused = 0;       ///< a mask or window without a voxel: no question
+  std::vector<verify::Certificate> results;  ///< of the questions, in their order, where there is one
+};
+
+struct RandomSuite {
+  RandomTier exact, bounded;
+  std::vector<Disagreement> disagreements;
+  std::optional<verify::Contested> worst;  ///< of the bounded tier's objects
+
+  /// Results of substance as a share of all.
+  double substance() const;
+};
+
+/// Results of less substance would show agreement on nothing.
+inline constexpr double least_substance = 0.3;
+
+/// Asks both kernels random questions: expressions up to six operators deep, of sets of up to 48 voxels a
+/// side, in the exact tier; plans in the bounded one. Questions are asked in parallel; answers depend on the
+/// seed only. A disagreement is simplified (operators, motions and regions taken away, sets cut down) as long
+/// as it stays one, and written as a plan with its scans. Throws Stopped; as ResultFolder. Cost: about a
+/// second of processor time a question to both tiers.
+RandomSuite ask_random(const RandomSuiteOptions& options);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/report/report.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "planner/measure/result_json.h"
+#include "planner/report/report_page.h"
+#include "planner/report/result_folder.h"
+#include "voxel/filter/components.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr int picture_px = 480;
+
+Json certificates_json(const Evaluation& evaluation) {
+  Json certificates = Json::array();
+  for (const Object& object : evaluation.objects) {
+    if (!object.certificate) continue;
+    Json json{{"object", object.id}};
+    json.update(to_json(*object.certificate));
+    certificates.push_back(std::move(json));
+  }
+  return certificates;
+}
+
+Json exported_json(const Exported& exported) {
+  Json json{{"id", exported.id},
+            {"object", exported.object},
+            {"path", exported.path},
+            {"written", exported.written}};
+  json.update(exported.details);
+  json["findings"] = exported.findings;
+  return json;
+}
+
+void write_pictures(const Result& result, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const PictureGroup& group : result.pictures)
+    for (const ScenePicture& picture : group.pictures) {
+      std::string view = picture.view;
+      std::replace(view.begin(), view.end(), ',', '_');
+      write_text(folder / (group.name + "_" + view + ".png"), {picture.png.begin(), picture.png.end()});
+    }
+}
+
+}  // namespace
+
+VerdictCounts& VerdictCounts::operator+=(const VerdictCounts& other) {
+  pass += other.pass;
+  warn += other.warn;
+  fail += other.fail;
+  not_resolved += other.not_resolved;
+  pass_not_resolved += other.pass_not_resolved;
+  return *this;
+}
+
+void add(VerdictCounts& counts, const verify::Certificate& certificate) {
+  const bool passes = certificate.verdict == verify::Verdict::Pass;
+  (passes ? counts.pass : certificate.verdict == verify::Verdict::Warn ? counts.warn : counts.fail)++;
+  if (certificate.resolved()) return;
+  ++counts.not_resolved;
+  if (passes) ++counts.pass_not_resolved;
+}
+
+VerdictCounts verdict_counts(const Evaluation& evaluation) {
+  VerdictCounts counts;
+  for (const Object& object : evaluation.objects)
+    if (object.certificate) add(counts, *object.certificate);
+  return counts;
+}
+
+Json to_json(const VerdictCounts& counts) {
+  return {{"PASS", counts.pass},
+          {"WARN", counts.warn},
+          {"FAIL", counts.fail},
+          {"not_resolved", counts.not_resolved}};
+}
+
+std::string text_of(const VerdictCounts& counts) {
+  return std::to_string(counts.pass) + " PASS" +
+         (counts.pass_not_resolved > 0 ? " (" + std::to_string(counts.pass_not_resolved) + " not resolved)"
+                                       : "") +
+         ", " + std::to_string(counts.warn) + " WARN, " + std::to_string(counts.fail) + " FAIL";
+}
+
+Parts parts_of(const Object& object) {
+  const double voxel_mm3 = object.voxel.octree.universe().lattice().voxel_mm3();
+  Parts parts{object.id, {}};
+  for (const std::uint64_t count : voxel::components(object.voxel.octree).voxel_counts)
+    parts.volumes_mm3.push_back(static_cast<double>(count) * voxel_mm3);
+  return parts;
+}
+
+std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation) {
+  const Stopwatch watch(evaluation.timings, "render");
+  const FinalScene scene = final_scene(plan, evaluation);
+  std::vector<voxel::DrawnObject> framed = scene.before;
+  framed.insert(framed.end(), scene.after.begin(), scene.after.end());
+  std::vector<PictureGroup> groups;
+  if (scene.moves) {
+    groups.push_back({"before", "Before", scene.before, {}});
+    draw(groups.back(), {"left", "35,15"}, framed, picture_px);
+  }
+  groups.push_back({"after", scene.moves ? "Views after" : "Views", scene.after, {}});
+  draw(groups.back(), all_views(), framed, picture_px);
+  return groups;
+}
+
+Json result_json(const Result& result) {
+  const Evaluation& evaluation = result.evaluation;
+  Json json = answer(evaluation.timings);
+  json["plan"] = {{"name", result.plan.name}, {"steps", result.plan.steps.size()}};
+  if (!result.plan.text.empty()) json["plan"] = Json::parse(result.plan.text);
+  json["universe"] = {{"side", evaluation.universe.side()},
+                      {"voxel_mm", to_json(evaluation.universe.lattice().spacing_mm())},
+                      {"lps_from_voxel", to_json(evaluation.universe.lps_from_voxel)}};
+  for (const char* key : {"scans", "objects", "components", "exports"}) json[key] = Json::array();
+  for (const ScanRecord& scan : evaluation.scans) json["scans"].push_back(to_json(scan));
+  for (const Object& object : evaluation.objects) json["objects"].push_back(to_json(object));
+  json["measurements"] = result.measurements;
+  json["certificates"] = certificates_json(evaluation);
+  json["counts"] = to_json(verdict_counts(evaluation));
+  for (const Parts& parts : result.parts)
+    json["components"].push_back(
+        {{"object", parts.object}, {"count", parts.volumes_mm3.size()}, {"volumes_mm3", parts.volumes_mm3}});
+  for (const Exported& exported : result.exported) json["exports"].push_back(exported_json(exported));
+  json["findings"] = to_json(result.findings);
+  return json;
+}
+
+std::vector<std::filesystem::path> result_names(const Plan& plan) {
+  std::vector<std::filesystem::path> names{"report.html", "result.json"};
+  for (const Step& step : plan.steps)
+    if (std::filesystem::path path = path_written(step.action); !path.empty())
+      names.push_back(std::move(path));
+  return names;
+}
+
+Json write_result(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
+  ResultFolder output(folder, result_names(result.plan));
+  {
+    const Stopwatch watch(result.evaluation.timings, "measure");
+    result.measurements = measurements_json(result.plan, result.evaluation);
+  }
+  result.exported =
+      write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);
+  {
+    const Stopwatch watch(result.evaluation.timings, "write");
+    write_pictures(result, output.path() / "views");
+    write_text(output.path() / "report.html", report_html(result));
+  }
+  Json json = result_json(result);
+  write_text(output.path() / "result.json", json.dump(2) + "\n");
+  output.publish();
+  return json;
+}
+
+}  // namespace octotomy::planner

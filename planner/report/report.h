@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/plan/answers.h"
+#include "planner/plan/evaluate.h"
+#include "planner/report/scene_pictures.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::planner {
+
+/// Connected parts of an object, largest first.
+struct Parts {
+  std::string object;
+  std::vector<double> volumes_mm3;
+};
+
+/// Everything a plan's evaluation leaves behind.
+struct Result {
+  Plan plan;
+  Evaluation evaluation;
+  std::vector<PictureGroup> pictures;
+  std::vector<Exported> exported;
+  std::vector<Parts> parts;
+  nlohmann::ordered_json measurements = nlohmann::ordered_json::array();  ///< measurements_json()
+  std::vector<voxel::Finding> findings;  ///< on the plan as a whole, beside those of its parts
+};
+
+/// Certificates by verdict.
+struct VerdictCounts {
+  int pass = 0, warn = 0, fail = 0;
+  int not_resolved = 0;       ///< of all three, the objects that are too small or thin for their voxels
+  int pass_not_resolved = 0;  ///< of `pass` alone: these prove little
+
+  VerdictCounts& operator+=(const VerdictCounts& other);
+};
+/// Counts one more.
+void add(VerdictCounts& counts, const verify::Certificate& certificate);
+VerdictCounts verdict_counts(const Evaluation& evaluation);
+/// {"PASS": ..., "WARN": ..., "FAIL": ..., "not_resolved": ...}: the first three add up to all.
+nlohmann::ordered_json to_json(const VerdictCounts& counts);
+/// "6 PASS (1 not resolved), 0 WARN, 0 FAIL".
+std::string text_of(const VerdictCounts& counts);
+
+/// The connected parts (by faces) of an object in the voxel kernel.
+Parts parts_of(const Object& object);
+
+/// Pictures of a plan's end: all views of the final scene and, where something moved, the left and an
+/// oblique view of it before. Time is added to "render".
+std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation);
+
+/// The whole result as JSON: scans with their audit, universe, objects, measurements, certificates, exports,
+/// findings, timings.
+nlohmann::ordered_json result_json(const Result& result);
+
+/// Paths in the result's folder that need_result_folder() is asked about before a plan is evaluated.
+std::vector<std::filesystem::path> result_names(const Plan& plan);
+
+/// Writes a result's folder whole or not at all: its exports, views/*.png, report.html and result.json.
+/// Fills `result.exported` and `result.measurements`; returns what result.json holds. Throws as ResultFolder
+/// and the writers do, and Stopped where the stop token is set while an export is filled or written.
+nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder,
+                                    const ExportOptions& options = {});
+
+}  // namespace octotomy::planner

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Publishing, in steps that a kill may separate:
+// 1. the list of the new files is written among them;
+// 2. files of somebody else in the old folder are hard-linked into the new one;
+// 3. the two folders exchange their names (renameat2);
+// 4. the old folder, now hidden, is emptied: listed files and second links go; a file that is neither,
+// because
+//    it appeared after step 2 or could not be linked, moves into the new folder.
+// A hidden folder without a list was therefore never near anybody's files; one with a list is emptied as in
+// step 4 by the next run. A lock on the hidden folder says that its owner lives.
+#include "planner/report/result_folder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fcntl.h>
+#include <fstream>
+#include <map>
+#include <string_view>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+#include "planner/plan/sha256.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using voxel::ErrorCode;
+
+constexpr const char* steps_suffix = "-earlier";
+constexpr const char* list_name = ".octotomy-result";
+/// SHA-256 by path within the folder.
+using List = std::map<std::string, std::string>;
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw voxel::Error(ErrorCode::Input, message);
+}
+
+/// The folder that a path means: absolute, links at its end followed, even one to nothing yet.
+fs::path place_of(const fs::path& path) {
+  fs::path whole = fs::absolute(path).lexically_normal();
+  if (!whole.has_filename()) whole = whole.parent_path();
+  for (int links = 0; fs::is_symlink(whole); ++links) {
+    if (links == 40) refuse(path.string() + ": is a link that leads to itself: choose another -o");
+    whole = (whole.parent_path() / fs::read_symlink(whole)).lexically_normal();
+    if (!whole.has_filename()) whole = whole.parent_path();
+  }
+  return whole;
+}
+
+bool is_there(const fs::path& path) {
+  return fs::symlink_status(path).type() != fs::file_type::not_found;
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  struct stat of_a {
+  }, of_b{};
+  return ::lstat(a.c_str(), &of_a) == 0 && ::lstat(b.c_str(), &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
+         of_a.st_ino == of_b.st_ino;
+}
+
+/// Renames and replaces nothing; false if it cannot.
+bool rename_to_new(const fs::path& from, const fs::path& to) {
+  return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 ||
+         (errno == EINVAL && !is_there(to) && ::rename(from.c_str(), to.c_str()) == 0);
+}
+
+List read_list(const fs::path& folder) {
+  List list;
+  std::ifstream file(folder / list_name);
+  std::string line;
+  while (std::getline(file, line))
+    if (line.size() > 66 && line[0] != '#') list.emplace(line.substr(66), line.substr(0, 64));
+  return list;
+}
+
+void write_list(const fs::path& folder) {
+  List list;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file())
+      list.emplace(entry.path().lexically_relative(folder).generic_string(), sha256_of_path(entry.path()));
+  std::string text =
+      "# Octotomy " OCTOTOMY_VERSION
+      " wrote these files and may replace them while they are unchanged. It keeps all others.\n";
+  for (const auto& [name, sum] : list) {
+    text += sum;
+    text += "  ";
+    text += name;
+    text += '\n';
+  }
+  write_text(folder / list_name, text);
+}
+
+bool unchanged(const fs::path& path, const std::string& sum) {
+  return fs::is_regular_file(fs::symlink_status(path)) && sha256_of_path(path) == sum;
+}
+
+/// Whether `inner` is `outer` or lies in it.
+bool lies_in(const fs::path& inner, const fs::path& outer) {
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+void need_writable(const fs::path& folder, const fs::path& named) {
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
+}
+
+dev_t device_of(const fs::path& path) {
+  struct stat of_path {};
+  return ::lstat(path.c_str(), &of_path) == 0 ? of_path.st_dev : 0;
+}
+
+/// The list of the earlier result in `folder`; empty for an empty folder. `named` is the user's name for it.
+List need_earlier_result(const fs::path& folder, const fs::path& named) {
+  if (fs::is_empty(folder)) return {};
+  const List list = read_list(folder);
+  if (list.empty())
+    refuse(named.string() + ": holds files but no list of an earlier result (" + list_name +
+           "), so they may be yours: choose another -o, or move them");
+  for (const auto& [name, sum] : list)
+    if (is_there(folder / name) && !unchanged(folder / name, sum))
+      refuse((named / name).string() +
+             ": was changed after Octotomy wrote it: move or delete it, or choose another -o");
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (device_of(entry.path()) != device_of(folder))
+      refuse((named / entry.path().lexically_relative(folder)).string() +
+             ": is mounted there, and a result replaces its folder: choose another -o");
+  return list;
+}
+
+/// Refuses if a file that the list does not name stands at `name`, or where a folder of it must be.
+void need_free(const fs::path& folder, const List& list, const fs::path& name, const fs::path& named) {
+  fs::path part;
+  for (const fs::path& step : name) {
+    part /= step;
+    const bool last = part == name;
+    if (!is_there(folder / part)) return;
+    if (last ? !list.contains(part.generic_string()) : !fs::is_directory(fs::symlink_status(folder / part)))
+      refuse((named / part).string() +
+             ": is not Octotomy's, and the result needs that name: move it, or choose another -o");
+  }
+}
+
+/// As need_result_folder(), of a path without links; the list of the earlier result there.
+List need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
+  if (lies_in(fs::current_path(), fs::weakly_canonical(place)))
+    refuse(
+        named.string() +
+        ": is the working folder or holds it, and a result replaces its folder: choose a folder in it, as -o "
+        "report");
+  if (!is_there(place)) {
+    fs::path above = place.parent_path();
+    while (!is_there(above)) above = above.parent_path();
+    if (!fs::is_directory(above))
+      refuse(named.string() + ": " + above.string() + " is a file: choose another -o");
+    need_writable(above, named);
+    return {};
+  }
+  if (!fs::is_directory(place))
+    refuse(named.string() + ": is a file, a result needs a folder: choose another -o");
+  need_writable(place.parent_path(), named);
+  need_writable(place, named);
+  if (device_of(place) != device_of(place.parent_path()))
+    refuse(named.string() +
+           ": is mounted there, and a result replaces its folder: choose a folder in it, as " +
+           (named / "report").string());
+  List list = need_earlier_result(place, named);
+  for (const fs::path& name : names) need_free(place, list, name.lexically_normal(), named);
+  return list;
+}
+
+/// Holds other runs off while folders change their names; where locks are not known, nobody is.
+class PlaceLock {
+ public:
+  explicit PlaceLock(const fs::path& parent) : file_(::open(parent.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (file_ >= 0) ::flock(file_, LOCK_EX);
+  }
+  PlaceLock(const PlaceLock&) = delete;
+  PlaceLock& operator=(const PlaceLock&) = delete;
+  ~PlaceLock() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+ private:
+  int file_;
+};
+
+fs::path hidden_prefix(const fs::path& place) {
+  return "." + place.filename().string() + ".octotomy-";
+}
+
+/// Gives what is new the permissions of what stood in its place.
+void keep_mode(const fs::path& old, const fs::path& made) {
+  struct stat of_old {};
+  if (fs::exists(fs::symlink_status(made)) && ::lstat(old.c_str(), &of_old) == 0 && !S_ISLNK(of_old.st_mode))
+    ::chmod(made.c_str(), of_old.st_mode & 07777);
+}
+
+/// Links into `made` the files of `old` that its list does not name, and keeps permissions. Throws Error if a
+/// name is taken.
+void take_over(const fs::path& old, const List& list, const fs::path& made, const fs::path& named) {
+  std::vector<fs::path> kept{""};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(old)) {
+    const fs::path name = entry.path().lexically_relative(old);
+    kept.push_back(name);
+    if (name == list_name || list.contains(name.generic_string())) continue;
+    if (fs::is_directory(entry.symlink_status())) {
+      // A folder of listed files goes with them.
+      const std::string prefix = name.generic_string() + "/";
+      const auto first = list.lower_bound(prefix);
+      if (first != list.end() && first->first.starts_with(prefix)) continue;
+      if (!fs::is_directory(made / name)) need_free(made, {}, name, named);
+      fs::create_directories(made / name);
+    } else {
+      need_free(made, {}, name, named);
+      fs::create_directories((made / name).parent_path());
+      // If a file system has no links, or a file is another user's, step 4 moves it.
+      [[maybe_unused]] const int linked =
+          ::linkat(AT_FDCWD, entry.path().c_str(), AT_FDCWD, (made / name).c_str(), 0);
+    }
+  }
+  // Inner ones first: a folder may become closed.
+  for (auto name = kept.rbegin(); name != kept.rend(); ++name) keep_mode(old / *name, made / *name);
+}
+
+/// Step 4: empties a hidden folder and removes it. What is neither listed nor in `place` moves there. `sure`
+/// if the listed files are known to be unchanged.
+void discard(const fs::path& hidden, const fs::path& place, bool sure) {
+  std::error_code ignored;
+  if (!is_there(hidden / list_name)) {
+    fs::remove_all(hidden, ignored);
+    return;
+  }
+  const List list = read_list(hidden);
+  std::vector<fs::path> folders;
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(hidden))
+    (fs::is_directory(entry.symlink_status()) ? folders : files).push_back(entry.path());
+  for (const fs::path& file : files) {
+    const fs::path name = file.lexically_relative(hidden);
+    const auto listed = list.find(name.generic_string());
+    if (name == list_name) continue;
+    if (same_file(file, place / name) ||
+        (listed != list.end() && (sure || unchanged(file, listed->second)))) {
+      fs::remove(file, ignored);
+    } else {
+      fs::create_directories((place / name).parent_path(), ignored);
+      rename_to_new(file, place / name);
+    }
+  }
+  std::sort(folders.rbegin(), folders.rend());
+  bool empty = true;
+  for (const fs::path& folder : folders) empty = ::rmdir(folder.c_str()) == 0 && empty;
+  for (const fs::directory_entry& entry : fs::directory_iterator(hidden))
+    empty = empty && entry.path().filename() == list_name;
+  if (empty) fs::remove_all(hidden, ignored);
+}
+
+/// For a file system without the exchange: between the first two steps the old result lies beside its place.
+void exchange_in_steps(const fs::path& staged, const fs::path& place) {
+  const fs::path old = staged.string() + steps_suffix;
+  fs::rename(place, old);
+  try {
+    fs::rename(staged, place);
+  } catch (const fs::filesystem_error&) {
+    fs::rename(old, place);
+    throw;
+  }
+  fs::rename(old, staged);
+}
+
+/// Removes what runs that were killed left beside the place; an earlier result that stands there only goes
+/// back.
+void discard_leftovers(const fs::path& place) {
+  const std::string prefix = hidden_prefix(place).string();
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(place.parent_path())) {
+    std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix) || !fs::is_directory(entry.symlink_status())) continue;
+    const bool earlier = name.ends_with(steps_suffix);
+    if (earlier) name.resize(name.size() - std::string_view(steps_suffix).size());
+    if (name.find_first_not_of("0123456789-", prefix.size()) != std::string::npos) continue;
+    if (!earlier || !rename_to_new(entry.path(), place)) found.push_back(entry.path());
+  }
+  for (const fs::path& hidden : found) {
+    const int file = ::open(hidden.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (file < 0) continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) discard(hidden, place, false);
+    ::close(file);
+  }
+}
+
+}  // namespace
+
+void need_result_folder(const fs::path& folder, const std::vector<fs::path>& names) {
+  need_place(place_of(folder), folder, names);
+}
+
+ResultFolder::ResultFolder(const fs::path& folder, const std::vector<fs::path>& names)
+    : final_(place_of(folder)) {
+  if (!fs::is_directory(final_.parent_path())) need_place(final_, folder, names);
+  fs::create_directories(final_.parent_path());
+  const PlaceLock held(final_.parent_path());
+  discard_leftovers(final_);
+  need_place(final_, folder, names);
+  for (int number = 0;; ++number) {
+    staged_ = final_.parent_path() /
+              (hidden_prefix(final_).string() + std::to_string(::getpid()) + "-" + std::to_string(number));
+    if (fs::create_directory(staged_)) break;
+  }
+  lock_ = ::open(staged_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0) ::flock(lock_, LOCK_EX);
+}
+
+ResultFolder::~ResultFolder() {
+  std::error_code ignored;
+  if (!staged_.empty()) fs::remove_all(staged_, ignored);
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void ResultFolder::keep_beside(const std::string& reason) {
+  for (int number = 1;; ++number) {
+    const fs::path kept = final_.string() + ".new" + (number == 1 ? "" : std::to_string(number));
+    if (is_there(kept)) continue;
+    if (!rename_to_new(staged_, kept))
+      throw fs::filesystem_error("cannot keep", staged_, kept, {errno, std::generic_category()});
+    staged_.clear();
+    refuse(reason + ". The new result is complete in " + kept.string());
+  }
+}
+
+void ResultFolder::publish() {
+  write_list(staged_);
+  const PlaceLock held(final_.parent_path());
+  const bool replaces = is_there(final_) && !(fs::is_directory(final_) && fs::is_empty(final_));
+  try {
+    const List earlier = need_place(final_, final_, {});
+    if (replaces) take_over(final_, earlier, staged_, final_);
+  } catch (const std::exception& error) {
+    keep_beside(error.what());
+  }
+  if (!replaces) {
+    keep_mode(final_, staged_);
+    // Takes the place of an empty folder, never that of a file or of a folder with something in it.
+    if (::rename(staged_.c_str(), final_.c_str()) != 0)
+      keep_beside(final_.string() + ": " + std::generic_category().message(errno));
+    staged_.clear();
+    return;
+  }
+  if (::renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) != 0) {
+    if (errno != EINVAL && errno != ENOSYS)
+      keep_beside(final_.string() + ": " + std::generic_category().message(errno));
+    exchange_in_steps(staged_, final_);
+  }
+  const fs::path old = std::exchange(staged_, {});
+  try {
+    discard(old, final_, true);
+  } catch (const std::exception&) {
+    // The result is published; the next run removes the rest.
+  }
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  const auto fail = [&] {
+    throw fs::filesystem_error("cannot write", path, std::error_code(errno, std::generic_category()));
+  };
+  errno = 0;
+  std::FILE* opened = std::fopen(path.c_str(), "wb");
+  if (opened == nullptr) fail();
+  const bool written = std::fwrite(text.data(), 1, text.size(), opened) == text.size();
+  const bool closed = std::fclose(opened) == 0;
+  if (!written || !closed) fail();
+}
+
+}  // namespace octotomy::planner

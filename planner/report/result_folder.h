@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace octotomy::planner {
+
+/// Refuses an output folder before the work. Throws voxel::Error (Input) naming the file and the way out if
+/// `folder`
+/// - is a file, or has files in it but no list `.octotomy-result` of what an earlier result wrote;
+/// - holds a file of that list that was changed since;
+/// - holds a file of somebody else under one of `names`, the paths that the result will write;
+/// - is the working folder or holds it, or is a mounted one: publishing replaces the folder itself;
+/// - cannot be made or written to.
+/// A symbolic link to a folder stands for that folder.
+void need_result_folder(const std::filesystem::path& folder,
+                        const std::vector<std::filesystem::path>& names = {});
+
+/// A folder of results that appears whole or not at all. Files are written into a hidden folder beside the
+/// place; publish() exchanges the two in one step. The file `.octotomy-result` lists what was written with
+/// its SHA-256 (`sha256sum -c` reads it). The next result replaces the listed files; all others stay, as do
+/// permissions.
+class ResultFolder {
+ public:
+  /// Throws as need_result_folder(). Removes what a killed run left beside the folder.
+  explicit ResultFolder(const std::filesystem::path& folder,
+                        const std::vector<std::filesystem::path>& names = {});
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+  /// Removes what was written, unless it was published.
+  ~ResultFolder();
+
+  /// The folder to write into until publish(); exists.
+  const std::filesystem::path& path() const { return staged_; }
+  /// Puts the result in its place. A process that is killed before or within leaves the earlier result whole
+  /// under its name; after, the new one. Throws voxel::Error (Input) if a file of the place was changed or
+  /// put in the way during the work; the result then stays complete beside it, under the name in the message.
+  /// Cost: one reading of all files, old and new.
+  void publish();
+
+ private:
+  [[noreturn]] void keep_beside(const std::string& reason);
+
+  std::filesystem::path final_;   ///< absolute, without links at its end
+  std::filesystem::path staged_;  ///< beside it
+  int lock_ = -1;                 ///< on the staged folder: its owner lives
+};
+
+/// Writes text as a file. Throws std::filesystem::filesystem_error with path and the system's reason.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace octotomy::planner

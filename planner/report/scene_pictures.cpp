@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/report/scene_pictures.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "planner/operation/combine.h"
+#include "voxel/scan/image_file.h"
+
+namespace octotomy::planner {
+namespace {
+
+constexpr glm::vec3 bone{0.91f, 0.87f, 0.79f};
+/// Told apart by readers with any colour vision and in grey print (after Okabe and Ito 2008).
+constexpr std::array<glm::vec3, 5> accents{{{0.20f, 0.56f, 0.72f},
+                                            {0.87f, 0.49f, 0.20f},
+                                            {0.16f, 0.60f, 0.47f},
+                                            {0.74f, 0.45f, 0.64f},
+                                            {0.83f, 0.72f, 0.25f}}};
+
+std::string without_blanks(std::string text) {
+  text.erase(std::remove_if(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c); }),
+             text.end());
+  return text;
+}
+
+/// The names of `a | b | c`; none where the expression is anything else.
+std::vector<std::string> pieces_of_union(const std::string& expression) {
+  const std::string text = without_blanks(expression);
+  std::vector<std::string> pieces{""};
+  for (const char symbol : text) {
+    if (symbol == '|') {
+      pieces.emplace_back();
+    } else if (std::isalnum(static_cast<unsigned char>(symbol)) || symbol == '_') {
+      pieces.back() += symbol;
+    } else {
+      return {};
+    }
+  }
+  return pieces.size() > 1 ? pieces : std::vector<std::string>{};
+}
+
+std::vector<std::string> final_pieces(const Plan& plan, const Evaluation& evaluation) {
+  for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
+    if (const auto* combine = step->action.get_if<Combine>())
+      if (auto pieces = pieces_of_union(combine->expression); !pieces.empty()) return pieces;
+  for (auto object = evaluation.objects.rbegin(); object != evaluation.objects.rend(); ++object)
+    if (!object->is_tool && !object->voxel.octree.is_empty()) return {object->id};
+  return {};
+}
+
+/// The object that a chain of moves began with.
+std::string still_of(const Evaluation& evaluation, std::string id) {
+  while (const auto& moved = evaluation.object(id).moved) id = moved->object;
+  return id;
+}
+
+struct Frame {
+  glm::dvec2 centre_mm{0.0};
+  double width_mm = 1.0;
+};
+
+/// The square about the boxes of all objects, seen in a view.
+Frame loose_frame(const std::vector<voxel::DrawnObject>& objects, const voxel::View& view) {
+  glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const voxel::DrawnObject& object : objects) {
+    const auto extents = voxel::measure(object.octree).extents;
+    if (!extents) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 p_mm(corner & 1 ? extents->high_mm.x : extents->low_mm.x,
+                            corner & 2 ? extents->high_mm.y : extents->low_mm.y,
+                            corner & 4 ? extents->high_mm.z : extents->low_mm.z);
+      low = glm::min(low, view.project(p_mm));
+      high = glm::max(high, view.project(p_mm));
+    }
+  }
+  if (!(low.x <= high.x)) return {};
+  return {(low + high) * 0.5, std::max(high.x - low.x, high.y - low.y)};
+}
+
+voxel::RenderOptions options_of(const voxel::View& view, const Frame& frame, int size_px) {
+  voxel::RenderOptions options;
+  options.view = view;
+  options.size_px = glm::ivec2(size_px);
+  options.centre_mm = frame.centre_mm;
+  options.width_mm = frame.width_mm;
+  return options;
+}
+
+/// The square about what is seen of the objects, a sixth wider for scales and letters. A box seen from a
+/// corner says little about what is in it, so a small picture is drawn first; its pixels are the frame's
+/// precision.
+Frame frame_of(const std::vector<voxel::DrawnObject>& objects, const voxel::View& view) {
+  constexpr int probe_px = 96;
+  constexpr double margin = 7.0 / 6.0;
+  Frame loose = loose_frame(objects, view);
+  const voxel::Picture probe = voxel::render(objects, options_of(view, loose, probe_px));
+  glm::ivec2 low(probe_px), high(-1);
+  std::size_t pixel = 0;
+  for (int y = 0; y < probe_px; ++y)
+    for (int x = 0; x < probe_px; ++x)
+      if (probe.object[pixel++] >= 0) {
+        low = glm::min(low, glm::ivec2(x, y));
+        high = glm::max(high, glm::ivec2(x, y));
+      }
+  if (high.x < 0) return loose;
+  const double pixel_mm = loose.width_mm / probe_px;
+  const glm::dvec2 middle_px = glm::dvec2(low + high + 1) * 0.5 - 0.5 * probe_px;
+  const glm::ivec2 extent_px = high - low + 1;
+  return {loose.centre_mm + pixel_mm * glm::dvec2(middle_px.x, -middle_px.y),
+          margin * pixel_mm * std::max(extent_px.x, extent_px.y)};
+}
+
+}  // namespace
+
+voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour) {
+  voxel::DrawnObject drawn{object.id, object.voxel.octree, colour, std::nullopt, 0.0};
+  if (!object.shown) return drawn;
+  drawn.grey = object.shown->grey;
+  drawn.threshold = object.shown->threshold;
+  if (object.shown->moved_from_still != glm::dmat4(1.0))
+    drawn.moved_from_still = object.shown->moved_from_still;
+  return drawn;
+}
+
+FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
+  FinalScene scene;
+  std::size_t accent = 0;
+  bool bone_taken = false;
+  for (const std::string& id : final_pieces(plan, evaluation)) {
+    const std::string still = still_of(evaluation, id);
+    const bool plain = still == id && !bone_taken;
+    const glm::vec3 colour = plain ? bone : accents[accent++ % accents.size()];
+    bone_taken = bone_taken || plain;
+    scene.moves = scene.moves || still != id;
+    scene.before.push_back(drawn(evaluation.object(still), colour));
+    scene.after.push_back(drawn(evaluation.object(id), colour));
+  }
+  return scene;
+}
+
+void draw(PictureGroup& group, const std::vector<std::string>& views,
+          const std::vector<voxel::DrawnObject>& framed, int size_px) {
+  if (group.objects.empty()) return;
+  for (const std::string& name : views) {
+    ScenePicture picture;
+    picture.view = name;
+    picture.axes = voxel::parse_view(name);
+    const Frame frame = frame_of(framed, picture.axes);
+    picture.centre_mm = frame.centre_mm;
+    picture.width_mm = frame.width_mm;
+    picture.size_px = size_px;
+    const voxel::Picture pixels = voxel::render(group.objects, options_of(picture.axes, frame, size_px));
+    picture.png = voxel::encode_image("png", pixels.size_px, pixels.rgb);
+    group.pictures.push_back(std::move(picture));
+  }
+}
+
+std::vector<std::string> all_views() {
+  return {"anterior", "posterior", "left", "right", "superior", "inferior", "35,15", "-35,15"};
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planner/plan/evaluate.h"
+#include "voxel/view/render.h"
+
+namespace octotomy::planner {
+
+/// A square picture and what its frame shows, for whoever draws scales or polygons over it.
+struct ScenePicture {
+  std::string view;  ///< as voxel::parse_view reads it
+  voxel::View axes;
+  glm::dvec2 centre_mm{0.0};  ///< in the view's millimetres
+  double width_mm = 0.0;
+  int size_px = 0;
+  std::vector<std::uint8_t> png;
+};
+
+/// Pictures that belong together, and the colours of what they show.
+struct PictureGroup {
+  std::string name;   ///< a file name's beginning: "after"
+  std::string title;  ///< for people
+  std::vector<voxel::DrawnObject> objects;
+  std::vector<ScenePicture> pictures;
+};
+
+/// The pieces a plan ends with and, in the same colours, what they were before they were moved.
+struct FinalScene {
+  std::vector<voxel::DrawnObject> before;
+  std::vector<voxel::DrawnObject> after;
+  bool moves = false;  ///< before and after differ
+};
+
+/// The last union of named pieces (`rest | advanced`), each piece in a colour of its own; where the plan has
+/// none, its last object that is neither a mask nor empty, if any. Moved pieces keep their colour in
+/// `before`.
+FinalScene final_scene(const Plan& plan, const Evaluation& evaluation);
+
+/// How an object is drawn: with the samples its surface is interpolated from, where it has some.
+voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour);
+
+/// Draws the group's objects from every view; all pictures of all groups that share `framed` are of one scale
+/// and centre a view. Nothing is drawn where there are no objects.
+void draw(PictureGroup& group, const std::vector<std::string>& views,
+          const std::vector<voxel::DrawnObject>& framed, int size_px);
+
+/// The six views along the axes and, last, two oblique ones.
+std::vector<std::string> all_views();
+
+}  // namespace octotomy::planner

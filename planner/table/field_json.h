@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "planner/table/field.h"
+#include "planner/table/scope.h"
+
+// Fields and JSON: one reader, one printer and one schema for every operation.
+namespace octotomy::planner {
+
+/// Reads an object's keys into the fields of `owner`. `also` are keys that are known and not read here.
+/// Throws std::runtime_error with the place, what is wrong and what to try: an unknown key with the nearest
+/// known one, a missing one, a wrong type, a number out of its range, a name that is not bound.
+void read_fields(const std::vector<Field>& fields, const nlohmann::json& object, void* owner,
+                 const Place& place, const std::vector<std::string>& also = {});
+
+/// The fields as JSON that read_fields() reads back to the same value. Optional fields that are absent, and
+/// empty lists, are left out.
+nlohmann::ordered_json print_fields(const std::vector<Field>& fields, void* owner);
+
+/// The fields as a JSON schema's object (draft 2020-12). `fresh` is an owner with all defaults; a field that
+/// is not required has its default told.
+nlohmann::ordered_json fields_schema(const std::vector<Field>& fields, void* fresh);
+
+/// A field's value as JSON from the words of the command line: "X,Y,Z" is a point, several are a list. Throws
+/// std::runtime_error where a word is not of the field's type.
+nlohmann::json json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words);
+
+/// Whether the field holds several words on the command line.
+bool takes_several(const Field& field, void* fresh);
+/// Whether it is a flag, which has no word.
+bool is_flag(const Field& field, void* fresh);
+/// What help calls one word: "MM", "X,Y,Z", "NAME".
+std::string word_form(const Field& field, void* fresh);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/table/json_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include "planner/table/nearest_name.h"
+#include "voxel/space/staged_files.h"
+
+namespace octotomy::planner {
+
+using Json = nlohmann::json;
+
+void refuse(const std::string& where, const std::string& what) {
+  throw std::runtime_error(where.empty() ? what : where + ": " + what);
+}
+
+std::string type_of(const Json& value) {
+  return value.is_number() ? "a number"
+         : value.is_null() ? "null"
+                           : "a JSON " + std::string(value.type_name());
+}
+
+Json read_json(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  if (!stream) refuse(path.string(), "cannot be opened");
+  try {
+    return Json::parse(stream);
+  } catch (const Json::exception& error) {
+    refuse(path.string(), std::string("is no JSON: ") + error.what());
+  }
+}
+
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path) {
+  voxel::StagedFiles staging(std::filesystem::absolute(path).parent_path());
+  std::ofstream stream(staging.folder() / path.filename());
+  stream << json.dump() << '\n';
+  stream.close();
+  if (!stream) refuse(path.string(), "cannot be written");
+  staging.commit(path.filename());
+}
+
+void check_keys(const Json& object, const std::string& where, const std::vector<std::string>& known) {
+  if (!object.is_object()) refuse(where, "must be an object with the keys of this kind of file");
+  for (const auto& [key, unused] : object.items())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      refuse(where, "unknown key '" + key + "'" + suggestion(key, known));
+}
+
+const Json& need(const Json& object, const std::string& key, const std::string& where) {
+  if (!object.contains(key)) refuse(where, "has no '" + key + "'");
+  return object[key];
+}
+
+double number_of(const Json& value, const std::string& where) {
+  if (!value.is_number()) refuse(where, "must be a number, not " + type_of(value));
+  const auto number = value.get<double>();
+  if (!std::isfinite(number)) refuse(where, "must be a finite number");
+  return number;
+}
+
+std::size_t count_of(const Json& value, const std::string& where) {
+  if (!value.is_number_unsigned()) refuse(where, "must be a whole number from 0");
+  return value.get<std::size_t>();
+}
+
+std::string word_of(const Json& value, const std::string& where) {
+  if (!value.is_string()) refuse(where, "must be a word");
+  return value.get<std::string>();
+}
+
+glm::dvec2 point_of(const Json& value, const std::string& where) {
+  if (!value.is_array() || value.size() != 2) refuse(where, "must be two numbers [u, v]");
+  return {number_of(value[0], where), number_of(value[1], where)};
+}
+
+}  // namespace octotomy::planner

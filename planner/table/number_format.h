@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "voxel/space/lattice.h"
+
+namespace octotomy::planner {
+
+/// A number for people: so many decimals, digits grouped in threes by a narrow no-break space from five
+/// digits on, a true minus sign. "not a number" and infinities are an en dash.
+std::string grouped(double value, int decimals);
+
+/// As many decimals as three significant figures take, at the least none: 1 234, 56.7, 0.0123.
+std::string three_figures(double value);
+
+/// A number as short as six decimals allow, in plain ASCII: 0.5, 300.
+std::string plain(double value);
+/// A box by its axes: "x -10..20, y 0..5.5, z 1..2 mm".
+std::string plain(const voxel::Box& box);
+
+}  // namespace octotomy::planner

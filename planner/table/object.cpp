@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/table/object.h"
+
+#include <stdexcept>
+
+#include "planner/table/bench.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+
+const Object& Objects::at(const std::string& name) const {
+  const auto found = index_.find(name);
+  if (found == index_.end()) throw std::invalid_argument("no object is called '" + name + "'");
+  return objects_[found->second];
+}
+
+const Object& Objects::add(Object object) {
+  index_[object.id] = objects_.size();
+  return objects_.emplace_back(std::move(object));
+}
+
+voxel::Box VoxelBench::box_mm() const {
+  return voxel::bounds(universe.lattice());
+}
+
+voxel::Octree VoxelBench::combined(const voxel::Expression& expression) const {
+  const Stopwatch watch(timings, "boolean_voxel");
+  return voxel::combine(universe, expression);
+}
+
+voxel::Expression VoxelBench::within_universe(const voxel::Expression& symbol) const {
+  return symbol & voxel::Expression(box_mm());
+}
+
+voxel::Progress AnswerBench::progress(const std::string& doing) const {
+  voxel::Progress progress{stop, {}};
+  if (report) progress.report = [this, doing](double fraction) { report(doing, fraction); };
+  return progress;
+}
+
+}  // namespace octotomy::planner

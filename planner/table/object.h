@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <deque>
+#include <glm/glm.hpp>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "brep/mesh/measure.h"
+#include "brep/mesh/mesh.h"
+#include "verify/certificate.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/expression.h"
+#include "voxel/tree/grey_octree.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::planner {
+
+using SharedMesh = std::shared_ptr<const brep::Mesh>;
+
+/// The voxel kernel's answer to an operation.
+struct VoxelSide {
+  explicit VoxelSide(const voxel::Universe& universe) : octree(voxel::Octree::empty(universe)) {}
+
+  voxel::Octree octree;
+  /// What the object is made of, down to windows on samples, so that a motion samples those once.
+  std::optional<voxel::Expression> symbol;
+  voxel::Measures measures;
+  std::string lineage;
+};
+
+/// The mesh kernel's answer to the same operation.
+struct MeshSide {
+  SharedMesh whole;                        ///< as far as it reaches; null where the kernel has no answer
+  SharedMesh within;                       ///< the part of it within the universe
+  std::optional<brep::Measures> measures;  ///< of `within`
+  std::string lineage;
+  std::vector<std::string> findings;
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
+};
+
+/// A plane along which an object was cut, parallel to the universe's planes when it was cut.
+struct CutPlane {
+  int axis = 0;                ///< of its normal then
+  glm::dvec3 normal{1, 0, 0};  ///< now
+  double offset_mm = 0.0;      ///< normal . p of its points
+  double voxels = 1.0;         ///< the error of its area, relative to a cut through voxels
+};
+
+/// What a certificate's bound is made of.
+struct BoundTerms {
+  std::vector<CutPlane> planes;
+  glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan it comes from; zero where it comes from none
+  std::optional<voxel::Box> scan_box_mm;  ///< of the scan that it comes from, while it has not moved
+  bool voxels_are_samples = false;
+};
+
+/// The samples that show an object's surface: it is one window's lower bound wherever it is not a cut.
+struct Shown {
+  voxel::GreyOctree grey;
+  double threshold = 0.0;
+  std::string scan;                  ///< that grey is of
+  glm::dmat4 moved_from_still{1.0};  ///< LPS to LPS, of all the steps that moved it since
+};
+
+/// A wall of an object that a mask cut, and the motion of all the steps that moved it since, LPS to LPS.
+struct CutWall {
+  std::string mask;
+  SharedMesh wall;
+  glm::dmat4 moved_from_still{1.0};
+};
+
+/// What an operation made, in both kernels.
+struct Object {
+  Object(std::string name, std::string operation, const voxel::Universe& universe)
+      : id(std::move(name)), kind(std::move(operation)), voxel(universe) {}
+
+  std::string id;
+  std::string kind;        ///< the operation's name
+  std::string definition;  ///< in words: "skull & cut"
+  bool is_tool = false;    ///< only helps to make others, as a mask
+  VoxelSide voxel;
+  MeshSide mesh;
+  BoundTerms bound;
+  std::optional<verify::Certificate> certificate;  ///< none for tools, and where there is no mesh
+  std::vector<std::string> findings;
+  bool ends_with_universe = false;  ///< its mesh stays cut at the universe's border when it moves on
+  std::optional<Shown> shown;
+  /// Of a moved object.
+  struct Moved {
+    std::string object;  ///< that was moved
+    glm::dmat4 motion{1.0};
+  };
+  std::optional<Moved> moved;
+  std::vector<CutWall> walls;  ///< of the masks that it was made with, where they have a mesh
+};
+
+/// The objects that steps have made so far, in their order. Addresses stay.
+class Objects {
+ public:
+  /// Throws std::invalid_argument where no object has this name.
+  const Object& at(const std::string& name) const;
+  const Object& add(Object object);
+
+  auto begin() const { return objects_.begin(); }
+  auto end() const { return objects_.end(); }
+  auto rbegin() const { return objects_.rbegin(); }
+  auto rend() const { return objects_.rend(); }
+  std::size_t size() const { return objects_.size(); }
+  const Object& operator[](std::size_t index) const { return objects_[index]; }
+  const Object& front() const { return objects_.front(); }
+  const Object& back() const { return objects_.back(); }
+  /// For tests that spoil an object.
+  Object& change(std::size_t index) { return objects_[index]; }
+
+ private:
+  std::deque<Object> objects_;
+  std::map<std::string, std::size_t> index_;
+};
+
+}  // namespace octotomy::planner

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <typeindex>
+#include <utility>
+#include <vector>
+
+#include "planner/table/bench.h"
+#include "planner/table/field.h"
+#include "planner/table/object.h"
+#include "planner/table/scope.h"
+
+// The table of operations. An operation is a typed value; its entry says what the value's fields mean and
+// what each kernel does with it. Plan steps, verbs, help and the schema derive from the entry.
+namespace octotomy::planner {
+
+/// What a step leaves behind: an object that later steps use, numbers, or a file in the result's folder.
+enum class Makes { Object, Measurement, File };
+
+/// An entry of the table. Its functions take the operation's value behind a pointer; Describe binds them.
+struct Operation {
+  std::string name;     ///< a step's `do`, and the verb
+  std::string says;     ///< one plain sentence
+  std::string example;  ///< a step as JSON
+  Makes makes = Makes::Object;
+  std::vector<Field> fields;
+  std::type_index type = typeid(void);
+
+  /// A value with all defaults.
+  std::function<std::shared_ptr<void>()> fresh;
+  /// Refuses what single fields cannot know.
+  std::function<void(const void* value, const Place& place)> check;
+  /// The operation in words, for people: "skull & cut".
+  std::function<std::string(const void* value, const Objects& objects)> definition;
+  /// The voxel kernel's answer; empty where it has none: then the mesh kernel's answer is voxelised.
+  std::function<void(const void* value, const VoxelBench& bench, VoxelSide& made)> voxel;
+  /// The mesh kernel's answer; empty where it has none.
+  std::function<void(const void* value, const MeshBench& bench, MeshSide& made)> mesh;
+  /// What the certificate's bound is made of, and which samples show the surface.
+  std::function<void(const void* value, const BoundBench& bench, Object& made)> bound;
+  /// The numbers of a measurement, each with its half-width.
+  std::function<nlohmann::ordered_json(const void* value, const AnswerBench& bench)> measure;
+  /// Writes a file, or tells the reason why there is nothing to write.
+  std::function<void(const void* value, const AnswerBench& bench, Exported& made)> write;
+  /// The objects that it uses beside those that its fields name.
+  std::function<std::vector<std::string>(const void* value)> uses;
+  /// Examples of the operation as a verb on files; empty: it is none.
+  std::string verb_example;
+  /// An object that only helps to make others, as a mask: it has no certificate of its own.
+  bool is_tool = false;
+};
+
+/// Builds an entry from functions of the operation's own type.
+template <typename Value>
+class Describe {
+ public:
+  Describe(std::string name, std::string says, Makes makes) {
+    entry_.name = std::move(name);
+    entry_.says = std::move(says);
+    entry_.makes = makes;
+    entry_.type = typeid(Value);
+    entry_.fresh = [] { return std::make_shared<Value>(); };
+  }
+  Describe&& takes(Field field) && { return entry_.fields.push_back(std::move(field)), std::move(*this); }
+  Describe&& example(std::string json) && { return entry_.example = std::move(json), std::move(*this); }
+  Describe&& on_files(std::string command) && {
+    return entry_.verb_example = std::move(command), std::move(*this);
+  }
+  Describe&& tool() && { return entry_.is_tool = true, std::move(*this); }
+  Describe&& check(void (*part)(const Value&, const Place&)) && { return bind(entry_.check, part); }
+  Describe&& definition(std::string (*part)(const Value&, const Objects&)) && {
+    return bind(entry_.definition, part);
+  }
+  Describe&& voxel(void (*part)(const Value&, const VoxelBench&, VoxelSide&)) && {
+    return bind(entry_.voxel, part);
+  }
+  Describe&& mesh(void (*part)(const Value&, const MeshBench&, MeshSide&)) && {
+    return bind(entry_.mesh, part);
+  }
+  Describe&& bound(void (*part)(const Value&, const BoundBench&, Object&)) && {
+    return bind(entry_.bound, part);
+  }
+  Describe&& measure(nlohmann::ordered_json (*part)(const Value&, const AnswerBench&)) && {
+    return bind(entry_.measure, part);
+  }
+  Describe&& write(void (*part)(const Value&, const AnswerBench&, Exported&)) && {
+    return bind(entry_.write, part);
+  }
+  Describe&& uses(std::vector<std::string> (*part)(const Value&)) && { return bind(entry_.uses, part); }
+  operator Operation() && { return std::move(entry_); }
+
+ private:
+  template <typename Result, typename... Arguments>
+  Describe&& bind(std::function<Result(const void*, Arguments...)>& to,
+                  Result (*part)(const Value&, Arguments...)) {
+    to = [part](const void* value, Arguments... arguments) -> Result {
+      return part(*static_cast<const Value*>(value), arguments...);
+    };
+    return std::move(*this);
+  }
+
+  Operation entry_;
+};
+
+/// An operation with its value.
+class Action {
+ public:
+  explicit Action(const Operation& operation) : operation_(&operation), value_(operation.fresh()) {}
+
+  const Operation& operation() const { return *operation_; }
+  const void* value() const { return value_.get(); }
+  void* value() { return value_.get(); }
+  /// Null where the operation is another one.
+  template <typename Value>
+  const Value* get_if() const {
+    return operation_->type == typeid(Value) ? static_cast<const Value*>(value_.get()) : nullptr;
+  }
+  /// Throws std::invalid_argument where the operation is another one.
+  template <typename Value>
+  const Value& get() const {
+    if (const Value* value = get_if<Value>()) return *value;
+    throw std::invalid_argument("'" + operation_->name + "' is another operation");
+  }
+
+ private:
+  const Operation* operation_;
+  std::shared_ptr<void> value_;
+};
+
+/// All operations, by name.
+const std::vector<Operation>& operations();
+/// Null where there is none.
+const Operation* find_operation(const std::string& name);
+/// The objects that an action uses, each once, in the order of its fields.
+std::vector<std::string> objects_used(const Action& action);
+/// The file that an action writes, as its field says it; empty where it writes none.
+std::filesystem::path path_written(const Action& action);
+/// The scans that an action uses.
+std::vector<std::string> scans_used(const Action& action);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace octotomy::planner {
+
+struct Operation;
+
+/// The names that a document has bound so far.
+class Scope {
+ public:
+  /// `scans` are the names of the document's scans.
+  explicit Scope(std::vector<std::string> scans = {}) : scans_(std::move(scans)) {}
+
+  /// Binds a step's id. Throws std::runtime_error where it is no identifier or is taken; `where` names the
+  /// step in the refusal.
+  void bind(const std::string& where, const std::string& id, const Operation& operation);
+  /// Throws std::runtime_error, with the nearest name there is, where no earlier step makes this object.
+  void need_object(const std::string& where, const std::string& name) const;
+  /// The same for a scan of the document.
+  void need_scan(const std::string& where, const std::string& name) const;
+  /// Throws std::runtime_error where a path is written by an earlier step.
+  void take_path(const std::string& where, const std::string& path);
+  /// The operation that made an object. Precondition: need_object() passes.
+  const Operation& maker_of(const std::string& name) const { return *operations_.at(name); }
+
+ private:
+  std::vector<std::string> scans_, objects_, paths_;
+  std::map<std::string, const Operation*> operations_;
+};
+
+/// Where a value stands in its document, for refusals, and the names bound there.
+struct Place {
+  std::string where;       ///< "step 'cut'"; may be empty
+  Scope* scope = nullptr;  ///< null: names are not checked, as they are paths of files
+
+  /// The place of a field or record within.
+  Place at(const std::string& field) const { return {where.empty() ? field : where + ", " + field, scope}; }
+  /// Throws std::runtime_error: "step 'cut', regions: has no region".
+  [[noreturn]] void refuse(const std::string& what) const;
+  void need_object(const std::string& name) const {
+    if (scope != nullptr) scope->need_object(where, name);
+  }
+  void need_scan(const std::string& name) const {
+    if (scope != nullptr) scope->need_scan(where, name);
+  }
+};
+
+}  // namespace octotomy::planner

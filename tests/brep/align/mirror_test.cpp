@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/align/mirror.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <gtest/gtest.h>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/move.h"
+#include "tests/brep/shapes.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Its own mirror image about x = 0 and about no other plane: a long head with a nose and a lean.
+Triangles head() {
+  Triangles t = shapes::sphere({0, 0, 0}, 1, 4);
+  for (glm::dvec3& p : t.points_mm) {
+    const double nose = std::exp(-8.0 * (p.x * p.x + (p.y + 1) * (p.y + 1) + p.z * p.z));
+    p = glm::dvec3(70 * p.x, 90 * p.y - 30 * nose + 15 * p.z * p.z, 110 * p.z + 20 * p.y);
+  }
+  return t;
+}
+
+TEST(Mirror, AMirrorImageIsASolidAndTwiceIsTheSame) {
+  const Mesh still = mesh_of(head());
+  const MirrorPlane plane{{1, 2, 3}, {2, -1, 0.5}};
+  const Mesh image = mirrored(still, plane), back = mirrored(image, plane);
+  EXPECT_TRUE(health(image).solid());
+  EXPECT_NEAR(volume_mm3(image), volume_mm3(still), 1e-9 * volume_mm3(still));
+  for (const auto v : still.vertices()) {
+    EXPECT_LT((back.point(v) - still.point(v)).norm(), 1e-12 * 200);
+    // Half way between lies the plane.
+    const auto middle = 0.5 * (image.point(v) + still.point(v));
+    EXPECT_NEAR(
+        glm::dot(glm::dvec3(middle[0], middle[1], middle[2]) - plane.point_mm, glm::normalize(plane.normal)),
+        0.0, 1e-11);
+  }
+  EXPECT_THROW(mirrored(still, {{0, 0, 0}, {0, 0, 0}}), std::invalid_argument);
+}
+
+TEST(Mirror, TheMidPlaneOfAHeadIsFoundWhereverItStands) {
+  for (const int seed : {1, 3}) {
+    const glm::dmat4 motion = glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(30, -40, 10 * seed)),
+                                          0.4 * seed, glm::normalize(glm::dvec3(1, 0.5 * seed, -0.3)));
+    const MirrorFit fit = fit_mirror_plane(moved(mesh_of(head()), motion));
+    const glm::dvec3 normal(motion[0]), on_plane(motion[3]);
+    EXPECT_GT(std::abs(glm::dot(fit.plane.normal, normal)), std::cos(0.001)) << "seed " << seed;
+    EXPECT_NEAR(glm::dot(on_plane - fit.plane.point_mm, fit.plane.normal), 0.0, 0.02) << "seed " << seed;
+    EXPECT_LT(fit.rms_mm, 0.05) << "seed " << seed;
+    EXPECT_LT(fit.twist_deg, 0.1) << "seed " << seed;
+    EXPECT_LT(fit.slide_mm, 0.1) << "seed " << seed;
+  }
+}
+
+TEST(Mirror, APieceMissingOnOneSideDoesNotPullThePlane) {
+  const Mesh cut =
+      boolean(mesh_of(head()), Operation::Difference, mesh_of(shapes::box({25, -150, -60}, {100, 20, 20})))
+          .mesh;
+  const MirrorFit fit = fit_mirror_plane(cut);
+  EXPECT_GT(fit.plane.normal.x, std::cos(0.005));
+  EXPECT_NEAR(glm::dot(-fit.plane.point_mm, fit.plane.normal), 0.0, 0.2);
+}
+
+}  // namespace
+}  // namespace octotomy::brep

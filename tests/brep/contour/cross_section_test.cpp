@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/contour/cross_section.h"
+
+#include <gtest/gtest.h>
+#include <random>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/measure.h"
+#include "tests/brep/shapes.h"
+
+namespace octotomy::brep {
+namespace {
+
+using std::numbers::pi;
+
+TEST(CrossSection, ABallsSectionsConvergeToTheirCirclesInAnyDirection) {
+  const double r = 5.0;
+  for (const glm::dvec3& normal : {glm::dvec3(0, 0, 1), glm::dvec3(1, -2, 0.3), glm::dvec3(0, -1, 0)}) {
+    double area_error = 0.0;
+    for (int splits = 3; splits <= 5; ++splits) {
+      const glm::dvec3 centre(10, -20, 30);
+      const double height = 2.0;
+      const CrossSection section =
+          cross_section(mesh_of(shapes::sphere(centre, r, splits)),
+                        plane_through(centre + height * glm::normalize(normal), normal));
+      ASSERT_EQ(section.contours.size(), 1u);
+      const double error = pi * (r * r - height * height) - section.area_mm2;
+      EXPECT_GT(error, 0.0);
+      EXPECT_NEAR(section.perimeter_mm, 2 * pi * std::sqrt(r * r - height * height), 0.2 * error + 0.02);
+      if (splits > 3) {
+        EXPECT_NEAR(area_error / error, 4.0, 0.6) << splits << " splits";
+      }
+      area_error = error;
+    }
+  }
+}
+
+TEST(CrossSection, HolesRunTheOtherWayRoundAndAreTakenOff) {
+  const Triangles shell = shapes::together(shapes::box({0, 0, 0}, {10, 8, 6}),
+                                           shapes::inside_out(shapes::box({2, 2, 2}, {5, 4, 4})));
+  const CrossSection section = cross_section(mesh_of(shell), plane_through({0, 0, 3}, {0, 0, 1}));
+  ASSERT_EQ(section.contours.size(), 2u);
+  EXPECT_NEAR(section.area_mm2, 80 - 6, 1e-12);
+  EXPECT_NEAR(section.perimeter_mm, 36 + 10, 1e-12);
+  EXPECT_NEAR(signed_area_mm2(section.contours[0]), 80, 1e-12);
+  EXPECT_NEAR(signed_area_mm2(section.contours[1]), -6, 1e-12);
+  EXPECT_EQ(section.open, 0u);
+}
+
+TEST(CrossSection, APlaneThroughCornersEdgesAndFacesCutsAsIfJustBelow) {
+  const Mesh cube = mesh_of(shapes::box({0, 0, 0}, {2, 2, 2}));
+  EXPECT_NEAR(cross_section(cube, plane_through({0, 0, 2}, {0, 0, 1})).area_mm2, 4.0, 1e-14);
+  EXPECT_EQ(cross_section(cube, plane_through({0, 0, 0}, {0, 0, 1})).contours.size(), 0u);
+  // Through four corners, along two edges.
+  EXPECT_NEAR(cross_section(cube, plane_through({0, 0, 0}, {1, -1, 0})).area_mm2, 4.0 * std::sqrt(2.0),
+              1e-13);
+  // Through three corners: an equilateral triangle of side 2 sqrt 2.
+  EXPECT_NEAR(cross_section(cube, plane_through({2, 0, 0}, {1, 1, 1})).area_mm2, 2.0 * std::sqrt(3.0), 1e-13);
+  EXPECT_TRUE(cross_section(cube, plane_through({0, 0, 3}, {0, 0, 1})).contours.empty());
+}
+
+TEST(CrossSection, SectionsOfADifferenceAreThoseOfTheWholeLessTheCommon) {
+  const Mesh a = mesh_of(shapes::sphere({0, 0, 0}, 5, 3)),
+             b = mesh_of(shapes::box({-6, -1, -2}, {6, 1.5, 2.5}));
+  const Mesh rest = boolean(a, Operation::Difference, b).mesh,
+             common = boolean(a, Operation::Intersection, b).mesh;
+  int met = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> any(-1, 1);
+    const Plane plane = plane_through(3.0 * glm::dvec3(any(random), any(random), any(random)),
+                                      {any(random), any(random), any(random)});
+    const double common_mm2 = cross_section(common, plane).area_mm2;
+    EXPECT_NEAR(cross_section(rest, plane).area_mm2 + common_mm2, cross_section(a, plane).area_mm2, 1e-9)
+        << "seed " << seed;
+    met += common_mm2 > 0.1;
+  }
+  EXPECT_GT(met, 20);
+}
+
+TEST(CrossSection, AnOpenSurfaceLeavesOpenLines) {
+  Triangles lid = shapes::box({0, 0, 0}, {2, 2, 2});
+  lid.faces.erase(lid.faces.begin() + 10, lid.faces.end());  // without x = 2
+  const CrossSection section = cross_section(mesh_of(lid), plane_through({0, 0, 1}, {0, 0, 1}));
+  ASSERT_EQ(section.contours.size(), 1u);
+  EXPECT_EQ(section.open, 1u);
+  EXPECT_NEAR(section.perimeter_mm, 6.0, 1e-14);
+  EXPECT_EQ(section.area_mm2, 0.0);
+}
+
+TEST(CrossSection, PlanesHaveTheViewsAxes) {
+  const Plane axial = plane_through({0, 0, 0}, {0, 0, 2}), coronal = plane_through({0, 0, 0}, {0, -1, 0});
+  EXPECT_EQ(axial.right, glm::dvec3(-1, 0, 0));
+  EXPECT_EQ(axial.up, glm::dvec3(0, -1, 0));
+  EXPECT_EQ(coronal.right, glm::dvec3(1, 0, 0));
+  EXPECT_EQ(coronal.up, glm::dvec3(0, 0, 1));
+  EXPECT_THROW(plane_through({0, 0, 0}, {0, 0, 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace octotomy::brep

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/contour/tile_sections.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <random>
+#include <tbb/global_control.h>
+
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+
+namespace octotomy::brep {
+namespace {
+
+using std::numbers::pi;
+
+Contour ring(const glm::dvec2& centre, double radius, int points = 48) {
+  Contour contour;
+  for (int k = 0; k < points; ++k) {
+    const double t = 2.0 * pi * k / points;
+    contour.points_mm.push_back(centre + radius * glm::dvec2(std::cos(t), std::sin(t)));
+  }
+  return contour;
+}
+
+Contour square(const glm::dvec2& low, const glm::dvec2& high) {
+  return {{low, {high.x, low.y}, high, {low.x, high.y}}, true};
+}
+
+/// Sections of a body given by its contours at each height, `count` of them a step apart.
+template <typename At>
+std::vector<Section> sections_of(double low, double step, int count, const At& at) {
+  std::vector<Section> sections;
+  for (int s = 0; s < count; ++s) sections.push_back({low + s * step, at(low + s * step)});
+  return sections;
+}
+
+std::string told(const Health& health) {
+  std::string text;
+  for (const std::string& finding : health.findings) text += finding + "; ";
+  return text;
+}
+
+/// Both ways of joining give a solid; returns the volume of the default one.
+double expect_solid(const std::vector<Section>& sections, const std::string& what) {
+  double volume = 0.0;
+  for (const bool overlaid : {true, false}) {
+    TileSectionsOptions options;
+    if (overlaid) options.cost.reset();
+    const TiledSections tiled = tile_sections(sections, options);
+    const Health found = health(tiled.surface);
+    EXPECT_TRUE(found.solid()) << what << (overlaid ? ", overlaid: " : ", strips: ") << told(found);
+    volume = size_of(tiled.surface).volume_mm3;
+  }
+  return volume;
+}
+
+std::vector<Section> ball(int count) {
+  const double step = 20.0 / count;
+  return sections_of(-10.0 + 0.5 * step, step, count, [&](double z) {
+    return std::vector<Contour>{ring({0.3, -0.2}, std::sqrt(100.0 - z * z), 8 * count)};
+  });
+}
+
+TEST(TileSections, ABallsVolumeConvergesAtSecondOrder) {
+  const double whole = 4.0 / 3.0 * pi * 1000.0;
+  double last = 0.0;
+  for (const int count : {10, 20, 40}) {
+    const double error = std::abs(expect_solid(ball(count), "ball") - whole);
+    if (last > 0.0) {
+      EXPECT_GT(last / error, 2.8) << count;  // the roofs hold it below four
+    }
+    last = error;
+  }
+  EXPECT_LT(last, 2e-3 * whole);
+}
+
+TEST(TileSections, ATorusOnItsSideBranchesAndMerges) {
+  // Its axis lies in the section planes: two rings merge into one and part again.
+  const double big = 10.0, small = 3.0;
+  const auto at = [&](double z) {
+    // Where |sqrt(x^2 + z^2) - big| <= sqrt(small^2 - y^2), followed on fine samples.
+    const int n = 121;
+    const double spacing = 0.25;
+    std::vector<float> samples(n * n);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const double x = spacing * (i - n / 2), y = spacing * (j - n / 2);
+        samples[static_cast<std::size_t>(j * n + i)] =
+            static_cast<float>(small - std::hypot(std::hypot(x, z) - big, y));
+      }
+    return follow({samples, n, n, {spacing, spacing}}, {.threshold = 0.0});
+  };
+  const double whole = 2.0 * pi * pi * big * small * small;
+  const auto sections = sections_of(-12.75, 0.5, 52, at);
+  const double volume = expect_solid(sections, "torus");
+  EXPECT_NEAR(volume, whole, 4e-3 * whole);
+  const Health found = health(tile_sections(sections).surface);
+  EXPECT_EQ(found.euler, 0);
+  EXPECT_EQ(found.components, 1u);
+}
+
+TEST(TileSections, ABoxOfEqualSectionsHasItsVolume) {
+  const auto sections = sections_of(0.5, 1.0, 6, [](double) {
+    return std::vector<Contour>{square({0, 0}, {4, 3})};
+  });
+  // Five slabs between sections and a roof above and below, each at least a third and at most all of a half.
+  const double volume = expect_solid(sections, "box");
+  EXPECT_GT(volume, 12 * (5 + 2.0 / 6.0) - 1e-6);
+  EXPECT_LE(volume, 12 * 6 + 1e-6);
+}
+
+TEST(TileSections, NestedContoursAndHolesThatEndAreClosed) {
+  // A ball with a cavity, and a ball in the cavity.
+  const auto at = [](double z) {
+    std::vector<Contour> contours;
+    for (const double r : {10.0, 7.0, 3.0})
+      if (z * z < r * r) contours.push_back(ring({0.1 * r, 0.0}, std::sqrt(r * r - z * z), 40));
+    return contours;
+  };
+  const auto sections = sections_of(-9.9, 0.4, 50, at);
+  const double whole = 4.0 / 3.0 * pi * (1000.0 - 343.0 + 27.0);
+  EXPECT_NEAR(expect_solid(sections, "nested"), whole, 0.02 * whole);
+  EXPECT_EQ(health(tile_sections(sections).surface).shells, 3u);
+}
+
+TEST(TileSections, UnevenSpacingDoesNotMatter) {
+  std::vector<Section> sections;
+  for (const double z : {-9.8, -9.4, -8.0, -7.5, -4.0, -1.0, 0.0, 2.5, 3.0, 6.0, 8.5, 9.3, 9.7})
+    sections.push_back({z, {ring({0, 0}, std::sqrt(100.0 - z * z), 96)}});
+  const double whole = 4.0 / 3.0 * pi * 1000.0;
+  EXPECT_NEAR(expect_solid(sections, "uneven"), whole, 0.03 * whole);
+}
+
+TEST(TileSections, AnyNestedContoursWillDo) {
+  // Noise, followed: contours of every shape, corner to corner, unlike their neighbours in every way.
+  std::size_t strips = 0, overlaid = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> any(0.0F, 1.0F);
+    std::vector<Section> sections;
+    for (int s = 0; s < 4; ++s) {
+      std::vector<float> samples(14 * 14);
+      for (float& sample : samples) sample = any(random);
+      sections.push_back({1.0 * s, follow({samples, 14, 14, {1.0, 1.0}}, {.threshold = 0.5})});
+    }
+    expect_solid(sections, "seed " + std::to_string(seed));
+    const TiledSections tiled = tile_sections(sections);
+    strips += tiled.strips;
+    overlaid += tiled.overlaid;
+  }
+  EXPECT_GT(strips, 10u);
+  EXPECT_GT(overlaid, 100u);
+}
+
+TEST(TileSections, WindingOfTheContoursDoesNotMatter) {
+  auto sections = ball(8);
+  const double volume = size_of(tile_sections(sections).surface).volume_mm3;
+  for (Section& section : sections)
+    std::reverse(section.contours[0].points_mm.begin(), section.contours[0].points_mm.end());
+  EXPECT_NEAR(size_of(tile_sections(sections).surface).volume_mm3, volume, 0.01 * volume);
+  EXPECT_GT(volume, 0.0);
+}
+
+TEST(TileSections, ThreadsDoNotChangeTheBits) {
+  const auto sections = ball(12);
+  const TiledSections many = tile_sections(sections);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const TiledSections alone = tile_sections(sections);
+  EXPECT_EQ(many.surface.points_mm, alone.surface.points_mm);
+  EXPECT_EQ(many.surface.faces, alone.surface.faces);
+}
+
+TEST(TileSections, ContoursThatCrossAreNamed) {
+  std::vector<Section> sections = {{0.0, {ring({0, 0}, 2)}}, {2.5, {ring({0, 0}, 2), ring({3, 0}, 2)}}};
+  try {
+    tile_sections(sections);
+    FAIL() << "crossing contours were tiled";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("cross"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("2.5"), std::string::npos) << error.what();
+  }
+  sections[1].z_mm = 0.0;
+  EXPECT_THROW(tile_sections(sections), std::invalid_argument);
+  EXPECT_THROW(tile_sections({{0.0, {{{{0, 0}, {1, 0}, {1, 1}}, false}}}}), std::invalid_argument);
+  EXPECT_TRUE(tile_sections({}).surface.faces.empty());
+}
+
+}  // namespace
+}  // namespace octotomy::brep

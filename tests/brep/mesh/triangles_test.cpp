@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/mesh/triangles.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/brep/shapes.h"
+
+namespace octotomy::brep {
+namespace {
+
+std::string refusal_of(const Triangles& triangles) {
+  try {
+    mesh_of(triangles);
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Triangles, ComeBackFromTheMeshInTheirOwnOrder) {
+  Triangles sphere = shapes::sphere({1, 2, 3}, 4, 2);
+  std::swap(sphere.faces[0], sphere.faces[100]);
+  const Mesh mesh = mesh_of(sphere);
+  EXPECT_EQ(mesh.n_faces(), 320u);
+  EXPECT_EQ(mesh.n_edges(), 480u);
+  EXPECT_EQ(mesh.n_vertices(), 162u);
+  const Triangles back = triangles_of(mesh);
+  EXPECT_EQ(back.points_mm, sphere.points_mm);
+  EXPECT_EQ(back.faces, sphere.faces);
+}
+
+TEST(Triangles, EveryLoopOfHalfedgesClosesInTheInsideAndAlongTheBoundary) {
+  Triangles open = shapes::sphere({0, 0, 0}, 1, 2);
+  open.faces.erase(open.faces.begin() + 7);
+  open.faces.erase(open.faces.begin() + 200);
+  const Mesh mesh = mesh_of(open);
+  int boundary_count = 0;
+  for (const auto h : mesh.halfedges()) {
+    int steps = 0;
+    auto walker = Mesh::HalfedgeHandle(h);
+    do {
+      EXPECT_EQ(mesh.prev_halfedge_handle(mesh.next_halfedge_handle(walker)), walker);
+      EXPECT_EQ(mesh.to_vertex_handle(walker), mesh.from_vertex_handle(mesh.next_halfedge_handle(walker)));
+      EXPECT_EQ(mesh.face_handle(walker), mesh.face_handle(h));
+      walker = mesh.next_halfedge_handle(walker);
+    } while (++steps < 10 && walker != h);
+    EXPECT_EQ(steps, 3) << "halfedge " << h.idx();
+    boundary_count += mesh.is_boundary(h);
+  }
+  EXPECT_EQ(boundary_count, 6);
+  for (const auto v : mesh.vertices()) {
+    EXPECT_EQ(mesh.from_vertex_handle(mesh.halfedge_handle(v)), v);
+    bool touches = false;
+    for (const auto h : mesh.voh_range(v)) touches |= mesh.is_boundary(h);
+    EXPECT_EQ(mesh.is_boundary(v), touches);
+  }
+}
+
+TEST(Triangles, FansThatOnlyTouchGetAVertexEachSoThatBothSurfacesStayClosed) {
+  // Two tetrahedra with one point in common.
+  Triangles t;
+  t.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  t.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}};
+  const Mesh mesh = mesh_of(t);
+  EXPECT_EQ(mesh.n_vertices(), 8u);
+  EXPECT_EQ(mesh.point(Mesh::VertexHandle(7)), Mesh::Point(0, 0, 0));
+  EXPECT_EQ(mesh.n_edges(), 12u);
+  for (const auto e : mesh.edges()) EXPECT_FALSE(mesh.is_boundary(e));
+}
+
+TEST(Triangles, KeepPointsThatNoneOfThemUses) {
+  Triangles t = shapes::box({0, 0, 0}, {1, 1, 1});
+  t.points_mm.emplace_back(9, 9, 9);
+  EXPECT_EQ(triangles_of(mesh_of(t)).points_mm, t.points_mm);
+}
+
+TEST(Triangles, TheFirstOneThatCannotBeJoinedIsNamed) {
+  Triangles t = shapes::box({0, 0, 0}, {1, 1, 1});
+  EXPECT_EQ(refusal_of(t), "");
+
+  Triangles flipped = t;
+  std::swap(flipped.faces[5][0], flipped.faces[5][1]);
+  EXPECT_NE(refusal_of(flipped).find("triangle 5 runs along an edge the same way"), std::string::npos)
+      << refusal_of(flipped);
+
+  Triangles finned = t;
+  finned.points_mm.emplace_back(5, 5, 5);
+  finned.faces.push_back({0, 1, 8});
+  EXPECT_NE(refusal_of(finned).find("triangle 12"), std::string::npos) << refusal_of(finned);
+
+  Triangles dangling = t;
+  dangling.faces[3][2] = 8;
+  EXPECT_NE(refusal_of(dangling).find("triangle 3 refers to point 8 of 8"), std::string::npos);
+
+  Triangles repeating = t;
+  repeating.faces[4] = {1, 1, 5};
+  EXPECT_NE(refusal_of(repeating).find("triangle 4 repeats a point"), std::string::npos);
+
+  Triangles infinite = t;
+  infinite.points_mm[7].y = INFINITY;
+  EXPECT_NE(refusal_of(infinite).find("triangle 2 has a point that is not finite"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace octotomy::brep

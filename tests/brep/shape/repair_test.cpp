@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/shape/repair.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "brep/io/read_mesh.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "tests/brep/shapes.h"
+#include "tests/reference_data.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Each triangle with points of its own, as STL has them, moved by up to `noise`.
+Triangles soup_of(const Triangles& triangles, double noise) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> any(-noise, noise);
+  Triangles soup;
+  for (const auto& face : triangles.faces) {
+    const auto first = static_cast<std::uint32_t>(soup.points_mm.size());
+    for (const std::uint32_t v : face)
+      soup.points_mm.push_back(triangles.points_mm[v] + glm::dvec3(any(random), any(random), any(random)));
+    soup.faces.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+long count_of(const Repair& repaired, const std::string& step) {
+  return std::count_if(repaired.changes.begin(), repaired.changes.end(),
+                       [&](const Change& change) { return change.step == step; });
+}
+
+const Triangles ball = shapes::sphere({1, 2, 3}, 5, 2);
+
+TEST(Repair, DoesNothingUnasked) {
+  Triangles bad = soup_of(ball, 1e-4);
+  std::swap(bad.faces[3][0], bad.faces[3][1]);
+  const Repair untouched = repair(bad, {});
+  EXPECT_TRUE(untouched.changes.empty());
+  EXPECT_TRUE(untouched.left.empty());
+  EXPECT_EQ(untouched.surface.faces, bad.faces);
+  EXPECT_EQ(untouched.surface.points_mm, bad.points_mm);
+}
+
+TEST(Repair, ASoupOfTrianglesIsWeldedAndEveryPointThatMovedIsListed) {
+  RepairOptions options;
+  options.weld_mm = 1e-3;
+  const Repair welded = repair(soup_of(ball, 1e-4), options);
+  EXPECT_TRUE(health(welded.surface).solid());
+  EXPECT_EQ(welded.surface.points_mm.size(), ball.points_mm.size());
+  EXPECT_EQ(count_of(welded, "weld"), static_cast<long>(3 * ball.faces.size() - ball.points_mm.size()));
+  EXPECT_NEAR(size_of(welded.surface).volume_mm3, size_of(ball).volume_mm3, 1e-3 * size_of(ball).area_mm2);
+  options.weld_mm = 0.0;
+  EXPECT_EQ(repair(soup_of(ball, 0.0), options).surface.points_mm.size(), ball.points_mm.size());
+  EXPECT_TRUE(repair(soup_of(ball, 1e-4), options).changes.empty());
+}
+
+TEST(Repair, TurnedTrianglesDuplicatesAndFlatOnesAreNamed) {
+  Triangles bad = ball;
+  std::swap(bad.faces[3][0], bad.faces[3][1]);
+  bad.faces.push_back(bad.faces[7]);
+  bad.faces.push_back({4, 4, 9});
+  RepairOptions options;
+  options.orient = options.remove_duplicates = options.remove_flat = true;
+  const Repair mended = repair(bad, options);
+  EXPECT_TRUE(mended.left.empty());
+  EXPECT_TRUE(health(mended.surface).solid());
+  ASSERT_EQ(mended.changes.size(), 3u);
+  EXPECT_EQ(mended.changes[0].what, "triangle 321 repeats a point: taken out");
+  EXPECT_EQ(mended.changes[1].what, "triangle 320 has the points of triangle 7: taken out");
+  EXPECT_EQ(mended.changes[2].what, "triangle 3 turned round");
+}
+
+TEST(Repair, ShellsFaceOutwardAndCavitiesInward) {
+  Triangles nested = shapes::together(shapes::box({0, 0, 0}, {9, 9, 9}), shapes::box({2, 2, 2}, {7, 7, 7}));
+  nested = shapes::inside_out(shapes::together(nested, shapes::box({3, 3, 3}, {5, 5, 5})));
+  RepairOptions options;
+  options.orient = true;
+  const Repair mended = repair(nested, options);
+  EXPECT_TRUE(health(mended.surface).solid());
+  EXPECT_NEAR(size_of(mended.surface).volume_mm3, 729 - 125 + 8, 1e-12);
+  EXPECT_EQ(count_of(mended, "orient"), 24);
+}
+
+TEST(Repair, AMoebiusStripCannotBeOrientedAndThatIsTold) {
+  Triangles strip;
+  constexpr std::uint32_t n = 12;
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const double turn = 2 * std::numbers::pi * k / n;
+    const glm::dvec3 out(std::cos(turn), std::sin(turn), 0);
+    const glm::dvec3 across = std::cos(turn / 2) * out + std::sin(turn / 2) * glm::dvec3(0, 0, 1);
+    strip.points_mm.push_back(5.0 * out - across);
+    strip.points_mm.push_back(5.0 * out + across);
+  }
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t a = 2 * k, b = 2 * k + 1, c = k + 1 < n ? a + 2 : 1, d = k + 1 < n ? b + 2 : 0;
+    strip.faces.push_back({a, c, b});
+    strip.faces.push_back({b, c, d});
+  }
+  RepairOptions options;
+  options.orient = true;
+  const Repair tried = repair(strip, options);
+  ASSERT_EQ(tried.left.size(), 1u);
+  EXPECT_NE(tried.left[0].what.find("Moebius"), std::string::npos);
+}
+
+TEST(Repair, RealScansBecomeSolidsOrSayWhatIsLeft) {
+  OCTOTOMY_NEEDS_DATA("meshes/fran_cut.vtk");
+  RepairOptions options;
+  options.weld_mm = 0.0;
+  options.remove_duplicates = options.remove_flat = options.orient = options.fill_holes = true;
+  const Repair face = repair(read_triangles(tests::reference_data("meshes/fran_cut.vtk")), options);
+  EXPECT_TRUE(face.left.empty()) << face.left.front().what;
+  const Health found = health(face.surface, {.self_intersections = false});
+  EXPECT_TRUE(found.closed && found.manifold && found.oriented);
+  EXPECT_EQ(count_of(face, "holes"), 1);
+  const Repair bunny =
+      repair(read_triangles(tests::reference_data("meshes/trimesh_bunny_nonmanifold.ply")), options);
+  EXPECT_GT(count_of(bunny, "duplicates"), 80);
+  EXPECT_EQ(health(bunny.surface, {.self_intersections = false}).duplicate_faces, 0u);
+  const Health of_bunny = health(bunny.surface, {.self_intersections = false});
+  EXPECT_TRUE(of_bunny.solid() || !bunny.left.empty());
+}
+
+TEST(Repair, RefusesOptionsOutOfTheirRange) {
+  RepairOptions options;
+  options.weld_mm = -1.0;
+  EXPECT_THROW(repair(ball, options), std::invalid_argument);
+  options = {};
+  options.longest_hole_mm = 0.0;
+  EXPECT_THROW(repair(ball, options), std::invalid_argument);
+  Triangles bad = ball;
+  bad.faces[0][0] = 4000;
+  EXPECT_THROW(repair(bad, {}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace octotomy::brep

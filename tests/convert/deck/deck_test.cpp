@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/deck/deck.h"
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <sstream>
+#include <unistd.h>
+
+#include "convert/tet/octree_tetrahedra.h"
+#include "tests/convert/surfaces.h"
+#include "tests/unit_universe.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::convert {
+namespace {
+
+/// A folder of this test's own that goes with it.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("octotomy-deck-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::ptrdiff_t file_count() const {
+    return std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator());
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Tetrahedra of a unit cube cut in five, far from the origin, with coordinates that need their digits.
+Tetrahedra cube_in_five() {
+  Tetrahedra t;
+  const glm::dvec3 corner(-123.456789012345, 98.7654321098765, 0.000123456789012345);
+  for (int c = 0; c < 8; ++c) t.nodes_mm.push_back(corner + glm::dvec3(c & 1, (c >> 1) & 1, c >> 2));
+  t.tets = {{0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 2, 7, 4}, {1, 2, 4, 7}};
+  t.boundary_nodes = boundary_nodes(t.tets);
+  return t;
+}
+
+DeckOptions titled(const std::string& title) {
+  DeckOptions options;
+  options.title = title;
+  return options;
+}
+
+struct InpDeck {
+  Tetrahedra tetrahedra;
+  std::vector<std::string> keywords;
+  std::size_t longest_field = 0;
+  std::size_t longest_set_line = 0;
+  std::string section;
+};
+
+/// Reads what write_inp writes, by Abaqus's rules: keyword lines, comma-separated fields, numbers from 1.
+InpDeck read_inp(const std::filesystem::path& path) {
+  InpDeck deck;
+  std::ifstream in(path);
+  std::string line;
+  std::string keyword;
+  while (std::getline(in, line)) {
+    if (line.starts_with("**")) continue;
+    if (line.starts_with("*")) {
+      keyword = line.substr(0, line.find(','));
+      deck.keywords.push_back(keyword);
+      if (keyword == "*SOLID SECTION") deck.section = line;
+      continue;
+    }
+    if (keyword == "*HEADING") continue;
+    std::vector<std::string> fields;
+    std::stringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) {
+      field.erase(0, field.find_first_not_of(' '));
+      deck.longest_field = std::max(deck.longest_field, field.size());
+      fields.push_back(field);
+    }
+    if (keyword == "*NODE") {
+      EXPECT_EQ(std::stoul(fields.at(0)), deck.tetrahedra.nodes_mm.size() + 1);
+      deck.tetrahedra.nodes_mm.emplace_back(std::stod(fields.at(1)), std::stod(fields.at(2)),
+                                            std::stod(fields.at(3)));
+    } else if (keyword == "*ELEMENT") {
+      std::array<std::uint32_t, 4> tet{};
+      for (std::size_t i = 0; i < 4; ++i)
+        tet.at(i) = static_cast<std::uint32_t>(std::stoul(fields.at(i + 1)) - 1);
+      deck.tetrahedra.tets.push_back(tet);
+    } else if (keyword == "*NSET") {
+      deck.longest_set_line = std::max(deck.longest_set_line, fields.size());
+      for (const std::string& field : fields)
+        deck.tetrahedra.boundary_nodes.push_back(static_cast<std::uint32_t>(std::stoul(field) - 1));
+    }
+  }
+  return deck;
+}
+
+TEST(Deck, AnAbaqusDeckReadsBackToTheSameElementsAndVolume) {
+  const Folder folder;
+  const Tetrahedra cube = cube_in_five();
+  write_deck(cube, folder / "cube.inp", titled("A cube"));
+  const InpDeck deck = read_inp(folder / "cube.inp");
+  EXPECT_EQ(deck.tetrahedra.tets, cube.tets);
+  EXPECT_EQ(deck.tetrahedra.boundary_nodes, cube.boundary_nodes);
+  EXPECT_EQ(deck.keywords, (std::vector<std::string>{"*HEADING", "*NODE", "*ELEMENT", "*NSET", "*MATERIAL",
+                                                     "*ELASTIC", "*SOLID SECTION"}));
+  EXPECT_EQ(deck.section, "*SOLID SECTION, ELSET=SOLID, MATERIAL=BONE");
+  ASSERT_EQ(deck.tetrahedra.nodes_mm.size(), 8U);
+  for (std::size_t i = 0; i < 8; ++i)  // twelve digits of three before the point leave nine behind it
+    EXPECT_LT(glm::length(deck.tetrahedra.nodes_mm[i] - cube.nodes_mm[i]), 1e-9);
+  EXPECT_NEAR(quality(deck.tetrahedra).volume_mm3, 1.0, 1e-8);
+  EXPECT_GT(quality(deck.tetrahedra).min_volume_mm3, 0.0);
+}
+
+TEST(Deck, NoFieldOfAnAbaqusDeckIsLongerThanCalculixReadsAndNoSetLineLongerThanAbaqusDoes) {
+  const Folder folder;
+  Tetrahedra cube = cube_in_five();
+  cube.nodes_mm[0].x = -1.23456789012345e-300;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    cube.nodes_mm.emplace_back(0.1 * i, 0, 0);
+    cube.boundary_nodes.push_back(8 + i);
+  }
+  write_deck(cube, folder / "cube.inp");
+  const InpDeck deck = read_inp(folder / "cube.inp");
+  EXPECT_LE(deck.longest_field, 20U);
+  EXPECT_GE(deck.longest_field, 19U);
+  EXPECT_EQ(deck.longest_set_line, 16U);
+  EXPECT_EQ(deck.tetrahedra.boundary_nodes, cube.boundary_nodes);
+}
+
+TEST(Deck, ATitleCannotBecomeAKeywordOrASecondLine) {
+  const Folder folder;
+  write_deck(cube_in_five(), folder / "cube.inp", titled("*NODE\n*STEP"));
+  const InpDeck deck = read_inp(folder / "cube.inp");
+  EXPECT_EQ(deck.keywords.size(), 7U);
+  EXPECT_EQ(deck.tetrahedra.nodes_mm.size(), 8U);
+}
+
+TEST(Deck, ATitleCannotEndACommentAndKeepsItsHyphens) {
+  const Folder folder;
+  for (const char* name : {"cube.vtu", "cube.feb"}) {
+    write_deck(cube_in_five(), folder / name, titled("SHA-256 a---b-->c"));
+    const std::string text = content(folder / name);
+    EXPECT_NE(text.find("SHA-256 a-&#45;-b-&#45;&gt;c"), std::string::npos) << name;
+    for (auto at = text.find("--"); at != std::string::npos; at = text.find("--", at + 2))
+      EXPECT_TRUE(text.compare(at - 2, 4, "<!--") == 0 || text.compare(at, 3, "-->") == 0) << name;
+  }
+}
+
+/// The appended block that a DataArray's offset names.
+template <typename T>
+std::vector<T> appended(const std::string& file, const std::string& name) {
+  const std::size_t tag = file.find("Name=\"" + name + "\"");
+  const std::size_t offset_at = file.find("offset=\"", tag) + 8;
+  const std::size_t offset = std::stoul(file.substr(offset_at));
+  const std::size_t data = file.find('_', file.find("<AppendedData")) + 1;
+  std::uint64_t size = 0;
+  std::memcpy(&size, file.data() + data + offset, sizeof size);
+  std::vector<T> values(size / sizeof(T));
+  std::memcpy(values.data(), file.data() + data + offset + sizeof size, size);
+  return values;
+}
+
+TEST(Deck, AVtkGridHoldsEveryBitOfTheNodes) {
+  const Folder folder;
+  const Tetrahedra cube = cube_in_five();
+  write_deck(cube, folder / "cube.vtu", titled("a -- b <c>"));
+  const std::string file = content(folder / "cube.vtu");
+  EXPECT_NE(file.find("NumberOfPoints=\"8\" NumberOfCells=\"5\""), std::string::npos);
+  EXPECT_EQ(file.find("a -- b"), std::string::npos) << "two hyphens end an XML comment";
+  std::vector<double> coordinates;
+  for (const glm::dvec3& p : cube.nodes_mm) coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+  EXPECT_EQ(appended<double>(file, "Points"), coordinates);
+  EXPECT_EQ(appended<std::int64_t>(file, "connectivity"),
+            (std::vector<std::int64_t>{0, 1, 2, 4, 3, 2, 1, 7, 5, 1, 4, 7, 6, 2, 7, 4, 1, 2, 4, 7}));
+  EXPECT_EQ(appended<std::int64_t>(file, "offsets"), (std::vector<std::int64_t>{4, 8, 12, 16, 20}));
+  EXPECT_EQ(appended<std::uint8_t>(file, "types"), std::vector<std::uint8_t>(5, 10));
+  EXPECT_EQ(appended<std::uint8_t>(file, "surface"), std::vector<std::uint8_t>(8, 1));
+}
+
+TEST(Deck, AVtkGridMarksTheFacesOfASurfaceByTheCornersAcross) {
+  const Folder folder;
+  DeckOptions options;
+  options.surfaces = {{"CUT", {{0, 3}, {0, 1}, {4, 0}}}, {"REST", {{2, 2}}}};
+  write_deck(cube_in_five(), folder / "cube.vtu", options);
+  const std::string file = content(folder / "cube.vtu");
+  EXPECT_EQ(appended<std::uint8_t>(file, "CUT"), (std::vector<std::uint8_t>{0b1010, 0, 0, 0, 0b0001}));
+  EXPECT_EQ(appended<std::uint8_t>(file, "REST"), (std::vector<std::uint8_t>{0, 0, 0b0100, 0, 0}));
+}
+
+TEST(Deck, WhatASolverWouldRefuseIsRefusedBeforeAnythingIsWritten) {
+  const Folder folder;
+  const Tetrahedra cube = cube_in_five();
+  Tetrahedra spoiled = cube;
+  spoiled.tets[3][2] = 8;
+  EXPECT_THROW(write_deck(spoiled, folder / "a.inp"), std::invalid_argument);
+  spoiled = cube;
+  spoiled.nodes_mm[1].y = std::nan("");
+  EXPECT_THROW(write_deck(spoiled, folder / "a.vtu"), std::invalid_argument);
+  DeckOptions two_words;
+  two_words.element_set = "two words";
+  DeckOptions incompressible;
+  incompressible.materials[0].poisson_ratio = 0.5;
+  EXPECT_THROW(write_deck({}, folder / "a.inp"), std::invalid_argument);
+  EXPECT_THROW(write_deck(cube, folder / "a.stl"), std::invalid_argument);
+  EXPECT_THROW(write_deck(cube, folder / "a.inp", two_words), std::invalid_argument);
+  EXPECT_THROW(write_deck(cube, folder / "a.inp", incompressible), std::invalid_argument);
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
+TEST(Deck, AFileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
+  const Folder folder;
+  try {
+    write_deck(cube_in_five(), folder / "absent" / "a.inp");
+    FAIL() << "a folder that does not exist was written to";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("absent"), std::string::npos) << error.what();
+  }
+  // A folder in the file's place: the write succeeds, the renaming cannot.
+  std::filesystem::create_directories(folder / "b.inp" / "full");
+  EXPECT_THROW(write_deck(cube_in_five(), folder / "b.inp"), std::runtime_error);
+  EXPECT_EQ(folder.file_count(), 1) << "the unfinished file is gone";
+}
+
+TEST(Deck, WritingTellsHowFarItIsAndAStopLeavesNoFile) {
+  const Folder folder;
+  const voxel::Universe universe = tests::unit_universe(5);
+  const Tetrahedra ball =
+      tetrahedra_of(voxel::combine(universe, voxel::Expression(voxel::Sphere{glm::dvec3(15.5), 15.0})),
+                    BoundaryCells::Voxels);
+  for (const char* name : {"ball.inp", "ball.feb", "ball.vtu", "ball.msh", "ball.node"}) {
+    DeckOptions options;
+    std::vector<double> fractions;
+    options.progress.report = [&](double fraction) { fractions.push_back(fraction); };
+    write_deck(ball, folder / name, options);
+    ASSERT_GE(fractions.size(), 3U) << name;
+    EXPECT_GT(fractions.back(), name == std::string("ball.node") ? 0.3 : 0.6) << name;
+    EXPECT_LE(fractions.back(), 1.0) << name;
+
+    std::filesystem::remove(folder / name);
+    const std::ptrdiff_t files = folder.file_count();
+    std::stop_source source;
+    options.progress.stop = source.get_token();
+    options.progress.report = [&](double fraction) {
+      if (fraction > 0.1) source.request_stop();
+    };
+    EXPECT_THROW(write_deck(ball, folder / name, options), voxel::Stopped) << name;
+    EXPECT_EQ(folder.file_count(), files) << name;
+  }
+}
+
+TEST(Deck, ReplacesAnEarlierFileAsAWhole) {
+  const Folder folder;
+  write_deck(cube_in_five(), folder / "a.INP", titled("first"));
+  write_deck(cube_in_five(), folder / "a.INP", titled("second"));
+  EXPECT_EQ(content(folder / "a.INP").find("first"), std::string::npos);
+  EXPECT_EQ(folder.file_count(), 1);
+}
+
+}  // namespace
+}  // namespace octotomy::convert

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tet/mesh3_tetrahedra.h"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "brep/mesh/components.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/measure.h"
+#include "brep/shape/decimate.h"
+#include "convert/surface/isosurface.h"
+#include "convert/tet/element_faces.h"
+#include "tests/convert/surfaces.h"
+#include "tests/reference_data.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::convert {
+namespace {
+
+using tests::ball;
+using tests::box;
+using tests::inside_out;
+using tests::together;
+
+Tetrahedra by_mesh3(const brep::Triangles& surface) {
+  TetOptions options;
+  options.mesher = Mesher::Mesh3;
+  return tetrahedralise(brep::mesh_of(surface), options);
+}
+
+/// A ball whose faces are cut at a point close to one of their sides: triangles no kept surface is good on.
+brep::Triangles with_needles() {
+  brep::Triangles t = ball({0, 0, 0}, 20.0, 3);
+  const std::size_t faces = t.faces.size();
+  for (std::size_t f = 0; f < faces; ++f) {
+    const auto [a, b, c] = t.faces[f];
+    const auto middle = static_cast<std::uint32_t>(t.points_mm.size());
+    t.points_mm.push_back(0.49 * t.points_mm[a] + 0.49 * t.points_mm[b] + 0.02 * t.points_mm[c]);
+    t.faces[f] = {a, b, middle};
+    t.faces.push_back({b, c, middle});
+    t.faces.push_back({c, a, middle});
+  }
+  return t;
+}
+
+TEST(Mesh3Tetrahedra, ABallHasItsVolumeAndNoFlatElement) {
+  const brep::Triangles surface = ball({100, -50, 20}, 30.0, 4);
+  const Tetrahedra t = by_mesh3(surface);
+  EXPECT_EQ(t.method, "Mesh_3");
+  EXPECT_EQ(t.boundary_nodes, boundary_nodes(t.tets));
+  const TetQuality q = quality(t);
+  EXPECT_NEAR(q.volume_mm3, tests::volume_mm3(surface),
+              own_surface_volume_tolerance() * tests::volume_mm3(surface));
+  EXPECT_GT(q.min_dihedral_deg, 7.0);
+  EXPECT_GT(q.min_volume_mm3, 0.0);
+}
+
+TEST(Mesh3Tetrahedra, EveryPartAndCavityIsThereHoweverSmall) {
+  const brep::Triangles parts = together(
+      together(ball({0, 0, 0}, 20.0, 3), inside_out(ball({2, 0, 0}, 9.0, 3))), ball({60, 0, 0}, 1.5, 2));
+  const Tetrahedra t = by_mesh3(parts);
+  const double small_mm3 = tests::volume_mm3(ball({60, 0, 0}, 1.5, 2));
+  double found_mm3 = 0.0;
+  for (std::size_t i = 0; i < t.tets.size(); ++i) {
+    const TetCorners corners = corners_mm(t, i);
+    if (corners[0].x > 50.0) found_mm3 += six_volumes(corners) / 6.0;
+    for (const glm::dvec3& p : corners) EXPECT_GT(glm::distance(p, {2, 0, 0}), 8.5) << "the cavity is filled";
+  }
+  // Ten times coarser than the part, a facet can be no better than this.
+  EXPECT_NEAR(found_mm3, small_mm3, 0.2 * small_mm3);
+  EXPECT_NEAR(quality(t).volume_mm3, tests::volume_mm3(parts), 1e-3 * tests::volume_mm3(parts));
+}
+
+TEST(Mesh3Tetrahedra, BestTakesItWhereNeedlesOfTheKeptSurfaceSpoilTheAngles) {
+  const brep::Triangles surface = with_needles();
+  TetOptions options;
+  const Tetrahedra kept = tetrahedralise(brep::mesh_of(surface), options);
+  ASSERT_LT(quality(kept).min_dihedral_deg, fit_dihedral_deg());
+  ASSERT_TRUE(fault_in_shape(kept));
+  EXPECT_NE(fault_in_shape(kept)->find("TetGen -pYq1.4 left dihedral angles down to "), std::string::npos);
+  options.mesher = Mesher::Best;
+  const Tetrahedra best = tetrahedralise(brep::mesh_of(surface), options);
+  EXPECT_EQ(best.method, "Mesh_3");
+  EXPECT_GT(quality(best).min_dihedral_deg, fit_dihedral_deg());
+  EXPECT_FALSE(fault_in_shape(best));
+  ASSERT_FALSE(best.findings.empty());
+  EXPECT_NE(best.findings.back().find("Mesh_3 made a surface of its own"), std::string::npos) << best.findings.back();
+}
+
+TEST(Mesh3Tetrahedra, BestKeepsTheSurfaceWhereItsAnglesAreGood) {
+  TetOptions options;
+  options.mesher = Mesher::Best;
+  const Tetrahedra t = tetrahedralise(brep::mesh_of(box({-5, -5, -5}, {5, 5, 5})), options);
+  EXPECT_EQ(t.method, "TetGen -pYq1.4");
+  EXPECT_TRUE(t.findings.empty());
+}
+
+TEST(Mesh3Tetrahedra, TheSameSurfaceGivesTheSameBits) {
+  const brep::Triangles surface = with_needles();
+  const Tetrahedra one = by_mesh3(surface);
+  const Tetrahedra other = by_mesh3(surface);
+  EXPECT_EQ(one.nodes_mm, other.nodes_mm);
+  EXPECT_EQ(one.tets, other.tets);
+}
+
+TEST(Mesh3Tetrahedra, AThinSpikeThatNoElementStandsInIsToldWithItsLength) {
+  brep::Triangles surface = ball({0, 0, 0}, 20.0, 4);
+  // One point far out: a spike as thick as one triangle's fan at its foot.
+  const std::size_t tip = 7;
+  surface.points_mm[tip] *= 2.0;
+  const Tetrahedra t = by_mesh3(surface);
+  const double away_mm = brep::SurfaceTree(surface_of(t)).distances_mm({surface.points_mm[tip]}).front();
+  ASSERT_GT(away_mm, 0.4) << "the spike was not lost: make it thinner";
+  const std::string& said = t.findings.back();
+  EXPECT_NEAR(std::stod(said.substr(said.rfind("within ") + 7)), away_mm, 0.01 * away_mm) << said;
+}
+
+TEST(Mesh3Tetrahedra, TheVaultOfARealSkullIn50000TrianglesHasNoAngleUnderFiveDegrees) {
+  OCTOTOMY_NEEDS_DATA("ct_unc_cthead.nrrd");
+  voxel::Scene scan = voxel::read_scene(tests::reference_data("ct_unc_cthead.nrrd"));
+  auto& samples = std::get<voxel::Int16Samples>(scan.samples);
+  // Above 150 mm: the vault, cut flat.
+  const std::ptrdiff_t slice = std::ptrdiff_t{scan.lattice.dims.x} * scan.lattice.dims.y;
+  std::fill(samples.begin(), samples.begin() + 75 * slice, std::int16_t{-1000});
+  const brep::Mesh vault =
+      brep::decimate(brep::largest_component(brep::mesh_of(isosurface(scan, 300.0, 1e6))),
+                     {.max_error_mm = 1.0, .faces = 50000});
+  ASSERT_EQ(vault.n_faces(), 50000U);
+  TetOptions options;
+  options.mesher = Mesher::Best;
+  const Tetrahedra t = tetrahedralise(vault, options);
+  const TetQuality q = quality(t);
+  EXPECT_GT(q.min_dihedral_deg, 5.0);
+  EXPECT_GT(q.min_volume_mm3, 0.0);
+  EXPECT_NEAR(q.volume_mm3, brep::volume_mm3(vault), 1e-3 * brep::volume_mm3(vault));
+}
+
+TEST(Mesh3Tetrahedra, ATimeLimitTooSmallIsNamed) {
+  TetOptions options;
+  options.mesher = Mesher::Mesh3;
+  options.time_limit = std::chrono::milliseconds(1);
+  try {
+    tetrahedralise(brep::mesh_of(ball({0, 0, 0}, 30.0, 5)), options);
+    FAIL() << "it should have been refused";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("Mesh_3 did not end within the time limit of 1 ms"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace octotomy::convert

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/tet/octree_tetrahedra.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+#include <random>
+
+#include "convert/deck/deck.h"
+#include "tests/unit_universe.h"
+#include "voxel/codes/cuberille_faces.h"
+#include "voxel/solid/combine.h"
+#include "voxel/tree/build.h"
+
+namespace octotomy::convert {
+namespace {
+
+using tests::unit_universe;
+
+/// Random cubes of random sizes: cells of every size beside each other.
+voxel::Octree random_cubes(int depth, unsigned seed) {
+  const voxel::Universe universe = unit_universe(depth);
+  std::mt19937 random(seed);
+  voxel::Expression all = voxel::Octree::empty(universe);
+  for (int i = 0; i < 12; ++i) {
+    const int side = 1 << (random() % static_cast<unsigned>(depth));
+    const auto at = [&] {
+      return static_cast<int>(random() % static_cast<unsigned>(universe.side() / side)) * side;
+    };
+    const glm::dvec3 low = glm::dvec3(at(), at(), at()) - 0.5;
+    all = i % 4 == 3 ? all - voxel::Box{low, low + static_cast<double>(side)}
+                     : all | voxel::Box{low, low + static_cast<double>(side)};
+  }
+  return voxel::combine(universe, all);
+}
+
+/// Why the elements do not fill the voxels exactly and share whole faces, or nothing.
+std::string fault_of(const voxel::Octree& octree, const Tetrahedra& t) {
+  std::map<std::array<std::uint32_t, 3>, int> faces;
+  for (const auto& [a, b, c, d] : t.tets)
+    for (std::array<std::uint32_t, 3> face : {std::array{a, b, c}, {a, b, d}, {a, c, d}, {b, c, d}}) {
+      std::sort(face.begin(), face.end());
+      ++faces[face];
+    }
+  double boundary_mm2 = 0.0;
+  for (const auto& [face, count] : faces) {
+    if (count > 2) return "a face of three elements";
+    if (count == 1)
+      boundary_mm2 += 0.5 * glm::length(glm::cross(t.nodes_mm[face[1]] - t.nodes_mm[face[0]],
+                                                   t.nodes_mm[face[2]] - t.nodes_mm[face[0]]));
+  }
+  const TetQuality q = quality(t);
+  if (!(q.min_volume_mm3 > 0.0)) return "an element of volume " + std::to_string(q.min_volume_mm3);
+  if (std::abs(q.volume_mm3 - static_cast<double>(octree.voxel_count())) > 1e-6)
+    return "volume " + std::to_string(q.volume_mm3) + " of " + std::to_string(octree.voxel_count()) +
+           " voxels";
+  // Faces that do not match leave boundary within.
+  const auto exposed = static_cast<double>(voxel::cuberille_faces(octree).face_count());
+  if (std::abs(boundary_mm2 - exposed) > 1e-6)
+    return "boundary " + std::to_string(boundary_mm2) + " of " + std::to_string(exposed) + " faces";
+  if (q.min_dihedral_deg < 30.0 - 1e-9) return "a dihedral angle of " + std::to_string(q.min_dihedral_deg);
+  return "";
+}
+
+TEST(OctreeTetrahedra, OneVoxelIsTwelveElements) {
+  const voxel::Octree octree = voxel::combine(unit_universe(2), voxel::Box{{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}});
+  const Tetrahedra t = tetrahedra_of(octree);
+  EXPECT_EQ(t.tets.size(), 12U);
+  EXPECT_EQ(t.nodes_mm.size(), 9U);
+  EXPECT_EQ(fault_of(octree, t), "");
+}
+
+TEST(OctreeTetrahedra, FillRandomCubesOfEverySizeExactlyAndConform) {
+  std::size_t graded = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const voxel::Octree octree = random_cubes(3 + static_cast<int>(seed % 3), seed);
+    if (octree.is_empty()) continue;
+    const Tetrahedra t = tetrahedra_of(octree);
+    EXPECT_EQ(fault_of(octree, t), "") << "seed " << seed;
+    graded += t.tets.size() < 12 * octree.voxel_count();
+  }
+  EXPECT_GT(graded, 40U);
+}
+
+TEST(OctreeTetrahedra, TheProofSeesAMissingAndATurnedElement) {
+  const voxel::Octree octree = random_cubes(4, 3);
+  Tetrahedra t = tetrahedra_of(octree);
+  std::swap(t.tets[5][0], t.tets[5][1]);
+  EXPECT_NE(fault_of(octree, t), "");
+  t = tetrahedra_of(octree);
+  t.tets.pop_back();
+  EXPECT_NE(fault_of(octree, t), "");
+}
+
+TEST(OctreeTetrahedra, ABallHasFarFewerElementsThanItsVoxelsWould) {
+  const voxel::Octree ball = voxel::combine(unit_universe(6), voxel::Sphere{{31, 32, 30}, 27.0});
+  const Tetrahedra t = tetrahedra_of(ball);
+  EXPECT_EQ(fault_of(ball, t), "");
+  EXPECT_LT(t.tets.size(), 6 * ball.voxel_count());
+  EXPECT_FALSE(t.boundary_nodes.empty());
+  EXPECT_EQ(t.method, "octree");
+}
+
+TEST(OctreeTetrahedra, CellsAtTheBoundaryAreVoxelsWhereAskedFor) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const voxel::Octree octree = random_cubes(4, seed);
+    if (octree.is_empty()) continue;
+    const Tetrahedra t = tetrahedra_of(octree, BoundaryCells::Voxels);
+    EXPECT_EQ(fault_of(octree, t), "") << "seed " << seed;
+    EXPECT_EQ(surface_faces(t).size(), 2 * voxel::cuberille_faces(octree).face_count()) << "seed " << seed;
+  }
+  const voxel::Octree cube =
+      voxel::combine(unit_universe(5), voxel::Box{{7.5, 7.5, 7.5}, {23.5, 23.5, 23.5}});
+  const Tetrahedra t = tetrahedra_of(cube, BoundaryCells::Voxels);
+  EXPECT_EQ(fault_of(cube, t), "");
+  EXPECT_LT(t.tets.size(), 9 * cube.voxel_count());
+  EXPECT_LT(surface_faces(tetrahedra_of(cube)).size(), surface_faces(t).size());
+}
+
+TEST(OctreeTetrahedra, RegionsOfRandomCubesShareTheirInterfacesAndNoneReachesIntoAnother) {
+  std::size_t touching = 0;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const voxel::Octree a = random_cubes(4, seed);
+    const voxel::Octree b = voxel::combine(a.universe(), voxel::Expression(random_cubes(4, seed + 1000)) - a);
+    if (a.is_empty() || b.is_empty()) continue;
+    const voxel::Octree both = voxel::combine(a.universe(), voxel::Expression(a) | b);
+    for (const BoundaryCells cells : {BoundaryCells::Nodes, BoundaryCells::Voxels}) {
+      const Tetrahedra t = tetrahedra_of({a, b}, cells);
+      EXPECT_EQ(fault_of(both, t), "");
+      std::array<double, 2> volumes{};
+      for (std::size_t i = 0; i < t.tets.size(); ++i)
+        volumes.at(t.region_of_tet[i]) += six_volumes(corners_mm(t, i)) / 6.0;
+      EXPECT_NEAR(volumes[0], static_cast<double>(a.voxel_count()), 1e-6);
+      EXPECT_NEAR(volumes[1], static_cast<double>(b.voxel_count()), 1e-6);
+
+      // The interface's area is what the two have more of surface than both together, halved.
+      double area_mm2 = 0.0;
+      for (const Interface& between : interfaces(t))
+        for (const ElementFace& face : between.faces) {
+          EXPECT_EQ(t.region_of_tet[face.tet], 0U);
+          const auto [p, q, r] = corners_of(t, face);
+          area_mm2 +=
+              0.5 * glm::length(glm::cross(t.nodes_mm[q] - t.nodes_mm[p], t.nodes_mm[r] - t.nodes_mm[p]));
+        }
+      const auto faces = [](const voxel::Octree& o) {
+        return static_cast<double>(voxel::cuberille_faces(o).face_count());
+      };
+      EXPECT_NEAR(area_mm2, 0.5 * (faces(a) + faces(b) - faces(both)), 1e-6);
+      touching += area_mm2 > 0.0;
+    }
+  }
+  EXPECT_GT(touching, 20U);
+}
+
+TEST(OctreeTetrahedra, WhatIsInTwoRegionsIsTheFirsts) {
+  const voxel::Octree a = voxel::combine(unit_universe(3), voxel::Box{{-0.5, -0.5, -0.5}, {3.5, 3.5, 3.5}});
+  const voxel::Octree b = voxel::combine(unit_universe(3), voxel::Box{{-0.5, -0.5, -0.5}, {3.5, 3.5, 5.5}});
+  const Tetrahedra t = tetrahedra_of({a, b});
+  double first = 0.0;
+  for (std::size_t i = 0; i < t.tets.size(); ++i)
+    if (t.region_of_tet[i] == 0) first += six_volumes(corners_mm(t, i)) / 6.0;
+  EXPECT_NEAR(first, 64.0, 1e-9);
+  EXPECT_NEAR(quality(t).volume_mm3, 96.0, 1e-9);
+}
+
+TEST(OctreeTetrahedra, NothingIsRefused) {
+  EXPECT_THROW(tetrahedra_of(voxel::Octree::empty(unit_universe(4))), std::invalid_argument);
+  EXPECT_THROW(tetrahedra_of(std::vector<voxel::Octree>{}), std::invalid_argument);
+  EXPECT_THROW(tetrahedra_of({random_cubes(4, 3), random_cubes(3, 3)}), std::invalid_argument);
+}
+
+TEST(OctreeTetrahedra, ReportsWhatIsDoneAndEndsOnRequest) {
+  const voxel::Octree cube = voxel::Octree::full(tests::unit_universe(5));  // over 4096 cells at its boundary
+  std::vector<double> reported;
+  tetrahedra_of(cube, BoundaryCells::Voxels, {{}, [&](double fraction) { reported.push_back(fraction); }});
+  ASSERT_GT(reported.size(), 1u);
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+  EXPECT_GE(reported.front(), 0.0);
+  EXPECT_LE(reported.back(), 1.0);
+  std::stop_source source;
+  const auto stop_half_way = [&](double fraction) {
+    if (fraction > 0.0) source.request_stop();
+  };
+  EXPECT_THROW(tetrahedra_of(cube, BoundaryCells::Voxels, {source.get_token(), stop_half_way}),
+               voxel::Stopped);
+}
+
+}  // namespace
+}  // namespace octotomy::convert

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The verbs that draw, segment and prepare scans, as scripts see them.
+#include "tests/file_bytes.h"
+#include "tests/planner/cli/command_line.h"
+#include "tests/reference_data.h"
+
+namespace octotomy::planner {
+namespace {
+
+using tests::Json;
+
+class ScanVerbs : public tests::CommandLine {
+ protected:
+  Json json(const std::string& arguments) const {
+    const tests::CommandAnswer answer = run(arguments + " --json");
+    EXPECT_EQ(answer.status, 0) << arguments << '\n' << answer.errors;
+    return Json::parse(answer.out, nullptr, false);
+  }
+};
+
+TEST_F(ScanVerbs, SlicesAreInTrueScaleAndSayWhereTheyLie) {
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("ball.octree")).status, 0);
+  const Json axial = json("slice " + at("ball.nrrd") + " --axial 5 --pixel 0.5 --octree " +
+                          at("ball.octree") + " --level 0,2000 -o " + at("axial.png"));
+  EXPECT_EQ(axial["plane"], "axial");
+  EXPECT_EQ(axial["position_mm"], 5.0);
+  EXPECT_EQ(axial["size_px"], Json({64, 64}));
+  EXPECT_EQ(axial["window"], Json({-1000.0, 1000.0}));
+  EXPECT_EQ(axial["letters"], Json({{"left", "R"}, {"right", "L"}, {"top", "A"}, {"bottom", "P"}}));
+  EXPECT_EQ(axial["scale_bar_mm"], 5.0);
+  // Pixel (0, 0) is at the patient's right front.
+  EXPECT_EQ(axial["lps_from_pixel"][0], Json({0.5, 0.0, 0.0, -15.75}));
+  EXPECT_EQ(axial["lps_from_pixel"][1], Json({0.0, 0.5, 0.0, -15.75}));
+  EXPECT_EQ(axial["lps_from_pixel"][2][3], 5.0);
+  EXPECT_NEAR(axial["outlines"][0]["area_mm2"].get<double>() / (M_PI * (144.0 - 25.0)), 1.0, 0.04);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "axial.png"));
+
+  const Json coronal = json("slice " + at("ball.octree") + " --coronal middle -o " + at("coronal.png"));
+  EXPECT_EQ(coronal["letters"]["top"], "S");
+  EXPECT_EQ(coronal["values"], Json({0.0, 1.0}));
+  const Json sagittal = json("slice " + at("ball.nrrd") + " --sagittal -3 --plain -o " + at("sagittal.png"));
+  EXPECT_EQ(sagittal["letters"]["left"], "A");
+  EXPECT_TRUE(sagittal["scale_bar_mm"].is_null());
+  const Json oblique = json("slice " + at("ball.nrrd") + " --oblique 0,0,0 0,1,1 -o " + at("oblique.png"));
+  EXPECT_EQ(oblique["position_mm"], 0.0);
+  EXPECT_EQ(oblique["letters"]["right"], "L");
+}
+
+TEST_F(ScanVerbs, ACurveIsGivenAsPointsOrAsAFile) {
+  write("curve.json", R"({"points_mm": [[-10, 5, 0], [0, -8, 0], [10, 5, 0]]})");
+  const std::string rest = " --height 20 --pixel 0.5 -o " + at("curve.png");
+  const Json points = json("slice " + at("ball.nrrd") + " --curve=-10,5,0 0,-8,0 10,5,0" + rest);
+  const Json file = json("slice " + at("ball.nrrd") + " --curve " + at("curve.json") + rest);
+  EXPECT_EQ(points["plane"], "curved");
+  EXPECT_EQ(points["size_px"], Json({static_cast<int>(std::ceil(2 * std::hypot(10, 13) / 0.5)), 40}));
+  EXPECT_TRUE(points["lps_from_pixel"].is_null());
+  for (const char* key : {"size_px", "values", "inside_pixels", "letters"})
+    EXPECT_EQ(points[key], file[key]) << key;
+}
+
+TEST_F(ScanVerbs, SlicesThatCannotBeDrawnAreRefused) {
+  const std::string out = " -o " + at("x.png");
+  const std::string ball = "slice " + at("ball.nrrd");
+  expect_refused(run(ball + " --axial 17" + out), "misses the scan");
+  expect_refused(run(ball + " --axial 1 --coronal 2" + out), "one of");
+  expect_refused(run(ball + " --axial top" + out), "top");
+  expect_refused(run(ball + " --oblique 0,0,0 0,0,0" + out), "no length");
+  expect_refused(run(ball + " --oblique 0,0 0,0,1" + out), "X,Y,Z");
+  expect_refused(run(ball + " --curve 1,2,3" + out), "1,2,3");
+  expect_refused(run(ball + " --level 5" + out), "CENTRE,WIDTH");
+  expect_refused(run(ball + " --window bonne" + out), "did you mean 'bone'");
+  expect_refused(run(ball + " --pixel 0.001" + out), "larger pixels");
+  write("curve.json", R"({"points": [1]})");
+  expect_refused(run(ball + " --curve " + at("curve.json") + out), "points_mm");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.png"));
+}
+
+TEST_F(ScanVerbs, ATissueIsAWindowOfHounsfieldUnitsEverywhere) {
+  const Json named = json("measure " + at("ball.nrrd") + " --window skin");
+  EXPECT_EQ(named["window"], Json({-300.0, nullptr}));
+  EXPECT_EQ(named["volume_mm3"], json("measure " + at("ball.nrrd") + " --window=-300:")["volume_mm3"]);
+  ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
+  for (const std::string& verb :
+       {"octree " + at("ball.nrrd") + " --window bone -o " + at("a.octree"),
+        "render " + at("ball.nrrd") + " --window bone -o " + at("a.png"),
+        "mesh " + at("ball.nrrd") + " --window bone -o " + at("a.stl"),
+        "slice " + at("ball.nrrd") + " --window bone -o " + at("a.png"),
+        "eval g --let g=" + at("grey.octree") + " --window g=bone -o " + at("b.octree")})
+    EXPECT_EQ(run(verb).status, 0) << verb;
+  voxel::Scene raw = tests::ball_scene(12.0, 32);
+  raw.meaning = voxel::Meaning::Raw;
+  raw.modality = "MR";
+  voxel::write_scene(raw, folder_ / "raw.nrrd");
+  for (const char* verb :
+       {"measure", "octree -o x.octree", "mesh -o x.stl", "render -o x.png", "slice -o x.png"})
+    expect_refused(run(std::string(verb) + " " + at("raw.nrrd") + " --window bone"), "Hounsfield");
+}
+
+// Two balls of 900 and a cube of 300 in air, on voxels of 1 x 1 x 2 mm.
+class Segments : public ScanVerbs {
+ protected:
+  Segments() {
+    voxel::Scene scene;
+    scene.lattice = voxel::axis_aligned_lattice({48, 40, 20}, {1, 1, 2}, {-23.5, -19.5, -19});
+    scene.meaning = voxel::Meaning::Hounsfield;
+    scene.modality = "CT";
+    voxel::Int16Samples samples;
+    for (int z = 0; z < 20; ++z)
+      for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 48; ++x) {
+          const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
+          const bool ball =
+              glm::distance(p, glm::dvec3(-12, 0, 0)) < 9 || glm::distance(p, glm::dvec3(10, 0, 0)) < 6;
+          const bool cube = p.y > 10 && p.y < 18 && std::abs(p.x) < 10 && std::abs(p.z) < 8;
+          samples.push_back(ball ? 900 : cube ? 300 : -1000);
+        }
+    scene.samples = std::move(samples);
+    voxel::write_scene(scene, folder_ / "scan.nrrd");
+  }
+  std::string segment(const std::string& out) const {
+    return "segment " + at("scan.nrrd") + " -o " + at(out) + " ";
+  }
+  static double ball(double radius) { return 4.0 / 3.0 * M_PI * radius * radius * radius; }
+};
+
+TEST_F(Segments, ChoosePartsByWindowSizeSeedAndRegion) {
+  const auto volume = [](const Json& said) { return said["objects"][0]["volume_mm3"].get<double>(); };
+  EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window cortical_bone")), ball(9) + ball(6), 160);
+  EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window cortical_bone --largest")), ball(9), 120);
+  const Json both = json(segment("a.nrrd") + "--window 600: --components 2");
+  EXPECT_NEAR(volume(both), ball(9) + ball(6), 160);
+  EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window 600: --seed 10,0,0")), ball(6), 60);
+  EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window 600: --at-least 2000")), ball(9), 120);
+  // Grown from a seed through samples like its own, from the cube's: 20 x 8 x 16 mm, half a voxel unsure.
+  EXPECT_NEAR(volume(json(segment("a.nrrd") + "--seed 0,14,0 --tolerance 20")), 20 * 8 * 14, 350);
+  write("left.json", R"({"view": "inferior", "slices": [
+      {"position_mm": -19, "polygons_mm": [[[0,-19],[23,-19],[23,19],[0,19]]]},
+      {"position_mm": 19, "polygons_mm": [[[0,-19],[23,-19],[23,19],[0,19]]]}]})");
+  EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window 600: --regions " + at("left.json"))), ball(6), 60);
+  // On the octree's voxels of 1 mm, half-way between a ball and air lies in it; what was done is kept in the
+  // file.
+  const Json octree = json(segment("a.octree") + "--window=-50: --seed 10,0,0");
+  EXPECT_NEAR(volume(octree), ball(6), 150);
+  const Json told = json("info " + at("a.octree"));
+  EXPECT_EQ(told["kind"], "octree");
+  EXPECT_EQ(told["metadata"]["steps"].size(), 2u);
+}
+
+TEST_F(Segments, OtsuFindsTheThreeClassesAndMakesTheBrightest) {
+  const Json only = json("segment " + at("scan.nrrd") + " --otsu 3");
+  const std::vector<double> thresholds = only["suggestion"]["thresholds"];
+  ASSERT_EQ(thresholds.size(), 2u);
+  EXPECT_GT(thresholds[0], -1000);
+  EXPECT_LE(thresholds[0], 300);
+  EXPECT_GT(thresholds[1], 300);
+  EXPECT_LE(thresholds[1], 900);
+  EXPECT_EQ(only["suggestion"]["histogram"]["counts"].size(), 256u);
+  const Json bright = json(segment("a.nrrd") + "--otsu 3");
+  const Json middle = json(segment("b.nrrd") + "--otsu 3 --class 2");
+  EXPECT_EQ(bright["labels"][0]["samples"],
+            json(segment("c.nrrd") + "--window 900:")["labels"][0]["samples"]);
+  EXPECT_EQ(middle["labels"][0]["samples"], 20 * 8 * 8);
+}
+
+TEST_F(Segments, LabelMapsHoldSeveralObjectsAndGiveThemBack) {
+  for (const char* name : {"map.nrrd", "map.nii.gz", "map.mha"}) {
+    const Json map = json(segment(name) + "--window 600: --window 200:600");
+    ASSERT_EQ(map["labels"].size(), 2u) << name;
+    EXPECT_EQ(map["overlaps"], 0);
+    EXPECT_EQ(map["labels"][1]["samples"], 20 * 8 * 8);
+    const Json back = json("segment " + at(name) + " --label 2 -o " + at("back.nrrd"));
+    EXPECT_EQ(back["labels"][0]["samples"], 20 * 8 * 8) << name;
+  }
+  // Octrees become a label map on the scan's lattice, and overlap is told.
+  ASSERT_EQ(run(segment("a.octree") + "--window 600:").status, 0);
+  ASSERT_EQ(run(segment("b.octree") + "--window 200:").status, 0);
+  const Json again =
+      json(segment("again.nrrd") + "--object " + at("a.octree") + " --object " + at("b.octree"));
+  EXPECT_EQ(again["overlaps"], again["labels"][0]["samples"]);
+  EXPECT_EQ(again["labels"][1]["samples"], 20 * 8 * 8);
+  EXPECT_EQ(again["findings"].size(), 1u);
+}
+
+TEST_F(Segments, ContoursComeBackAsTheMaskTheyBound) {
+  const Json followed =
+      json("segment " + at("scan.nrrd") + " --window=-50: --contours " + at("regions.json"));
+  EXPECT_GT(followed["contours"]["contours"].get<int>(), 10);
+  const Json mask = json("mask --slices " + at("regions.json") + " --voxel 0.5 -o " + at("mask.octree"));
+  const double mm3 = mask["voxels"].get<double>() * 0.125;
+  // The cube's contour at -50 lies 0.27 mm from its outer samples instead of half-way.
+  EXPECT_NEAR(mm3 / (ball(9) + ball(6) + 19.5 * 7.5 * 16), 1.0, 0.04);
+}
+
+TEST_F(Segments, WhatCannotBeMeantIsRefused) {
+  expect_refused(run(segment("x.octree")), "--window bone");
+  expect_refused(run(segment("x.octree") + "--window bone --otsu 2"), "one of");
+  expect_refused(run(segment("x.octree") + "--window bone --window fat"), "label map");
+  expect_refused(run(segment("x.octree") + "--tolerance 3"), "--seed");
+  expect_refused(run(segment("x.octree") + "--window bone --seed 99,0,0"), "outside");
+  expect_refused(run(segment("x.octree") + "--window 5000:"), "no voxel");
+  expect_refused(run(segment("x.octree") + "--otsu 3 --class 4"), "--class");
+  expect_refused(run("segment " + at("scan.nrrd") + " --label 1 -o " + at("x.octree")), "label");
+  expect_refused(run("segment " + at("scan.nrrd") + " --window bone"), "--contours");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.octree"));
+}
+
+TEST_F(Segments, PreparationGoesStepByStepInTheOrderGivenAndSaysWhatEachDid) {
+  const Json said = json("prepare " + at("scan.nrrd") + " -o " + at("ready.nrrd") +
+                         " --step crop=-20,-15,-13,20,19,13 --step slices=1,cubic --step median=1"
+                         " --step gaussian=0.8 --step edge_preserving=2,1 --step average_down=2,2,1");
+  ASSERT_EQ(said["steps"].size(), 6u);
+  EXPECT_EQ(said["steps"][0]["dims"], Json({40, 34, 14}));
+  EXPECT_EQ(said["steps"][0]["first_sample"], Json({4, 5, 3}));
+  EXPECT_EQ(said["steps"][1]["dims"], Json({40, 34, 27}));
+  EXPECT_EQ(said["steps"][1]["kernel"], "cubic");
+  EXPECT_EQ(said["dims"], Json({20, 17, 27}));
+  EXPECT_EQ(said["spacing_mm"], Json({2.0, 2.0, 1.0}));
+  const Json read = json("info " + at("ready.nrrd"));
+  EXPECT_EQ(read["dims"], said["dims"]);
+  EXPECT_EQ(read["lps_from_voxel"], said["lps_from_voxel"]);
+  // The larger ball is where it was, within what smoothing takes off.
+  const Json kept =
+      json("segment " + at("ready.nrrd") + " -o " + at("a.octree") + " --window=-50: --seed=-12,0,0");
+  EXPECT_NEAR(kept["objects"][0]["volume_mm3"].get<double>() / ball(9), 1.0, 0.12);
+  // The order counts: averaged first, the crop's box holds other samples.
+  const Json other = json("prepare " + at("scan.nrrd") + " -o " + at("b.nrrd") +
+                          " --step average_down=2,2,1 --step crop=-20,-15,-13,20,19,13");
+  EXPECT_NE(other["lps_from_voxel"], said["lps_from_voxel"]);
+}
+
+TEST_F(Segments, AHeadrestIsRemovedKeptAndPutBack) {
+  const std::string clean = "prepare " + at("scan.nrrd") + " -o " + at("clean.nrrd");
+  const Json said = json(clean + " --step remove_headrest=-300,5 --removed " + at("removed.octree"));
+  EXPECT_EQ(said["steps"][0]["parts_removed"], 2);
+  EXPECT_NEAR(said["steps"][0]["volume_removed_mm3"].get<double>(), 20 * 8 * 16 + ball(6), 80);
+  const Json back = json("prepare " + at("clean.nrrd") + " -o " + at("back.nrrd") +
+                         " --step restore=" + at("removed.octree"));
+  EXPECT_EQ(back["steps"][0]["samples_restored"], said["steps"][0]["samples_removed"]);
+  const auto bytes = [&](const char* name) { return tests::bytes_of(folder_ / name); };
+  EXPECT_EQ(bytes("back.nrrd"), bytes("scan.nrrd"));
+  EXPECT_NE(bytes("clean.nrrd"), bytes("scan.nrrd"));
+  expect_refused(run(clean + " --step remove_headrest"), "--removed");
+}
+
+TEST_F(Segments, EdgesAndShapesAreScenesToo) {
+  const Json shape =
+      json("prepare " + at("scan.nrrd") + " -o " + at("shape.nrrd") + " --step shape=0.5,bone");
+  EXPECT_EQ(shape["range"], Json({0.0, 1.0}));
+  EXPECT_EQ(shape["dims"][2], 77);
+  const Json edges = json("prepare " + at("scan.nrrd") + " -o " + at("edges.nrrd") + " --step zucker_hummel");
+  EXPECT_GT(edges["range"][1], 500);
+  const Json marr =
+      json("prepare " + at("scan.nrrd") + " -o " + at("marr.nrrd") + " --step marr_hildreth=1.5");
+  EXPECT_LT(marr["range"][0], -10);
+  EXPECT_EQ(marr["unit"], "1");
+}
+
+TEST_F(Segments, StepsThatCannotBeAreRefusedBeforeAnythingIsWritten) {
+  const std::string prepare = "prepare " + at("scan.nrrd") + " -o " + at("x.nrrd") + " --step ";
+  expect_refused(run(prepare + "crob=1"), "did you mean 'crop'");
+  expect_refused(run(prepare + "crop=1,2,3"), "X0,Y0,Z0");
+  expect_refused(run(prepare + "crop=90,90,90,99,99,99"), "no sample");
+  expect_refused(run(prepare + "slices=1,spline"), "lanczos");
+  expect_refused(run(prepare + "median=1.5"), "samples");
+  expect_refused(run(prepare + "gaussian=-1"), "sigma");
+  expect_refused(run(prepare + "restore=" + at("scan.nrrd")), "scan.nrrd");
+  expect_refused(run("prepare " + at("scan.nrrd") + " -o " + at("x.stl") + " --step median=1"), ".nrrd");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.nrrd"));
+}
+
+}  // namespace
+}  // namespace octotomy::planner

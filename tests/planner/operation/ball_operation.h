@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "planner/plan/evaluate.h"
+#include "tests/planner/ball_scan.h"
+#include "voxel/scan/write_scene.h"
+
+namespace octotomy::tests {
+
+constexpr double ball_radius_mm = 20.0;
+
+/// A plan on a ball of 20 mm about the origin, in voxels of 1 mm: the object "ball", then the steps.
+inline planner::Plan ball_plan(const TestFolder& folder, const std::string& steps) {
+  voxel::write_scene(ball_scene(ball_radius_mm), folder / "ball.nrrd");
+  return planner::parse_plan(R"({"octotomy_plan": 1, "name": "ball", "scans": {"ct": {"path": "ball.nrrd"}},
+      "universe": {"voxel_mm": 1.0}, "steps": [{"id": "ball", "do": "window", "scan": "ct", "low": 0}, )" +
+                                 steps + "]}",
+                             folder.path());
+}
+
+/// Both kernels have the volume within `share` of the truth, and their certificate passes.
+inline void expect_certified(const planner::Object& object, double truth_mm3, double share) {
+  EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  ASSERT_TRUE(object.mesh.measures) << object.id << testing::PrintToString(object.findings);
+  EXPECT_NEAR(object.mesh.measures->volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  ASSERT_TRUE(object.certificate) << object.id;
+  EXPECT_EQ(verify::to_string(object.certificate->verdict), "PASS")
+      << object.id << testing::PrintToString(object.certificate->reasons);
+}
+
+/// The mesh kernel has the volume within `share` of the truth, its voxels too, and there is no certificate.
+inline void expect_of_mesh(const planner::Object& object, double truth_mm3, double share) {
+  ASSERT_TRUE(object.mesh.measures) << object.id << testing::PrintToString(object.findings);
+  EXPECT_NEAR(object.mesh.measures->volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  EXPECT_FALSE(object.certificate) << object.id;
+}
+
+/// The refusal of a plan with these steps; empty where it is read.
+inline std::string ball_refusal(const TestFolder& folder, const std::string& steps) {
+  try {
+    ball_plan(folder, steps);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace octotomy::tests

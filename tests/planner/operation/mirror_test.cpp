@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "tests/planner/operation/ball_operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+using namespace tests;
+
+TEST(MirrorStep, AnImageLiesBehindThePlaneAndItsImageIsTheObject) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+        "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cap", "do": "combine", "expression": "ball & cut"},
+      {"id": "twin", "do": "mirror", "object": "cap", "point_mm": [0, 0, 1], "normal": [0, 0, 2]},
+      {"id": "back", "do": "mirror", "object": "twin", "point_mm": [0, 0, 1], "normal": [0, 0, 1]})"));
+  const double cap = cap_mm3(ball_radius_mm, 5.0);
+  expect_certified(evaluation.object("twin"), cap, 0.05);
+  const glm::dvec3 before = *evaluation.object("cap").mesh.measures->centroid_mm;
+  const glm::dvec3 after = *evaluation.object("twin").mesh.measures->centroid_mm;
+  EXPECT_NEAR(after.z, 2.0 - before.z, 1e-9);
+  EXPECT_NEAR(evaluation.object("twin").voxel.measures.centroid_mm->z, after.z, 0.5);
+  EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("cap").voxel.octree);
+  EXPECT_GT(evaluation.object("twin").mesh.measures->volume_mm3, 0.0) << "the image is inside out";
+}
+
+TEST(MirrorStep, ANormalWithoutLengthIsRefused) {
+  const TestFolder folder;
+  EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "mirror", "object": "ball", "normal": [0, 0, 0]})")
+                .find("no direction"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace octotomy::planner

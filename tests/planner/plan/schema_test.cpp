@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "planner/plan/plan.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Whether a value fits a schema of the words that plan_schema() uses; the first misfit is said in `why`.
+bool fits(const Json& value, const Json& schema, const std::string& where, std::string& why) {
+  const auto misfit = [&](const std::string& what) {
+    if (why.empty()) why = where + ": " + what;
+    return false;
+  };
+  if (schema.contains("const") && value != schema["const"]) return misfit("is not " + schema["const"].dump());
+  if (schema.contains("enum") &&
+      std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end())
+    return misfit("is none of " + schema["enum"].dump());
+  for (const char* choice : {"anyOf", "oneOf"})
+    if (schema.contains(choice)) {
+      std::string reasons;
+      for (const Json& one : schema[choice]) {
+        std::string reason;
+        if (fits(value, one, where, reason)) return true;
+        reasons += "\n  " + one.value("title", "") + ": " + reason;
+      }
+      return misfit("fits no alternative" + reasons);
+    }
+  if (schema.contains("type")) {
+    const auto is = [&](const std::string& type) {
+      return type == "object"    ? value.is_object()
+             : type == "array"   ? value.is_array()
+             : type == "string"  ? value.is_string()
+             : type == "boolean" ? value.is_boolean()
+             : type == "null"    ? value.is_null()
+             : type == "integer" ? value.is_number() && value.get<double>() == std::trunc(value.get<double>())
+                                 : value.is_number();
+    };
+    const Json types = schema["type"].is_array() ? schema["type"] : Json::array({schema["type"]});
+    if (std::none_of(types.begin(), types.end(),
+                     [&](const Json& type) { return is(type.get<std::string>()); }))
+      return misfit("is no " + schema["type"].dump());
+  }
+  if (value.is_number()) {
+    const double number = value.get<double>();
+    if (number <= schema.value("exclusiveMinimum", -1e300) || number < schema.value("minimum", -1e300) ||
+        number > schema.value("maximum", 1e300) || number >= schema.value("exclusiveMaximum", 1e300))
+      return misfit("is out of its range");
+  }
+  if (value.is_array()) {
+    if (value.size() < schema.value("minItems", 0u) || value.size() > schema.value("maxItems", 1000000u))
+      return misfit("has too few or too many entries");
+    for (std::size_t i = 0; schema.contains("items") && i < value.size(); ++i)
+      if (!fits(value[i], schema["items"], where + "[" + std::to_string(i) + "]", why)) return false;
+  }
+  if (value.is_object()) {
+    if (value.size() < schema.value("minProperties", 0u)) return misfit("has too few keys");
+    for (const Json& name : schema.value("required", Json::array()))
+      if (!value.contains(name.get<std::string>())) return misfit("lacks " + name.dump());
+    for (const auto& [key, entry] : value.items()) {
+      const Json properties = schema.value("properties", Json::object());
+      const Json others = schema.value("additionalProperties", Json(true));
+      if (properties.contains(key)) {
+        if (!fits(entry, properties[key], where + "/" + key, why)) return false;
+      } else if (others.is_object()) {
+        if (!fits(entry, others, where + "/" + key, why)) return false;
+      } else if (others == false) {
+        return misfit("does not know " + key);
+      }
+    }
+  }
+  return true;
+}
+
+Json schema() {
+  return Json::parse(plan_schema().dump());
+}
+
+TEST(Schema, EveryPlanOfTheProjectFits) {
+  int plans = 0;
+  for (const char* folder : {"/planner", "/tests/planner/data"})
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(OCTOTOMY_SOURCE_DIR) + folder)) {
+      if (!entry.path().filename().string().ends_with(".plan.json")) continue;
+      std::ifstream file(entry.path());
+      std::string why;
+      EXPECT_TRUE(fits(Json::parse(file), schema(), "", why)) << entry.path() << why;
+      ++plans;
+    }
+  EXPECT_GE(plans, 3);
+}
+
+TEST(Schema, EveryExampleOfAnOperationFitsItsOwnAlternative) {
+  for (const Json& step : schema()["properties"]["steps"]["items"]["anyOf"]) {
+    std::string why;
+    EXPECT_TRUE(fits(step["examples"][0], step, step["title"], why)) << why;
+  }
+}
+
+TEST(Schema, ASpoiledPlanDoesNotFit) {
+  std::ifstream file(std::string(OCTOTOMY_SOURCE_DIR) + "/planner/le_fort_i.plan.json");
+  const Json plan = Json::parse(file);
+  const auto refuses = [&](const char* pointer, const Json& value) {
+    Json spoiled = plan;
+    spoiled[Json::json_pointer(pointer)] = value;
+    std::string why;
+    EXPECT_FALSE(fits(spoiled, schema(), "", why)) << pointer << " = " << value;
+  };
+  refuses("/steps/0/do", "windw");
+  refuses("/steps/0/low", "300");
+  refuses("/steps/0/lower", 300);
+  refuses("/steps/4/rotate/axis", {1, 0});
+  refuses("/universe/voxel_mm", 0);
+  refuses("/scans", Json::object());
+  refuses("/octotomy_plan", 2);
+}
+
+}  // namespace
+}  // namespace octotomy::planner

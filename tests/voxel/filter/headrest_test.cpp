@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/filter/headrest.h"
+
+#include <gtest/gtest.h>
+#include <numbers>
+#include <tbb/global_control.h>
+
+#include "tests/voxel/field_scene.h"
+#include "voxel/filter/components.h"
+
+namespace octotomy::voxel {
+namespace {
+
+using tests::field_scene;
+using tests::for_each_index;
+using tests::sample_at;
+
+const Lattice lattice = axis_aligned_lattice({70, 80, 30}, {1, 1, 2}, {-35, -40, -29});
+constexpr double head_radius_mm = 22.0;
+const glm::dvec3 head_mm(0, -8, 0);
+
+bool in_head(const glm::dvec3& p) {
+  return glm::distance(p, head_mm) < head_radius_mm;
+}
+bool in_tooth(const glm::dvec3& p) {  // apart from the head, but near it
+  return glm::distance(p, head_mm + glm::dvec3(0, -27, 0)) < 3.0;
+}
+// A shell behind the head, `gap_mm` from it, wider than the head.
+bool in_rest(const glm::dvec3& p, double gap_mm) {
+  const double surface = head_mm.y + head_radius_mm + gap_mm;
+  return p.y >= surface && p.y < surface + 4 && std::abs(p.x) < 34;
+}
+
+Scene scanned(double gap_mm) {
+  return field_scene<std::int16_t>(lattice, [&](const glm::dvec3& p) {
+    if (in_head(p)) return 40.0;
+    if (in_tooth(p)) return 2000.0;
+    if (in_rest(p, gap_mm)) return 100.0;
+    if (in_rest(p + glm::dvec3(0, 1, 0), gap_mm) || in_rest(p - glm::dvec3(0, 1, 0), gap_mm)) return -600.0;
+    return -1000.0;
+  });
+}
+
+// The numbers of solid samples of the head (or tooth) and of the rest.
+std::pair<int, int> solid(const Scene& scene, double gap_mm) {
+  std::pair<int, int> counts{0, 0};
+  for_each_index(scene.lattice, 0, [&](const glm::ivec3& p) {
+    const glm::dvec3 p_mm = scene.lattice.lps_mm(p);
+    if (sample_at(scene, p) < -300) return;
+    counts.first += in_head(p_mm) || in_tooth(p_mm);
+    counts.second += in_rest(p_mm, gap_mm) && !in_head(p_mm);
+  });
+  return counts;
+}
+
+TEST(Headrest, ApartFromTheHeadIsTakenOutWithItsRimAndTheHeadStays) {
+  const Scene scene = scanned(5.0);
+  const auto [head_before, rest_before] = solid(scene, 5.0);
+  ASSERT_GT(rest_before, 5000);
+  const HeadrestRemoval removal = remove_headrest(scene, {});
+  EXPECT_EQ(removal.parts, 1U);
+  EXPECT_EQ(solid(removal.scene, 5.0), std::make_pair(head_before, 0));
+  EXPECT_EQ(removal.solid_mm3, 2.0 * rest_before);
+  // The rim of partial volume, -600, is gone too.
+  for_each_index(lattice, 0, [&](const glm::ivec3& p) {
+    const double sample = sample_at(removal.scene, p);
+    ASSERT_TRUE(sample == 40 || sample == 2000 || sample == -1000) << sample;
+  });
+  EXPECT_GT(removal.voxels, removal.solid.voxel_count());
+}
+
+TEST(Headrest, ComesBackBitByBit) {
+  const Scene scene = scanned(5.0);
+  HeadrestRemoval removal = remove_headrest(scene, {});
+  ASSERT_NE(std::get<Int16Samples>(removal.scene.samples), std::get<Int16Samples>(scene.samples));
+  EXPECT_EQ(restore(removal.scene, removal.removed), removal.voxels);
+  EXPECT_EQ(std::get<Int16Samples>(removal.scene.samples), std::get<Int16Samples>(scene.samples));
+  // Not into another scan.
+  Scene moved = scene;
+  moved.lattice.lps_from_voxel[3].x += 1.0;
+  EXPECT_THROW(restore(moved, removal.removed), std::invalid_argument);
+}
+
+TEST(Headrest, ThatTouchesTheHeadIsCutOffWhereAsked) {
+  const Scene scene = scanned(-1.0);  // the head lies a millimetre deep in it
+  EXPECT_EQ(components(remove_headrest(scene, {}).solid).voxel_counts.size(), 0U);
+  HeadrestOptions options;
+  options.detach_mm = 4.0;
+  options.near_mm = 8.0;
+  const auto [head_before, rest_before] = solid(scene, -1.0);
+  const HeadrestRemoval removal = remove_headrest(scene, options);
+  const auto [head_after, rest_after] = solid(removal.scene, -1.0);
+  EXPECT_GE(head_after, head_before * 0.99);
+  EXPECT_LE(rest_after, rest_before * 0.12);  // a foot where they touched
+}
+
+TEST(Headrest, KeepsPartsNearTheHeadAndPartsThatAreNamed) {
+  const Scene scene = scanned(5.0);
+  HeadrestOptions options;
+  const HeadrestRemoval usual = remove_headrest(scene, options);
+  EXPECT_EQ(sample_at(usual.scene, glm::ivec3(glm::round(lattice.voxel(head_mm + glm::dvec3(0, -27, 0))))),
+            2000);
+  options.near_mm = 1.0;
+  EXPECT_EQ(remove_headrest(scene, options).parts, 2U);  // the tooth, too
+  options.keep_mm = {head_mm + glm::dvec3(0, -27, 0)};
+  EXPECT_EQ(remove_headrest(scene, options).parts, 1U);
+}
+
+TEST(Headrest, IsTheSameOnOneThreadAndOnTwo) {
+  const Scene scene = scanned(3.0);
+  const auto on = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return std::get<Int16Samples>(remove_headrest(scene, {}).scene.samples);
+  };
+  EXPECT_EQ(on(1), on(2));
+}
+
+TEST(Headrest, RefusesWhatItCannotJudge) {
+  Scene scene = scanned(5.0);
+  HeadrestOptions options;
+  options.threshold = 4000;
+  EXPECT_THROW(remove_headrest(scene, options), std::runtime_error);
+  options = {};
+  options.near_mm = -1;
+  EXPECT_THROW(remove_headrest(scene, options), std::invalid_argument);
+  options = {};
+  std::stop_source stop;
+  stop.request_stop();
+  options.progress.stop = stop.get_token();
+  EXPECT_THROW(remove_headrest(scene, options), Stopped);
+  scene.samples = FloatSamples(lattice.sample_count());
+  EXPECT_THROW(remove_headrest(scene, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

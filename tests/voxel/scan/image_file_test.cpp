@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/image_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+#include "tests/file_bytes.h"
+#include "tests/voxel/scratch_folder.h"
+
+namespace octotomy::voxel {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::ScratchFolder;
+
+constexpr glm::ivec2 size_px(48, 32);
+
+/// Red grows to the right, green downwards; so neither a flip nor an exchange of channels goes unseen.
+std::vector<std::uint8_t> ramp() {
+  std::vector<std::uint8_t> rgb;
+  for (int y = 0; y < size_px.y; ++y)
+    for (int x = 0; x < size_px.x; ++x) {
+      rgb.push_back(static_cast<std::uint8_t>(5 * x));
+      rgb.push_back(static_cast<std::uint8_t>(7 * y));
+      rgb.push_back(30);
+    }
+  return rgb;
+}
+
+std::vector<std::uint8_t> decode(const fs::path& path) {
+  const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path.string());
+  if (!in) throw std::runtime_error("not an image: " + OIIO::geterror());
+  EXPECT_EQ(in->spec().width, size_px.x);
+  EXPECT_EQ(in->spec().height, size_px.y);
+  EXPECT_EQ(in->spec().nchannels, 3);
+  std::vector<std::uint8_t> rgb(std::size_t{3} * size_px.x * size_px.y);
+  in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rgb.data());
+  return rgb;
+}
+
+TEST(WriteImage, PngKeepsEveryPixel) {
+  const ScratchFolder folder;
+  write_image(folder / "ramp.png", size_px, ramp());
+  EXPECT_EQ(decode(folder / "ramp.png"), ramp());
+}
+
+TEST(WriteImage, LossyFormatsStayNearThePicture) {
+  const ScratchFolder folder;
+  for (const char* name : {"ramp.jpg", "ramp.JPEG", "ramp.webp"}) {
+    write_image(folder / name, size_px, ramp());
+    const std::vector<std::uint8_t> rgb = decode(folder / name);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < rgb.size(); ++i) sum += std::abs(rgb[i] - ramp()[i]);
+    EXPECT_LT(sum / static_cast<double>(rgb.size()), 4.0) << name;  // halved chroma moves by 2 to 3 of 255
+  }
+}
+
+TEST(EncodeImage, GivesTheBytesThatWriteImageWrites) {
+  const ScratchFolder folder;
+  for (const std::string format : {"png", "jpeg", "webp"}) {
+    const std::vector<std::uint8_t> encoded = encode_image(format, size_px, ramp());
+    write_image(folder / ("ramp." + format), size_px, ramp());
+    EXPECT_EQ(std::string(encoded.begin(), encoded.end()), tests::bytes_of(folder / ("ramp." + format)))
+        << format;
+  }
+}
+
+TEST(EncodeImage, RefusesUnknownFormatsAndWrongSizes) {
+  EXPECT_THROW(encode_image("dicom", size_px, ramp()), std::runtime_error);
+  EXPECT_THROW(encode_image("png", {47, 32}, ramp()), std::invalid_argument);
+  EXPECT_THROW(encode_image("png", {-48, -32}, ramp()), std::invalid_argument);
+  EXPECT_THROW(write_image("/nowhere/at/all.png", size_px, ramp()), std::runtime_error);
+  EXPECT_THROW(write_image("no_extension", size_px, ramp()), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Scans without a patient frame, from images and raw files; and NIfTI-2, which has one.
+#include <OpenImageIO/imageio.h>
+#include <cstring>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include "tests/voxel/linear_scene.h"
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::voxel {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::ScratchFolder;
+using tests::verdict;
+
+const glm::ivec3 dims(7, 5, 12);
+
+std::int16_t ramp(int x, int y, int z) {
+  return static_cast<std::int16_t>(100 * z - 20 * y + 3 * x - 500);
+}
+
+template <typename Sample>
+std::vector<Sample> page(int z, int offset) {
+  std::vector<Sample> samples;
+  for (int y = 0; y < dims.y; ++y)
+    for (int x = 0; x < dims.x; ++x) samples.push_back(static_cast<Sample>(ramp(x, y, z) + offset));
+  return samples;
+}
+
+template <typename Sample>
+void write_page(const fs::path& path, OIIO::TypeDesc type, int z, int offset) {
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path.string());
+  ASSERT_TRUE(out && out->open(path.string(), OIIO::ImageSpec(dims.x, dims.y, 1, type)));
+  const std::vector<Sample> samples = page<Sample>(z, offset);
+  ASSERT_TRUE(out->write_image(type, samples.data()) && out->close());
+}
+
+ReadOptions spaced() {
+  ReadOptions options;
+  options.spacing_mm = glm::dvec3(0.5, 0.75, 1.25);
+  return options;
+}
+
+void expect_ramp(const Scene& scene, int offset) {
+  ASSERT_EQ(scene.lattice.dims, dims);
+  EXPECT_EQ(scene.lattice.spacing_mm(), glm::dvec3(0.5, 0.75, 1.25));
+  EXPECT_TRUE(scene.lattice.right_handed());
+  const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  std::size_t i = 0;
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) ASSERT_EQ(samples[i++], ramp(x, y, z) + offset) << x << y << z;
+  EXPECT_EQ(verdict(scene, "orientation"), Verdict::Warn);
+}
+
+std::string reason_of(const fs::path& path, const ReadOptions& options) {
+  try {
+    read_scene(path, options);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+TEST(ReadImageStack, TakesTheFilesOfAFolderInTheOrderOfTheirNumbers) {
+  const ScratchFolder folder;
+  // Without leading zeros, so that the order of letters is another.
+  for (int z = 0; z < dims.z; ++z)
+    write_page<std::uint16_t>(folder / ("slice" + std::to_string(z) + ".png"), OIIO::TypeDesc::UINT16, z,
+                              700);
+  expect_ramp(read_scene(folder.path(), spaced()), 700);
+  expect_ramp(read_scene(folder / "slice*.png", spaced()), 700);
+  EXPECT_EQ(read_scene(folder / "slice1?.png", spaced()).lattice.dims.z, 2);
+  EXPECT_NE(reason_of(folder.path(), {}).find("--spacing"), std::string::npos);
+  EXPECT_NE(reason_of(folder / "none*.png", spaced()).find("no such file"), std::string::npos);
+}
+
+TEST(ReadImageStack, TakesThePagesOfOneTiffWithTheirSigns) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "stack.tif";
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path.string());
+  const OIIO::ImageSpec spec(dims.x, dims.y, 1, OIIO::TypeDesc::INT16);
+  for (int z = 0; z < dims.z; ++z) {
+    ASSERT_TRUE(out->open(path.string(), spec,
+                          z == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage));
+    const auto samples = page<std::int16_t>(z, 0);
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::INT16, samples.data()));
+  }
+  ASSERT_TRUE(out->close());
+  expect_ramp(read_scene(path, spaced()), 0);
+}
+
+TEST(ReadImageStack, RefusesColourAndMixedSizes) {
+  const ScratchFolder folder;
+  write_page<std::uint16_t>(folder / "a1.png", OIIO::TypeDesc::UINT16, 0, 700);
+  {
+    const std::string path = folder / "a2.png";
+    const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out->open(path, OIIO::ImageSpec(4, 4, 1, OIIO::TypeDesc::UINT16)));
+    const std::vector<std::uint16_t> samples(16, 1);
+    ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT16, samples.data()) && out->close());
+  }
+  EXPECT_NE(reason_of(folder.path(), spaced()).find("differs in size"), std::string::npos);
+  const std::string path = folder / "colour.png";
+  const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(path);
+  ASSERT_TRUE(out->open(path, OIIO::ImageSpec(4, 4, 3, OIIO::TypeDesc::UINT8)));
+  std::vector<std::uint8_t> samples(48, 9);
+  samples[5] = 200;
+  ASSERT_TRUE(out->write_image(OIIO::TypeDesc::UINT8, samples.data()) && out->close());
+  EXPECT_NE(reason_of(path, spaced()).find("colour"), std::string::npos);
+}
+
+template <typename Sample>
+std::string raw_bytes(bool big_endian, int offset = 0) {
+  std::string bytes;
+  for (int z = 0; z < dims.z; ++z)
+    for (const Sample sample : page<Sample>(z, offset)) {
+      std::string one(sizeof(Sample), '\0');
+      std::memcpy(one.data(), &sample, sizeof(Sample));
+      if (big_endian) std::reverse(one.begin(), one.end());
+      bytes += one;
+    }
+  return bytes;
+}
+
+TEST(ReadRaw, ReadsEveryTypeInEitherByteOrderAfterAnOffset) {
+  const ScratchFolder folder;
+  const auto check = [&]<typename Sample>(Sample, SampleType type, int offset) {
+    for (const bool big_endian : {false, true}) {
+      std::ofstream(folder / "scan.raw", std::ios::binary)
+          << std::string("head") + raw_bytes<Sample>(big_endian, offset);
+      ReadOptions options = spaced();
+      options.raw = RawLayout{dims, type, big_endian, 4};
+      expect_ramp(read_scene(folder / "scan.raw", options), offset);
+    }
+  };
+  check(std::int16_t{}, SampleType::Int16, 0);
+  check(std::uint16_t{}, SampleType::UInt16, 900);
+  check(std::int32_t{}, SampleType::Int32, 0);
+  check(std::uint32_t{}, SampleType::UInt32, 900);
+  check(float{}, SampleType::Float, 0);
+  check(double{}, SampleType::Double, 0);
+}
+
+TEST(ReadRaw, RefusesAFileThatHasNotTheBytesThatItsLayoutTakes) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "scan.raw", std::ios::binary) << raw_bytes<std::int16_t>(false);
+  ReadOptions options = spaced();
+  options.raw = RawLayout{dims, SampleType::Int32};
+  EXPECT_NE(reason_of(folder / "scan.raw", options).find("840 bytes"), std::string::npos)
+      << reason_of(folder / "scan.raw", options);
+  options.raw = RawLayout{glm::ivec3(1 << 20), SampleType::Double};
+  EXPECT_NE(reason_of(folder / "scan.raw", options).find("check dims"), std::string::npos);
+  options.raw = RawLayout{dims, SampleType::Int16};
+  options.spacing_mm.reset();
+  EXPECT_NE(reason_of(folder / "scan.raw", options).find("--spacing"), std::string::npos);
+}
+
+// A NIfTI-2 file of the ramp with an affine that mirrors x and exchanges y and z.
+std::string nifti2(bool big_endian, bool sform) {
+  std::string bytes(544, '\0');
+  const auto put = [&](std::size_t at, auto value) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    if (big_endian) std::reverse(std::begin(raw), std::end(raw));
+    std::memcpy(&bytes[at], raw, sizeof value);
+  };
+  put(0, std::int32_t{540});
+  std::memcpy(&bytes[4], "n+2\0\r\n\032\n", 8);
+  put(12, std::int16_t{4});
+  put(14, std::int16_t{16});
+  const std::int64_t lengths[] = {3, dims.x, dims.y, dims.z, 1, 1, 1, 1};
+  for (std::size_t i = 0; i < 8; ++i) put(16 + 8 * i, lengths[i]);
+  const double steps[] = {1.0, 0.5, 0.75, 1.25, 0, 0, 0, 0};
+  for (std::size_t i = 0; i < 8; ++i) put(104 + 8 * i, steps[i]);
+  put(168, std::int64_t{544});
+  put(176, 2.0);
+  put(184, 5.0);
+  if (sform) {
+    put(348, std::int32_t{1});
+    const double rows[3][4] = {{-0.5, 0, 0, 10}, {0, 0, 1.25, -20}, {0, 0.75, 0, 30}};
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 4; ++c) put(400 + 32 * r + 8 * c, rows[r][c]);
+  } else {
+    put(344, std::int32_t{1});  // half a turn about z: (b, c, d) = (0, 0, 1)
+    put(368, 1.0);
+    put(376, 10.0);
+    put(384, -20.0);
+    put(392, 30.0);
+  }
+  return bytes + raw_bytes<std::int16_t>(big_endian);
+}
+
+TEST(ReadNifti2, TurnsItsAffinesIntoLpsAndAppliesItsSlope) {
+  const ScratchFolder folder;
+  for (const bool big_endian : {false, true})
+    for (const bool sform : {false, true}) {
+      SCOPED_TRACE(std::to_string(big_endian) + std::to_string(sform));
+      std::ofstream(folder / "scan.nii", std::ios::binary) << nifti2(big_endian, sform);
+      const Scene scene = read_scene(folder / "scan.nii");
+      ASSERT_EQ(scene.lattice.dims, dims);
+      EXPECT_EQ(glm::dvec3(scene.lattice.lps_from_voxel[3]), glm::dvec3(-10, 20, 30));
+      EXPECT_LT(glm::distance(glm::dvec3(scene.lattice.lps_from_voxel[0]), glm::dvec3(0.5, 0, 0)), 1e-12);
+      EXPECT_LT(glm::distance(glm::dvec3(scene.lattice.lps_from_voxel[1]),
+                              sform ? glm::dvec3(0, 0, 0.75) : glm::dvec3(0, 0.75, 0)),
+                1e-12);
+      EXPECT_LT(glm::distance(glm::dvec3(scene.lattice.lps_from_voxel[2]),
+                              sform ? glm::dvec3(0, -1.25, 0) : glm::dvec3(0, 0, 1.25)),
+                1e-12);
+      EXPECT_EQ(std::get<voxel::Int16Samples>(scene.samples)[8], 2 * ramp(1, 1, 0) + 5);
+    }
+}
+
+TEST(ReadNifti2, ReadsItPackedAndRefusesItDamaged) {
+  const ScratchFolder folder;
+  const std::string whole = nifti2(false, true);
+  const gzFile out = gzopen((folder / "scan.nii.gz").c_str(), "wb");
+  gzwrite(out, whole.data(), static_cast<unsigned>(whole.size()));
+  gzclose(out);
+  EXPECT_EQ(read_scene(folder / "scan.nii.gz").lattice.dims, dims);
+  for (const std::size_t keep : {std::size_t{100}, std::size_t{541}, whole.size() - 1}) {
+    std::ofstream(folder / "cut.nii", std::ios::binary) << whole.substr(0, keep);
+    EXPECT_THROW(read_scene(folder / "cut.nii"), std::runtime_error) << keep;
+  }
+  // Every byte of the header spoiled in turn: read or refused, and nothing more allocated than the file
+  // holds.
+  int refused = 0;
+  for (std::size_t at = 0; at < 540; ++at) {
+    std::string mutant = whole;
+    mutant[at] = static_cast<char>(mutant[at] ^ 0x7f);
+    std::ofstream(folder / "mutant.nii", std::ios::binary) << mutant;
+    refused += reason_of(folder / "mutant.nii", {}) != "nothing was thrown";
+  }
+  EXPECT_GT(refused, 40);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

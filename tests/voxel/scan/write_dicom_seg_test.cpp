@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/write_dicom_seg.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/codes/run_length.h"
+#include "voxel/scan/dicom_file.h"
+
+namespace octotomy::voxel {
+namespace {
+
+Universe universe_of_depth(int depth) {
+  Universe universe;
+  universe.depth = depth;
+  return universe;
+}
+
+/// The attributes and the packed pixels of a written segmentation.
+struct Written {
+  std::string bytes;
+  DicomFile file() const { return {bytes, bytes.size()}; }
+  bool pixel(std::size_t i) const { return ((bytes[file().raw_pixels()->at + i / 8] >> (i % 8)) & 1) != 0; }
+};
+
+Written written(const Octree& object, const DicomSegOptions& options = {}) {
+  const tests::ScratchFolder folder;
+  write_dicom_seg(object, folder / "x.dcm", options);
+  std::ifstream in(folder / "x.dcm", std::ios::binary);
+  return {{std::istreambuf_iterator<char>(in), {}}};
+}
+
+TEST(WriteDicomSeg, FramesFollowEachOtherWithoutGapsBetweenTheirBits) {
+  // Rows 1 and 2 of planes 1 and 3: a rectangle of 3 x 2 pixels, six bits a frame.
+  const auto index = [](std::uint64_t x, std::uint64_t y, std::uint64_t z) { return x + 8 * (y + 8 * z); };
+  const RunLength runs{
+      universe_of_depth(3),
+      {{index(2, 1, 1), index(3, 1, 1)}, {index(4, 2, 1), index(4, 2, 1)}, {index(2, 2, 3), index(4, 2, 3)}}};
+  const Written seg = written(octree_of(runs));
+  const DicomFile file = seg.file();
+  EXPECT_EQ(file.text(0x00280008), "2");
+  EXPECT_EQ(file.unsigned_short(0x00280010), 2);
+  EXPECT_EQ(file.unsigned_short(0x00280011), 3);
+  ASSERT_EQ(file.raw_pixels()->length, 2u);
+  std::string bits;
+  for (std::size_t i = 0; i < 12; ++i) bits += seg.pixel(i) ? '1' : '0';
+  EXPECT_EQ(bits,
+            "110001"
+            "000111");
+  const std::vector<DicomFile> frames = file.items(0x52009230);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1].items(0x00209113).front().decimals(0x00200032), (std::vector<double>{2, 1, 3}));
+}
+
+TEST(WriteDicomSeg, OneVoxelIsOnePixel) {
+  const Written seg = written(octree_of(RunLength{universe_of_depth(3), {{100, 100}}}));
+  EXPECT_EQ(seg.file().unsigned_short(0x00280010), 1);
+  EXPECT_TRUE(seg.pixel(0));
+}
+
+TEST(WriteDicomSeg, ALabelBeyondAsciiTurnsTheSourcesTextsIntoUtf8) {
+  DicomSegOptions options;
+  options.source.emplace();
+  options.source->attributes[0x00080005] = {"CS", "ISO_IR 100"};
+  options.source->attributes[0x00100010] = {"PN", "M\xfcller^Eva"};
+  const Octree object = Octree::full(universe_of_depth(2));
+  EXPECT_EQ(written(object, options).file().text(0x00100010), "M\xfcller^Eva") << "the source's own bytes";
+  options.label =
+      "Sch\xc3\xa4"
+      "del";
+  const Written seg = written(object, options);
+  EXPECT_EQ(seg.file().text(0x00080005), "ISO_IR 192");
+  EXPECT_EQ(seg.file().text(0x00100010), "M\xc3\xbcller^Eva");
+  EXPECT_EQ(seg.file().items(0x00620002).front().text(0x00620005), options.label);
+  options.source->attributes[0x00080005].value = "ISO_IR 999";
+  try {
+    written(object, options);
+    FAIL() << "an unknown character set was converted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Input);
+    EXPECT_NE(std::string(error.what()).find("ISO_IR 999"), std::string::npos) << error.what();
+  }
+}
+
+TEST(WriteDicomSeg, RefusesWhatItCannotSay) {
+  const tests::ScratchFolder folder;
+  Universe universe = universe_of_depth(3);
+  EXPECT_THROW(write_dicom_seg(Octree::empty(universe), folder / "x.dcm"), std::invalid_argument);
+  DicomSegOptions options;
+  options.label = std::string(65, 'x');
+  EXPECT_THROW(write_dicom_seg(Octree::full(universe), folder / "x.dcm", options), std::invalid_argument);
+  universe.lps_from_voxel[1] += 0.1 * universe.lps_from_voxel[0];
+  EXPECT_THROW(write_dicom_seg(Octree::full(universe), folder / "x.dcm"), std::invalid_argument);
+  std::stop_source stop;
+  stop.request_stop();
+  options = {};
+  options.progress.stop = stop.get_token();
+  universe.lps_from_voxel = glm::dmat4(1.0);
+  EXPECT_THROW(write_dicom_seg(Octree::full(universe), folder / "x.dcm", options), Stopped);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/write_scene.h"
+
+#include <cstring>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <stdexcept>
+
+#include "tests/file_bytes.h"
+#include "tests/voxel/linear_scene.h"
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::voxel {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::bytes_of;
+using tests::linear_scene;
+using tests::oblique_lattice;
+using tests::ScratchFolder;
+
+/// Greatest distance between the corners of two lattices' index ranges.
+double worst_shift_mm(const Lattice& a, const Lattice& b) {
+  double worst = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p = glm::dvec3(corner & 1, (corner >> 1) & 1, corner >> 2) * glm::dvec3(a.dims - 1);
+    worst = std::max(worst, glm::length(a.lps_mm(p) - b.lps_mm(p)));
+  }
+  return worst;
+}
+
+Scene half_scene(const Lattice& lattice) {
+  Scene scene = linear_scene(lattice);
+  voxel::FloatSamples samples;
+  for (const std::int16_t sample : std::get<voxel::Int16Samples>(scene.samples))
+    samples.push_back(0.5f * static_cast<float>(sample));
+  scene.samples = samples;
+  scene.meaning = Meaning::Raw;
+  scene.modality = "MR";
+  return scene;
+}
+
+class EveryFormat : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryFormat, KeepsSamplesMeaningAndTheirPlaceInThePatient) {
+  const std::string extension = GetParam();
+  for (const bool left_handed : {false, true}) {
+    const ScratchFolder folder;
+    const Scene whole = linear_scene(oblique_lattice(left_handed));
+    for (Scene written : {whole, half_scene(whole.lattice)}) {
+      const fs::path path = folder / ("scan" + extension);
+      write_scene(written, path);
+      const Scene read = read_scene(path);
+      EXPECT_EQ(read.samples, written.samples);
+      EXPECT_EQ(read.lattice.dims, written.lattice.dims);
+      EXPECT_EQ(read.meaning, written.meaning);
+      EXPECT_EQ(read.modality, written.modality);
+      EXPECT_LT(worst_shift_mm(read.lattice, written.lattice), 1e-6)
+          << extension << (left_handed ? ", left-handed" : ", right-handed");
+    }
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
+      EXPECT_FALSE(entry.is_directory()) << entry.path() << " was left behind";
+  }
+}
+
+TEST_P(EveryFormat, RemembersALabelMap) {
+  const ScratchFolder folder;
+  Scene written = linear_scene(oblique_lattice());
+  written.meaning = Meaning::Label;
+  write_scene(written, folder / (std::string("labels") + GetParam()));
+  EXPECT_EQ(read_scene(folder / (std::string("labels") + GetParam())).meaning, Meaning::Label);
+}
+
+TEST(WriteScene, BelievesANiftisHeaderWhereSomebodyChangedIt) {
+  const ScratchFolder folder;
+  const Scene written = linear_scene(oblique_lattice());
+  write_scene(written, folder / "scan.nii");
+  std::string bytes = bytes_of(folder / "scan.nii");
+  // The origin's x in the sform and the qform, by 5 mm.
+  for (const std::size_t at : {std::size_t{268}, std::size_t{292}}) {
+    float x_mm = 0.0f;
+    std::memcpy(&x_mm, bytes.data() + at, sizeof x_mm);
+    x_mm += 5.0f;
+    std::memcpy(bytes.data() + at, &x_mm, sizeof x_mm);
+  }
+  std::ofstream(folder / "moved.nii", std::ios::binary) << bytes;
+  const Scene read = read_scene(folder / "moved.nii");
+  EXPECT_NEAR(worst_shift_mm(read.lattice, written.lattice), 5.0, 1e-4);
+  EXPECT_EQ(tests::verdict(read, "geometry"), Verdict::Warn);
+}
+
+TEST_P(EveryFormat, IsRefusedWhereItsSamplesAreCutShortOrDamaged) {
+  const ScratchFolder folder;
+  write_scene(linear_scene(oblique_lattice()), folder / (std::string("scan") + GetParam()));
+  // The file with the samples is the larger one.
+  fs::path data;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
+    if (data.empty() || entry.file_size() > fs::file_size(data)) data = entry.path();
+  const std::string whole = bytes_of(data);
+  const auto is_refused = [&](const std::string& bytes) {
+    std::ofstream(data, std::ios::binary) << bytes;
+    try {
+      read_scene(folder / (std::string("scan") + GetParam()));
+    } catch (const std::runtime_error& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(is_refused(whole));
+  for (const std::size_t keep : {whole.size() / 2, whole.size() - 40})
+    EXPECT_TRUE(is_refused(whole.substr(0, keep))) << keep << " of " << whole.size();
+  if (std::string(GetParam()) == ".nii") return;  // has no checksum to see a changed byte by
+  std::string damaged = whole;
+  damaged[whole.size() * 2 / 3] = static_cast<char>(damaged[whole.size() * 2 / 3] ^ 0x55);
+  EXPECT_TRUE(is_refused(damaged));
+}
+
+INSTANTIATE_TEST_SUITE_P(WriteScene, EveryFormat,
+                         testing::Values(".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd"),
+                         [](const testing::TestParamInfo<const char*>& format) {
+                           std::string name = format.param + 1;
+                           std::erase(name, '.');
+                           return name;
+                         });
+
+Lattice sheared_lattice() {
+  Lattice lattice = axis_aligned_lattice({20, 20, 10}, {1.0, 1.0, 2.0}, {-20.0, -25.0, 10.5});
+  lattice.lps_from_voxel[2].y = 0.6;
+  return lattice;
+}
+
+TEST(WriteScene, KeepsShearInNrrdAndRefusesItWhereItCannotBeSaid) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(sheared_lattice());
+  write_scene(scene, folder / "sheared.nrrd");
+  EXPECT_LT(worst_shift_mm(read_scene(folder / "sheared.nrrd").lattice, scene.lattice), 1e-6);
+  for (const char* name : {"sheared.nii", "sheared.nii.gz", "sheared.mha", "sheared.mhd"}) {
+    EXPECT_THROW(write_scene(scene, folder / name), std::invalid_argument) << name;
+    EXPECT_FALSE(fs::exists(folder / name)) << name;
+  }
+}
+
+TEST(WriteScene, LeavesTheOldFileWhereItFails) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "scan.mha") << "precious";
+  EXPECT_THROW(write_scene(linear_scene(sheared_lattice()), folder / "scan.mha"), std::invalid_argument);
+  EXPECT_EQ(bytes_of(folder / "scan.mha"), "precious");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(WriteScene, NamesTheFolderThatIsNotThereAndTheUnknownExtension) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(oblique_lattice());
+  for (const fs::path& path : {folder / "absent" / fs::path("scan.nrrd"), folder / "scan.docx"}) {
+    try {
+      write_scene(scene, path);
+      FAIL() << path << " was written";
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(path.parent_path().string()), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
+TEST(WriteDicomSeries, WritesTheSameBytesForTheSameScene) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(oblique_lattice());
+  write_dicom_series(scene, folder / "a");
+  write_dicom_series(scene, folder / "b");
+  write_dicom_series(scene, folder / "c", {.series_description = "Another"});
+  const std::string first = bytes_of(folder / "a" / fs::path("slice_0007.dcm"));
+  ASSERT_FALSE(first.empty());
+  EXPECT_EQ(first, bytes_of(folder / "b" / fs::path("slice_0007.dcm")));
+  EXPECT_NE(first, bytes_of(folder / "c" / fs::path("slice_0007.dcm")));
+}
+
+TEST(WriteDicomSeries, PlacesEverySliceToAMillionthOfAMillimetre) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(oblique_lattice());
+  write_dicom_series(scene, folder / "series");
+  const Scene read = read_scene(folder / "series");
+  EXPECT_EQ(read.samples, scene.samples);
+  EXPECT_LT(worst_shift_mm(read.lattice, scene.lattice), 1e-6);
+}
+
+TEST(WriteDicomSeries, SaysWhereValuesAreNotHounsfield) {
+  const ScratchFolder folder;
+  Scene scene = linear_scene(oblique_lattice());
+  for (std::int16_t& sample : std::get<voxel::Int16Samples>(scene.samples))
+    sample = static_cast<std::int16_t>(std::max<int>(sample, -800));  // takes away the air that tells
+  write_dicom_series(scene, folder / "hounsfield");
+  EXPECT_EQ(read_scene(folder / "hounsfield").meaning, Meaning::Hounsfield);
+  scene.meaning = Meaning::Raw;
+  write_dicom_series(scene, folder / "raw");
+  EXPECT_EQ(read_scene(folder / "raw").meaning, Meaning::Raw);
+}
+
+TEST(WriteDicomSeries, RefusesWhatItCannotHoldAndOverwritesNothing) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(oblique_lattice());
+  EXPECT_THROW(write_dicom_series(half_scene(scene.lattice), folder / "halves"), std::invalid_argument);
+  EXPECT_FALSE(fs::exists(folder / "halves" / fs::path("slice_0001.dcm")));
+  Scene skewed = scene;
+  skewed.lattice.lps_from_voxel[1] += 0.2 * skewed.lattice.lps_from_voxel[0];
+  EXPECT_THROW(write_dicom_series(skewed, folder / "skewed"), std::invalid_argument);
+  EXPECT_THROW(write_dicom_series(scene, folder / "name", {.patient_name = std::string(65, 'x')}),
+               std::invalid_argument);
+  write_dicom_series(scene, folder / "series");
+  EXPECT_THROW(write_dicom_series(scene, folder / "series"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

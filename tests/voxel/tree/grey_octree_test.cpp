@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/tree/grey_octree.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+#include "voxel/tree/build.h"
+#include "voxel/tree/grey_node.h"
+#include "voxel/tree/octree_node.h"
+
+namespace octotomy::voxel {
+namespace {
+
+Scene ramp_scene(const Lattice& lattice, const glm::dvec4& plane) {
+  Scene scene;
+  scene.lattice = lattice;
+  voxel::Int16Samples samples;
+  for (int z = 0; z < lattice.dims.z; ++z)
+    for (int y = 0; y < lattice.dims.y; ++y)
+      for (int x = 0; x < lattice.dims.x; ++x)
+        samples.push_back(static_cast<std::int16_t>(
+            std::lround(glm::dot(plane, glm::dvec4(lattice.lps_mm(glm::dvec3(x, y, z)), 1.0)))));
+  scene.samples = samples;
+  return scene;
+}
+
+TEST(GreyOctree, KeepsEverySampleOfACoincidentScan) {
+  const Universe universe{6, glm::dmat4(1.0)};
+  const Scene scene = ramp_scene({{50, 33, 64}, universe.lps_from_voxel}, {3, -7, 11, 5});
+  const GreyOctree grey = grey_octree_of(universe, scene, -1024);
+  const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  for (int z = 0; z < 64; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const bool inside = x < 50 && y < 33;
+        const std::size_t i = static_cast<std::size_t>(x) +
+                              50U * (static_cast<std::size_t>(y) + 33U * static_cast<std::size_t>(z));
+        ASSERT_EQ(grey.sample({x, y, z}), inside ? samples[i] : -1024) << x << ' ' << y << ' ' << z;
+      }
+  EXPECT_EQ(grey.sample({-1, 0, 0}), -1024);
+  EXPECT_EQ(grey.sample({64, 0, 0}), -1024);
+}
+
+TEST(GreyOctree, TakesSamplesOverThatLieWholeVoxelsAway) {
+  const Scene scene = ramp_scene({{20, 25, 30}, glm::dmat4(1.0)}, {3, -7, 11, 5});
+  Universe universe{5, glm::dmat4(1.0)};
+  universe.lps_from_voxel[3] = glm::dvec4(-4, 3, -1, 1);
+  const GreyOctree grey = grey_octree_of(universe, scene, -1024);
+  for (int z = 0; z < 32; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) {
+        const glm::ivec3 at = glm::ivec3(x, y, z) + glm::ivec3(-4, 3, -1);
+        const bool inside = glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
+                            glm::all(glm::lessThan(at, scene.lattice.dims));
+        ASSERT_EQ(grey.sample({x, y, z}), inside ? 3 * at.x - 7 * at.y + 11 * at.z + 5 : -1024)
+            << x << ' ' << y << ' ' << z;
+        ASSERT_EQ(grey.scan().contains({x, y, z}), inside) << x << ' ' << y << ' ' << z;
+      }
+}
+
+TEST(GreyOctree, RangesHoldTheSamplesBelowThemTightly) {
+  const Universe universe{7, glm::dmat4(1.0)};
+  const GreyOctree grey =
+      grey_octree_of(universe, ramp_scene({{100, 128, 90}, universe.lps_from_voxel}, {3, -7, 11, 5}));
+  for (int height = 2; height <= root_height(7); ++height) {
+    const int edge = std::min(1 << (2 * height), 128);
+    for (int z = 0; z < 128 / edge; ++z)
+      for (int y = 0; y < 128 / edge; ++y)
+        for (int x = 0; x < 128 / edge; ++x) {
+          std::int16_t low = 32767;
+          std::int16_t high = -32768;
+          for (int k = 0; k < edge; ++k)
+            for (int j = 0; j < edge; ++j)
+              for (int i = 0; i < edge; ++i) {
+                const std::int16_t value = grey.sample(edge * glm::ivec3(x, y, z) + glm::ivec3(i, j, k));
+                low = std::min(low, value);
+                high = std::max(high, value);
+              }
+          ASSERT_EQ(grey.range(height, {x, y, z}).low, low);
+          ASSERT_EQ(grey.range(height, {x, y, z}).high, high);
+        }
+  }
+}
+
+TEST(GreyOctree, ResamplesALinearFieldExactlyFromAnyLattice) {
+  // A linear field survives trilinear interpolation; an oblique, anisotropic, mirrored lattice shows every
+  // mistake.
+  glm::dmat4 lps_from_voxel(0.0);
+  lps_from_voxel[0] = glm::dvec4(-0.8, 0.3, 0, 0);
+  lps_from_voxel[1] = glm::dvec4(0.2, 0.9, 0.1, 0);
+  lps_from_voxel[2] = glm::dvec4(0.1, -0.2, 2.0, 0);
+  lps_from_voxel[3] = glm::dvec4(30, -20, -25, 1);
+  const Lattice lattice{{60, 50, 26}, lps_from_voxel};
+  const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
+  const Scene scene = ramp_scene(lattice, {40, 60, -30, 500});
+  const GreyOctree grey = grey_octree_of(universe, scene, -3000);
+  int compared = 0;
+  for (int z = 0; z < 32; ++z)
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) {
+        const glm::dvec3 p_mm = universe.lattice().lps_mm(glm::dvec3(x, y, z));
+        const glm::dvec3 p = lattice.voxel(p_mm);
+        const bool well_inside = glm::all(glm::greaterThan(p, glm::dvec3(0.0))) &&
+                                 glm::all(glm::lessThan(p, glm::dvec3(lattice.dims - 1)));
+        const bool outside = glm::any(glm::lessThan(p, glm::dvec3(-0.5))) ||
+                             glm::any(glm::greaterThan(p, glm::dvec3(lattice.dims) - 0.5));
+        ASSERT_EQ(grey.scan().contains({x, y, z}), !outside);
+        if (outside) {
+          ASSERT_EQ(grey.sample({x, y, z}), -3000);
+        }
+        if (!well_inside) continue;
+        ++compared;
+        ASSERT_NEAR(grey.sample({x, y, z}), glm::dot(glm::dvec4(40, 60, -30, 500), glm::dvec4(p_mm, 1.0)),
+                    1.001);
+      }
+  EXPECT_GT(compared, 10000);
+}
+
+TEST(GreyOctree, OfAUniverseSmallerThanABlockHasNoScanBeyondIt) {
+  for (const int depth : {2, 3, 4}) {
+    const Universe universe{depth, glm::dmat4(1.0)};
+    const GreyOctree grey =
+        grey_octree_of(universe, ramp_scene({{30, 30, 30}, glm::dmat4(1.0)}, {1, 2, 3, 4}));
+    EXPECT_EQ(grey.scan().voxel_count(), std::uint64_t{1} << (3 * depth));
+    EXPECT_TRUE(grey.scan() == Octree::full(universe));
+  }
+}
+
+TEST(ScanBox, IsTheSmallestBoxOfSamplesOtherThanTheBackground) {
+  const Universe universe{7, glm::dmat4(1.0)};
+  Scene scene;
+  scene.lattice = {{100, 90, 80}, universe.lps_from_voxel};
+  Int16Samples samples(scene.lattice.sample_count(), -1024);
+  const auto set = [&](int x, int y, int z) {
+    samples[static_cast<std::size_t>(x + 100 * (y + 90 * z))] = 7;
+  };
+  set(3, 50, 21);
+  set(97, 49, 60);
+  scene.samples = samples;
+  const GreyOctree grey = grey_octree_of(universe, scene);
+  EXPECT_TRUE(scan_box(grey) == octree_of_box(universe, {3, 49, 21}, {97, 50, 60}));
+  EXPECT_EQ(scan_box(grey).voxel_count(), 95U * 2 * 40);
+  EXPECT_EQ(grey.scan().voxel_count(), 100U * 90 * 80);
+}
+
+TEST(GreyNode, BeyondTheScanIsEmptyInAWindowThatHoldsTheBackground) {
+  const Universe universe{5, glm::dmat4(1.0)};
+  Scene scene;
+  scene.lattice = {{20, 18, 23}, universe.lps_from_voxel};
+  scene.samples = Int16Samples(scene.lattice.sample_count(), -1000);
+  const GreyOctree grey = grey_octree_of(universe, scene);
+  const std::vector<LevelCount> levels = level_counts(grey, Window16{-1100, -800});
+  const std::vector<LevelCount> expected = level_counts(octree_of_box(universe, {0, 0, 0}, {19, 17, 22}));
+  ASSERT_EQ(levels.size(), expected.size());
+  std::uint64_t voxels = 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    EXPECT_EQ(levels[i].partial, expected[i].partial) << "level " << i + 1;
+    voxels += levels[i].full << (3 * (4 - i));
+  }
+  EXPECT_EQ(voxels, 20U * 18 * 23);
+  // A window of the background alone holds nothing.
+  EXPECT_EQ(GreyNode::root(grey, Window16{-1024, -1024}).status(), Status::Partial);
+  for (int child = 0; child < 8; ++child)
+    EXPECT_NE(GreyNode::root(grey, Window16{-1024, -1024}).child(child).status(), Status::Full);
+}
+
+TEST(GreyOctree, RefusesFloatsBeyondSixteenBits) {
+  const Universe universe{4, glm::dmat4(1.0)};
+  Scene scene;
+  scene.lattice = universe.lattice();
+  voxel::FloatSamples samples(4096, 0.0F);
+  samples[100] = 40000.0F;
+  scene.samples = samples;
+  EXPECT_THROW(grey_octree_of(universe, scene), std::invalid_argument);
+}
+
+TEST(GreyOctree, TakesLittleMoreMemoryThanItsSamples) {
+  const Universe universe{8, glm::dmat4(1.0)};
+  const GreyOctree grey =
+      grey_octree_of(universe, ramp_scene({{256, 256, 256}, universe.lps_from_voxel}, {1, 2, 3, 4}));
+  EXPECT_LT(static_cast<double>(grey.bytes_memory()), 1.15 * 2.0 * 256 * 256 * 256);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

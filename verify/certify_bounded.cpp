@@ -1,0 +1,554 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Compares an octree with a solid of separate lineage: how much may two right answers differ at most?
+// boundary_model.h has the theory and its symbols; the constants are here.
+//
+// count      Three standard deviations of a count. Against closed forms (eight solids in 60 random poses
+// each,
+//            spacings 1:1:1 to 5:1:1) the deviation was 0.8 to 1.1 of the predicted one. Narrow cones of
+//            normals predict the coherent error of nearly flat parts along the lattice.
+// flat       The sum of the displacements of planes, with its sign.
+// flat_unsure  Half a voxel for planes through centres, rims, and declared cuts that were not found.
+// border     If the solid ends with the scan, the mesh closes half a sample beyond the last one. The voxels
+//            end where their samples leave the window, at the last sample or after it: half a sample apart.
+// bent       A mesh's volume is low by c times the signed curvature integral: c is 0.14 for binary samples,
+//            0.2 to 0.28 for blurred ones and fractions, 0.32 with edges and corners if voxels are samples.
+//            0.33 is used. Samples further apart than two voxels give both kernels the same straight lines,
+//            so a spacing counts as two voxel edges at most; and as three times the finest spacing at most,
+//            because crossings of the finer lattice lines hold the facets.
+// rough      In a cell whose inside samples meet diagonally the mesh parts the corners; the interpolant that
+//            the octree samples joins some. Not derived: a CT of a head at 0.7 of its sample spacing showed
+//            0.12 of the curvature without sign.
+// rounding   Coordinates are good to a few units in the last place.
+//
+// Symmetric difference: errors that cancel in the volume count here. 0.06 s S on oblique planes between
+// saturated samples (0.02 s S on spheres), 0.33 of the curvature integral without sign, a layer for planes
+// through centres, and three standard deviations of the number of voxels in those layers.
+// Centroid and inertia: the first and second moment of each error.
+// Area: the voxels' Crofton estimate against the same formula on the mesh's triangles, so that both lose
+// alike on flats. 3 % of S for ripple (marching cubes adds up to 2.6 % to the formula's answer), 0.3 h M for
+// displaced edges, M the mean curvature integral, and the strips that displaced planes add beside their rims.
+// Distances: from the centres of the octree's boundary faces to the triangles, and from points spread over
+// the triangles to the boundary faces, weighted by area. The 95th percentile is the smallest distance that at
+// least 95 % of the area does not exceed, the larger of both directions. A right face lies anywhere within
+// half a voxel of the surface along its axis: at most half a voxel's diagonal, a quarter of an edge on
+// average.
+
+#include "verify/certify_bounded.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "brep/mesh/components.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/sample_surface.h"
+#include "brep/mesh/triangles.h"
+#include "convert/voxel/voxelise.h"
+#include "verify/boundary_model.h"
+#include "verify/voxel_boundary.h"
+#include "voxel/filter/components.h"
+#include "voxel/measure/cell_counts.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+#include "voxel/space/rounded.h"
+
+namespace octotomy::verify {
+namespace {
+
+constexpr double coverage = 3.0;
+constexpr double bent_share = 0.33;
+constexpr double rough_share = 0.12;
+constexpr double interpolation = 0.06;
+constexpr double ripple = 0.03;
+constexpr double edge_shift = 0.3;
+/// With fewer voxels across, most of the object's voxels are boundary.
+constexpr double resolved_voxels = 6.0;
+/// Relative error of a sum of many terms of one sign: some units in the last place in each kernel.
+constexpr double rounded_sums = 64.0 * std::numeric_limits<double>::epsilon();
+/// Spacing of the samples on the mesh. An isosurface's triangles are smaller and have one sample each.
+constexpr double sample_voxels = 2.0;
+/// A surface has no counterpart if the other is this many times further away than digitisation explains.
+/// Parts thinner than a voxel may be lost over two or three voxels, so this is a doubt and not a failure.
+constexpr double lost = 3.0;
+
+double longest(const glm::dvec3& edges_mm) {
+  return std::max({edges_mm.x, edges_mm.y, edges_mm.z});
+}
+
+/// Spacings for the curvature integral (see `bent` above).
+glm::dvec3 seen_spacing_mm(const glm::dvec3& sample_mm, const glm::dvec3& voxel_mm) {
+  const double finest_mm = std::min({sample_mm.x, sample_mm.y, sample_mm.z});
+  return glm::min(glm::min(sample_mm, 2.0 * voxel_mm), glm::dvec3(3.0 * finest_mm));
+}
+
+/// Distances from points to a surface, with the area that each point stands for.
+struct Weighted {
+  std::vector<glm::dvec3> points_mm;
+  std::vector<double> distances_mm, areas_mm2;
+
+  double largest() const { return distances_mm.empty() ? 0.0 : distances_mm[farthest()]; }
+  /// Precondition: there are points. Of equal ones the first.
+  std::size_t farthest() const {
+    assert(!distances_mm.empty());
+    return static_cast<std::size_t>(std::max_element(distances_mm.begin(), distances_mm.end()) -
+                                    distances_mm.begin());
+  }
+  double mean() const {
+    double sum = 0.0, area = 0.0;
+    for (std::size_t i = 0; i < distances_mm.size(); ++i) {
+      sum += distances_mm[i] * areas_mm2[i];
+      area += areas_mm2[i];
+    }
+    return area > 0.0 ? sum / area : 0.0;
+  }
+  double percentile95() const {
+    std::vector<std::size_t> order(distances_mm.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return distances_mm[a] < distances_mm[b]; });
+    const double total = std::accumulate(areas_mm2.begin(), areas_mm2.end(), 0.0);
+    double reached = 0.0;
+    for (const std::size_t i : order) {
+      reached += areas_mm2[i];
+      if (reached >= 0.95 * total) return distances_mm[i];
+    }
+    return largest();
+  }
+};
+
+/// The boundary faces as two triangles each, and their centres.
+struct Boundary {
+  brep::Triangles triangles;
+  std::vector<glm::dvec3> centres_mm;
+  std::vector<double> areas_mm2;
+};
+
+Boundary boundary_of(const voxel::Octree& octree) {
+  const voxel::Lattice lattice = octree.universe().lattice();
+  Boundary boundary;
+  for (const VoxelFace& face : voxel_boundary(octree)) {
+    const int u = (face.axis + 1) % 3, v = (face.axis + 2) % 3;
+    glm::dvec3 centre(face.voxel);
+    centre[face.axis] += 0.5 * face.side;
+    const auto first = static_cast<std::uint32_t>(boundary.triangles.points_mm.size());
+    for (const glm::dvec2& corner : {glm::dvec2(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
+      glm::dvec3 p = centre;
+      p[u] += corner.x;
+      p[v] += corner.y;
+      boundary.triangles.points_mm.push_back(lattice.lps_mm(p));
+    }
+    boundary.triangles.faces.push_back({first, first + 1, first + 2});
+    boundary.triangles.faces.push_back({first, first + 2, first + 3});
+    boundary.centres_mm.push_back(lattice.lps_mm(centre));
+    boundary.areas_mm2.push_back(glm::length(
+        glm::cross(glm::dvec3(lattice.lps_from_voxel[u]), glm::dvec3(lattice.lps_from_voxel[v]))));
+  }
+  return boundary;
+}
+
+/// Both directions: voxel faces to triangles, points spread over the triangles to voxel faces.
+struct Distances {
+  Weighted from_voxels, from_mesh;
+  brep::SurfaceSamples samples;  ///< of the mesh
+  double mean_mm() const { return std::max(from_voxels.mean(), from_mesh.mean()); }
+  double percentile95_mm() const { return std::max(from_voxels.percentile95(), from_mesh.percentile95()); }
+  double largest_mm() const { return std::max(from_voxels.largest(), from_mesh.largest()); }
+};
+
+Distances surface_distances(const voxel::Octree& octree, const brep::Mesh& mesh,
+                            const brep::SurfaceTree& tree) {
+  Boundary boundary = boundary_of(octree);
+  Distances distances;
+  distances.samples =
+      brep::sample_surface(mesh, sample_voxels * longest(octree.universe().lattice().spacing_mm()));
+  const brep::SurfaceSamples& samples = distances.samples;
+  distances.from_mesh = {samples.points_mm,
+                         brep::SurfaceTree(boundary.triangles).distances_mm(samples.points_mm),
+                         samples.areas_mm2};
+  std::vector<double> from_centres_mm = tree.distances_mm(boundary.centres_mm);
+  distances.from_voxels = {std::move(boundary.centres_mm), std::move(from_centres_mm),
+                           std::move(boundary.areas_mm2)};
+  return distances;
+}
+
+/// The place where the surfaces are farthest apart, and which kernel has a part there.
+WorstPlace worst_of(const Distances& distances, const voxel::Octree& octree, const brep::SurfaceTree& tree) {
+  const bool of_voxels = distances.from_voxels.largest() >= distances.from_mesh.largest();
+  const Weighted& farther = of_voxels ? distances.from_voxels : distances.from_mesh;
+  const std::size_t i = farther.farthest();
+  const glm::dvec3 p_mm = farther.points_mm[i];
+  const glm::dvec3 p_voxel = glm::inverse(octree.universe().lps_from_voxel) * glm::dvec4(p_mm, 1.0);
+  // A point of one surface is inside the other object if that has more there.
+  const bool mesh_has_more =
+      of_voxels ? tree.inside({p_mm}).front() != 0 : !octree.contains(glm::ivec3(glm::round(p_voxel)));
+  return {p_mm, farther.distances_mm[i], mesh_has_more ? part_of_mesh_only : part_of_voxels_only};
+}
+
+/// Removes from the mesh's side what voxels cannot show, sheets and gaps thinner than a voxel. Returns their
+/// area. A slab holds a voxel's centre near each of its points if it is as wide as the voxel's projection on
+/// its normal.
+double leave_out_thin(Distances& distances, const brep::SurfaceTree& tree, const voxel::Lattice& lattice) {
+  const brep::SurfaceSamples& samples = distances.samples;
+  std::vector<glm::dvec3> within_mm, beyond_mm;
+  for (std::size_t i = 0; i < samples.points_mm.size(); ++i) {
+    double width_mm = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      width_mm += std::abs(glm::dot(glm::dvec3(lattice.lps_from_voxel[axis]), samples.normals[i]));
+    within_mm.push_back(samples.points_mm[i] - width_mm * samples.normals[i]);
+    beyond_mm.push_back(samples.points_mm[i] + width_mm * samples.normals[i]);
+  }
+  const std::vector<std::uint8_t> thick = tree.inside(within_mm), closing = tree.inside(beyond_mm);
+  double thin_mm2 = 0.0;
+  Weighted kept;
+  for (std::size_t i = 0; i < thick.size(); ++i) {
+    if (!thick[i] || closing[i]) {
+      thin_mm2 += samples.areas_mm2[i];
+      continue;
+    }
+    kept.points_mm.push_back(samples.points_mm[i]);
+    kept.distances_mm.push_back(distances.from_mesh.distances_mm[i]);
+    kept.areas_mm2.push_back(samples.areas_mm2[i]);
+  }
+  distances.from_mesh = std::move(kept);
+  return thin_mm2;
+}
+
+/// Both answers and the bound's ingredients.
+struct Evidence {
+  voxel::Measures voxels;
+  brep::Measures mesh;
+  BoundaryModel model;
+  glm::dvec3 voxel_mm{1.0};
+  glm::dvec3 sample_mm{1.0};  ///< as seen_spacing_mm()
+  double voxel_mm3 = 1.0;
+  double unseen_mm3 = 0.0;  ///< half a voxel of cuts that were declared and not found
+  VolumeSpread border;
+};
+
+/// Half a sample times the mesh's faces on the scan's border.
+VolumeSpread border_of(const brep::Mesh& mesh, const BoundInputs& inputs, const glm::dvec3& about_mm) {
+  VolumeSpread border;
+  if (!inputs.scan_box_mm) return border;
+  const voxel::Box& box = *inputs.scan_box_mm;
+  const double near_mm = 1e3 * std::numeric_limits<double>::epsilon() *
+                         glm::length(glm::max(glm::abs(box.low_mm), glm::abs(box.high_mm)));
+  const brep::Triangles triangles = brep::triangles_of(mesh);
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
+                     &c = triangles.points_mm[face[2]];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto on = [&](double at) {
+        return std::abs(a[axis] - at) < near_mm && std::abs(b[axis] - at) < near_mm &&
+               std::abs(c[axis] - at) < near_mm;
+      };
+      if (!on(box.low_mm[axis]) && !on(box.high_mm[axis])) continue;
+      const double area_mm2 = 0.5 * glm::length(glm::cross(b - a, c - a));
+      border.add(0.5 * area_mm2 * inputs.scan_spacing_mm[axis], glm::distance((a + b + c) / 3.0, about_mm));
+    }
+  }
+  return border;
+}
+
+double count_deviation_mm3(const Evidence& evidence) {
+  return std::sqrt(evidence.model.count_mm6);
+}
+
+void derive_volume_tolerance(Certificate& certificate, const Evidence& evidence) {
+  const BoundaryModel& model = evidence.model;
+  const double reach_mm =
+      glm::length(glm::max(glm::abs(evidence.mesh.low_mm), glm::abs(evidence.mesh.high_mm)));
+  certificate.terms = {
+      {"count", "Voxels are counted by their centres, which scatters on curved and oblique boundary.",
+       "3 sqrt(sum over k of a(k) / (4 pi^2 |k|^4)), about 3 * 0.26 h^2 sqrt(S)",
+       coverage * count_deviation_mm3(evidence)},
+      {"flat", "Voxels move flat parts along the lattice to the nearest voxel face.",
+       "|sum of area * displacement|", std::abs(model.planes.mm3)},
+      {"flat_unsure",
+       "Flat parts through voxel centres, their rims, and cuts that were declared but not found may move "
+       "either way.",
+       "h/2 * area", model.unsure.mm3 + evidence.unseen_mm3},
+      {"border", "The kernels close an object that ends with the scan up to half a sample apart.",
+       "s/2 * area", evidence.border.mm3},
+      {"bent", "Triangles are chords of a curved surface.", "0.33 |integral of s^2 curvature|",
+       bent_share * std::abs(model.bent.mm3)},
+      {"rough", "One kernel joins samples that meet diagonally, the other parts them.",
+       "0.12 * integral of |s^2 curvature|", rough_share * model.bent_without_sign.mm3},
+      // Each coordinate is off by half a unit in the last place in each of several operations.
+      {"rounding", "Coordinates are rounded to double precision.", "16 eps |p| S",
+       16.0 * std::numeric_limits<double>::epsilon() * reach_mm * evidence.mesh.area_mm2}};
+  certificate.tolerance_mm3 = 0.0;
+  for (const ToleranceTerm& term : certificate.terms) certificate.tolerance_mm3 += term.value_mm3;
+}
+
+void derive_other_tolerances(Certificate& certificate, const Evidence& evidence) {
+  const BoundaryModel& model = evidence.model;
+  const double free_mm2 = std::max(model.area_mm2 - model.coherent_mm2, 0.0);
+  const double layer = interpolation * longest(evidence.sample_mm) * free_mm2 +
+                       bent_share * model.bent_without_sign.mm3 +
+                       2.0 * (model.tied_mm3 + evidence.unseen_mm3) + evidence.border.mm3;
+  certificate.symmetric_difference_tolerance_mm3 =
+      layer + coverage * std::sqrt(layer * evidence.voxel_mm3) + evidence.voxel_mm3;
+  if (evidence.mesh.volume_mm3 > 0.0 && model.area_mm2 > 0.0) {
+    const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
+    const double mm4 = coverage * std::sqrt(model.count_mm8) + glm::length(model.planes.mm4) +
+                       model.unsure.mm4 + evidence.unseen_mm3 * arm_mm + evidence.border.mm4 +
+                       bent_share * glm::length(model.bent.mm4) + rough_share * model.bent_without_sign.mm4 +
+                       certificate.terms.back().value_mm3 * arm_mm;
+    certificate.centroid_tolerance_mm = mm4 / evidence.mesh.volume_mm3;
+  }
+}
+
+/// Inertia about a point at a density of one, by the tetrahedra from the point to each triangle.
+glm::dmat3 inertia_about(const brep::Triangles& triangles, const glm::dvec3& about_mm) {
+  glm::dmat3 second(0.0);
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3 a = triangles.points_mm[face[0]] - about_mm, b = triangles.points_mm[face[1]] - about_mm,
+                     c = triangles.points_mm[face[2]] - about_mm;
+    const double six_mm3 = glm::dot(a, glm::cross(b, c));
+    // Over a tetrahedron with a corner at the origin the mean of x x' is (sum of p p' + s s') / 20, s =
+    // a+b+c.
+    const glm::dvec3 s = a + b + c;
+    second += (six_mm3 / 120.0) * (glm::outerProduct(a, a) + glm::outerProduct(b, b) +
+                                   glm::outerProduct(c, c) + glm::outerProduct(s, s));
+  }
+  return glm::dmat3(second[0][0] + second[1][1] + second[2][2]) - second;
+}
+
+Comparison area_of(const Evidence& evidence, double thin_mm2) {
+  const BoundaryModel& model = evidence.model;
+  return {"area",
+          "mm2",
+          evidence.voxels.area_crofton13_mm2,
+          model.crofton13_mm2,
+          std::abs(evidence.voxels.area_crofton13_mm2 - model.crofton13_mm2),
+          ripple * model.area_mm2 + edge_shift * longest(evidence.voxel_mm) * model.curvature_mm +
+              model.rims_mm2 + thin_mm2,
+          "0.03 S for ripple, 0.3 h M for edges, rims of flat parts, parts thinner than a voxel; both areas "
+          "by the Crofton formula of 13 directions"};
+}
+
+void compare_inertia(Certificate& certificate, const Evidence& evidence, const brep::Mesh& solid) {
+  const BoundaryModel& model = evidence.model;
+  if (!evidence.voxels.inertia_mm5 || !(evidence.mesh.volume_mm3 > 0.0)) return;
+  const glm::dmat3 inertia = inertia_about(brep::triangles_of(solid), *evidence.mesh.centroid_mm);
+  double most = 0.0, largest = 0.0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      most = std::max(most, std::abs((*evidence.voxels.inertia_mm5)[i][j] - inertia[i][j]));
+      largest = std::max(largest, std::abs(inertia[i][j]));
+    }
+  const double arm_mm = 0.5 * glm::length(evidence.mesh.high_mm - evidence.mesh.low_mm);
+  // Displaced planes meet: second order in a voxel over the least extent.
+  const glm::dvec3 extent_mm = evidence.mesh.high_mm - evidence.mesh.low_mm;
+  const double meeting = 1.0 + longest(evidence.voxel_mm) / std::min({extent_mm.x, extent_mm.y, extent_mm.z});
+  const double tolerance =
+      coverage * std::sqrt(model.count_mm10) + meeting * (model.planes_without_sign.mm5 + model.unsure.mm5) +
+      evidence.border.mm5 + evidence.unseen_mm3 * arm_mm * arm_mm +
+      (bent_share + rough_share) * model.bent_without_sign.mm5 +
+      evidence.mesh.volume_mm3 * std::pow(certificate.centroid_tolerance_mm.value_or(0.0), 2.0) +
+      certificate.terms.back().value_mm3 * arm_mm * arm_mm + rounded_sums * largest;
+  add_comparison(certificate,
+                 {"inertia", "mm5", (*evidence.voxels.inertia_mm5)[0][0], inertia[0][0], most, tolerance,
+                  "second moment of the terms, V times the centroid's tolerance squared, 64 eps",
+                  "The inertia tensors differ by up to % in a component"});
+}
+
+struct DistanceBounds {
+  double percentile95_mm = 0.0, mean_mm = 0.0;
+};
+
+DistanceBounds distance_bounds(const Evidence& evidence) {
+  const BoundaryModel& model = evidence.model;
+  const double apart_mm = 0.1 * longest(evidence.sample_mm);
+  const double free_mm2 = std::max(model.area_mm2 - model.coherent_mm2, 0.0);
+  const double layers_mm3 = model.planes_without_sign.mm3 + model.tied_mm3 + evidence.unseen_mm3 +
+                            model.unsure.mm3 + evidence.border.mm3;
+  return {0.5 * glm::length(evidence.voxel_mm) + apart_mm,
+          0.25 * longest(evidence.voxel_mm) * (1.0 + free_mm2 / model.area_mm2) / 2.0 + apart_mm +
+              layers_mm3 / model.area_mm2};
+}
+
+/// Compares area and distances. Looks for parts thinner than a voxel only if these leave a doubt.
+void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
+                      const brep::Mesh& solid) {
+  const brep::SurfaceTree tree(solid);
+  Distances distances = surface_distances(octree, solid, tree);
+  certificate.hausdorff_mm = distances.largest_mm();
+  certificate.hausdorff95_mm = distances.percentile95_mm();
+  certificate.worst = worst_of(distances, octree, tree);
+  const DistanceBounds bounds = distance_bounds(evidence);
+  const double far_mm = lost * 0.5 * (glm::length(evidence.voxel_mm) + glm::length(evidence.sample_mm));
+  Comparison area = area_of(evidence, 0.0);
+  if (!(area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
+        distances.mean_mm() <= bounds.mean_mm && distances.largest_mm() <= far_mm))
+    area = area_of(evidence, leave_out_thin(distances, tree, octree.universe().lattice()));
+  // Sheets thinner than a voxel lose their area before their volume shows it: never more than a doubt.
+  add_comparison(certificate, std::move(area), Verdict::Warn);
+  add_comparison(certificate,
+                 {.quantity = "hausdorff95",
+                  .unit = "mm",
+                  .difference = distances.percentile95_mm(),
+                  .tolerance = bounds.percentile95_mm,
+                  .formula = "half a voxel's diagonal + 0.1 s; in doubt, without parts thinner than a voxel",
+                  .statement = "Five per cent of one surface is % or more from the other"});
+  add_comparison(certificate,
+                 {.quantity = "mean distance",
+                  .unit = "mm",
+                  .difference = distances.mean_mm(),
+                  .tolerance = bounds.mean_mm,
+                  .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; in doubt, as above",
+                  .statement = "The surfaces are % apart on average"});
+  if (distances.largest_mm() > far_mm)
+    lower(certificate, Verdict::Warn, text_of(worst_of(distances, octree, tree)));
+}
+
+/// Both objects must have one topology if the voxels are the mesh's samples. The mesh parts inside corners
+/// that meet at edges and corners, and outside corners that meet at a cell's corners only. The voxels' Euler
+/// number by faces joins the latter, by a tunnel each.
+void compare_topology(Certificate& certificate, const voxel::Octree& octree, const brep::Mesh& solid) {
+  std::int64_t solid_euler = voxel::euler_numbers(octree).by_faces;
+  const std::array<std::uint64_t, 256> cells = voxel::cell_counts(octree);
+  for (unsigned corner = 0; corner < 4; ++corner)
+    solid_euler += static_cast<std::int64_t>(cells[255U - (1U << corner) - (1U << (7U - corner))]);
+  const auto twice = 2.0 * static_cast<double>(solid_euler);
+  const auto surface = static_cast<double>(brep::health(brep::triangles_of(solid), {false}).euler);
+  add_comparison(certificate, {"euler", "", twice, surface, std::abs(twice - surface), 0.0,
+                               "0: one topology; a surface has twice its solid's Euler number",
+                               "The Euler numbers of the two surfaces differ by %"});
+  const auto parts = static_cast<double>(voxel::components(octree).voxel_counts.size());
+  const std::vector<brep::Component> shells = brep::components(solid);
+  const auto solids = static_cast<double>(std::count_if(
+      shells.begin(), shells.end(), [](const brep::Component& shell) { return shell.volume_mm3 > 0.0; }));
+  add_comparison(certificate, {"components", "", parts, solids, std::abs(parts - solids), 0.0,
+                               "0: parts of voxels that touch by faces, and outer shells",
+                               "The numbers of connected parts differ by %"});
+}
+
+/// Sets `unresolved`, independent of the verdict.
+void judge_extent(Certificate& certificate, const Evidence& evidence) {
+  double extent_voxels = std::numeric_limits<double>::infinity();
+  const auto shorten = [&](const glm::dvec3& extent_mm) {
+    for (int axis = 0; axis < 3; ++axis)
+      extent_voxels = std::min(extent_voxels, extent_mm[axis] / evidence.voxel_mm[axis]);
+  };
+  if (evidence.voxels.extents) shorten(evidence.voxels.extents->high_mm - evidence.voxels.extents->low_mm);
+  if (evidence.mesh.area_mm2 > 0.0) shorten(evidence.mesh.high_mm - evidence.mesh.low_mm);
+  if (extent_voxels < resolved_voxels)
+    certificate.unresolved = {extent_voxels, "the object's smallest extent is " +
+                                                 voxel::rounded(extent_voxels) + " voxels, six are needed"};
+  if (!(evidence.mesh.area_mm2 > 0.0)) return;
+  // Twice the volume over the area is a sheet's thickness. Chance decides which voxels lie inside a sheet
+  // thinner than a voxel. The larger volume counts: both kernels must say that the object is thin.
+  const double larger_mm3 = std::max(std::abs(evidence.mesh.volume_mm3), evidence.voxels.volume_mm3);
+  const double thickness_voxels = 2.0 * larger_mm3 / evidence.mesh.area_mm2 / longest(evidence.voxel_mm);
+  if (thickness_voxels < std::min(1.0, extent_voxels))
+    certificate.unresolved = {thickness_voxels, "the object is " + voxel::rounded(thickness_voxels) +
+                                                    " voxels thick on average, one is needed"};
+}
+
+void judge_volume(Certificate& certificate, const Evidence& evidence) {
+  const voxel::Measures& voxels = evidence.voxels;
+  const brep::Measures& mesh = evidence.mesh;
+  if (mesh.volume_mm3 < 0.0)
+    lower(certificate, Verdict::Fail,
+          "The mesh is inside out: its volume is " + voxel::rounded(mesh.volume_mm3) +
+              " mm3. Reverse its triangles, or check the frame that it was read in.");
+  if ((voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
+    const bool lost_by_voxels = voxels.voxel_count == 0;
+    lower(certificate, Verdict::Fail,
+          lost_by_voxels ? "The voxel kernel's object is empty, the mesh kernel's is not."
+                         : "The mesh kernel's object is empty, the voxel kernel's is not.");
+    const glm::dvec3 low_mm = lost_by_voxels ? mesh.low_mm : voxels.extents->low_mm,
+                     high_mm = lost_by_voxels ? mesh.high_mm : voxels.extents->high_mm;
+    certificate.worst = {0.5 * (low_mm + high_mm), longest(high_mm - low_mm),
+                         lost_by_voxels ? part_of_mesh_only : part_of_voxels_only};
+  }
+  add_comparison(certificate,
+                 {"volume", "mm3", voxels.volume_mm3, mesh.volume_mm3, std::abs(certificate.difference_mm3),
+                  certificate.tolerance_mm3, "sum of the terms"});
+  add_comparison(
+      certificate,
+      {.quantity = "symmetric difference",
+       .unit = "mm3",
+       .difference = certificate.symmetric_difference_mm3,
+       .tolerance = certificate.symmetric_difference_tolerance_mm3,
+       .formula = "layers of voxels that may differ, and three standard deviations of their number",
+       .statement = "Voxels of % are inside for one kernel only"});
+  if (certificate.centroid_distance_mm && certificate.centroid_tolerance_mm)
+    add_comparison(certificate, {.quantity = "centroid",
+                                 .unit = "mm",
+                                 .difference = *certificate.centroid_distance_mm,
+                                 .tolerance = certificate.centroid_tolerance_mm,
+                                 .formula = "first moment of the terms / volume",
+                                 .statement = "The centroids are % apart"});
+}
+
+}  // namespace
+
+Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs,
+                            const voxel::Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const voxel::Lattice lattice = octree.universe().lattice();
+  Evidence evidence;
+  progress.at(0.0);
+  evidence.voxels = voxel::measure(octree);
+  progress.at(0.1);
+  evidence.mesh = brep::measure(solid);
+  evidence.voxel_mm = lattice.spacing_mm();
+  evidence.voxel_mm3 = lattice.voxel_mm3();
+  evidence.sample_mm = seen_spacing_mm(inputs.scan_spacing_mm, evidence.voxel_mm);
+  const glm::dvec3 about_mm =
+      evidence.mesh.centroid_mm.value_or(0.5 * (evidence.mesh.low_mm + evidence.mesh.high_mm));
+  progress.at(0.2);
+  evidence.model = boundary_model(solid, {lattice, evidence.sample_mm, about_mm});
+  evidence.border = border_of(solid, inputs, about_mm);
+  evidence.unseen_mm3 = glm::dot(glm::max(inputs.flat_cut_mm2 - evidence.model.flat_mm2, glm::dvec3(0.0)),
+                                 0.5 * evidence.voxel_mm);
+
+  Certificate certificate;
+  certificate.operation = inputs.operation;
+  certificate.tier = Tier::Bounded;
+  certificate.voxel = {inputs.voxel_lineage, evidence.voxels.volume_mm3, evidence.voxels.area_crofton13_mm2,
+                       evidence.voxels.centroid_mm};
+  certificate.mesh = {inputs.mesh_lineage, evidence.mesh.volume_mm3, evidence.mesh.area_mm2,
+                      evidence.mesh.centroid_mm};
+  certificate.difference_mm3 = evidence.voxels.volume_mm3 - evidence.mesh.volume_mm3;
+  derive_volume_tolerance(certificate, evidence);
+  derive_other_tolerances(certificate, evidence);
+  progress.at(0.4);
+  const voxel::Octree digitised = convert::voxelise(octree.universe(), solid);
+  const voxel::Octree either =
+      voxel::combine(octree.universe(), voxel::Expression(octree) ^ voxel::Expression(digitised));
+  certificate.symmetric_difference_mm3 = static_cast<double>(either.voxel_count()) * evidence.voxel_mm3;
+  if (evidence.voxels.centroid_mm && evidence.mesh.centroid_mm)
+    certificate.centroid_distance_mm = glm::length(*evidence.voxels.centroid_mm - *evidence.mesh.centroid_mm);
+  judge_volume(certificate, evidence);
+  if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
+    progress.at(0.5);
+    compare_surfaces(certificate, evidence, octree, solid);
+    progress.at(0.9);
+    compare_inertia(certificate, evidence, solid);
+    if (inputs.voxels_are_samples) compare_topology(certificate, octree, solid);
+  }
+  judge_extent(certificate, evidence);
+  const auto has_place = [&](const std::string& reason) { return reason.rfind("The two surfaces", 0) == 0; };
+  if (certificate.verdict != Verdict::Pass && certificate.worst &&
+      std::none_of(certificate.reasons.begin(), certificate.reasons.end(), has_place))
+    certificate.reasons.push_back(text_of(*certificate.worst));
+  progress.at(1.0);
+  certificate.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return certificate;
+}
+
+}  // namespace octotomy::verify

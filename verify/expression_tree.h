@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace octotomy::verify {
+
+/// A Boolean expression whose leaves are numbered.
+struct ExpressionTree {
+  char symbol = 0;  ///< & | - ^ with two parts or more, joined from the left; ~ with one; 0: a leaf
+  int leaf = 0;
+  std::vector<ExpressionTree> parts;
+
+  int depth() const;       ///< 0 for a leaf
+  int leaf_count() const;  ///< occurrences
+};
+
+/// The text for voxel::parse_expression(), with as few parentheses as possible.
+std::string text(const ExpressionTree& tree, const std::function<std::string(int leaf)>& name);
+
+/// All trees with one operator less: each replaces an operator by one of its parts. Precondition: operators
+/// have two parts at most.
+std::vector<ExpressionTree> simpler(const ExpressionTree& tree);
+
+/// A read-once tree of the same function: each leaf occurs once at most. None if there is no such tree, or a
+/// leaf is numbered above five. A constant function becomes a - a or ~(a - a). Cost: the function's 64 values
+/// times the ways to part its leaves in two. Source: disjoint decomposition, Ashenhurst, "The decomposition
+/// of switching functions", 1957.
+std::optional<ExpressionTree> read_once(const ExpressionTree& tree);
+
+}  // namespace octotomy::verify

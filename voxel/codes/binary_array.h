@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// The binary digital array (thesis 3.2.1) with eight voxels in a byte: voxel i, counted x fastest, then y,
+/// then z, is bit i % 8 of byte i / 8.
+struct BinaryArray {
+  /// Above this depth 8^depth bits are more than a gigabyte.
+  static constexpr int max_depth = 11;
+
+  Universe universe;
+  std::vector<std::uint8_t> bytes;  ///< 8^depth / 8
+};
+
+/// Throws std::length_error for universes deeper than max_depth. Cost: the non-empty slices.
+BinaryArray binary_array(const Octree& octree);
+/// Throws std::invalid_argument if the number of bytes is not the universe's.
+Octree octree_of(const BinaryArray& array);
+
+/// The slices as the thesis prints them: `Slice 0 :`, then one line per row such as `0 1 1 0`, and so on.
+/// Throws std::length_error for universes deeper than 9 levels, whose text is over two gigabytes.
+std::string text(const BinaryArray& array);
+/// The inverse of text(). Throws std::invalid_argument with the position of the wrong character. Memory: the
+/// universe's bits.
+BinaryArray parse_binary_array(const Universe& universe, std::string_view text);
+
+}  // namespace octotomy::voxel

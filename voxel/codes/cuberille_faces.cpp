@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/codes/cuberille_faces.h"
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+#include <tuple>
+
+#include "voxel/space/text_cursor.h"
+#include "voxel/tree/logical_build.h"
+#include "voxel/tree/slice_build.h"
+
+namespace octotomy::voxel {
+namespace {
+
+constexpr std::array<const char*, direction_count> names{"x+", "x-", "y+", "y-", "z+", "z-"};
+
+std::tuple<int, int, int> x_fastest(const glm::ivec3& voxel) {
+  return {voxel.z, voxel.y, voxel.x};
+}
+
+[[noreturn]] void refuse(int direction, const glm::ivec3& voxel, const std::string& why) {
+  throw std::invalid_argument("cuberille, " + std::string(names[static_cast<std::size_t>(direction)]) +
+                              " face of voxel (" + std::to_string(voxel.x) + "," + std::to_string(voxel.y) +
+                              "," + std::to_string(voxel.z) + "): " + why);
+}
+
+void check(const CuberilleFaces& faces) {
+  check_depth(faces.universe.depth);
+  const int side = faces.universe.side();
+  for (int direction = 0; direction < direction_count; ++direction) {
+    const auto& list = faces.lists[static_cast<std::size_t>(direction)];
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (glm::any(glm::lessThan(list[i], glm::ivec3(0))) ||
+          glm::any(glm::greaterThanEqual(list[i], glm::ivec3(side))))
+        refuse(direction, list[i], "lies outside the universe of " + std::to_string(side) + " voxels a side");
+      if (i > 0 && x_fastest(list[i]) <= x_fastest(list[i - 1]))
+        refuse(direction, list[i], "does not come after its predecessor, x fastest");
+    }
+  }
+}
+
+// Appends the voxels of a row whose bits are set in `exposed`.
+void append_row(std::uint64_t exposed, int x, int y, int z, std::vector<glm::ivec3>& list) {
+  for (; exposed != 0; exposed &= exposed - 1) list.emplace_back(x + std::countr_zero(exposed), y, z);
+}
+
+// Appends the faces of a slice's voxels. The slices below and above are null if they are empty.
+void append_slice(int z, const SliceBits& slice, const SliceBits* below, const SliceBits* above,
+                  CuberilleFaces& faces) {
+  const auto list = [&](Direction direction) -> std::vector<glm::ivec3>& {
+    return faces.lists[static_cast<std::size_t>(direction)];
+  };
+  for (int y = 0; y < slice.side; ++y)
+    for (int word = 0; word < slice.words_per_row; ++word) {
+      const std::uint64_t* row = slice.row(y);
+      const std::uint64_t bits = row[word];
+      if (bits == 0) continue;
+      const std::uint64_t from_right = word + 1 < slice.words_per_row ? row[word + 1] << 63 : 0;
+      const std::uint64_t from_left = word > 0 ? row[word - 1] >> 63 : 0;
+      const auto exposed = [&](Direction direction, std::uint64_t neighbours) {
+        append_row(bits & ~neighbours, 64 * word, y, z, list(direction));
+      };
+      exposed(Direction::PlusX, (bits >> 1) | from_right);
+      exposed(Direction::MinusX, (bits << 1) | from_left);
+      exposed(Direction::PlusY, y + 1 < slice.side ? slice.row(y + 1)[word] : 0);
+      exposed(Direction::MinusY, y > 0 ? slice.row(y - 1)[word] : 0);
+      exposed(Direction::PlusZ, above != nullptr ? above->row(y)[word] : 0);
+      exposed(Direction::MinusZ, below != nullptr ? below->row(y)[word] : 0);
+    }
+}
+
+// Each x- face and the next x+ face of its row are the ends of a run.
+Octree octree_between_x_faces(const CuberilleFaces& faces) {
+  const auto& starts = faces.lists[static_cast<std::size_t>(Direction::MinusX)];
+  const auto& ends = faces.lists[static_cast<std::size_t>(Direction::PlusX)];
+  constexpr int minus_x = static_cast<int>(Direction::MinusX);
+  constexpr int plus_x = static_cast<int>(Direction::PlusX);
+  if (ends.size() > starts.size()) refuse(plus_x, ends[starts.size()], "no x- face begins its run");
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (i == ends.size() || ends[i].y != starts[i].y || ends[i].z != starts[i].z || ends[i].x < starts[i].x)
+      refuse(minus_x, starts[i], "no x+ face ends its run");
+    if (i > 0 && x_fastest(starts[i]) <= x_fastest(ends[i - 1]))
+      refuse(minus_x, starts[i], "begins a run within another");
+  }
+  std::size_t next = 0;
+  return octree_of_slices(faces.universe, [&](int z, SliceBits& slice) {
+    const std::size_t before = next;
+    for (; next < starts.size() && starts[next].z == z; ++next)
+      set_row(slice, starts[next].y, starts[next].x, ends[next].x);
+    return next != before;
+  });
+}
+
+}  // namespace
+
+glm::ivec3 step(Direction direction) {
+  const int number = static_cast<int>(direction);
+  glm::ivec3 result(0);
+  result[number / 2] = number % 2 == 0 ? 1 : -1;
+  return result;
+}
+
+std::size_t CuberilleFaces::face_count() const {
+  std::size_t count = 0;
+  for (const auto& list : lists) count += list.size();
+  return count;
+}
+
+CuberilleFaces cuberille_faces(const Octree& octree) {
+  CuberilleFaces faces{octree.universe(), {}};
+  const std::vector<bool> occupied = occupied_slices(octree);
+  const int side = octree.universe().side();
+  std::array<SliceBits, 3> slices;  // by z modulo three
+  std::array<int, 3> read{-1, -1, -1};
+  const auto slice_at = [&](int z) -> const SliceBits* {
+    if (z < 0 || z >= side || !occupied[static_cast<std::size_t>(z)]) return nullptr;
+    const auto slot = static_cast<std::size_t>(z % 3);
+    if (read[slot] != z) read_slice(octree, z, slices[slot]);
+    read[slot] = z;
+    return &slices[slot];
+  };
+  for (int z = 0; z < side; ++z)
+    if (const SliceBits* slice = slice_at(z))
+      append_slice(z, *slice, slice_at(z - 1), slice_at(z + 1), faces);
+  return faces;
+}
+
+Octree octree_of(const CuberilleFaces& faces) {
+  check(faces);
+  Octree octree = octree_between_x_faces(faces);
+  // The x faces fix the object; the other lists must agree with it.
+  const CuberilleFaces expected = cuberille_faces(octree);
+  for (int direction = 0; direction < direction_count; ++direction) {
+    const auto& given = faces.lists[static_cast<std::size_t>(direction)];
+    const auto& exposed = expected.lists[static_cast<std::size_t>(direction)];
+    for (std::size_t i = 0; i < std::max(given.size(), exposed.size()); ++i) {
+      if (i < given.size() && i < exposed.size() && given[i] == exposed[i]) continue;
+      const bool missing =
+          i == given.size() || (i < exposed.size() && x_fastest(exposed[i]) < x_fastest(given[i]));
+      if (missing) refuse(direction, exposed[i], "is missing: the x faces make it part of the boundary");
+      refuse(direction, given[i], "is no boundary by the x faces");
+    }
+  }
+  return octree;
+}
+
+std::string text(const CuberilleFaces& faces) {
+  std::string result;
+  for (std::size_t direction = 0; direction < direction_count; ++direction) {
+    result += names[direction];
+    const auto& list = faces.lists[direction];
+    for (std::size_t i = 0; i < list.size(); ++i)
+      result += (i == 0 ? " (" : ", (") + std::to_string(list[i].x) + "," + std::to_string(list[i].y) + "," +
+                std::to_string(list[i].z) + ")";
+    result += '\n';
+  }
+  return result;
+}
+
+CuberilleFaces parse_cuberille_faces(const Universe& universe, std::string_view text) {
+  check_depth(universe.depth);
+  CuberilleFaces faces{universe, {}};
+  const auto largest = static_cast<std::uint64_t>(universe.side() - 1);
+  TextCursor cursor("cuberille", text);
+  for (std::size_t direction = 0; direction < direction_count; ++direction) {
+    cursor.skip_spaces();
+    cursor.expect(names[direction]);
+    auto& list = faces.lists[direction];
+    for (cursor.skip_blanks(); cursor.accept(list.empty() ? "(" : ","); cursor.skip_blanks()) {
+      if (!list.empty()) {
+        cursor.skip_blanks();
+        cursor.expect("(");
+      }
+      glm::ivec3 voxel;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (axis > 0) cursor.expect(",");
+        voxel[axis] = static_cast<int>(cursor.number(largest));
+      }
+      cursor.expect(")");
+      list.push_back(voxel);
+    }
+  }
+  cursor.expect_end();
+  return faces;
+}
+
+}  // namespace octotomy::voxel

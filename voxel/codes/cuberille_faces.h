@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// The six directions of a voxel's faces, in the order of the thesis's six lists.
+enum class Direction : std::uint8_t { PlusX, MinusX, PlusY, MinusY, PlusZ, MinusZ };
+inline constexpr int direction_count = 6;
+
+/// The unit step along a direction in index space.
+glm::ivec3 step(Direction direction);
+
+/// The cuberille (thesis 3.1.2.2): a list for each of the six directions of the object's voxels whose face in
+/// that direction borders on a voxel outside the object, or on the universe's end. Each list is in ascending
+/// order, x fastest, then y, z.
+struct CuberilleFaces {
+  Universe universe;
+  std::array<std::vector<glm::ivec3>, direction_count> lists;
+
+  std::size_t face_count() const;
+};
+
+/// All exposed faces, those of cavities included. Cost: the non-empty slices, side^2 / 8 bytes each; 12 bytes
+/// per face.
+CuberilleFaces cuberille_faces(const Octree& octree);
+/// The object that the faces bound. Throws std::invalid_argument that names a face outside the universe, out
+/// of order, or in contradiction to the others.
+Octree octree_of(const CuberilleFaces& faces);
+
+/// One line per direction: `x+ (1,2,0), (1,3,0), ...`.
+std::string text(const CuberilleFaces& faces);
+/// The inverse of text(). Throws std::invalid_argument with the position of the wrong character; octree_of()
+/// checks the faces. Memory: in proportion to the text.
+CuberilleFaces parse_cuberille_faces(const Universe& universe, std::string_view text);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/filter/label_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "voxel/filter/slice_work.h"
+#include "voxel/tree/build.h"
+
+namespace octotomy::voxel {
+namespace {
+
+// Half-way between two samples, up to the rounding of a few products of coordinates, takes the upper one on
+// every machine.
+glm::ivec3 nearest(const glm::dvec3& p_voxel) {
+  constexpr double rounding = 0x1p-20;
+  return {glm::floor(p_voxel + 0.5 + rounding)};
+}
+
+bool holds(const glm::ivec3& dims, const glm::ivec3& p) {
+  return glm::all(glm::greaterThanEqual(p, glm::ivec3(0))) && glm::all(glm::lessThan(p, dims));
+}
+
+}  // namespace
+
+Universe universe_on(const Lattice& lattice) {
+  const int longest = std::max({lattice.dims.x, lattice.dims.y, lattice.dims.z});
+  Universe universe{2, lattice.lps_from_voxel};
+  while (universe.depth < Universe::max_depth && universe.side() < longest) ++universe.depth;
+  if (universe.side() < longest)
+    throw std::length_error("a scan of " + std::to_string(longest) +
+                            " samples along an axis takes more than " + std::to_string(universe.side()) +
+                            " voxels a side: average the scan down first");
+  return universe;
+}
+
+LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, const Progress& progress) {
+  if (objects.size() > 32767)
+    throw std::invalid_argument("a label map holds at most 32767 objects, not " +
+                                std::to_string(objects.size()));
+  LabelMap map;
+  map.scene.lattice = lattice;
+  map.scene.meaning = Meaning::Label;
+  map.scene.source = "label map";
+  Int16Samples labels(lattice.sample_count());
+  std::vector<glm::dmat4> voxel_from_index;
+  for (const Octree& object : objects)
+    voxel_from_index.push_back(glm::inverse(object.universe().lps_from_voxel) * lattice.lps_from_voxel);
+  const glm::ivec3 dims = lattice.dims;
+  std::vector<std::uint64_t> overlaps(static_cast<std::size_t>(dims.z), 0);
+  for_each_slice(dims.z, progress, [&](int z) {
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) {
+        std::int16_t label = 0;
+        bool again = false;
+        for (std::size_t i = 0; i < objects.size(); ++i) {
+          const glm::dvec3 p(voxel_from_index[i] * glm::dvec4(x, y, z, 1));
+          if (!objects[i].contains(nearest(p))) continue;
+          again = label != 0;
+          if (label == 0) label = static_cast<std::int16_t>(i + 1);
+          if (again) break;
+        }
+        labels[sample_index(dims, {x, y, z})] = label;
+        overlaps[static_cast<std::size_t>(z)] += again ? 1 : 0;
+      }
+  });
+  for (const std::uint64_t count : overlaps) map.overlaps += count;
+  map.scene.samples = std::move(labels);
+  return map;
+}
+
+std::vector<Label> labels(const Scene& scene) {
+  check(scene);
+  std::map<int, std::uint64_t> counts;
+  std::visit(
+      [&](const auto& samples) {
+        for (const auto sample : samples) {
+          const auto value = static_cast<double>(sample);
+          if (value < 0.0 || value != std::floor(value) || value > 32767.0)
+            throw std::invalid_argument(scene.source + ": holds " + std::to_string(value) +
+                                        ", which is no label: labels are integers from 0 to 32767");
+          ++counts[static_cast<int>(value)];
+        }
+      },
+      scene.samples);
+  std::vector<Label> found;
+  for (const auto& [number, samples] : counts)
+    if (number != 0) found.push_back({number, samples});
+  return found;
+}
+
+Octree octree_of_label(const Universe& universe, const Scene& scene, int label) {
+  check(scene);
+  const glm::ivec3 dims = scene.lattice.dims;
+  const glm::dmat4 index_from_voxel = glm::inverse(scene.lattice.lps_from_voxel) * universe.lps_from_voxel;
+  const auto wanted = static_cast<float>(label);
+  const int side = universe.side();
+  return octree_of_blocks(universe, [&](const glm::ivec3& block) -> Block {
+    std::array<std::uint64_t, 64> words{};
+    for (int z = 0; z < 16; ++z)
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+          const glm::ivec3 voxel = 16 * block + glm::ivec3(x, y, z);
+          if (voxel.x >= side || voxel.y >= side || voxel.z >= side) continue;
+          const glm::ivec3 at = nearest(glm::dvec3(index_from_voxel * glm::dvec4(voxel, 1)));
+          if (!holds(dims, at)) continue;
+          const std::size_t sample = sample_index(dims, at);
+          const bool is_it =
+              std::visit([&](const auto& samples) { return static_cast<float>(samples[sample]) == wanted; },
+                         scene.samples);
+          if (is_it)
+            words[static_cast<std::size_t>(child_index(x >> 2, y >> 2, z >> 2))] |=
+                std::uint64_t{1} << child_index(x & 3, y & 3, z & 3);
+        }
+    return make_leaf_block(0, all_children, words.data());
+  });
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <tbb/parallel_for.h>
+#include <type_traits>
+
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+// Indices, rounding and parallel work by slices, for the filters of scenes.
+namespace octotomy::voxel {
+
+/// The place of a sample in a scene's samples. Precondition: the index lies inside the scene.
+inline std::size_t sample_index(const glm::ivec3& dims, const glm::ivec3& p) {
+  assert(p.x >= 0 && p.x < dims.x && p.y >= 0 && p.y < dims.y && p.z >= 0 && p.z < dims.z);
+  return (static_cast<std::size_t>(p.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(p.y)) *
+             static_cast<std::size_t>(dims.x) +
+         static_cast<std::size_t>(p.x);
+}
+
+inline std::size_t slice_size(const Lattice& lattice) {
+  return static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y);
+}
+
+/// A scene's meaning, modality, source and audit on a lattice, without samples.
+inline Scene empty_scene_like(const Scene& scene, const Lattice& lattice) {
+  return {lattice, {}, scene.meaning, scene.modality, scene.source, scene.audit};
+}
+
+/// A sample of a value: rounded to the nearest integer, halves upwards, and clamped to int16's range.
+template <typename Sample>
+Sample rounded(double value) {
+  if constexpr (std::is_same_v<Sample, std::int16_t>)
+    return static_cast<Sample>(std::clamp(std::floor(value + 0.5), -32768.0, 32767.0));
+  else
+    return static_cast<Sample>(value);
+}
+
+/// Calls work(k) for every slice k, sixteen in parallel at a time. Between these it reports progress, and
+/// throws Stopped if the stop token is set.
+template <typename Work>
+void for_each_slice(int slices, const Progress& progress, const Work& work) {
+  constexpr int at_once = 16;
+  for (int from = 0; from < slices; from += at_once) {
+    progress.at(static_cast<double>(from) / slices);
+    tbb::parallel_for(from, std::min(from + at_once, slices), work);
+  }
+}
+
+}  // namespace octotomy::voxel

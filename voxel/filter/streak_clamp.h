@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+struct StreakOptions {
+  double metal = 3000.0;    ///< samples of at least this value are metal, in the scene's units (HU)
+  double low = -1000.0;     ///< lower samples are raised to this: dark streaks fall below air
+  double high = 3000.0;     ///< higher samples are lowered to this: metal and the brightest streaks
+  double reach_mm = 100.0;  ///< distance from metal within its slice: streaks run in the plane of the X-rays
+  Progress progress{};
+};
+
+/// The clamped scene and its statistics.
+struct StreakClamp {
+  Scene scene;
+  std::uint64_t metal = 0;    ///< samples
+  std::uint64_t raised = 0;   ///< samples that were below `low`
+  std::uint64_t lowered = 0;  ///< samples that were above `high`
+  int slices = 0;             ///< that hold metal
+};
+/// Clamps samples near metal, slice by slice (index z), to the range of tissue, so that streaks neither
+/// stretch windows nor shift interpolated surfaces. Streaks between the bounds stay. Throws
+/// std::invalid_argument if low is not below high, a number is not finite, the reach is negative, or the
+/// first two axes are not perpendicular; Stopped. Parallel over slices. Memory: the result.
+StreakClamp clamp_streaks(const Scene& scene, const StreakOptions& options);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace octotomy::voxel {
+
+/// A named window of CT in Hounsfield units. Windows of neighbouring tissues touch or overlap: a first guess,
+/// not a diagnosis. The units of cone-beam scanners differ from Hounsfield's by hundreds.
+struct Tissue {
+  std::string_view name;
+  std::optional<double> low;   ///< none: every sample up to `high`
+  std::optional<double> high;  ///< none: every sample from `low` on
+  std::string_view source;     ///< of the bounds
+};
+
+/// bone, cortical_bone, trabecular_bone, teeth, soft_tissue, fat, skin and air.
+std::span<const Tissue> tissues();
+
+/// The tissue of that name; none if the name is unknown.
+std::optional<Tissue> tissue(std::string_view name);
+
+}  // namespace octotomy::voxel

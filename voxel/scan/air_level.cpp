@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/air_level.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <span>
+#include <string>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include "voxel/space/vector_clones.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+struct Counts {
+  std::uint64_t samples = 0;
+  std::uint64_t air = 0;    ///< -1100..-900
+  std::uint64_t above = 0;  ///< -900..-700, the band above air
+  std::uint64_t soft = 0;   ///< -900..-20
+
+  Counts operator+(const Counts& other) const {
+    return {samples + other.samples, air + other.air, above + other.above, soft + other.soft};
+  }
+};
+
+Counts counts_of(std::span<const float> samples) {
+  Counts counts;
+  counts.samples = samples.size();
+  for (const float value : samples) {
+    counts.air += value >= -1100 && value <= -900;
+    counts.above += value > -900 && value <= -700;
+    counts.soft += value > -900 && value < -20;
+  }
+  return counts;
+}
+
+/// A 16-bit counter does not overflow in this many samples.
+constexpr std::size_t short_run = 1 << 15;
+
+/// Counts at most short_run samples, in 16 bits throughout so that a vector holds the most lanes.
+OCTOTOMY_VECTOR_CLONES void count_run(const std::int16_t* __restrict samples, std::size_t count,
+                                      std::uint16_t* __restrict found) {
+  std::uint16_t air = 0, above = 0, soft = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    // Unsigned, a sample below a band wraps to a number above it.
+    const auto from_air = static_cast<std::uint16_t>(samples[i] + 1100);
+    const auto from_above = static_cast<std::uint16_t>(samples[i] + 899);
+    air = static_cast<std::uint16_t>(air + (from_air <= 200));
+    above = static_cast<std::uint16_t>(above + (from_above <= 199));
+    soft = static_cast<std::uint16_t>(soft + (from_above <= 878));
+  }
+  found[0] = air;
+  found[1] = above;
+  found[2] = soft;
+}
+
+Counts counts_of(std::span<const std::int16_t> samples) {
+  Counts counts;
+  counts.samples = samples.size();
+  for (std::size_t at = 0; at < samples.size(); at += short_run) {
+    std::array<std::uint16_t, 3> found{};
+    count_run(samples.data() + at, std::min(short_run, samples.size() - at), found.data());
+    counts = counts + Counts{0, found[0], found[1], found[2]};
+  }
+  return counts;
+}
+
+Counts count(const Scene& scene) {
+  return std::visit(
+      [](const auto& samples) {
+        return tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, samples.size(), std::size_t{1} << 16), Counts{},
+            [&](const tbb::blocked_range<std::size_t>& part, const Counts& counts) {
+              return counts + counts_of(std::span(samples).subspan(part.begin(), part.size()));
+            },
+            std::plus<>());
+      },
+      scene.samples);
+}
+
+bool is_seen(std::uint64_t some, const Counts& counts) {
+  return some * 1000 >= counts.samples && some > 0;
+}
+
+std::string percent(std::uint64_t some, const Counts& counts) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%",
+                100.0 * static_cast<double>(some) / static_cast<double>(counts.samples));
+  return text;
+}
+
+std::string span(const Scene& scene) {
+  const Range values = range(scene);
+  char text[64];
+  std::snprintf(text, sizeof text, "%g..%g", values.low, values.high);
+  return text;
+}
+
+}  // namespace
+
+AirLevel air_level_of_ct(const Scene& scene) {
+  const Counts counts = count(scene);
+  if (is_seen(counts.air, counts))
+    return {Meaning::Hounsfield,
+            {"air_level", Verdict::Pass,
+             percent(counts.air, counts) + " of the samples lie within 100 of -1000: Hounsfield units"}};
+  if (is_seen(counts.soft, counts))
+    return {Meaning::Hounsfield,
+            {"air_level", Verdict::Warn,
+             "no air near -1000 confirms Hounsfield units; values " + span(scene) +
+                 " are read as the header declares them"}};
+  return {Meaning::Raw,
+          {"air_level", Verdict::Fail,
+           "air is not near -1000, so values " + span(scene) +
+               " are not Hounsfield: windows in HU do not apply; if air is near 0 the rescale intercept "
+               "(about -1024) is missing"}};
+}
+
+AirLevel air_level_of_unnamed(const Scene& scene) {
+  const Counts counts = count(scene);
+  if (is_seen(counts.air, counts) && counts.air >= 2 * counts.above)
+    return {Meaning::Hounsfield,
+            {"air_level", Verdict::Pass,
+             "the file names no unit; " + percent(counts.air, counts) +
+                 " of the samples peak within 100 of -1000, as air does: taken as Hounsfield units"}};
+  return {Meaning::Raw,
+          {"air_level", Verdict::Pass,
+           "the file names no unit and no peak of air lies near -1000: values " + span(scene) +
+               " are taken as raw"}};
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+// Judges by their air, which is -1000 by definition, if samples are Hounsfield units. Air is a sample within
+// 100 of -1000. Air is seen if at least one sample in a thousand is air.
+
+struct AirLevel {
+  Meaning meaning = Meaning::Raw;
+  Finding finding;
+};
+
+/// For scans that declare themselves CT. Air seen: Hounsfield, Pass. No air, but at least one sample in a
+/// thousand between -900 and -20 (fat, foam, partial volume): Hounsfield, Warn. Neither, as after a lost
+/// intercept of -1024: Raw, Fail.
+AirLevel air_level_of_ct(const Scene& scene);
+
+/// For files that do not state their modality. Hounsfield if air is seen and is a peak: at least twice as
+/// many samples as in the equally wide band above it. Otherwise Raw. Both pass; the finding states which.
+AirLevel air_level_of_unnamed(const Scene& scene);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+/// A text in printf's format, of at most 511 characters.
+template <typename... Parts>
+std::string print(const char* format, Parts... parts) {
+  char text[512];
+  std::snprintf(text, sizeof text, format, parts...);
+  return text;
+}
+
+/// The audit's line on a file that names its patient frame or does not.
+inline Finding frame_finding(bool is_named) {
+  if (is_named) return {"orientation", Verdict::Pass, "the file names its patient frame"};
+  return {"orientation", Verdict::Warn,
+          "the file names no patient frame: its columns, rows and slices are assumed to run to the patient's "
+          "left, back and head; check that left and right are not exchanged"};
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "voxel/scan/dicom_file.h"
+
+// Values, identifiers, attributes and the file around them, for the writers of DICOM files.
+
+namespace octotomy::voxel {
+
+/// A decimal string: as many digits as fit its 16 characters.
+std::string dicom_decimal(double number);
+std::string dicom_decimals(const glm::dvec3& p);
+
+/// Throws std::invalid_argument that names the option `name` if its text is longer than the 64 characters of
+/// DICOM's LO or holds a backslash, which separates values.
+void check_dicom_text(const std::string& text, const char* name);
+
+/// A 128-bit digest of content. Unique identifiers made from it are the same for the same content. Two FNV-1a
+/// sums from different starts; not for secrets.
+class DicomDigest {
+ public:
+  void add(const void* bytes, std::size_t count);
+  void add(const std::string& text) { add(text.data(), text.size() + 1); }
+
+  /// An identifier of the form 2.25.<UUID as an integer>, a UUID of version 8 (RFC 9562).
+  std::string uid() const;
+  /// The identifier of the content and a further text.
+  std::string uid(const std::string& text) const;
+
+ private:
+  std::uint64_t high_ = 0xcbf29ce484222325;
+  std::uint64_t low_ = 0x84222325cbf29ce4;
+};
+
+/// Attributes in ascending order, written with explicit VR, little-endian, sequences and items with their
+/// lengths (DICOM PS3.5, 7.1 and 7.5).
+class DicomAttributes {
+ public:
+  /// Replaces an attribute's value. Pads an odd length with a space, or with zero for UI and OB.
+  /// Precondition: at most 2^32 - 2 bytes, at most 65534 for VRs other than OB, OW and SQ.
+  void put(DicomTag tag, const char* vr, std::string value);
+  void put_short(DicomTag tag, std::uint16_t number);                ///< US
+  void put_longs(DicomTag tag, std::vector<std::uint32_t> numbers);  ///< UL
+  void put_tag(DicomTag tag, DicomTag named);                        ///< AT
+  void put_sequence(DicomTag tag, const std::vector<DicomAttributes>& items);
+  void remove(DicomTag tag) { values_.erase(tag); }
+
+  /// As stored, with its padding. Precondition: the attribute is there.
+  const std::string& value(DicomTag tag) const { return values_.at(tag).bytes; }
+  void write(std::ostream& out) const;
+
+ private:
+  struct Value {
+    std::string vr;
+    std::string bytes;
+  };
+  std::map<DicomTag, Value> values_;
+};
+
+/// One item of a code sequence, such as SNOMED's 85756007 "Tissue" (PS3.3, 8.8).
+DicomAttributes dicom_code(const char* value, const char* scheme, const char* meaning);
+
+/// Writes a file of one instance (PS3.10, 7.1); its class and identifier are the attributes (0008,0016) and
+/// (0008,0018). Errors call the file `name`. Throws Error, Resource.
+void write_dicom_file(const std::filesystem::path& path, const std::filesystem::path& name,
+                      const DicomAttributes& attributes);
+
+}  // namespace octotomy::voxel

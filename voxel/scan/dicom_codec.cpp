@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/dicom_codec.h"
+
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <memory>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "voxel/scan/dicom_codec_wire.h"
+#include "voxel/space/error.h"
+#include "voxel/space/helper_file.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+/// The process at the other end of a socket. It ends with the object, or by itself when the program ends.
+class CodecProcess {
+ public:
+  CodecProcess() {
+    const std::string path = helper_file("octotomy_dicom_codec").string();
+    int sockets[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
+      throw Error(ErrorCode::Resource,
+                  "compressed DICOM cannot be read: no socket: " + std::string(std::strerror(errno)));
+    socket_ = sockets[0];
+    // The slowest codec takes a second for the largest slice. After a minute it is stuck.
+    const timeval limit{60, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, sockets[1], STDIN_FILENO);
+    // One of GDCM's codecs prints to both while it decodes.
+    for (const int spoken : {STDOUT_FILENO, STDERR_FILENO})
+      posix_spawn_file_actions_addopen(&actions, spoken, "/dev/null", O_WRONLY, 0);
+    std::string name = path;
+    char* arguments[] = {name.data(), nullptr};
+    const int error = posix_spawn(&process_, path.c_str(), &actions, nullptr, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(sockets[1]);
+    if (error != 0) {
+      close(socket_);
+      throw Error(ErrorCode::Resource, path + ": compressed DICOM cannot be read: " + std::strerror(error) +
+                                           "; install this helper program and GDCM again");
+    }
+  }
+  ~CodecProcess() {
+    close(socket_);
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+    std::error_code ignored;
+    std::filesystem::remove_all(codec_folder(process_), ignored);
+  }
+  CodecProcess(const CodecProcess&) = delete;
+  CodecProcess& operator=(const CodecProcess&) = delete;
+
+  bool send_request(const CompressedFrame& frame) const {
+    const FrameHead head{frame.columns,
+                         frame.rows,
+                         frame.allocated_bits,
+                         frame.stored_bits,
+                         frame.high_bit,
+                         frame.is_signed ? 1u : 0u,
+                         static_cast<std::uint32_t>(frame.transfer_syntax.size()),
+                         static_cast<std::uint32_t>(frame.fragments.size())};
+    bool sent = send_all(socket_, &head, sizeof head) &&
+                send_all(socket_, frame.transfer_syntax.data(), frame.transfer_syntax.size());
+    for (const std::string_view fragment : frame.fragments) {
+      const std::uint64_t length = fragment.size();
+      sent = sent && send_all(socket_, &length, sizeof length) &&
+             send_all(socket_, fragment.data(), fragment.size());
+    }
+    return sent;
+  }
+
+  /// False if the process crashed or hung on the frame.
+  bool receive_answer(const CompressedFrame& frame, std::string& pixels) const {
+    std::uint64_t length = 0;
+    const std::uint64_t expected = std::uint64_t{frame.columns} * frame.rows * (frame.allocated_bits / 8);
+    if (!receive_all(socket_, &length, sizeof length) || (length != 0 && length != expected)) return false;
+    pixels.resize(static_cast<std::size_t>(length));
+    return receive_all(socket_, pixels.data(), pixels.size());
+  }
+
+ private:
+  int socket_ = -1;
+  pid_t process_ = -1;
+};
+
+}  // namespace
+
+std::optional<std::string> decompress(const CompressedFrame& frame) {
+  thread_local std::unique_ptr<CodecProcess> process;
+  if (!process) process = std::make_unique<CodecProcess>();
+  std::string pixels;
+  if (!process->send_request(frame) || !process->receive_answer(frame, pixels)) {
+    process.reset();  // the next frame starts a new one
+    return std::nullopt;
+  }
+  if (pixels.empty()) return std::nullopt;
+  return pixels;
+}
+
+}  // namespace octotomy::voxel

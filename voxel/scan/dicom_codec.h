@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octotomy::voxel {
+
+/// Compressed pixels of one grey DICOM frame, and the format of the pixels once decompressed.
+struct CompressedFrame {
+  std::string transfer_syntax;
+  unsigned columns = 0;
+  unsigned rows = 0;
+  unsigned allocated_bits = 16;
+  unsigned stored_bits = 16;
+  unsigned high_bit = 15;
+  bool is_signed = false;
+  std::vector<std::string_view> fragments;
+};
+
+/// Decompresses RLE, JPEG, JPEG-LS and JPEG 2000 by GDCM to little-endian pixels in the bits allocated. None
+/// if the pixels are damaged or the transfer syntax is another. Each thread starts a process of its own,
+/// octotomy_dicom_codec: GDCM and its codecs crash on some damaged pixels, and loading GDCM would add 30 ms
+/// to every start of the program. Throws Error, Resource, if that process cannot be started.
+std::optional<std::string> decompress(const CompressedFrame& frame);
+
+}  // namespace octotomy::voxel

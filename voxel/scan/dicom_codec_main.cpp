@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// octotomy_dicom_codec: decompresses the DICOM frames that come over the socket at its standard input until
+// the socket closes. Started by voxel/scan/dicom_codec.cpp, never by people.
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <gdcmImage.h>
+#include <gdcmSequenceOfFragments.h>
+#include <gdcmTrace.h>
+#include <string>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <vector>
+
+#include "voxel/scan/dicom_codec_wire.h"
+
+namespace {
+
+using octotomy::voxel::FrameHead;
+
+/// A damaged frame may ask for any amount of memory; a crash must leave no core file.
+void set_limits() {
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+#if !defined(__has_feature)
+#define __has_feature(feature) 0  // NOLINT(bugprone-reserved-identifier): clang's own name, absent in g++
+#endif
+#if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)  // their shadows take terabytes
+  // The largest accepted frame has 4096 x 4096 pixels of four bytes; codecs hold it a few times.
+  const rlimit memory{std::size_t{4} << 30, std::size_t{4} << 30};
+  setrlimit(RLIMIT_AS, &memory);
+#endif
+}
+
+gdcm::Image image_of(const FrameHead& head, const std::string& syntax,
+                     const std::vector<std::string>& parts) {
+  auto* fragments = new gdcm::SequenceOfFragments;  // counts its references; `pixels` takes the first
+  for (const std::string& part : parts) {
+    gdcm::Fragment fragment;
+    fragment.SetByteValue(part.data(), static_cast<std::uint32_t>(part.size()));
+    fragments->AddFragment(fragment);
+  }
+  gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010));
+  pixels.SetVR(gdcm::VR::OB);
+  pixels.SetValue(*fragments);
+  gdcm::Image image;
+  image.SetNumberOfDimensions(2);
+  image.SetDimension(0, head.columns);
+  image.SetDimension(1, head.rows);
+  image.SetPixelFormat(gdcm::PixelFormat(
+      1, static_cast<unsigned short>(head.allocated_bits), static_cast<unsigned short>(head.stored_bits),
+      static_cast<unsigned short>(head.high_bit), static_cast<unsigned short>(head.is_signed)));
+  image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+  image.SetTransferSyntax(gdcm::TransferSyntax::GetTSType(syntax.c_str()));
+  image.SetDataElement(pixels);
+  return image;
+}
+
+/// Empty if the frame cannot be decompressed.
+std::string decompress(const FrameHead& head, const std::string& syntax,
+                       const std::vector<std::string>& parts) {
+  if (gdcm::TransferSyntax::GetTSType(syntax.c_str()) == gdcm::TransferSyntax::TS_END) return {};
+  try {
+    const gdcm::Image image = image_of(head, syntax, parts);
+    std::string pixels(image.GetBufferLength(), '\0');
+    return image.GetBuffer(pixels.data()) ? pixels : std::string();
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+bool answer_next() {
+  using octotomy::voxel::receive_all;
+  using octotomy::voxel::send_all;
+  FrameHead head;
+  if (!receive_all(STDIN_FILENO, &head, sizeof head)) return false;
+  std::string syntax(head.syntax_length, '\0');
+  if (!receive_all(STDIN_FILENO, syntax.data(), syntax.size())) return false;
+  std::vector<std::string> parts(head.fragment_count);
+  for (std::string& part : parts) {
+    std::uint64_t length = 0;
+    if (!receive_all(STDIN_FILENO, &length, sizeof length)) return false;
+    part.resize(static_cast<std::size_t>(length));
+    if (!receive_all(STDIN_FILENO, part.data(), part.size())) return false;
+  }
+  const std::string pixels = decompress(head, syntax, parts);
+  const std::uint64_t length = pixels.size();
+  return send_all(STDIN_FILENO, &length, sizeof length) &&
+         send_all(STDIN_FILENO, pixels.data(), pixels.size());
+}
+
+}  // namespace
+
+int main() {
+  set_limits();
+  gdcm::Trace::DebugOff();
+  gdcm::Trace::WarningOff();
+  gdcm::Trace::ErrorOff();
+  // One of GDCM's codecs works on temporary files and leaves them behind when it fails.
+  const std::filesystem::path folder = octotomy::voxel::codec_folder(getpid());
+  const bool has_folder = mkdir(folder.c_str(), 0700) == 0 && setenv("TMPDIR", folder.c_str(), 1) == 0;
+  while (answer_next()) {
+  }
+  std::error_code ignored;
+  if (has_folder) std::filesystem::remove_all(folder, ignored);
+}

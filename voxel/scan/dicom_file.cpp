@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Headers are read here and GDCM only decompresses pixels, because GDCM aborts the program on some damaged
+// headers (its Debian build keeps assertions) and allocates as many bytes as an attribute claims.
+#include "voxel/scan/dicom_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "voxel/scan/character_set.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+constexpr DicomTag item_tag = 0xfffee000;
+constexpr DicomTag item_end_tag = 0xfffee00d;
+constexpr DicomTag sequence_end_tag = 0xfffee0dd;
+constexpr DicomTag transfer_syntax_tag = 0x00020010;
+constexpr DicomTag character_set_tag = 0x00080005;
+constexpr DicomTag pixels_tag = 0x7fe00010;
+
+bool has_prefix(std::string_view bytes) {
+  return bytes.size() >= 132 && bytes.substr(128, 4) == "DICM";
+}
+
+/// Whether the first attribute of a file without a prefix states its value representation. As an implicit
+/// length, two capital letters would mean a first value of 16 kilobytes.
+bool spells_vr(std::string_view bytes) {
+  const auto is_capital = [&](std::size_t i) { return bytes[i] >= 'A' && bytes[i] <= 'Z'; };
+  return bytes.size() >= 8 && is_capital(4) && is_capital(5);
+}
+
+/// Value representations whose length has four bytes.
+bool is_wide(std::string_view vr) {
+  constexpr std::array<std::string_view, 13> wide = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
+                                                     "SV", "UC", "UN", "UR", "UT", "UV"};
+  for (const std::string_view one : wide)
+    if (vr == one) return true;
+  return false;
+}
+
+std::string trimmed(std::string_view text) {
+  constexpr std::string_view padding(" \t\r\n\0", 5);
+  const std::size_t first = text.find_first_not_of(padding);
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(padding) - first + 1));
+}
+
+}  // namespace
+
+bool DicomFile::begins(std::string_view head) {
+  if (has_prefix(head)) return true;
+  return head.size() >= 8 && (head[0] == 2 || head[0] == 8) && head[1] == 0 && head[3] == 0;
+}
+
+DicomFile::DicomFile(std::string_view bytes, std::size_t file_bytes, bool inflated)
+    : bytes_(bytes),
+      file_bytes_(file_bytes),
+      at_(has_prefix(bytes) ? 132 : 0),
+      inflated_(inflated),
+      explicit_(at_ > 0 || spells_vr(bytes)) {
+  walk();
+}
+
+DicomFile::DicomFile(std::string_view bytes, bool explicit_vr, bool big_endian)
+    : bytes_(bytes),
+      file_bytes_(bytes.size()),
+      is_item_(true),
+      explicit_(explicit_vr),
+      big_endian_(big_endian) {
+  walk();
+}
+
+std::uint32_t DicomFile::u16(std::size_t at) const {
+  const auto u8 = [&](std::size_t i) { return std::uint32_t{static_cast<unsigned char>(bytes_[i])}; };
+  return big_endian_ ? (u8(at) << 8) | u8(at + 1) : u8(at) | (u8(at + 1) << 8);
+}
+
+std::uint32_t DicomFile::u32(std::size_t at) const {
+  return big_endian_ ? (u16(at) << 16) | u16(at + 2) : u16(at) | (u16(at + 2) << 16);
+}
+
+void DicomFile::require(std::size_t length, DicomTag tag) const {
+  if (length <= left()) return;
+  if (length <= file_bytes_ - at_) throw NeedsMore{};
+  std::array<char, 112> text{};
+  std::snprintf(text.data(), text.size(),
+                "cut short or damaged: attribute (%04x,%04x) claims %zu bytes of %zu left", tag >> 16,
+                tag & 0xffffu, length, file_bytes_ - at_);
+  throw Error(ErrorCode::Input, text.data());
+}
+
+/// Throws NeedsMore if the remaining bytes, too short for an attribute, end before the file does.
+void DicomFile::require_more() const {
+  if (bytes_.size() < file_bytes_) throw NeedsMore{};
+}
+
+void DicomFile::leave_meta() {
+  transfer_syntax_ = text(transfer_syntax_tag);
+  if (transfer_syntax_ == "1.2.840.10008.1.2") explicit_ = false;
+  if (transfer_syntax_ == "1.2.840.10008.1.2.2") big_endian_ = true;
+  if (transfer_syntax_ == "1.2.840.10008.1.2.1.99" && !inflated_) throw Deflated{at_};
+}
+
+/// Steps over the head of the attribute at hand. Precondition: eight bytes are left.
+DicomFile::Head DicomFile::take_head() {
+  Head head;
+  head.tag = (u16(at_) << 16) | u16(at_ + 2);
+  const std::string_view vr = bytes_.substr(at_ + 4, 2);
+  const bool is_mark = head.tag >> 16 == 0xfffe;  // items and their ends have no value representation
+  if (!explicit_ || is_mark) {
+    head.length = u32(at_ + 4);
+    at_ += 8;
+  } else if (is_wide(vr)) {
+    require(12, head.tag);
+    head.length = u32(at_ + 8);
+    head.is_unknown = vr == "UN";
+    at_ += 12;
+  } else {
+    head.length = u16(at_ + 6);
+    at_ += 8;
+  }
+  return head;
+}
+
+void DicomFile::take_fragments() {
+  fragments_.emplace();
+  bool is_offset_table = true;
+  while (left() >= 8) {
+    const Head head = take_head();
+    if (head.tag == sequence_end_tag) return;
+    if (head.tag != item_tag)
+      throw Error(ErrorCode::Input, "compressed pixels are damaged: an item is missing");
+    require(head.length, head.tag);
+    if (is_offset_table)
+      for (std::size_t i = 0; i + 4 <= head.length; i += 4) frame_offsets_.push_back(u32(at_ + i));
+    else
+      fragments_->push_back({at_, head.length});
+    is_offset_table = false;
+    at_ += head.length;
+  }
+  require_more();
+  throw Error(ErrorCode::Input, "cut short: the compressed pixels do not end");
+}
+
+void DicomFile::walk() {
+  // The open sequences and items, those without a length, and whether VRs are explicit around each.
+  std::vector<bool> explicit_outside;
+  DicomTag open_tag = 0;       // of the outermost open sequence
+  std::size_t open_start = 0;  // where its items begin
+  bool in_meta = !is_item_ && (at_ > 0 || (left() >= 8 && u16(at_) == 2));
+  while (left() >= 8) {
+    if (in_meta && u16(at_) != 2) {
+      in_meta = false;
+      leave_meta();
+    }
+    const Head head = take_head();
+    const bool is_top = explicit_outside.empty();
+    if (head.tag == item_end_tag || head.tag == sequence_end_tag) {
+      if (is_top && is_item_) return;
+      if (is_top) continue;
+      explicit_ = explicit_outside.back();
+      explicit_outside.pop_back();
+      if (explicit_outside.empty())
+        values_.emplace(open_tag, bytes_.substr(open_start, at_ - 8 - open_start));
+      continue;
+    }
+    const bool is_pixels = head.tag == pixels_tag && is_top && !is_item_;
+    if (is_pixels && head.is_open()) return take_fragments();
+    if (is_top && head.is_unknown) implicit_inside_.insert(head.tag);
+    if (head.is_open()) {
+      if (is_top) {
+        open_tag = head.tag;
+        open_start = at_;
+      }
+      explicit_outside.push_back(explicit_);
+      if (head.is_unknown) explicit_ = false;  // PS3.5, 6.2.2: unknown sequences are implicit inside
+      continue;
+    }
+    if (is_pixels && head.length <= file_bytes_ - at_) {
+      raw_pixels_ = DicomExtent{at_, head.length};
+      return;
+    }
+    require(head.length, head.tag);
+    if (is_top) values_.emplace(head.tag, bytes_.substr(at_, head.length));
+    at_ += head.length;
+  }
+  require_more();
+}
+
+std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
+  std::vector<DicomFile> found;
+  const auto value = values_.find(sequence);
+  if (value == values_.end()) return found;
+  const bool explicit_vr = explicit_ && !implicit_inside_.contains(sequence);
+  // An item's head is the same with implicit and explicit VRs.
+  DicomFile marks(std::string_view(), explicit_vr, big_endian_);
+  marks.bytes_ = value->second;
+  marks.file_bytes_ = marks.bytes_.size();
+  while (marks.left() >= 8) {
+    const Head head = marks.take_head();
+    if (head.tag == sequence_end_tag) break;
+    if (head.tag != item_tag) throw Error(ErrorCode::Input, "a sequence is damaged: an item is missing");
+    if (!head.is_open()) marks.require(head.length, head.tag);
+    const std::size_t length = head.is_open() ? marks.left() : head.length;
+    found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, big_endian_));
+    marks.at_ += head.is_open() ? found.back().at_ : length;
+  }
+  return found;
+}
+
+std::string DicomFile::text(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  return found == values_.end() ? std::string() : trimmed(found->second);
+}
+
+std::string DicomFile::readable_text(DicomTag tag) const {
+  const std::string stored = text(tag);
+  const std::optional<std::string> converted = utf8_of(text(character_set_tag), stored);
+  std::string readable = converted.value_or(stored);
+  for (char& letter : readable) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (code < 0x20 || code == 0x7f || (code >= 0x80 && !converted)) letter = '?';
+  }
+  return readable;
+}
+
+std::optional<std::uint16_t> DicomFile::unsigned_short(DicomTag tag) const {
+  const auto found = values_.find(tag);
+  if (found == values_.end() || found->second.size() < 2) return std::nullopt;
+  return static_cast<std::uint16_t>(u16(static_cast<std::size_t>(found->second.data() - bytes_.data())));
+}
+
+std::optional<std::vector<double>> DicomFile::decimals(DicomTag tag) const {
+  std::vector<double> numbers;
+  std::istringstream parts(text(tag));
+  for (std::string part; std::getline(parts, part, '\\');) {
+    part = trimmed(part);
+    if (part.starts_with('+')) part.erase(0, 1);
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(number))
+      return std::nullopt;
+    numbers.push_back(number);
+  }
+  if (numbers.empty()) return std::nullopt;
+  return numbers;
+}
+
+std::optional<double> DicomFile::decimal(DicomTag tag) const {
+  const std::optional<std::vector<double>> numbers = decimals(tag);
+  return numbers ? std::optional<double>(numbers->front()) : std::nullopt;
+}
+
+}  // namespace octotomy::voxel

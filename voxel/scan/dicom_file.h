@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octotomy::voxel {
+
+/// Group and element of a DICOM attribute as one number: (0028,0010) is 0x00280010.
+using DicomTag = std::uint32_t;
+
+/// A range of bytes in a file.
+struct DicomExtent {
+  std::size_t at = 0;
+  std::size_t length = 0;
+};
+
+/// The attributes of a DICOM file at its top level, as views into its bytes: implicit and explicit VR, either
+/// byte order (DICOM PS3.5, 7 and 10). items() reads the values inside a sequence. Every length is checked
+/// against the file before it is used, and no allocation exceeds the file's size.
+class DicomFile {
+ public:
+  /// Thrown if the bytes from `at` to the end are deflated.
+  struct Deflated {
+    std::size_t at = 0;
+  };
+  /// Thrown if the given bytes, a file's beginning, end within its attributes.
+  struct NeedsMore {};
+
+  /// Whether a file's first 132 bytes are DICOM's: the prefix, or in older files an attribute of group 2
+  /// or 8.
+  static bool begins(std::string_view head);
+
+  /// `bytes` must outlive the object. They are the whole file of `file_bytes`, or its beginning up to the
+  /// pixels or beyond. `inflated` says that deflated attributes are inflated already; otherwise throws
+  /// Deflated. Throws NeedsMore; Error, Input, with the reason and without a path, if an attribute ends
+  /// beyond the file.
+  DicomFile(std::string_view bytes, std::size_t file_bytes, bool inflated = false);
+
+  /// As stored, in the file's character set, without padding; empty if the attribute is absent.
+  std::string text(DicomTag tag) const;
+  /// As UTF-8. Control characters, and non-ASCII in a character set that utf8_of() refuses, become question
+  /// marks.
+  std::string readable_text(DicomTag tag) const;
+  std::optional<std::uint16_t> unsigned_short(DicomTag tag) const;
+  /// Decimal strings; none if the attribute is absent or one value is no finite number.
+  std::optional<std::vector<double>> decimals(DicomTag tag) const;
+  std::optional<double> decimal(DicomTag tag) const;
+  /// The items of a sequence, each with attributes of its own; empty if the sequence is absent. The file's
+  /// bytes must outlive them. Throws Error, Input, if an item is damaged.
+  std::vector<DicomFile> items(DicomTag sequence) const;
+
+  bool big_endian() const { return big_endian_; }
+  const std::string& transfer_syntax() const { return transfer_syntax_; }
+  /// Uncompressed pixel data; none if the file has none or compressed ones.
+  std::optional<DicomExtent> raw_pixels() const { return raw_pixels_; }
+  /// Fragments of compressed pixels without the offset table; none if the pixels are raw.
+  const std::optional<std::vector<DicomExtent>>& fragments() const { return fragments_; }
+  /// The offset table: where each frame begins, counted from the first fragment's item; empty if absent.
+  const std::vector<std::uint32_t>& frame_offsets() const { return frame_offsets_; }
+
+ private:
+  struct Head {
+    DicomTag tag = 0;
+    std::uint32_t length = 0;
+    bool is_unknown = false;
+    bool is_open() const { return length == 0xffffffffu; }
+  };
+
+  /// The attributes of an item, up to its end mark or the end of the bytes.
+  DicomFile(std::string_view bytes, bool explicit_vr, bool big_endian);
+
+  void walk();
+  Head take_head();
+  void leave_meta();
+  void take_fragments();
+  void require(std::size_t length, DicomTag tag) const;
+  void require_more() const;
+  std::size_t left() const { return bytes_.size() - at_; }
+  std::uint32_t u16(std::size_t at) const;
+  std::uint32_t u32(std::size_t at) const;
+
+  std::string_view bytes_;
+  std::size_t file_bytes_ = 0;
+  std::size_t at_ = 0;
+  bool inflated_ = false;
+  bool is_item_ = false;
+  bool explicit_ = false;
+  bool big_endian_ = false;
+  std::string transfer_syntax_;
+  std::map<DicomTag, std::string_view> values_;
+  std::set<DicomTag> implicit_inside_;  ///< sequences of unknown representation
+  std::optional<DicomExtent> raw_pixels_;
+  std::optional<std::vector<DicomExtent>> fragments_;
+  std::vector<std::uint32_t> frame_offsets_;
+};
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "voxel/scan/dicom_slice.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::voxel {
+
+/// Slices of one series with the same size and orientation, ordered along the normal.
+struct DicomStack {
+  std::vector<DicomSlice> slices;
+  glm::dvec3 along_row{1, 0, 0};
+  glm::dvec3 along_column{0, 1, 0};
+  glm::dvec3 normal{0, 0, 1};
+
+  const DicomSlice& first() const { return slices.front(); }
+  double height_mm(const DicomSlice& slice) const {
+    return glm::dot(slice.first_mm - first().first_mm, normal);
+  }
+  /// The shift in pixels, within the plane, of a slice's first pixel from the first slice's.
+  glm::dvec2 aside_px(const DicomSlice& slice) const {
+    const glm::dvec3 offset_mm = slice.first_mm - first().first_mm;
+    return glm::dvec2(glm::dot(offset_mm, along_row), glm::dot(offset_mm, along_column)) / first().spacing_mm;
+  }
+};
+
+/// Reads the headers below a path, chooses the series that the options ask for, and keeps the slices that
+/// form a stack. The audit states which slices were left out and why: stray_files, series, localizers, size,
+/// orientation, pixel_spacing, duplicates. Throws as read_scene().
+DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
+                           std::vector<Finding>& audit);
+
+/// Runs a task for every index in parallel. Of several exceptions it throws that of the lowest index, on any
+/// thread count. Throws Stopped if the stop token is set before a task begins.
+void for_each_index(std::size_t count, const Progress& progress,
+                    const std::function<void(std::size_t)>& task);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "voxel/scan/dicom_file.h"
+
+namespace octotomy::voxel {
+
+/// The place of an image's pixels in its file, and their format: each pixel takes `allocated` bits, of which
+/// the `stored` bits up to bit `high` are its value.
+struct DicomPixels {
+  std::string transfer_syntax;
+  std::vector<DicomExtent> parts;  ///< one of raw pixels; fragments of compressed ones
+  bool is_compressed = false;
+  bool is_deflated = false;  ///< parts are then offsets in the inflated file
+  bool is_big_endian = false;
+  unsigned allocated = 16;
+  unsigned stored = 16;
+  unsigned high = 15;
+  bool is_signed = false;
+};
+
+/// The part of a grey DICOM image's header that a volume needs. The image is a file of one frame or one frame
+/// of several. LPS, millimetres.
+struct DicomSlice {
+  std::filesystem::path path;
+  int frame = 0;
+  DicomPixels pixels;
+  std::string class_uid;  ///< of the storage, (0008,0016)
+  std::string instance_uid;
+  std::string series_uid;
+  std::string series_description;  ///< UTF-8
+  std::string modality;
+  std::string rescale_type;
+  int series_number = 0;
+  int instance_number = 0;
+  glm::ivec2 size_px{0};             ///< columns, rows
+  glm::dvec2 spacing_mm{0.0};        ///< between columns, between rows
+  glm::dvec3 along_row{1, 0, 0};     ///< from column to column, as in the file
+  glm::dvec3 along_column{0, 1, 0};  ///< from row to row
+  glm::dvec3 first_mm{0.0};          ///< centre of the first pixel
+  bool spacing_at_detector = false;  ///< from ImagerPixelSpacing, because PixelSpacing is absent
+  bool inverted = false;             ///< MONOCHROME1
+  bool is_localizer = false;         ///< by ImageType
+  std::optional<double> slope;
+  std::optional<double> intercept;
+  std::optional<double> padding;  ///< rescaled value of pixels that were not measured
+  std::optional<double> thickness_mm;
+  std::optional<double> tilt_deg;  ///< the scanner's own tag; its sign varies from vendor to vendor
+};
+
+/// The reason why a file holds no slice.
+struct NoSlice {
+  std::string reason;
+};
+
+/// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or
+/// one for each frame of an enhanced CT or MR. Never throws on a file's contents. Memory: the file's
+/// attributes, or the whole file if it is compressed.
+std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::filesystem::path& path);
+
+/// Decodes a slice and applies its rescale (absent: slope 1, intercept 0), row by row, x fastest. Returns
+/// false if a value is no integer in int16's range. Precondition: `samples` has a place for every pixel.
+/// Throws Error, Input, with path and reason if the pixels cannot be decoded.
+bool read_dicom_samples(const DicomSlice& slice, std::span<std::int16_t> samples);
+/// Decodes to single precision; always true.
+bool read_dicom_samples(const DicomSlice& slice, std::span<float> samples);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "voxel/scan/dicom_file.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/space/lattice.h"
+
+namespace octotomy::voxel {
+
+/// The patient, study and images of a DICOM series, for files derived from it to take over and refer to.
+struct DicomSource {
+  struct Text {
+    std::string vr;  ///< its value representation
+    std::string value;
+  };
+  struct Image {
+    std::string class_uid;
+    std::string instance_uid;
+    double height_mm = 0.0;  ///< of its plane along `normal`, from the frame of reference's origin
+  };
+
+  /// Patient, study, frame of reference and acquisition by tag, from the first image's file and in its
+  /// character set. Attributes that the file lacks are absent.
+  std::map<DicomTag, Text> attributes;
+  std::string series_uid;
+  int series_number = 0;
+  std::string modality;
+  std::vector<Image> images;  ///< in order along the normal; each frame of a file is an image
+  glm::dvec3 normal{0, 0, 1};
+};
+
+/// The series that read_scene() reads with these options. Throws as read_scene().
+DicomSource dicom_source(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// The images from which slice k of a lattice can have been interpolated: all between the slice's lowest and
+/// highest corner along the source's normal, and the next image beyond a corner that lies between two images.
+/// Frames of one file count as one image.
+std::vector<DicomSource::Image> images_behind(const DicomSource& source, const Lattice& lattice, int k);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/image_file.h"
+
+#include <algorithm>
+#include <dlfcn.h>
+#include <fstream>
+#include <stdexcept>
+
+#include "voxel/scan/image_file_oiio.h"
+#include "voxel/space/file_text.h"
+#include "voxel/space/helper_file.h"
+#include "voxel/space/quiet_errors.h"
+#include "voxel/space/staged_files.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Encode = decltype(&octotomy_encode_image);
+using Read = decltype(&octotomy_read_images);
+
+/// Loads the library, which stays until the program ends because OpenImageIO's threads do.
+void* symbol_of_library(const char* name) {
+  const fs::path path = helper_file("octotomy_image_io.so");
+  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr)
+    throw Error(ErrorCode::Resource, path.string() + ": pictures cannot be read or written: " + dlerror() +
+                                         "; install this library and OpenImageIO again");
+  void* symbol = dlsym(library, name);
+  if (symbol == nullptr)
+    throw Error(ErrorCode::Resource, path.string() + ": is not this program's library; install both again");
+  return symbol;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
+                                       const std::vector<std::uint8_t>& rgb) {
+  if (size_px.x < 1 || size_px.y < 1 ||
+      rgb.size() !=
+          std::size_t{3} * static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y))
+    throw std::invalid_argument("a picture of " + std::to_string(size_px.x) + " x " +
+                                std::to_string(size_px.y) + " pixels does not have " +
+                                std::to_string(rgb.size()) + " bytes");
+  if (format != "png" && format != "jpeg" && format != "webp")
+    throw Error(ErrorCode::Input, "no picture is encoded as '" + format + "'; choose png, jpeg or webp");
+  static const Encode encode = reinterpret_cast<Encode>(symbol_of_library("octotomy_encode_image"));
+  std::vector<std::uint8_t> encoded;
+  std::string error;
+  if (!encode(format.c_str(), size_px.x, size_px.y, rgb.data(), &encoded, &error))
+    throw Error(ErrorCode::Resource, "a picture cannot be encoded as " + format + ": " + error);
+  return encoded;
+}
+
+std::vector<StoredImage> read_images(const fs::path& path) {
+  static const Read read = reinterpret_cast<Read>(symbol_of_library("octotomy_read_images"));
+  // Blank pixels compress to almost nothing: any file may hold 4096 x 4096 pixels of four bytes.
+  const std::size_t most_bytes =
+      std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
+  std::vector<StoredImage> images;
+  std::string error;
+  bool is_read = false;
+  {
+    const QuietErrors quiet;  // libpng prints its reasons as well
+    is_read = read(path.c_str(), most_bytes, &images, &error);
+  }
+  if (!is_read) {
+    std::replace(error.begin(), error.end(), '\n', ' ');
+    refuse(path, "cannot be read as images: " + error);
+  }
+  return images;
+}
+
+void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb) {
+  std::string format = extension_of(path);
+  if (!format.empty()) format.erase(0, 1);
+  if (format == "jpg") format = "jpeg";
+  std::vector<std::uint8_t> encoded;
+  try {
+    encoded = encode_image(format, size_px, rgb);
+  } catch (const Error& error) {
+    throw Error(error.code(), path.string() + ": " + error.what());
+  }
+  StagedFiles staging(path.parent_path());
+  std::ofstream out(staging.folder() / path.filename(), std::ios::binary);
+  out.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
+  out.close();
+  if (!out)
+    throw Error(ErrorCode::Resource, path.string() + ": cannot be written; check the space left on the disk");
+  staging.commit();
+}
+
+}  // namespace octotomy::voxel

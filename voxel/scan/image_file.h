@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "voxel/scan/image_file_oiio.h"
+
+namespace octotomy::voxel {
+
+/// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). JPEG and
+/// WebP are lossy, at quality 92 of 100. OpenImageIO is in octotomy_image_io.so, loaded on first use: linked
+/// in, it would add 0.2 s to every start of the program. Throws std::invalid_argument if the size is not
+/// positive or not that of the pixels; Error, Input, if the format is another; Error, Resource, if the
+/// library cannot be loaded. Safe from several threads.
+std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
+                                       const std::vector<std::uint8_t>& rgb);
+
+/// Writes a picture in the format of the extension (.png, .jpg, .jpeg, .webp); written beside and renamed
+/// into place. Throws as encode_image(), with the path; Error, Resource, if the disk gives out.
+void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
+                 const std::vector<std::uint8_t>& rgb);
+
+/// Reads the pages of a file, as grey images, in any format that OpenImageIO reads. Throws Error with path
+/// and reason: Input, or Resource if the library cannot be loaded. Memory: at most 64 MiB or 1100 times the
+/// file.
+std::vector<StoredImage> read_images(const std::filesystem::path& path);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// Exported by octotomy_image_io.so. Fills `encoded`, or fills `error` with the reason and returns false. No
+/// exception crosses the library's boundary.
+extern "C" bool octotomy_encode_image(const char* format, int width, int height, const std::uint8_t* rgb,
+                                      std::vector<std::uint8_t>* encoded, std::string* error);
+
+namespace octotomy::voxel {
+/// A grey image as stored in a file: samples row by row from the top left.
+struct StoredImage {
+  enum class Type { UInt8, UInt16, Int16, Float };
+  int width = 0;
+  int height = 0;
+  Type type = Type::UInt8;
+  std::vector<char> bytes;  ///< in this machine's order
+};
+}  // namespace octotomy::voxel
+
+/// Exported by octotomy_image_io.so. Fills `images` with the pages of a file, or fills `error` with the
+/// reason and returns false. Refuses colour unless the channels are equal. Allocates at most `most_bytes` in
+/// all.
+extern "C" bool octotomy_read_images(const char* path, std::size_t most_bytes,
+                                     std::vector<octotomy::voxel::StoredImage>* images, std::string* error);

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::voxel {
+
+/// Reads one DICOM series of a folder and its subfolders, a multi-frame file, or a single slice. Orders
+/// slices by position along their normal, never by name or number. The audit states every interpolation; its
+/// checks are stray_files, series, localizers, size, orientation, duplicates, slice_spacing, missing_slices,
+/// gantry_tilt, pixel_spacing, rescale, padding, photometric, air_level. Throws as read_scene(). Parallel
+/// over slices; same bits on any thread count.
+Scene read_dicom(const std::filesystem::path& path, const ReadOptions& options = {});
+
+}  // namespace octotomy::voxel

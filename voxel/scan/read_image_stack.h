@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::voxel {
+
+/// The image files that a path names: the file itself, the images in a folder, or the matches of a pattern
+/// with * and ? in its last part; in the order of the numbers in their names. Empty if it names none. A file
+/// is an image by its extension (tif, tiff, png, jpg, jpeg, bmp, pgm, exr, jp2, webp).
+std::vector<std::filesystem::path> image_files(const std::filesystem::path& path);
+
+/// Reads images as the slices of a stack, the first at the feet, with the options' spacing; each page of a
+/// file is a slice. All must have the same size and type. Images hold neither patient frame nor unit: the
+/// audit states the assumed ones. Throws as read_scene().
+Scene read_image_stack(const std::filesystem::path& path, const ReadOptions& options);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/read_raw.h"
+
+#include <fstream>
+#include <limits>
+
+#include "voxel/scan/audit.h"
+#include "voxel/space/file_text.h"
+
+namespace octotomy::voxel {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint64_t count) {
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(offset));
+  std::string bytes(count, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(count));
+  if (!in) refuse(path, "cannot be read");
+  return bytes;
+}
+
+}  // namespace
+
+Lattice lattice_without_frame(const fs::path& path, const glm::ivec3& dims, const ReadOptions& options) {
+  if (!options.spacing_mm) refuse(path, "does not state its spacing: give --spacing X,Y,Z in mm");
+  const glm::dvec3 spacing_mm = *options.spacing_mm;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(spacing_mm[axis] >= 1e-4 && spacing_mm[axis] <= 1e3))
+      refuse(path,
+             "a spacing of " + std::to_string(spacing_mm[axis]) + " mm is out of range; give 0.0001 to 1000");
+  return axis_aligned_lattice(dims, spacing_mm, -0.5 * glm::dvec3(dims - 1) * spacing_mm);
+}
+
+Scene read_raw(const fs::path& path, const ReadOptions& options) {
+  const RawLayout& layout = options.raw.value();
+  constexpr int most_a_side = 1 << 20;
+  std::uint64_t bytes = bytes_of(layout.type);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (layout.dims[axis] < 1 || layout.dims[axis] > most_a_side)
+      refuse(path, "raw dims of " + std::to_string(layout.dims[axis]) + " are out of range; give 1 to " +
+                       std::to_string(most_a_side));
+    if (bytes > std::numeric_limits<std::uint64_t>::max() / static_cast<std::uint64_t>(layout.dims[axis]))
+      refuse(path, "raw dims are larger than any file; check them");
+    bytes *= static_cast<std::uint64_t>(layout.dims[axis]);
+  }
+  if (!fs::is_regular_file(path)) refuse(path, "is no regular file; give a file of raw samples");
+  const std::uint64_t held = fs::file_size(path);
+  if (held < layout.offset || held - layout.offset != bytes)
+    refuse(path, "holds " + std::to_string(held) + " bytes, but the raw layout takes " +
+                     std::to_string(layout.offset) + " + " + std::to_string(bytes) +
+                     ": check dims, type and offset");
+  Scene scene;
+  scene.source = path.string();
+  scene.lattice = lattice_without_frame(path, layout.dims, options);
+  scene.audit.push_back(frame_finding(false));
+  take_bytes(bytes_of_part(path, layout.offset, bytes), {layout.type, layout.big_endian}, scene);
+  return scene;
+}
+
+}  // namespace octotomy::voxel

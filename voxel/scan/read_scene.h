@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "voxel/scan/stored_samples.h"
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+/// The layout of samples in a file without a header, x fastest.
+struct RawLayout {
+  glm::ivec3 dims{0};
+  SampleType type = SampleType::Int16;
+  bool big_endian = false;
+  std::uint64_t offset = 0;  ///< bytes before the first sample
+};
+
+struct ReadOptions {
+  /// The DICOM series: its number in list_series() (from 1), its UID, or a part of its description. Empty:
+  /// the series with most slices.
+  std::string series;
+  /// Along x, y, z, for files that do not state it: image stacks and raw files.
+  std::optional<glm::dvec3> spacing_mm;
+  std::optional<RawLayout> raw;  ///< set: the path is a raw file
+  Progress progress;
+};
+
+/// Reads a scan: a folder or a file of DICOM; NIfTI, NRRD or MetaImage; a stack of images (a TIFF of several
+/// pages, a folder of images, or a pattern with * and ? in its last part); a raw file. Applies the file's
+/// rescale and holds the values as int16 if all are integers in its range, otherwise as float. Geometry is in
+/// LPS millimetres for any frame of the file. The scene's audit lists every check and every doubt: missing or
+/// repeated slices, uneven spacing, gantry tilt, absent rescale, stray files. Throws Error, Input, with path
+/// and reason if nothing sound can be read; Error, Resource; Stopped. Memory: the samples once, and one slice
+/// or the decoder's own copy; twice if slices are resampled; bounded by a multiple of the file's size.
+Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// A DICOM series found in a folder.
+struct SeriesEntry {
+  std::string uid, description, modality;
+  int number = 0;  ///< the scanner's
+  std::size_t slices = 0;
+  glm::ivec2 size_px{0};
+};
+/// The series of a folder and its subfolders, most slices first; ReadOptions::series counts them in this
+/// order. Throws as read_scene() if there is none.
+std::vector<SeriesEntry> list_series(const std::filesystem::path& path);
+
+}  // namespace octotomy::voxel

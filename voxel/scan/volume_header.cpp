@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/volume_header.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+#include <zlib.h>
+
+#include "voxel/space/file_text.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Refuses a NIfTI-1 header with impossible values, on some of which the library behind ITK hangs. Reads the
+/// first kilobyte, unpacked.
+class NiftiGate {
+ public:
+  explicit NiftiGate(const fs::path& path) : path_(path) {
+    const gzFile in = gzopen(path.c_str(), "rb");  // reads unpacked files as they are
+    const int count = in == nullptr ? 0 : gzread(in, bytes_.data(), static_cast<unsigned>(bytes_.size()));
+    if (in != nullptr) gzclose(in);
+    if (count < header_bytes) refuse(path_, "is cut short or damaged within its header");
+    held_ = static_cast<std::size_t>(count);
+    swapped_ = number<std::int32_t>(0) != header_bytes;
+    if (number<std::int32_t>(0) == 540)
+      refuse(path_, "is NIfTI-2; its header is not read here: save it as NIfTI-1");
+    require(number<std::int32_t>(0) == header_bytes, "size");
+    require(bytes_[344] == 'n' && bytes_[345] == '+' && bytes_[346] == '1', "magic (n+1 is expected)");
+    check_dims();
+    check_places();
+  }
+
+  std::uintmax_t sample_bytes() const { return static_cast<std::uintmax_t>(number<std::int16_t>(72)) / 8; }
+  std::uintmax_t samples_at() const { return static_cast<std::uintmax_t>(number<float>(108)); }
+
+  /// The geometry in our own extension; none if that is absent or damaged.
+  std::optional<glm::dmat4> exact_geometry() const {
+    constexpr std::size_t flag_at = 348;
+    const auto samples_at = static_cast<std::size_t>(number<float>(108));
+    if (held_ <= flag_at || bytes_[flag_at] == 0) return std::nullopt;
+    for (std::size_t at = flag_at + 4; at + 8 <= std::min(held_, samples_at);) {
+      const auto length = static_cast<std::size_t>(std::max(0, number<std::int32_t>(at)));
+      if (length < 16 || length > std::min(held_, samples_at) - at) break;
+      const std::string_view text(bytes_.data() + at + 8, length - 8);
+      if (number<std::int32_t>(at + 4) == nifti_text_extension && text.starts_with(nifti_geometry_mark))
+        return rows_of(text.substr(nifti_geometry_mark.size()));
+      at += length;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static std::optional<glm::dmat4> rows_of(std::string_view text) {
+    glm::dmat4 matrix(1.0);
+    for (int i = 0; i < 12; ++i) {
+      while (text.starts_with(' ')) text.remove_prefix(1);
+      double number = 0.0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+      if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
+      text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+      matrix[i % 4][i / 4] = number;
+    }
+    return matrix;
+  }
+
+  void check_dims() const {
+    const int axis_count = number<std::int16_t>(40);
+    require(axis_count >= 2 && axis_count <= 7, "number of axes");
+    for (int axis = 1; axis <= axis_count; ++axis)
+      require(number<std::int16_t>(40 + 2 * static_cast<std::size_t>(axis)) >= 1, "dims");
+    // From 8-bit to 64-bit integers and floats, by NIfTI-1's codes.
+    const std::map<int, int> bits_of = {{2, 8},   {4, 16},   {8, 32},   {16, 32},   {64, 64},
+                                        {256, 8}, {512, 16}, {768, 32}, {1024, 64}, {1280, 64}};
+    const auto type = bits_of.find(number<std::int16_t>(70));
+    require(type != bits_of.end(), "type of samples");
+    require(type->second == number<std::int16_t>(72), "bits of a sample");
+  }
+
+  void check_places() const {
+    // No scanner reaches a kilometre, and no voxel is smaller than a nanometre.
+    const auto check_range = [&](std::size_t first, std::size_t count, const char* what) {
+      for (std::size_t i = 0; i < count; ++i) require(std::abs(number<float>(first + 4 * i)) <= 1e6f, what);
+    };
+    const float data_at = number<float>(108);
+    require(data_at >= 348.0f && data_at <= 1e9f, "offset of the samples");
+    check_range(76, 8, "spacing");
+    for (std::size_t axis = 1; axis <= 3; ++axis)
+      require(axis > static_cast<std::size_t>(number<std::int16_t>(40)) ||
+                  std::abs(number<float>(76 + 4 * axis)) >= 1e-6f,
+              "spacing");
+    require(std::isfinite(number<float>(112)) && std::isfinite(number<float>(116)), "slope and intercept");
+    if (number<std::int16_t>(252) > 0) check_range(256, 6, "quaternion");
+    if (number<std::int16_t>(254) > 0) check_range(280, 12, "affine");
+  }
+
+  template <typename Number>
+  Number number(std::size_t at) const {
+    std::array<char, sizeof(Number)> raw{};
+    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(at), raw.size(), raw.begin());
+    if (swapped_) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<Number>(raw);
+  }
+
+  void require(bool holds, const char* what) const {
+    if (!holds) refuse(path_, std::string("its NIfTI header is damaged: ") + what);
+  }
+
+  static constexpr int header_bytes = 348;
+  fs::path path_;
+  std::array<char, 1024> bytes_{};
+  std::size_t held_ = 0;
+  bool swapped_ = false;
+};
+
+/// The text header of a NRRD or MetaImage, keys in lower case; empty for NIfTI.
+class TextHeader {
+ public:
+  TextHeader(const fs::path& path, VolumeFormat format) : path_(path) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in) refuse(path, "cannot be opened; check that it is a file and that you may read it");
+    // Real headers are far shorter; the bytes beyond are samples.
+    std::string head(std::size_t{1} << 16, '\0');
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(in.gcount()));
+    if (head.empty()) refuse(path, "the file is empty");
+    check_magic(head, format);
+    if (format != VolumeFormat::Nifti) parse(head, format);
+    if (format == VolumeFormat::Meta) check_meta();
+  }
+
+  std::optional<std::string> value(const std::string& key) const {
+    const auto found = values_.find(key);
+    return found == values_.end() ? std::nullopt : std::optional<std::string>(found->second);
+  }
+  const std::map<std::string, std::string>& values() const { return values_; }
+  /// The offset after MetaImage's last line, or after the empty line that ends NRRD's header.
+  std::size_t end() const { return end_; }
+
+ private:
+  void check_magic(const std::string& head, VolumeFormat format) const {
+    const auto at = [&](std::size_t i) {
+      return i < head.size() ? static_cast<unsigned>(static_cast<unsigned char>(head[i])) : 0u;
+    };
+    bool held = false;
+    if (format == VolumeFormat::Nrrd) {
+      held = head.starts_with("NRRD00");
+    } else if (format == VolumeFormat::Meta) {
+      held = head.find("ElementDataFile") != std::string::npos;
+    } else {
+      const bool packed = extension_of(path_) == ".gz";
+      const auto size = [&](unsigned low, unsigned high) {
+        return (at(0) == low && at(1) == high) || (at(3) == low && at(2) == high);  // either byte order
+      };
+      held = packed ? at(0) == 0x1f && at(1) == 0x8b : size(0x5c, 0x01) || size(0x1c, 0x02);
+    }
+    if (!held)
+      refuse(path_, std::string("is not a ") + name_of(format) +
+                        " file, though its extension says so; rename it to its real format");
+  }
+
+  void parse(const std::string& head, VolumeFormat format) {
+    for (std::size_t at = 0; at < head.size();) {
+      const std::size_t end = std::min(head.find('\n', at), head.size());
+      const std::string line = trimmed(head.substr(at, end - at));
+      at = end + 1;
+      if (format == VolumeFormat::Nrrd && line.empty()) {
+        end_ = at;
+        break;
+      }
+      const std::size_t mark = line.find(format == VolumeFormat::Nrrd ? ':' : '=');
+      if (format == VolumeFormat::Meta) check_meta_line(line, mark);
+      if (mark == std::string::npos || line.front() == '#') continue;
+      const std::string key = lower_case(trimmed(line.substr(0, mark)));
+      std::string value = line.substr(mark + 1);
+      if (value.starts_with('=')) value.erase(0, 1);  // NRRD's key:=value
+      values_[key] = trimmed(value);
+      if (key == "elementdatafile") {
+        end_ = at;
+        break;
+      }
+    }
+  }
+
+  /// MetaIO writes beyond its buffers on a line that it cannot parse.
+  void check_meta_line(const std::string& line, std::size_t mark) const {
+    constexpr std::size_t longest = 250;  // MetaIO's words have 255 bytes
+    const bool is_plain = std::all_of(line.begin(), line.end(), [](char letter) {
+      return letter == '\t' || (letter >= 32 && letter < 127);
+    });
+    if (mark == std::string::npos || mark == 0 || mark > longest || !is_plain || line.size() - mark > longest)
+      refuse(path_, "its MetaImage header is damaged: a line is not a short 'Key = Value'");
+  }
+
+  /// MetaIO takes missing numbers from the next lines.
+  void check_meta() const {
+    if (!value("elementdatafile")) refuse(path_, "its MetaImage header does not end with ElementDataFile");
+    const std::vector<double> axes = numbers("ndims", 1);
+    if (axes.empty() || !(axes[0] >= 2.0 && axes[0] <= 4.0))
+      refuse(path_, "its MetaImage header is damaged: NDims is not 2, 3 or 4");
+    const auto axis_count = static_cast<std::size_t>(axes[0]);
+    for (const char* key :
+         {"dimsize", "elementspacing", "elementsize", "offset", "position", "origin", "centerofrotation"})
+      numbers(key, axis_count);
+    for (const char* key : {"transformmatrix", "orientation", "rotation"})
+      numbers(key, axis_count * axis_count);
+    for (const char* key : {"compresseddatasize", "headersize", "elementnumberofchannels"}) numbers(key, 1);
+    if (!value("dimsize")) refuse(path_, "its MetaImage header is damaged: DimSize is missing");
+    for (const double length : numbers("dimsize", axis_count))
+      if (!(length >= 1.0 && length <= std::numeric_limits<int>::max()) || length != std::trunc(length))
+        refuse(path_, "its MetaImage header is damaged: DimSize");
+    for (const double step : numbers("elementspacing", axis_count))
+      if (step == 0.0) refuse(path_, "its MetaImage header is damaged: ElementSpacing");
+  }
+
+  /// The numbers of a key: none if it is absent, else `count` finite ones.
+  std::vector<double> numbers(const std::string& key, std::size_t count) const {
+    std::vector<double> found;
+    const std::optional<std::string> text = value(key);
+    if (!text) return found;
+    std::istringstream words(*text);
+    for (std::string word; words >> word;) {
+      double number = 0.0;
+      if (word.starts_with('+')) word.erase(0, 1);
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+      const bool held = error == std::errc() && end == word.data() + word.size() && std::isfinite(number);
+      if (held) found.push_back(number);
+      if (!held || found.size() > count) break;
+    }
+    if (found.size() != count || !words.eof())
+      refuse(path_,
+             "its MetaImage header is damaged: " + key + " needs " + std::to_string(count) + " numbers");
+    return found;
+  }
+
+  fs::path path_;
+  std::map<std::string, std::string> values_;
+  std::size_t end_ = 0;
+};
+
+bool is_compressed_meta(const VolumeHeader& header) {
+  return lower_case(header.field("compresseddata").value_or("false")) == "true";
+}
+
+/// The unpacked size of a .gz file; none if it is damaged or cut short.
+std::optional<std::uintmax_t> unpacked_bytes(const fs::path& path) {
+  const gzFile in = gzopen(path.c_str(), "rb");
+  if (in == nullptr) return std::nullopt;
+  std::vector<char> part(std::size_t{1} << 18);
+  std::uintmax_t total = 0;
+  int count = 0;
+  while ((count = gzread(in, part.data(), static_cast<unsigned>(part.size()))) > 0)
+    total += static_cast<std::uintmax_t>(count);
+  const bool sound = count == 0 && gzclose(in) == Z_OK;
+  if (count != 0) gzclose(in);
+  return sound ? std::optional(total) : std::nullopt;
+}
+
+/// The unpacked size of the zlib or gzip stream that begins at offset `at`; none if it is damaged or cut
+/// short.
+std::optional<std::uintmax_t> inflated_bytes(const fs::path& path, std::uintmax_t at) {
+  z_stream stream{};
+  constexpr int either_header = 32 + MAX_WBITS;
+  if (inflateInit2(&stream, either_header) != Z_OK) return std::nullopt;
+  std::ifstream in(path, std::ios::binary);
+  in.seekg(static_cast<std::streamoff>(at));
+  std::vector<char> packed(std::size_t{1} << 18), part(std::size_t{1} << 18);
+  std::uintmax_t total = 0;
+  int state = Z_OK;
+  while (state == Z_OK) {
+    if (stream.avail_in == 0) {
+      in.read(packed.data(), static_cast<std::streamsize>(packed.size()));
+      if (in.gcount() == 0) break;
+      stream.next_in = reinterpret_cast<Bytef*>(packed.data());
+      stream.avail_in = static_cast<uInt>(in.gcount());
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(part.data());
+    stream.avail_out = static_cast<uInt>(part.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+    total += part.size() - stream.avail_out;
+  }
+  inflateEnd(&stream);
+  return state == Z_STREAM_END ? std::optional(total) : std::nullopt;
+}
+
+/// Upper bound on the bytes of samples in the file.
+std::uintmax_t most_bytes(const fs::path& path, VolumeFormat format, const VolumeHeader& header) {
+  // Deflate packs at most 1032 bytes into one; a text encoding at most 8 into two characters.
+  constexpr std::uintmax_t densest = 1100;
+  bool packed = false;
+  std::string data_file;
+  if (format == VolumeFormat::Nifti) {
+    packed = extension_of(path) == ".gz";
+  } else if (format == VolumeFormat::Nrrd) {
+    packed = lower_case(header.field("encoding").value_or("raw")) != "raw";
+    data_file = header.field("data file").value_or(header.field("datafile").value_or(""));
+  } else {
+    packed = lower_case(header.field("compresseddata").value_or("false")) == "true" ||
+             lower_case(header.field("binarydata").value_or("true")) == "false";
+    data_file = header.field("elementdatafile").value_or("LOCAL");
+    if (lower_case(data_file) == "local") data_file.clear();
+  }
+  std::uintmax_t bytes = 0;
+  if (data_file.empty()) {
+    bytes = fs::file_size(path);
+  } else if (data_file.starts_with("LIST") || data_file.find('%') != std::string::npos) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(fs::absolute(path).parent_path()))
+      if (entry.is_regular_file()) bytes += entry.file_size();
+  } else {
+    const fs::path data = fs::absolute(path).parent_path() / data_file;  // an absolute name stays itself
+    if (!fs::is_regular_file(data))
+      refuse(path, "its data file '" + data_file + "' is missing; keep header and data together");
+    bytes = fs::file_size(data);
+  }
+  return packed ? bytes * densest : bytes;
+}
+
+}  // namespace
+
+std::optional<std::string> VolumeHeader::field(const std::string& key) const {
+  const auto found = fields.find(key);
+  return found == fields.end() ? std::nullopt : std::optional<std::string>(found->second);
+}
+
+const char* name_of(VolumeFormat format) {
+  switch (format) {
+    case VolumeFormat::Nifti:
+      return "NIfTI";
+    case VolumeFormat::Nrrd:
+      return "NRRD";
+    case VolumeFormat::Meta:
+      return "MetaImage";
+  }
+  return "";
+}
+
+std::optional<VolumeFormat> volume_format(const fs::path& path) {
+  const std::string name = lower_case(path.filename().string());
+  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return VolumeFormat::Nifti;
+  if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return VolumeFormat::Nrrd;
+  if (name.ends_with(".mha") || name.ends_with(".mhd")) return VolumeFormat::Meta;
+  return std::nullopt;
+}
+
+VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
+  const TextHeader text(path, format);
+  VolumeHeader header;
+  header.fields = text.values();
+  if (format == VolumeFormat::Nifti) {
+    const NiftiGate gate(path);
+    header.lps_from_voxel = gate.exact_geometry();
+    header.data_file = path;
+    header.data_at = gate.samples_at();
+    header.sample_bytes = gate.sample_bytes();
+  } else if (format == VolumeFormat::Nrrd) {
+    const std::string data = header.field("data file").value_or(header.field("datafile").value_or(""));
+    // The library itself checks skipped bytes and samples in several files.
+    const bool is_plain = !data.starts_with("LIST") && data.find('%') == std::string::npos &&
+                          !header.field("byte skip") && !header.field("line skip");
+    if (is_plain) header.data_file = data.empty() ? path : fs::absolute(path).parent_path() / data;
+    if (data.empty()) header.data_at = text.end();
+  } else if (format == VolumeFormat::Meta) {
+    const std::string data = header.field("elementdatafile").value_or("");
+    if (lower_case(data) == "local") {
+      header.data_file = path;
+      header.data_at = text.end();
+    } else if (!data.starts_with("LIST") && data.find('%') == std::string::npos) {
+      header.data_file = fs::absolute(path).parent_path() / data;
+    }
+  }
+  header.most_bytes = most_bytes(path, format, header);
+  return header;
+}
+
+void require_samples(const fs::path& path, VolumeFormat format, const VolumeHeader& header,
+                     std::uintmax_t bytes) {
+  if (header.data_file.empty()) return;
+  const std::string encoding = lower_case(header.field("encoding").value_or("raw"));
+  const bool is_packed_nrrd = format == VolumeFormat::Nrrd && (encoding == "gzip" || encoding == "gz");
+  const bool is_text = lower_case(header.field("binarydata").value_or("true")) == "false" ||
+                       (encoding != "raw" && !is_packed_nrrd);
+  if (is_text) return;  // the library counts the numbers that it parses
+  std::optional<std::uintmax_t> held;
+  if (format == VolumeFormat::Nifti && extension_of(path) == ".gz") {
+    held = unpacked_bytes(path);
+  } else if (is_packed_nrrd || (format == VolumeFormat::Meta && is_compressed_meta(header))) {
+    held = inflated_bytes(header.data_file, header.data_at);
+    if (held) held = *held + header.data_at;
+  } else {
+    held = fs::file_size(header.data_file);
+  }
+  if (!held) refuse(path, "its packed samples are damaged or cut short");
+  if (*held < header.data_at + bytes)
+    refuse(path, "its samples are cut short: " + std::to_string(*held - std::min(*held, header.data_at)) +
+                     " bytes of " + std::to_string(bytes));
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "voxel/scan/character_set.h"
+#include "voxel/scan/dicom_derived.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/space/file_text.h"
+#include "voxel/space/staged_files.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* ct_image_storage = "1.2.840.10008.5.1.4.1.1.2";
+constexpr const char* mr_image_storage = "1.2.840.10008.5.1.4.1.1.4";
+
+/// Writes the slices of one series.
+class SeriesWriter {
+ public:
+  SeriesWriter(const Scene& scene, const DicomOptions& options) : scene_(scene), options_(options) {
+    check(scene);
+    check_dicom_text(options.patient_name, "patient_name");
+    check_dicom_text(options.series_description, "series_description");
+    const glm::dmat4& lps_from_voxel = scene.lattice.lps_from_voxel;
+    spacing_mm_ = scene.lattice.spacing_mm();
+    along_row_ = glm::dvec3(lps_from_voxel[0]) / spacing_mm_.x;
+    along_column_ = glm::dvec3(lps_from_voxel[1]) / spacing_mm_.y;
+    // The rounding of single precision is allowed; ImageOrientationPatient keeps 13 decimals or more.
+    if (std::abs(glm::dot(along_row_, along_column_)) > 1e-6)
+      throw std::invalid_argument(
+          "a DICOM slice's rows and columns must be perpendicular: resample the scene");
+    if (scene.lattice.dims.x > 65535 || scene.lattice.dims.y > 65535)
+      throw std::invalid_argument("a DICOM slice has at most 65535 rows and columns");
+    step_mm_ = std::abs(glm::dot(glm::dvec3(lps_from_voxel[2]), glm::cross(along_row_, along_column_)));
+    digest_.add(&lps_from_voxel, sizeof lps_from_voxel);
+    digest_.add(&scene.lattice.dims, sizeof scene.lattice.dims);
+    std::visit([&](const auto& samples) { digest_.add(samples.data(), samples.size() * sizeof samples[0]); },
+               scene.samples);
+    digest_.add(options.patient_name);
+    digest_.add(options.series_description);
+    if (options.source) digest_.add(options.source->series_uid);
+    is_mr_ = scene.modality == "MR";
+  }
+
+  /// Writes slice k to `path`; errors call the file `name`.
+  void write(int k, const fs::path& path, const fs::path& name) const {
+    const Int16Samples samples = samples_of(k);
+    DicomAttributes slice;
+    put_study(slice, options_, digest_, !is_ascii(options_.series_description));
+    put_acquisition(slice);
+    if (options_.source) put_source(slice, *options_.source, k);
+    put_image(slice, k);
+    put_pixels(slice, samples);
+    write_dicom_file(path, name, slice);
+  }
+
+ private:
+  Int16Samples samples_of(int k) const {
+    const std::size_t area =
+        static_cast<std::size_t>(scene_.lattice.dims.x) * static_cast<std::size_t>(scene_.lattice.dims.y);
+    Int16Samples slice(area);
+    std::visit(
+        [&](const auto& samples) {
+          for (std::size_t i = 0; i < area; ++i) {
+            const auto value = static_cast<double>(samples[static_cast<std::size_t>(k) * area + i]);
+            if (!(value >= std::numeric_limits<std::int16_t>::min() &&
+                  value <= std::numeric_limits<std::int16_t>::max() && value == std::trunc(value)))
+              throw std::invalid_argument("sample " + std::to_string(value) + " of slice " +
+                                          std::to_string(k) +
+                                          " is no integer in int16's range: round or rescale the scene");
+            slice[i] = static_cast<std::int16_t>(value);
+          }
+        },
+        scene_.samples);
+    return slice;
+  }
+
+  const char* storage() const { return is_mr_ ? mr_image_storage : ct_image_storage; }
+  std::string instance_uid(int k) const { return digest_.uid("slice " + std::to_string(k)); }
+
+  /// Every MR image must describe its acquisition (PS3.3, C.8.3.1); these values mean unknown.
+  void put_acquisition(DicomAttributes& slice) const {
+    slice.put(0x00080060, "CS", is_mr_ ? "MR" : "CT");
+    slice.put(0x00185100, "CS", "HFS");
+    slice.put(0x00200060, "CS", "");
+    if (!is_mr_) return;
+    slice.put(0x00180020, "CS", "RM");
+    slice.put(0x00180021, "CS", "NONE");
+    for (const auto& [tag, vr] :
+         {std::pair{DicomTag{0x00180022}, "CS"}, std::pair{DicomTag{0x00180023}, "CS"},
+          std::pair{DicomTag{0x00180080}, "DS"}, std::pair{DicomTag{0x00180081}, "DS"},
+          std::pair{DicomTag{0x00180091}, "IS"}})
+      slice.put(tag, vr, "");
+  }
+
+  /// Takes over the source's acquisition and refers to the images behind the slice.
+  void put_source(DicomAttributes& slice, const DicomSource& source, int k) const {
+    const auto is_scanners = [](DicomTag tag) { return tag >= 0x00180020 && tag <= 0x00180fff; };
+    for (const auto& [tag, text] : source.attributes)
+      if (tag == 0x00200060 || (tag >> 16 == 0x0018 && (is_mr_ || !is_scanners(tag))))
+        slice.put(tag, text.vr.c_str(), text.value);
+    // Beside a body part, an empty laterality would mean that the side is unknown (PS3.3, C.7.3.1).
+    if (source.attributes.contains(0x00180015) && !source.attributes.contains(0x00200060))
+      slice.remove(0x00200060);
+    // Far from the scanner's own numbers, so that viewers list the series apart.
+    slice.put(0x00200011, "IS", std::to_string(source.series_number + 1000));
+    const std::vector<DicomSource::Image> images = images_behind(source, scene_.lattice, k);
+    if (images.empty()) return;
+    slice.put(0x00082111, "ST", "Resampled to a lattice where the source is not one");
+    put_source_images(slice, images);
+    put_referenced_series(slice, source.series_uid, images);
+  }
+
+  void put_image(DicomAttributes& slice, int k) const {
+    slice.put(0x00080008, "CS", is_mr_ ? "DERIVED\\SECONDARY\\OTHER" : "DERIVED\\SECONDARY\\AXIAL");
+    slice.put(0x00080016, "UI", storage());
+    slice.put(0x00080018, "UI", instance_uid(k));
+    slice.put(0x00180050, "DS", dicom_decimal(step_mm_));
+    if (!is_mr_) slice.put(0x00180060, "DS", "");
+    slice.put(0x00200012, "IS", "1");
+    slice.put(0x00200013, "IS", std::to_string(k + 1));
+    slice.put(0x00200032, "DS", dicom_decimals(scene_.lattice.lps_mm({0.0, 0.0, k})));
+    slice.put(0x00200037, "DS", dicom_decimals(along_row_) + "\\" + dicom_decimals(along_column_));
+    slice.put(0x00280030, "DS", dicom_decimal(spacing_mm_.y) + "\\" + dicom_decimal(spacing_mm_.x));
+    if (is_mr_) return;
+    slice.put(0x00281052, "DS", "0");
+    slice.put(0x00281053, "DS", "1");
+    slice.put(0x00281054, "LO", scene_.meaning == Meaning::Hounsfield ? "HU" : "US");
+  }
+
+  void put_pixels(DicomAttributes& slice, const Int16Samples& samples) const {
+    slice.put_short(0x00280002, 1);
+    slice.put(0x00280004, "CS", "MONOCHROME2");
+    slice.put_short(0x00280010, static_cast<std::uint16_t>(scene_.lattice.dims.y));
+    slice.put_short(0x00280011, static_cast<std::uint16_t>(scene_.lattice.dims.x));
+    slice.put_short(0x00280100, 16);
+    slice.put_short(0x00280101, 16);
+    slice.put_short(0x00280102, 15);
+    slice.put_short(0x00280103, 1);
+    slice.put(0x7fe00010, "OW",
+              {reinterpret_cast<const char*>(samples.data()), samples.size() * sizeof samples[0]});
+  }
+
+  const Scene& scene_;
+  const DicomOptions& options_;
+  glm::dvec3 spacing_mm_{1.0};
+  glm::dvec3 along_row_{1, 0, 0};
+  glm::dvec3 along_column_{0, 1, 0};
+  double step_mm_ = 1.0;
+  bool is_mr_ = false;
+  DicomDigest digest_;
+};
+
+std::string slice_name(int k) {
+  char name[32];
+  std::snprintf(name, sizeof name, "slice_%04d.dcm", k + 1);
+  return name;
+}
+
+}  // namespace
+
+void write_dicom_series(const Scene& scene, const fs::path& folder, const DicomOptions& options) {
+  const SeriesWriter series(scene, options);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) refuse(folder, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
+  for (int k = 0; k < scene.lattice.dims.z; ++k)
+    if (fs::exists(folder / slice_name(k)))
+      refuse(folder / slice_name(k), "exists already; choose another folder or empty it");
+  StagedFiles staging(folder);
+  for (int k = 0; k < scene.lattice.dims.z; ++k)
+    series.write(k, staging.folder() / slice_name(k), folder / slice_name(k));
+  staging.commit();
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 find the planes that hold a voxel and the rectangle around them; 2 pack their pixels, one bit each, and
+// describe each plane as a frame; 3 describe the segment, the dimensions (segment and position) and the
+// origin.
+#include "voxel/scan/write_dicom_seg.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "voxel/scan/character_set.h"
+#include "voxel/scan/dicom_derived.h"
+#include "voxel/space/staged_files.h"
+#include "voxel/tree/slice_bits.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Items = std::vector<DicomAttributes>;
+
+constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
+
+/// The planes that hold a voxel, and the smallest rectangle that holds the voxels of all.
+struct Extent {
+  std::vector<int> planes;
+  glm::ivec2 low{0};
+  glm::ivec2 high{-1};  ///< inclusive
+  glm::ivec2 size_px() const { return high - low + 1; }
+};
+
+/// Adds every plane's words to the digest on the way.
+Extent extent_of(const Octree& object, const Progress& progress, DicomDigest& digest) {
+  const int side = object.universe().side();
+  Extent extent;
+  extent.low = glm::ivec2(side);
+  SliceBits slice;
+  for (int z = 0; z < side; ++z) {
+    progress.at(0.5 * z / side);
+    read_slice(object, z, slice);
+    bool held = false;
+    for (int y = 0; y < side; ++y)
+      for (int word = 0; word < slice.words_per_row; ++word) {
+        const std::uint64_t bits = slice.row(y)[word];
+        if (bits == 0) continue;
+        held = true;
+        extent.low = glm::min(extent.low, glm::ivec2(64 * word + std::countr_zero(bits), y));
+        extent.high = glm::max(extent.high, glm::ivec2(64 * word + 63 - std::countl_zero(bits), y));
+      }
+    if (!held) continue;
+    extent.planes.push_back(z);
+    digest.add(&z, sizeof z);
+    digest.add(slice.words.data(), slice.words.size() * sizeof slice.words[0]);
+  }
+  if (extent.planes.empty())
+    throw std::invalid_argument("the object is empty: choose an object with at least one voxel");
+  return extent;
+}
+
+/// The frames' pixels without gaps between rows or frames, the first in the lowest bit (PS3.5, 8.1.1).
+std::string packed_pixels(const Octree& object, const Extent& extent, const Progress& progress) {
+  const auto area =
+      static_cast<std::uint64_t>(extent.size_px().x) * static_cast<std::uint64_t>(extent.size_px().y);
+  const std::uint64_t bytes = (area * extent.planes.size() + 7) / 8;
+  if (bytes > 0xfffffffe)
+    throw Error(ErrorCode::Geometry,
+                "the segmentation's " + std::to_string(extent.planes.size()) +
+                    " frames take more than DICOM's 4 GB: use larger voxels or a part of the object");
+  std::string pixels(static_cast<std::size_t>(bytes), '\0');
+  SliceBits slice;
+  std::size_t bit = 0;
+  for (std::size_t i = 0; i < extent.planes.size(); ++i) {
+    progress.at(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(extent.planes.size()));
+    read_slice(object, extent.planes[i], slice);
+    for (int y = extent.low.y; y <= extent.high.y; ++y)
+      for (int x = extent.low.x; x <= extent.high.x; ++x, ++bit)
+        if ((slice.row(y)[x / 64] >> (x % 64)) & 1)
+          pixels[bit / 8] = static_cast<char>(pixels[bit / 8] | (1 << (bit % 8)));
+  }
+  return pixels;
+}
+
+/// One item with one attribute or more, as most sequences of a segmentation have it.
+template <typename Fill>
+Items item(Fill fill) {
+  Items items(1);
+  fill(items.front());
+  return items;
+}
+
+void put_segment(DicomAttributes& file, const std::string& label) {
+  // The object's anatomy is unknown; SNOMED's tissue holds for every object.
+  const Items tissue{dicom_code("85756007", "SCT", "Tissue")};
+  file.put(0x00620001, "CS", "BINARY");
+  file.put_sequence(0x00620002, item([&](DicomAttributes& segment) {
+                      segment.put_sequence(0x00620003, tissue);
+                      segment.put_short(0x00620004, 1);
+                      segment.put(0x00620005, "LO", label);
+                      segment.put(0x00620008, "CS", "SEMIAUTOMATIC");
+                      segment.put(0x00620009, "LO", "Octotomy");
+                      segment.put_sequence(0x0062000f, tissue);
+                    }));
+  file.put(0x00700080, "CS", "OCTOTOMY");
+  file.put(0x00700081, "LO", label);
+  file.put(0x00700084, "PN", "Octotomy^Planner");
+}
+
+void put_dimensions(DicomAttributes& file, const std::string& uid) {
+  const auto dimension = [&](DicomTag attribute, DicomTag group, const char* label) {
+    DicomAttributes index;
+    index.put(0x00209164, "UI", uid);
+    index.put_tag(0x00209165, attribute);
+    index.put_tag(0x00209167, group);
+    index.put(0x00209421, "LO", label);
+    return index;
+  };
+  file.put_sequence(0x00209221,
+                    item([&](DicomAttributes& organization) { organization.put(0x00209164, "UI", uid); }));
+  file.put_sequence(0x00209222, {dimension(0x0062000b, 0x0062000a, "Segment"),
+                                 dimension(0x00200032, 0x00209113, "Position")});
+}
+
+void put_shared_groups(DicomAttributes& file, const glm::dmat3& axes, const glm::dvec3& edge_mm) {
+  DicomAttributes shared;
+  shared.put_sequence(0x00209116, item([&](DicomAttributes& orientation) {
+                        orientation.put(0x00200037, "DS",
+                                        dicom_decimals(axes[0]) + "\\" + dicom_decimals(axes[1]));
+                      }));
+  shared.put_sequence(0x00289110, item([&](DicomAttributes& measures) {
+                        measures.put(0x00180050, "DS", dicom_decimal(edge_mm.z));
+                        measures.put(0x00180088, "DS", dicom_decimal(edge_mm.z));
+                        measures.put(0x00280030, "DS",
+                                     dicom_decimal(edge_mm.y) + "\\" + dicom_decimal(edge_mm.x));
+                      }));
+  file.put_sequence(0x52009229, {shared});
+}
+
+/// The groups of one frame, number from 1.
+DicomAttributes frame_groups(std::uint32_t number, const glm::dvec3& first_mm,
+                             const std::vector<DicomSource::Image>& images) {
+  DicomAttributes frame;
+  if (!images.empty())
+    frame.put_sequence(0x00089124, item([&](DicomAttributes& derivation) {
+                         derivation.put(0x00082111, "ST", "Segmented from the source");
+                         put_source_images(derivation, images);
+                         derivation.put_sequence(0x00089215, {dicom_code("113076", "DCM", "Segmentation")});
+                       }));
+  frame.put_sequence(0x00209111, item([&](DicomAttributes& content) {
+                       content.put(0x00209056, "SH", "1");
+                       content.put_longs(0x00209057, {number});
+                       content.put_longs(0x00209157, {1, number});
+                     }));
+  frame.put_sequence(0x00209113, item([&](DicomAttributes& position) {
+                       position.put(0x00200032, "DS", dicom_decimals(first_mm));
+                     }));
+  frame.put_sequence(0x0062000a, item([](DicomAttributes& segment) { segment.put_short(0x0062000b, 1); }));
+  return frame;
+}
+
+/// The frames, and the images that any frame refers to.
+void put_frames(DicomAttributes& file, const Lattice& lattice, const Extent& extent,
+                const std::optional<DicomSource>& source) {
+  Items frames;
+  std::vector<DicomSource::Image> referenced;
+  std::set<std::string> known;
+  for (const int z : extent.planes) {
+    std::vector<DicomSource::Image> images;
+    if (source) images = images_behind(*source, lattice, z);
+    for (const DicomSource::Image& image : images)
+      if (known.insert(image.instance_uid).second) referenced.push_back(image);
+    frames.push_back(frame_groups(static_cast<std::uint32_t>(frames.size() + 1),
+                                  lattice.lps_mm(glm::dvec3(extent.low, z)), images));
+  }
+  file.put_sequence(0x52009230, frames);
+  file.put(0x00280008, "IS", std::to_string(frames.size()));
+  if (source) put_referenced_series(file, source->series_uid, referenced);
+}
+
+void put_image(DicomAttributes& file, const glm::ivec2& size_px) {
+  file.put(0x00080008, "CS", "DERIVED\\PRIMARY");
+  file.put(0x00080016, "UI", segmentation_storage);
+  file.put(0x00080023, "DA", "20000101");
+  file.put(0x00080033, "TM", "000000");
+  file.put(0x00080060, "CS", "SEG");
+  file.put(0x00081090, "LO", "octotomy");
+  file.put(0x00181000, "LO", "0");
+  file.put(0x00181020, "LO", OCTOTOMY_VERSION);
+  file.put(0x00200013, "IS", "1");
+  file.put_short(0x00280002, 1);
+  file.put(0x00280004, "CS", "MONOCHROME2");
+  file.put_short(0x00280010, static_cast<std::uint16_t>(size_px.y));
+  file.put_short(0x00280011, static_cast<std::uint16_t>(size_px.x));
+  file.put_short(0x00280100, 1);
+  file.put_short(0x00280101, 1);
+  file.put_short(0x00280102, 0);
+  file.put_short(0x00280103, 0);
+  file.put(0x00282110, "CS", "00");
+}
+
+DicomAttributes segmentation(const Octree& object, const DicomSegOptions& options) {
+  const Universe& universe = object.universe();
+  const Lattice lattice = universe.lattice();
+  const glm::dvec3 edge_mm = lattice.spacing_mm();
+  glm::dmat3 axes(universe.lps_from_voxel);
+  for (int i = 0; i < 3; ++i) axes[i] /= edge_mm[i];
+  // Decimal strings keep 13 digits at worst; single precision rounds a right angle by less than this.
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(glm::dot(axes[i], axes[(i + 1) % 3])) > 1e-6)
+      throw std::invalid_argument(
+          "a segmentation's rows, columns and planes must be perpendicular: resample the object");
+  DicomDigest digest;
+  digest.add(&universe.lps_from_voxel, sizeof universe.lps_from_voxel);
+  digest.add(options.label);
+  digest.add(options.series_description);
+  if (options.source) digest.add(options.source->series_uid);
+  const Extent extent = extent_of(object, options.progress, digest);
+  DicomAttributes file;
+  const bool in_utf8 = !is_ascii(options.label) || !is_ascii(options.series_description);
+  DicomOptions study{.series_description = options.series_description, .source = options.source};
+  if (study.source) study.patient_name.clear();
+  put_study(file, study, digest, in_utf8);
+  put_image(file, extent.size_px());
+  file.put(0x00080018, "UI", digest.uid("segmentation"));
+  put_segment(file, options.label);
+  put_dimensions(file, digest.uid("dimensions"));
+  put_shared_groups(file, axes, edge_mm);
+  put_frames(file, lattice, extent, options.source);
+  file.put(0x7fe00010, "OB", packed_pixels(object, extent, options.progress));
+  return file;
+}
+
+}  // namespace
+
+void write_dicom_seg(const Octree& object, const fs::path& path, const DicomSegOptions& options) {
+  check_dicom_text(options.label, "label");
+  check_dicom_text(options.series_description, "series_description");
+  if (options.label.empty() || options.series_description.empty())
+    throw std::invalid_argument("a segmentation's label and series_description must not be empty");
+  const DicomAttributes file = segmentation(object, options);
+  StagedFiles staging(path.parent_path());
+  write_dicom_file(staging.folder() / path.filename(), path, file);
+  staging.commit();
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "voxel/scan/dicom_source.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+/// Writes a scene in the format of the extension: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. The samples' type,
+/// their meaning and the modality survive a round trip. Geometry is kept in double precision; NIfTI files,
+/// single precision by themselves, keep it in an extension that other readers skip. Written beside and
+/// renamed into place, so that a failure leaves an older file intact. Throws Error, Input or Resource, with
+/// path and reason; std::invalid_argument for NIfTI and MetaImage, which cannot store them, if the lattice's
+/// axes are not perpendicular.
+void write_scene(const Scene& scene, const std::filesystem::path& path);
+
+struct DicomOptions {
+  std::string patient_name = "Phantom^Octotomy";  ///< family^given; unused if the source names its patient
+  std::string series_description = "Octotomy";    ///< at most 64 characters
+  /// The series that the scene was made from. The files take over its patient, study and frame of reference,
+  /// and each slice refers to the images behind it. None: a phantom in a study of its own.
+  std::optional<DicomSource> source = std::nullopt;
+};
+
+/// Writes each slice as a file (slice_0001.dcm and so on) into a folder, as MR Image Storage if the scene's
+/// modality is MR and as CT otherwise. Makes the folder if it is absent. A lattice whose third axis is not
+/// perpendicular to the first two becomes a series with gantry tilt. Samples are written as int16 with slope
+/// 1, intercept 0; the rescale type of a CT says if it is not Hounsfield. Unique identifiers come from the
+/// content: the same scene and options give the same files, byte by byte. Throws Error, Input or Resource,
+/// with path and reason, also if a file of that name is there; std::invalid_argument if a sample is no
+/// integer in int16's range, the first two axes are not perpendicular or a text is too long.
+void write_dicom_series(const Scene& scene, const std::filesystem::path& folder,
+                        const DicomOptions& options = {});
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "voxel/solid/region_mask.h"
+#include "voxel/solid/slice_mask.h"
+#include "voxel/tree/grey_octree.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// The points p with normal . p <= offset_mm; the normal, a unit LPS vector, points outward.
+struct HalfSpace {
+  glm::dvec3 normal{0, 0, 1};
+  double offset_mm = 0.0;
+};
+struct Sphere {
+  glm::dvec3 centre_mm{0.0};
+  double radius_mm = 1.0;
+};
+/// The samples of a grey octree from low to high, both included.
+struct Window {
+  GreyOctree grey;
+  double low = 0.0;
+  double high = 32767.0;
+};
+
+/// A Boolean expression of objects under rigid motions: pure data, cheap to copy. Nothing is evaluated until
+/// combine() or a renderer walks it.
+class Expression {
+ public:
+  enum class Kind { Leaf, And, Or, Minus, Xor, Not, Moved };
+  using Leaf = std::variant<Octree, Window, RegionMask, SliceMask, HalfSpace, Sphere, Box>;
+  struct Term {
+    Kind kind = Kind::Leaf;
+    std::optional<Leaf> leaf;                 ///< Kind::Leaf only
+    std::shared_ptr<const Term> left, right;  ///< right: binary kinds only
+    glm::dmat4 moved_from_still{1.0};         ///< Kind::Moved only: LPS to LPS, rigid
+
+    Term() = default;
+    Term(const Term&) = delete;
+    Term& operator=(const Term&) = delete;
+    ~Term();  ///< no recursion: a term of any depth can go
+  };
+
+  Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
+  Expression(Window window) : Expression(Leaf(std::move(window))) {}
+  /// Throws std::invalid_argument as check(RegionMask).
+  Expression(RegionMask mask);
+  /// Throws std::invalid_argument as check(SliceMask).
+  Expression(SliceMask mask);
+  /// Throws std::invalid_argument where the normal is not of unit length.
+  Expression(const HalfSpace& half_space);
+  Expression(const Sphere& sphere) : Expression(Leaf(sphere)) {}
+  Expression(const Box& box) : Expression(Leaf(box)) {}
+
+  friend Expression operator&(const Expression& a, const Expression& b) { return {Kind::And, a, b}; }
+  friend Expression operator|(const Expression& a, const Expression& b) { return {Kind::Or, a, b}; }
+  friend Expression operator-(const Expression& a, const Expression& b) { return {Kind::Minus, a, b}; }
+  friend Expression operator^(const Expression& a, const Expression& b) { return {Kind::Xor, a, b}; }
+  friend Expression operator~(const Expression& a);
+  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument where it is not
+  /// rigid.
+  friend Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
+  /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument
+  /// where it is none.
+  friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
+
+  const Term& term() const { return *term_; }
+
+ private:
+  friend Expression carried(const Expression& a, const glm::dmat4& moved_from_still);
+  explicit Expression(Leaf leaf);
+  explicit Expression(std::shared_ptr<const Term> term) : term_(std::move(term)) {}
+  Expression(Kind kind, const Expression& a, const Expression& b);
+  std::shared_ptr<const Term> term_;
+};
+Expression operator~(const Expression& a);
+Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
+Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
+
+/// Rotation by degrees about an axis through a point, right-handed, then a translation; LPS millimetres.
+struct Motion {
+  glm::dvec3 translate_mm{0.0};
+  double degrees = 0.0;
+  glm::dvec3 axis{0, 0, 1};
+  glm::dvec3 about_mm{0.0};
+};
+/// Throws std::invalid_argument where a number is not finite or the axis has no length.
+glm::dmat4 moved_from_still(const Motion& motion);
+
+/// What names in an expression's text stand for. Each throws std::invalid_argument for a name it does not
+/// know.
+struct Names {
+  std::function<Expression(std::string_view name)> object;
+  std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then refused
+};
+
+/// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds
+/// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the position
+/// of what it did not expect and what it did; a name's own refusal comes through with the name's position.
+Expression parse_expression(std::string_view text, const Names& names);
+
+/// What the leaves and motions of an expression are called in its text: names as parse_expression() takes
+/// them.
+struct Labels {
+  std::function<std::string(const Expression::Leaf& leaf)> object;
+  std::function<std::string(const glm::dmat4& moved_from_still)> motion;
+};
+/// The expression as text with no more parentheses than it takes: parsed again with names that undo the
+/// labels, it is the same expression, term by term.
+std::string print_expression(const Expression& expression, const Labels& labels);
+
+/// The objects named in an expression's text, each once, in order. Throws as parse_expression.
+std::vector<std::string> names_in(std::string_view text);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/solid/operand.h"
+
+#include <cmath>
+#include <limits>
+
+#include "voxel/solid/operand_frame.h"
+
+namespace octotomy::voxel {
+namespace {
+
+// How far f may be wrong over a universe: a dot product of four terms of at most 2^12 times the gradient. The
+// walk must leave to the leaf what rounding could decide either way, or the answer would depend on the tree's
+// shape.
+double rounding_slack(const Linear& f) {
+  const double largest = (1 << Universe::max_depth) *
+                             (std::abs(f.gradient.x) + std::abs(f.gradient.y) + std::abs(f.gradient.z)) +
+                         std::abs(f.constant);
+  return 8.0 * std::numeric_limits<double>::epsilon() * largest;
+}
+
+}  // namespace
+
+double reach(const Linear& f, int child_side) {
+  return 0.5 * (child_side - 1) * (std::abs(f.gradient.x) + std::abs(f.gradient.y) + std::abs(f.gradient.z)) +
+         rounding_slack(f);
+}
+
+Linear component(const glm::dmat4& map, int row) {
+  return {{map[0][row], map[1][row], map[2][row]}, map[3][row]};
+}
+
+Linear along(const glm::dmat4& map, const glm::dvec3& direction, double offset) {
+  Linear f;
+  for (int row = 0; row < 3; ++row) {
+    const Linear part = component(map, row);
+    f.gradient += direction[row] * part.gradient;
+    f.constant += direction[row] * part.constant;
+  }
+  f.constant -= offset;
+  return f;
+}
+
+Operand operand_of(const PostfixExpression::Operand& operand, const Universe& target,
+                   const Resampling& resampling) {
+  const glm::dmat4 still_from_target = glm::inverse(operand.moved_from_still) * target.lps_from_voxel;
+  const auto source_from_target = [&](const Universe& source) {
+    return glm::inverse(source.lps_from_voxel) * still_from_target;
+  };
+  struct Visitor {
+    const PostfixExpression::Operand& operand;
+    const Universe& target;
+    const Resampling& resampling;
+    const glm::dmat4& still_from_target;
+    const decltype(source_from_target)& source;
+
+    Operand operator()(const Octree& octree) const {
+      if (operand.still && octree.universe() == target) return AlignedOctreeOperand{octree.root()};
+      const glm::dmat4 source_from_target = source(octree.universe());
+      if (const std::optional<glm::ivec3> offset = whole_voxel_offset(source_from_target))
+        return ShiftedOctreeOperand(octree, *offset);
+      // A window holds the points that are nearest to a sample of its scan.
+      if (resampling.voxels == Resampling::Voxels::Half && !operand.is_scan)
+        return HalfOctreeOperand(octree, source_from_target);
+      return SampledOctreeOperand(octree, source_from_target);
+    }
+    Operand operator()(const Window& window) const {
+      if (operand.still && window.grey.universe() == target)
+        if (const std::optional<Window16> bits = window16(window.low, window.high))
+          return WindowOperand(window.grey, *bits);
+      return SampledWindowOperand(window, source(window.grey.universe()), resampling.samples);
+    }
+    Operand operator()(const RegionMask& mask) const { return MaskOperand(mask, still_from_target); }
+    Operand operator()(const SliceMask& mask) const { return SliceMaskOperand(mask, still_from_target); }
+    Operand operator()(const HalfSpace& half_space) const {
+      return ConvexOperand({along(still_from_target, half_space.normal, half_space.offset_mm)});
+    }
+    Operand operator()(const Sphere& sphere) const { return SphereOperand(sphere, still_from_target); }
+    Operand operator()(const Box& box) const {
+      std::vector<Linear> sides;
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 outward(0.0);
+        outward[axis] = 1.0;
+        sides.push_back(along(still_from_target, outward, box.high_mm[axis]));
+        sides.push_back(along(still_from_target, -outward, -box.low_mm[axis]));
+      }
+      return ConvexOperand(std::move(sides));
+    }
+  };
+  return std::visit(Visitor{operand, target, resampling, still_from_target, source_from_target},
+                    *operand.leaf);
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "voxel/solid/postfix_expression.h"
+#include "voxel/solid/resampling.h"
+#include "voxel/tree/window_bits.h"
+
+// Operands as a walk over a target universe meets them. Each answers two questions: which of a block's 64
+// children are Full or Empty, and which voxels of a leaf are inside. Positions are the target's voxel
+// indices. The first answer may leave a child undecided; the second one is exact: a voxel is inside where its
+// centre is (D3).
+
+namespace octotomy::voxel {
+
+/// A block of the target: 64 children of `child_side` voxels a side from `origin` on.
+struct TargetBlock {
+  glm::ivec3 origin{0};
+  int child_side = 4;
+};
+
+/// Words of the leaves named by the bits of `wanted` of a block of height 2, written at their child numbers.
+struct WantedLeaves {
+  glm::ivec3 origin{0};  ///< of the block
+  std::uint64_t wanted = 0;
+  std::uint64_t* words = nullptr;
+};
+
+/// f(v) = gradient . v + constant over the target's voxel indices.
+struct Linear {
+  glm::dvec3 gradient{0.0};
+  double constant = 0.0;
+
+  double operator()(const glm::dvec3& v) const { return glm::dot(gradient, v) + constant; }
+};
+
+/// Voxels where every function is at most zero: a half-space, a box under any motion.
+class ConvexOperand {
+ public:
+  explicit ConvexOperand(std::vector<Linear> sides) : sides_(std::move(sides)) {}
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  std::vector<Linear> sides_;
+};
+
+class SphereOperand {
+ public:
+  SphereOperand(const Sphere& sphere, const glm::dmat4& still_from_target)
+      : sphere_(sphere), still_from_target_(still_from_target) {}
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  Sphere sphere_;
+  glm::dmat4 still_from_target_;
+};
+
+/// The intersection of regions' back-projections.
+class MaskOperand {
+ public:
+  MaskOperand(const RegionMask& mask, const glm::dmat4& still_from_target);
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  struct Projected {
+    const Region* region = nullptr;
+    Linear u, v;  ///< the view's millimetres
+  };
+  std::vector<Projected> regions_;
+};
+
+/// A volume between regions on parallel slices.
+class SliceMaskOperand {
+ public:
+  SliceMaskOperand(const SliceMask& mask, const glm::dmat4& still_from_target);
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  SliceDistance distance_;
+  Linear u_, v_, w_;  ///< the view's millimetres, and the slices' position
+};
+
+/// A grey octree's window on the target's own lattice.
+class WindowOperand {
+ public:
+  WindowOperand(const GreyOctree& grey, Window16 window) : grey_(&grey), window_(window) {}
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  const GreyOctree* grey_;
+  Window16 window_;
+};
+
+/// An octree under a translation by whole voxels: nothing is sampled, words are shifted into place.
+class ShiftedOctreeOperand {
+ public:
+  /// Target voxel t is the octree's voxel t + source_offset.
+  ShiftedOctreeOperand(const Octree& octree, const glm::ivec3& source_offset)
+      : octree_(&octree), source_offset_(source_offset) {}
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  const Octree* octree_;
+  glm::ivec3 source_offset_;
+};
+
+/// An octree on another lattice or under a motion. Positions are rounded to 2^-24 of a voxel, so a centre
+/// closer than that to the face between two voxels may be given to either.
+class SampledOctreeOperand {
+ public:
+  SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  using Offsets = std::array<std::int32_t, 64>;
+  std::uint64_t leaf(const class LeafWords& region, const glm::ivec3& base) const;
+
+  const Octree* octree_;
+  glm::dmat4 source_from_target_;
+  /// From a leaf's first voxel to each of its voxels, in the source, fixed point; and their bounds.
+  std::array<Offsets, 3> offsets_;
+  glm::ivec3 lowest_{0}, highest_{0};
+};
+
+/// An octree on another lattice or under a motion: a voxel is inside where most of a grid of 5 x 5 x 5 points
+/// in it is (D4).
+class HalfOctreeOperand {
+ public:
+  HalfOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  const Octree* octree_;
+  glm::dmat4 source_from_target_;
+  std::array<glm::dvec3, 125> points_;  ///< from a voxel's centre, in the source
+  glm::dvec3 reach_{0.0};               ///< of the points from the centre
+};
+
+/// A grey octree's window on another lattice or under a motion: samples are interpolated, then compared.
+class SampledWindowOperand {
+ public:
+  SampledWindowOperand(const Window& window, const glm::dmat4& source_from_target,
+                       Interpolation interpolation)
+      : window_(&window), source_from_target_(source_from_target), interpolation_(interpolation) {}
+  Cover cover(const TargetBlock& block) const;
+  void words(const WantedLeaves& leaves) const;
+
+ private:
+  const Window* window_;
+  glm::dmat4 source_from_target_;
+  Interpolation interpolation_;
+};
+
+/// An octree on the target's own lattice: the walk follows its nodes, and asks nothing here.
+struct AlignedOctreeOperand {
+  BlockRef root;
+};
+
+using Operand = std::variant<AlignedOctreeOperand, ShiftedOctreeOperand, SampledOctreeOperand,
+                             HalfOctreeOperand, WindowOperand, SampledWindowOperand, MaskOperand,
+                             SliceMaskOperand, ConvexOperand, SphereOperand>;
+
+/// The operand for a walk over `target`; it refers to the expression behind it.
+Operand operand_of(const PostfixExpression::Operand& operand, const Universe& target,
+                   const Resampling& resampling);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "voxel/solid/operand.h"
+#include "voxel/solid/operand_frame.h"
+
+namespace octotomy::voxel {
+namespace {
+
+Status status_of_range(const ValueRange& range, double low, double high) {
+  if (range.low >= low && range.high <= high) return Status::Full;
+  return range.high < low || range.low > high ? Status::Empty : Status::Partial;
+}
+
+// Range of samples over a box of voxels, from blocks of 16 voxels a side.
+MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
+  const int last = grey.universe().side() - 1;
+  const VoxelBox clipped{glm::clamp(box.low, 0, last), glm::clamp(box.high, 0, last)};
+  // The coarsest height at which the box still spans at most three blocks an axis keeps the work bounded.
+  int height = 2;
+  const glm::ivec3 extent = clipped.high - clipped.low;
+  while ((std::max({extent.x, extent.y, extent.z}) >> (2 * height)) > 2) ++height;
+  height = std::min(height, root_height(grey.universe().depth));
+  const glm::ivec3 first = clipped.low >> (2 * height);
+  const glm::ivec3 final = clipped.high >> (2 * height);
+  MinMax range = grey.range(height, first);
+  for (int z = first.z; z <= final.z; ++z)
+    for (int y = first.y; y <= final.y; ++y)
+      for (int x = first.x; x <= final.x; ++x) {
+        const MinMax& part = grey.range(height, {x, y, z});
+        range.low = std::min(range.low, part.low);
+        range.high = std::max(range.high, part.high);
+      }
+  if (clipped.low != box.low || clipped.high != box.high) {
+    range.low = std::min(range.low, grey.background());
+    range.high = std::max(range.high, grey.background());
+  }
+  return range;
+}
+
+// The samples that values within an image may depend on.
+VoxelBox support(const ImageBox& box, Interpolation interpolation) {
+  const Margin around = margin(interpolation);
+  return {glm::ivec3(glm::floor(box.low)) - around.before, glm::ivec3(glm::floor(box.high)) + around.after};
+}
+
+// The samples around one leaf, copied together from up to 4 leaves an axis.
+class NearSamples {
+ public:
+  static constexpr int leaves = 4;
+  static constexpr int side = 4 * leaves;
+
+  // Chooses the leaves first..last, both included, and gives the range of what is in them.
+  MinMax choose(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& last) {
+    first_ = first;
+    count_ = last - first + 1;
+    MinMax range{std::numeric_limits<std::int16_t>::max(), std::numeric_limits<std::int16_t>::min()};
+    const int limit = grey.universe().side() / 4;
+    std::size_t next = 0;
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+          const bool outside = x < 0 || y < 0 || z < 0 || x >= limit || y >= limit || z >= limit;
+          const glm::ivec3 leaf(x, y, z);
+          const auto number = static_cast<std::size_t>(child_index(x & 3, y & 3, z & 3));
+          const GreyBrick* brick = outside ? nullptr : &grey.brick(leaf >> 2);
+          chosen_[next++] = brick == nullptr ? nullptr : brick->samples[number].data();
+          const MinMax part =
+              brick == nullptr ? MinMax{grey.background(), grey.background()} : brick->leaf_range[number];
+          range.low = std::min(range.low, part.low);
+          range.high = std::max(range.high, part.high);
+        }
+    return range;
+  }
+
+  // Copies the chosen leaves' samples.
+  void fetch(std::int16_t background) {
+    std::size_t next = 0;
+    for (int z = 0; z < count_.z; ++z)
+      for (int y = 0; y < count_.y; ++y)
+        for (int x = 0; x < count_.x; ++x) {
+          const std::int16_t* source = chosen_[next++];
+          for (int row = 0; row < 16; ++row) {
+            std::int16_t* target = &samples_[index(4 * x, 4 * y + (row & 3), 4 * z + (row >> 2))];
+            if (source == nullptr)
+              std::fill_n(target, 4, background);
+            else
+              std::copy_n(source + 4 * row, 4, target);
+          }
+        }
+  }
+
+  // The value at a position of the source.
+  double interpolate(const glm::dvec3& position, Interpolation interpolation) const {
+    if (interpolation == Interpolation::Linear) return trilinear(position);
+    const glm::dvec3 p = position - glm::dvec3(4 * first_);
+    const Stencil x = stencil(p.x, interpolation);
+    const Stencil y = stencil(p.y, interpolation);
+    const Stencil z = stencil(p.z, interpolation);
+    double value = 0.0;
+    for (int k = 0; k < z.count; ++k) {
+      double plane = 0.0;
+      for (int j = 0; j < y.count; ++j) {
+        const std::int16_t* samples = &samples_[index(x.first, y.first + j, z.first + k)];
+        double row = 0.0;
+        for (int i = 0; i < x.count; ++i) row += x.weight[static_cast<std::size_t>(i)] * samples[i];
+        plane += y.weight[static_cast<std::size_t>(j)] * row;
+      }
+      value += z.weight[static_cast<std::size_t>(k)] * plane;
+    }
+    return value;
+  }
+
+ private:
+  double trilinear(const glm::dvec3& position) const {
+    const glm::dvec3 p = position - glm::dvec3(4 * first_);
+    const glm::ivec3 low(p);
+    const glm::dvec3 t = p - glm::dvec3(low);
+    const std::int16_t* cell = &samples_[index(low.x, low.y, low.z)];
+    const auto along_x = [&](int offset) { return cell[offset] * (1.0 - t.x) + cell[offset + 1] * t.x; };
+    const double below = along_x(0) * (1.0 - t.y) + along_x(side) * t.y;
+    const double above = along_x(side * side) * (1.0 - t.y) + along_x(side * side + side) * t.y;
+    return below * (1.0 - t.z) + above * t.z;
+  }
+
+  static std::size_t index(int x, int y, int z) {
+    return static_cast<std::size_t>(x + side * (y + side * z));
+  }
+
+  glm::ivec3 first_{0};
+  glm::ivec3 count_{0};
+  std::array<const std::int16_t*, leaves * leaves * leaves> chosen_;
+  std::array<std::int16_t, side * side * side> samples_;
+};
+
+}  // namespace
+
+Cover WindowOperand::cover(const TargetBlock& block) const {
+  Cover cover;
+  const int child_height = std::bit_width(static_cast<unsigned>(block.child_side)) / 2;
+  const glm::ivec3 first = block.origin / block.child_side;
+  const int side = grey_->universe().side();
+  for (int child = 0; child < 64; ++child) {
+    const glm::ivec3 place = child_place(child);
+    if (glm::any(glm::greaterThanEqual(block.origin + place * block.child_side, glm::ivec3(side)))) continue;
+    const MinMax range = child_height == 1
+                             ? grey_->brick(block.origin >> 4).leaf_range[static_cast<std::size_t>(child)]
+                             : grey_->range(child_height, first + place);
+    const Status status =
+        status_of_range(value_range(range, Interpolation::Nearest), window_.low, window_.high);
+    const std::uint64_t bit = std::uint64_t{1} << child;
+    if (status == Status::Full) cover.full |= bit;
+    if (status != Status::Empty) cover.some |= bit;
+  }
+  return cover;
+}
+
+void WindowOperand::words(const WantedLeaves& leaves) const {
+  const GreyBrick& brick = grey_->brick(leaves.origin >> 4);
+  for (std::uint64_t rest = leaves.wanted; rest != 0; rest &= rest - 1) {
+    const int child = std::countr_zero(rest);
+    leaves.words[child] = window_bits64(brick.samples[static_cast<std::size_t>(child)].data(), window_);
+  }
+}
+
+Cover SampledWindowOperand::cover(const TargetBlock& block) const {
+  // Within a block of height 2, words() looks at the leaves themselves.
+  if (block.child_side == 4) return {0, all_children};
+  const Imager image(source_from_target_, block.child_side);
+  return cover_of_children(block, [&](const glm::dvec3& centre) {
+    const MinMax range = range_within(window_->grey, support(image(centre), interpolation_));
+    return status_of_range(value_range(range, interpolation_), window_->low, window_->high);
+  });
+}
+
+void SampledWindowOperand::words(const WantedLeaves& leaves) const {
+  const GreyOctree& grey = window_->grey;
+  const Imager image(source_from_target_, 4);
+  NearSamples near;
+  for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {
+    const VoxelBox box = support(image(glm::dvec3(origin) + 1.5), interpolation_);
+    const glm::ivec3 first = box.low >> 2;
+    const glm::ivec3 last = box.high >> 2;
+    const bool is_near = glm::all(glm::lessThan(last - first, glm::ivec3(NearSamples::leaves)));
+    if (is_near) {
+      const ValueRange range = value_range(near.choose(grey, first, last), interpolation_);
+      const Status status = status_of_range(range, window_->low, window_->high);
+      if (status == Status::Empty) return 0;
+      if (status == Status::Full) return all_children;
+      near.fetch(grey.background());
+    }
+    std::uint64_t word = 0;
+    for (int voxel = 0; voxel < 64; ++voxel) {
+      const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin + child_place(voxel)), 1.0));
+      // A lattice so coarse that a leaf's surroundings are many is read from the octree itself.
+      const double value =
+          is_near ? near.interpolate(p, interpolation_) : interpolate(grey, p, interpolation_);
+      word |= std::uint64_t{value >= window_->low && value <= window_->high} << voxel;
+    }
+    return word;
+  });
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "voxel/solid/operand.h"
+#include "voxel/solid/operand_frame.h"
+#include "voxel/solid/status_within.h"
+#include "voxel/space/vector_clones.h"
+#include "voxel/tree/leaf_words.h"
+
+namespace octotomy::voxel {
+namespace {
+
+glm::ivec3 nearest_voxel(const glm::dvec3& p) {
+  return glm::ivec3(glm::floor(p + 0.5));
+}
+
+// Leaf words are quicker to fetch than to ask about: within a block of height 2 every leaf is left to
+// words().
+constexpr Cover left_to_words{0, all_children};
+
+// Nibbles of x, groups of y and layers of z that stay in their own leaf when a row is shifted by s of 4.
+constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
+    {all_children, 0x7777777777777777, 0x3333333333333333, 0x1111111111111111},
+    {all_children, 0x0fff0fff0fff0fff, 0x00ff00ff00ff00ff, 0x000f000f000f000f},
+    {all_children, 0x0000ffffffffffff, 0x00000000ffffffff, 0x000000000000ffff},
+}};
+
+// The leaf that begins `shift` voxels into `low` along an axis and ends in the leaf after it.
+std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int shift) {
+  if (shift == 0) return low;
+  const std::uint64_t stay = staying[static_cast<std::size_t>(axis)][static_cast<std::size_t>(shift)];
+  const int stride = 1 << (2 * axis);
+  return ((low >> (stride * shift)) & stay) | ((high << (stride * (4 - shift))) & ~stay);
+}
+
+}  // namespace
+
+Cover ShiftedOctreeOperand::cover(const TargetBlock& block) const {
+  if (block.child_side == 4) return left_to_words;
+  return cover_of_children(block, [&](const glm::dvec3& centre) {
+    const glm::ivec3 low = glm::ivec3(centre - 0.5 * (block.child_side - 1)) + source_offset_;
+    return status_within(*octree_, {low, low + block.child_side - 1});
+  });
+}
+
+// Separable: 5 x 5 x 5 leaves are joined along x to 4 x 5 x 5, then along y, then along z.
+void ShiftedOctreeOperand::words(const WantedLeaves& leaves) const {
+  const glm::ivec3 source = leaves.origin + source_offset_;
+  const glm::ivec3 shift = source & 3;
+  const glm::ivec3 first = source >> 2;
+  LeafWords region;
+  region.read(*octree_, first, first + 3 + glm::ivec3(glm::notEqual(shift, glm::ivec3(0))));
+  std::array<std::uint64_t, 4 * 5 * 5> along_x;
+  for (int z = 0; z < 5; ++z)
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < 4; ++x)
+        along_x[static_cast<std::size_t>(x + 4 * (y + 5 * z))] =
+            joined_words(region.word(x, y, z), region.word(x + 1, y, z), 0, shift.x);
+  std::array<std::uint64_t, 4 * 4 * 5> along_y;
+  for (std::size_t z = 0; z < 5; ++z)
+    for (std::size_t i = 0; i < 16; ++i)
+      along_y[i + 16 * z] = joined_words(along_x[i + 20 * z], along_x[i + 4 + 20 * z], 1, shift.y);
+  for (std::size_t i = 0; i < 64; ++i)
+    leaves.words[i] = joined_words(along_y[i], along_y[i + 16], 2, shift.z);
+}
+
+namespace {
+
+// Fixed point within a region of 32 voxels an axis: 5 bits of voxels and 24 of fraction stay clear of the
+// sign.
+constexpr int fraction_bits = 24;
+
+// A base and an offset, each rounded to half a unit, stay within this of where they are.
+const double fixed_slack = std::ldexp(1.0, 1 - fraction_bits);
+
+std::int32_t fixed(double voxels) {
+  constexpr double unit = 1 << fraction_bits;
+  return static_cast<std::int32_t>(std::floor(voxels * unit + 0.5));
+}
+
+glm::ivec3 fixed(const glm::dvec3& p) {
+  return {fixed(p.x), fixed(p.y), fixed(p.z)};
+}
+
+/// A leaf's word from the words of a region's leaves: each voxel lies in the region at base and its offset.
+OCTOTOMY_VECTOR_CLONES std::uint64_t looked_up(const std::uint64_t* words, const glm::ivec3& base,
+                                               const std::array<std::array<std::int32_t, 64>, 3>& offsets) {
+  // Places first, by arithmetic that vectorises; then the look-ups.
+  std::array<std::uint64_t, 64> place;
+  for (std::size_t i = 0; i < 64; ++i) {
+    const auto x = static_cast<std::uint32_t>(base.x + offsets[0][i]) >> fraction_bits;
+    const auto y = static_cast<std::uint32_t>(base.y + offsets[1][i]) >> fraction_bits;
+    const auto z = static_cast<std::uint32_t>(base.z + offsets[2][i]) >> fraction_bits;
+    const std::uint32_t leaf_number = (x >> 2) | ((y >> 2) << 3) | ((z >> 2) << 6);
+    const std::uint32_t bit = (x & 3) | ((y & 3) << 2) | ((z & 3) << 4);
+    place[i] = leaf_number << 6 | bit;
+  }
+  std::uint64_t word = 0;
+  for (std::size_t i = 0; i < 64; ++i) word |= ((words[place[i] >> 6] >> (place[i] & 63)) & 1) << i;
+  return word;
+}
+
+}  // namespace
+
+SampledOctreeOperand::SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target)
+    : octree_(&octree), source_from_target_(source_from_target) {
+  const glm::dmat3 linear(source_from_target);
+  // A source much finer than the target leaves the fixed point's range, and words() does without.
+  const double longest = std::max({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+  if (longest > 4.0) return;
+  for (int voxel = 0; voxel < 64; ++voxel) {
+    const glm::ivec3 offset = fixed(linear * glm::dvec3(child_place(voxel)));
+    lowest_ = glm::min(lowest_, offset);
+    highest_ = glm::max(highest_, offset);
+    for (int axis = 0; axis < 3; ++axis)
+      offsets_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(voxel)] = offset[axis];
+  }
+}
+
+Cover SampledOctreeOperand::cover(const TargetBlock& block) const {
+  if (block.child_side == 4) return left_to_words;
+  const Imager image(source_from_target_, block.child_side);
+  return cover_of_children(block, [&](const glm::dvec3& centre) {
+    const ImageBox box = image(centre);
+    return status_within(*octree_, {nearest_voxel(box.low), nearest_voxel(box.high)});
+  });
+}
+
+// The source leaves around the block are fetched once; each wanted leaf is then looked up voxel by voxel in
+// them, unless the leaves about it are all full or all empty.
+void SampledOctreeOperand::words(const WantedLeaves& leaves) const {
+  const ImageBox box = Imager(source_from_target_, 16)(glm::dvec3(leaves.origin) + 7.5);
+  const glm::ivec3 first = nearest_voxel(box.low - fixed_slack) >> 2;
+  const glm::ivec3 last = nearest_voxel(box.high + fixed_slack) >> 2;
+  if (glm::any(glm::greaterThanEqual(last - first, glm::ivec3(LeafWords::side))))
+    return for_each_wanted_voxel(leaves, [&](const glm::dvec3& voxel) {
+      return octree_->contains(nearest_voxel(glm::dvec3(source_from_target_ * glm::dvec4(voxel, 1.0))));
+    });
+  LeafWords region;
+  region.read(*octree_, first, last);
+  if (region.any() == 0 || region.every() == all_children)
+    return for_each_wanted(leaves, [&](const glm::ivec3&) { return region.every(); });
+  for_each_wanted(leaves, [&](const glm::ivec3& origin) {
+    const glm::dvec3 p(source_from_target_ * glm::dvec4(glm::dvec3(origin), 1.0));
+    // Half a voxel more, so that truncation finds the voxel.
+    return leaf(region, fixed(p - glm::dvec3(4 * first) + 0.5));
+  });
+}
+
+std::uint64_t SampledOctreeOperand::leaf(const LeafWords& region, const glm::ivec3& base) const {
+  const glm::ivec3 first = (base + lowest_) >> (fraction_bits + 2);
+  const glm::ivec3 last = (base + highest_) >> (fraction_bits + 2);
+  std::uint64_t any = 0;
+  std::uint64_t every = all_children;
+  for (int z = first.z; z <= last.z; ++z)
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) {
+        any |= region.word(x, y, z);
+        every &= region.word(x, y, z);
+      }
+  if (any == 0) return 0;
+  if (every == all_children) return all_children;
+  return looked_up(region.words(), base, offsets_);
+}
+
+}  // namespace octotomy::voxel

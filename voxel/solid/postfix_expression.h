@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "voxel/solid/expression.h"
+
+namespace octotomy::voxel {
+
+/// What is known of 64 children at once: `full` are Full for certain, `some` are not Empty for certain, full
+/// within some. Operators follow Kleene's three-valued logic, bit by bit: exact where both sides are known.
+struct Cover {
+  std::uint64_t full = 0;
+  std::uint64_t some = 0;
+
+  std::uint64_t undecided() const { return some & ~full; }
+  friend Cover operator&(Cover a, Cover b) { return {a.full & b.full, a.some & b.some}; }
+  friend Cover operator|(Cover a, Cover b) { return {a.full | b.full, a.some | b.some}; }
+  friend Cover operator~(Cover a) { return {~a.some, ~a.full}; }
+  friend Cover operator-(Cover a, Cover b) { return a & ~b; }
+  friend Cover operator^(Cover a, Cover b) {
+    return {(a.full & ~b.some) | (~a.some & b.full), (a.some | b.some) & ~(a.full & b.full)};
+  }
+};
+
+/// An expression laid out for a walk: its leaves with the motions above each composed into one matrix, and
+/// its operators in postfix order.
+struct PostfixExpression {
+  struct Operand {
+    const Expression::Leaf* leaf = nullptr;  ///< owned by the expression
+    glm::dmat4 moved_from_still{1.0};        ///< LPS to LPS
+    bool still = true;                       ///< under no motion at all
+    bool is_scan = false;                    ///< the scan of a window, which stands beside it
+  };
+  enum class Code : std::uint8_t { Push, And, Or, Minus, Xor, Not };
+  struct Step {
+    Code code = Code::Push;
+    std::uint32_t operand = 0;  ///< Push only
+  };
+  std::vector<Operand> operands;
+  std::vector<std::shared_ptr<const Expression::Leaf>> scans;  ///< leaves of the operands that are scans
+  std::vector<Step> steps;
+  std::size_t stack_size = 0;  ///< values that run() holds at most
+
+  /// Runs the operators over any type that has them. `value(i)` is operand i; `stack` holds stack_size
+  /// values.
+  template <typename Value, typename Get>
+  Value run(const Get& value, Value* stack) const {
+    Value* top = stack;
+    for (const Step& step : steps) {
+      switch (step.code) {
+        case Code::Push:
+          *top++ = value(step.operand);
+          continue;
+        case Code::Not:
+          top[-1] = ~top[-1];
+          continue;
+        case Code::And:
+          top[-2] = top[-2] & top[-1];
+          break;
+        case Code::Or:
+          top[-2] = top[-2] | top[-1];
+          break;
+        case Code::Minus:
+          top[-2] = top[-2] & ~top[-1];
+          break;
+        case Code::Xor:
+          top[-2] = top[-2] ^ top[-1];
+          break;
+      }
+      --top;
+    }
+    return *stack;
+  }
+};
+
+/// Refers to the expression's leaves: the expression must outlive it. The same leaf under the same motion
+/// becomes one operand, however often it occurs. A window becomes an intersection with its scan, unless it is
+/// at rest on the lattice of `target` and misses the background: then no voxel beyond the scan is in it
+/// anyway. Throws as for_each_term().
+PostfixExpression postfix_of(const Expression& expression, const std::optional<Universe>& target = {});
+
+}  // namespace octotomy::voxel

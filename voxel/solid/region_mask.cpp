@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/solid/region_mask.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace octotomy::voxel {
+namespace {
+
+double signed_area_mm2(const std::vector<glm::dvec2>& polygon) {
+  double twice = 0.0;
+  for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
+    const glm::dvec2 a = polygon[last] - polygon.front();
+    const glm::dvec2 b = polygon[i] - polygon.front();
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return 0.5 * twice;
+}
+
+}  // namespace
+
+void check(const RegionMask& mask) {
+  if (mask.regions.empty()) throw std::invalid_argument("a mask needs at least one region drawn in a view");
+  for (std::size_t r = 0; r < mask.regions.size(); ++r) {
+    const std::string where = "region " + std::to_string(r + 1) + " of the mask";
+    if (mask.regions[r].polygons_mm.empty()) throw std::invalid_argument(where + " has no polygon");
+    for (std::size_t p = 0; p < mask.regions[r].polygons_mm.size(); ++p) {
+      const std::vector<glm::dvec2>& polygon = mask.regions[r].polygons_mm[p];
+      const std::string which = "polygon " + std::to_string(p + 1) + " of " + where;
+      if (polygon.size() < 3)
+        throw std::invalid_argument(which + " has " + std::to_string(polygon.size()) +
+                                    " points: draw at least three");
+      for (const glm::dvec2& point : polygon)
+        if (!std::isfinite(point.x) || !std::isfinite(point.y))
+          throw std::invalid_argument(which + " has a coordinate that is not a finite number");
+      if (signed_area_mm2(polygon) == 0.0) throw std::invalid_argument(which + " encloses no area");
+    }
+  }
+}
+
+bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm) {
+  bool inside = false;
+  for (const std::vector<glm::dvec2>& polygon : polygons_mm)
+    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
+      inside ^= crosses_ray_from(polygon[last], polygon[i], p_mm);
+  return inside;
+}
+
+bool contains(const Region& region, const glm::dvec2& p_mm) {
+  return contains(region.polygons_mm, p_mm);
+}
+
+bool contains(const RegionMask& mask, const glm::dvec3& p_mm) {
+  return std::all_of(mask.regions.begin(), mask.regions.end(),
+                     [&](const Region& region) { return contains(region, region.view.project(p_mm)); });
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "voxel/space/view.h"
+
+namespace octotomy::voxel {
+
+/// Closed polygons drawn in a view, in the view's millimetres. A point is inside by the even-odd rule over
+/// all of them, so a polygon within another is a hole. The closing edge is implied.
+struct Region {
+  View view;
+  std::vector<std::vector<glm::dvec2>> polygons_mm;
+};
+
+/// A volume of interest: the points whose projection lies inside the region of every view (thesis 6.2).
+/// It stays symbolic: regions can be edited until, and after, an expression evaluates it.
+struct RegionMask {
+  std::vector<Region> regions;
+};
+
+/// Throws std::invalid_argument saying which region and polygon: none at all, fewer than three points,
+/// a coordinate that is not finite, no area.
+void check(const RegionMask& mask);
+
+/// Whether an edge from a to b crosses the ray from p towards growing x: the even-odd rule counts these. Half
+/// open in y, so that a ray through a vertex meets exactly one of its two edges.
+inline bool crosses_ray_from(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& p_mm) {
+  return (a.y > p_mm.y) != (b.y > p_mm.y) && p_mm.x < (b.x - a.x) * (p_mm.y - a.y) / (b.y - a.y) + a.x;
+}
+
+/// By the even-odd rule over all polygons.
+bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm);
+bool contains(const Region& region, const glm::dvec2& p_mm);
+bool contains(const RegionMask& mask, const glm::dvec3& p_mm);
+
+}  // namespace octotomy::voxel

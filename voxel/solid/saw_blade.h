@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "voxel/solid/expression.h"
+#include "voxel/solid/region_mask.h"
+
+namespace octotomy::voxel {
+
+/// A cut as a saw makes it: along a line of straight pieces, swept in one direction.
+struct SawLine {
+  std::vector<glm::dvec3> line_mm;  ///< LPS; at least two points
+  glm::dvec3 direction{0, 1, 0};    ///< the way the blade goes in; any length but zero
+  double depth_mm = 100.0;          ///< from the first point of the line that the blade meets; above 0
+  double kerf_mm = 1.0;             ///< width of what is sawn away, half on either side of the line; above 0
+};
+
+/// The volume that the saw takes away. Pieces of the line meet in mitres; its ends are square. Throws
+/// std::invalid_argument where the line has fewer than two points apart as seen along the direction, or turns
+/// back on itself.
+Expression saw_blade(const SawLine& saw);
+
+/// The blade without its ends in depth: the region whose edges are its sides. Throws as saw_blade().
+RegionMask saw_blade_sides(const SawLine& saw);
+
+}  // namespace octotomy::voxel

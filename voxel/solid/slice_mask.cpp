@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/solid/slice_mask.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "voxel/solid/region_mask.h"
+
+namespace octotomy::voxel {
+namespace {
+
+constexpr double outside_mm = std::numeric_limits<double>::infinity();
+
+double square_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
+  const glm::dvec2 along = b - a;
+  const double square = glm::dot(along, along);
+  const double t = square > 0.0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0.0;
+  const glm::dvec2 to = a + t * along - p;
+  return glm::dot(to, to);
+}
+
+}  // namespace
+
+void check(const SliceMask& mask) {
+  if (mask.slices.size() < 2)
+    throw std::invalid_argument("a mask from slices needs regions on at least two of them");
+  bool drawn = false;
+  for (std::size_t i = 0; i < mask.slices.size(); ++i) {
+    const SliceMask::Slice& slice = mask.slices[i];
+    const std::string where = "slice " + std::to_string(i + 1) + " of the mask";
+    if (!std::isfinite(slice.position_mm))
+      throw std::invalid_argument(where + ": its position is not a finite number");
+    if (i > 0 && !(slice.position_mm > mask.slices[i - 1].position_mm))
+      throw std::invalid_argument(where + " does not lie beyond the one before it: sort them by position");
+    if (slice.polygons_mm.empty()) continue;
+    drawn = true;
+    try {
+      check(RegionMask{{{mask.view, slice.polygons_mm}}});
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(where + ": " + error.what());
+    }
+  }
+  if (!drawn) throw std::invalid_argument("no slice of the mask has a polygon");
+}
+
+double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) const {
+  const std::vector<std::vector<glm::dvec2>>& polygons = mask_->slices[slice].polygons_mm;
+  double square = outside_mm;
+  for (const std::vector<glm::dvec2>& polygon : polygons)
+    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
+      square = std::min(square, square_to_segment(p_mm, polygon[last], polygon[i]));
+  const double distance = std::sqrt(square);
+  return contains(polygons, p_mm) ? -distance : distance;
+}
+
+// Over a stretch of the gap after slice `below`, at one point of the plane.
+SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, const glm::dvec2& p_mm, double from_mm,
+                                            double to_mm) const {
+  const SliceMask::Slice& a = mask_->slices[below];
+  const SliceMask::Slice& b = mask_->slices[below + 1];
+  const double at_a = distance_mm(below, p_mm);
+  const double at_b = distance_mm(below + 1, p_mm);
+  const bool blend =
+      mask_->between == SliceMask::Between::ShapeBased && !a.polygons_mm.empty() && !b.polygons_mm.empty();
+  if (blend) {
+    const auto at = [&](double position_mm) {
+      const double t = (position_mm - a.position_mm) / (b.position_mm - a.position_mm);
+      return at_a + t * (at_b - at_a);
+    };
+    const double from = at(from_mm);
+    const double to = at(to_mm);
+    return {std::min(from, to), std::max(from, to)};
+  }
+  // The middle belongs to the slice before it.
+  const double middle = 0.5 * (a.position_mm + b.position_mm);
+  Bounds bounds{outside_mm, -outside_mm};
+  const auto take = [&](double distance) {
+    bounds = {std::min(bounds.low, distance), std::max(bounds.high, distance)};
+  };
+  if (from_mm <= middle) take(at_a);
+  if (to_mm > middle) take(at_b);
+  return bounds;
+}
+
+SliceDistance::Bounds SliceDistance::operator()(const glm::dvec2& p_mm, double position_mm,
+                                                double in_plane_mm, double across_mm) const {
+  const std::vector<SliceMask::Slice>& slices = mask_->slices;
+  const std::size_t last = slices.size() - 1;
+  const double first_mm = slices[0].position_mm;
+  const double last_mm = slices[last].position_mm;
+  const double lowest_mm = first_mm - 0.5 * (slices[1].position_mm - first_mm);
+  const double highest_mm = last_mm + 0.5 * (last_mm - slices[last - 1].position_mm);
+  const double from_mm = position_mm - across_mm;
+  const double to_mm = position_mm + across_mm;
+  if (to_mm < lowest_mm || from_mm > highest_mm) return {outside_mm, outside_mm};
+
+  Bounds bounds{outside_mm, -outside_mm};
+  const auto take = [&](const Bounds& part) {
+    bounds = {std::min(bounds.low, part.low), std::max(bounds.high, part.high)};
+  };
+  const auto take_slice = [&](std::size_t slice) {
+    const double distance = distance_mm(slice, p_mm);
+    take({distance, distance});
+  };
+  if (from_mm < first_mm) take_slice(0);
+  for (std::size_t below = 0; below < last; ++below) {
+    const double low_mm = std::max(from_mm, slices[below].position_mm);
+    const double high_mm = std::min(to_mm, slices[below + 1].position_mm);
+    if (low_mm <= high_mm) take(in_gap(below, p_mm, low_mm, high_mm));
+  }
+  if (to_mm > last_mm) take_slice(last);
+  // A distance changes no faster than the point it is measured from.
+  bounds.low -= in_plane_mm;
+  bounds.high += in_plane_mm;
+  if (from_mm < lowest_mm || to_mm > highest_mm) bounds.high = outside_mm;
+  return bounds;
+}
+
+}  // namespace octotomy::voxel

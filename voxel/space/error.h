@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cerrno>
+#include <stdexcept>
+#include <string>
+
+namespace octotomy::voxel {
+
+/// The kind of an error. Exit statuses follow from it, never from a message.
+enum class ErrorCode {
+  Input,      ///< data or text from outside is wrong
+  Geometry,   ///< the data are sound, but the operation has no answer on them
+  Cancelled,  ///< a stop token was set
+  Resource,   ///< memory, disk, time or a child process gave out
+};
+
+/// The voxel kernel's error: a code and a message that names the place, the cause and what to do next. A
+/// broken precondition is no Error but std::invalid_argument.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  ErrorCode code() const { return code_; }
+
+ private:
+  ErrorCode code_;
+};
+
+/// A stop token was set.
+struct Stopped : Error {
+  explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
+};
+
+/// The code of a failed system call: Resource where the disk or memory gave out, else Input.
+inline ErrorCode code_of_errno(int number) {
+  return number == ENOSPC || number == EDQUOT || number == EIO || number == ENOMEM || number == EMFILE
+             ? ErrorCode::Resource
+             : ErrorCode::Input;
+}
+
+}  // namespace octotomy::voxel

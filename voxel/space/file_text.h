@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <string>
+
+#include "voxel/space/error.h"
+
+// What readers and writers of files say, and how they compare names and keys.
+namespace octotomy::voxel {
+
+/// Throws Error: the file and the reason.
+[[noreturn]] inline void refuse(const std::filesystem::path& path, const std::string& reason,
+                                ErrorCode code = ErrorCode::Input) {
+  throw Error(code, path.string() + ": " + reason);
+}
+
+/// ASCII letters alone change.
+inline std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return text;
+}
+
+/// Without blanks and carriage returns at its ends.
+inline std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// In lower case, with its dot; empty where there is none.
+inline std::string extension_of(const std::filesystem::path& path) {
+  return lower_case(path.extension().string());
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/space/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace octotomy::voxel {
+
+Range range(const Scene& scene) {
+  return std::visit(
+      [](const auto& samples) {
+        const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+        return Range{static_cast<double>(*low), static_cast<double>(*high)};
+      },
+      scene.samples);
+}
+
+std::string unit(const Scene& scene) {
+  return scene.meaning == Meaning::Hounsfield ? "HU" : "1";
+}
+
+void check(const Scene& scene) {
+  const Lattice& lattice = scene.lattice;
+  if (lattice.dims.x < 1 || lattice.dims.y < 1 || lattice.dims.z < 1)
+    throw std::invalid_argument(scene.source + ": the scene has no samples");
+  const std::size_t held = std::visit([](const auto& samples) { return samples.size(); }, scene.samples);
+  if (held != lattice.sample_count())
+    throw std::invalid_argument(scene.source + ": " + std::to_string(held) +
+                                " samples where the lattice has " + std::to_string(lattice.sample_count()));
+  const double volume = lattice.voxel_mm3();
+  if (!std::isfinite(volume) || volume <= 0.0)
+    throw std::invalid_argument(scene.source + ": the lattice's axes span no volume");
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      if (!std::isfinite(lattice.lps_from_voxel[column][row]))
+        throw std::invalid_argument(scene.source + ": the lattice's position is not finite");
+}
+
+double interpolate(const Scene& scene, const glm::dvec3& p_voxel) {
+  const glm::ivec3 dims = scene.lattice.dims;
+  const glm::dvec3 p = glm::clamp(p_voxel, glm::dvec3(0.0), glm::dvec3(dims - 1));
+  const glm::ivec3 low = glm::min(glm::ivec3(p), glm::max(dims - 2, glm::ivec3(0)));
+  const glm::dvec3 t = p - glm::dvec3(low);
+  return std::visit(
+      [&](const auto& samples) {
+        const auto at = [&](int x, int y, int z) {
+          const glm::ivec3 i = glm::min(low + glm::ivec3(x, y, z), dims - 1);
+          const auto row = static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) +
+                           static_cast<std::size_t>(i.y);
+          return static_cast<double>(
+              samples[row * static_cast<std::size_t>(dims.x) + static_cast<std::size_t>(i.x)]);
+        };
+        const auto along_x = [&](int y, int z) { return at(0, y, z) * (1.0 - t.x) + at(1, y, z) * t.x; };
+        const auto along_y = [&](int z) { return along_x(0, z) * (1.0 - t.y) + along_x(1, z) * t.y; };
+        return along_y(0) * (1.0 - t.z) + along_y(1) * t.z;
+      },
+      scene.samples);
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/tree/build.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "voxel/tree/octree_node.h"
+#include "voxel/tree/window_bits.h"
+
+namespace octotomy::voxel {
+namespace {
+
+// A dense grid of blocks of one height, x fastest.
+struct BlockGrid {
+  glm::ivec3 dims{0};
+  std::vector<BlockRef> blocks;
+
+  std::size_t index(const glm::ivec3& block) const {
+    return static_cast<std::size_t>(block.x) +
+           static_cast<std::size_t>(dims.x) *
+               (static_cast<std::size_t>(block.y) +
+                static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(block.z));
+  }
+};
+
+void for_each_block(const glm::ivec3& dims, const std::function<void(const glm::ivec3&)>& visit) {
+  tbb::parallel_for(0, dims.y * dims.z, [&](int row) {
+    for (int x = 0; x < dims.x; ++x) visit({x, row % dims.y, row / dims.y});
+  });
+}
+
+// Joins blocks of height h, 4 x 4 x 4 at a time, to blocks of height h + 1.
+BlockGrid parents(const BlockGrid& children, int parent_height) {
+  BlockGrid grid{(children.dims + 3) / 4, {}};
+  grid.blocks.resize(static_cast<std::size_t>(grid.dims.x) * static_cast<std::size_t>(grid.dims.y) *
+                     static_cast<std::size_t>(grid.dims.z));
+  for_each_block(grid.dims, [&](const glm::ivec3& parent) {
+    std::array<BlockRef, 64> present;
+    std::size_t count = 0;
+    std::uint64_t full = 0;
+    std::uint64_t undecided = 0;
+    for (int child = 0; child < 64; ++child) {
+      const glm::ivec3 at = parent * 4 + child_place(child);
+      if (glm::any(glm::greaterThanEqual(at, children.dims))) continue;
+      const BlockRef block = children.blocks[children.index(at)];
+      if (block.is_full()) full |= std::uint64_t{1} << child;
+      if (block.node() == nullptr) continue;
+      undecided |= std::uint64_t{1} << child;
+      present[count++] = block;
+    }
+    grid.blocks[grid.index(parent)] =
+        make_block(parent_height, full, undecided, {present.data(), count}).detach();
+  });
+  return grid;
+}
+
+// Blocks of height 2 cover dims * 16 voxels from the universe's first voxel on; all others are empty.
+Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims,
+                      const std::function<Block(const glm::ivec3&)>& make) {
+  BlockGrid grid{dims, {}};
+  grid.blocks.resize(static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
+                     static_cast<std::size_t>(dims.z));
+  for_each_block(dims,
+                 [&](const glm::ivec3& block) { grid.blocks[grid.index(block)] = make(block).detach(); });
+  for (int height = 3; height <= root_height(universe.depth); ++height) grid = parents(grid, height);
+  return {universe, Block::adopt(grid.blocks.front())};
+}
+
+// The part of a block of `height` at `origin` that lies in the box low..high.
+Block block_of_box(int height, const glm::ivec3& origin, const glm::ivec3& low, const glm::ivec3& high) {
+  const glm::ivec3 last = origin + (1 << (2 * height)) - 1;
+  if (glm::any(glm::greaterThan(low, last)) || glm::any(glm::lessThan(high, origin))) return {};
+  if (glm::all(glm::lessThanEqual(low, origin)) && glm::all(glm::greaterThanEqual(high, last)))
+    return Block::adopt(BlockRef::full());
+  if (height > 2) {
+    std::array<BlockRef, 64> children;
+    for (int child = 0; child < 64; ++child)
+      children[static_cast<std::size_t>(child)] =
+          block_of_box(height - 1, origin + (child_place(child) << (2 * height - 2)), low, high).detach();
+    return make_block(height, 0, all_children, children);
+  }
+  const glm::ivec3 from = glm::max(low - origin, 0);
+  const glm::ivec3 to = glm::min(high - origin, 15);
+  BlockRows rows{};
+  for (int z = from.z; z <= to.z; ++z)
+    for (int y = from.y; y <= to.y; ++y)
+      rows[static_cast<std::size_t>(y + 16 * z)] =
+          static_cast<std::uint16_t>((0xffff >> (15 - to.x)) & (0xffff << from.x));
+  return leaf_block_of_rows(rows);
+}
+
+void check_fits(const Universe& universe, const Scene& scene) {
+  check(scene);
+  if (scene.lattice.lps_from_voxel != universe.lps_from_voxel)
+    throw std::invalid_argument(scene.source +
+                                ": the scan's voxels are not the universe's: resample it first");
+  if (glm::any(glm::greaterThan(scene.lattice.dims, glm::ivec3(universe.side()))))
+    throw std::invalid_argument(scene.source + ": the scan is larger than the universe of " +
+                                std::to_string(universe.side()) + " voxels a side");
+}
+
+}  // namespace
+
+Block leaf_block_of_rows(const BlockRows& rows) {
+  std::array<std::uint64_t, 64> words{};
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 16; ++y) {
+      const std::uint64_t bits = rows[static_cast<std::size_t>(y + 16 * z)];
+      if (bits == 0) continue;
+      const int shift = child_index(0, y & 3, z & 3);
+      std::uint64_t* leaf = &words[static_cast<std::size_t>(child_index(0, y >> 2, z >> 2))];
+      for (int x = 0; x < 4; ++x) leaf[x] |= ((bits >> (4 * x)) & 15) << shift;
+    }
+  return make_leaf_block(0, all_children, words.data());
+}
+
+Octree octree_of_box(const Universe& universe, const glm::ivec3& low, const glm::ivec3& high) {
+  return {universe, block_of_box(root_height(universe.depth), glm::ivec3(0), glm::max(low, 0),
+                                 glm::min(high, universe.side() - 1))};
+}
+
+Octree octree_of_blocks(const Universe& universe, const std::function<Block(const glm::ivec3& block)>& make) {
+  return octree_of_grid(universe, glm::ivec3((universe.side() + 15) / 16), make);
+}
+
+Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high) {
+  check_fits(universe, scene);
+  const glm::ivec3 dims = scene.lattice.dims;
+  const auto row_start = [&](int y, int z) {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *
+           static_cast<std::size_t>(dims.x);
+  };
+  const auto build = [&](const auto& row_bits) {
+    return octree_of_grid(universe, (dims + 15) / 16, [&](const glm::ivec3& block) {
+      const glm::ivec3 origin = block * 16;
+      const glm::ivec3 count = glm::min(glm::ivec3(16), dims - origin);
+      BlockRows rows{};
+      for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+          rows[static_cast<std::size_t>(y + 16 * z)] = static_cast<std::uint16_t>(
+              row_bits(row_start(origin.y + y, origin.z + z) + static_cast<std::size_t>(origin.x), count.x));
+      return leaf_block_of_rows(rows);
+    });
+  };
+  if (const auto* shorts = std::get_if<Int16Samples>(&scene.samples)) {
+    const std::optional<Window16> window = window16(low, high);
+    if (!window) return Octree::empty(universe);
+    return build([&](std::size_t start, int width) -> std::uint64_t {
+      if (width == 16) return window_bits16(shorts->data() + start, *window);
+      std::uint64_t bits = 0;
+      for (int x = 0; x < width; ++x) {
+        const std::int16_t value = (*shorts)[start + static_cast<std::size_t>(x)];
+        bits |= std::uint64_t{value >= window->low && value <= window->high} << x;
+      }
+      return bits;
+    });
+  }
+  const auto& floats = std::get<FloatSamples>(scene.samples);
+  return build([&](std::size_t start, int width) {
+    std::uint64_t bits = 0;
+    for (int x = 0; x < width; ++x) {
+      const double value = floats[start + static_cast<std::size_t>(x)];
+      bits |= std::uint64_t{value >= low && value <= high} << x;
+    }
+    return bits;
+  });
+}
+
+}  // namespace octotomy::voxel

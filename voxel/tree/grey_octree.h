@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "voxel/space/large_allocator.h"
+#include "voxel/space/lattice.h"
+#include "voxel/space/scene.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// Smallest and largest sample of a block.
+struct MinMax {
+  std::int16_t low = 0;
+  std::int16_t high = 0;
+};
+
+/// Samples of a block of 16 x 16 x 16 voxels: 64 leaves of 4 x 4 x 4, leaves and the samples within each in
+/// bit order (octree_node.h), so that a window of a leaf is one 64-bit word.
+struct GreyBrick {
+  std::array<MinMax, 64> leaf_range;
+  std::array<std::array<std::int16_t, 64>, 64> samples;
+};
+
+/// A min-max octree of int16 samples over dense leaves (thesis 3.3.2, the hybrid tree of A.6): the window
+/// that makes an object of it is chosen when it is looked at, not when it is built. Voxels beyond the scan
+/// have the background as their sample and belong to no window. Immutable; copies share.
+class GreyOctree {
+ public:
+  const Universe& universe() const { return storage_->universe; }
+  /// Value of voxels beyond the scan.
+  std::int16_t background() const { return storage_->background; }
+  /// The voxels whose sample is the scan's own.
+  const Octree& scan() const { return storage_->scan; }
+  /// Whether the samples of voxels beyond the scan lie in low..high, so that samples alone do not tell which
+  /// voxels the window holds.
+  bool window_meets_background(double low, double high) const {
+    return low <= background() && background() <= high;
+  }
+
+  /// Range of block number `block` of the given height, 2 and up; blocks of a height form a grid of
+  /// universe side / 4^height, rounded up, along each axis. Precondition: within that grid.
+  const MinMax& range(int height, const glm::ivec3& block) const {
+    const Level& level = storage_->levels[static_cast<std::size_t>(height - 2)];
+    return level.ranges[level.index(block)];
+  }
+  /// Samples of block number `block` of height 2. Precondition: within the grid.
+  const GreyBrick& brick(const glm::ivec3& block) const {
+    return storage_->bricks[storage_->brick_of_block[storage_->levels.front().index(block)]];
+  }
+  /// The sample of a voxel; outside the universe, the background.
+  std::int16_t sample(const glm::ivec3& voxel) const;
+  std::uint64_t bytes_memory() const;
+
+ private:
+  friend GreyOctree grey_octree_of(const Universe&, const Scene&, std::int16_t);
+  friend GreyOctree grey_octree_of_bricks(const Universe&, std::int16_t, std::span<const glm::ivec3>,
+                                          const std::function<void(std::size_t, GreyBrick&)>&,
+                                          std::optional<Octree>);
+  struct Level {
+    int side = 1;  ///< blocks along an axis
+    std::vector<MinMax> ranges;
+    std::size_t index(const glm::ivec3& block) const {
+      const auto blocks = static_cast<std::size_t>(side);
+      return static_cast<std::size_t>(block.x) +
+             blocks * (static_cast<std::size_t>(block.y) + blocks * static_cast<std::size_t>(block.z));
+    }
+  };
+  struct Storage {
+    Universe universe;
+    std::int16_t background = 0;
+    Octree scan = Octree::empty({});
+    std::vector<Level> levels;                  ///< heights 2, 3, ... up to the root's
+    std::vector<std::uint32_t> brick_of_block;  ///< brick 0 is all background
+    std::vector<GreyBrick, LargeAllocator<GreyBrick>> bricks;
+  };
+  explicit GreyOctree(std::shared_ptr<const Storage> storage) : storage_(std::move(storage)) {}
+  std::shared_ptr<const Storage> storage_;
+};
+
+/// Samples the scene at the universe's voxel centres: exactly where the lattices coincide, otherwise by
+/// trilinear interpolation rounded to the nearest integer, halves upward. Voxels whose centre lies outside
+/// the scene's bounds become `background`. Throws std::invalid_argument where float samples leave the int16
+/// range. Parallel; same bits on any thread count. Memory: the samples within the scan's bounds and three per
+/// cent; a sixteenth more while it is built.
+GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
+
+/// The grey octree whose blocks of height 2 numbered `blocks` have samples and whose others are background.
+/// `fill` sets the samples of brick `number`, that of blocks[number], and is called once each from several
+/// threads; ranges are made here. Samples beyond a universe of less than 16 voxels a side must be the
+/// background. `scan` are the voxels whose samples are the scan's; none: scan_box(). Throws
+/// std::invalid_argument where a block is outside the universe or named twice, or the scan is of another
+/// universe.
+GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
+                                 std::span<const glm::ivec3> blocks,
+                                 const std::function<void(std::size_t number, GreyBrick& brick)>& fill,
+                                 std::optional<Octree> scan = std::nullopt);
+
+/// The smallest box that holds every sample other than the background: the scan's voxels as far as samples
+/// tell. Cost: the ranges of blocks, and the samples of those that the box's faces cut.
+Octree scan_box(const GreyOctree& grey);
+
+}  // namespace octotomy::voxel

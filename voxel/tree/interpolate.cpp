@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/tree/interpolate.h"
+
+#include <cmath>
+
+namespace octotomy::voxel {
+
+Stencil stencil(double position, Interpolation interpolation) {
+  const double cell = std::floor(position);
+  const double t = position - cell;
+  const int low = static_cast<int>(cell);
+  switch (interpolation) {
+    case Interpolation::Nearest:
+      return {static_cast<int>(std::floor(position + 0.5)), 1, {1.0, 0.0, 0.0, 0.0}};
+    case Interpolation::Linear:
+      return {low, 2, {1.0 - t, t, 0.0, 0.0}};
+    case Interpolation::Cubic:
+      break;
+  }
+  return {low - 1,
+          4,
+          {0.5 * t * (t * (2.0 - t) - 1.0), 0.5 * (t * t * (3.0 * t - 5.0) + 2.0),
+           0.5 * t * (t * (4.0 - 3.0 * t) + 1.0), 0.5 * t * t * (t - 1.0)}};
+}
+
+Margin margin(Interpolation interpolation) {
+  return interpolation == Interpolation::Cubic ? Margin{1, 2} : Margin{0, 1};
+}
+
+ValueRange value_range(const MinMax& samples, Interpolation interpolation) {
+  if (interpolation != Interpolation::Cubic)
+    return {static_cast<double>(samples.low), static_cast<double>(samples.high)};
+  constexpr double most = 1.25 * 1.25 * 1.25;
+  const double middle = 0.5 * (samples.low + samples.high);
+  const double half = 0.5 * (samples.high - samples.low);
+  return {middle - most * half, middle + most * half};
+}
+
+double interpolate(const GreyOctree& grey, const glm::dvec3& p_voxel, Interpolation interpolation) {
+  const Stencil x = stencil(p_voxel.x, interpolation);
+  const Stencil y = stencil(p_voxel.y, interpolation);
+  const Stencil z = stencil(p_voxel.z, interpolation);
+  double value = 0.0;
+  for (int k = 0; k < z.count; ++k) {
+    double plane = 0.0;
+    for (int j = 0; j < y.count; ++j) {
+      double row = 0.0;
+      for (int i = 0; i < x.count; ++i)
+        row += x.weight[static_cast<std::size_t>(i)] * grey.sample({x.first + i, y.first + j, z.first + k});
+      plane += y.weight[static_cast<std::size_t>(j)] * row;
+    }
+    value += z.weight[static_cast<std::size_t>(k)] * plane;
+  }
+  return value;
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// The leaf words of a small box of an octree, copied together: side^3 leaves from leaf number `first` on, x
+/// fastest. Leaves outside the universe are empty.
+class LeafWords {
+ public:
+  static constexpr int side = 8;
+
+  /// Reads the leaves of the box first..last, both included; the others of the array stay empty.
+  /// Precondition: at most `side` leaves along each axis.
+  void read(const Octree& octree, const glm::ivec3& first, const glm::ivec3& last);
+
+  std::uint64_t word(int x, int y, int z) const {
+    return words_[static_cast<std::size_t>(x + side * (y + side * z))];
+  }
+  const std::uint64_t* words() const { return words_.data(); }
+  /// Bits set in any, and in every, word of the box: all zero and all ones decide it as a whole.
+  std::uint64_t any() const { return any_; }
+  std::uint64_t every() const { return every_; }
+
+ private:
+  std::array<std::uint64_t, side * side * side> words_;
+  std::uint64_t any_ = 0;
+  std::uint64_t every_ = 0;
+};
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// A node of the octree as the thesis has it (3.3): eight children, level 0 the root, level n single voxels;
+/// whatever the physical nodes are. A value of a few words that looks into its octree, which must outlive it.
+class LogicalNode {
+ public:
+  /// The Empty root of no octree.
+  LogicalNode() = default;
+  static LogicalNode root(const Octree& octree);
+
+  Status status() const;
+  /// The node is a cube of 2^side_log2 voxels a side: n less its level.
+  int side_log2() const { return side_log2_; }
+  /// Child x + 2y + 4z; of a homogeneous node, a virtual child of its status. Precondition: side_log2() > 0.
+  LogicalNode child(int number) const;
+
+ private:
+  LogicalNode(int side_log2, BlockRef block, std::uint64_t word, std::uint64_t mask)
+      : block_(block), word_(word), mask_(mask), side_log2_(side_log2) {}
+
+  // Sides of 8 voxels and up: the block, or for odd logarithms the children `mask_` of it. Below: the bits
+  // `mask_` of a leaf's word.
+  BlockRef block_;
+  std::uint64_t word_ = 0;
+  std::uint64_t mask_ = all_children;
+  int side_log2_ = 0;
+};
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "voxel/tree/grey_octree.h"
+#include "voxel/tree/octree.h"
+#include "voxel/tree/partial_octree.h"
+
+// The .octree format, versions 1 and 2. Numbers are little-endian.
+//
+//   header    32 bytes: magic 89 4f 43 54 52 45 45 0a ("\x89OCTREE\n"), u32 version, u32 kind (1 binary,
+//             2 grey, 3 partial), u64 bytes of the file, u32 number of sections, u32 checksum of the 28 bytes
+//             before it
+//   sections  each 4 letters of name, u32 checksum, u32 raw bytes, u32 stored bytes; then the stored bytes,
+//             one zstd frame of the raw ones
+//
+// A checksum is a CRC-32 (zlib's); a section's is of its number, counted from 0 as a u32, and all of the
+// section but the checksum itself. So a burst of 32 flipped bits is always found, any other damage but for
+// one in 2^32, and one in 2^64 where zstd's own checksum of the raw bytes sees it too. A section's raw bytes
+// are at most 2^20; what is longer is cut into sections of the same name and of that length but for the last.
+// Sections stand in this order:
+//
+//   UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column
+//   NAME  UTF-8, may be missing
+//   META  UTF-8, JSON by convention, may be missing
+//   TREE  binary: the packed treecode (packed_treecode.h); partial: that of the voxels inside
+//   TOUC  partial: the packed treecode of the voxels touched
+//   FRAC  partial: u16 fractions of the voxels between, in tree order
+//   GRID  grey: a bit a block of 16 x 16 x 16 voxels, x fastest, low bits first: set where it has a brick;
+//         the others are background
+//   BRIK  grey: the bricks of up to 64 blocks in the grid's order, first the low bytes of all their numbers,
+//         then the high bytes. A number stands for a sample, in tree order (leaves, and samples within each,
+//         x + 4y + 16z): its difference, modulo 2^16, from the one before it in its row of the leaf; at a
+//         row's start from the row before, at a layer's from the layer before, at a leaf's from the first
+//         of the leaf before, at a brick's from the background. Differences 0, -1, 1, -2, ... are written
+//         0, 1, 2, 3, ...
+//   SCAN  grey, version 2 only: the packed treecode of the voxels whose samples are the scan's. Without it
+//         they are the smallest box that holds all samples other than the background, and a file that
+//         needs no SCAN is of version 1
+
+namespace octotomy::voxel {
+
+/// What an .octree file holds.
+struct OctreeFile {
+  std::variant<Octree, GreyOctree, PartialOctree> tree;
+  std::string name;      ///< for people, at most 2^20 bytes
+  std::string metadata;  ///< JSON by convention; kept as it is
+};
+
+const Universe& universe(const OctreeFile& file);
+
+/// The file's bytes: the same for the same voxels, whatever the tree's history and the number of threads.
+/// Parallel. Memory: the packed tree and, for grey, the compressed bricks.
+std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file);
+
+/// The inverse; `source` begins what is thrown. Throws Error with the code Input, naming the section and its
+/// first byte where a checksum, a size or a tree is not right, where the file is cut short or goes on, and
+/// where it is of a later version. Every checksum is verified before anything is built. Memory: at most 2^15
+/// times the bytes, which is as far as zstd compresses, and an empty tree of the universe.
+OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
+
+/// Writes beside and renames into place. Throws Error, Input or Resource, with path and reason.
+void write_octree(const OctreeFile& file, const std::filesystem::path& path);
+/// Throws Error with path and reason, and as octree_file_of_bytes().
+OctreeFile read_octree(const std::filesystem::path& path);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <utility>
+
+// The physical octree, for the kernel's own sources: two logical levels to a node.
+//
+// A block of height h is a cube of 4^h voxels a side. A block of height 1 is a leaf: 4 x 4 x 4 voxels as one
+// 64-bit word. A block of height h > 1 is Empty, Full, or a Node whose 64 children are blocks of height h
+// - 1. Bit and child number x + 4y + 16z is the voxel or child at (x, y, z) of its block.
+//
+// Nodes never change once made and are shared between trees by counted references. They are canonical: no
+// child is a node that is all Full or all Empty, so that equal sets of voxels are equal structures.
+
+namespace octotomy::voxel {
+
+/// What the voxels of a node, a block or a box are: none, all, or some of them in the object.
+enum class Status : std::uint8_t { Empty, Full, Partial };
+
+constexpr int child_index(int x, int y, int z) {
+  return x + 4 * y + 16 * z;
+}
+
+/// (x, y, z) of a child number.
+inline glm::ivec3 child_place(int child) {
+  return {child & 3, (child >> 2) & 3, child >> 4};
+}
+
+/// Height of the root block of a universe of 2^depth voxels a side: the least that holds it, at least 2.
+constexpr int root_height(int depth) {
+  return depth <= 4 ? 2 : (depth + 1) / 2;
+}
+
+inline constexpr std::uint64_t all_children = ~std::uint64_t{0};
+/// The 2 x 2 x 2 children of a logical octant at (0, 0, 0); shift by child_index(2x, 2y, 2z) for the others.
+inline constexpr std::uint64_t octant_children = 0x0000000000330033ULL;
+
+/// The children of a root block that lie inside a universe of 2^depth voxels a side; the others stay Empty.
+std::uint64_t universe_children(int depth);
+
+struct Node {
+  mutable std::atomic<std::uint32_t> references{1};
+  std::int32_t height = 2;
+  std::uint64_t voxel_count = 0;  ///< voxels of the object inside this block
+  std::uint64_t full = 0;         ///< children that are Full
+  std::uint64_t partial = 0;      ///< children with a payload each, in ascending child number
+
+  /// Where child `child` of `partial` stands in the payload.
+  int rank(int child) const { return std::popcount(partial & ((std::uint64_t{1} << child) - 1)); }
+  int payload_count() const { return std::popcount(partial); }
+
+  /// Payload of a node of height 2: the words of its leaves that are neither Full nor Empty.
+  const std::uint64_t* words() const { return reinterpret_cast<const std::uint64_t*>(this + 1); }
+  std::uint64_t* words() { return reinterpret_cast<std::uint64_t*>(this + 1); }
+  /// Payload of a node of height 3 and up.
+  const Node* const* nodes() const { return reinterpret_cast<const Node* const*>(this + 1); }
+  const Node** nodes() { return reinterpret_cast<const Node**>(this + 1); }
+};
+
+/// A block as a walk meets it: Empty (nullptr), Full, or a node it does not own.
+class BlockRef {
+ public:
+  constexpr BlockRef() = default;
+  static BlockRef full() { return BlockRef(1); }
+  static BlockRef of(const Node* node) { return BlockRef(reinterpret_cast<std::uintptr_t>(node)); }
+
+  bool is_empty() const { return bits_ == 0; }
+  bool is_full() const { return bits_ == 1; }
+  // A child slot in one word, as node addresses are never 0 or 1. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  const Node* node() const { return bits_ > 1 ? reinterpret_cast<const Node*>(bits_) : nullptr; }
+  /// Child of a block of height 3 and up; of a homogeneous block, the block itself.
+  BlockRef child(int index) const {
+    const Node* parent = node();
+    if (parent == nullptr) return *this;
+    if ((parent->partial >> index) & 1) return of(parent->nodes()[parent->rank(index)]);
+    return ((parent->full >> index) & 1) ? full() : BlockRef();
+  }
+  /// Leaf word of a block of height 2.
+  std::uint64_t word(int index) const {
+    const Node* parent = node();
+    if (parent == nullptr) return is_full() ? all_children : 0;
+    if ((parent->partial >> index) & 1) return parent->words()[parent->rank(index)];
+    return ((parent->full >> index) & 1) ? all_children : 0;
+  }
+  bool operator==(const BlockRef&) const = default;
+
+ private:
+  constexpr explicit BlockRef(std::uintptr_t bits) : bits_(bits) {}
+  std::uintptr_t bits_ = 0;
+};
+
+/// Asks for a node's count ahead of retain() or release(): counting is atomic, and atomic operations wait for
+/// memory one after the other where plain ones overlap.
+inline void prefetch_references(const Node* node) {
+  __builtin_prefetch(&node->references, 1);
+}
+
+/// Takes and gives back one reference; giving back the last one frees the node and what it alone held.
+void retain(BlockRef block);
+void release(BlockRef block);
+
+/// An owned block.
+class Block {
+ public:
+  Block() = default;
+  /// Takes over a reference that the caller holds.
+  static Block adopt(BlockRef block) { return Block(block); }
+  static Block share(BlockRef block) {
+    retain(block);
+    return Block(block);
+  }
+  Block(const Block& other) : ref_(other.ref_) { retain(ref_); }
+  Block(Block&& other) noexcept : ref_(std::exchange(other.ref_, BlockRef())) {}
+  Block& operator=(Block other) noexcept {
+    std::swap(ref_, other.ref_);
+    return *this;
+  }
+  ~Block() { release(ref_); }
+
+  BlockRef ref() const { return ref_; }
+  /// Hands the reference over to the caller.
+  BlockRef detach() { return std::exchange(ref_, BlockRef()); }
+
+ private:
+  explicit Block(BlockRef ref) : ref_(ref) {}
+  BlockRef ref_;
+};
+
+/// The block of height 2 whose leaves of `partial` have the given words, in ascending child number. Words
+/// that are all ones or zero are condensed, and so is the block.
+Block make_leaf_block(std::uint64_t full, std::uint64_t partial, const std::uint64_t* words);
+
+/// The block of height 3 and up with one block a bit of `undecided`, in ascending child number, which it
+/// takes over; condensed.
+Block make_block(int height, std::uint64_t full, std::uint64_t undecided, std::span<BlockRef> children);
+
+/// Voxels of a block of the given height.
+std::uint64_t voxel_count(BlockRef block, int height);
+
+}  // namespace octotomy::voxel

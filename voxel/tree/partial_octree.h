@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// A solid in its voxels with the share of each that it fills. Two octrees hold where it is certain: the
+/// voxels wholly inside (D1) and those that any of it touches (D2); the voxels between them are its boundary.
+struct PartialOctree {
+  /// A fraction that stands for a whole voxel.
+  static constexpr std::uint16_t whole = 65535;
+
+  Octree inside;
+  Octree touching;
+  /// Of the voxels of touching - inside, in tree order: blocks depth first with child numbers ascending
+  /// (octree_node.h), voxels of a leaf in bit order. The share filled is fraction / whole.
+  std::vector<std::uint16_t> fractions;
+};
+
+/// Throws std::invalid_argument where the universes differ, a voxel is inside and not touching, or the number
+/// of fractions is not that of the voxels between the two.
+void check(const PartialOctree& partial);
+
+/// Levels 1..n as the thesis counts its digital sphere (table 3.1): a node is Full only where it lies wholly
+/// inside and Empty only where nothing touches it; at level n a boundary voxel counts as Full, without
+/// being merged into its parent. Precondition: passes check().
+std::vector<LevelCount> level_counts(const PartialOctree& partial);
+
+/// Visits every boundary voxel with its fraction, in tree order. Precondition: passes check().
+void for_each_boundary_voxel(
+    const PartialOctree& partial,
+    const std::function<void(const glm::ivec3& voxel, std::uint16_t fraction)>& visit);
+
+/// The voxels at least half filled (D4). Precondition: passes check().
+Octree at_least_half(const PartialOctree& partial);
+
+/// Volume by fractions, in cubic millimetres; sums integers, hence exact but for the fractions' rounding to
+/// 1 / 65535 each.
+double volume_mm3(const PartialOctree& partial);
+
+/// Bytes of both octrees and of the fractions.
+std::uint64_t bytes_memory(const PartialOctree& partial);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// The octree as treecode (thesis 3.4.3, after Oliver): nodes in preorder, E for Empty, F for Full, P for
+/// Partial followed by its eight children, x + 2y + 4z, in parentheses:
+/// `P(EP(EEEEEEEF)FP(EEEEFEEE)EEP(EFFEEFEE)E)`. The universe's depth is not part of it.
+/// Cost: a character a node, two more a Partial node.
+std::string treecode(const Octree& octree);
+
+/// The inverse. Spaces and line ends may stand between nodes. Throws std::invalid_argument with the position
+/// of the character where the text is no treecode, is deeper than the universe, or is not condensed (eight
+/// children all Full or all Empty are one node). Memory: the octree's.
+Octree octree_of_treecode(const Universe& universe, std::string_view text);
+
+}  // namespace octotomy::voxel

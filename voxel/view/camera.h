@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "voxel/space/view.h"
+#include "voxel/view/drawn_object.h"
+
+namespace octotomy::voxel {
+
+/// The centre and width of a picture, in the view's millimetres.
+struct Frame {
+  glm::dvec2 centre_mm{0.0};
+  double width_mm = 1.0;
+};
+
+/// The frame of a picture of the given size around the objects' extents in the view, with a margin of a
+/// twentieth; around the universe if all objects are empty. Precondition: at least one object, all of one
+/// universe. Cost: the boundary of the extents.
+Frame frame_about(const std::vector<DrawnObject>& objects, const View& view, const glm::ivec2& size_px);
+
+/// An observer at a finite distance. One plane across the scene has the scale of an orthographic picture;
+/// nearer parts look larger.
+struct Eye {
+  double distance_mm = 600.0;  ///< from the plane in true scale, above 0
+  double plane_mm = 0.0;       ///< depth of the plane in true scale
+
+  double depth_mm() const { return plane_mm - distance_mm; }
+  /// The inverse of the magnification at a depth. Precondition: a depth beyond the eye.
+  double spread(double at_mm) const { return (at_mm - depth_mm()) / distance_mm; }
+};
+
+/// The plane of a picture: perpendicular to look, through the nearest corner of the universe's bounding box,
+/// which has depth 0. Pixel positions count from the picture's top left corner, x to the right and y down;
+/// pixel (i, j) has its centre at (i + 1/2, j + 1/2).
+struct ImagePlane {
+  View view;
+  glm::ivec2 size_px{0};
+  glm::dvec2 centre_mm{0.0};
+  double pixel_mm = 1.0;
+  double nearest_mm = 0.0;      ///< p . look of the points of depth 0
+  double depth_range_mm = 0.0;  ///< depth of the universe's farthest corner
+  std::optional<Eye> eye{};     ///< none: orthographic
+
+  /// A pixel position in the view's millimetres; with an eye, on the plane in true scale.
+  glm::dvec2 view_mm(const glm::dvec2& p_px) const {
+    const glm::dvec2 from_centre = p_px - glm::dvec2(size_px) * 0.5;
+    return centre_mm + glm::dvec2(from_centre.x, -from_centre.y) * pixel_mm;
+  }
+  /// The LPS point of a pixel position at a depth.
+  glm::dvec3 lps_mm(const glm::dvec2& p_px, double depth_mm) const {
+    const double spread = eye ? eye->spread(depth_mm) : 1.0;
+    const glm::dvec2 p_mm = centre_mm + spread * (view_mm(p_px) - centre_mm);
+    return view.right * p_mm.x + view.up * p_mm.y + view.look * (nearest_mm + depth_mm);
+  }
+};
+ImagePlane image_plane(const Universe& universe, const View& view, const glm::ivec2& size_px,
+                       const Frame& frame);
+/// The plane with an eye at that distance from the middle of the universe.
+ImagePlane seen_from(ImagePlane plane, double eye_distance_mm);
+
+/// The rays of an image plane in the universe's index space. The point of pixel position p at a depth is
+/// start(p) + depth * direction(p), both linear in p; on an orthographic plane all directions are per_mm.
+/// Components of per_mm that move a ray by less than a small part of a voxel on its way through the universe
+/// are exactly zero.
+struct VoxelRays {
+  glm::dvec3 first{0.0};
+  glm::dvec3 per_px_x{0.0};
+  glm::dvec3 per_px_y{0.0};
+  glm::dvec3 per_mm{0.0};
+  glm::dvec3 per_mm_px_x{0.0};  ///< change of the direction from pixel to pixel
+  glm::dvec3 per_mm_px_y{0.0};
+
+  glm::dvec3 direction(const glm::dvec2& p_px) const {
+    return per_mm + p_px.x * per_mm_px_x + p_px.y * per_mm_px_y;
+  }
+  glm::dvec3 start(const glm::dvec2& p_px) const { return first + p_px.x * per_px_x + p_px.y * per_px_y; }
+};
+VoxelRays voxel_rays(const Universe& universe, const ImagePlane& plane);
+
+/// The universe's axes along a view's right, up and look, in this order.
+struct AxisView {
+  std::array<int, 3> axis{0, 1, 2};
+  std::array<bool, 3> reversed{false, false, false};  ///< the index decreases along that direction
+};
+/// None if the view is not along the axes, or the axes are not perpendicular.
+std::optional<AxisView> axis_view(const Universe& universe, const View& view);
+
+}  // namespace octotomy::voxel

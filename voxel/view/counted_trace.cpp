@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/view/counted_trace.h"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "voxel/view/axis_walk.h"
+#include "voxel/view/counted_walk.h"
+
+namespace octotomy::voxel {
+namespace {
+
+/// The thesis's ancestor array: the nodes from the root down, by level.
+template <typename Node>
+struct Ancestors {
+  explicit Ancestors(const Node& root) { nodes.fill(root); }
+  Node& operator[](int level) { return nodes[static_cast<std::size_t>(level)]; }
+
+  std::array<Node, Universe::max_depth + 1> nodes;
+};
+
+template <typename Node, typename Counter>
+class NodeTracer {
+ public:
+  NodeTracer(const AxisFrame& frame, Counter& counter, ColumnDepths& columns)
+      : frame_(frame), counter_(counter), columns_(columns) {}
+
+  /// Traces a quadtree node's ray from the octree node on the path at the recursion level.
+  void trace(Ancestors<Node> path, int recursion, int p, int q, int d) {
+    int level = recursion;
+    for (;;) {
+      const Status status = path[level].status();
+      if (status == Status::Full) {
+        frame_.paint(columns_, p, q, recursion, d);
+        return;
+      }
+      if (status == Status::Partial) {
+        split(path, recursion, p, q, d);
+        return;
+      }
+      // Step from the front face of the Empty node to the node behind it.
+      const int next = d + (frame_.side() >> level);
+      if (next >= frame_.side()) return;
+      const int pivot = frame_.depth() - std::bit_width(static_cast<unsigned>(d ^ next));
+      d = next;
+      level = descend(path, pivot, recursion, p, q, d);
+    }
+  }
+
+ private:
+  /// Starts four rays at the front children of the Partial node on the path.
+  void split(Ancestors<Node>& path, int recursion, int p, int q, int d) {
+    const int half = frame_.side() >> (recursion + 1);
+    for (int i = 0; i < 4; ++i) {
+      const int at_p = p + (i & 1) * half;
+      const int at_q = q + (i >> 1) * half;
+      path[recursion + 1] = path[recursion].child(frame_.child(i, false));
+      counter_.direct(recursion + 1, path[recursion + 1].status(), {at_p, at_q, d});
+      counter_.quadtree(1, 0);
+      trace(path, recursion + 1, at_p, at_q, d);
+    }
+  }
+
+  /// Find_Node_and_Level: walks from the pivot down to a homogeneous node or to the recursion level.
+  int descend(Ancestors<Node>& path, int pivot, int recursion, int p, int q, int d) {
+    int level = pivot;
+    for (;;) {
+      path[level + 1] = path[level].child(frame_.child_at(level, p, q, d));
+      ++level;
+      const Status status = path[level].status();
+      const int mask = -(frame_.side() >> level);
+      const glm::ivec3 corner(p & mask, q & mask, d & mask);
+      if (level == recursion || status != Status::Partial) {
+        counter_.direct(level, status, corner);
+        counter_.quadtree(1, static_cast<std::uint64_t>(recursion - pivot - 1));
+        return level;
+      }
+      counter_.indirect(level, status, corner);
+    }
+  }
+
+  const AxisFrame& frame_;
+  Counter& counter_;
+  ColumnDepths& columns_;
+};
+
+/// The rays of a general view through one octree.
+template <typename Node>
+class RayCounter {
+ public:
+  RayCounter(const Node& root, const VoxelRays& rays, VisitCounter& counter)
+      : path_(root), depth_(root.side_log2()), side_(1 << depth_), per_mm_(rays.per_mm), counter_(counter) {}
+
+  void cast(const glm::dvec3& start) {
+    double from_mm = -std::numeric_limits<double>::infinity();
+    double until_mm = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) clip(start[axis], per_mm_[axis], from_mm, until_mm);
+    if (!(from_mm <= until_mm)) return;
+    glm::ivec3 voxel = glm::clamp(glm::ivec3(glm::floor(start + from_mm * per_mm_ + 0.5)), 0, side_ - 1);
+    counter_.direct(0, path_[0].status(), glm::ivec3(0));
+    counter_.quadtree(1, 0);
+    int pivot = 0;
+    while (path_[0].status() == Status::Partial) {
+      const int level = descend(pivot, voxel);
+      if (path_[level].status() == Status::Full || !step(start, level, voxel, pivot)) return;
+    }
+  }
+
+ private:
+  void clip(double start, double speed, double& from_mm, double& until_mm) const {
+    const double low = -0.5 - start;
+    const double high = side_ - 0.5 - start;
+    if (speed == 0.0) {
+      if (!(low <= 0.0 && 0.0 < high)) until_mm = -std::numeric_limits<double>::infinity();
+      return;
+    }
+    from_mm = std::max(from_mm, std::min(low / speed, high / speed));
+    until_mm = std::min(until_mm, std::max(low / speed, high / speed));
+  }
+
+  int descend(int pivot, const glm::ivec3& voxel) {
+    int level = pivot;
+    for (;;) {
+      const int bit = depth_ - 1 - level;
+      const glm::ivec3 digit = (voxel >> bit) & 1;
+      path_[level + 1] = path_[level].child(digit.x + 2 * digit.y + 4 * digit.z);
+      ++level;
+      const Status status = path_[level].status();
+      const glm::ivec3 corner = (voxel >> bit) << bit;
+      if (status != Status::Partial) {
+        counter_.direct(level, status, corner);
+        counter_.quadtree(1, static_cast<std::uint64_t>(level - pivot - 1));
+        return level;
+      }
+      counter_.indirect(level, status, corner);
+    }
+  }
+
+  /// Moves into the voxel behind an Empty node; false if that leaves the universe.
+  bool step(const glm::dvec3& start, int level, glm::ivec3& voxel, int& pivot) const {
+    const int edge = side_ >> level;
+    const glm::ivec3 low = voxel & -edge;
+    double leave_mm = std::numeric_limits<double>::infinity();
+    int through = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (per_mm_[axis] == 0.0) continue;
+      const double face = per_mm_[axis] > 0.0 ? low[axis] + edge - 0.5 : low[axis] - 0.5;
+      const double time = (face - start[axis]) / per_mm_[axis];
+      if (time < leave_mm) {
+        leave_mm = time;
+        through = axis;
+      }
+    }
+    glm::ivec3 next =
+        glm::clamp(glm::ivec3(glm::floor(start + leave_mm * per_mm_ + 0.5)), low, low + edge - 1);
+    next[through] = per_mm_[through] > 0.0 ? low[through] + edge : low[through] - 1;
+    if (next[through] < 0 || next[through] >= side_) return false;
+    const auto changed = static_cast<unsigned>((next.x ^ voxel.x) | (next.y ^ voxel.y) | (next.z ^ voxel.z));
+    pivot = depth_ - std::bit_width(changed);
+    voxel = next;
+    return true;
+  }
+
+  Ancestors<Node> path_;
+  int depth_, side_;
+  glm::dvec3 per_mm_;
+  VisitCounter& counter_;
+};
+
+}  // namespace
+
+ColumnMap quadtree_trace(const std::vector<DrawnObject>& objects, const AxisView& axes, Visits* visits) {
+  return walk_columns(objects, axes, visits,
+                      [](const auto& frame, const auto& root, auto& counter, ColumnDepths& columns) {
+                        using Root = std::decay_t<decltype(root)>;
+                        counter.direct(0, root.status(), glm::ivec3(0));
+                        counter.quadtree(1, 0);
+                        NodeTracer<Root, std::decay_t<decltype(counter)>>(frame, counter, columns)
+                            .trace(Ancestors<Root>(root), 0, 0, 0, 0);
+                      });
+}
+
+void count_rays(const std::vector<DrawnObject>& objects, const ImagePlane& plane, Visits& visits) {
+  const glm::ivec2 size = plane.size_px;
+  const VoxelRays rays = voxel_rays(objects.front().octree.universe(), plane);
+  const auto pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+  for (const DrawnObject& object : objects)
+    walk_object(object, pixels, &visits, [&](const auto& root, auto& counter) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(counter)>, VisitCounter>) {
+        RayCounter<std::decay_t<decltype(root)>> rays_of_object(root, rays, counter);
+        for (int y = 0; y < size.y; ++y)
+          for (int x = 0; x < size.x; ++x) rays_of_object.cast(rays.start({x + 0.5, y + 0.5}));
+      }
+    });
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "voxel/solid/expression.h"
+#include "voxel/view/camera.h"
+#include "voxel/view/depth_image.h"
+
+namespace octotomy::voxel {
+
+/// A part to leave out of a picture, for a view inside: everything outside a half-space, or inside a box.
+using Cutaway = std::variant<HalfSpace, Box>;
+
+/// The part of a line of sight that a cut removes: its first and last depth, which may be infinite, and the
+/// outward normal of the face behind it.
+struct TakenSpan {
+  double from_mm = 0.0;
+  double until_mm = 0.0;
+  glm::dvec3 normal{0.0};
+};
+/// The removed part of the line start_mm + depth * along, LPS; none if the cut misses the line.
+std::optional<TakenSpan> taken_span(const Cutaway& cut, const glm::dvec3& start_mm, const glm::dvec3& along);
+
+/// The expression without the parts that the cuts remove. Throws std::invalid_argument if a normal does not
+/// have unit length.
+Expression without(const Expression& object, const std::vector<Cutaway>& cuts);
+
+/// The objects without the parts that the cuts remove. They keep their samples; visits to them are counted in
+/// binary octrees. Cost: combine() for every object.
+std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const std::vector<Cutaway>& cuts);
+
+/// Moves pixels on the voxel faces that a cut made onto the cut itself, so that a cut face is flat instead of
+/// stepped. A pixel shows a cut's face if its depth is a voxel's face and is off the cut by at most half a
+/// voxel's extent along the cut's normal, the farthest that a face between a kept and a removed voxel can be.
+/// Faces seen at more than 76 degrees (surface_break.h) stay, because there a pixel shows the voxels' sides.
+/// Returns the outward normals (right, up, look) of the moved pixels and zero elsewhere; empty without cuts.
+/// Precondition: the image is of objects of this universe, drawn without the parts that the cuts remove.
+/// Parallel over rows.
+std::vector<glm::vec3> flatten_cuts(DepthImage& image, const ImagePlane& plane, const Universe& universe,
+                                    const std::vector<Cutaway>& cuts);
+
+}  // namespace octotomy::voxel

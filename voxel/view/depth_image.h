@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cassert>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+#include "voxel/view/pixel_index.h"
+
+namespace octotomy::voxel {
+
+/// The surface that a line of sight meets first.
+struct Seen {
+  float depth_mm = std::numeric_limits<float>::infinity();  ///< along look from the image plane
+  std::int16_t object = -1;                                 ///< index of the object, -1: background
+  bool stepped = false;  ///< the depth is that of a voxel's face, not interpolated by partial volume
+
+  bool lit() const { return object >= 0; }
+};
+
+/// The surface at every pixel, row by row from the top left.
+struct DepthImage {
+  glm::ivec2 size_px{0};
+  std::vector<Seen> pixels;
+
+  const Seen& at(int x, int y) const {
+    return pixels[pixel_index(size_px, x, y)];
+  }
+};
+
+/// An image of background.
+inline DepthImage unlit(const glm::ivec2& size_px) {
+  return {size_px, std::vector<Seen>(pixel_count(size_px))};
+}
+
+/// Overwrites the pixels of `image` at which `own` is nearer. Precondition: images of one size.
+inline void take_nearer(const DepthImage& own, DepthImage& image) {
+  assert(own.pixels.size() == image.pixels.size());
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    if (own.pixels[i].depth_mm < image.pixels[i].depth_mm) image.pixels[i] = own.pixels[i];
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/view/depth_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tbb/parallel_for.h>
+
+#include "voxel/space/vector_clones.h"
+#include "voxel/view/surface_break.h"
+
+namespace octotomy::voxel {
+namespace {
+
+/// Taps of smoothing on each side, a voxel apart. Four turn a slope with a step every four voxels into a
+/// plane, and flatten the waves that slices four voxels thick leave in interpolated depths.
+constexpr int smoothing_taps = 4;
+
+/// One pass of smoothing along x or y: the triangle-weighted mean of pairs of pixels at equal distance on
+/// both sides that continue the surface.
+struct Smoothing {
+  std::ptrdiff_t tap = 1;  ///< values between taps
+  float limit_mm = 1.0f;   ///< on the difference to the first tap, in proportion for the others
+  float band_mm = 0.5f;    ///< on the shift of a depth
+};
+
+/// Smooths `count` values of `from` into `to`, within the band around the original depths `found`.
+OCTOTOMY_VECTOR_CLONES void smooth_row(const float* __restrict from, const float* __restrict found,
+                                       float* __restrict to, int count, const Smoothing& smoothing) {
+  const std::ptrdiff_t tap = smoothing.tap;
+  const float limit = smoothing.limit_mm;
+  const float band = smoothing.band_mm;
+  for (int x = 0; x < count; ++x) {
+    const float centre = from[x];
+    float sum = static_cast<float>(smoothing_taps + 1) * centre;
+    float weights = static_cast<float>(smoothing_taps + 1);
+    float going_on = 1.0f;
+    for (int i = 1; i <= smoothing_taps; ++i) {
+      const float one = from[x + i * tap];
+      const float other = from[x - i * tap];
+      const float reach = limit * static_cast<float>(i);
+      const float farther = std::max(std::abs(one - centre), std::abs(other - centre));
+      going_on = farther <= reach ? going_on : 0.0f;
+      const float weight = going_on * static_cast<float>(smoothing_taps + 1 - i);
+      sum += going_on > 0.0f ? weight * (one + other) : 0.0f;
+      weights += 2.0f * weight;
+    }
+    to[x] = std::min(std::max(sum / weights, found[x] - band), found[x] + band);
+  }
+}
+
+/// Copies depths into the plane, and finds the lit part of each row and its part with voxels' faces.
+struct RowFacts {
+  float nearest_mm = beyond_mm;
+  glm::ivec2 stepped{0};  ///< the first and one past the last; empty if equal
+};
+RowFacts copy_row(const DepthImage& image, int y, float* row, glm::ivec2& lit) {
+  RowFacts facts;
+  lit = glm::ivec2(image.size_px.x, 0);
+  for (int x = 0; x < image.size_px.x; ++x) {
+    const Seen& seen = image.at(x, y);
+    if (!seen.lit()) continue;
+    row[x] = seen.depth_mm;
+    lit.x = std::min(lit.x, x);
+    lit.y = x + 1;
+    facts.nearest_mm = std::min(facts.nearest_mm, seen.depth_mm);
+    if (seen.stepped) facts.stepped = {facts.stepped.y == 0 ? x : facts.stepped.x, x + 1};
+  }
+  if (lit.x > lit.y) lit = glm::ivec2(0);
+  return facts;
+}
+
+}  // namespace
+
+int stride_px(const Scenery& scenery) {
+  return std::clamp(static_cast<int>(std::lround(scenery.voxel_mm / scenery.pixel_mm)), 1, 64);
+}
+
+DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
+  const int step = stride_px(scenery);
+  const auto rows = static_cast<std::size_t>(image.size_px.y);
+  DepthPlane plane{Plane(image.size_px, smoothing_taps * step, beyond_mm), std::vector<glm::ivec2>(rows)};
+  std::vector<RowFacts> facts(rows);
+  tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t y) {
+    facts[y] = copy_row(image, static_cast<int>(y), plane.depth.row(static_cast<int>(y)), plane.lit[y]);
+  });
+  bool any_stepped = false;
+  for (const RowFacts& row : facts) {
+    plane.nearest_mm = std::min(plane.nearest_mm, row.nearest_mm);
+    any_stepped = any_stepped || row.stepped.y > 0;
+  }
+  const Plane found = plane.depth;
+  Plane between = plane.depth;
+  Smoothing smoothing;
+  smoothing.limit_mm = static_cast<float>(break_mm(step * scenery.pixel_mm) / 2.0);
+  smoothing.band_mm = static_cast<float>(0.5 * scenery.voxel_mm);
+  for (int pass = 0; pass < (any_stepped ? 4 : 2); ++pass) {
+    const bool along_x = pass % 2 == 0;
+    const Plane& from = along_x ? plane.depth : between;
+    Plane& to = along_x ? between : plane.depth;
+    Smoothing along = smoothing;
+    along.tap = along_x ? step : static_cast<std::ptrdiff_t>(step) * found.width;
+    tbb::parallel_for(0, image.size_px.y, [&](int y) {
+      const auto smooth = [&](const glm::ivec2& x) {
+        smooth_row(from.row(y) + x[0], found.row(y) + x[0], to.row(y) + x[0], x[1] - x[0], along);
+      };
+      const glm::ivec2& lit = plane.lit[static_cast<std::size_t>(y)];
+      if (pass < 2) return smooth(lit);
+      // Smooth voxels' faces again.
+      std::copy(from.row(y) + lit.x, from.row(y) + lit.y, to.row(y) + lit.x);
+      const glm::ivec2& stepped = facts[static_cast<std::size_t>(y)].stepped;
+      smooth(stepped);
+      for (int x = stepped.x; x < stepped.y; ++x)
+        if (!image.at(x, y).stepped) to.row(y)[x] = from.row(y)[x];
+    });
+  }
+  return plane;
+}
+
+}  // namespace octotomy::voxel

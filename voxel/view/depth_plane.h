@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "voxel/view/depth_image.h"
+#include "voxel/view/shade.h"
+
+namespace octotomy::voxel {
+
+/// Depth of background pixels: beyond every universe, and small enough that differences weighted with zero
+/// are exactly zero.
+inline constexpr float beyond_mm = 1e9f;
+inline constexpr float surely_lit_mm = 0.5f * beyond_mm;
+
+/// A plane of values with a margin on all sides.
+struct Plane {
+  Plane(const glm::ivec2& size, int margin_px, float value)
+      : width(size.x + 2 * margin_px),
+        margin(margin_px),
+        values(static_cast<std::size_t>(width) * static_cast<std::size_t>(size.y + 2 * margin_px), value) {}
+  /// Pixel 0 of a row; rows and pixels may reach into the margin.
+  float* row(int y) { return values.data() + offset(y); }
+  const float* row(int y) const { return values.data() + offset(y); }
+  std::ptrdiff_t offset(int y) const { return static_cast<std::ptrdiff_t>(y + margin) * width + margin; }
+
+  int width;
+  int margin;
+  std::vector<float> values;
+};
+
+/// The distance in pixels between the points of a difference: one voxel, and at least one pixel. A closer
+/// difference would show single facets of the interpolation.
+int stride_px(const Scenery& scenery);
+
+/// Smoothed depths of a picture, in a plane whose margin is background, and the extent of its objects.
+struct DepthPlane {
+  Plane depth;
+  std::vector<glm::ivec2> lit;  ///< by row: the first lit pixel and one past the last; equal if none is lit
+  float nearest_mm = beyond_mm;
+};
+
+/// Smooths depths over four voxels on each side, depths of voxels' faces twice, and moves each by at most
+/// half a voxel. Averages only pairs of pixels at equal distance on opposite sides, so that planes stay
+/// planes and every depth stays within its voxel (after Gibson 1998, constrained elastic surface nets).
+/// Parallel over rows.
+DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "voxel/view/depth_span.h"
+#include "voxel/view/render.h"
+
+namespace octotomy::voxel {
+
+// A picture consists of layers: one of the opaque objects, and one of each translucent object. Tracing a
+// layer takes most of the time and knows no colours. Shading it knows no octrees.
+
+/// The surface at a pixel position between two depths.
+using SeenAt = std::function<Seen(const glm::dvec2& p_px, const DepthSpan& span)>;
+
+/// The visible surfaces of some objects, and a function that traces more of them, for parts of edge pixels.
+struct Layer {
+  DepthImage image;                    ///< objects are numbered in the order given
+  std::vector<glm::vec3> cut_normals;  ///< from flatten_cuts()
+  SeenAt seen_at;                      ///< owns its data; any number of threads may call it
+};
+
+/// Traces a layer. Preconditions: at least one object, all of the plane's universe and without the parts that
+/// the cuts remove; node tracing only for views along the universe's axes. Counts visits if given.
+Layer draw_layer(const std::vector<DrawnObject>& objects, const ImagePlane& plane,
+                 const std::vector<Cutaway>& cuts, Algorithm algorithm, Visits* visits = nullptr);
+
+/// Shades a layer's pixels with the objects' colours and the options' shading, lights and background. Ignores
+/// the options' size, view, algorithm and cuts, which are those that the layer was traced with.
+std::vector<std::uint8_t> shade_layer(const Layer& layer, const std::vector<DrawnObject>& objects,
+                                      const ImagePlane& plane, const RenderOptions& options);
+
+/// A layer of background.
+Layer empty_layer(const glm::ivec2& size_px);
+
+/// The object as it is traced for a shading: without samples if the shading uses voxels' faces alone.
+DrawnObject as_shaded(const DrawnObject& object, Shading shading);
+
+/// Replaces each object's number i by numbers[i].
+void number_objects(DepthImage& image, const std::vector<std::int16_t>& numbers);
+
+/// Merges layers of one object each: the nearest surface wins, among equals the first layer's. Precondition:
+/// at least one layer, all of one plane and the same cuts.
+Layer nearest_of(const std::vector<const Layer*>& layers);
+
+/// A translucent object of a scene.
+struct Translucent {
+  DepthImage image;
+  std::vector<std::uint8_t> rgb;
+  std::int16_t number = 0;  ///< of the object in its scene
+  float opacity = 0.5f;
+};
+
+/// Fills the pixels, depths and objects of a picture: the colours of its opaque layer, whose objects are
+/// numbered as in the scene, under the translucent objects, back to front.
+void lay_together(DepthImage opaque, std::vector<std::uint8_t> rgb, std::vector<Translucent> translucent,
+                  Picture& picture);
+
+/// A picture without pixels: its size, view, frame and algorithm. Throws as render().
+Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptions& options);
+
+/// The plane of a blank picture.
+ImagePlane plane_of(const std::vector<DrawnObject>& objects, const Picture& picture);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "voxel/view/depth_plane.h"
+
+namespace octotomy::voxel {
+
+/// The mean depth of the lit pixels around a pixel, up to a fortieth of the picture away on each side, on a
+/// grid of cells of 4 x 4 pixels.
+class MeanDepth {
+ public:
+  MeanDepth(const DepthPlane& plane, const glm::ivec2& size_px);
+
+  /// Writes the means for pixels span.x up to, not including, span.y of a row. They are meaningless at pixels
+  /// far from every lit one. Precondition: `to` has the picture's width.
+  void mean_row(int y, const glm::ivec2& span, std::vector<float>& to) const;
+
+ private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(cells_.x) + static_cast<std::size_t>(x);
+  }
+  void blur(std::vector<float>& values, int reach) const;
+
+  glm::ivec2 cells_;
+  std::vector<float> sums_;              ///< of depths around a cell
+  std::vector<float> lit_;               ///< number of pixels in each sum
+  std::vector<std::uint32_t> low_cell_;  ///< by x: the cell left of a pixel's centre
+  std::vector<float> share_;             ///< by x: weight of the cell right of it
+};
+
+}  // namespace octotomy::voxel

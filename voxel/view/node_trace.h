@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "voxel/view/column_map.h"
+
+namespace octotomy::voxel {
+
+/// Traces the objects along the view's look (thesis 4.5). The nearest voxel of any object wins, among objects
+/// that share it the first. With DrawnObject::grey the depth is the crossing of the threshold between the
+/// centres of the last voxel outside and the first inside (thesis 5.2.2.2); samples that do not cross it mean
+/// a cut, and the depth is the voxel's face. Precondition: all objects are of one universe, for which
+/// axis_view() gave the axes. Parallel over tiles of 64 x 64 columns; same bits on any thread count. Cost:
+/// the visible boundary.
+ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& axes);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "voxel/view/camera.h"
+#include "voxel/view/depth_image.h"
+#include "voxel/view/drawn_object.h"
+
+namespace octotomy::voxel {
+
+/// Normal of a voxel's face from eight of the voxel's 18 neighbours (Chen et al. 1985; thesis 5.2.1.1, table
+/// 5.1). On either side of the face the surface rises, continues or falls; half the difference is its slope,
+/// which gives 25 normals per face. The face looks along `axis`, to larger indices for `outward` 1, to
+/// smaller ones for -1. In index space, not of unit length. Cost: sixteen point queries of the octree.
+glm::dvec3 context_normal(const Octree& octree, const glm::ivec3& voxel, int axis, int outward);
+
+/// Outward normal at a position in index space: against the gradient of the samples, by central differences
+/// (equation 5.3) that are trilinear between voxels. In index space; zero if the samples do not change.
+glm::dvec3 grey_normal(const GreyOctree& grey, const glm::dvec3& p_voxel);
+
+enum class ObjectNormals { Context, Grey };
+/// Unit normals (right, up, look) of the surface at every pixel, from the objects instead of the picture.
+/// Grey falls back to context normals if an object has no samples or they do not change. Zero at background.
+/// Precondition: the image shows these objects. Parallel over rows.
+std::vector<glm::vec3> object_normals(const DepthImage& image, const std::vector<DrawnObject>& objects,
+                                      const ImagePlane& plane, ObjectNormals kind);
+
+}  // namespace octotomy::voxel

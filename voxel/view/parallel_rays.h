@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "voxel/tree/octree.h"
+#include "voxel/view/camera.h"
+#include "voxel/view/ray_walk.h"
+
+namespace octotomy::voxel {
+
+/// The parallel rays of a picture through one octree, a square of pixels at a time. One walk of the octree,
+/// front to back (thesis 4.4, theorem 4.1), serves all rays of the square, and skips nodes behind rays that
+/// have ended. Rays differ in a leaf only by their position, so that a table holds the voxels that they pass
+/// there, 64 to a word. The result is that of Walk (ray_walk.h) ray by ray. Any number of threads may cast.
+class ParallelRays {
+ public:
+  static constexpr int square_px = 64;  ///< edge of a square
+
+  /// Receives a voxel of the octree that a pixel's ray passes. Returns true to end the ray there.
+  using Accept = std::function<bool(const glm::ivec2& pixel, const Passage& passage)>;
+
+  /// Receives a leaf's first voxel a little before its voxels go to Accept, to prefetch data.
+  using Announce = std::function<void(const glm::ivec3& leaf)>;
+
+  /// Precondition: rays of an orthographic plane of the octree's universe. Keeps the octree.
+  ParallelRays(const Octree& octree, const VoxelRays& rays);
+  /// These rays through another octree of the same universe.
+  ParallelRays through(const Octree& octree) const;
+
+  /// Calls `accept` with the voxels that the rays of a square of pixels pass, each ray's from front to back.
+  /// The square is pixels `first_px` to `last_px`, both included. Precondition: at most square_px pixels a
+  /// side. Cost: the visible blocks of the octree, and one call per ray and voxel.
+  void cast(const glm::ivec2& first_px, const glm::ivec2& last_px, const Accept& accept,
+            const Announce& announce = {}) const;
+
+ private:
+  static constexpr int cells = 32;  ///< of the table along each axis
+  class Square;
+
+  void tabulate();
+
+  Octree octree_;
+  VoxelRays rays_;
+  Mirror mirror_;
+  glm::dmat3x2 px_from_mirrored_{1.0};  ///< of directions
+  std::array<glm::vec2, 64> places_;    ///< of a block's children, from its centre, for children of edge 1
+  glm::vec2 half_px_{0.0f};             ///< half the extent of a block of edge 1
+  float rounding_px_ = 0.0f;            ///< bound on the error of blocks' positions
+  std::vector<std::uint64_t> passed_;   ///< the voxels that rays pass, by cell of a leaf's extent
+};
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "voxel/space/progress.h"
+#include "voxel/tree/grey_octree.h"
+#include "voxel/view/camera.h"
+
+namespace octotomy::voxel {
+
+/// One number per pixel, row by row from the top left.
+struct RayImage {
+  glm::ivec2 size_px{0};
+  std::vector<float> values;
+};
+
+/// The largest trilinear sample along every pixel's ray, at steps of half a voxel; the background's value if
+/// a ray misses the universe. Skips blocks whose range cannot raise the maximum. Precondition: an
+/// orthographic plane of the grey octree's universe. Throws Stopped. Parallel over rows; same bits on any
+/// thread count.
+RayImage maximum_intensity(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
+
+/// The attenuation of X-rays along the view: the line integral, without unit, of the linear attenuation
+/// coefficient of samples in Hounsfield units, by the trapezoidal rule at steps of half a voxel. Rays are
+/// parallel, so that the picture is in true scale: from the side, a cephalogram without its enlargement.
+/// Water attenuates by 0.0206 / mm, as at 60 keV (NIST XCOM). Samples of at most -1000 attenuate nothing.
+/// Preconditions, throws and threads as for maximum_intensity().
+RayImage radiograph(const GreyOctree& grey, const ImagePlane& plane, const Progress& progress = {});
+
+/// Values from `black` to `white` as grey tones, three bytes per pixel; white may be the lower value.
+std::vector<std::uint8_t> grey_tones(const RayImage& image, double black, double white);
+
+}  // namespace octotomy::voxel

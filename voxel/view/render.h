@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "voxel/space/view.h"
+#include "voxel/view/camera.h"
+#include "voxel/view/cutaway.h"
+#include "voxel/view/drawn_object.h"
+#include "voxel/view/shade.h"
+#include "voxel/view/visits.h"
+
+namespace octotomy::voxel {
+
+/// NodeTrace: quadtree rays through the octree, for views along the universe's axes (thesis 4.5).
+/// RayCast: one ray per pixel that skips homogeneous blocks, for any view.
+/// FrontToBack, BackToFront: node by node into the picture, for any orthographic view; slower (thesis 4.4.3).
+enum class Algorithm { NodeTrace, RayCast, FrontToBack, BackToFront };
+
+/// Depth: brightness by depth alone. Gradient: from the gradient of the depth image of voxels' faces (thesis
+/// 5.2.2.1). PartialVolume: as Gradient, with depths interpolated by partial volume (5.2.2.2) for objects
+/// with samples. Context: object-based, from each voxel's neighbours (5.2.1.1). GreyGradient: object-based,
+/// from the gradient of the samples (5.2.1.2). Silhouette, Outline: for print.
+enum class Shading { Depth, Gradient, Context, PartialVolume, GreyGradient, Silhouette, Outline };
+
+/// Samples painted on cut faces in grey tones, like a slice.
+struct CutTones {
+  GreyOctree grey;
+  double black = 0.0;
+  double white = 1.0;  ///< above black
+};
+
+struct RenderOptions {
+  View view;
+  glm::ivec2 size_px{512, 512};
+  /// The picture's frame; by default the objects' extents with a margin of a twentieth, as frame_about().
+  std::optional<glm::dvec2> centre_mm;
+  std::optional<double> width_mm;
+  /// Distance of the eye from the middle of the universe; none: orthographic, in true scale. Ray casting
+  /// only.
+  std::optional<double> eye_mm;
+  /// By default NodeTrace for views along the universe's axes and RayCast for others. NodeTrace for another
+  /// view throws std::invalid_argument. NodeTrace shows whole columns of voxels, so that outlines are angular
+  /// if pixels are much smaller than voxels; RayCast follows the interpolated surface.
+  std::optional<Algorithm> algorithm;
+  Shading shading = Shading::PartialVolume;
+  glm::vec3 background{1.0f, 1.0f, 1.0f};  ///< sRGB, 0..1
+  /// Parts to remove from every object; the frame stays that of the whole objects. Cut faces are flat.
+  std::vector<Cutaway> cuts;
+  /// Grey tones on cut faces; none: the object's colour. The samples are of the objects' universe.
+  std::optional<CutTones> cut_tones;
+  std::vector<Light> lights;  ///< none: a key light from the upper left, a fill light from the lower right
+  bool occlusion = true;      ///< darkens surfaces that lie behind their surroundings
+  /// Counts the nodes that the algorithm visits (appendix A); takes far longer than drawing.
+  bool count = false;
+  /// Blends the colours of four parts of each edge pixel; depth, object and lit pixels stay those of the
+  /// pixel's centre. Adds a sixth (node tracing) to a half (ray casting) to the time of a frame.
+  bool antialias = true;
+};
+
+/// A picture with its depths and objects, row by row from the top left; each pixel shows the point at its
+/// centre.
+struct Picture {
+  glm::ivec2 size_px{0};
+  std::vector<std::uint8_t> rgb;  ///< 3 bytes per pixel, sRGB
+  std::vector<float>
+      depth_mm;  ///< along `look` from the nearest corner of the universe; infinity: background
+  std::vector<std::int16_t> object;  ///< index of the visible object, -1: background
+  double pixel_mm = 0.0;
+  glm::dvec2 centre_mm{0.0};  ///< of the picture, in the view's millimetres
+  double nearest_mm = 0.0;    ///< p . look of the points of depth 0
+  std::optional<Eye> eye;     ///< none: orthographic
+  std::uint64_t lit_pixels = 0;
+  Algorithm algorithm = Algorithm::NodeTrace;
+  std::optional<Visits> visits;  ///< if RenderOptions::count is set
+  View view;
+
+  /// The picture's plane, without the depth of the universe's farthest corner.
+  ImagePlane plane() const { return {view, size_px, centre_mm, pixel_mm, nearest_mm, 0.0, eye}; }
+  /// The LPS point that a pixel shows; none for the background.
+  std::optional<glm::dvec3> point_mm(const glm::ivec2& pixel) const;
+};
+
+/// Draws objects of one universe: the opaque ones, and the translucent ones over them. Skips objects of
+/// opacity 0. Depth and object are those of the nearest surface that is at least half opaque. Throws
+/// std::invalid_argument if there is no object or more than 32767, universes differ, or size or width are not
+/// positive. Parallel over pixels; same bits on any thread count.
+Picture render(const std::vector<DrawnObject>& objects, const RenderOptions& options);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "voxel/measure/distance_map.h"
+
+namespace octotomy::voxel {
+
+/// A number at every voxel of a range that colours a surface: from blue at -most through near white at 0 to
+/// orange at most.
+struct SurfaceScalar {
+  Universe universe;
+  VoxelRange range;
+  std::vector<float> values;  ///< x fastest
+  double most = 1.0;          ///< positive; larger values have the last colour
+
+  /// The value at a position in the universe's index space: trilinear between voxel centres, beyond the range
+  /// that of the nearest voxel.
+  double at(const glm::dvec3& p_voxel) const;
+};
+
+/// Signed distances in millimetres to the surface of `other`, negative inside, around the voxels of `object`:
+/// they colour the object's surface by its distance from the other one (thesis 9.2.3.2). As exact as
+/// signed_distances_mm(). Throws std::invalid_argument if `most_mm` is not positive, the universes differ or
+/// an octree is empty. Memory: 12 bytes per voxel of the object's extents.
+SurfaceScalar distance_to(const Octree& other, const Octree& object, double most_mm);
+
+/// The sRGB colour of a share from -1 to 1: straight lines in CIE Lab from blue to orange, which readers with
+/// any colour vision distinguish; both ends are equally dark (after Moreland, ISVC 2009).
+glm::vec3 diverging_colour(double share);
+
+/// `count` colours, evenly from share -1 to 1.
+std::vector<glm::vec3> diverging_colours(int count);
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+namespace octotomy::voxel {
+
+/// sRGB and linear light by table: IEC 61966-2-1.
+class Tone {
+ public:
+  static const Tone& table();
+
+  /// The table runs over square roots, in which sRGB is nearly linear: 1024 steps reach all 256 values.
+  /// `root` is root_steps times the square root of linear light from 0 to 1, rounded to the nearest.
+  static constexpr float root_steps = 1023.0f;
+  std::uint8_t srgb_of_root(int root) const { return to_srgb_[static_cast<std::size_t>(root)]; }
+  std::uint8_t srgb(float linear) const;
+  float linear(std::uint8_t srgb) const { return to_linear_[srgb]; }
+
+ private:
+  Tone();
+  std::array<std::uint8_t, 1024> to_srgb_{};
+  std::array<float, 256> to_linear_{};
+};
+
+/// The sRGB value, 0..1, of linear light from 0 to 1.
+float srgb_from_linear(float linear);
+
+/// Linear light of an sRGB colour, 0..1.
+glm::vec3 linear_from_srgb(const glm::vec3& colour);
+
+/// Writes a colour of linear light as three bytes of sRGB.
+void put(std::uint8_t* rgb, const glm::vec3& linear);
+
+}  // namespace octotomy::voxel

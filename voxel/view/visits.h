@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <unordered_set>
+#include <vector>
+
+#include "voxel/tree/logical_node.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::voxel {
+
+/// Visits of one kind: to the octree's nodes by level and status, and to the picture's quadtree.
+struct VisitTally {
+  std::vector<LevelCount> octree;  ///< levels 1..n
+  std::uint64_t quadtree = 0;      ///< levels 0..n
+};
+
+/// The cost of drawing in the terms of the thesis's appendix A (A.3.1). A *direct* visit tests an octree node
+/// against its part of the picture; an *indirect* one only passes the node on the way to a neighbour.
+struct Visits {
+  std::vector<LevelCount> existing;  ///< all nodes of levels 1..n
+  VisitTally direct;
+  VisitTally all;                   ///< direct and indirect
+  std::uint64_t visited_count = 0;  ///< nodes of levels 1..n with a visit of any kind
+  std::uint64_t pixel_count = 0;    ///< of the quadtree for views along axes, of the picture otherwise
+
+  /// Visits to the quadtree per pixel (A.4.1).
+  double per_pixel(const VisitTally& tally) const {
+    return static_cast<double>(tally.quadtree) / static_cast<double>(pixel_count);
+  }
+  /// Share of the existing nodes without a visit; none if there is no node.
+  std::optional<double> unvisited_fraction() const;
+  /// Adds the visits to another object in the same picture.
+  void add(const Visits& other);
+};
+
+/// The counter of a walk without counts; its calls compile to nothing.
+struct NoVisits {
+  void direct(int, Status, const glm::ivec3&) {}
+  void indirect(int, Status, const glm::ivec3&) {}
+  void quadtree(std::uint64_t, std::uint64_t) {}
+};
+
+/// The counter of a walk through one octree.
+class VisitCounter {
+ public:
+  /// Room for levels 1..existing.size().
+  VisitCounter(std::vector<LevelCount> existing, std::uint64_t pixel_count);
+
+  /// Counts a visit to a node, identified by a corner in voxels that no other node of its level has. Ignores
+  /// visits to the root.
+  void direct(int level, Status status, const glm::ivec3& corner);
+  void indirect(int level, Status status, const glm::ivec3& corner);
+  void quadtree(std::uint64_t direct, std::uint64_t indirect) {
+    visits_.direct.quadtree += direct;
+    visits_.all.quadtree += direct + indirect;
+  }
+  Visits visits() const;
+
+ private:
+  void note(int level, const glm::ivec3& corner);
+
+  Visits visits_;
+  std::unordered_set<std::uint64_t> visited_;
+};
+
+}  // namespace octotomy::voxel
