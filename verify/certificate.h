@@ -57,11 +57,18 @@ struct Unresolved {
 /// Where the two answers differ most.
 struct WorstPlace {
   glm::dvec3 at_mm{0.0};
-  double size_mm = 0.0;  ///< how far the surfaces are apart there, or how large the differing part is
-  std::string what;      ///< a clause: "the mesh has a part there that the voxels lack"
+  double size_mm = 0.0;     ///< how far the surfaces are apart there, or how large the differing part is
+  std::string what;         ///< a clause: "the mesh has a part there that the voxels lack"
+  double volume_mm3 = 0.0;  ///< of the differing part; zero: unknown
 };
 inline constexpr const char* part_of_mesh_only = "the mesh has a part there that the voxels lack";
 inline constexpr const char* part_of_voxels_only = "the voxels have a part there that the mesh lacks";
+
+/// The smallest error that a certificate would have seen in this very object, found by making errors in it.
+struct DetectionLimit {
+  double volume_mm3 = 0.0;         ///< of a part that is lost or added, in one place
+  std::optional<double> shift_mm;  ///< of the whole, in any direction; none: not even four voxels
+};
 
 /// Both kernels' answers to one question, the difference, what theory allows, and a verdict.
 struct Certificate {
@@ -79,6 +86,7 @@ struct Certificate {
   std::optional<double> hausdorff_mm;    ///< largest, both directions, voxel faces to triangles and back
   std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
   std::optional<WorstPlace> worst;       ///< none: the answers are equal, or there is no mesh to compare
+  std::optional<DetectionLimit> limit;   ///< where a witness judged the places
   std::vector<Comparison> comparisons;   ///< every quantity that was compared
   Verdict verdict = Verdict::Pass;
   std::vector<std::string> reasons;  ///< why not PASS

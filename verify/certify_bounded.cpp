@@ -55,6 +55,7 @@
 #include "brep/mesh/triangles.h"
 #include "convert/voxel/voxelise.h"
 #include "verify/boundary_model.h"
+#include "verify/places.h"
 #include "verify/voxel_boundary.h"
 #include "voxel/filter/components.h"
 #include "voxel/measure/cell_counts.h"
@@ -378,14 +379,26 @@ DistanceBounds distance_bounds(const Evidence& evidence) {
               layers_mm3 / model.area_mm2};
 }
 
-/// Compares area and distances. Looks for parts thinner than a voxel only if these leave a doubt.
+/// For information, where the places have been judged one by one.
+Comparison without_verdict(Comparison comparison) {
+  comparison.tolerance.reset();
+  comparison.formula = "none: judged place by place";
+  return comparison;
+}
+
+/// Compares area and distances: with a witness without a verdict, as it has judged every place of the
+/// surfaces. Looks for parts thinner than a voxel only if these leave a doubt.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
-                      const brep::Mesh& solid) {
+                      const brep::Mesh& solid, bool witnessed) {
   const brep::SurfaceTree tree(solid);
   Distances distances = surface_distances(octree, solid, tree);
   certificate.hausdorff_mm = distances.largest_mm();
   certificate.hausdorff95_mm = distances.percentile95_mm();
-  certificate.worst = worst_of(distances, octree, tree);
+  if (!certificate.worst) certificate.worst = worst_of(distances, octree, tree);
+  if (witnessed) {
+    add_comparison(certificate, without_verdict(area_of(evidence, 0.0)));
+    return;
+  }
   const DistanceBounds bounds = distance_bounds(evidence);
   const double far_mm = lost * 0.5 * (glm::length(evidence.voxel_mm) + glm::length(evidence.sample_mm));
   Comparison area = area_of(evidence, 0.0);
@@ -410,6 +423,36 @@ void compare_surfaces(Certificate& certificate, const Evidence& evidence, const 
                   .statement = "The surfaces are % apart on average"});
   if (distances.largest_mm() > far_mm)
     lower(certificate, Verdict::Warn, text_of(worst_of(distances, octree, tree)));
+}
+
+/// Every place at which the witness contradicts a kernel is an error: interpolation and rounding are in its
+/// words. Up to seven voxels or as much surface are a doubt, as coordinates on a voxel's centre may be.
+void judge_by_witness(Certificate& certificate, const Evidence& evidence, const Places& places) {
+  constexpr std::uint64_t doubtful_voxels = 8;
+  certificate.limit = places.limit;
+  certificate.worst = places.worst;
+  const double voxels_mm3 = static_cast<double>(places.voxel_count) * evidence.voxel_mm3;
+  const double face_mm2 = std::pow(evidence.voxel_mm3, 2.0 / 3.0);
+  const Verdict most =
+      places.largest_count >= doubtful_voxels || places.stray_mm2 >= doubtful_voxels * face_mm2
+          ? Verdict::Fail
+          : Verdict::Warn;
+  add_comparison(certificate,
+                 {.quantity = "contradicted voxels",
+                  .unit = "mm3",
+                  .difference = voxels_mm3,
+                  .tolerance = 0.0,
+                  .formula = "0: voxels at which the scan and the plan leave a kernel one answer",
+                  .statement = "Voxels of % contradict the scan"},
+                 most);
+  add_comparison(certificate,
+                 {.quantity = "stray surface",
+                  .unit = "mm2",
+                  .difference = places.stray_mm2,
+                  .tolerance = 0.0,
+                  .formula = "0: triangles where the scan and the plan have a surface",
+                  .statement = "Triangles of % lie where the scan has no surface"},
+                 most);
 }
 
 /// Both objects must have one topology if the voxels are the mesh's samples. The mesh parts inside corners
@@ -456,14 +499,18 @@ void judge_extent(Certificate& certificate, const Evidence& evidence) {
                                                     " voxels thick on average, one is needed"};
 }
 
-void judge_volume(Certificate& certificate, const Evidence& evidence) {
+void judge_volume(Certificate& certificate, const Evidence& evidence, bool witnessed) {
+  const auto compare = [&](Comparison comparison) {
+    add_comparison(certificate, witnessed ? without_verdict(std::move(comparison)) : std::move(comparison));
+  };
   const voxel::Measures& voxels = evidence.voxels;
   const brep::Measures& mesh = evidence.mesh;
   if (mesh.volume_mm3 < 0.0)
     lower(certificate, Verdict::Fail,
           "The mesh is inside out: its volume is " + voxel::rounded(mesh.volume_mm3) +
               " mm3. Reverse its triangles, or check the frame that it was read in.");
-  if ((voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
+  // A sliver between voxels' centres may be empty for one kernel alone: a witness knows.
+  if (!witnessed && (voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
     const bool lost_by_voxels = voxels.voxel_count == 0;
     lower(certificate, Verdict::Fail,
           lost_by_voxels ? "The voxel kernel's object is empty, the mesh kernel's is not."
@@ -476,21 +523,19 @@ void judge_volume(Certificate& certificate, const Evidence& evidence) {
   add_comparison(certificate,
                  {"volume", "mm3", voxels.volume_mm3, mesh.volume_mm3, std::abs(certificate.difference_mm3),
                   certificate.tolerance_mm3, "sum of the terms"});
-  add_comparison(
-      certificate,
-      {.quantity = "symmetric difference",
-       .unit = "mm3",
-       .difference = certificate.symmetric_difference_mm3,
-       .tolerance = certificate.symmetric_difference_tolerance_mm3,
-       .formula = "layers of voxels that may differ, and three standard deviations of their number",
-       .statement = "Voxels of % are inside for one kernel only"});
+  compare({.quantity = "symmetric difference",
+           .unit = "mm3",
+           .difference = certificate.symmetric_difference_mm3,
+           .tolerance = certificate.symmetric_difference_tolerance_mm3,
+           .formula = "layers of voxels that may differ, and three standard deviations of their number",
+           .statement = "Voxels of % are inside for one kernel only"});
   if (certificate.centroid_distance_mm && certificate.centroid_tolerance_mm)
-    add_comparison(certificate, {.quantity = "centroid",
-                                 .unit = "mm",
-                                 .difference = *certificate.centroid_distance_mm,
-                                 .tolerance = certificate.centroid_tolerance_mm,
-                                 .formula = "first moment of the terms / volume",
-                                 .statement = "The centroids are % apart"});
+    compare({.quantity = "centroid",
+             .unit = "mm",
+             .difference = *certificate.centroid_distance_mm,
+             .tolerance = certificate.centroid_tolerance_mm,
+             .formula = "first moment of the terms / volume",
+             .statement = "The centroids are % apart"});
 }
 
 }  // namespace
@@ -532,12 +577,16 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid
   certificate.symmetric_difference_mm3 = static_cast<double>(either.voxel_count()) * evidence.voxel_mm3;
   if (evidence.voxels.centroid_mm && evidence.mesh.centroid_mm)
     certificate.centroid_distance_mm = glm::length(*evidence.voxels.centroid_mm - *evidence.mesh.centroid_mm);
-  judge_volume(certificate, evidence);
+  const bool witnessed = static_cast<bool>(inputs.witness);
+  if (witnessed)
+    judge_by_witness(certificate, evidence,
+                     judge_places(octree, digitised, solid, inputs.witness, {progress.stop, {}}));
+  judge_volume(certificate, evidence, witnessed);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
     progress.at(0.5);
-    compare_surfaces(certificate, evidence, octree, solid);
+    compare_surfaces(certificate, evidence, octree, solid, witnessed);
     progress.at(0.9);
-    compare_inertia(certificate, evidence, solid);
+    if (!witnessed) compare_inertia(certificate, evidence, solid);
     if (inputs.voxels_are_samples) compare_topology(certificate, octree, solid);
   }
   judge_extent(certificate, evidence);

@@ -6,6 +6,7 @@
 
 #include "brep/mesh/mesh.h"
 #include "verify/certificate.h"
+#include "verify/reading.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
 
@@ -23,10 +24,12 @@ struct BoundInputs {
   std::optional<voxel::Box> scan_box_mm = {};
   /// Every voxel's centre is a sample and the object is one window of them: topology must agree too.
   bool voxels_are_samples = false;
+  /// Judges the places at which the answers differ. Without one, distances and areas do.
+  Witness witness = {};
 };
 
 /// Compares an octree with a solid of separate lineage (tier Bounded). The source derives the terms. A mesh
-/// without faces is the empty solid./// Throws as convert::voxelise(); voxel::Stopped.Cost: about that of
+/// without faces is the empty solid. Throws as convert::voxelise(); voxel::Stopped. Cost: about that of
 /// making both objects.
 Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs,
                             const voxel::Progress& progress = {});

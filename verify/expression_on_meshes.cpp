@@ -100,13 +100,20 @@ class Parser {
 
 }  // namespace
 
+ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string>& names) {
+  Parser parser(text);
+  ExpressionTree tree = parser.whole();
+  names = parser.names();
+  return tree;
+}
+
 SharedMesh MeshExpressions::evaluate(std::string_view text,
                                      const std::function<SharedMesh(std::string_view)>& lookup) {
   findings_.clear();
-  Parser parser(text);
-  ExpressionTree tree = parser.whole();
+  std::vector<std::string> names;
+  ExpressionTree tree = expression_tree_of(text, names);
   std::vector<SharedMesh> leaves;
-  for (const std::string& name : parser.names()) leaves.push_back(lookup(name));
+  for (const std::string& name : names) leaves.push_back(lookup(name));
   // Without a repeated name the expression stays as it is, so that earlier answers serve again.
   if (tree.leaf_count() > static_cast<int>(leaves.size()))
     if (std::optional<ExpressionTree> once = read_once(tree)) tree = std::move(*once);

@@ -17,6 +17,9 @@ namespace octotomy::verify {
 
 using SharedMesh = std::shared_ptr<const brep::Mesh>;
 
+/// Reads an expression as MeshExpressions does: leaf i is names[i]. Throws as MeshExpressions::evaluate().
+ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string>& names);
+
 /// Evaluates Boolean expressions on solids, as the second lineage beside voxel::combine() on octrees. The
 /// grammar is that of voxel::parse_expression(), with a parser of its own, so that a wrong precedence in one
 /// of them shows as disagreement.

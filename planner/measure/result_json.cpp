@@ -118,6 +118,10 @@ Json to_json(const verify::Certificate& certificate) {
     worst = {{"at_mm", to_json(certificate.worst->at_mm)},
              {"size_mm", finite(certificate.worst->size_mm)},
              {"what", certificate.worst->what}};
+  Json limit = nullptr;
+  if (certificate.limit)
+    limit = {{"volume_mm3", finite(certificate.limit->volume_mm3)},
+             {"shift_mm", certificate.limit->shift_mm ? finite(*certificate.limit->shift_mm) : Json(nullptr)}};
   Json comparisons = Json::array();
   for (const verify::Comparison& comparison : certificate.comparisons)
     comparisons.push_back(comparison_json(comparison));
@@ -143,6 +147,7 @@ Json to_json(const verify::Certificate& certificate) {
       {"hausdorff_mm", finite(certificate.hausdorff_mm)},
       {"hausdorff95_mm", finite(certificate.hausdorff95_mm)},
       {"worst", worst},
+      {"detection_limit", limit},
       {"comparisons", comparisons},
       {"timings_ms", {{"certify", certificate.milliseconds}}}};
 }

@@ -3,6 +3,7 @@
 
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
+#include "verify/witness.h"
 #include "voxel/solid/expression.h"
 
 namespace octotomy::planner {
@@ -56,6 +57,8 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
   const std::vector<std::string> names = uses(combine);
   made.shown = shown_in_common(bench.objects, names);
   for (const std::string& name : names) inherit(bench.objects.at(name), made);
+  made.witness = verify::witness_of_expression(
+      combine.expression, [&](const std::string& name) { return bench.objects.at(name).witness; });
   // An expression ends with the universe, in both kernels alike, also when it moves on.
   made.ends_with_universe = true;
 }

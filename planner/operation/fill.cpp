@@ -5,6 +5,7 @@
 #include "convert/surface/fill_cavities.h"
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
+#include "verify/witness.h"
 #include "voxel/filter/morphology.h"
 
 namespace octotomy::planner {
@@ -38,6 +39,7 @@ void triangles(const Fill& fill, const MeshBench& bench, MeshSide& made) {
 void bound(const Fill& fill, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(fill.object.name);
   inherit(object, made);
+  made.witness = verify::witness_of_filled(object.witness);
   made.shown = object.shown;
 }
 

@@ -6,6 +6,7 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "verify/witness.h"
 #include "voxel/solid/region_mask.h"
 #include "voxel/space/view.h"
 
@@ -82,6 +83,9 @@ void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Mask& mask, const BoundBench&, Object& made) {
   made.bound.planes = planes_of(mask_of(mask));
+  std::vector<verify::DrawnRegion> drawn;
+  for (const Mask::Region& region : mask.regions) drawn.push_back({region.view, region.polygons_mm});
+  made.witness = verify::witness_of_regions(drawn);
   if (made.mesh.whole) made.walls = {{made.id, made.mesh.whole}};
 }
 

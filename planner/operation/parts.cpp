@@ -7,6 +7,7 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "verify/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/morphology.h"
 
@@ -78,6 +79,7 @@ void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
 void bound(const Parts& parts, const BoundBench& bench, Object& made) {
   const Object& object = bench.objects.at(parts.object.name);
   inherit(object, made);
+  made.witness = verify::witness_of_parts(object.witness);
   made.shown = object.shown;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "verify/witness.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -84,6 +86,7 @@ void inherit(const Object& operand, Object& made) {
 void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel::Universe& universe,
            Object& made) {
   made.moved = Object::Moved{still.id, moved_from_still};
+  made.witness = verify::carried(still.witness, moved_from_still);
   made.walls = still.walls;
   for (CutWall& wall : made.walls) wall.moved_from_still = moved_from_still * wall.moved_from_still;
   made.shown = still.shown;

@@ -8,6 +8,7 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "verify/witness.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 
@@ -49,10 +50,10 @@ void voxels(const Window& window, const VoxelBench& bench, VoxelSide& made) {
   made.symbol = bench.within_universe(leaf);
   made.lineage = "window on a grey octree of the scan";
   if (!made.octree.is_empty()) return;
-  const voxel::Range range = voxel::range(scan.scene);
+  const voxel::Range range = voxel::range(scan.scene());
   throw std::runtime_error("no voxel of scan '" + window.scan.name +
                            "' is in the window; its samples are from " + plain(range.low) + " to " +
-                           plain(range.high) + unit_of(scan.scene) + ": choose within them");
+                           plain(range.high) + unit_of(scan.scene()) + ": choose within them");
 }
 
 void triangles(const Window& window, const MeshBench& bench, MeshSide& made) {
@@ -64,12 +65,14 @@ void triangles(const Window& window, const MeshBench& bench, MeshSide& made) {
 
 void bound(const Window& window, const BoundBench& bench, Object& made) {
   const LoadedScan& scan = bench.scan(window.scan.name);
-  made.definition += unit_of(scan.scene);
-  const voxel::Lattice& lattice = scan.scene.lattice;
+  made.definition += unit_of(scan.scene());
+  const voxel::Lattice& lattice = scan.scene().lattice;
   made.bound.spacing_mm = lattice.spacing_mm();
   made.bound.scan_box_mm = voxel::bounds(lattice);
   made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
   // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
+  made.witness = verify::witness_of_window(
+      scan.shared, window.low, window.high.value_or(std::numeric_limits<double>::infinity()), bench.universe);
   if (!window.high) made.shown = Shown{scan.grey, window.low, window.scan.name};
 }
 

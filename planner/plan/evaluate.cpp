@@ -19,6 +19,7 @@
 #include "planner/plan/sha256.h"
 #include "planner/table/number_format.h"
 #include "verify/certify_bounded.h"
+#include "verify/witness.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_scene.h"
 
@@ -126,7 +127,8 @@ class Evaluator {
       result_.scans.back().sha256 = std::move(sha256);
       const Stopwatch watch(result_.timings, "octree");
       voxel::GreyOctree grey = voxel::grey_octree_of(result_.universe, scene, background_of(scene));
-      loaded_.emplace(name, LoadedScan{std::move(scene), std::move(grey)});
+      loaded_.emplace(name,
+                      LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
     }
   }
 
@@ -147,7 +149,10 @@ class Evaluator {
     object.voxel.measures = voxel::measure(object.voxel.octree);
     if (object.mesh.within) object.mesh.measures = brep::measure(*object.mesh.within);
     if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) certify(object);
-    if (object.ends_with_universe) object.mesh.whole = object.mesh.within;
+    if (object.ends_with_universe) {
+      object.mesh.whole = object.mesh.within;
+      object.witness = verify::both(object.witness, verify::witness_of_box(box_));
+    }
     result_.objects.add(std::move(object));
   }
 
@@ -160,6 +165,7 @@ class Evaluator {
     object.voxel.octree = convert::voxelise(result_.universe, *object.mesh.whole);
     object.voxel.symbol = voxel::Expression(object.voxel.octree);
     object.voxel.lineage = "the mesh kernel's answer, voxelised";
+    object.witness = verify::witness_of_surface(object.mesh.whole);
     object.findings.emplace_back(
         "no certificate: only the mesh kernel does this, and its voxels are its mesh's");
   }
@@ -224,6 +230,8 @@ class Evaluator {
     inputs.flat_cut_mm2 = area_on_planes(*object.mesh.within, object.bound.planes);
     inputs.scan_box_mm = object.bound.scan_box_mm;
     inputs.voxels_are_samples = object.bound.voxels_are_samples;
+    // What lies outside of the universe has been cut away from both answers.
+    inputs.witness = verify::both(object.witness, verify::witness_of_box(box_));
     object.certificate =
         verify::certify_bounded(object.voxel.octree, *object.mesh.within, inputs, {options_.stop, {}});
   }

@@ -21,8 +21,10 @@ namespace octotomy::planner {
 
 /// A scan while steps need its samples.
 struct LoadedScan {
-  voxel::Scene scene;
+  std::shared_ptr<const voxel::Scene> shared;  ///< witnesses keep it
   voxel::GreyOctree grey;
+
+  const voxel::Scene& scene() const { return *shared; }
 };
 /// Answers a scan by its name in the document.
 using Scans = std::function<const LoadedScan&(const std::string& name)>;
@@ -60,7 +62,7 @@ struct MeshBench {
   /// An earlier object's answer in this kernel. Precondition: it has one.
   const SharedMesh& object(const std::string& name) const { return objects.at(name).mesh.whole; }
   /// The scan's samples as they are, not resampled to voxels.
-  const voxel::Scene& samples(const std::string& name) const { return scan(name).scene; }
+  const voxel::Scene& samples(const std::string& name) const { return scan(name).scene(); }
 };
 
 /// The bench of a certificate's bound, after both kernels have answered.

@@ -13,6 +13,7 @@
 #include "brep/mesh/measure.h"
 #include "brep/mesh/mesh.h"
 #include "verify/certificate.h"
+#include "verify/reading.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/expression.h"
 #include "voxel/tree/grey_octree.h"
@@ -86,6 +87,7 @@ struct Object {
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;
+  verify::Witness witness;  ///< of the object as `mesh.whole` has it; empty where no third reading exists
   std::optional<verify::Certificate> certificate;  ///< none for tools, and where there is no mesh
   std::vector<std::string> findings;
   bool ends_with_universe = false;  ///< its mesh stays cut at the universe's border when it moves on

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Right answers of both kernels are never contradicted by their witness; errors over the limit that the
+// witness prints always are. Errors are made at random in scans of heads, in objects of a window, of a cut
+// and of a motion.
+#include "verify/places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/components.h"
+#include "brep/mesh/move.h"
+#include "brep/mesh/triangles.h"
+#include "brep/shape/prism.h"
+#include "convert/surface/isosurface.h"
+#include "convert/voxel/voxelise.h"
+#include "tests/reference_data.h"
+#include "verify/head_phantom.h"
+#include "verify/voxel_boundary.h"
+#include "verify/witness.h"
+#include "voxel/filter/components.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::verify {
+namespace {
+
+using voxel::Expression;
+using Scan = std::shared_ptr<const voxel::Scene>;
+
+/// One object by both kernels and its witness.
+struct Subject {
+  std::string name;
+  voxel::Octree octree;
+  brep::Mesh mesh;
+  Witness witness;
+
+  Places judged(const voxel::Octree& voxels, const brep::Mesh& surface) const {
+    return judge_places(voxels, convert::voxelise(octree.universe(), surface), surface, witness);
+  }
+  Places judged() const { return judged(octree, mesh); }
+};
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+const std::vector<std::vector<glm::dvec2>> drawn{{{-31, -46.3}, {37.2, -40}, {30, 21}, {-22.7, 25}}};
+
+brep::Mesh prism_of(const DrawnRegion& region) {
+  return brep::mesh_of(brep::Prism{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, region.polygons_mm, -900, 900});
+}
+
+/// The window, the part of it in a region, the rest, and that part moved.
+std::vector<Subject> subjects_of(const std::string& name, const Scan& scan, double low, double voxel_mm,
+                                 const glm::dvec2& region_middle_mm) {
+  const voxel::Universe universe = voxel::universe_around(voxel::bounds(scan->lattice), voxel_mm);
+  const voxel::Box box = voxel::bounds(universe.lattice());
+  const Expression window = voxel::Window{voxel::grey_octree_of(universe, *scan, -1024), low};
+  DrawnRegion region{"anterior", drawn};
+  for (glm::dvec2& point : region.polygons_mm.front()) point += region_middle_mm;
+  const Expression mask = voxel::RegionMask{{{voxel::parse_view(region.view), region.polygons_mm}}};
+  const glm::dmat4 motion =
+      voxel::moved_from_still({{0.3, -6.1, 2.2}, 5.0, {1, 0.2, 0}, {region_middle_mm.x, 0, 0}});
+  const brep::Mesh surface = brep::mesh_of(convert::isosurface(*scan, low, infinite));
+  const Witness whole = witness_of_window(scan, low, infinite, universe), cut = witness_of_regions({region});
+  const Witness world = witness_of_box(box);
+  const auto digitised = [&](const Expression& expression) { return voxel::combine(universe, expression); };
+  const brep::Booleans parts = brep::booleans(surface, prism_of(region), {false, true, true, false});
+  std::vector<Subject> subjects;
+  subjects.push_back({name + ", window", digitised(window), surface, both(whole, world)});
+  subjects.push_back({name + ", piece", digitised(window & mask), *parts.intersection, both(whole, cut)});
+  subjects.push_back({name + ", rest", digitised(window - mask), *parts.a_minus_b, without(whole, cut)});
+  subjects.push_back({name + ", moved piece", digitised(voxel::moved(window & mask, motion)),
+                      brep::moved(*parts.intersection, motion), carried(both(whole, cut), motion)});
+  return subjects;
+}
+
+Scan phantom() {
+  static const Scan scan = [] {
+    HeadOptions options;
+    options.voxel_mm = 1.5;
+    options.noise_sigma_hu = 15.0;
+    return std::make_shared<const voxel::Scene>(head_phantom(options));
+  }();
+  return scan;
+}
+
+std::string told(const Places& places) {
+  std::string text = std::to_string(places.voxel_count) + " voxels, the largest group " +
+                     std::to_string(places.largest_count) + ", stray " + std::to_string(places.stray_mm2) +
+                     " mm2; limit " + std::to_string(places.limit.volume_mm3) + " mm3, " +
+                     (places.limit.shift_mm ? std::to_string(*places.limit.shift_mm) : "no") + " mm";
+  if (places.worst) text += "; " + text_of(*places.worst);
+  return text;
+}
+
+void expect_right(const Subject& subject) {
+  const Places places = subject.judged();
+  EXPECT_EQ(places.voxel_count, 0u) << subject.name << ": " << told(places);
+  EXPECT_EQ(places.stray_mm2, 0.0) << subject.name << ": " << told(places);
+}
+
+/// An error in one kernel's answer, and how large it is: the volume of the voxels that it changes, or a
+/// shift.
+struct Spoiled {
+  std::string what;
+  voxel::Octree octree;
+  brep::Mesh mesh;
+  double volume_mm3 = 0.0;
+  double shift_mm = 0.0;
+};
+
+/// Random errors of one subject.
+class Spoiler {
+ public:
+  Spoiler(const Subject& subject, std::uint64_t seed)
+      : subject_(subject), boundary_(voxel_boundary(subject.octree)), random_(seed) {}
+
+  Spoiled next() {
+    switch (random_() % 8) {
+      case 0:
+        return voxels("a bite", here() - ball());
+      case 1:
+        return voxels("a growth", here() | ball());
+      case 2:
+        return voxels("a saw cut", here() - slab());
+      case 3:
+        return voxels("cavities filled", Expression(filled()));
+      case 4:
+        return lost_part();
+      case 5:
+        return surface("a shift", moved(shift()), 1.0);
+      case 6:
+        return surface("a scale", scaled(1.0 + between(-0.02, 0.02)), 0.0);
+      default:
+        return surface("a turn", moved(turn()), 0.0);
+    }
+  }
+
+ private:
+  double between(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
+  glm::dvec3 direction() {
+    return glm::normalize(glm::dvec3(between(-1, 1), between(-1, 1), between(-1, 1)) + glm::dvec3(1e-3));
+  }
+  Expression here() const { return Expression(subject_.octree); }
+  glm::dvec3 place_mm() {
+    return subject_.octree.universe().lattice().lps_mm(
+        glm::dvec3(boundary_[random_() % boundary_.size()].voxel));
+  }
+  double voxel_mm() const { return subject_.octree.universe().lattice().spacing_mm().x; }
+  Expression ball() { return voxel::Sphere{place_mm(), between(0.5, 4.0) * voxel_mm()}; }
+  Expression slab() {
+    const glm::dvec3 at_mm = place_mm(), reach = glm::dvec3(between(2, 20), between(2, 20), voxel_mm());
+    return voxel::Box{at_mm - reach, at_mm + reach};
+  }
+  voxel::Octree filled() const {
+    const voxel::Universe& universe = subject_.octree.universe();
+    return voxel::combine(universe,
+                          ~Expression(voxel::components_at_faces(voxel::combine(universe, ~here()))));
+  }
+  glm::dmat4 shift() {
+    voxel::Motion motion;
+    motion.translate_mm = shift_mm_ * direction();
+    return voxel::moved_from_still(motion);
+  }
+  glm::dmat4 turn() {
+    return voxel::moved_from_still({glm::dvec3(0.0), between(0.3, 2.0), direction(), place_mm()});
+  }
+  brep::Mesh scaled(double by) {
+    brep::Triangles triangles = brep::triangles_of(subject_.mesh);
+    const glm::dvec3 about_mm = place_mm();
+    for (glm::dvec3& p : triangles.points_mm) p = about_mm + by * (p - about_mm);
+    return brep::mesh_of(triangles);
+  }
+  brep::Mesh moved(const glm::dmat4& motion) { return brep::moved(subject_.mesh, motion); }
+
+  Spoiled voxels(const std::string& what, const Expression& expression) {
+    const voxel::Octree made = voxel::combine(subject_.octree.universe(), expression);
+    const std::uint64_t changed =
+        voxel::combine(made.universe(), voxel::Expression(made) ^ here()).voxel_count();
+    return {what, made, subject_.mesh, static_cast<double>(changed) * made.universe().lattice().voxel_mm3(),
+            0.0};
+  }
+  Spoiled lost_part() {
+    const std::vector<brep::Component> pieces = brep::components(subject_.mesh);
+    const std::size_t lost = random_() % pieces.size();
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      if (i != lost) kept.insert(kept.end(), pieces[i].faces.begin(), pieces[i].faces.end());
+    std::sort(kept.begin(), kept.end());
+    return {"a lost part", subject_.octree, brep::part_of(subject_.mesh, kept), pieces[lost].volume_mm3, 0.0};
+  }
+  Spoiled surface(const std::string& what, brep::Mesh mesh, double shifts) {
+    return {what, subject_.octree, std::move(mesh), infinite, shifts * shift_mm_};
+  }
+
+  const Subject& subject_;
+  std::vector<VoxelFace> boundary_;
+  std::mt19937_64 random_;
+  double shift_mm_ = between(0.02, 0.5);
+};
+
+/// Every error over the limit must be found. Returns how many of each kind were over it.
+void expect_errors_found(const Subject& subject, std::uint64_t seeds, std::map<std::string, int>& over) {
+  const Places right = subject.judged();
+  ASSERT_TRUE(right.limit.shift_mm) << subject.name;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    Spoiler spoiler(subject, seed);
+    const Spoiled spoiled = spoiler.next();
+    if (spoiled.volume_mm3 <= right.limit.volume_mm3) continue;
+    if (spoiled.shift_mm > 0.0 && spoiled.shift_mm <= *right.limit.shift_mm) continue;
+    ++over[spoiled.what];
+    const Places places = subject.judged(spoiled.octree, spoiled.mesh);
+    EXPECT_TRUE(places.voxel_count > 0 || places.stray_mm2 > 0.0)
+        << subject.name << ", seed " << seed << ": " << spoiled.what << " of " << spoiled.volume_mm3
+        << " mm3, " << spoiled.shift_mm << " mm passes; " << told(right);
+  }
+}
+
+/// More with OCTOTOMY_ERRORS in the environment.
+std::uint64_t errors_of_each() {
+  const char* wanted = std::getenv("OCTOTOMY_ERRORS");
+  return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 8;
+}
+
+TEST(Places, OfErrorsOverTheLimitAreAlwaysFound) {
+  std::map<std::string, int> over;
+  for (const double voxel_mm : {1.0, 2.0})
+    for (const Subject& subject : subjects_of("phantom", phantom(), 300.0, voxel_mm, {0, -30}))
+      expect_errors_found(subject, errors_of_each(), over);
+  for (const char* kind : {"a bite", "a growth", "a saw cut", "a shift", "a scale", "a turn"})
+    EXPECT_GT(over[kind], 0) << kind << " was never over the limit";
+}
+
+TEST(Places, OfErrorsInARealHeadOverTheLimitAreAlwaysFound) {
+  OCTOTOMY_NEEDS_DATA("ct_unc_cthead.nrrd");
+  const auto scan =
+      std::make_shared<const voxel::Scene>(voxel::read_scene(tests::reference_data("ct_unc_cthead.nrrd")));
+  std::map<std::string, int> over;
+  for (const Subject& subject : subjects_of("UNC", scan, 300.0, 1.0, {0, 90}))
+    expect_errors_found(subject, errors_of_each(), over);
+  EXPECT_GT(over["a lost part"], 0);
+}
+
+TEST(Places, OfRightAnswersOnAPhantomAreNeverContradicted) {
+  for (const Subject& subject : subjects_of("phantom", phantom(), 300.0, 1.3, {0, -30}))
+    expect_right(subject);
+}
+
+TEST(Places, OfRightAnswersOnARealHeadAreNeverContradicted) {
+  OCTOTOMY_NEEDS_DATA("ct_unc_cthead.nrrd");
+  const auto scan =
+      std::make_shared<const voxel::Scene>(voxel::read_scene(tests::reference_data("ct_unc_cthead.nrrd")));
+  // Noise about metal lies at the higher bound.
+  for (const Subject& subject : subjects_of("UNC", scan, 1200.0, 2.0, {0, 90})) expect_right(subject);
+}
+
+}  // namespace
+}  // namespace octotomy::verify

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// 1 Voxels. A kernel's answer at a voxel's centre must be one that the witness allows it. Where the witness
+// does not
+//   know the side, away from any surface, the kernels must agree.
+// 2 Triangles. A triangle's centroid must lie where the witness has a surface, each vertex where a surface
+// has a
+//   vertex of its own or two surfaces cross.
+// 3 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
+// 4 Limit. Errors are made at random places of this object and judged as above: groups of voxels next to the
+//   boundary are removed and added, pieces of the mesh are lost, the whole is shifted along both directions
+//   of three axes. The limit is the smallest size from which every one of them is found.
+#include "verify/places.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "brep/mesh/components.h"
+#include "brep/mesh/distance.h"
+#include "brep/mesh/triangles.h"
+#include "verify/voxel_boundary.h"
+#include "voxel/solid/combine.h"
+#include "voxel/tree/octree_node.h"
+
+namespace octotomy::verify {
+namespace {
+
+/// Which of the kernels is wrong at a voxel.
+enum class Fault : std::uint8_t { None, VoxelsLack, VoxelsHave, MeshLacks, MeshHas, Apart };
+
+/// Clauses of a WorstPlace, by Fault.
+constexpr std::array<const char*, 6> clauses{"",
+                                             "the scan has a part there that the voxels lack",
+                                             "the voxels have a part there that the scan lacks",
+                                             "the scan has a part there that the mesh lacks",
+                                             "the mesh has a part there that the scan lacks",
+                                             "only one kernel has a part there"};
+
+Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
+  if (!reading.voxel.allows(in_voxels)) return in_voxels ? Fault::VoxelsHave : Fault::VoxelsLack;
+  if (!reading.mesh.allows(in_mesh)) return in_mesh ? Fault::MeshHas : Fault::MeshLacks;
+  const bool near = reading.voxel.near || reading.mesh.near;
+  const bool told = reading.voxel != untold && reading.mesh != untold;
+  // Two certain words that differ: the kernels' interpolations part there.
+  return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
+}
+
+struct FailedVoxel {
+  glm::ivec3 at{0};
+  Fault fault = Fault::None;
+};
+
+/// The voxels of a set, in the order of its blocks.
+void collect(const voxel::BlockRef& block, int height, const glm::ivec3& low,
+             std::vector<glm::ivec3>& voxels) {
+  if (block.is_empty()) return;
+  const int side = 1 << (2 * height);
+  if (block.is_full()) {
+    for (int z = 0; z < side; ++z)
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) voxels.push_back(low + glm::ivec3(x, y, z));
+    return;
+  }
+  for (int child = 0; child < 64; ++child) {
+    const glm::ivec3 at = low + glm::ivec3(child & 3, (child >> 2) & 3, child >> 4) * (side / 4);
+    if (height > 2) {
+      collect(block.child(child), height - 1, at, voxels);
+      continue;
+    }
+    for (std::uint64_t word = block.word(child); word != 0; word &= word - 1) {
+      const int bit = std::countr_zero(word);
+      voxels.push_back(at + glm::ivec3(bit & 3, (bit >> 2) & 3, bit >> 4));
+    }
+  }
+}
+
+bool before(const glm::ivec3& a, const glm::ivec3& b) {
+  return a.z != b.z ? a.z < b.z : a.y != b.y ? a.y < b.y : a.x < b.x;
+}
+
+/// The voxels at which answers can be wrong and are compared: where the kernels differ, and beside the
+/// boundary.
+std::vector<glm::ivec3> compared_voxels(const voxel::Octree& octree, const voxel::Octree& digitised,
+                                        const std::vector<VoxelFace>& boundary) {
+  const voxel::Octree differing =
+      voxel::combine(octree.universe(), voxel::Expression(octree) ^ voxel::Expression(digitised));
+  std::vector<glm::ivec3> voxels;
+  collect(differing.root(), differing.root_height(), glm::ivec3(0), voxels);
+  const int side = octree.universe().side();
+  for (const VoxelFace& face : boundary) {
+    voxels.push_back(face.voxel);
+    glm::ivec3 beyond = face.voxel;
+    beyond[face.axis] += face.side;
+    if (beyond[face.axis] >= 0 && beyond[face.axis] < side) voxels.push_back(beyond);
+  }
+  std::sort(voxels.begin(), voxels.end(), before);
+  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+  return voxels;
+}
+
+std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel::Octree& digitised,
+                                       const std::vector<glm::ivec3>& voxels, const Witness& witness,
+                                       const voxel::Progress& progress) {
+  const glm::dmat4& lps_from_voxel = octree.universe().lps_from_voxel;
+  std::vector<Fault> faults(voxels.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, voxels.size(), 1024), [&](const auto& range) {
+    if (progress.stop.stop_requested()) return;
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const glm::dvec3 p_mm(lps_from_voxel * glm::dvec4(glm::dvec3(voxels[i]), 1.0));
+      faults[i] = fault_of(witness(p_mm), octree.contains(voxels[i]), digitised.contains(voxels[i]));
+    }
+  });
+  progress.at(0.5);
+  std::vector<FailedVoxel> failed;
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (faults[i] != Fault::None) failed.push_back({voxels[i], faults[i]});
+  return failed;
+}
+
+/// Joins failed voxels, which are sorted, and keeps the largest group.
+void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Lattice& lattice, Places& places) {
+  places.voxel_count = failed.size();
+  std::vector<std::uint8_t> seen(failed.size(), 0);
+  const auto index_of = [&](const glm::ivec3& at) {
+    const auto found =
+        std::lower_bound(failed.begin(), failed.end(), at,
+                         [](const FailedVoxel& a, const glm::ivec3& b) { return before(a.at, b); });
+    return found != failed.end() && found->at == at ? static_cast<std::size_t>(found - failed.begin())
+                                                    : failed.size();
+  };
+  for (std::size_t first = 0; first < failed.size(); ++first) {
+    if (seen[first]) continue;
+    seen[first] = 1;
+    std::vector<std::size_t> group{first};
+    for (std::size_t next = 0; next < group.size(); ++next)
+      for (int neighbour = 0; neighbour < 27; ++neighbour) {
+        const glm::ivec3 by(neighbour % 3 - 1, neighbour / 3 % 3 - 1, neighbour / 9 - 1);
+        const std::size_t i = index_of(failed[group[next]].at + by);
+        if (i == failed.size() || seen[i]) continue;
+        seen[i] = 1;
+        group.push_back(i);
+      }
+    if (group.size() <= places.largest_count) continue;
+    places.largest_count = group.size();
+    glm::dvec3 middle(0.0);
+    std::array<std::size_t, clauses.size()> votes{};
+    for (const std::size_t i : group) {
+      middle += glm::dvec3(failed[i].at) / static_cast<double>(group.size());
+      ++votes[static_cast<std::size_t>(failed[i].fault)];
+    }
+    // The voxel of the group that is nearest to its middle, so that the place lies in it.
+    const auto nearest = std::min_element(group.begin(), group.end(), [&](std::size_t a, std::size_t b) {
+      return glm::distance(glm::dvec3(failed[a].at), middle) <
+             glm::distance(glm::dvec3(failed[b].at), middle);
+    });
+    const auto fault = std::max_element(votes.begin(), votes.end()) - votes.begin();
+    const double volume_mm3 = static_cast<double>(group.size()) * lattice.voxel_mm3();
+    places.worst = WorstPlace{lattice.lps_mm(glm::dvec3(failed[*nearest].at)), std::cbrt(volume_mm3),
+                              clauses[static_cast<std::size_t>(fault)], volume_mm3};
+  }
+}
+
+/// A triangle's centroid and area.
+struct Facet {
+  glm::dvec3 centroid_mm{0.0};
+  double area_mm2 = 0.0;
+};
+Facet facet_of(const brep::Triangles& mesh, std::size_t face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  const glm::dvec3 &p = mesh.points_mm[a], &q = mesh.points_mm[b], &r = mesh.points_mm[c];
+  return {(p + q + r) / 3.0, 0.5 * glm::length(glm::cross(q - p, r - p))};
+}
+
+void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, const voxel::Progress& progress,
+                         Places& places) {
+  const auto for_all = [&](std::size_t count, const auto& judge) {
+    std::vector<std::uint8_t> wrong(count, 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+      if (progress.stop.stop_requested()) return;
+      for (std::size_t i = range.begin(); i != range.end(); ++i) wrong[i] = judge(i) ? 0 : 1;
+    });
+    return wrong;
+  };
+  const std::vector<std::uint8_t> stray_vertex = for_all(mesh.points_mm.size(), [&](std::size_t i) {
+    const Reading reading = witness(mesh.points_mm[i]);
+    return reading.mesh.near && reading.surfaces >= 2;
+  });
+  const std::vector<std::uint8_t> stray = for_all(mesh.faces.size(), [&](std::size_t i) {
+    const auto& face = mesh.faces[i];
+    return std::none_of(face.begin(), face.end(),
+                        [&](std::uint32_t vertex) { return stray_vertex[vertex] != 0; }) &&
+           witness(facet_of(mesh, i).centroid_mm).mesh.near;
+  });
+  progress.at(0.8);
+  double largest_mm2 = 0.0;
+  for (std::size_t i = 0; i < stray.size(); ++i) {
+    if (!stray[i]) continue;
+    const Facet facet = facet_of(mesh, i);
+    places.stray_mm2 += facet.area_mm2;
+    if (places.voxel_count > 0 || facet.area_mm2 <= largest_mm2) continue;
+    largest_mm2 = facet.area_mm2;
+    places.worst = WorstPlace{facet.centroid_mm, std::sqrt(facet.area_mm2),
+                              "the mesh has a surface there that the scan lacks", 0.0};
+  }
+}
+
+/// Steps from a voxel to its neighbours within six voxels, the nearest first.
+std::vector<glm::ivec3> steps_outward() {
+  std::vector<glm::ivec3> steps;
+  for (int z = -6; z <= 6; ++z)
+    for (int y = -6; y <= 6; ++y)
+      for (int x = -6; x <= 6; ++x)
+        if (x * x + y * y + z * z <= 36) steps.emplace_back(x, y, z);
+  std::stable_sort(steps.begin(), steps.end(), [](const glm::ivec3& a, const glm::ivec3& b) {
+    return a.x * a.x + a.y * a.y + a.z * a.z < b.x * b.x + b.y * b.y + b.z * b.z;
+  });
+  return steps;
+}
+
+/// The number of voxels of one state, outward from a voxel, until one of them is certain in the voxel kernel:
+/// a smaller error of that shape would pass there.
+std::size_t unseen_voxels(const voxel::Octree& octree, const glm::ivec3& from,
+                          const std::vector<glm::ivec3>& steps, const Witness& witness) {
+  const bool inside = octree.contains(from);
+  const int side = octree.universe().side();
+  std::size_t count = 0;
+  for (const glm::ivec3& step : steps) {
+    const glm::ivec3 at = from + step;
+    if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, glm::ivec3(side))))
+      continue;
+    if (octree.contains(at) != inside) continue;
+    ++count;
+    if (!witness(octree.universe().lattice().lps_mm(glm::dvec3(at))).voxel.allows(!inside)) return count;
+  }
+  return count;
+}
+
+/// Whether the loss of a piece would be seen: it holds a voxel's centre at which the mesh has one answer.
+/// Looked for beneath its triangles, up to two voxels deep.
+bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Lattice& lattice,
+             const Witness& witness) {
+  constexpr std::size_t most_faces = 4096, most_tried = 64;
+  if (piece.faces.size() > most_faces) return true;
+  brep::Triangles own;
+  for (const std::uint32_t face : piece.faces) {
+    const auto first = static_cast<std::uint32_t>(own.points_mm.size());
+    for (const std::uint32_t corner : mesh.faces[face]) own.points_mm.push_back(mesh.points_mm[corner]);
+    own.faces.push_back({first, first + 1, first + 2});
+  }
+  const glm::dvec3 voxel_mm = lattice.spacing_mm();
+  const std::size_t stride = 1 + own.faces.size() / most_tried;
+  for (std::size_t i = 0; i < own.faces.size(); i += stride)
+    for (const double voxels : {0.5, 1.0, 2.0}) {
+      const auto& [a, b, c] = own.faces[i];
+      const glm::dvec3 &p = own.points_mm[a], &q = own.points_mm[b], &r = own.points_mm[c];
+      const glm::dvec3 across = glm::cross(q - p, r - p);
+      const double length = glm::length(across);
+      if (!(length > 0.0)) continue;
+      const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
+      const glm::dvec3 centre = lattice.lps_mm(glm::round(lattice.voxel(beneath)));
+      if (!witness(centre).mesh.allows(false) && brep::is_inside(centre, own)) return true;
+    }
+  return false;
+}
+
+/// The largest piece of the mesh that could be lost unseen. A part that is lost or added otherwise leaves
+/// vertices where the witness has none.
+double piece_limit_mm3(const brep::Mesh& solid, const brep::Triangles& mesh, const voxel::Lattice& lattice,
+                       const Witness& witness) {
+  const std::vector<brep::Component> pieces = brep::components(solid);
+  std::vector<double> lost_mm3(pieces.size(), 0.0);
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+    if (!is_seen(mesh, pieces[i], lattice, witness)) lost_mm3[i] = std::abs(pieces[i].volume_mm3);
+  });
+  return pieces.empty() ? 0.0 : *std::max_element(lost_mm3.begin(), lost_mm3.end());
+}
+
+/// Places of an object at which errors are tried.
+constexpr std::size_t tried_places = 1024;
+/// Triangles by which a shift is tried.
+constexpr std::size_t tried_triangles = 4096;
+
+double place_limit_mm3(const voxel::Octree& octree, const std::vector<VoxelFace>& boundary,
+                       const Witness& witness) {
+  const std::vector<glm::ivec3> steps = steps_outward();
+  std::mt19937_64 random(1);
+  std::vector<glm::ivec3> from;
+  for (std::size_t i = 0; i < tried_places; ++i) {
+    const VoxelFace& face = boundary[random() % boundary.size()];
+    from.push_back(face.voxel);
+    // Every other error adds voxels.
+    if (i % 2 == 1) from.back()[face.axis] += face.side;
+  }
+  std::vector<std::size_t> counts(from.size(), 0);
+  tbb::parallel_for(std::size_t{0}, from.size(),
+                    [&](std::size_t i) { counts[i] = unseen_voxels(octree, from[i], steps, witness); });
+  const std::size_t most = std::max<std::size_t>(*std::max_element(counts.begin(), counts.end()), 1);
+  return static_cast<double>(std::bit_ceil(most)) * octree.universe().lattice().voxel_mm3();
+}
+
+/// The smallest tried shift that takes at least one triangle of a sample off the surface, in every direction.
+/// None: the largest tried does not.
+std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_mm, const Witness& witness) {
+  std::mt19937_64 random(2);
+  std::vector<glm::dvec3> points_mm;
+  for (std::size_t i = 0; i < tried_triangles; ++i)
+    points_mm.push_back(facet_of(mesh, random() % mesh.faces.size()).centroid_mm);
+  for (const double voxels : {0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0}) {
+    bool seen_everywhere = true;
+    for (int direction = 0; direction < 6 && seen_everywhere; ++direction) {
+      glm::dvec3 by_mm(0.0);
+      by_mm[direction / 2] = (direction % 2 == 0 ? 1.0 : -1.0) * voxels * voxel_mm;
+      seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(),
+                                    [&](const glm::dvec3& p_mm) { return !witness(p_mm + by_mm).mesh.near; });
+    }
+    if (seen_everywhere) return voxels * voxel_mm;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Mesh& solid,
+                    const Witness& witness, const voxel::Progress& progress) {
+  Places places;
+  const brep::Triangles mesh = brep::triangles_of(solid);
+  const std::vector<VoxelFace> boundary = voxel_boundary(octree);
+  const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
+  progress.at(0.2);
+  const voxel::Lattice lattice = octree.universe().lattice();
+  add_groups(failed_voxels(octree, digitised, voxels, witness, progress), lattice, places);
+  add_stray_triangles(mesh, witness, progress, places);
+  const glm::dvec3 voxel_mm = lattice.spacing_mm();
+  places.limit.volume_mm3 = piece_limit_mm3(solid, mesh, lattice, witness);
+  if (!boundary.empty())
+    places.limit.volume_mm3 = std::max(places.limit.volume_mm3, place_limit_mm3(octree, boundary, witness));
+  if (!mesh.faces.empty())
+    places.limit.shift_mm = shift_limit_mm(mesh, std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z}), witness);
+  progress.at(1.0);
+  return places;
+}
+
+}  // namespace octotomy::verify

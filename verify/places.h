@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "brep/mesh/mesh.h"
+#include "verify/certificate.h"
+#include "verify/reading.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::verify {
+
+/// Both kernels' answers held against the witness, place by place.
+struct Places {
+  /// Voxels at which a kernel contradicts the witness, or the kernels each other away from any surface.
+  std::uint64_t voxel_count = 0;
+  std::uint64_t largest_count = 0;  ///< of those that touch by faces, edges or corners
+  double stray_mm2 = 0.0;           ///< area of triangles where the witness has no surface
+  /// The largest such group of voxels, otherwise the largest such triangle.
+  std::optional<WorstPlace> worst;
+  DetectionLimit limit;
+};
+
+/// Compares the states of voxels' centres: all at which the two kernels differ and all beside the octree's
+/// boundary, and the triangles' centroids. `digitised` are the voxels whose centre lies inside of the mesh.
+/// Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: the witness once for each of these
+/// points, and some ten thousand times for the limit.
+Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Mesh& solid,
+                    const Witness& witness, const voxel::Progress& progress = {});
+
+}  // namespace octotomy::verify

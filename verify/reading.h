@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <glm/glm.hpp>
+
+// A third reading of a plan's objects, at single points: neither octrees nor meshes, but the scan's samples
+// and the plan's own numbers, by code that neither kernel uses. It decides which of two kernels that differ
+// is wrong.
+namespace octotomy::verify {
+
+/// What a kernel may answer at a point.
+struct Word {
+  bool in = false;    ///< it may say inside
+  bool out = false;   ///< it may say outside
+  bool near = false;  ///< both, because a surface passes within its rounding of the point
+
+  bool allows(bool inside) const { return inside ? in : out; }
+  bool operator==(const Word&) const = default;
+};
+inline constexpr Word certainly_in{true, false, false};
+inline constexpr Word certainly_out{false, true, false};
+/// On a surface, as far as a kernel's interpolation and rounding go.
+inline constexpr Word on_surface{true, true, true};
+/// Away from any surface; the witness does not know on which side.
+inline constexpr Word untold{true, true, false};
+
+/// What each kernel may answer at a point: their interpolations differ.
+struct Reading {
+  Word voxel, mesh;
+  /// Surfaces that meet at the point, by which a mesh may have a vertex there: two that cross, or one that
+  /// has a vertex of its own there and counts twice.
+  int surfaces = 0;
+};
+
+/// Answers for one object at a point, LPS millimetres. Empty: the object has no witness. Safe to call from
+/// several threads.
+using Witness = std::function<Reading(const glm::dvec3& p_mm)>;
+
+}  // namespace octotomy::verify

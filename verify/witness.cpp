@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// How far a triangulated surface may stray from the trilinear interpolant f of the samples it is made from:
+// in each cell the part that the mesh calls outside is a polyhedron whose corners are outside samples (f <=
+// t) and crossings of edges (f = t). Each of its points p is a mean of those corners, so the mean of f over
+// them is at most t, and f(p) differs from that mean by the terms of f that are not linear: with f = a +
+// linear terms + b_xy xy + b_yz yz + b_zx zx + b_xyz xyz in the cell's unit coordinates,
+//   f(p) - mean f = -sum of b (mean of the product - product of the means).
+// The mean of xy over points of mean x and y lies between max(0, x + y - 1) and min(x, y), that of xyz
+// between max(0, x + y + z - 2) and min(x, y, z) (Frechet's bounds). The part that it calls inside strays
+// likewise to the other side. No triangulation of the cell between its crossings can break this, whatever it
+// does with ambiguous faces; at samples and on edges nothing strays.
+//
+// The voxel kernel's value at p is a weighted mean of at most eight voxels' samples, each f at the voxel's
+// centre, rounded: it is computed here from f itself.
+#include "verify/witness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "brep/mesh/distance.h"
+#include "verify/expression_on_meshes.h"
+
+namespace octotomy::verify {
+namespace {
+
+Word negated(const Word& a) {
+  return {a.out, a.in, a.near};
+}
+
+Word conjunction(const Word& a, const Word& b) {
+  const Word word{a.in && b.in, a.out || b.out, false};
+  return {word.in, word.out, word.in && word.out && ((a.near && b.in) || (b.near && a.in))};
+}
+
+/// A surface is met where one operand's surface is and the other does not decide.
+Word exclusive(const Word& a, const Word& b) {
+  return {(a.in && b.out) || (a.out && b.in), (a.in && b.in) || (a.out && b.out), a.near || b.near};
+}
+
+template <Word (*Rule)(const Word&, const Word&)>
+Witness joined(Witness a, Witness b) {
+  if (!a || !b) return {};
+  return [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm) -> Reading {
+    const Reading x = a(p_mm), y = b(p_mm);
+    return {Rule(x.voxel, y.voxel), Rule(x.mesh, y.mesh), x.surfaces + y.surfaces};
+  };
+}
+
+Witness complement(Witness a) {
+  if (!a) return {};
+  return [a = std::move(a)](const glm::dvec3& p_mm) -> Reading {
+    const Reading x = a(p_mm);
+    return {negated(x.voxel), negated(x.mesh), x.surfaces};
+  };
+}
+
+/// Rounding of coordinates and of a few sums of them: a share of the largest magnitude.
+constexpr double rounding = 1e-9;
+
+/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
+constexpr double kept_from_samples = 1e-3;
+
+/// A voxel's sample is rounded to an integer, and so is a window's bound.
+constexpr double rounded_samples = 1.0;
+
+/// The trilinear interpolant of a scan in one of its cells.
+struct CellValue {
+  double value = 0.0;
+  /// How far f may exceed a bound where the mesh is outside, and fall short of it where the mesh is inside.
+  double above = 0.0, below = 0.0;
+  double low = 0.0, high = 0.0;  ///< of the cell's samples
+};
+
+template <typename Sample>
+class WindowWitness {
+ public:
+  WindowWitness(std::shared_ptr<const voxel::Scene> scan, double low, double high,
+                const voxel::Universe& universe)
+      : scan_(std::move(scan)),
+        samples_(std::get<voxel::Samples<Sample>>(scan_->samples).data()),
+        dims_(scan_->lattice.dims),
+        low_(low),
+        high_(high),
+        scan_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)),
+        universe_from_lps_(glm::inverse(universe.lps_from_voxel)),
+        scan_from_universe_(scan_from_lps_ * universe.lps_from_voxel),
+        side_(universe.side()) {}
+
+  Reading operator()(const glm::dvec3& p_mm) const {
+    const glm::dvec3 u(scan_from_lps_ * glm::dvec4(p_mm, 1.0));
+    const Word mesh = mesh_word(u);
+    return {voxel_word(glm::dvec3(universe_from_lps_ * glm::dvec4(p_mm, 1.0))), mesh,
+            mesh.near ? surfaces(u) : 0};
+  }
+
+ private:
+  /// Positions beyond the outermost samples take the nearest value.
+  CellValue cell(const glm::dvec3& u) const {
+    std::size_t offset[3], step[3];
+    double t[3];
+    std::size_t stride = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = std::clamp(u[axis], 0.0, static_cast<double>(dims_[axis] - 1));
+      const int first = std::clamp(static_cast<int>(at), 0, std::max(dims_[axis] - 2, 0));
+      t[axis] = at - first;
+      offset[axis] = static_cast<std::size_t>(first) * stride;
+      step[axis] = dims_[axis] > 1 ? stride : 0;
+      stride *= static_cast<std::size_t>(dims_[axis]);
+    }
+    const Sample* corner = samples_ + offset[0] + offset[1] + offset[2];
+    std::array<double, 8> v{};
+    for (std::size_t i = 0; i < 8; ++i)
+      v[i] = static_cast<double>(corner[(i & 1) * step[0] + ((i >> 1) & 1) * step[1] + (i >> 2) * step[2]]);
+    const auto [least, most] = std::minmax_element(v.begin(), v.end());
+    CellValue cell{.low = *least, .high = *most};
+    for (std::size_t i = 0; i < 8; ++i)
+      cell.value += v[i] * ((i & 1) ? t[0] : 1.0 - t[0]) * (((i >> 1) & 1) ? t[1] : 1.0 - t[1]) *
+                    ((i >> 2) ? t[2] : 1.0 - t[2]);
+    const auto stray = [&](double b, double product, double most_mean, double least_mean) {
+      const double up = -b * (least_mean - product), down = -b * (most_mean - product);
+      cell.above += std::max(up, down);
+      cell.below += std::max(-up, -down);
+    };
+    const auto stray_of_two = [&](double b, double x, double y) {
+      stray(b, x * y, std::min(x, y), std::max(0.0, x + y - 1.0));
+    };
+    stray_of_two(v[0] - v[1] - v[2] + v[3], t[0], t[1]);
+    stray_of_two(v[0] - v[1] - v[4] + v[5], t[0], t[2]);
+    stray_of_two(v[0] - v[2] - v[4] + v[6], t[1], t[2]);
+    stray(-v[0] + v[1] + v[2] - v[3] + v[4] - v[5] - v[6] + v[7], t[0] * t[1] * t[2],
+          std::min({t[0], t[1], t[2]}), std::max(0.0, t[0] + t[1] + t[2] - 2.0));
+    const double moved =
+        kept_from_samples * (*most - *least) + rounding * std::max(std::abs(*least), std::abs(*most));
+    cell.above += moved;
+    cell.below += moved;
+    return cell;
+  }
+
+  /// Where f exceeds the lower bound by more than `above` the mesh cannot call it outside, where it is short
+  /// of it by more than `below` not inside; mirrored for the upper bound. A value that is no number allows
+  /// both answers.
+  Word word(double value, double above, double below) const {
+    const bool surely_in = value >= low_ + above && value <= high_ - below;
+    const bool surely_out = value < low_ - below || value > high_ + above;
+    return surely_in ? certainly_in : surely_out ? certainly_out : on_surface;
+  }
+
+  /// How far a position lies beyond the outermost samples, in samples.
+  double beyond(const glm::dvec3& u) const {
+    double most = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      most = std::max({most, -u[axis], u[axis] - static_cast<double>(dims_[axis] - 1)});
+    return most;
+  }
+
+  /// The mesh ends half a sample beyond the outermost ones, its triangles there within a sample.
+  Word mesh_word(const glm::dvec3& u) const {
+    const double past = beyond(u);
+    if (past >= 1.0) return certainly_out;
+    const CellValue at = cell(u);
+    Word answer = word(at.value, at.above, at.below);
+    // A cell with samples below and above the window has outside parts that are no mean of like corners.
+    if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
+    return past > rounding && answer.in ? on_surface : answer;
+  }
+
+  /// Where it is near, the surface has vertices on the edges between samples alone.
+  int surfaces(const glm::dvec3& u) const {
+    constexpr double on_edge = 1e-6;
+    int whole = 0;
+    for (int axis = 0; axis < 3; ++axis) whole += std::abs(u[axis] - std::round(u[axis])) < on_edge ? 1 : 0;
+    return whole >= 2 ? 2 : 1;
+  }
+
+  Word voxel_word(const glm::dvec3& q) const {
+    const glm::dvec3 nearest = glm::round(q);
+    // A voxel's own centre has its own sample.
+    const glm::dvec3 at = glm::dvec3(glm::abs(q.x - nearest.x) < 1e-7 ? nearest.x : q.x,
+                                     glm::abs(q.y - nearest.y) < 1e-7 ? nearest.y : q.y,
+                                     glm::abs(q.z - nearest.z) < 1e-7 ? nearest.z : q.z);
+    const glm::dvec3 first = glm::floor(at), t = at - first;
+    double value = 0.0;
+    bool all_scan = true, any_scan = false;
+    for (int i = 0; i < 8; ++i) {
+      const glm::dvec3 corner(i & 1, (i >> 1) & 1, i >> 2);
+      const glm::dvec3 weights = glm::mix(1.0 - t, t, corner);
+      const double weight = weights.x * weights.y * weights.z;
+      if (weight == 0.0) continue;
+      const glm::dvec3 voxel = first + corner;
+      const glm::dvec3 u(scan_from_universe_ * glm::dvec4(voxel, 1.0));
+      const double past = beyond(u);
+      const bool in_universe = glm::all(glm::greaterThanEqual(voxel, glm::dvec3(0.0))) &&
+                               glm::all(glm::lessThan(voxel, glm::dvec3(side_)));
+      // A scan's voxels reach half a sample beyond their centres.
+      all_scan = all_scan && past < 0.5 - 1e-6 && in_universe;
+      any_scan = any_scan || (past < 0.5 + 1e-6 && in_universe);
+      value += weight * cell(u).value;
+    }
+    if (!any_scan) return certainly_out;
+    const Word answer = word(value, rounded_samples, rounded_samples);
+    return all_scan || !answer.in ? answer : on_surface;
+  }
+
+  std::shared_ptr<const voxel::Scene> scan_;
+  const Sample* samples_;
+  glm::ivec3 dims_;
+  double low_, high_;
+  glm::dmat4 scan_from_lps_, universe_from_lps_, scan_from_universe_;
+  int side_;
+};
+
+/// Right and up of a view's picture, from its name or its two angles.
+std::array<glm::dvec3, 2> picture_axes(const std::string& view) {
+  const glm::dvec3 left(1, 0, 0), back(0, 1, 0), head(0, 0, 1);
+  if (view == "anterior") return {left, head};
+  if (view == "posterior") return {-left, head};
+  if (view == "left") return {back, head};
+  if (view == "right") return {-back, head};
+  if (view == "superior") return {-left, -back};
+  if (view == "inferior") return {left, -back};
+  double azimuth = 0.0, elevation = 0.0;
+  char comma = 0, rest = 0;
+  if (std::sscanf(view.c_str(), "%lf%c%lf%c", &azimuth, &comma, &elevation, &rest) != 3 || comma != ',')
+    throw std::invalid_argument("no view '" + view + "'");
+  azimuth *= std::numbers::pi / 180.0;
+  elevation *= std::numbers::pi / 180.0;
+  // The observer's place on the unit sphere, and what is right and up for somebody who looks from there to
+  // the centre.
+  const glm::dvec3 level = std::sin(azimuth) * left - std::cos(azimuth) * back;
+  const glm::dvec3 right = std::cos(azimuth) * left + std::sin(azimuth) * back;
+  return {right, std::cos(elevation) * head - std::sin(elevation) * level};
+}
+
+/// The polygons of one region, their edges by rows of the picture.
+class RegionWitness {
+ public:
+  explicit RegionWitness(const DrawnRegion& region) : axes_(picture_axes(region.view)) {
+    for (const auto& polygon : region.polygons_mm)
+      for (std::size_t i = 0; i < polygon.size(); ++i)
+        edges_.push_back({polygon[i], polygon[(i + 1) % polygon.size()]});
+    for (const auto& [a, b] : edges_) {
+      low_ = std::min({low_, a.y, b.y});
+      high_ = std::max({high_, a.y, b.y});
+      reach_mm_ = std::max({reach_mm_, glm::length(a), glm::length(b)});
+    }
+    rows_.resize(std::max<std::size_t>(edges_.size(), 1));
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const auto [from, to] = std::minmax(edges_[i][0].y, edges_[i][1].y);
+      for (std::size_t row = row_of(from - near_mm(0.0)); row <= row_of(to + near_mm(0.0)); ++row)
+        rows_[row].push_back(i);
+    }
+  }
+
+  Reading operator()(const glm::dvec3& p_mm) const {
+    const glm::dvec2 p(glm::dot(p_mm, axes_[0]), glm::dot(p_mm, axes_[1]));
+    const double near = near_mm(glm::length(p_mm));
+    if (p.y < low_ - near || p.y > high_ + near) return {certainly_out, certainly_out};
+    bool inside = false;
+    int sides = 0;
+    for (const std::size_t i : rows_[row_of(p.y)]) {
+      const auto& [a, b] = edges_[i];
+      const glm::dvec2 along = b - a, to = p - a;
+      const double squared = glm::dot(along, along);
+      const double part = squared > 0.0 ? std::clamp(glm::dot(to, along) / squared, 0.0, 1.0) : 0.0;
+      if (glm::distance(to, part * along) <= near) ++sides;
+      // The edge crosses the ray towards growing x; its ends count once.
+      if ((a.y <= p.y) == (b.y <= p.y)) continue;
+      const double side = along.x * to.y - along.y * to.x;
+      if ((side > 0.0) == (b.y > a.y)) inside = !inside;
+    }
+    const Word word = sides > 0 ? on_surface : inside ? certainly_in : certainly_out;
+    return {word, word, sides};
+  }
+
+ private:
+  double near_mm(double p_mm) const { return 1e-9 * (reach_mm_ + p_mm) + 1e-9; }
+  std::size_t row_of(double y) const {
+    const double share = high_ > low_ ? (y - low_) / (high_ - low_) : 0.0;
+    return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(rows_.size() - 1));
+  }
+
+  std::array<glm::dvec3, 2> axes_;
+  std::vector<std::array<glm::dvec2, 2>> edges_;
+  std::vector<std::vector<std::size_t>> rows_;
+  double low_ = std::numeric_limits<double>::infinity(), high_ = -low_, reach_mm_ = 0.0;
+};
+
+Witness of_tree(const ExpressionTree& tree, const std::vector<Witness>& leaves) {
+  if (tree.parts.empty()) return leaves[static_cast<std::size_t>(tree.leaf)];
+  Witness made = of_tree(tree.parts.front(), leaves);
+  if (tree.symbol == '~') return complement(std::move(made));
+  for (std::size_t i = 1; i < tree.parts.size(); ++i) {
+    Witness next = of_tree(tree.parts[i], leaves);
+    if (tree.symbol == '&') made = both(std::move(made), std::move(next));
+    if (tree.symbol == '-') made = without(std::move(made), std::move(next));
+    if (tree.symbol == '^') made = joined<exclusive>(std::move(made), std::move(next));
+    if (tree.symbol == '|') made = complement(both(complement(std::move(made)), complement(std::move(next))));
+  }
+  return made;
+}
+
+}  // namespace
+
+Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, double high,
+                          const voxel::Universe& universe) {
+  if (std::holds_alternative<voxel::Int16Samples>(scan->samples))
+    return WindowWitness<std::int16_t>(std::move(scan), low, high, universe);
+  return WindowWitness<float>(std::move(scan), low, high, universe);
+}
+
+Witness witness_of_regions(const std::vector<DrawnRegion>& regions) {
+  const auto readers = std::make_shared<const std::vector<RegionWitness>>(regions.begin(), regions.end());
+  return [readers](const glm::dvec3& p_mm) {
+    Reading all{certainly_in, certainly_in, 0};
+    for (const RegionWitness& reader : *readers) {
+      const Reading one = reader(p_mm);
+      all = {conjunction(all.voxel, one.voxel), conjunction(all.mesh, one.mesh), all.surfaces + one.surfaces};
+    }
+    return all;
+  };
+}
+
+Witness witness_of_box(const voxel::Box& box) {
+  return [box](const glm::dvec3& p_mm) {
+    int sides = 0;
+    bool inside = true;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double inner_mm : {p_mm[axis] - box.low_mm[axis], box.high_mm[axis] - p_mm[axis]}) {
+        const double near_mm = rounding * (1.0 + std::max(std::abs(p_mm[axis]), std::abs(box.low_mm[axis])));
+        sides += std::abs(inner_mm) <= near_mm ? 1 : 0;
+        inside = inside && inner_mm >= -near_mm;
+      }
+    const Word word = !inside ? certainly_out : sides > 0 ? on_surface : certainly_in;
+    return Reading{word, word, inside ? sides : 0};
+  };
+}
+
+Witness witness_of_surface(std::shared_ptr<const brep::Mesh> solid) {
+  struct Lazy {
+    std::shared_ptr<const brep::Mesh> solid;
+    std::once_flag once;
+    std::optional<brep::SurfaceTree> tree;
+  };
+  const auto lazy = std::make_shared<Lazy>();
+  lazy->solid = std::move(solid);
+  return [lazy](const glm::dvec3& p_mm) {
+    std::call_once(lazy->once, [&] { lazy->tree.emplace(*lazy->solid); });
+    const double near_mm = rounding * (1.0 + glm::length(p_mm));
+    const bool near = lazy->tree->distances_mm({p_mm}).front() <= near_mm;
+    return Reading{near ? on_surface : untold, near ? on_surface : untold, near ? 2 : 0};
+  };
+}
+
+Witness both(Witness a, Witness b) {
+  return joined<conjunction>(std::move(a), std::move(b));
+}
+
+Witness without(Witness a, Witness b) {
+  return both(std::move(a), complement(std::move(b)));
+}
+
+Witness carried(Witness still, const glm::dmat4& moved_from_still) {
+  if (!still) return {};
+  return [still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](
+             const glm::dvec3& p_mm) { return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0))); };
+}
+
+Witness witness_of_parts(Witness whole) {
+  if (!whole) return {};
+  return [whole = std::move(whole)](const glm::dvec3& p_mm) -> Reading {
+    const auto part = [](const Word& word) { return word == certainly_in ? untold : word; };
+    const Reading reading = whole(p_mm);
+    return {part(reading.voxel), part(reading.mesh), reading.surfaces};
+  };
+}
+
+Witness witness_of_filled(Witness hollow) {
+  if (!hollow) return {};
+  return [hollow = std::move(hollow)](const glm::dvec3& p_mm) -> Reading {
+    const auto filled = [](const Word& word) { return word == certainly_out ? untold : word; };
+    const Reading reading = hollow(p_mm);
+    return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
+  };
+}
+
+Witness witness_of_expression(std::string_view text,
+                              const std::function<Witness(const std::string&)>& lookup) {
+  std::vector<std::string> names;
+  const ExpressionTree tree = expression_tree_of(text, names);
+  std::vector<Witness> leaves;
+  for (const std::string& name : names) {
+    leaves.push_back(lookup(name));
+    if (!leaves.back()) return {};
+  }
+  return of_tree(tree, leaves);
+}
+
+}  // namespace octotomy::verify
