@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "voxel/solid/primitive.h"
 #include "voxel/solid/region_mask.h"
 #include "voxel/solid/slice_mask.h"
 #include "voxel/tree/grey_octree.h"
@@ -18,15 +19,6 @@
 
 namespace octotomy::voxel {
 
-/// The points p with normal . p <= offset_mm; the normal, a unit LPS vector, points outward.
-struct HalfSpace {
-  glm::dvec3 normal{0, 0, 1};
-  double offset_mm = 0.0;
-};
-struct Sphere {
-  glm::dvec3 centre_mm{0.0};
-  double radius_mm = 1.0;
-};
 /// The samples of a grey octree from low to high, both included.
 struct Window {
   GreyOctree grey;
@@ -39,7 +31,8 @@ struct Window {
 class Expression {
  public:
   enum class Kind { Leaf, And, Or, Minus, Xor, Not, Moved };
-  using Leaf = std::variant<Octree, Window, RegionMask, SliceMask, HalfSpace, Sphere, Box>;
+  using Leaf = std::variant<Octree, Window, RegionMask, SliceMask, HalfSpace, Sphere, Box, Ellipsoid,
+                            OrientedBox, Cylinder, Torus>;
   struct Term {
     Kind kind = Kind::Leaf;
     std::optional<Leaf> leaf;                 ///< Kind::Leaf only
@@ -52,16 +45,19 @@ class Expression {
     ~Term();  ///< no recursion: a term of any depth can go
   };
 
+  /// A leaf. Each throws std::invalid_argument as check() of its type: a mask that holds nothing, a length
+  /// that is not positive, an axis that is no unit vector.
   Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
   Expression(Window window) : Expression(Leaf(std::move(window))) {}
-  /// Throws std::invalid_argument as check(RegionMask).
-  Expression(RegionMask mask);
-  /// Throws std::invalid_argument as check(SliceMask).
-  Expression(SliceMask mask);
-  /// Throws std::invalid_argument where the normal is not of unit length.
-  Expression(const HalfSpace& half_space);
+  Expression(RegionMask mask) : Expression(Leaf(std::move(mask))) {}
+  Expression(SliceMask mask) : Expression(Leaf(std::move(mask))) {}
+  Expression(const HalfSpace& half_space) : Expression(Leaf(half_space)) {}
   Expression(const Sphere& sphere) : Expression(Leaf(sphere)) {}
   Expression(const Box& box) : Expression(Leaf(box)) {}
+  Expression(const Ellipsoid& ellipsoid) : Expression(Leaf(ellipsoid)) {}
+  Expression(const OrientedBox& box) : Expression(Leaf(box)) {}
+  Expression(const Cylinder& cylinder) : Expression(Leaf(cylinder)) {}
+  Expression(const Torus& torus) : Expression(Leaf(torus)) {}
 
   friend Expression operator&(const Expression& a, const Expression& b) { return {Kind::And, a, b}; }
   friend Expression operator|(const Expression& a, const Expression& b) { return {Kind::Or, a, b}; }

@@ -41,8 +41,9 @@ MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
   return range;
 }
 
-// The samples that values within an image may depend on.
-VoxelBox support(const ImageBox& box, Interpolation interpolation) {
+// The samples that values within the image of a cube may depend on.
+VoxelBox support(const glm::dmat4& source_from_target, const Cube& cube, Interpolation interpolation) {
+  const ImageBox box = image_of(source_from_target, cube);
   const Margin around = margin(interpolation);
   return {glm::ivec3(glm::floor(box.low)) - around.before, glm::ivec3(glm::floor(box.high)) + around.after};
 }
@@ -166,22 +167,22 @@ void WindowOperand::words(const WantedLeaves& leaves) const {
   }
 }
 
-Cover SampledWindowOperand::cover(const TargetBlock& block) const {
-  // Within a block of height 2, words() looks at the leaves themselves.
-  if (block.child_side == 4) return {0, all_children};
-  const Imager image(source_from_target_, block.child_side);
-  return cover_of_children(block, [&](const glm::dvec3& centre) {
-    const MinMax range = range_within(window_->grey, support(image(centre), interpolation_));
-    return status_of_range(value_range(range, interpolation_), window_->low, window_->high);
-  });
+Meets SampledWindowOperand::meets(const Cube& cube) const {
+  const MinMax range = range_within(window_->grey, support(source_from_target_, cube, interpolation_));
+  return Meets::of(status_of_range(value_range(range, interpolation_), window_->low, window_->high));
+}
+
+bool SampledWindowOperand::contains(const glm::dvec3& p_voxel) const {
+  const double value =
+      interpolate(window_->grey, glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0)), interpolation_);
+  return value >= window_->low && value <= window_->high;
 }
 
 void SampledWindowOperand::words(const WantedLeaves& leaves) const {
   const GreyOctree& grey = window_->grey;
-  const Imager image(source_from_target_, 4);
   NearSamples near;
   for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {
-    const VoxelBox box = support(image(glm::dvec3(origin) + 1.5), interpolation_);
+    const VoxelBox box = support(source_from_target_, {glm::dvec3(origin) + 1.5, 1.5}, interpolation_);
     const glm::ivec3 first = box.low >> 2;
     const glm::ivec3 last = box.high >> 2;
     const bool is_near = glm::all(glm::lessThan(last - first, glm::ivec3(NearSamples::leaves)));

@@ -41,9 +41,8 @@ void check(const RegionMask& mask) {
 
 bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm) {
   bool inside = false;
-  for (const std::vector<glm::dvec2>& polygon : polygons_mm)
-    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
-      inside ^= crosses_ray_from(polygon[last], polygon[i], p_mm);
+  for_each_edge(polygons_mm,
+                [&](const glm::dvec2& a, const glm::dvec2& b) { inside ^= crosses_ray_from(a, b, p_mm); });
   return inside;
 }
 

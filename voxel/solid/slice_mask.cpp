@@ -48,9 +48,9 @@ void check(const SliceMask& mask) {
 double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) const {
   const std::vector<std::vector<glm::dvec2>>& polygons = mask_->slices[slice].polygons_mm;
   double square = outside_mm;
-  for (const std::vector<glm::dvec2>& polygon : polygons)
-    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
-      square = std::min(square, square_to_segment(p_mm, polygon[last], polygon[i]));
+  for_each_edge(polygons, [&](const glm::dvec2& a, const glm::dvec2& b) {
+    square = std::min(square, square_to_segment(p_mm, a, b));
+  });
   const double distance = std::sqrt(square);
   return contains(polygons, p_mm) ? -distance : distance;
 }
