@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <tbb/parallel_for.h>
 #include <vector>
 
@@ -13,17 +14,17 @@
 // number). At a block:
 //   1 every operand says which of the 64 children are Full, and which are not Empty;
 //   2 the expression is run over these covers in three-valued logic, 64 children at a time: most are decided;
-//   3 of an undecided child, operands that are Full or Empty there drop out of the expression. Where one
-//   octree
-//     alone is left, its node is the answer and is shared;
+//   3 of an undecided child, operands that are Full or Empty there drop out of the expression. If one octree
+//   alone is
+//     left, its node is the answer and is shared;
 //   4 otherwise the walk goes into the child, or, at the leaves, runs the expression over words of 64 voxels.
-// Children are joined in ascending order whatever thread made them, so the result does not depend on threads.
+// Children are joined in ascending order, so the result does not depend on threads.
 
 namespace octotomy::voxel {
 namespace {
 
 // Blocks of this height and up, 256 voxels a side, are shared out to threads child by child: a child of 64
-// voxels a side is some ten to a hundred microseconds of work where a boundary passes, far above the cost of
+// voxels a side is some ten to a hundred microseconds of work if a boundary passes it, far above the cost of
 // a task.
 constexpr int parallel_height = 4;
 
@@ -83,9 +84,7 @@ class Combiner {
     for (std::size_t i = 0; i < operands_.size(); ++i)
       if (const auto* aligned = std::get_if<AlignedOctreeOperand>(&operands_[i])) {
         const BlockRef root = aligned->octree->root();
-        if (root.is_empty() || root.is_full())
-          operations[i].status = root.is_full() ? Status::Full : Status::Empty;
-        operations[i].node = root.node();
+        operations[i] = {root.status(), root.node()};
       }
     return evaluate(root_height, glm::ivec3(0), operations.data(), universe_children_);
   }
@@ -94,12 +93,14 @@ class Combiner {
   // The block of the result at `origin`; only the children of `allowed` are looked at, the others are Empty.
   Block evaluate(int height, const glm::ivec3& origin, const Operation* operations,
                  std::uint64_t allowed) const {
+    assert(height >= 2);
     Scratch scratch(*this, height);
     const TargetBlock block{origin, 1 << (2 * height - 2), rule_ ? rule_->margin : TargetBlock::centres};
     for (std::size_t i = 0; i < operands_.size(); ++i) scratch.covers[i] = cover_of(i, operations[i], block);
     Cover result =
         postfix_.run<Cover>([&](std::uint32_t i) { return scratch.covers[i]; }, scratch.cover_stack.data());
     result = result & Cover{allowed, allowed};
+    assert((result.full & ~result.some) == 0);
     return height == 2 ? evaluate_leaves(origin, operations, scratch, result)
                        : evaluate_children(height, origin, operations, scratch, result);
   }
@@ -148,6 +149,7 @@ class Combiner {
   // Words of an operand for the wanted leaves of a block.
   void fetch_words(std::size_t i, const Operation& operation, const glm::ivec3& origin, std::uint64_t wanted,
                    Scratch& scratch) const {
+    assert((scratch.covers[i].full & ~scratch.covers[i].some) == 0);
     const Cover& cover = scratch.covers[i];
     std::array<std::uint64_t, 64>& words = scratch.words[i];
     const std::uint64_t open = wanted & cover.undecided();

@@ -2,6 +2,7 @@
 #include "voxel/solid/digitise.h"
 
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 #include <tbb/concurrent_unordered_map.h>
@@ -30,6 +31,7 @@ Cube cube_at(const glm::ivec3& first, int side) {
 }
 
 Leaf leaf_at(const TargetExpression& solid, const glm::ivec3& origin) {
+  assert(glm::all(glm::equal(origin & 3, glm::ivec3(0))));
   Leaf leaf;
   for (int octant = 0; octant < 8; ++octant) {
     const glm::ivec3 corner = 2 * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);

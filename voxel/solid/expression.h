@@ -26,8 +26,8 @@ struct Window {
   double high = 32767.0;
 };
 
-/// A Boolean expression of objects under rigid motions: pure data, cheap to copy. Nothing is evaluated until
-/// combine() or a renderer walks it.
+/// A Boolean expression of objects under rigid motions: pure data, cheap to copy. combine(), digitise() and
+/// renderers evaluate it.
 class Expression {
  public:
   enum class Kind { Leaf, And, Or, Minus, Xor, Not, Moved };
@@ -64,11 +64,11 @@ class Expression {
   friend Expression operator-(const Expression& a, const Expression& b) { return {Kind::Minus, a, b}; }
   friend Expression operator^(const Expression& a, const Expression& b) { return {Kind::Xor, a, b}; }
   friend Expression operator~(const Expression& a);
-  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument where it is not
+  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument if it is not
   /// rigid.
   friend Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
   /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument
-  /// where it is none.
+  /// if it is none.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
 
   const Term& term() const { return *term_; }
@@ -91,19 +91,18 @@ struct Motion {
   glm::dvec3 axis{0, 0, 1};
   glm::dvec3 about_mm{0.0};
 };
-/// Throws std::invalid_argument where a number is not finite or the axis has no length.
+/// Throws std::invalid_argument if a number is not finite or the axis has no length.
 glm::dmat4 moved_from_still(const Motion& motion);
 
-/// What names in an expression's text stand for. Each throws std::invalid_argument for a name it does not
-/// know.
+/// The meanings of names in an expression's text. Each throws std::invalid_argument for an unknown name.
 struct Names {
   std::function<Expression(std::string_view name)> object;
   std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then refused
 };
 
 /// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds
-/// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the position
-/// of what it did not expect and what it did; a name's own refusal comes through with the name's position.
+/// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the
+/// position, what it found and what it expected. A name's own refusal comes through with the name's position.
 Expression parse_expression(std::string_view text, const Names& names);
 
 /// What the leaves and motions of an expression are called in its text: names as parse_expression() takes

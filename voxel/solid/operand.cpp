@@ -23,6 +23,7 @@ double rounding_slack(const Linear& f) {
 }  // namespace
 
 double reach(const Linear& f, double half) {
+  assert(half >= 0.0);
   return half * (std::abs(f.gradient.x) + std::abs(f.gradient.y) + std::abs(f.gradient.z)) +
          rounding_slack(f);
 }
@@ -90,6 +91,7 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
 }
 
 Cover cover(const Operand& operand, const TargetBlock& block) {
+  assert(block.child_side >= 4 && block.margin > 0.0);
   return std::visit(
       [&](const auto& o) -> Cover {
         if constexpr (requires { o.words_are_quick; })
@@ -103,6 +105,7 @@ Cover cover(const Operand& operand, const TargetBlock& block) {
 }
 
 void words(const Operand& operand, const WantedLeaves& leaves) {
+  assert(leaves.words != nullptr && glm::all(glm::equal(leaves.origin & 15, glm::ivec3(0))));
   std::visit(
       [&](const auto& o) {
         if constexpr (requires { o.words(leaves); })

@@ -22,8 +22,8 @@ namespace octotomy::voxel {
 /// A block of the target: 64 children of `child_side` voxels a side from `origin` on. `margin` is how far a
 /// child's cube reaches beyond the centres of its voxels.
 struct TargetBlock {
-  /// Holds the centres, whatever rounding does to them: coordinates round to 2^-16 of a voxel up to 2^36
-  /// voxels away.
+  /// Holds the centres with what rounding adds to them: coordinates up to 2^36 voxels away round to 2^-16 of
+  /// a voxel.
   static constexpr double centres = 0x1p-16;
   static constexpr double cuboids = 0.5;  ///< holds whole voxels
 
@@ -135,7 +135,7 @@ class SampledOctreeOperand {
   glm::ivec3 lowest_{0}, highest_{0};
 };
 
-/// An octree on another lattice or under a motion: a voxel is inside where most of a grid of 5 x 5 x 5 points
+/// An octree on another lattice or under a motion: a voxel is inside if most of a grid of 5 x 5 x 5 points
 /// in it is (D4).
 class HalfOctreeOperand {
  public:

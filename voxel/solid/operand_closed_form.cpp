@@ -154,6 +154,7 @@ SweptCube swept_cube(const LocalFrame& local, const Range& range, const Cube& cu
 
 // Least distance of the origin from a convex polygon; zero within.
 double nearest(const Polygon& hull) {
+  assert(hull.count >= 3);
   bool within = true;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0, last = hull.count - 1; i < hull.count; last = i++) {
@@ -195,6 +196,7 @@ bool strictly_within(const glm::dvec2& p, const Polygon& hull) {
 }
 
 glm::dvec2 middle(const Polygon& hull) {
+  assert(hull.count > 0);
   glm::dvec2 sum(0.0);
   for (int i = 0; i < hull.count; ++i) sum += hull[i];
   return sum / static_cast<double>(hull.count);
@@ -415,6 +417,7 @@ CylinderOperand::CylinderOperand(const Cylinder& cylinder, const glm::dmat4& sti
       radius_mm_(cylinder.radius_mm) {}
 
 Meets CylinderOperand::meets(const Cube& cube) const {
+  assert(cube.half > 0.0);
   const SweptCube swept = swept_cube(local_, {0.0, length_mm_}, cube);
   if (swept.outline.count < 3 || nearest(swept.outline) >= radius_mm_) return Meets::exactly(false, true);
   const bool out = swept.low < 0.0 || swept.high > length_mm_ || farthest(swept.outline) > radius_mm_;
@@ -499,6 +502,7 @@ TorusOperand::TorusOperand(const Torus& torus, const glm::dmat4& still_from_targ
 }
 
 Meets TorusOperand::meets(const Cube& cube) const {
+  assert(cube.half > 0.0);
   const SweptCube swept = swept_cube(local_, {}, cube);
   if (swept.outline.count < 3) return Meets::exactly(false, true);
   const double from = nearest(swept.outline) - ring_radius_mm_;

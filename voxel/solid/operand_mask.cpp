@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -80,6 +81,7 @@ OCTOTOMY_VECTOR_CLONES void count_crossings(const Edge& edge, const LeafValues& 
                                             LeafValues& counts) {
   const auto [a, b] = edge;
   const glm::dvec2 along = b - a;
+  assert(along.y != 0.0);
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const double above_a = a.y > v[i] ? 1.0 : 0.0;
     const double above_b = b.y > v[i] ? 1.0 : 0.0;
@@ -106,14 +108,16 @@ MaskOperand::MaskOperand(const RegionMask& mask, const glm::dmat4& still_from_ta
 Cover MaskOperand::cover(const TargetBlock& block) const {
   Cover cover{all_children, all_children};
   for (const Projected& projected : regions_) {
-    const auto patch = [&](const Cube& cube) { return patch_of(projected.u, projected.v, cube); };
-    const Patch whole = patch(block.whole());
+    const Patch whole = patch_of(projected.u, projected.v, block.whole());
     const std::vector<Edge> edges = edges_about(*projected.region, whole);
     const Status status = status_of(edges, whole);
     if (status == Status::Empty) return {};
     if (status == Status::Full) continue;
-    cover = cover & cover_of_children(
-                        block, [&](const Cube& child) { return Meets::of(status_of(edges, patch(child))); });
+    const glm::dvec2 half = patch_of(projected.u, projected.v, block.child(0)).half;
+    cover =
+        cover & cover_of_children(block, [&](const Cube& child) {
+          return Meets::of(status_of(edges, {{projected.u(child.centre), projected.v(child.centre)}, half}));
+        });
     if (cover.some == 0) break;
   }
   return cover;
@@ -123,15 +127,17 @@ void MaskOperand::words(const WantedLeaves& leaves) const {
   for_each_wanted(leaves, [&](const glm::ivec3&) { return all_children; });
   const TargetBlock block{leaves.origin, 4};
   for (const Projected& projected : regions_) {
-    const auto patch = [&](const Cube& cube) { return patch_of(projected.u, projected.v, cube); };
-    const std::vector<Edge> edges = edges_about(*projected.region, patch(block.whole()));
+    const std::vector<Edge> edges =
+        edges_about(*projected.region, patch_of(projected.u, projected.v, block.whole()));
+    const glm::dvec2 half = patch_of(projected.u, projected.v, block.child(0)).half;
     for (std::uint64_t rest = leaves.wanted; rest != 0; rest &= rest - 1) {
       const int child = std::countr_zero(rest);
       std::uint64_t& word = leaves.words[child];
       if (word == 0) continue;
-      const Patch about = patch(block.child(child));
+      const glm::dvec3 centre = block.child(child).centre;
+      const Patch patch{{projected.u(centre), projected.v(centre)}, half};
       // Only a leaf that an edge passes is asked voxel by voxel.
-      const Status status = status_of(edges, about);
+      const Status status = status_of(edges, patch);
       if (status == Status::Empty) word = 0;
       if (status != Status::Partial) continue;
       const glm::ivec3 origin = leaves.origin + 4 * child_place(child);
@@ -139,7 +145,7 @@ void MaskOperand::words(const WantedLeaves& leaves) const {
       values_in_leaf(projected.u, origin, u);
       values_in_leaf(projected.v, origin, v);
       for (const Edge& edge : edges)
-        if (within_reach(edge, about)) count_crossings(edge, u, v, crossings);
+        if (within_reach(edge, patch)) count_crossings(edge, u, v, crossings);
       word &= odd(crossings);
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "voxel/solid/operand.h"
@@ -21,6 +22,7 @@ constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
 
 // The leaf that begins `shift` voxels into `low` along an axis and ends in the leaf after it.
 std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int shift) {
+  assert(axis >= 0 && axis < 3 && shift >= 0 && shift < 4);
   if (shift == 0) return low;
   const std::uint64_t stay = staying[static_cast<std::size_t>(axis)][static_cast<std::size_t>(shift)];
   const int stride = 1 << (2 * axis);
@@ -30,6 +32,7 @@ std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int 
 }  // namespace
 
 Meets ShiftedOctreeOperand::meets(const Cube& cube) const {
+  assert(cube.half > 0.0);
   const glm::ivec3 low = nearest_voxel(cube.centre - cube.half);
   const glm::ivec3 high(glm::ceil(cube.centre + cube.half - 0.5));
   const Meets meets = Meets::of(status_within(*octree_, {low + source_offset_, high + source_offset_}));
@@ -67,7 +70,7 @@ namespace {
 // sign.
 constexpr int fraction_bits = 24;
 
-// A base and an offset, each rounded to half a unit, stay within this of where they are.
+// How far a base and an offset, each rounded to half a unit, move a position.
 const double fixed_slack = std::ldexp(1.0, 1 - fraction_bits);
 
 std::int32_t fixed(double voxels) {
@@ -143,6 +146,7 @@ void SampledOctreeOperand::words(const WantedLeaves& leaves) const {
 }
 
 std::uint64_t SampledOctreeOperand::leaf(const LeafWords& region, const glm::ivec3& base) const {
+  assert(glm::all(glm::greaterThanEqual(base + lowest_, glm::ivec3(0))));
   const glm::ivec3 first = (base + lowest_) >> (fraction_bits + 2);
   const glm::ivec3 last = (base + highest_) >> (fraction_bits + 2);
   std::uint64_t any = 0;

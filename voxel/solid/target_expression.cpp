@@ -28,6 +28,7 @@ Share share_of(const Operand& operand, const Cube& cube) {
   const Meets own = meets(operand, cube);
   if (!own.in || !own.out) return {own.in ? 1.0 : 0.0};
   const Sheets within = sheets(operand, cube);
+  assert(within.off_voxels >= 0.0);
   return {share_below(within.first, cube.half), std::max(within.count, 1), within.off_voxels};
 }
 
@@ -57,6 +58,7 @@ Meets TargetExpression::meets(const Cube& cube) const {
 }
 
 Meets TargetExpression::refined(const Cube& cube, int halvings) const {
+  assert(halvings >= 0);
   const Meets all = meets(cube);
   if (all.decided()) return all;
   if (halvings == 0) return Meets::exactly(all.in, all.out);
