@@ -14,9 +14,8 @@
 // number). At a block:
 //   1 every operand says which of the 64 children are Full, and which are not Empty;
 //   2 the expression is run over these covers in three-valued logic, 64 children at a time: most are decided;
-//   3 of an undecided child, operands that are Full or Empty there drop out of the expression. If one octree
-//   alone is
-//     left, its node is the answer and is shared;
+//   3 operands that are Full or Empty in an undecided child drop out of the expression there. If one octree
+//     alone is left, its node is the answer and is shared;
 //   4 otherwise the walk goes into the child, or, at the leaves, runs the expression over words of 64 voxels.
 // Children are joined in ascending order, so the result does not depend on threads.
 

@@ -10,19 +10,16 @@
 
 // Closed forms of the operands. A cube of index space is a parallelepiped in a primitive's own frame.
 //   Ball: the farthest point is a corner (distance is convex). The nearest is clamped edge by edge if the
-//   edges are at
-//     right angles, otherwise it is the least of the minima of the cube's 27 faces.
+//     edges are at right angles, otherwise it is the least of the minima of the cube's 27 faces.
 //   Half-space: the value at the centre and its reach over the cube.
 //   Box: outside parts at a corner (convexity); inside parts unless one of 15 axes separates (Gottschalk,
-//   Lin, Manocha
-//     1996), three of them if the edges run along the box's.
+//     Lin, Manocha 1996), three of them if the edges run along the box's.
 //   Cylinder, region of a mask: the cube is clipped to the range along the axis and projected along it to a
-//   convex
-//     polygon. The polygon meets the cross-section exactly if the cube meets the solid, as both are swept.
+//     convex polygon. The polygon meets the cross-section exactly if the cube meets the solid: both are
+//     swept.
 //   Torus: the cube's ranges of distance from the axis and of place along it make a rectangle that has to
-//   meet a disc. If
-//     the lattice stands upright to the axis the rectangle is the cube's image. Otherwise it is a bound, and
-//     the cube's corners and centre are witnesses.
+//     meet a disc. If the lattice stands upright to the axis the rectangle is the cube's image. Otherwise it
+//     is a bound, and the cube's corners and centre are witnesses.
 
 namespace octotomy::voxel {
 namespace {
@@ -202,10 +199,10 @@ glm::dvec2 middle(const Polygon& hull) {
   return sum / static_cast<double>(hull.count);
 }
 
-// Adds the ends of a swept solid that cut the cube, as planes of index space.
-void add_ends(const LocalFrame& local, const Range& range, const Cube& cube, Sheets& sheets) {
-  const glm::dvec3 gradient(local.map[0].z, local.map[1].z, local.map[2].z);
-  const double along = local(cube.centre).z;
+// Adds the two ends of a solid along an axis of its frame that cut the cube, as planes of index space.
+void add_ends(const LocalFrame& local, int axis, const Range& range, const Cube& cube, Sheets& sheets) {
+  const glm::dvec3 gradient(local.map[0][axis], local.map[1][axis], local.map[2][axis]);
+  const double along = local(cube.centre)[axis];
   const double reach = cube.half * (std::abs(gradient.x) + std::abs(gradient.y) + std::abs(gradient.z));
   for (const int side : {-1, 1}) {
     const double value = side < 0 ? range.low_mm - along : along - range.high_mm;
@@ -399,15 +396,8 @@ Meets BoxOperand::meets(const Cube& cube) const {
 
 Sheets BoxOperand::sheets(const Cube& cube) const {
   Sheets sheets;
-  const glm::dvec3 c = local_(cube.centre);
-  for (int axis = 0; axis < 3; ++axis) {
-    const glm::dvec3 gradient(local_.map[0][axis], local_.map[1][axis], local_.map[2][axis]);
-    for (const int side : {-1, 1}) {
-      const double value = side * c[axis] - half_mm_[axis];
-      if (std::abs(value) >= cube.half * reach_mm_[axis]) continue;
-      if (sheets.count++ == 0) sheets.first = {static_cast<double>(side) * gradient, value};
-    }
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    add_ends(local_, axis, {-half_mm_[axis], half_mm_[axis]}, cube, sheets);
   return sheets;
 }
 
@@ -434,7 +424,7 @@ Sheets CylinderOperand::sheets(const Cube& cube) const {
               {glm::transpose(local_.map) * way, across - radius_mm_},
               off_tangent(local_.map, cube, radius_mm_)};
   }
-  add_ends(local_, {0.0, length_mm_}, cube, sheets);
+  add_ends(local_, 2, {0.0, length_mm_}, cube, sheets);
   return sheets;
 }
 
