@@ -56,12 +56,12 @@
 #include "convert/voxel/voxelise.h"
 #include "verify/boundary_model.h"
 #include "verify/places.h"
-#include "verify/voxel_boundary.h"
 #include "voxel/filter/components.h"
 #include "voxel/measure/cell_counts.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/space/rounded.h"
+#include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::verify {
 namespace {
@@ -137,7 +137,7 @@ struct Boundary {
 Boundary boundary_of(const voxel::Octree& octree) {
   const voxel::Lattice lattice = octree.universe().lattice();
   Boundary boundary;
-  for (const VoxelFace& face : voxel_boundary(octree)) {
+  for (const voxel::VoxelFace& face : voxel::voxel_boundary(octree)) {
     const int u = (face.axis + 1) % 3, v = (face.axis + 2) % 3;
     glm::dvec3 centre(face.voxel);
     centre[face.axis] += 0.5 * face.side;

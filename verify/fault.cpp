@@ -240,9 +240,9 @@ class Trials {
   std::vector<FaultTrial> trials_;
 };
 
-/// A scan of a shape: each sample the share of its voxel that is inside, from -1000 to 1000.
-voxel::Scene scan_of(const voxel::Universe& universe, const voxel::Shape& shape) {
-  const voxel::PartialOctree partial = voxel::digitise_partial(universe, shape);
+/// A scan of a solid: each sample the share of its voxel that is inside, from -1000 to 1000.
+voxel::Scene scan_of(const voxel::Universe& universe, const voxel::Expression& solid) {
+  const voxel::PartialOctree partial = voxel::digitise_partial(universe, solid);
   const int side = universe.side();
   const auto at = [&](const glm::ivec3& v) {
     return static_cast<std::size_t>(v.x) +

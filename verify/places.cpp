@@ -26,9 +26,9 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
-#include "verify/voxel_boundary.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/octree_node.h"
+#include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::verify {
 namespace {
@@ -89,13 +89,13 @@ bool before(const glm::ivec3& a, const glm::ivec3& b) {
 /// The voxels at which answers can be wrong and are compared: where the kernels differ, and beside the
 /// boundary.
 std::vector<glm::ivec3> compared_voxels(const voxel::Octree& octree, const voxel::Octree& digitised,
-                                        const std::vector<VoxelFace>& boundary) {
+                                        const std::vector<voxel::VoxelFace>& boundary) {
   const voxel::Octree differing =
       voxel::combine(octree.universe(), voxel::Expression(octree) ^ voxel::Expression(digitised));
   std::vector<glm::ivec3> voxels;
   collect(differing.root(), differing.root_height(), glm::ivec3(0), voxels);
   const int side = octree.universe().side();
-  for (const VoxelFace& face : boundary) {
+  for (const voxel::VoxelFace& face : boundary) {
     voxels.push_back(face.voxel);
     glm::ivec3 beyond = face.voxel;
     beyond[face.axis] += face.side;
@@ -288,13 +288,13 @@ constexpr std::size_t tried_places = 1024;
 /// Triangles by which a shift is tried.
 constexpr std::size_t tried_triangles = 4096;
 
-double place_limit_mm3(const voxel::Octree& octree, const std::vector<VoxelFace>& boundary,
+double place_limit_mm3(const voxel::Octree& octree, const std::vector<voxel::VoxelFace>& boundary,
                        const Witness& witness) {
   const std::vector<glm::ivec3> steps = steps_outward();
   std::mt19937_64 random(1);
   std::vector<glm::ivec3> from;
   for (std::size_t i = 0; i < tried_places; ++i) {
-    const VoxelFace& face = boundary[random() % boundary.size()];
+    const voxel::VoxelFace& face = boundary[random() % boundary.size()];
     from.push_back(face.voxel);
     // Every other error adds voxels.
     if (i % 2 == 1) from.back()[face.axis] += face.side;
@@ -332,7 +332,7 @@ Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised,
                     const Witness& witness, const voxel::Progress& progress) {
   Places places;
   const brep::Triangles mesh = brep::triangles_of(solid);
-  const std::vector<VoxelFace> boundary = voxel_boundary(octree);
+  const std::vector<voxel::VoxelFace> boundary = voxel::voxel_boundary(octree);
   const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
   progress.at(0.2);
   const voxel::Lattice lattice = octree.universe().lattice();

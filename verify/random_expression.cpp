@@ -10,7 +10,6 @@
 #include "verify/head_phantom.h"
 #include "verify/implicit_solid.h"
 #include "voxel/solid/combine.h"
-#include "voxel/solid/digitise.h"
 #include "voxel/tree/build.h"
 
 namespace octotomy::verify {
@@ -98,15 +97,13 @@ voxel::Octree solid(Random& random, const voxel::Universe& universe, int side, i
   const glm::dvec3 centre = place(), size{length(), length(), length()};
   switch (kind) {
     case 0:
-      return voxel::digitise(universe, voxel::Ellipsoid{centre, size, axes}, voxel::Digitisation::Centre);
+      return voxel::combine(universe, voxel::Ellipsoid{centre, size, axes});
     case 1:
-      return voxel::digitise(universe, voxel::OrientedBox{centre, size, axes}, voxel::Digitisation::Centre);
+      return voxel::combine(universe, voxel::OrientedBox{centre, size, axes});
     case 2:
-      return voxel::digitise(universe, voxel::Torus{centre, axes[2], size.x, 0.4 * size.x},
-                             voxel::Digitisation::Centre);
+      return voxel::combine(universe, voxel::Torus{centre, axes[2], size.x, 0.4 * size.x});
     default:
-      return voxel::digitise(universe, voxel::Cylinder{centre, centre + axes * size, 0.5 * size.y},
-                             voxel::Digitisation::Centre);
+      return voxel::combine(universe, voxel::Cylinder{centre, centre + axes * size, 0.5 * size.y});
   }
 }
 

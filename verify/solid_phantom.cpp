@@ -8,7 +8,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "voxel/solid/clip_partial.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
@@ -74,31 +73,20 @@ double ellipsoid_mm2(glm::dvec3 radii_mm) {
 using Builder = SolidPhantom (*)(const Place&);
 
 SolidPhantom sphere(const Place& place) {
-  return {place.universe,
-          voxel::Sphere{place.centre_mm, place.radius_mm},
-          std::nullopt,
-          ball_mm3(place.radius_mm),
-          sphere_mm2(place.radius_mm),
-          place.centre_mm};
+  return {place.universe, voxel::Sphere{place.centre_mm, place.radius_mm}, ball_mm3(place.radius_mm),
+          sphere_mm2(place.radius_mm), place.centre_mm};
 }
 
 SolidPhantom ellipsoid(const Place& place) {
   const glm::dvec3 radii_mm = place.radius_mm * glm::dvec3(1.0, 0.75, 0.5);
-  return {place.universe,
-          voxel::Ellipsoid{place.centre_mm, radii_mm, place.lps_from_axes},
-          std::nullopt,
-          4.0 / 3.0 * pi * radii_mm.x * radii_mm.y * radii_mm.z,
-          ellipsoid_mm2(radii_mm),
-          place.centre_mm};
+  return {place.universe, voxel::Ellipsoid{place.centre_mm, radii_mm, place.lps_from_axes},
+          4.0 / 3.0 * pi * radii_mm.x * radii_mm.y * radii_mm.z, ellipsoid_mm2(radii_mm), place.centre_mm};
 }
 
 SolidPhantom cuboid(const Place& place, const glm::dvec3& half_mm) {
-  return {place.universe,
-          voxel::OrientedBox{place.centre_mm, half_mm, place.lps_from_axes},
-          std::nullopt,
+  return {place.universe, voxel::OrientedBox{place.centre_mm, half_mm, place.lps_from_axes},
           8.0 * half_mm.x * half_mm.y * half_mm.z,
-          8.0 * (half_mm.x * half_mm.y + half_mm.y * half_mm.z + half_mm.z * half_mm.x),
-          place.centre_mm};
+          8.0 * (half_mm.x * half_mm.y + half_mm.y * half_mm.z + half_mm.z * half_mm.x), place.centre_mm};
 }
 
 SolidPhantom box(const Place& place) {
@@ -114,45 +102,33 @@ SolidPhantom plate(const Place& place) {
 SolidPhantom cylinder(const Place& place) {
   const double r = 0.5 * place.radius_mm;
   const double height = 2.0 * place.radius_mm;
-  return {place.universe,
-          voxel::Cylinder{place.at({0, 0, -0.5 * height}), place.at({0, 0, 0.5 * height}), r},
-          std::nullopt,
-          pi * r * r * height,
-          2.0 * pi * r * (r + height),
-          place.centre_mm};
+  return {place.universe, voxel::Cylinder{place.at({0, 0, -0.5 * height}), place.at({0, 0, 0.5 * height}), r},
+          pi * r * r * height, 2.0 * pi * r * (r + height), place.centre_mm};
 }
 
 SolidPhantom torus(const Place& place) {
   const double ring = place.radius_mm;
   const double tube = place.radius_mm / 3.0;
-  return {place.universe,
-          voxel::Torus{place.centre_mm, place.lps_from_axes[2], ring, tube},
-          std::nullopt,
-          2.0 * pi * pi * ring * tube * tube,
-          4.0 * pi * pi * ring * tube,
-          place.centre_mm};
+  return {place.universe, voxel::Torus{place.centre_mm, place.lps_from_axes[2], ring, tube},
+          2.0 * pi * pi * ring * tube * tube, 4.0 * pi * pi * ring * tube, place.centre_mm};
 }
 
 SolidPhantom shell(const Place& place) {
   const double inner = 0.75 * place.radius_mm;
-  return {
-      place.universe,
-      voxel::Shape(voxel::Sphere{place.centre_mm, place.radius_mm}) - voxel::Sphere{place.centre_mm, inner},
-      std::nullopt,
-      ball_mm3(place.radius_mm) - ball_mm3(inner),
-      sphere_mm2(place.radius_mm) + sphere_mm2(inner),
-      place.centre_mm};
+  return {place.universe,
+          voxel::Expression(voxel::Sphere{place.centre_mm, place.radius_mm}) -
+              voxel::Sphere{place.centre_mm, inner},
+          ball_mm3(place.radius_mm) - ball_mm3(inner), sphere_mm2(place.radius_mm) + sphere_mm2(inner),
+          place.centre_mm};
 }
 
 SolidPhantom lens(const Place& place) {
   const double r = place.radius_mm;
   const glm::dvec3 aside = place.lps_from_axes * glm::dvec3(0.5 * r, 0, 0);
   return {place.universe,
-          voxel::Shape(voxel::Sphere{place.centre_mm - aside, r}) & voxel::Sphere{place.centre_mm + aside, r},
-          std::nullopt,
-          2.0 * cap_mm3(r, 0.5 * r),
-          2.0 * cap_mm2(r, 0.5 * r),
-          place.centre_mm};
+          voxel::Expression(voxel::Sphere{place.centre_mm - aside, r}) &
+              voxel::Sphere{place.centre_mm + aside, r},
+          2.0 * cap_mm3(r, 0.5 * r), 2.0 * cap_mm2(r, 0.5 * r), place.centre_mm};
 }
 
 SolidPhantom cut_sphere(const Place& place) {
@@ -163,11 +139,9 @@ SolidPhantom cut_sphere(const Place& place) {
   // The cap's centroid stands 3 (2 r - h)^2 / (4 (3 r - h)) from the ball's centre.
   const double cap_centre = 0.75 * (2 * r - height) * (2 * r - height) / (3 * r - height);
   return {place.universe,
-          voxel::Shape(voxel::Sphere{place.centre_mm, r}) &
+          voxel::Expression(voxel::Sphere{place.centre_mm, r}) &
               voxel::HalfSpace{normal, glm::dot(normal, place.centre_mm) + r - height},
-          std::nullopt,
-          volume,
-          sphere_mm2(r) - cap_mm2(r, height) + pi * height * (2 * r - height),
+          volume, sphere_mm2(r) - cap_mm2(r, height) + pi * height * (2 * r - height),
           place.centre_mm - normal * (cap_centre * cap_mm3(r, height) / volume)};
 }
 
@@ -193,7 +167,7 @@ SolidPhantom chequered_sphere(const Place& place) {
   if (place.universe.side() < chequers)
     throw std::invalid_argument("a chequered sphere takes at least 8 voxels a side, for its 8 cells");
   SolidPhantom solid = sphere(place);
-  solid.within = chequerboard(place.universe);
+  solid.shape = solid.shape & chequerboard(place.universe);
   solid.volume_mm3 *= 0.5;
   solid.area_mm2 *= 0.5;
   const voxel::Box bounds = voxel::bounds(place.universe.lattice());
@@ -222,11 +196,8 @@ SolidPhantom figure_3_1(const Place& place) {
     in[static_cast<std::size_t>(one)] = true;
     sum += 0.5 * (cell.low_mm + cell.high_mm);
   }
-  SolidPhantom solid{place.universe,
-                     voxel::Shape(bounds),
-                     voxel::combine(place.universe, *cells),
-                     static_cast<double>(ones.size()) * cell_mm.x * cell_mm.y * cell_mm.z,
-                     0.0,
+  SolidPhantom solid{place.universe, voxel::combine(place.universe, *cells),
+                     static_cast<double>(ones.size()) * cell_mm.x * cell_mm.y * cell_mm.z, 0.0,
                      sum / static_cast<double>(ones.size())};
   for (int axis = 0; axis < 3; ++axis) {
     const int stride = 1 << (2 * axis);
@@ -317,17 +288,6 @@ SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& opt
   const Place place{radius_voxels * voxel_mm, options.centre_mm, options.lps_from_axes, universe};
   check_fit(*found, place);
   return found->build(place);
-}
-
-voxel::Octree digitise(const SolidPhantom& solid, voxel::Digitisation digitisation) {
-  voxel::Octree octree = voxel::digitise(solid.universe, solid.shape, digitisation);
-  if (!solid.within) return octree;
-  return voxel::combine(solid.universe, voxel::Expression(std::move(octree)) & *solid.within);
-}
-
-voxel::PartialOctree digitise_partial(const SolidPhantom& solid) {
-  voxel::PartialOctree partial = voxel::digitise_partial(solid.universe, solid.shape);
-  return solid.within ? voxel::within(partial, *solid.within) : partial;
 }
 
 }  // namespace octotomy::verify

@@ -5,13 +5,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "voxel/solid/digitise.h"
-#include "voxel/solid/shape.h"
-#include "voxel/tree/octree.h"
-#include "voxel/tree/partial_octree.h"
+#include "voxel/solid/expression.h"
 
 namespace octotomy::verify {
 
@@ -24,11 +21,10 @@ struct SolidPhantomOptions {
   glm::dmat3 lps_from_axes{1.0};  ///< a turn of the solid about its centre
 };
 
-/// A solid of known volume and area: a shape, or the part of it in certain whole voxels.
+/// A solid of known volume and area. An octree in it stands for whole voxels of the universe.
 struct SolidPhantom {
   voxel::Universe universe;
-  voxel::Shape shape;
-  std::optional<voxel::Octree> within;  ///< the solid is the shape in these voxels only
+  voxel::Expression shape;
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;
   glm::dvec3 centroid_mm{0.0};
@@ -48,7 +44,11 @@ const std::vector<SolidPhantomKind>& solid_phantom_kinds();
 SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& options = {});
 
 /// Its voxels by one of D1 to D4, or with the share of every boundary voxel.
-voxel::Octree digitise(const SolidPhantom& solid, voxel::Digitisation digitisation);
-voxel::PartialOctree digitise_partial(const SolidPhantom& solid);
+inline voxel::Octree digitise(const SolidPhantom& solid, voxel::Digitisation digitisation) {
+  return voxel::digitise(solid.universe, solid.shape, digitisation);
+}
+inline voxel::PartialOctree digitise_partial(const SolidPhantom& solid) {
+  return voxel::digitise_partial(solid.universe, solid.shape);
+}
 
 }  // namespace octotomy::verify

@@ -11,7 +11,7 @@
 
 #include "convert/surface/marching_cubes.h"
 #include "voxel/space/shared_progress.h"
-#include "voxel/tree/slice_bits.h"
+#include "voxel/tree/corner_patterns.h"
 
 // The surface is dual to marching cubes': eight voxels about a corner are a cube of samples, the faces that
 // meet there its crossed edges, the sheets its loops. The passes:
@@ -58,46 +58,6 @@ struct CornerPlane {
   std::vector<std::uint8_t> pattern;
   std::vector<std::uint32_t> first;
 };
-
-/// A row of a slice as bits by corner: `behind` is the voxel before corner x of the word, `ahead` the one
-/// after it. Rows outside the universe are empty; the last corner of a row has a word of its own.
-struct RowBits {
-  const std::uint64_t* words = nullptr;
-  int count = 0;
-  std::uint64_t ahead(int word) const { return words != nullptr && word < count ? words[word] : 0; }
-  std::uint64_t behind(int word) const { return (ahead(word) << 1) | (word > 0 ? ahead(word - 1) >> 63 : 0); }
-};
-
-RowBits row_of(const voxel::SliceBits* slice, int y) {
-  if (slice == nullptr || y < 0 || y >= slice->side) return {};
-  return {slice->row(y), slice->words_per_row};
-}
-
-/// Calls f(x, y, pattern) for the corners between two slices that have faces, y by y.
-template <typename F>
-void for_each_corner(const voxel::SliceBits* below, const voxel::SliceBits* above, int side, const F& f) {
-  for (int y = 0; y <= side; ++y) {
-    const std::array<RowBits, 4> rows = {row_of(below, y - 1), row_of(below, y), row_of(above, y - 1),
-                                         row_of(above, y)};
-    for (int word = 0; word <= side / 64; ++word) {
-      std::array<std::uint64_t, 8> bits{};
-      std::uint64_t any = 0;
-      std::uint64_t all = ~std::uint64_t{0};
-      for (std::size_t i = 0; i < 4; ++i) {
-        bits[2 * i] = rows[i].behind(word);
-        bits[2 * i + 1] = rows[i].ahead(word);
-        any |= bits[2 * i] | bits[2 * i + 1];
-        all &= bits[2 * i] & bits[2 * i + 1];
-      }
-      for (std::uint64_t left = any & ~all; left != 0; left &= left - 1) {
-        const int bit = std::countr_zero(left);
-        unsigned pattern = 0;
-        for (std::size_t i = 0; i < 8; ++i) pattern |= static_cast<unsigned>((bits[i] >> bit) & 1) << i;
-        f(64 * word + bit, y, static_cast<std::uint8_t>(pattern));
-      }
-    }
-  }
-}
 
 /// A face with the four corners that surround it.
 struct Quad {
@@ -161,8 +121,8 @@ class Cuberille {
       const voxel::SliceBits* below = read(z - 1, low);
       const voxel::SliceBits* above = read(z, high);
       std::uint64_t here = 0;
-      for_each_corner(below, above, side_,
-                      [&](int, int, std::uint8_t pattern) { here += sheets_[pattern].count; });
+      voxel::for_each_corner(below, above, side_,
+                             [&](int, int, std::uint8_t pattern) { here += sheets_[pattern].count; });
       points[static_cast<std::size_t>(z)] = here;
     });
     std::uint64_t total = 0;
@@ -184,7 +144,7 @@ class Cuberille {
   void number_plane(const voxel::SliceBits* below, const voxel::SliceBits* above, int z,
                     CornerPlane& plane) const {
     std::uint32_t next = first_of_plane_[static_cast<std::size_t>(z)];
-    for_each_corner(below, above, side_, [&](int x, int y, std::uint8_t pattern) {
+    voxel::for_each_corner(below, above, side_, [&](int x, int y, std::uint8_t pattern) {
       plane.pattern[plane.index(x, y)] = pattern;
       plane.first[plane.index(x, y)] = next;
       next += sheets_[pattern].count;
@@ -201,7 +161,7 @@ class Cuberille {
     const voxel::SliceBits* above = read(z + 1, slice_above);
     CornerPlane low(side_);
     number_plane(below, here, z, low);
-    for_each_corner(below, here, side_, [&](int x, int y, std::uint8_t pattern) {
+    voxel::for_each_corner(below, here, side_, [&](int x, int y, std::uint8_t pattern) {
       for (std::uint32_t i = 0; i < sheets_[pattern].count; ++i)
         surface_.points_half[low.first[low.index(x, y)] + i] = 2 * glm::ivec3(x, y, z);
     });
@@ -211,9 +171,9 @@ class Cuberille {
     Layer& layer = layers_[static_cast<std::size_t>(z)];
     const auto planes = std::array{&low, &high};
     for (int y = 0; y <= side_; ++y) {
-      const RowBits row = row_of(here, y);
-      const RowBits before = row_of(here, y - 1);
-      const RowBits under = row_of(below, y);
+      const voxel::RowBits row = voxel::row_of(here, y);
+      const voxel::RowBits before = voxel::row_of(here, y - 1);
+      const voxel::RowBits under = voxel::row_of(below, y);
       for (int word = 0; word <= side_ / 64; ++word) {
         for_each_bit(row.behind(word) ^ row.ahead(word), row.ahead(word), [&](int bit, bool up) {
           add_face(planes, {64 * word + bit, y, z}, 0, up, layer);

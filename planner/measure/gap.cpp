@@ -8,9 +8,9 @@
 #include "brep/measure/gap.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
-#include "verify/voxel_boundary.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
+#include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::planner {
 namespace {
@@ -24,14 +24,14 @@ NearestVoxels nearest_voxels(const voxel::Octree& a, const voxel::Octree& b) {
   const voxel::DistanceMap to_b = voxel::distance_map(b, voxel::range_of(a));
   NearestVoxels nearest;
   float least = std::numeric_limits<float>::infinity();
-  for (const verify::VoxelFace& face : verify::voxel_boundary(a))
+  for (const voxel::VoxelFace& face : voxel::voxel_boundary(a))
     if (const float square = to_b.square_mm2[to_b.index(face.voxel)]; square < least) {
       least = square;
       nearest.a = face.voxel;
     }
   const glm::dvec3 spacing_mm = a.universe().lattice().spacing_mm();
   double least_of_b = std::numeric_limits<double>::infinity();
-  for (const verify::VoxelFace& face : verify::voxel_boundary(b)) {
+  for (const voxel::VoxelFace& face : voxel::voxel_boundary(b)) {
     const glm::dvec3 between_mm = glm::dvec3(face.voxel - nearest.a) * spacing_mm;
     if (const double square = glm::dot(between_mm, between_mm); square < least_of_b) {
       least_of_b = square;

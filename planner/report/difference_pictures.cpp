@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "brep/mesh/distance.h"
-#include "verify/voxel_boundary.h"
+#include "voxel/tree/voxel_boundary.h"
 #include "voxel/view/surface_scalar.h"
 
 namespace octotomy::planner {
@@ -28,8 +28,8 @@ voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& o
       static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z),
       0.0f);
   std::vector<bool> wanted(scalar.values.size(), false);
-  const std::vector<verify::VoxelFace> boundary = verify::voxel_boundary(octree);
-  for (const verify::VoxelFace& face : boundary)
+  const std::vector<voxel::VoxelFace> boundary = voxel::voxel_boundary(octree);
+  for (const voxel::VoxelFace& face : boundary)
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) wanted[index(face.voxel + glm::ivec3(x, y, z))] = true;
@@ -50,7 +50,7 @@ voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& o
   for (std::size_t i = 0; i < places.size(); ++i)
     scalar.values[places[i]] = static_cast<float>(inside[i] ? -distances_mm[i] : distances_mm[i]);
   scalar.most = 0.5 * glm::length(lattice.spacing_mm());
-  for (const verify::VoxelFace& face : boundary)
+  for (const voxel::VoxelFace& face : boundary)
     scalar.most = std::max(scalar.most, std::abs(static_cast<double>(scalar.values[index(face.voxel)])));
   return scalar;
 }

@@ -5,7 +5,7 @@
 
 #include "brep/mesh/triangles.h"
 #include "convert/surface/cuberille.h"
-#include "voxel/solid/digitise.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::verify {
 namespace {
@@ -14,8 +14,7 @@ namespace {
 brep::Mesh ellipsoid(const glm::dvec3& centre_mm, const glm::dvec3& radii_mm) {
   voxel::Universe universe;
   universe.depth = 5;
-  const voxel::Octree octree =
-      voxel::digitise(universe, voxel::Ellipsoid{centre_mm, radii_mm}, voxel::Digitisation::Centre);
+  const voxel::Octree octree = voxel::combine(universe, voxel::Ellipsoid{centre_mm, radii_mm});
   return brep::mesh_of(convert::triangles_of(convert::cuberille(octree)));
 }
 

@@ -23,11 +23,11 @@
 #include "convert/voxel/voxelise.h"
 #include "tests/reference_data.h"
 #include "verify/head_phantom.h"
-#include "verify/voxel_boundary.h"
 #include "verify/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
+#include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::verify {
 namespace {
@@ -119,10 +119,11 @@ struct Spoiled {
 class Spoiler {
  public:
   Spoiler(const Subject& subject, std::uint64_t seed)
-      : subject_(subject), boundary_(voxel_boundary(subject.octree)), random_(seed) {}
+      : subject_(subject), boundary_(voxel::voxel_boundary(subject.octree)), random_(seed) {}
 
-  Spoiled next() {
-    switch (random_() % 8) {
+  /// Kinds take turns.
+  Spoiled next(std::uint64_t number) {
+    switch (number % 8) {
       case 0:
         return voxels("a bite", here() - ball());
       case 1:
@@ -200,7 +201,7 @@ class Spoiler {
   }
 
   const Subject& subject_;
-  std::vector<VoxelFace> boundary_;
+  std::vector<voxel::VoxelFace> boundary_;
   std::mt19937_64 random_;
   double shift_mm_ = between(0.02, 0.5);
 };
@@ -211,7 +212,7 @@ void expect_errors_found(const Subject& subject, std::uint64_t seeds, std::map<s
   ASSERT_TRUE(right.limit.shift_mm) << subject.name;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     Spoiler spoiler(subject, seed);
-    const Spoiled spoiled = spoiler.next();
+    const Spoiled spoiled = spoiler.next(seed);
     if (spoiled.volume_mm3 <= right.limit.volume_mm3) continue;
     if (spoiled.shift_mm > 0.0 && spoiled.shift_mm <= *right.limit.shift_mm) continue;
     ++over[spoiled.what];

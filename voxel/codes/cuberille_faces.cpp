@@ -2,13 +2,13 @@
 #include "voxel/codes/cuberille_faces.h"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 #include <tuple>
 
 #include "voxel/space/text_cursor.h"
 #include "voxel/tree/logical_build.h"
 #include "voxel/tree/slice_build.h"
+#include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -38,36 +38,6 @@ void check(const CuberilleFaces& faces) {
         refuse(direction, list[i], "does not come after its predecessor, x fastest");
     }
   }
-}
-
-// Appends the voxels of a row whose bits are set in `exposed`.
-void append_row(std::uint64_t exposed, int x, int y, int z, std::vector<glm::ivec3>& list) {
-  for (; exposed != 0; exposed &= exposed - 1) list.emplace_back(x + std::countr_zero(exposed), y, z);
-}
-
-// Appends the faces of a slice's voxels. The slices below and above are null if they are empty.
-void append_slice(int z, const SliceBits& slice, const SliceBits* below, const SliceBits* above,
-                  CuberilleFaces& faces) {
-  const auto list = [&](Direction direction) -> std::vector<glm::ivec3>& {
-    return faces.lists[static_cast<std::size_t>(direction)];
-  };
-  for (int y = 0; y < slice.side; ++y)
-    for (int word = 0; word < slice.words_per_row; ++word) {
-      const std::uint64_t* row = slice.row(y);
-      const std::uint64_t bits = row[word];
-      if (bits == 0) continue;
-      const std::uint64_t from_right = word + 1 < slice.words_per_row ? row[word + 1] << 63 : 0;
-      const std::uint64_t from_left = word > 0 ? row[word - 1] >> 63 : 0;
-      const auto exposed = [&](Direction direction, std::uint64_t neighbours) {
-        append_row(bits & ~neighbours, 64 * word, y, z, list(direction));
-      };
-      exposed(Direction::PlusX, (bits >> 1) | from_right);
-      exposed(Direction::MinusX, (bits << 1) | from_left);
-      exposed(Direction::PlusY, y + 1 < slice.side ? slice.row(y + 1)[word] : 0);
-      exposed(Direction::MinusY, y > 0 ? slice.row(y - 1)[word] : 0);
-      exposed(Direction::PlusZ, above != nullptr ? above->row(y)[word] : 0);
-      exposed(Direction::MinusZ, below != nullptr ? below->row(y)[word] : 0);
-    }
 }
 
 // Each x- face and the next x+ face of its row are the ends of a run.
@@ -109,20 +79,11 @@ std::size_t CuberilleFaces::face_count() const {
 
 CuberilleFaces cuberille_faces(const Octree& octree) {
   CuberilleFaces faces{octree.universe(), {}};
-  const std::vector<bool> occupied = occupied_slices(octree);
-  const int side = octree.universe().side();
-  std::array<SliceBits, 3> slices;  // by z modulo three
-  std::array<int, 3> read{-1, -1, -1};
-  const auto slice_at = [&](int z) -> const SliceBits* {
-    if (z < 0 || z >= side || !occupied[static_cast<std::size_t>(z)]) return nullptr;
-    const auto slot = static_cast<std::size_t>(z % 3);
-    if (read[slot] != z) read_slice(octree, z, slices[slot]);
-    read[slot] = z;
-    return &slices[slot];
-  };
-  for (int z = 0; z < side; ++z)
-    if (const SliceBits* slice = slice_at(z))
-      append_slice(z, *slice, slice_at(z - 1), slice_at(z + 1), faces);
+  for (const VoxelFace& face : voxel_boundary(octree))
+    faces.lists[static_cast<std::size_t>(2 * face.axis + (face.side < 0 ? 1 : 0))].push_back(face.voxel);
+  for (auto& list : faces.lists)
+    std::sort(list.begin(), list.end(),
+              [](const glm::ivec3& a, const glm::ivec3& b) { return x_fastest(a) < x_fastest(b); });
   return faces;
 }
 

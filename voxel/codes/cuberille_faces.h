@@ -29,8 +29,8 @@ struct CuberilleFaces {
   std::size_t face_count() const;
 };
 
-/// All exposed faces, those of cavities included. Cost: the non-empty slices, side^2 / 8 bytes each; 12 bytes
-/// per face.
+/// All exposed faces, those of cavities included. Cost: voxel_boundary(), and sorting its faces; 32 bytes per
+/// face.
 CuberilleFaces cuberille_faces(const Octree& octree);
 /// The object that the faces bound. Throws std::invalid_argument that names a face outside the universe, out
 /// of order, or in contradiction to the others.

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <numeric>
 
 #include "voxel/tree/build.h"
-#include "voxel/tree/slice_bits.h"
+#include "voxel/tree/slice_build.h"
 
 // Source: run-based labelling by He, Chao and Suzuki 2008, in three dimensions. The units are runs of voxels
 // along x. A run joins the runs of earlier rows, in its slice and the slice before, that overlap it in x or
@@ -35,23 +36,6 @@ struct Runs {
   }
 };
 
-void append_runs(const std::uint64_t* row, int words, std::vector<Run>& runs) {
-  bool open = false;
-  for (int i = 0; i < words; ++i) {
-    // Bit x is set if the row changes between voxel x - 1 and x.
-    std::uint64_t changes = row[i] ^ (row[i] << 1 | (open ? 1 : 0));
-    for (; changes != 0; changes &= changes - 1) {
-      const int x = 64 * i + std::countr_zero(changes);
-      if (open)
-        runs.back().last = x - 1;
-      else
-        runs.push_back({x, x});
-      open = !open;
-    }
-  }
-  if (open) runs.back().last = 64 * words - 1;
-}
-
 Runs runs_of(const Octree& octree) {
   Runs result;
   result.side = octree.universe().side();
@@ -60,7 +44,8 @@ Runs runs_of(const Octree& octree) {
     read_slice(octree, z, slice);
     for (int y = 0; y < result.side; ++y) {
       result.row_start.push_back(result.runs.size());
-      append_runs(slice.row(y), slice.words_per_row, result.runs);
+      Run run{0, -1};
+      while (next_run(slice, y, run.last + 1, run.first, run.last)) result.runs.push_back(run);
     }
   }
   result.row_start.push_back(result.runs.size());
@@ -76,6 +61,7 @@ class DisjointSets {
   }
   // The smaller number stays the root: the number of a component is that of its first run.
   void join(std::uint32_t a, std::uint32_t b) {
+    assert(a < parent_.size() && b < parent_.size());
     a = find(a);
     b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
@@ -88,6 +74,7 @@ class DisjointSets {
 // Joins the runs of a row with the runs of an earlier row that come within `gap` voxels along x.
 void join_rows(const Runs& runs, const glm::ivec2& row, const glm::ivec2& earlier, int gap,
                DisjointSets& sets) {
+  assert(gap >= 0 && gap <= 1);
   if (earlier.x < 0 || earlier.x >= runs.side || earlier.y < 0) return;
   std::size_t a = runs.begin(row.x, row.y);
   std::size_t b = runs.begin(earlier.x, earlier.y);

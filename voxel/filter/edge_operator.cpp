@@ -45,12 +45,6 @@ glm::dvec3 index_gradient(const Field<Held>& field, int x, int y, int z) {
   return sum / (2.0 * (1.0 + 4.0 * of_edge + 4.0 * of_corner));
 }
 
-void need_values(const Scene& scene) {
-  check(scene);
-  if (scene.meaning == Meaning::Label)
-    throw std::invalid_argument("labels have no order: an edge operator cannot take a label map");
-}
-
 // A float scene on the same lattice with value(x, y, z) at every index.
 template <typename Value>
 Scene made_of(const Scene& scene, const Progress& progress, const Value& value) {
@@ -70,7 +64,7 @@ Scene made_of(const Scene& scene, const Progress& progress, const Value& value) 
 }  // namespace
 
 Scene zucker_hummel(const Scene& scene, const Progress& progress) {
-  need_values(scene);
+  check_values(scene, "an edge operator cannot take a label map");
   const glm::dmat3 mm_from_index = glm::transpose(glm::inverse(glm::dmat3(scene.lattice.lps_from_voxel)));
   return std::visit(
       [&](const auto& samples) {
@@ -83,7 +77,7 @@ Scene zucker_hummel(const Scene& scene, const Progress& progress) {
 }
 
 Scene marr_hildreth(const Scene& scene, double sigma_mm, const Progress& progress) {
-  need_values(scene);
+  check_values(scene, "an edge operator cannot take a label map");
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   const glm::dmat3 axes(scene.lattice.lps_from_voxel);
   for (int axis = 0; axis < 3; ++axis)

@@ -2,6 +2,7 @@
 #include "voxel/filter/histogram.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -31,6 +32,7 @@ std::vector<std::uint64_t> counts_of_values(const Int16Samples& samples) {
 }
 
 double value_at(const std::vector<std::uint64_t>& counts, std::uint64_t rank) {
+  assert(!counts.empty());
   std::uint64_t before = 0;
   for (std::size_t value = 0; value < counts.size(); ++value) {
     before += counts[value];

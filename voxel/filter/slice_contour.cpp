@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <stdexcept>
 
 #include "voxel/filter/slice_work.h"
+#include "voxel/solid/polygon.h"
 
 // A contour is a closed walk over links. A link is a pair of an inside sample and one of its four neighbours
 // that is outside. At each link the two samples and the two ahead of them, a 2 by 2 neighbourhood, decide the
@@ -92,6 +94,7 @@ class Follower {
   double value(const glm::ivec2& p) const { return values_[index(p)]; }
 
   Link next(const Link& link) const {
+    assert(inside(link.p) && !inside(link.p + steps[static_cast<std::size_t>(link.direction)]));
     const int left = (link.direction + 1) % 4;
     const glm::ivec2 a = link.p + steps[static_cast<std::size_t>(left)];
     if (!inside(a)) return {link.p, left};
@@ -113,17 +116,6 @@ class Follower {
   std::vector<double> values_;
 };
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
-double distance_to_edge(const glm::dvec2& p, const glm::dvec2& from, const glm::dvec2& to) {
-  const glm::dvec2 along = to - from;
-  const double square = glm::dot(along, along);
-  const double t = square > 0.0 ? std::clamp(glm::dot(p - from, along) / square, 0.0, 1.0) : 0.0;
-  return glm::distance(p, from + t * along);
-}
-
 // The patient axis that is normal to a lattice's slices.
 int slice_axis(const Lattice& lattice) {
   const glm::dvec3 normal = glm::normalize(
@@ -144,13 +136,6 @@ std::vector<SliceContour> slice_contours(const Scene& scene, int k, double thres
   return Follower(scene, k, threshold).all();
 }
 
-double area(const SliceContour& contour) {
-  double twice = 0.0;
-  for (std::size_t i = 0; i < contour.size(); ++i)
-    twice += cross(contour[i], contour[(i + 1) % contour.size()]);
-  return 0.5 * twice;
-}
-
 SliceContour thinned(const SliceContour& contour, double most) {
   const std::size_t count = contour.size();
   if (count < 4) return contour;
@@ -168,7 +153,7 @@ SliceContour thinned(const SliceContour& contour, double most) {
     double farthest = most;
     std::size_t split = from;
     for (std::size_t i = from + 1; i < to; ++i)
-      if (const double away = distance_to_edge(at(i), at(from), at(to)); away > farthest)
+      if (const double away = std::sqrt(square_to_segment(at(i), at(from), at(to))); away > farthest)
         farthest = away, split = i;
     if (split == from) continue;
     kept[split] = true;
@@ -200,7 +185,7 @@ SliceMask contour_regions(const Scene& scene, const ContourOptions& options) {
     for (const SliceContour& contour : slice_contours(scene, k, options.threshold)) {
       const SliceContour thin = thinned(contour, options.thin);
       // A sample equal to the threshold has links whose points coincide.
-      if (thin.size() < 3 || std::abs(area(thin)) <= least) continue;
+      if (thin.size() < 3 || std::abs(signed_area(thin)) <= least) continue;
       std::vector<glm::dvec2>& polygon = slice.polygons_mm.emplace_back();
       for (const glm::dvec2& p : thin)
         polygon.push_back(mask.view.project(scene.lattice.lps_mm({p.x, p.y, k})));

@@ -24,9 +24,6 @@ using SliceContour = std::vector<glm::dvec2>;
 /// threshold is not finite. Cost: one pass over the slice, one bit per sample.
 std::vector<SliceContour> slice_contours(const Scene& scene, int k, double threshold);
 
-/// The signed area in square voxels, half the sum of the cross products of successive points.
-double area(const SliceContour& contour);
-
 /// The contour with fewer points by Douglas and Peucker (Canadian Cartographer 10, 1973): no dropped point is
 /// farther than `most` voxels from the edge that replaces it. A contour of fewer than four points stays.
 SliceContour thinned(const SliceContour& contour, double most);

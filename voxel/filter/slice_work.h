@@ -5,13 +5,15 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <tbb/parallel_for.h>
 #include <type_traits>
 
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
-// Indices, rounding and parallel work by slices, for the filters of scenes.
+// Checks, indices, rounding and parallel work by slices, for the filters of scenes.
 namespace octotomy::voxel {
 
 /// The place of a sample in a scene's samples. Precondition: the index lies inside the scene.
@@ -24,6 +26,13 @@ inline std::size_t sample_index(const glm::ivec3& dims, const glm::ivec3& p) {
 
 inline std::size_t slice_size(const Lattice& lattice) {
   return static_cast<std::size_t>(lattice.dims.x) * static_cast<std::size_t>(lattice.dims.y);
+}
+
+/// Throws std::invalid_argument as check(Scene), and if the scene holds labels, with `refusal` in the
+/// message.
+inline void check_values(const Scene& scene, const std::string& refusal) {
+  check(scene);
+  if (scene.meaning == Meaning::Label) throw std::invalid_argument("labels have no order: " + refusal);
 }
 
 /// A scene's meaning, modality, source and audit on a lattice, without samples.

@@ -45,12 +45,6 @@ typename Image<Sample>::Pointer image_of(const Sample* samples, const Lattice& l
   return image;
 }
 
-void need_values(const Scene& scene) {
-  check(scene);
-  if (scene.meaning == Meaning::Label)
-    throw std::invalid_argument("labels have no order: a label map cannot be smoothed");
-}
-
 template <typename Filter>
 void set_threads(Filter& filter) {
   filter.SetNumberOfWorkUnits(static_cast<itk::ThreadIdType>(tbb::this_task_arena::max_concurrency()));
@@ -113,7 +107,7 @@ Scene filtered(const Scene& scene, int reach, const Progress& progress, const Ne
 }  // namespace
 
 Scene median(const Scene& scene, const glm::ivec3& radius, const Progress& progress) {
-  need_values(scene);
+  check_values(scene, "a label map cannot be smoothed");
   if (glm::any(glm::lessThan(radius, glm::ivec3(0))) || glm::any(glm::greaterThan(radius, glm::ivec3(16))))
     refuse("a median's radius must be 0 to 16 samples along each axis");
   return filtered(scene, radius.z, progress, [&]<typename Sample>(Sample /*tag*/) {
@@ -125,7 +119,7 @@ Scene median(const Scene& scene, const glm::ivec3& radius, const Progress& progr
 }
 
 Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
-  need_values(scene);
+  check_values(scene, "a label map cannot be smoothed");
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   const double finest_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   if (!(sigma_mm > 0.0) || !(sigma_mm <= 32.0 * finest_mm))
@@ -144,7 +138,7 @@ Scene gaussian(const Scene& scene, double sigma_mm, const Progress& progress) {
 }
 
 Scene diffuse(const Scene& scene, const DiffusionOptions& options) {
-  need_values(scene);
+  check_values(scene, "a label map cannot be smoothed");
   if (options.iterations < 1 || options.iterations > 1000)
     refuse("diffusion takes 1 to 1000 iterations, not " + std::to_string(options.iterations));
   if (!(options.conductance > 0.0) || !std::isfinite(options.conductance))

@@ -3,69 +3,16 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
-#include <vector>
 
-#include "voxel/tree/slice_bits.h"
+#include "voxel/tree/corner_patterns.h"
 
 namespace octotomy::voxel {
 namespace {
 
 using Counts = std::array<std::uint64_t, 256>;
-
-// The rows of a slice, with an empty row before and after them, and an empty word after each row.
-class PaddedSlice {
- public:
-  explicit PaddedSlice(int side)
-      : side_(side),
-        words_(static_cast<std::size_t>((side + 63) / 64) + 1),
-        bits_((static_cast<std::size_t>(side) + 2) * words_, 0) {}
-
-  void read(const Octree& octree, int z) {
-    std::fill(bits_.begin(), bits_.end(), 0);
-    if (z < 0 || z >= side_) return;
-    read_slice(octree, z, slice_);
-    for (int y = 0; y < side_; ++y)
-      std::copy_n(slice_.row(y), slice_.words_per_row, &bits_[static_cast<std::size_t>(y + 1) * words_]);
-  }
-  /// Row y, -1 to side.
-  const std::uint64_t* row(int y) const { return &bits_[static_cast<std::size_t>(y + 1) * words_]; }
-  std::size_t words() const { return words_; }
-
- private:
-  int side_;
-  std::size_t words_;
-  std::vector<std::uint64_t> bits_;
-  SliceBits slice_;
-};
-
-// Counts the corners between slices `below` and `above` at the low side of row y. Their eight voxels are
-// x - 1 and x of four rows.
-void count_row(const PaddedSlice& below, const PaddedSlice& above, int y, Counts& counts) {
-  const std::array<const std::uint64_t*, 4> rows{below.row(y - 1), below.row(y), above.row(y - 1),
-                                                 above.row(y)};
-  std::array<std::uint64_t, 4> carry{};
-  for (std::size_t i = 0; i < below.words(); ++i) {
-    std::array<std::uint64_t, 8> voxels;
-    std::uint64_t any = 0;
-    std::uint64_t every = all_children;
-    for (std::size_t r = 0; r < 4; ++r) {
-      const std::uint64_t here = rows[r][i];
-      voxels[2 * r] = here << 1 | carry[r];
-      voxels[2 * r + 1] = here;
-      carry[r] = here >> 63;
-      any |= voxels[2 * r] | here;
-      every &= voxels[2 * r] & here;
-    }
-    for (std::uint64_t mixed = any & ~every; mixed != 0; mixed &= mixed - 1) {
-      const int x = std::countr_zero(mixed);
-      std::size_t pattern = 0;
-      for (std::size_t v = 0; v < 8; ++v) pattern |= ((voxels[v] >> x) & 1) << v;
-      ++counts[pattern];
-    }
-  }
-}
 
 // Eight times the contribution of a corner of the pattern to each Euler number: 8 corners share a voxel, 4 a
 // face, 2 an edge.
@@ -75,6 +22,7 @@ struct Share {
 };
 
 Share share_of(unsigned pattern) {
+  assert(pattern <= 255U);
   const auto tally = [&](unsigned mask, int& every, int& any) {
     every += (pattern & mask) == mask;
     any += (pattern & mask) != 0;
@@ -105,13 +53,19 @@ std::array<std::uint64_t, 256> cell_counts(const Octree& octree) {
   return tbb::parallel_reduce(
       tbb::blocked_range<int>(0, side + 1, 16), Counts{},
       [&](const tbb::blocked_range<int>& part, Counts counts) {
-        PaddedSlice below(side);
-        PaddedSlice above(side);
-        below.read(octree, part.begin() - 1);
+        SliceBits below;
+        SliceBits above;
+        const auto read = [&](int z, SliceBits& slice) -> const SliceBits* {
+          if (z < 0 || z >= side) return nullptr;
+          read_slice(octree, z, slice);
+          return &slice;
+        };
+        const SliceBits* before = read(part.begin() - 1, below);
         for (int z = part.begin(); z < part.end(); ++z) {
-          above.read(octree, z);
-          for (int y = 0; y <= side; ++y) count_row(below, above, y, counts);
+          const SliceBits* after = read(z, above);
+          for_each_corner(before, after, side, [&](int, int, std::uint8_t pattern) { ++counts[pattern]; });
           std::swap(below, above);
+          before = after == nullptr ? nullptr : &below;
         }
         return counts;
       },

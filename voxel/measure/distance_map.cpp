@@ -101,6 +101,7 @@ void seed_slice(const Octree& octree, bool complement, int z, DistanceMap& map) 
 
 // Turns the zeros and far_away of a row into squared distances along it.
 void sweep_row(float* row, int count, double step) {
+  assert(count > 0 && step > 0.0);
   constexpr int none = std::numeric_limits<int>::max() / 2;
   int away = none;
   for (int x = 0; x < count; ++x) {
@@ -116,6 +117,7 @@ void sweep_row(float* row, int count, double step) {
 
 // Replaces each line along `axis` (1 or 2) by the lower envelope of its parabolas.
 void sweep_lines(DistanceMap& map, int axis, double step) {
+  assert((axis == 1 || axis == 2) && step > 0.0);
   const glm::ivec3 dims = map.range.dims();
   const int other = 3 - axis;
   const std::size_t stride = axis == 1 ? static_cast<std::size_t>(dims.x)
@@ -204,6 +206,7 @@ VoxelRange range_of(const Octree& octree) {
 }
 
 VoxelRange grown(const VoxelRange& range, int voxels) {
+  assert(voxels >= 0);
   return range.is_empty() ? range : VoxelRange{range.low - voxels, range.high + voxels};
 }
 

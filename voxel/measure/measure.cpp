@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -67,6 +68,7 @@ std::array<double, 13> shares(const Lattice& lattice) {
 
 // Word `i` of a shifted row: bit x is voxel x + shift of the row, zero beyond its ends.
 std::uint64_t shifted_word(const std::uint64_t* row, int words, int i, int shift) {
+  assert(i >= 0 && i < words && shift >= -1 && shift <= 1);
   if (row == nullptr) return 0;
   if (shift == 0) return row[i];
   if (shift > 0) return (row[i] >> 1) | (i + 1 < words ? row[i + 1] << 63 : 0);
@@ -190,6 +192,7 @@ class Accumulator {
 // four voxels has the weight of its complement. The number of voxels and their neighbours by faces determine
 // which of the 14 cases it is.
 double lindblad_weight(unsigned pattern) {
+  assert(pattern > 0 && pattern < 255);
   if (std::popcount(pattern) > 4) pattern = ~pattern & 255U;
   int joints = 0;
   int most_joints = 0;
@@ -237,6 +240,7 @@ std::optional<double> lindblad_mm2(const Octree& octree) {
 // edge.
 glm::dmat3 inertia_mm5(const Lattice& lattice, double count, const glm::dvec3& first,
                        const glm::dmat3& second) {
+  assert(count > 0.0);
   glm::dmat3 spread = second;
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < column; ++row) spread[column][row] = spread[row][column];

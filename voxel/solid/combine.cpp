@@ -3,35 +3,34 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <tbb/parallel_for.h>
 #include <vector>
 
-#include "voxel/solid/operand.h"
 #include "voxel/solid/postfix_expression.h"
+#include "voxel/solid/target_expression.h"
 
 // One walk over the target's blocks, all operands at once (thesis 7.2 for three operands, here for any
 // number). At a block:
 //   1 every operand says which of the 64 children are Full, and which are not Empty;
 //   2 the expression is run over these covers in three-valued logic, 64 children at a time: most are decided;
-//   3 of an undecided child, operands that are Full or Empty there drop out of the expression. Where one
-//   octree
+//   3 operands that are Full or Empty in an undecided child drop out of the expression there. If one octree
 //     alone is left, its node is the answer and is shared;
 //   4 otherwise the walk goes into the child, or, at the leaves, runs the expression over words of 64 voxels.
-// Children are joined in ascending order whatever thread made them, so the result does not depend on threads.
+// Children are joined in ascending order, so the result does not depend on threads.
 
 namespace octotomy::voxel {
 namespace {
 
 // Blocks of this height and up, 256 voxels a side, are shared out to threads child by child: a child of 64
-// voxels a side is some ten to a hundred microseconds of work where a boundary passes, far above the cost of
+// voxels a side is some ten to a hundred microseconds of work if a boundary passes it, far above the cost of
 // a task.
 constexpr int parallel_height = 4;
 
 // An operand within one block.
 struct Operation {
-  enum class State : std::uint8_t { Empty, Full, Open };
-  State state = State::Empty;
-  const Node* node = nullptr;  ///< of an aligned octree while Open
+  Status status = Status::Empty;
+  const Node* node = nullptr;  ///< of an aligned octree that is Partial
 };
 
 // What an expression comes down to when some operands are known.
@@ -73,38 +72,34 @@ struct Reduced {
 
 class Combiner {
  public:
-  Combiner(const Universe& universe, const PostfixExpression& postfix, const Resampling& resampling)
-      : postfix_(postfix) {
-    for (const PostfixExpression::Operand& operand : postfix.operands)
-      operands_.push_back(operand_of(operand, universe, resampling));
-    universe_children_ = octotomy::voxel::universe_children(universe.depth);
-  }
+  Combiner(const Universe& universe, const TargetExpression& expression, const LeafRule* rule)
+      : postfix_(expression.postfix()),
+        operands_(expression.operands()),
+        rule_(rule),
+        universe_children_(octotomy::voxel::universe_children(universe.depth)) {}
 
   Block evaluate_root(int root_height) const {
-    std::vector<Operation> operations(operands_.size());
-    for (std::size_t i = 0; i < operands_.size(); ++i) {
-      operations[i].state = Operation::State::Open;
-      if (const auto* aligned = std::get_if<AlignedOctreeOperand>(&operands_[i]))
-        operations[i] = {state_of(aligned->root), aligned->root.node()};
-    }
+    std::vector<Operation> operations(operands_.size(), {Status::Partial});
+    for (std::size_t i = 0; i < operands_.size(); ++i)
+      if (const auto* aligned = std::get_if<AlignedOctreeOperand>(&operands_[i])) {
+        const BlockRef root = aligned->octree->root();
+        operations[i] = {root.status(), root.node()};
+      }
     return evaluate(root_height, glm::ivec3(0), operations.data(), universe_children_);
   }
 
  private:
-  static Operation::State state_of(BlockRef block) {
-    if (block.is_empty()) return Operation::State::Empty;
-    return block.is_full() ? Operation::State::Full : Operation::State::Open;
-  }
-
   // The block of the result at `origin`; only the children of `allowed` are looked at, the others are Empty.
   Block evaluate(int height, const glm::ivec3& origin, const Operation* operations,
                  std::uint64_t allowed) const {
+    assert(height >= 2);
     Scratch scratch(*this, height);
-    const TargetBlock block{origin, 1 << (2 * height - 2)};
-    for (std::size_t i = 0; i < operands_.size(); ++i) scratch.covers[i] = cover(i, operations[i], block);
+    const TargetBlock block{origin, 1 << (2 * height - 2), rule_ ? rule_->margin : TargetBlock::centres};
+    for (std::size_t i = 0; i < operands_.size(); ++i) scratch.covers[i] = cover_of(i, operations[i], block);
     Cover result =
         postfix_.run<Cover>([&](std::uint32_t i) { return scratch.covers[i]; }, scratch.cover_stack.data());
     result = result & Cover{allowed, allowed};
+    assert((result.full & ~result.some) == 0);
     return height == 2 ? evaluate_leaves(origin, operations, scratch, result)
                        : evaluate_children(height, origin, operations, scratch, result);
   }
@@ -123,28 +118,25 @@ class Combiner {
     std::vector<std::array<std::uint64_t, 64>> words;  ///< of the leaves of a block of height 2
   };
 
-  Cover cover(std::size_t i, const Operation& operation, const TargetBlock& block) const {
-    if (operation.state == Operation::State::Empty) return {};
-    if (operation.state == Operation::State::Full) return {all_children, all_children};
-    if (operation.node != nullptr)
-      return {operation.node->full, operation.node->full | operation.node->partial};
-    return std::visit(
-        [&](const auto& operand) -> Cover {
-          if constexpr (requires { operand.cover(block); })
-            return operand.cover(block);
-          else
-            return {};
-        },
-        operands_[i]);
+  Cover cover_of(std::size_t i, const Operation& operation, const TargetBlock& block) const {
+    if (operation.status == Status::Empty) return {};
+    if (operation.status == Status::Full) return {all_children, all_children};
+    if (const Node* node = operation.node) return {node->full, node->full | node->partial};
+    return cover(operands_[i], block);
   }
 
   Block evaluate_leaves(const glm::ivec3& origin, const Operation* operations, Scratch& scratch,
                         Cover result) const {
     const std::uint64_t undecided = result.undecided();
-    for (std::size_t i = 0; i < operands_.size(); ++i)
-      fetch_words(i, operations[i], origin, undecided, scratch);
     std::array<std::uint64_t, 64> words;
     std::size_t count = 0;
+    if (rule_ != nullptr) {
+      for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1)
+        words[count++] = rule_->word(origin + 4 * child_place(std::countr_zero(rest)));
+      return make_leaf_block(result.full, undecided, words.data());
+    }
+    for (std::size_t i = 0; i < operands_.size(); ++i)
+      fetch_words(i, operations[i], origin, undecided, scratch);
     for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1) {
       const auto child = static_cast<std::size_t>(std::countr_zero(rest));
       words[count++] = postfix_.run<std::uint64_t>([&](std::uint32_t i) { return scratch.words[i][child]; },
@@ -156,6 +148,7 @@ class Combiner {
   // Words of an operand for the wanted leaves of a block.
   void fetch_words(std::size_t i, const Operation& operation, const glm::ivec3& origin, std::uint64_t wanted,
                    Scratch& scratch) const {
+    assert((scratch.covers[i].full & ~scratch.covers[i].some) == 0);
     const Cover& cover = scratch.covers[i];
     std::array<std::uint64_t, 64>& words = scratch.words[i];
     const std::uint64_t open = wanted & cover.undecided();
@@ -171,12 +164,7 @@ class Combiner {
       }
       return;
     }
-    std::visit(
-        [&](const auto& operand) {
-          if constexpr (requires { operand.words(WantedLeaves{}); })
-            operand.words(WantedLeaves{origin, open, words.data()});
-        },
-        operands_[i]);
+    octotomy::voxel::words(operands_[i], {origin, open, words.data()});
   }
 
   Block evaluate_children(int height, const glm::ivec3& origin, const Operation* operations, Scratch& scratch,
@@ -225,39 +213,36 @@ class Combiner {
   Reduced reduce(int child, const Operation* operations, const std::vector<Cover>& covers,
                  std::vector<Operation>& inner, std::vector<Reduced>& stack) const {
     for (std::size_t i = 0; i < inner.size(); ++i) {
-      inner[i] = {Operation::State::Open, nullptr};
+      inner[i] = {Status::Partial, nullptr};
       if (((covers[i].some >> child) & 1) == 0)
-        inner[i].state = Operation::State::Empty;
+        inner[i].status = Status::Empty;
       else if ((covers[i].full >> child) & 1)
-        inner[i].state = Operation::State::Full;
+        inner[i].status = Status::Full;
       else if (const Node* node = operations[i].node)
         inner[i].node = node->nodes()[node->rank(child)];
     }
     return postfix_.run<Reduced>(
         [&](std::uint32_t i) -> Reduced {
-          switch (inner[i].state) {
-            case Operation::State::Empty:
-              return {Reduced::Form::Empty, 0};
-            case Operation::State::Full:
-              return {Reduced::Form::Full, 0};
-            case Operation::State::Open:
-              break;
-          }
-          return {Reduced::Form::Operand, i};
+          if (inner[i].status == Status::Partial) return {Reduced::Form::Operand, i};
+          return {inner[i].status == Status::Full ? Reduced::Form::Full : Reduced::Form::Empty, 0};
         },
         stack.data());
   }
 
   const PostfixExpression& postfix_;
-  std::uint64_t universe_children_ = all_children;
-  std::vector<Operand> operands_;
+  const std::vector<Operand>& operands_;
+  const LeafRule* rule_;
+  std::uint64_t universe_children_;
 };
 
 }  // namespace
 
+Octree walk(const Universe& universe, const TargetExpression& expression, const LeafRule* rule) {
+  return {universe, Combiner(universe, expression, rule).evaluate_root(root_height(universe.depth))};
+}
+
 Octree combine(const Universe& universe, const Expression& expression, const Resampling& resampling) {
-  const PostfixExpression postfix = postfix_of(expression, universe);
-  return {universe, Combiner(universe, postfix, resampling).evaluate_root(root_height(universe.depth))};
+  return walk(universe, TargetExpression(postfix_of(expression, universe), universe, resampling));
 }
 
 }  // namespace octotomy::voxel

@@ -21,7 +21,7 @@ namespace {
 struct Source {
   const Window* window = nullptr;
   glm::dmat4 source_from_target{1.0};
-  std::optional<glm::ivec3> offset;  ///< where it is a translation by whole voxels
+  std::optional<glm::ivec3> offset;  ///< if it is a translation by whole voxels
   bool positive = true;              ///< under an even number of complements
 };
 

@@ -6,6 +6,7 @@
 #include "voxel/solid/combine_shares.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <stdexcept>
 #include <unordered_map>
@@ -57,6 +58,7 @@ class Shares {
 };
 
 Bounds complement(const Bounds& a) {
+  assert(0 <= a.low && a.low <= a.high && a.high <= whole);
   return {whole - a.high, whole - a.low};
 }
 Bounds both(const Bounds& a, const Bounds& b) {

@@ -11,7 +11,8 @@ namespace octotomy::voxel {
 
 /// What is known of the share of every voxel that a solid fills: at least `low` and at most `high` of it. The
 /// shares of two solids do not tell how they overlap within a voxel, so a Boolean of them is known between
-/// two bounds; between voxels wholly in or out, and where only one solid has its boundary, both are the same.
+/// two bounds. Both are the same in voxels wholly in or out, and in voxels with the boundary of only one
+/// solid.
 struct ShareBracket {
   Octree inside;    ///< filled for certain
   Octree touching;  ///< perhaps filled in part
@@ -30,11 +31,11 @@ struct ShareOperand {
 
 /// Evaluates an expression of such symbols, voxel by voxel, with the bounds of Frechet: a share of a & b is
 /// from max(0, a + b - 1) to min(a, b), of a | b from max(a, b) to min(1, a + b), of a ^ b from |a - b| to
-/// min(a + b, 2 - a - b); a - b is a & ~b. They are the tightest for two solids of known shares; where one
-/// operand occurs twice, or three have their boundary in one voxel, wider than need be and never wrong. Exact
-/// but for the shares' own rounding to 1 / 65535. Throws std::invalid_argument where the universes differ, a
-/// leaf is none of the symbols, or the expression moves a part: shares do not turn with a lattice. Cost: n
-/// log n of the operands' boundary voxels.
+/// min(a + b, 2 - a - b); a - b is a & ~b. They are the tightest for two solids of known shares; if one
+/// operand occurs twice, or three have their boundary in one voxel, they are wider than need be and never
+/// wrong. Exact but for the shares' own rounding to 1 / 65535. Throws std::invalid_argument if the universes
+/// differ, a leaf is none of the symbols, or the expression moves a part: shares do not turn with a lattice.
+/// Cost: n log n of the operands' boundary voxels.
 ShareBracket combine_shares(const Expression& expression, const std::vector<ShareOperand>& operands);
 
 /// The volume is from low to high, in cubic millimetres.

@@ -1,166 +1,114 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/solid/digitise.h"
 
-#include <array>
 #include <bit>
+#include <cassert>
 #include <cmath>
-#include <optional>
+#include <stdexcept>
+#include <tbb/concurrent_unordered_map.h>
 #include <tbb/parallel_for.h>
-#include <utility>
 
-#include "voxel/solid/shape_classifier.h"
-#include "voxel/tree/octree_node.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/target_expression.h"
 
-// The walk goes down the blocks of the universe. A block that the shape holds, or misses, as a whole is made
-// at once; the 64 children of any other are looked at each, in parallel, and their results joined in order.
-// Voxels are met only in leaves that the boundary runs through.
+// The walk of combine() decides blocks by their cubes, whole voxels included. What it leaves open comes here
+// leaf by leaf:
+//   1 eight cubes of 2 x 2 x 2 voxels are looked at, and the voxels of those that are undecided are resolved;
+//   2 of the voxels that are neither in nor out, fractions are taken.
+// A partial octree walks twice, over the same leaves: the second walk reads what the first one found.
 
 namespace octotomy::voxel {
 namespace {
-
-// A block by both certain digitisations, and the fractions between them. Of the others only `touching` is
-// made.
-struct Built {
-  Block inside;
-  Block touching;
-  std::vector<std::uint16_t> fractions;
-};
 
 struct Leaf {
   std::uint64_t inside = 0;
   std::uint64_t touching = 0;
 };
 
-// Cube of the voxels of a block.
-Cube cube_at(const glm::ivec3& origin, int side) {
-  return {glm::dvec3(origin) + 0.5 * (side - 1), 0.5 * side};
+// The cube of the voxels from `first` on.
+Cube cube_at(const glm::ivec3& first, int side) {
+  return {glm::dvec3(first) + 0.5 * (side - 1), 0.5 * side};
 }
 
-class Walk {
- public:
-  /// None: partial.
-  Walk(const ShapeClassifier& shape, std::optional<Digitisation> digitisation)
-      : shape_(shape), digitisation_(digitisation) {}
-
-  // `within` are the children that lie in the universe.
-  Built block(const glm::ivec3& origin, int height, std::uint64_t within) const {
-    const int child_side = 1 << (2 * height - 2);
-    std::uint64_t full = 0;
-    std::uint64_t undecided = 0;
-    for (std::uint64_t rest = within; rest != 0; rest &= rest - 1) {
-      const int child = std::countr_zero(rest);
-      const Meets meets = shape_.meets(cube_at(origin + child_place(child) * child_side, child_side));
-      const std::uint64_t bit = rest & (~rest + 1);
-      if (!meets.out) full |= bit;
-      if (meets.in && meets.out) undecided |= bit;
-    }
-    return height == 2 ? leaf_block(origin, full, undecided) : node_block(origin, height, full, undecided);
-  }
-
- private:
-  Built node_block(const glm::ivec3& origin, int height, std::uint64_t full, std::uint64_t undecided) const {
-    const int child_side = 1 << (2 * height - 2);
-    const int count = std::popcount(undecided);
-    std::array<int, 64> child_numbers;
-    int next = 0;
-    for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1)
-      child_numbers[static_cast<std::size_t>(next++)] = std::countr_zero(rest);
-    std::vector<Built> children(static_cast<std::size_t>(count));
-    tbb::parallel_for(0, count, [&](int i) {
-      const glm::ivec3 at = origin + child_place(child_numbers[static_cast<std::size_t>(i)]) * child_side;
-      children[static_cast<std::size_t>(i)] = block(at, height - 1, all_children);
-    });
-    Built built;
-    std::array<BlockRef, 64> inside;
-    std::array<BlockRef, 64> touching;
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      inside[i] = children[i].inside.detach();
-      touching[i] = children[i].touching.detach();
-      built.fractions.insert(built.fractions.end(), children[i].fractions.begin(),
-                             children[i].fractions.end());
-    }
-    built.inside = make_block(height, full, undecided, {inside.data(), children.size()});
-    built.touching = make_block(height, full, undecided, {touching.data(), children.size()});
-    return built;
-  }
-
-  Built leaf_block(const glm::ivec3& origin, std::uint64_t full, std::uint64_t undecided) const {
-    Built built;
-    std::array<std::uint64_t, 64> inside;
-    std::array<std::uint64_t, 64> touching;
-    std::size_t count = 0;
-    for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1) {
-      const Leaf words = leaf(origin + child_place(std::countr_zero(rest)) * 4, built.fractions);
-      inside[count] = words.inside;
-      touching[count++] = words.touching;
-    }
-    built.inside = make_leaf_block(full, undecided, inside.data());
-    built.touching = make_leaf_block(full, undecided, touching.data());
-    return built;
-  }
-
-  Leaf leaf(const glm::ivec3& origin, std::vector<std::uint16_t>& fractions) const {
-    Leaf leaf;
-    for (int octant = 0; octant < 8; ++octant) {
-      const glm::ivec3 corner = 2 * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
-      const std::uint64_t bits = octant_children << child_index(corner.x, corner.y, corner.z);
-      const Meets meets = shape_.meets(cube_at(origin + corner, 2));
-      if (!meets.out) leaf.inside |= bits;
-      if (meets.in && meets.out) mixed_voxels(origin, bits, leaf);
-    }
-    leaf.touching |= leaf.inside;
-    if (!digitisation_)
-      for (std::uint64_t rest = leaf.touching & ~leaf.inside; rest != 0; rest &= rest - 1)
-        fractions.push_back(fraction(origin + child_place(std::countr_zero(rest))));
-    return leaf;
-  }
-
-  // The voxels of a leaf's bits, one by one.
-  void mixed_voxels(const glm::ivec3& origin, std::uint64_t bits, Leaf& leaf) const {
+Leaf leaf_at(const TargetExpression& solid, const glm::ivec3& origin) {
+  assert(glm::all(glm::equal(origin & 3, glm::ivec3(0))));
+  Leaf leaf;
+  for (int octant = 0; octant < 8; ++octant) {
+    const glm::ivec3 corner = 2 * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
+    const std::uint64_t bits = octant_children << child_index(corner.x, corner.y, corner.z);
+    const Meets all = solid.meets(cube_at(origin + corner, 2));
+    if (!all.out) leaf.inside |= bits;
+    if (!all.in || !all.out) continue;
     for (std::uint64_t rest = bits; rest != 0; rest &= rest - 1) {
-      const glm::ivec3 voxel = origin + child_place(std::countr_zero(rest));
+      const Meets own = solid.resolve(cube_at(origin + child_place(std::countr_zero(rest)), 1));
       const std::uint64_t bit = rest & (~rest + 1);
-      bool in = false;
-      bool out = true;
-      if (digitisation_ == Digitisation::Centre) {
-        in = shape_.contains(glm::dvec3(voxel));
-      } else {
-        const Meets meets = shape_.resolve(cube_at(voxel, 1));
-        in = meets.in;
-        out = meets.out;
-        if (digitisation_ == Digitisation::Inside) in = !out;
-        if (digitisation_ == Digitisation::Half && in && out) in = shape_.fraction(cube_at(voxel, 1)) >= 0.5;
-      }
-      if (in) leaf.touching |= bit;
-      if (!out) leaf.inside |= bit;
+      if (own.in) leaf.touching |= bit;
+      if (!own.out) leaf.inside |= bit;
     }
   }
+  leaf.touching |= leaf.inside;
+  return leaf;
+}
 
-  std::uint16_t fraction(const glm::ivec3& voxel) const {
-    return static_cast<std::uint16_t>(
-        std::lround(shape_.fraction(cube_at(voxel, 1)) * static_cast<double>(PartialOctree::whole)));
-  }
+std::uint64_t half_at(const TargetExpression& solid, const glm::ivec3& origin) {
+  const Leaf leaf = leaf_at(solid, origin);
+  std::uint64_t word = leaf.inside;
+  for (std::uint64_t rest = leaf.touching & ~leaf.inside; rest != 0; rest &= rest - 1)
+    if (solid.fraction(cube_at(origin + child_place(std::countr_zero(rest)), 1)) >= 0.5)
+      word |= rest & (~rest + 1);
+  return word;
+}
 
-  const ShapeClassifier& shape_;
-  std::optional<Digitisation> digitisation_;
-};
-
-Built walk(const Universe& universe, const Shape& shape, std::optional<Digitisation> digitisation) {
-  const ShapeClassifier cut(shape, universe.lps_from_voxel);
-  return Walk(cut, digitisation)
-      .block(glm::ivec3(0), root_height(universe.depth), universe_children(universe.depth));
+TargetExpression target_of(const Universe& universe, const Expression& solid) {
+  TargetExpression target(postfix_of(solid, universe), universe);
+  for (const PostfixExpression::Operand& operand : target.postfix().operands)
+    if (std::holds_alternative<Window>(*operand.leaf))
+      throw std::invalid_argument(
+          "a window of samples has no shape within a voxel: combine() it, then digitise");
+  return target;
 }
 
 }  // namespace
 
-Octree digitise(const Universe& universe, const Shape& shape, Digitisation digitisation) {
-  return {universe, walk(universe, shape, digitisation).touching};
+Octree digitise(const Universe& universe, const Expression& solid, Digitisation digitisation) {
+  if (digitisation == Digitisation::Centre) return combine(universe, solid);
+  const TargetExpression target = target_of(universe, solid);
+  LeafRule rule;
+  rule.word = [&](const glm::ivec3& origin) {
+    if (digitisation == Digitisation::Half) return half_at(target, origin);
+    const Leaf leaf = leaf_at(target, origin);
+    return digitisation == Digitisation::Inside ? leaf.inside : leaf.touching;
+  };
+  return walk(universe, target, &rule);
 }
 
-PartialOctree digitise_partial(const Universe& universe, const Shape& shape) {
-  Built built = walk(universe, shape, std::nullopt);
-  return {Octree(universe, std::move(built.inside)), Octree(universe, std::move(built.touching)),
-          std::move(built.fractions)};
+PartialOctree digitise_partial(const Universe& universe, const Expression& solid) {
+  const TargetExpression target = target_of(universe, solid);
+  const auto key = [](const glm::ivec3& origin) {
+    return (std::uint64_t(origin.z) << 40) | (std::uint64_t(origin.y) << 20) | std::uint64_t(origin.x);
+  };
+  tbb::concurrent_unordered_map<std::uint64_t, std::uint64_t> inside_words;
+  LeafRule rule;
+  rule.word = [&](const glm::ivec3& origin) {
+    const Leaf leaf = leaf_at(target, origin);
+    inside_words.emplace(key(origin), leaf.inside);
+    return leaf.touching;
+  };
+  const Octree touching = walk(universe, target, &rule);
+  rule.word = [&](const glm::ivec3& origin) { return inside_words.at(key(origin)); };
+  const Octree inside = walk(universe, target, &rule);
+
+  PartialOctree partial{inside, touching, {}};
+  partial.fractions.resize(touching.voxel_count() - inside.voxel_count());
+  std::vector<glm::ivec3> boundary;
+  boundary.reserve(partial.fractions.size());
+  for_each_boundary_voxel(partial,
+                          [&](const glm::ivec3& voxel, std::uint16_t) { boundary.push_back(voxel); });
+  tbb::parallel_for(std::size_t{0}, boundary.size(), [&](std::size_t i) {
+    const double share = target.fraction(cube_at(boundary[i], 1));
+    partial.fractions[i] = static_cast<std::uint16_t>(std::lround(share * PartialOctree::whole));
+  });
+  return partial;
 }
 
 }  // namespace octotomy::voxel

@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
-#include <limits>
 #include <stdexcept>
 #include <unordered_set>
 
@@ -15,23 +14,11 @@
 namespace octotomy::voxel {
 namespace {
 
-// A product of a few rotations keeps its columns orthonormal to a few units in the last place; a scale or
-// shear that moves anything in a head by a micrometre over 300 mm is 3e-9. Half of the digits separate the
-// two.
-double rigidity_tolerance() {
-  return std::sqrt(std::numeric_limits<double>::epsilon());
-}
-
-/// Whether the matrix keeps lengths: it is rigid where its determinant is also positive.
-bool is_isometry(const glm::dmat4& matrix) {
-  const glm::dmat3 linear(matrix);
-  const glm::dmat3 gram = glm::transpose(linear) * linear;
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row)
-      if (!(std::abs(gram[column][row] - (column == row ? 1.0 : 0.0)) <= rigidity_tolerance())) return false;
+// Whether the matrix keeps lengths: it is rigid if its determinant is also positive.
+bool is_affine_isometry(const glm::dmat4& matrix) {
   for (int row = 0; row < 3; ++row)
     if (matrix[row][3] != 0.0 || !std::isfinite(matrix[3][row])) return false;
-  return matrix[3][3] == 1.0;
+  return matrix[3][3] == 1.0 && is_isometry(glm::dmat3(matrix));
 }
 
 // The grammar, weakest binding first:
@@ -170,6 +157,11 @@ Expression::Term::~Term() {
 }
 
 Expression::Expression(Leaf leaf) {
+  std::visit(
+      [](const auto& object) {
+        if constexpr (requires { check(object); }) check(object);
+      },
+      leaf);
   auto term = std::make_shared<Term>();
   term->leaf = std::move(leaf);
   term_ = std::move(term);
@@ -183,15 +175,6 @@ Expression::Expression(Kind kind, const Expression& a, const Expression& b) {
   term_ = std::move(term);
 }
 
-Expression::Expression(RegionMask mask) : Expression(Leaf((check(mask), std::move(mask)))) {}
-
-Expression::Expression(SliceMask mask) : Expression(Leaf((check(mask), std::move(mask)))) {}
-
-Expression::Expression(const HalfSpace& half_space) : Expression(Leaf(half_space)) {
-  if (!(std::abs(glm::length(half_space.normal) - 1.0) <= rigidity_tolerance()))
-    throw std::invalid_argument("a half-space needs a normal of length 1");
-}
-
 Expression operator~(const Expression& a) {
   auto term = std::make_shared<Expression::Term>();
   term->kind = Expression::Kind::Not;
@@ -200,13 +183,13 @@ Expression operator~(const Expression& a) {
 }
 
 Expression moved(const Expression& a, const glm::dmat4& moved_from_still) {
-  if (!is_isometry(moved_from_still) || glm::determinant(glm::dmat3(moved_from_still)) < 0.0)
+  if (!is_affine_isometry(moved_from_still) || glm::determinant(glm::dmat3(moved_from_still)) < 0.0)
     throw std::invalid_argument("a motion must be rigid: a rotation and a translation");
   return carried(a, moved_from_still);
 }
 
 Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still) {
-  if (!is_isometry(mirrored_from_still) || glm::determinant(glm::dmat3(mirrored_from_still)) > 0.0)
+  if (!is_affine_isometry(mirrored_from_still) || glm::determinant(glm::dmat3(mirrored_from_still)) > 0.0)
     throw std::invalid_argument("a reflection must keep lengths and turn left to right");
   return carried(a, mirrored_from_still);
 }

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "voxel/solid/primitive.h"
 #include "voxel/solid/region_mask.h"
 #include "voxel/solid/slice_mask.h"
 #include "voxel/tree/grey_octree.h"
@@ -18,15 +19,6 @@
 
 namespace octotomy::voxel {
 
-/// The points p with normal . p <= offset_mm; the normal, a unit LPS vector, points outward.
-struct HalfSpace {
-  glm::dvec3 normal{0, 0, 1};
-  double offset_mm = 0.0;
-};
-struct Sphere {
-  glm::dvec3 centre_mm{0.0};
-  double radius_mm = 1.0;
-};
 /// The samples of a grey octree from low to high, both included.
 struct Window {
   GreyOctree grey;
@@ -34,12 +26,13 @@ struct Window {
   double high = 32767.0;
 };
 
-/// A Boolean expression of objects under rigid motions: pure data, cheap to copy. Nothing is evaluated until
-/// combine() or a renderer walks it.
+/// A Boolean expression of objects under rigid motions: pure data, cheap to copy. combine(), digitise() and
+/// renderers evaluate it.
 class Expression {
  public:
   enum class Kind { Leaf, And, Or, Minus, Xor, Not, Moved };
-  using Leaf = std::variant<Octree, Window, RegionMask, SliceMask, HalfSpace, Sphere, Box>;
+  using Leaf = std::variant<Octree, Window, RegionMask, SliceMask, HalfSpace, Sphere, Box, Ellipsoid,
+                            OrientedBox, Cylinder, Torus>;
   struct Term {
     Kind kind = Kind::Leaf;
     std::optional<Leaf> leaf;                 ///< Kind::Leaf only
@@ -52,27 +45,30 @@ class Expression {
     ~Term();  ///< no recursion: a term of any depth can go
   };
 
+  /// A leaf. Each throws std::invalid_argument as check() of its type: a mask that holds nothing, a length
+  /// that is not positive, an axis that is no unit vector.
   Expression(Octree octree) : Expression(Leaf(std::move(octree))) {}
   Expression(Window window) : Expression(Leaf(std::move(window))) {}
-  /// Throws std::invalid_argument as check(RegionMask).
-  Expression(RegionMask mask);
-  /// Throws std::invalid_argument as check(SliceMask).
-  Expression(SliceMask mask);
-  /// Throws std::invalid_argument where the normal is not of unit length.
-  Expression(const HalfSpace& half_space);
+  Expression(RegionMask mask) : Expression(Leaf(std::move(mask))) {}
+  Expression(SliceMask mask) : Expression(Leaf(std::move(mask))) {}
+  Expression(const HalfSpace& half_space) : Expression(Leaf(half_space)) {}
   Expression(const Sphere& sphere) : Expression(Leaf(sphere)) {}
   Expression(const Box& box) : Expression(Leaf(box)) {}
+  Expression(const Ellipsoid& ellipsoid) : Expression(Leaf(ellipsoid)) {}
+  Expression(const OrientedBox& box) : Expression(Leaf(box)) {}
+  Expression(const Cylinder& cylinder) : Expression(Leaf(cylinder)) {}
+  Expression(const Torus& torus) : Expression(Leaf(torus)) {}
 
   friend Expression operator&(const Expression& a, const Expression& b) { return {Kind::And, a, b}; }
   friend Expression operator|(const Expression& a, const Expression& b) { return {Kind::Or, a, b}; }
   friend Expression operator-(const Expression& a, const Expression& b) { return {Kind::Minus, a, b}; }
   friend Expression operator^(const Expression& a, const Expression& b) { return {Kind::Xor, a, b}; }
   friend Expression operator~(const Expression& a);
-  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument where it is not
+  /// The expression carried by a rigid motion, LPS to LPS. Throws std::invalid_argument if it is not
   /// rigid.
   friend Expression moved(const Expression& a, const glm::dmat4& moved_from_still);
   /// The expression's mirror image: the matrix is a reflection, LPS to LPS. Throws std::invalid_argument
-  /// where it is none.
+  /// if it is none.
   friend Expression reflected(const Expression& a, const glm::dmat4& mirrored_from_still);
 
   const Term& term() const { return *term_; }
@@ -95,19 +91,18 @@ struct Motion {
   glm::dvec3 axis{0, 0, 1};
   glm::dvec3 about_mm{0.0};
 };
-/// Throws std::invalid_argument where a number is not finite or the axis has no length.
+/// Throws std::invalid_argument if a number is not finite or the axis has no length.
 glm::dmat4 moved_from_still(const Motion& motion);
 
-/// What names in an expression's text stand for. Each throws std::invalid_argument for a name it does not
-/// know.
+/// The meanings of names in an expression's text. Each throws std::invalid_argument for an unknown name.
 struct Names {
   std::function<Expression(std::string_view name)> object;
   std::function<glm::dmat4(std::string_view name)> motion;  ///< may be empty: `move` is then refused
 };
 
 /// Parses `a & b`, `a | b`, `a - b`, `a ^ b`, `~a`, `move(a, m)` and parentheses. As in Python, `~` binds
-/// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the position
-/// of what it did not expect and what it did; a name's own refusal comes through with the name's position.
+/// strongest, then `-`, `&`, `^` and `|`, each from the left. Throws std::invalid_argument with the
+/// position, what it found and what it expected. A name's own refusal comes through with the name's position.
 Expression parse_expression(std::string_view text, const Names& names);
 
 /// What the leaves and motions of an expression are called in its text: names as parse_expression() takes

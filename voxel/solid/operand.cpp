@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/solid/operand.h"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -21,8 +22,9 @@ double rounding_slack(const Linear& f) {
 
 }  // namespace
 
-double reach(const Linear& f, int child_side) {
-  return 0.5 * (child_side - 1) * (std::abs(f.gradient.x) + std::abs(f.gradient.y) + std::abs(f.gradient.z)) +
+double reach(const Linear& f, double half) {
+  assert(half >= 0.0);
+  return half * (std::abs(f.gradient.x) + std::abs(f.gradient.y) + std::abs(f.gradient.z)) +
          rounding_slack(f);
 }
 
@@ -55,7 +57,7 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
     const decltype(source_from_target)& source;
 
     Operand operator()(const Octree& octree) const {
-      if (operand.still && octree.universe() == target) return AlignedOctreeOperand{octree.root()};
+      if (operand.still && octree.universe() == target) return AlignedOctreeOperand{&octree};
       const glm::dmat4 source_from_target = source(octree.universe());
       if (const std::optional<glm::ivec3> offset = whole_voxel_offset(source_from_target))
         return ShiftedOctreeOperand(octree, *offset);
@@ -73,22 +75,74 @@ Operand operand_of(const PostfixExpression::Operand& operand, const Universe& ta
     Operand operator()(const RegionMask& mask) const { return MaskOperand(mask, still_from_target); }
     Operand operator()(const SliceMask& mask) const { return SliceMaskOperand(mask, still_from_target); }
     Operand operator()(const HalfSpace& half_space) const {
-      return ConvexOperand({along(still_from_target, half_space.normal, half_space.offset_mm)});
+      return HalfSpaceOperand(half_space, still_from_target);
     }
-    Operand operator()(const Sphere& sphere) const { return SphereOperand(sphere, still_from_target); }
-    Operand operator()(const Box& box) const {
-      std::vector<Linear> sides;
-      for (int axis = 0; axis < 3; ++axis) {
-        glm::dvec3 outward(0.0);
-        outward[axis] = 1.0;
-        sides.push_back(along(still_from_target, outward, box.high_mm[axis]));
-        sides.push_back(along(still_from_target, -outward, -box.low_mm[axis]));
-      }
-      return ConvexOperand(std::move(sides));
+    Operand operator()(const Sphere& sphere) const { return BallOperand(sphere, still_from_target); }
+    Operand operator()(const Ellipsoid& ellipsoid) const { return BallOperand(ellipsoid, still_from_target); }
+    Operand operator()(const Box& box) const { return BoxOperand(box, still_from_target); }
+    Operand operator()(const OrientedBox& box) const { return BoxOperand(box, still_from_target); }
+    Operand operator()(const Cylinder& cylinder) const {
+      return CylinderOperand(cylinder, still_from_target);
     }
+    Operand operator()(const Torus& torus) const { return TorusOperand(torus, still_from_target); }
   };
   return std::visit(Visitor{operand, target, resampling, still_from_target, source_from_target},
                     *operand.leaf);
+}
+
+Cover cover(const Operand& operand, const TargetBlock& block) {
+  assert(block.child_side >= 4 && block.margin > 0.0);
+  return std::visit(
+      [&](const auto& o) -> Cover {
+        if constexpr (requires { o.words_are_quick; })
+          if (block.child_side == 4) return {0, all_children};
+        if constexpr (requires { o.cover(block); })
+          return o.cover(block);
+        else
+          return cover_of_children(block, [&](const Cube& child) { return o.meets(child); });
+      },
+      operand);
+}
+
+void words(const Operand& operand, const WantedLeaves& leaves) {
+  assert(leaves.words != nullptr && glm::all(glm::equal(leaves.origin & 15, glm::ivec3(0))));
+  std::visit(
+      [&](const auto& o) {
+        if constexpr (requires { o.words(leaves); })
+          o.words(leaves);
+        else
+          for_each_wanted_voxel(leaves, [&](const glm::dvec3& voxel) { return o.contains(voxel); });
+      },
+      operand);
+}
+
+Meets meets(const Operand& operand, const Cube& cube) {
+  return std::visit(
+      [&](const auto& o) -> Meets {
+        if constexpr (requires { o.meets(cube); }) return o.meets(cube);
+        assert(!"the operand has no answer about a cube");
+        return {};
+      },
+      operand);
+}
+
+bool contains(const Operand& operand, const glm::dvec3& p_voxel) {
+  return std::visit(
+      [&](const auto& o) {
+        if constexpr (requires { o.contains(p_voxel); }) return o.contains(p_voxel);
+        assert(!"the operand has no answer about a point");
+        return false;
+      },
+      operand);
+}
+
+Sheets sheets(const Operand& operand, const Cube& cube) {
+  return std::visit(
+      [&](const auto& o) -> Sheets {
+        if constexpr (requires { o.sheets(cube); }) return o.sheets(cube);
+        return {2, {glm::dvec3(0.0), contains(operand, cube.centre) ? -1.0 : 1.0}, 0.0};
+      },
+      operand);
 }
 
 }  // namespace octotomy::voxel

@@ -6,21 +6,38 @@
 #include <variant>
 #include <vector>
 
+#include "voxel/solid/operand_primitive.h"
 #include "voxel/solid/postfix_expression.h"
 #include "voxel/solid/resampling.h"
 #include "voxel/tree/window_bits.h"
 
-// Operands as a walk over a target universe meets them. Each answers two questions: which of a block's 64
-// children are Full or Empty, and which voxels of a leaf are inside. Positions are the target's voxel
-// indices. The first answer may leave a child undecided; the second one is exact: a voxel is inside where its
-// centre is (D3).
+// Operands as a walk over a target universe meets them. Positions are the target's voxel indices. An operand
+// answers three questions: what a cube holds of it (meets), whether a point is inside (contains), and which
+// voxels of a leaf are inside: those whose centre is (D3). The answer about a cube may leave open what it
+// holds; the others are exact. Operands with faster answers about a block's 64 children or about leaves have
+// cover() and words() of their own.
 
 namespace octotomy::voxel {
 
-/// A block of the target: 64 children of `child_side` voxels a side from `origin` on.
+/// A block of the target: 64 children of `child_side` voxels a side from `origin` on. `margin` is how far a
+/// child's cube reaches beyond the centres of its voxels.
 struct TargetBlock {
+  /// Holds the centres with what rounding adds to them: coordinates up to 2^36 voxels away round to 2^-16 of
+  /// a voxel.
+  static constexpr double centres = 0x1p-16;
+  static constexpr double cuboids = 0.5;  ///< holds whole voxels
+
   glm::ivec3 origin{0};
   int child_side = 4;
+  double margin = centres;
+
+  Cube child(int number) const { return cube(origin + child_place(number) * child_side, child_side); }
+  Cube whole() const { return cube(origin, 4 * child_side); }
+
+ private:
+  Cube cube(const glm::ivec3& first, int side) const {
+    return {glm::dvec3(first) + 0.5 * (side - 1), 0.5 * (side - 1) + margin};
+  }
 };
 
 /// Words of the leaves named by the bits of `wanted` of a block of height 2, written at their child numbers.
@@ -38,33 +55,13 @@ struct Linear {
   double operator()(const glm::dvec3& v) const { return glm::dot(gradient, v) + constant; }
 };
 
-/// Voxels where every function is at most zero: a half-space, a box under any motion.
-class ConvexOperand {
- public:
-  explicit ConvexOperand(std::vector<Linear> sides) : sides_(std::move(sides)) {}
-  Cover cover(const TargetBlock& block) const;
-  void words(const WantedLeaves& leaves) const;
-
- private:
-  std::vector<Linear> sides_;
-};
-
-class SphereOperand {
- public:
-  SphereOperand(const Sphere& sphere, const glm::dmat4& still_from_target)
-      : sphere_(sphere), still_from_target_(still_from_target) {}
-  Cover cover(const TargetBlock& block) const;
-  void words(const WantedLeaves& leaves) const;
-
- private:
-  Sphere sphere_;
-  glm::dmat4 still_from_target_;
-};
-
 /// The intersection of regions' back-projections.
 class MaskOperand {
  public:
   MaskOperand(const RegionMask& mask, const glm::dmat4& still_from_target);
+  Meets meets(const Cube& cube) const;
+  bool contains(const glm::dvec3& p_voxel) const;
+  Sheets sheets(const Cube& cube) const;
   Cover cover(const TargetBlock& block) const;
   void words(const WantedLeaves& leaves) const;
 
@@ -72,6 +69,7 @@ class MaskOperand {
   struct Projected {
     const Region* region = nullptr;
     Linear u, v;  ///< the view's millimetres
+    LocalFrame frame() const;
   };
   std::vector<Projected> regions_;
 };
@@ -80,8 +78,8 @@ class MaskOperand {
 class SliceMaskOperand {
  public:
   SliceMaskOperand(const SliceMask& mask, const glm::dmat4& still_from_target);
-  Cover cover(const TargetBlock& block) const;
-  void words(const WantedLeaves& leaves) const;
+  Meets meets(const Cube& cube) const;
+  bool contains(const glm::dvec3& p_voxel) const;
 
  private:
   SliceDistance distance_;
@@ -106,7 +104,9 @@ class ShiftedOctreeOperand {
   /// Target voxel t is the octree's voxel t + source_offset.
   ShiftedOctreeOperand(const Octree& octree, const glm::ivec3& source_offset)
       : octree_(&octree), source_offset_(source_offset) {}
-  Cover cover(const TargetBlock& block) const;
+  static constexpr bool words_are_quick = true;
+  Meets meets(const Cube& cube) const;
+  bool contains(const glm::dvec3& p_voxel) const;
   void words(const WantedLeaves& leaves) const;
 
  private:
@@ -119,7 +119,9 @@ class ShiftedOctreeOperand {
 class SampledOctreeOperand {
  public:
   SampledOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
-  Cover cover(const TargetBlock& block) const;
+  static constexpr bool words_are_quick = true;
+  Meets meets(const Cube& cube) const;
+  bool contains(const glm::dvec3& p_voxel) const;
   void words(const WantedLeaves& leaves) const;
 
  private:
@@ -133,12 +135,12 @@ class SampledOctreeOperand {
   glm::ivec3 lowest_{0}, highest_{0};
 };
 
-/// An octree on another lattice or under a motion: a voxel is inside where most of a grid of 5 x 5 x 5 points
+/// An octree on another lattice or under a motion: a voxel is inside if most of a grid of 5 x 5 x 5 points
 /// in it is (D4).
 class HalfOctreeOperand {
  public:
   HalfOctreeOperand(const Octree& octree, const glm::dmat4& source_from_target);
-  Cover cover(const TargetBlock& block) const;
+  Meets meets(const Cube& cube) const;
   void words(const WantedLeaves& leaves) const;
 
  private:
@@ -154,7 +156,9 @@ class SampledWindowOperand {
   SampledWindowOperand(const Window& window, const glm::dmat4& source_from_target,
                        Interpolation interpolation)
       : window_(&window), source_from_target_(source_from_target), interpolation_(interpolation) {}
-  Cover cover(const TargetBlock& block) const;
+  static constexpr bool words_are_quick = true;
+  Meets meets(const Cube& cube) const;
+  bool contains(const glm::dvec3& p_voxel) const;
   void words(const WantedLeaves& leaves) const;
 
  private:
@@ -163,17 +167,32 @@ class SampledWindowOperand {
   Interpolation interpolation_;
 };
 
-/// An octree on the target's own lattice: the walk follows its nodes, and asks nothing here.
+/// An octree on the target's own lattice: a walk over blocks follows its nodes instead of asking.
 struct AlignedOctreeOperand {
-  BlockRef root;
+  const Octree* octree;
+  Meets meets(const Cube& cube) const { return ShiftedOctreeOperand(*octree, glm::ivec3(0)).meets(cube); }
+  bool contains(const glm::dvec3& p_voxel) const {
+    return ShiftedOctreeOperand(*octree, glm::ivec3(0)).contains(p_voxel);
+  }
 };
 
-using Operand = std::variant<AlignedOctreeOperand, ShiftedOctreeOperand, SampledOctreeOperand,
-                             HalfOctreeOperand, WindowOperand, SampledWindowOperand, MaskOperand,
-                             SliceMaskOperand, ConvexOperand, SphereOperand>;
+using Operand =
+    std::variant<AlignedOctreeOperand, ShiftedOctreeOperand, SampledOctreeOperand, HalfOctreeOperand,
+                 WindowOperand, SampledWindowOperand, MaskOperand, SliceMaskOperand, HalfSpaceOperand,
+                 BallOperand, BoxOperand, CylinderOperand, TorusOperand>;
 
 /// The operand for a walk over `target`; it refers to the expression behind it.
 Operand operand_of(const PostfixExpression::Operand& operand, const Universe& target,
                    const Resampling& resampling);
+
+/// What is known of the children of a block. Children of 4 voxels a side may be left to words().
+Cover cover(const Operand& operand, const TargetBlock& block);
+void words(const Operand& operand, const WantedLeaves& leaves);
+/// Preconditions, of this and the next two: the operand is no WindowOperand and no HalfOctreeOperand.
+Meets meets(const Operand& operand, const Cube& cube);
+bool contains(const Operand& operand, const glm::dvec3& p_voxel);
+/// Surfaces within a cube that the operand's surface cuts. An operand without tangents claims an edge between
+/// none.
+Sheets sheets(const Operand& operand, const Cube& cube);
 
 }  // namespace octotomy::voxel

@@ -9,22 +9,20 @@
 #include "voxel/solid/operand.h"
 #include "voxel/tree/octree_node.h"
 
-// What the operands' sources share: children and voxels of a block, and how far a linear map strays over
-// them.
+// What the operands' sources share: children and voxels of a block, and how far a linear map strays over a
+// cube.
 
 namespace octotomy::voxel {
 
-/// Cover of a block from the status of each child, asked by the child's centre (of its voxels' centres).
-template <typename ChildStatus>
-Cover cover_of_children(const TargetBlock& block, const ChildStatus& child_status) {
+/// Cover of a block from what each child's cube holds.
+template <typename ChildMeets>
+Cover cover_of_children(const TargetBlock& block, const ChildMeets& child_meets) {
   Cover cover;
-  const double to_centre = 0.5 * (block.child_side - 1);
   for (int child = 0; child < 64; ++child) {
-    const glm::dvec3 centre = glm::dvec3(block.origin + child_place(child) * block.child_side) + to_centre;
-    const Status status = child_status(centre);
+    const Meets meets = child_meets(block.child(child));
     const std::uint64_t bit = std::uint64_t{1} << child;
-    if (status == Status::Full) cover.full |= bit;
-    if (status != Status::Empty) cover.some |= bit;
+    if (!meets.out) cover.full |= bit;
+    if (meets.in) cover.some |= bit;
   }
   return cover;
 }
@@ -49,33 +47,30 @@ void for_each_wanted_voxel(const WantedLeaves& leaves, const Inside& inside) {
   });
 }
 
-/// How far f may stray from its value at a child's centre over the centres of the child's voxels, with what
-/// rounding could add: the walk must leave to the words what rounding could decide either way, or the answer
-/// would depend on the tree's shape.
-double reach(const Linear& f, int child_side);
+/// How far f may stray over a cube from its value at the cube's centre, with what rounding could add: the
+/// walk must leave to the words what rounding could decide either way, or the answer would depend on the
+/// tree's shape.
+double reach(const Linear& f, double half);
 
 /// Row `row` of an affine map, and the map followed by a projection onto a direction, less an offset.
 Linear component(const glm::dmat4& map, int row);
 Linear along(const glm::dmat4& map, const glm::dvec3& direction, double offset);
 
-/// The box in another frame that holds the centres of a child's voxels.
+/// A box in another frame that holds the image of a cube.
 struct ImageBox {
   glm::dvec3 low, high;
 };
-class Imager {
- public:
-  Imager(const glm::dmat4& map, int child_side) : map_(map) {
-    for (int row = 0; row < 3; ++row) half_[row] = reach(component(map, row), child_side);
-  }
-  ImageBox operator()(const glm::dvec3& centre) const {
-    const glm::dvec3 p(map_ * glm::dvec4(centre, 1.0));
-    return {p - half_, p + half_};
-  }
+inline ImageBox image_of(const glm::dmat4& map, const Cube& cube) {
+  const glm::dvec3 p(map * glm::dvec4(cube.centre, 1.0));
+  glm::dvec3 half;
+  for (int row = 0; row < 3; ++row) half[row] = reach(component(map, row), cube.half);
+  return {p - half, p + half};
+}
 
- private:
-  glm::dmat4 map_;
-  glm::dvec3 half_{0.0};
-};
+/// The voxel that holds a point.
+inline glm::ivec3 nearest_voxel(const glm::dvec3& p_voxel) {
+  return glm::ivec3(glm::floor(p_voxel + 0.5));
+}
 
 /// Voxels, both ends included.
 struct VoxelBox {

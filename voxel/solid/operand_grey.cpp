@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -9,11 +10,6 @@
 
 namespace octotomy::voxel {
 namespace {
-
-Status status_of_range(const ValueRange& range, double low, double high) {
-  if (range.low >= low && range.high <= high) return Status::Full;
-  return range.high < low || range.low > high ? Status::Empty : Status::Partial;
-}
 
 // Range of samples over a box of voxels, from blocks of 16 voxels a side.
 MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
@@ -31,18 +27,15 @@ MinMax range_within(const GreyOctree& grey, const VoxelBox& box) {
     for (int y = first.y; y <= final.y; ++y)
       for (int x = first.x; x <= final.x; ++x) {
         const MinMax& part = grey.range(height, {x, y, z});
-        range.low = std::min(range.low, part.low);
-        range.high = std::max(range.high, part.high);
+        range.widen(part);
       }
-  if (clipped.low != box.low || clipped.high != box.high) {
-    range.low = std::min(range.low, grey.background());
-    range.high = std::max(range.high, grey.background());
-  }
+  if (clipped.low != box.low || clipped.high != box.high) range.widen({grey.background(), grey.background()});
   return range;
 }
 
-// The samples that values within an image may depend on.
-VoxelBox support(const ImageBox& box, Interpolation interpolation) {
+// The samples that values within the image of a cube may depend on.
+VoxelBox support(const glm::dmat4& source_from_target, const Cube& cube, Interpolation interpolation) {
+  const ImageBox box = image_of(source_from_target, cube);
   const Margin around = margin(interpolation);
   return {glm::ivec3(glm::floor(box.low)) - around.before, glm::ivec3(glm::floor(box.high)) + around.after};
 }
@@ -57,6 +50,8 @@ class NearSamples {
   MinMax choose(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& last) {
     first_ = first;
     count_ = last - first + 1;
+    assert(glm::all(glm::greaterThan(count_, glm::ivec3(0))) &&
+           glm::all(glm::lessThanEqual(count_, glm::ivec3(leaves))));
     MinMax range{std::numeric_limits<std::int16_t>::max(), std::numeric_limits<std::int16_t>::min()};
     const int limit = grey.universe().side() / 4;
     std::size_t next = 0;
@@ -70,8 +65,7 @@ class NearSamples {
           chosen_[next++] = brick == nullptr ? nullptr : brick->samples[number].data();
           const MinMax part =
               brick == nullptr ? MinMax{grey.background(), grey.background()} : brick->leaf_range[number];
-          range.low = std::min(range.low, part.low);
-          range.high = std::max(range.high, part.high);
+          range.widen(part);
         }
     return range;
   }
@@ -118,6 +112,8 @@ class NearSamples {
   double trilinear(const glm::dvec3& position) const {
     const glm::dvec3 p = position - glm::dvec3(4 * first_);
     const glm::ivec3 low(p);
+    assert(glm::all(glm::greaterThanEqual(low, glm::ivec3(0))) &&
+           glm::all(glm::lessThan(low, glm::ivec3(side - 1))));
     const glm::dvec3 t = p - glm::dvec3(low);
     const std::int16_t* cell = &samples_[index(low.x, low.y, low.z)];
     const auto along_x = [&](int offset) { return cell[offset] * (1.0 - t.x) + cell[offset + 1] * t.x; };
@@ -150,7 +146,7 @@ Cover WindowOperand::cover(const TargetBlock& block) const {
                              ? grey_->brick(block.origin >> 4).leaf_range[static_cast<std::size_t>(child)]
                              : grey_->range(child_height, first + place);
     const Status status =
-        status_of_range(value_range(range, Interpolation::Nearest), window_.low, window_.high);
+        window_status(value_range(range, Interpolation::Nearest), window_.low, window_.high);
     const std::uint64_t bit = std::uint64_t{1} << child;
     if (status == Status::Full) cover.full |= bit;
     if (status != Status::Empty) cover.some |= bit;
@@ -166,28 +162,28 @@ void WindowOperand::words(const WantedLeaves& leaves) const {
   }
 }
 
-Cover SampledWindowOperand::cover(const TargetBlock& block) const {
-  // Within a block of height 2, words() looks at the leaves themselves.
-  if (block.child_side == 4) return {0, all_children};
-  const Imager image(source_from_target_, block.child_side);
-  return cover_of_children(block, [&](const glm::dvec3& centre) {
-    const MinMax range = range_within(window_->grey, support(image(centre), interpolation_));
-    return status_of_range(value_range(range, interpolation_), window_->low, window_->high);
-  });
+Meets SampledWindowOperand::meets(const Cube& cube) const {
+  const MinMax range = range_within(window_->grey, support(source_from_target_, cube, interpolation_));
+  return Meets::of(window_status(value_range(range, interpolation_), window_->low, window_->high));
+}
+
+bool SampledWindowOperand::contains(const glm::dvec3& p_voxel) const {
+  const double value =
+      interpolate(window_->grey, glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0)), interpolation_);
+  return value >= window_->low && value <= window_->high;
 }
 
 void SampledWindowOperand::words(const WantedLeaves& leaves) const {
   const GreyOctree& grey = window_->grey;
-  const Imager image(source_from_target_, 4);
   NearSamples near;
   for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {
-    const VoxelBox box = support(image(glm::dvec3(origin) + 1.5), interpolation_);
+    const VoxelBox box = support(source_from_target_, {glm::dvec3(origin) + 1.5, 1.5}, interpolation_);
     const glm::ivec3 first = box.low >> 2;
     const glm::ivec3 last = box.high >> 2;
     const bool is_near = glm::all(glm::lessThan(last - first, glm::ivec3(NearSamples::leaves)));
     if (is_near) {
       const ValueRange range = value_range(near.choose(grey, first, last), interpolation_);
-      const Status status = status_of_range(range, window_->low, window_->high);
+      const Status status = window_status(range, window_->low, window_->high);
       if (status == Status::Empty) return 0;
       if (status == Status::Full) return all_children;
       near.fetch(grey.background());

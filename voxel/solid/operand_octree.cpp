@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "voxel/solid/operand.h"
@@ -12,14 +13,6 @@
 namespace octotomy::voxel {
 namespace {
 
-glm::ivec3 nearest_voxel(const glm::dvec3& p) {
-  return glm::ivec3(glm::floor(p + 0.5));
-}
-
-// Leaf words are quicker to fetch than to ask about: within a block of height 2 every leaf is left to
-// words().
-constexpr Cover left_to_words{0, all_children};
-
 // Nibbles of x, groups of y and layers of z that stay in their own leaf when a row is shifted by s of 4.
 constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
     {all_children, 0x7777777777777777, 0x3333333333333333, 0x1111111111111111},
@@ -29,6 +22,7 @@ constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
 
 // The leaf that begins `shift` voxels into `low` along an axis and ends in the leaf after it.
 std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int shift) {
+  assert(axis >= 0 && axis < 3 && shift >= 0 && shift < 4);
   if (shift == 0) return low;
   const std::uint64_t stay = staying[static_cast<std::size_t>(axis)][static_cast<std::size_t>(shift)];
   const int stride = 1 << (2 * axis);
@@ -37,12 +31,16 @@ std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int 
 
 }  // namespace
 
-Cover ShiftedOctreeOperand::cover(const TargetBlock& block) const {
-  if (block.child_side == 4) return left_to_words;
-  return cover_of_children(block, [&](const glm::dvec3& centre) {
-    const glm::ivec3 low = glm::ivec3(centre - 0.5 * (block.child_side - 1)) + source_offset_;
-    return status_within(*octree_, {low, low + block.child_side - 1});
-  });
+Meets ShiftedOctreeOperand::meets(const Cube& cube) const {
+  assert(cube.half > 0.0);
+  const glm::ivec3 low = nearest_voxel(cube.centre - cube.half);
+  const glm::ivec3 high(glm::ceil(cube.centre + cube.half - 0.5));
+  const Meets meets = Meets::of(status_within(*octree_, {low + source_offset_, high + source_offset_}));
+  return meets.decided() ? meets : Meets::exactly(true, true);
+}
+
+bool ShiftedOctreeOperand::contains(const glm::dvec3& p_voxel) const {
+  return octree_->contains(nearest_voxel(p_voxel) + source_offset_);
 }
 
 // Separable: 5 x 5 x 5 leaves are joined along x to 4 x 5 x 5, then along y, then along z.
@@ -72,7 +70,7 @@ namespace {
 // sign.
 constexpr int fraction_bits = 24;
 
-// A base and an offset, each rounded to half a unit, stay within this of where they are.
+// How far a base and an offset, each rounded to half a unit, move a position.
 const double fixed_slack = std::ldexp(1.0, 1 - fraction_bits);
 
 std::int32_t fixed(double voxels) {
@@ -119,25 +117,23 @@ SampledOctreeOperand::SampledOctreeOperand(const Octree& octree, const glm::dmat
   }
 }
 
-Cover SampledOctreeOperand::cover(const TargetBlock& block) const {
-  if (block.child_side == 4) return left_to_words;
-  const Imager image(source_from_target_, block.child_side);
-  return cover_of_children(block, [&](const glm::dvec3& centre) {
-    const ImageBox box = image(centre);
-    return status_within(*octree_, {nearest_voxel(box.low), nearest_voxel(box.high)});
-  });
+Meets SampledOctreeOperand::meets(const Cube& cube) const {
+  const ImageBox box = image_of(source_from_target_, cube);
+  return Meets::of(status_within(*octree_, {nearest_voxel(box.low), nearest_voxel(box.high)}));
+}
+
+bool SampledOctreeOperand::contains(const glm::dvec3& p_voxel) const {
+  return octree_->contains(nearest_voxel(glm::dvec3(source_from_target_ * glm::dvec4(p_voxel, 1.0))));
 }
 
 // The source leaves around the block are fetched once; each wanted leaf is then looked up voxel by voxel in
 // them, unless the leaves about it are all full or all empty.
 void SampledOctreeOperand::words(const WantedLeaves& leaves) const {
-  const ImageBox box = Imager(source_from_target_, 16)(glm::dvec3(leaves.origin) + 7.5);
+  const ImageBox box = image_of(source_from_target_, TargetBlock{leaves.origin, 4}.whole());
   const glm::ivec3 first = nearest_voxel(box.low - fixed_slack) >> 2;
   const glm::ivec3 last = nearest_voxel(box.high + fixed_slack) >> 2;
   if (glm::any(glm::greaterThanEqual(last - first, glm::ivec3(LeafWords::side))))
-    return for_each_wanted_voxel(leaves, [&](const glm::dvec3& voxel) {
-      return octree_->contains(nearest_voxel(glm::dvec3(source_from_target_ * glm::dvec4(voxel, 1.0))));
-    });
+    return for_each_wanted_voxel(leaves, [&](const glm::dvec3& voxel) { return contains(voxel); });
   LeafWords region;
   region.read(*octree_, first, last);
   if (region.any() == 0 || region.every() == all_children)
@@ -150,6 +146,7 @@ void SampledOctreeOperand::words(const WantedLeaves& leaves) const {
 }
 
 std::uint64_t SampledOctreeOperand::leaf(const LeafWords& region, const glm::ivec3& base) const {
+  assert(glm::all(glm::greaterThanEqual(base + lowest_, glm::ivec3(0))));
   const glm::ivec3 first = (base + lowest_) >> (fraction_bits + 2);
   const glm::ivec3 last = (base + highest_) >> (fraction_bits + 2);
   std::uint64_t any = 0;

@@ -13,14 +13,9 @@ namespace {
 // position of four, and counting those as inside lets an object grow by an eighth of a voxel a move.
 constexpr int points_an_axis = 5;
 
-glm::ivec3 nearest_voxel(const glm::dvec3& p) {
-  return glm::ivec3(glm::floor(p + 0.5));
-}
-
-// Voxels of the source that a block's points may lie in: its voxels' cuboids, hence one voxel wider than
-// their centres.
-VoxelBox reached(const Imager& wider_image, const glm::dvec3& centre) {
-  const ImageBox box = wider_image(centre);
+// Voxels of the source that the points of a cube's voxels may lie in, if the cube holds their centres.
+VoxelBox reached(const glm::dmat4& source_from_target, const Cube& cube) {
+  const ImageBox box = image_of(source_from_target, {cube.centre, cube.half + 0.5});
   return {nearest_voxel(box.low), nearest_voxel(box.high)};
 }
 
@@ -37,17 +32,14 @@ HalfOctreeOperand::HalfOctreeOperand(const Octree& octree, const glm::dmat4& sou
   for (const glm::dvec3& point : points_) reach_ = glm::max(reach_, glm::abs(point));
 }
 
-Cover HalfOctreeOperand::cover(const TargetBlock& block) const {
-  const Imager image(source_from_target_, block.child_side + 1);
-  return cover_of_children(
-      block, [&](const glm::dvec3& centre) { return status_within(*octree_, reached(image, centre)); });
+Meets HalfOctreeOperand::meets(const Cube& cube) const {
+  return Meets::of(status_within(*octree_, reached(source_from_target_, cube)));
 }
 
 void HalfOctreeOperand::words(const WantedLeaves& leaves) const {
-  const Imager image(source_from_target_, 4 + 1);
   LeafWords region;
   for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {
-    const VoxelBox box = reached(image, glm::dvec3(origin) + 1.5);
+    const VoxelBox box = reached(source_from_target_, {glm::dvec3(origin) + 1.5, 1.5});
     const glm::ivec3 first = box.low >> 2;
     const glm::ivec3 last = box.high >> 2;
     const bool near = glm::all(glm::lessThan(last - first, glm::ivec3(LeafWords::side)));

@@ -22,12 +22,7 @@ constexpr int block_side = 16;
 constexpr int corner_side = block_side + 1;
 constexpr int lines_an_axis = 4;
 
-void widen(MinMax& range, const MinMax& by) {
-  range.low = std::min(range.low, by.low);
-  range.high = std::max(range.high, by.high);
-}
-
-// Length of the part of 0..1 where a value that changes linearly from `from` to `to` lies in the window.
+// Length of the part of 0..1 over which a value that changes linearly from `from` to `to` lies in the window.
 double length_within(double from, double to, double low, double high) {
   if (from > to) std::swap(from, to);
   const double above = std::max(low, from);
@@ -80,7 +75,7 @@ class BlockSum {
                            glm::any(glm::greaterThanEqual(at, glm::ivec3(blocks)));
       const MinMax part = outside ? MinMax{grey_.background(), grey_.background()} : grey_.range(2, at);
       if (any)
-        widen(range, part);
+        range.widen(part);
       else
         range = part;
       any = true;

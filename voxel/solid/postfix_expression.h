@@ -10,8 +10,9 @@
 
 namespace octotomy::voxel {
 
-/// What is known of 64 children at once: `full` are Full for certain, `some` are not Empty for certain, full
-/// within some. Operators follow Kleene's three-valued logic, bit by bit: exact where both sides are known.
+/// What is known of 64 children at once: those of `full` are Full, those outside `some` are Empty, the others
+/// undecided. Precondition: full lies within some. Operators follow Kleene's three-valued logic, bit by bit:
+/// exact for children that both sides decide.
 struct Cover {
   std::uint64_t full = 0;
   std::uint64_t some = 0;

@@ -5,20 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "voxel/solid/polygon.h"
+
 namespace octotomy::voxel {
-namespace {
-
-double signed_area_mm2(const std::vector<glm::dvec2>& polygon) {
-  double twice = 0.0;
-  for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++) {
-    const glm::dvec2 a = polygon[last] - polygon.front();
-    const glm::dvec2 b = polygon[i] - polygon.front();
-    twice += a.x * b.y - a.y * b.x;
-  }
-  return 0.5 * twice;
-}
-
-}  // namespace
 
 void check(const RegionMask& mask) {
   if (mask.regions.empty()) throw std::invalid_argument("a mask needs at least one region drawn in a view");
@@ -34,16 +23,15 @@ void check(const RegionMask& mask) {
       for (const glm::dvec2& point : polygon)
         if (!std::isfinite(point.x) || !std::isfinite(point.y))
           throw std::invalid_argument(which + " has a coordinate that is not a finite number");
-      if (signed_area_mm2(polygon) == 0.0) throw std::invalid_argument(which + " encloses no area");
+      if (signed_area(polygon) == 0.0) throw std::invalid_argument(which + " encloses no area");
     }
   }
 }
 
 bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm) {
   bool inside = false;
-  for (const std::vector<glm::dvec2>& polygon : polygons_mm)
-    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
-      inside ^= crosses_ray_from(polygon[last], polygon[i], p_mm);
+  for_each_edge(polygons_mm,
+                [&](const glm::dvec2& a, const glm::dvec2& b) { inside ^= crosses_ray_from(a, b, p_mm); });
   return inside;
 }
 

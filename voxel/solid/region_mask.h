@@ -32,6 +32,14 @@ inline bool crosses_ray_from(const glm::dvec2& a, const glm::dvec2& b, const glm
   return (a.y > p_mm.y) != (b.y > p_mm.y) && p_mm.x < (b.x - a.x) * (p_mm.y - a.y) / (b.y - a.y) + a.x;
 }
 
+/// Calls `visit(from, to)` for every edge of the polygons, closing edges included.
+template <typename Visit>
+void for_each_edge(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const Visit& visit) {
+  for (const std::vector<glm::dvec2>& polygon : polygons_mm)
+    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
+      visit(polygon[last], polygon[i]);
+}
+
 /// By the even-odd rule over all polygons.
 bool contains(const std::vector<std::vector<glm::dvec2>>& polygons_mm, const glm::dvec2& p_mm);
 bool contains(const Region& region, const glm::dvec2& p_mm);

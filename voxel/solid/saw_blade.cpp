@@ -23,11 +23,11 @@ View view_along(const glm::dvec3& direction) {
   return view;
 }
 
-/// Where two lines a half kerf beside two pieces meet: on the bisector of their normals.
+/// Intersection of two lines a half kerf beside two pieces: on the bisector of their normals.
 glm::dvec2 mitre(const glm::dvec2& before, const glm::dvec2& after, double half_kerf_mm) {
   const glm::dvec2 sum = before + after;
   const double square = glm::dot(sum, sum);
-  // The lines run antiparallel where the sum vanishes, up to the rounding of unit vectors.
+  // The lines run antiparallel if the sum vanishes, up to the rounding of unit vectors.
   if (!(square > 64.0 * std::numeric_limits<double>::epsilon()))
     throw std::invalid_argument("the saw's line turns back on itself: leave out the point where it does");
   return sum * (2.0 * half_kerf_mm / square);

@@ -12,13 +12,13 @@ namespace octotomy::voxel {
 /// A cut as a saw makes it: along a line of straight pieces, swept in one direction.
 struct SawLine {
   std::vector<glm::dvec3> line_mm;  ///< LPS; at least two points
-  glm::dvec3 direction{0, 1, 0};    ///< the way the blade goes in; any length but zero
+  glm::dvec3 direction{0, 1, 0};    ///< of the blade into the bone; any length but zero
   double depth_mm = 100.0;          ///< from the first point of the line that the blade meets; above 0
-  double kerf_mm = 1.0;             ///< width of what is sawn away, half on either side of the line; above 0
+  double kerf_mm = 1.0;             ///< width of the cut, half on either side of the line; above 0
 };
 
-/// The volume that the saw takes away. Pieces of the line meet in mitres; its ends are square. Throws
-/// std::invalid_argument where the line has fewer than two points apart as seen along the direction, or turns
+/// The volume that the saw removes. Pieces of the line meet in mitres; its ends are square. Throws
+/// std::invalid_argument if the line has fewer than two points apart as seen along the direction, or turns
 /// back on itself.
 Expression saw_blade(const SawLine& saw);
 

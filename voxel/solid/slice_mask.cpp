@@ -2,24 +2,18 @@
 #include "voxel/solid/slice_mask.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "voxel/solid/polygon.h"
 #include "voxel/solid/region_mask.h"
 
 namespace octotomy::voxel {
 namespace {
 
 constexpr double outside_mm = std::numeric_limits<double>::infinity();
-
-double square_to_segment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 along = b - a;
-  const double square = glm::dot(along, along);
-  const double t = square > 0.0 ? std::clamp(glm::dot(p - a, along) / square, 0.0, 1.0) : 0.0;
-  const glm::dvec2 to = a + t * along - p;
-  return glm::dot(to, to);
-}
 
 }  // namespace
 
@@ -48,9 +42,9 @@ void check(const SliceMask& mask) {
 double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) const {
   const std::vector<std::vector<glm::dvec2>>& polygons = mask_->slices[slice].polygons_mm;
   double square = outside_mm;
-  for (const std::vector<glm::dvec2>& polygon : polygons)
-    for (std::size_t i = 0, last = polygon.size() - 1; i < polygon.size(); last = i++)
-      square = std::min(square, square_to_segment(p_mm, polygon[last], polygon[i]));
+  for_each_edge(polygons, [&](const glm::dvec2& a, const glm::dvec2& b) {
+    square = std::min(square, square_to_segment(p_mm, a, b));
+  });
   const double distance = std::sqrt(square);
   return contains(polygons, p_mm) ? -distance : distance;
 }
@@ -58,6 +52,7 @@ double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) con
 // Over a stretch of the gap after slice `below`, at one point of the plane.
 SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, const glm::dvec2& p_mm, double from_mm,
                                             double to_mm) const {
+  assert(from_mm <= to_mm);
   const SliceMask::Slice& a = mask_->slices[below];
   const SliceMask::Slice& b = mask_->slices[below + 1];
   const double at_a = distance_mm(below, p_mm);
@@ -86,6 +81,7 @@ SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, const glm::dvec2&
 
 SliceDistance::Bounds SliceDistance::operator()(const glm::dvec2& p_mm, double position_mm,
                                                 double in_plane_mm, double across_mm) const {
+  assert(mask_->slices.size() >= 2 && in_plane_mm >= 0.0 && across_mm >= 0.0);
   const std::vector<SliceMask::Slice>& slices = mask_->slices;
   const std::size_t last = slices.size() - 1;
   const double first_mm = slices[0].position_mm;

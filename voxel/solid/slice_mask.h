@@ -16,10 +16,10 @@ struct SliceMask {
     double position_mm = 0.0;                          ///< p . look of its plane
     std::vector<std::vector<glm::dvec2>> polygons_mm;  ///< in the view's millimetres; none: empty there
   };
-  /// What lies between two slices that are not empty: the nearer one's region; or where distances to the two
-  /// outlines, negative inside and weighted by nearness, sum to at most zero (shape-based interpolation, Raya
-  /// and Udupa, IEEE Trans. Medical Imaging 9, 1990, with exact distances). Next to an empty slice it is the
-  /// nearer one's region.
+  /// What lies between two slices that are not empty: the nearer one's region; or the points at which the
+  /// distances to the two outlines, negative inside and weighted by nearness, sum to at most zero
+  /// (shape-based interpolation, Raya and Udupa, IEEE Trans. Medical Imaging 9, 1990, with exact distances).
+  /// Next to an empty slice it is the nearer one's region.
   enum class Between { ShapeBased, Nearest };
 
   View view;
@@ -42,7 +42,7 @@ class SliceDistance {
   };
   /// Bounds of a function that is at most zero inside the mask and positive outside, over the points whose
   /// distance from (p_mm, position_mm) is at most `in_plane_mm` within the slices' plane and `across_mm`
-  /// across it; exact, both the same, where both are zero.
+  /// across it. Exact, low and high the same, if both are zero.
   Bounds operator()(const glm::dvec2& p_mm, double position_mm, double in_plane_mm, double across_mm) const;
 
  private:

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <optional>
 
 namespace octotomy::voxel {
@@ -10,6 +11,8 @@ namespace {
 
 // Children of a block that voxels low..high of it touch, from 4^height voxels a side.
 std::uint64_t children_within(const VoxelBox& box, int child_log2) {
+  assert(glm::all(glm::greaterThanEqual(box.low, glm::ivec3(0))) &&
+         glm::all(glm::lessThan(box.high >> child_log2, glm::ivec3(4))));
   static constexpr std::array<std::array<std::uint64_t, 4>, 3> planes{{
       {0x1111111111111111, 0x2222222222222222, 0x4444444444444444, 0x8888888888888888},
       {0x000f000f000f000f, 0x00f000f000f000f0, 0x0f000f000f000f00, 0xf000f000f000f000},
@@ -25,15 +28,11 @@ std::uint64_t children_within(const VoxelBox& box, int child_log2) {
   return within;
 }
 
-Status joined(std::uint64_t within, std::uint64_t full, std::uint64_t some) {
-  if ((full & within) == within) return Status::Full;
-  return (some & within) == 0 ? Status::Empty : Status::Partial;
-}
-
 // Status of a box of voxels, relative to the block that holds it.
 Status status_within(BlockRef block, int height, const VoxelBox& box) {
+  assert(glm::all(glm::lessThanEqual(box.low, box.high)));
   const Node* node = block.node();
-  if (node == nullptr) return block.is_full() ? Status::Full : Status::Empty;
+  if (node == nullptr) return block.status();
   const int child_log2 = 2 * height - 2;
   const std::uint64_t within = children_within(box, child_log2);
   const std::uint64_t partial = within & node->partial;
@@ -48,8 +47,9 @@ Status status_within(BlockRef block, int height, const VoxelBox& box) {
     const int child = std::countr_zero(rest);
     const glm::ivec3 first = child_place(child) << child_log2;
     const VoxelBox part{glm::max(box.low - first, 0), glm::min(box.high - first, (1 << child_log2) - 1)};
-    const Status status = height > 2 ? status_within(block.child(child), height - 1, part)
-                                     : joined(children_within(part, 0), block.word(child), block.word(child));
+    const Status status = height > 2
+                              ? status_within(block.child(child), height - 1, part)
+                              : status_of(children_within(part, 0), block.word(child), block.word(child));
     if (status == Status::Partial || (agreed && *agreed != status)) return Status::Partial;
     agreed = status;
   }

@@ -22,7 +22,7 @@ struct MetTerm {
 /// Most leaves, repeated ones included, that a walk meets: a part that occurs twice is walked twice.
 inline constexpr std::size_t most_leaves = std::size_t{1} << 22;
 
-/// Calls `met` for every term in reading order. Throws Error with the code Input where the expression has
+/// Calls `met` for every term in reading order. Throws Error with the code Input if the expression has
 /// more than most_leaves leaves.
 template <typename Met>
 void for_each_term(const Expression& expression, const Met& met) {

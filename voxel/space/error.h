@@ -31,7 +31,7 @@ struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
-/// The code of a failed system call: Resource where the disk or memory gave out, else Input.
+/// The code of a failed system call: Resource if the disk or memory gave out, else Input.
 inline ErrorCode code_of_errno(int number) {
   return number == ENOSPC || number == EDQUOT || number == EIO || number == ENOMEM || number == EMFILE
              ? ErrorCode::Resource

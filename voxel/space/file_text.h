@@ -30,7 +30,7 @@ inline std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// In lower case, with its dot; empty where there is none.
+/// In lower case, with its dot; empty if there is none.
 inline std::string extension_of(const std::filesystem::path& path) {
   return lower_case(path.extension().string());
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// Included before ITK's own headers. Debian's ITK knows only the compiler that it was built with; what it
-// would find out about clang stands here.
+// Included before ITK's own headers. Debian's ITK knows only the compiler that it was built with; this is
+// what it would detect about clang.
 #if defined(__clang__)
 #define ITK_COMPILER_DETECTION_H
 #define ITK_NOEXCEPT noexcept

@@ -12,10 +12,9 @@
 
 namespace octotomy::voxel {
 
-/// An allocator for arrays of many megabytes. Elements made without a value are left as they are, so that the
-/// threads that fill an array are the first to touch it; and the system is asked for huge pages: a fault each
-/// 4 KiB takes longer than filling them, and where samples are met all over a scan, finding a small page
-/// costs more than the sample.
+/// An allocator for arrays of many megabytes. Elements made without a value stay uninitialised, so that the
+/// threads that fill an array are the first to touch it. Asks the system for huge pages: a fault each 4 KiB
+/// takes longer than filling them, and for scattered reads finding a small page costs more than the sample.
 template <typename Value>
 struct LargeAllocator {
   using value_type = Value;
@@ -32,7 +31,7 @@ struct LargeAllocator {
     const std::size_t whole = (bytes + page - 1) / page * page;
     void* const memory = ::operator new(whole, std::align_val_t(page));
 #if defined(__linux__)
-    // Advice only: where it is not taken, the pages are small ones.
+    // Advice only: a system that ignores it gives small pages.
     static_cast<void>(::madvise(memory, whole, MADV_HUGEPAGE));
 #endif
     return static_cast<Value*>(memory);

@@ -6,9 +6,9 @@
 
 namespace octotomy::voxel {
 
-/// Where samples lie in the patient: `dims` samples, x fastest, the sample of integer index i at LPS
-/// millimetre position `lps_from_voxel * (i, 1)`. An integer index is a voxel's centre, so the voxel itself
-/// reaches from i - 1/2 to i + 1/2.
+/// The places of samples in the patient: `dims` samples, x fastest. The sample of integer index i is at LPS
+/// millimetre position `lps_from_voxel * (i, 1)`. An integer index is a voxel's centre, so the voxel reaches
+/// from i - 1/2 to i + 1/2.
 struct Lattice {
   glm::ivec3 dims{0};
   glm::dmat4 lps_from_voxel{1.0};
@@ -19,8 +19,7 @@ struct Lattice {
   double voxel_mm3() const;
   glm::dvec3 lps_mm(const glm::dvec3& p_voxel) const;
   glm::dvec3 voxel(const glm::dvec3& p_mm) const;
-  /// True where index x grows towards the patient's left, back or head whatever the order of axes, that is,
-  /// where the three axes form a right-handed system in LPS.
+  /// Whether the three axes form a right-handed system in LPS.
   bool right_handed() const;
   std::size_t sample_count() const;
 
@@ -55,11 +54,11 @@ struct Universe {
 };
 
 /// The smallest axis-aligned universe of cubic voxels that holds the box, box and universe sharing a centre.
-/// Throws std::invalid_argument where voxel_mm is not positive and finite, std::length_error where it would
+/// Throws std::invalid_argument if voxel_mm is not positive and finite, std::length_error if it would
 /// take more than 2^Universe::max_depth voxels a side.
 Universe universe_around(const Box& box, double voxel_mm);
 
-/// What is added to a target's voxel to give the source's, where the map is a translation by whole voxels.
+/// The offset from a target's voxel to the source's, if the map is a translation by whole voxels.
 std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_target);
 
 }  // namespace octotomy::voxel

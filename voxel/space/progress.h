@@ -13,7 +13,7 @@ struct Progress {
   std::stop_token stop;
   std::function<void(double fraction)> report;  ///< 0 to 1; may be empty
 
-  /// Reports the fraction done. Throws Stopped where the stop token is set.
+  /// Reports the fraction done. Throws Stopped if the stop token is set.
   void at(double fraction) const {
     if (stop.stop_requested()) throw Stopped("stopped before the work was done");
     if (report) report(fraction);

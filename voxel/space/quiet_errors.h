@@ -5,9 +5,9 @@
 
 namespace octotomy::voxel {
 
-/// While one lives, what anybody writes to standard error is thrown away: for calls into libraries that print
-/// what they also report, where the program owes people one line. One at a time in the process; the others
-/// wait. Nothing is thrown: where standard error cannot be turned aside, it stays.
+/// Discards what anybody writes to standard error while one lives: for calls into libraries that print what
+/// they also report. One at a time in the process; the others wait. Throws nothing: if standard error cannot
+/// be redirected, it stays.
 class QuietErrors {
  public:
   QuietErrors();

@@ -2,12 +2,14 @@
 #include "voxel/space/scene.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 
 namespace octotomy::voxel {
 
 Range range(const Scene& scene) {
+  assert(scene.lattice.sample_count() > 0);
   return std::visit(
       [](const auto& samples) {
         const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
@@ -38,6 +40,7 @@ void check(const Scene& scene) {
 }
 
 double interpolate(const Scene& scene, const glm::dvec3& p_voxel) {
+  assert(scene.lattice.sample_count() > 0);
   const glm::ivec3 dims = scene.lattice.dims;
   const glm::dvec3 p = glm::clamp(p_voxel, glm::dvec3(0.0), glm::dvec3(dims - 1));
   const glm::ivec3 low = glm::min(glm::ivec3(p), glm::max(dims - 2, glm::ivec3(0)));

@@ -18,7 +18,7 @@ enum class Meaning { Hounsfield, Raw, Label };
 /// Ordered from harmless to grave, so that the gravest of several is their maximum.
 enum class Verdict { Pass, Warn, Fail };
 
-/// One line of a scan's audit: what was looked at, how it stands, what was found and done about it.
+/// One line of a scan's audit: the check, its verdict, what was found and done about it.
 struct Finding {
   std::string check;
   Verdict verdict = Verdict::Pass;
@@ -35,8 +35,8 @@ struct Scene {
   Lattice lattice;
   std::variant<Int16Samples, FloatSamples> samples;
   Meaning meaning = Meaning::Raw;
-  std::string modality;  ///< DICOM's two letters ("CT", "MR"), empty where the file does not say
-  std::string source;    ///< where it came from, for people
+  std::string modality;  ///< DICOM's two letters ("CT", "MR"), empty if the file does not say
+  std::string source;    ///< its origin, for people
   std::vector<Finding> audit;
 };
 
@@ -50,7 +50,7 @@ Range range(const Scene& scene);
 /// The unit people read beside a value: "HU" or "1".
 std::string unit(const Scene& scene);
 
-/// Throws std::invalid_argument where the number of samples is not the lattice's, the lattice is empty,
+/// Throws std::invalid_argument if the number of samples is not the lattice's, the lattice is empty,
 /// singular or not finite.
 void check(const Scene& scene);
 

@@ -21,7 +21,7 @@ class SharedProgress {
  public:
   SharedProgress(const Progress& progress, std::size_t pieces) : progress_(progress), pieces_(pieces) {}
 
-  /// Counts a piece as done, on any thread. Throws Stopped where the stop token is set.
+  /// Counts a piece as done, on any thread. Throws Stopped if the stop token is set.
   void one_more() {
     const double done = static_cast<double>(++done_) / static_cast<double>(pieces_);
     if (std::this_thread::get_id() == owner_)

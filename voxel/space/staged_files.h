@@ -5,11 +5,11 @@
 
 namespace octotomy::voxel {
 
-/// A hidden folder beside the files to be written: they are written into it under their own names and renamed
-/// into place together, so that a failure half-way leaves what was there. Removed with the object.
+/// A hidden folder beside the files to be written. Files are written into it under their own names and
+/// renamed into place together, so that a failure half-way leaves the old ones. Removed with the object.
 class StagedFiles {
  public:
-  /// Throws Error, Input or Resource, naming `destination` where no folder can be made in it.
+  /// Throws Error, Input or Resource, that names `destination` if no folder can be made in it.
   explicit StagedFiles(const std::filesystem::path& destination);
   ~StagedFiles();
   StagedFiles(const StagedFiles&) = delete;
@@ -17,7 +17,7 @@ class StagedFiles {
 
   const std::filesystem::path& folder() const { return folder_; }
   /// Renames every staged file into the destination, `last` (a file name) after all others, so that a header
-  /// never stands before its data. Throws Error, Input or Resource, with path and reason.
+  /// never appears before its data. Throws Error, Input or Resource, with path and reason.
   void commit(const std::filesystem::path& last = {});
 
  private:

@@ -7,7 +7,7 @@
 
 namespace octotomy::voxel {
 
-/// Reads a representation's text from left to right and knows where it stands, so that a refusal can say so.
+/// Reads a representation's text from left to right. A refusal names the position.
 class TextCursor {
  public:
   /// `what` is the text's kind, which a refusal begins with: "treecode".
@@ -31,7 +31,7 @@ class TextCursor {
   /// Throws std::invalid_argument: "treecode, character 12: ...", counted from one.
   [[noreturn]] void refuse(const std::string& why) const { refuse_at(position_, why); }
   [[noreturn]] void refuse_at(std::size_t position, const std::string& why) const;
-  /// The same, naming what stands there instead.
+  /// The same, naming the character found instead.
   [[noreturn]] void refuse_unexpected(const std::string& expected) const;
 
  private:

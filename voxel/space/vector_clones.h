@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-// Loops over rows of floats are compiled for the vectors of several processors and the best is chosen when
-// the program is loaded. Nothing is contracted or summed in another order, so all give the same bits. clang
-// and sanitizers take the plain one.
+// Compiles a loop for the vectors of several processors; the loader chooses the best. Nothing is contracted
+// or summed in another order, so all give the same bits. Clang and sanitizers take the plain one.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define OCTOTOMY_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))

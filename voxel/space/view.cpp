@@ -2,6 +2,7 @@
 #include "voxel/space/view.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -60,6 +61,7 @@ View parse_view(const std::string& text) {
 }
 
 std::array<View, 2> stereo_pair(const View& view, double between_deg) {
+  assert(std::isfinite(between_deg));
   const double half = 0.5 * between_deg * std::numbers::pi / 180.0;
   // The left eye stands at the observer's left, so that it looks a little to the right.
   const auto turned = [&](double angle) {

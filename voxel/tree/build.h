@@ -12,7 +12,7 @@ namespace octotomy::voxel {
 
 /// The voxels whose sample lies in low..high, both included. Scene voxel i is universe voxel i: the scene's
 /// first voxel must be the universe's first voxel and its axes the universe's; voxels beyond the scene are
-/// empty. Throws std::invalid_argument where the lattices differ or the scene does not fit into the universe.
+/// empty. Throws std::invalid_argument if the lattices differ or the scene does not fit into the universe.
 /// Parallel; same bits on any thread count. Cost: one pass over the samples.
 Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high);
 

@@ -13,11 +13,6 @@ glm::ivec3 octant(int number) {
   return {number & 1, (number >> 1) & 1, number >> 2};
 }
 
-void widen(MinMax& range, const MinMax& by) {
-  range.low = std::min(range.low, by.low);
-  range.high = std::max(range.high, by.high);
-}
-
 MinMax range_of_block(const GreyOctree& grey, const glm::ivec3& origin, int height) {
   if (height >= 2) return grey.range(height, origin >> (2 * height));
   const glm::ivec3 leaf = (origin >> 2) & 3;
@@ -29,14 +24,9 @@ MinMax range_of_samples(const GreyOctree& grey, const glm::ivec3& origin, int si
   MinMax range{first, first};
   for (int k = 1; k < side * side * side; ++k) {
     const std::int16_t sample = grey.sample(origin + octant(k));
-    widen(range, {sample, sample});
+    range.widen({sample, sample});
   }
   return range;
-}
-
-Status status_in(const MinMax& range, Window16 window) {
-  if (range.low >= window.low && range.high <= window.high) return Status::Full;
-  return range.high < window.low || range.low > window.high ? Status::Empty : Status::Partial;
 }
 
 class WindowCounter {
@@ -77,7 +67,7 @@ MinMax range_of_node(const GreyOctree& grey, const glm::ivec3& origin, int side_
   const int height = side_log2 / 2;  // of the block, or of the eight that the node is made of
   MinMax range = range_of_block(grey, origin, height);
   for (int number = 1; number < (is_block ? 1 : 8); ++number)
-    widen(range, range_of_block(grey, origin + (octant(number) << (2 * height)), height));
+    range.widen(range_of_block(grey, origin + (octant(number) << (2 * height)), height));
   return range;
 }
 
@@ -86,7 +76,7 @@ GreyNode::GreyNode(const GreyOctree& grey, Window16 window, const glm::ivec3& or
       window_(window),
       origin_(origin),
       scan_(scan),
-      status_(status_in(range_of_node(grey, origin, scan.side_log2()), window)) {
+      status_(window_status(range_of_node(grey, origin, scan.side_log2()), window.low, window.high)) {
   // Elsewhere the range tells by itself: what lies beyond the scan is not in the window.
   if (status_ == Status::Empty || !grey.window_meets_background(window.low, window.high)) return;
   const Status scanned = scan.status();

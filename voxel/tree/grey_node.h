@@ -9,8 +9,8 @@
 
 namespace octotomy::voxel {
 
-/// A node of the min-max octree as the thesis has it (3.3.2), seen through a window: Full where all its
-/// samples are the scan's and lie in the window, Empty where none is by their range, otherwise Partial. A
+/// A node of the min-max octree as the thesis has it (3.3.2), seen through a window: Full if all its
+/// samples are the scan's and lie in the window, Empty if their range misses the window, otherwise Partial. A
 /// value that looks into its grey octree, which must outlive it.
 class GreyNode {
  public:

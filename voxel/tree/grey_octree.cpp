@@ -22,11 +22,6 @@
 namespace octotomy::voxel {
 namespace {
 
-void widen(MinMax& range, const MinMax& by) {
-  range.low = std::min(range.low, by.low);
-  range.high = std::max(range.high, by.high);
-}
-
 std::int16_t rounded(double value, const Scene& scene) {
   const double nearest = std::floor(value + 0.5);
   if (!(nearest >= std::numeric_limits<std::int16_t>::min() &&
@@ -60,7 +55,7 @@ class Resampler {
     }
   }
 
-  // Fills the row; bit i of the answer is set where its voxel i lies in the scan.
+  // Fills the row; bit i of the answer is set if its voxel i lies in the scan.
   std::uint16_t read(const glm::ivec3& first, Row& row) const {
     if (offset_) return copy(first + *offset_, row);
     unsigned inside = 0;
@@ -74,7 +69,7 @@ class Resampler {
   }
 
  private:
-  // Where a position falls along one axis: between two samples, or outside.
+  // The place of a position along one axis: between two samples, or outside.
   struct Place {
     int low = 0;
     int high = 0;
@@ -147,8 +142,8 @@ class Resampler {
   glm::ivec3 dims_;
   std::int16_t background_;
   glm::dmat4 scan_from_universe_;
-  std::optional<glm::ivec3> offset_;         ///< of the scan's samples, where the two lattices coincide
-  std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, where the lattices' axes are parallel
+  std::optional<glm::ivec3> offset_;         ///< of the scan's samples, if the two lattices coincide
+  std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, if the lattices' axes are parallel
 };
 
 // First and last universe voxel, clamped to the universe, that a scan can reach.
@@ -170,14 +165,14 @@ std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice&
 void set_leaf_ranges(GreyBrick& brick) {
   for (std::size_t leaf = 0; leaf < 64; ++leaf) {
     MinMax range{brick.samples[leaf][0], brick.samples[leaf][0]};
-    for (const std::int16_t sample : brick.samples[leaf]) widen(range, {sample, sample});
+    for (const std::int16_t sample : brick.samples[leaf]) range.widen({sample, sample});
     brick.leaf_range[leaf] = range;
   }
 }
 
 MinMax range_of(const GreyBrick& brick) {
   MinMax range = brick.leaf_range.front();
-  for (const MinMax& leaf : brick.leaf_range) widen(range, leaf);
+  for (const MinMax& leaf : brick.leaf_range) range.widen(leaf);
   return range;
 }
 
@@ -198,7 +193,7 @@ void join_ranges(std::vector<Level>& levels, int depth) {
           for (int child = 1; child < 64; ++child) {
             const glm::ivec3 at = parent * 4 + child_place(child);
             if (glm::all(glm::lessThan(at, glm::ivec3(below.side))))
-              widen(range, below.ranges[below.index(at)]);
+              range.widen(below.ranges[below.index(at)]);
           }
           level.ranges[level.index(parent)] = range;
         }

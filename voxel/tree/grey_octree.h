@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -20,7 +22,19 @@ namespace octotomy::voxel {
 struct MinMax {
   std::int16_t low = 0;
   std::int16_t high = 0;
+
+  void widen(const MinMax& by) {
+    low = std::min(low, by.low);
+    high = std::max(high, by.high);
+  }
 };
+
+/// Status of a block whose values lie in a range, seen through the window low..high, both included.
+template <typename Range>
+Status window_status(const Range& range, double low, double high) {
+  if (range.low >= low && range.high <= high) return Status::Full;
+  return range.high < low || range.low > high ? Status::Empty : Status::Partial;
+}
 
 /// Samples of a block of 16 x 16 x 16 voxels: 64 leaves of 4 x 4 x 4, leaves and the samples within each in
 /// bit order (octree_node.h), so that a window of a leaf is one 64-bit word.
@@ -29,9 +43,9 @@ struct GreyBrick {
   std::array<std::array<std::int16_t, 64>, 64> samples;
 };
 
-/// A min-max octree of int16 samples over dense leaves (thesis 3.3.2, the hybrid tree of A.6): the window
-/// that makes an object of it is chosen when it is looked at, not when it is built. Voxels beyond the scan
-/// have the background as their sample and belong to no window. Immutable; copies share.
+/// A min-max octree of int16 samples over dense leaves (thesis 3.3.2, the hybrid tree of A.6). A window
+/// chosen later makes an object of it. Voxels beyond the scan have the background as their sample and belong
+/// to no window. Immutable; copies share.
 class GreyOctree {
  public:
   const Universe& universe() const { return storage_->universe; }
@@ -39,8 +53,8 @@ class GreyOctree {
   std::int16_t background() const { return storage_->background; }
   /// The voxels whose sample is the scan's own.
   const Octree& scan() const { return storage_->scan; }
-  /// Whether the samples of voxels beyond the scan lie in low..high, so that samples alone do not tell which
-  /// voxels the window holds.
+  /// Whether voxels beyond the scan have samples in low..high. If so, samples alone do not tell the window's
+  /// voxels.
   bool window_meets_background(double low, double high) const {
     return low <= background() && background() <= high;
   }
@@ -48,6 +62,7 @@ class GreyOctree {
   /// Range of block number `block` of the given height, 2 and up; blocks of a height form a grid of
   /// universe side / 4^height, rounded up, along each axis. Precondition: within that grid.
   const MinMax& range(int height, const glm::ivec3& block) const {
+    assert(height >= 2 && static_cast<std::size_t>(height) < storage_->levels.size() + 2);
     const Level& level = storage_->levels[static_cast<std::size_t>(height - 2)];
     return level.ranges[level.index(block)];
   }
@@ -68,6 +83,8 @@ class GreyOctree {
     int side = 1;  ///< blocks along an axis
     std::vector<MinMax> ranges;
     std::size_t index(const glm::ivec3& block) const {
+      assert(glm::all(glm::greaterThanEqual(block, glm::ivec3(0))) &&
+             glm::all(glm::lessThan(block, glm::ivec3(side))));
       const auto blocks = static_cast<std::size_t>(side);
       return static_cast<std::size_t>(block.x) +
              blocks * (static_cast<std::size_t>(block.y) + blocks * static_cast<std::size_t>(block.z));
@@ -85,9 +102,9 @@ class GreyOctree {
   std::shared_ptr<const Storage> storage_;
 };
 
-/// Samples the scene at the universe's voxel centres: exactly where the lattices coincide, otherwise by
+/// Samples the scene at the universe's voxel centres: exactly if the lattices coincide, otherwise by
 /// trilinear interpolation rounded to the nearest integer, halves upward. Voxels whose centre lies outside
-/// the scene's bounds become `background`. Throws std::invalid_argument where float samples leave the int16
+/// the scene's bounds become `background`. Throws std::invalid_argument if float samples leave the int16
 /// range. Parallel; same bits on any thread count. Memory: the samples within the scan's bounds and three per
 /// cent; a sixteenth more while it is built.
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
@@ -96,7 +113,7 @@ GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int
 /// `fill` sets the samples of brick `number`, that of blocks[number], and is called once each from several
 /// threads; ranges are made here. Samples beyond a universe of less than 16 voxels a side must be the
 /// background. `scan` are the voxels whose samples are the scan's; none: scan_box(). Throws
-/// std::invalid_argument where a block is outside the universe or named twice, or the scan is of another
+/// std::invalid_argument if a block is outside the universe or named twice, or the scan is of another
 /// universe.
 GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t background,
                                  std::span<const glm::ivec3> blocks,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/tree/interpolate.h"
 
+#include <cassert>
 #include <cmath>
 
 namespace octotomy::voxel {
 
 Stencil stencil(double position, Interpolation interpolation) {
+  assert(std::isfinite(position));
   const double cell = std::floor(position);
   const double t = position - cell;
   const int low = static_cast<int>(cell);
@@ -28,6 +30,7 @@ Margin margin(Interpolation interpolation) {
 }
 
 ValueRange value_range(const MinMax& samples, Interpolation interpolation) {
+  assert(samples.low <= samples.high);
   if (interpolation != Interpolation::Cubic)
     return {static_cast<double>(samples.low), static_cast<double>(samples.high)};
   constexpr double most = 1.25 * 1.25 * 1.25;

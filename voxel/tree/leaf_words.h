@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <glm/glm.hpp>
 
@@ -20,6 +21,7 @@ class LeafWords {
   void read(const Octree& octree, const glm::ivec3& first, const glm::ivec3& last);
 
   std::uint64_t word(int x, int y, int z) const {
+    assert(x >= 0 && y >= 0 && z >= 0 && x < side && y < side && z < side);
     return words_[static_cast<std::size_t>(x + side * (y + side * z))];
   }
   const std::uint64_t* words() const { return words_.data(); }

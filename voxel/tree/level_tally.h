@@ -14,7 +14,7 @@ class LevelTally {
  public:
   explicit LevelTally(int depth) : by_side_(static_cast<std::size_t>(depth) + 1) {}
 
-  /// A node of 2^side_log2 voxels a side, by its status; true where it is Partial.
+  /// A node of 2^side_log2 voxels a side, by its status; true if it is Partial.
   bool count(int side_log2, bool is_full, bool is_empty) {
     LevelCount& level = by_side_[static_cast<std::size_t>(side_log2)];
     ++(is_full ? level.full : is_empty ? level.empty : level.partial);

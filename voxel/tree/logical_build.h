@@ -12,7 +12,7 @@
 
 namespace octotomy::voxel {
 
-/// Throws std::invalid_argument where no universe has this depth.
+/// Throws std::invalid_argument if no universe has this depth.
 inline void check_depth(int depth) {
   if (depth < 2 || depth > Universe::max_depth)
     throw std::invalid_argument("a universe has a depth of 2 to " + std::to_string(Universe::max_depth) +
@@ -20,9 +20,9 @@ inline void check_depth(int depth) {
 }
 
 /// Builds an octree from the statuses of its nodes in preorder. `source.open(level)` gives the next node's
-/// status, `source.close(homogeneous)` is told at the end of a Partial node whether its children were all
-/// Full or all Empty, so that it can refuse what is not condensed; a source that accepts them gets them
-/// condensed. Either may throw. Partial is a broken precondition at the level of voxels.
+/// status. `source.close(homogeneous)` follows the children of a Partial node; `homogeneous` means all Full
+/// or all Empty, which a source may refuse and which is condensed otherwise. Either may throw. Partial is a
+/// broken precondition at the level of voxels.
 template <typename Source>
 class LogicalBuild {
  public:

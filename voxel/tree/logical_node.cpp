@@ -7,14 +7,6 @@
 #include "voxel/tree/octant_order.h"
 
 namespace octotomy::voxel {
-namespace {
-
-Status status_of(std::uint64_t full, std::uint64_t partial, std::uint64_t mask) {
-  if ((full & mask) == mask) return Status::Full;
-  return ((full | partial) & mask) == 0 ? Status::Empty : Status::Partial;
-}
-
-}  // namespace
 
 LogicalNode LogicalNode::root(const Octree& octree) {
   const int depth = octree.universe().depth;
@@ -23,9 +15,9 @@ LogicalNode LogicalNode::root(const Octree& octree) {
 }
 
 Status LogicalNode::status() const {
-  if (side_log2_ <= 2) return status_of(word_, word_, mask_);
-  if (const Node* node = block_.node()) return status_of(node->full, node->partial, mask_);
-  return block_.is_full() ? Status::Full : Status::Empty;
+  if (side_log2_ <= 2) return status_of(mask_, word_, word_);
+  if (const Node* node = block_.node()) return status_of(mask_, node->full, node->full | node->partial);
+  return block_.status();
 }
 
 LogicalNode LogicalNode::child(int number) const {

@@ -7,8 +7,8 @@
 
 namespace octotomy::voxel {
 
-/// A node of the octree as the thesis has it (3.3): eight children, level 0 the root, level n single voxels;
-/// whatever the physical nodes are. A value of a few words that looks into its octree, which must outlive it.
+/// A node of the octree as the thesis has it (3.3): eight children, level 0 the root, level n single voxels.
+/// A value of a few words that refers to its octree, which must outlive it.
 class LogicalNode {
  public:
   /// The Empty root of no octree.

@@ -102,7 +102,7 @@ Bytes universe_bytes(const Universe& universe, std::int16_t background) {
   return raw;
 }
 
-// The sample that predicts number i of a leaf, where that is not its first.
+// The sample that predicts number i of a leaf, if that is not its first.
 constexpr std::size_t predictor(std::size_t i) {
   return (i & 3) != 0 ? i - 1 : (i & 12) != 0 ? i - 4 : i - 16;
 }
@@ -333,7 +333,7 @@ class Reader {
     return std::nullopt;
   }
 
-  // The raw bytes of the sections of a name that come next; empty where there are none.
+  // The raw bytes of the sections of a name that come next; empty if there are none.
   Bytes take(const std::string& name) {
     Bytes raw;
     for (; next_ < sections_.size() && sections_[next_].name == name; ++next_) {

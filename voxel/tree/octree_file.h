@@ -23,8 +23,8 @@
 // A checksum is a CRC-32 (zlib's); a section's is of its number, counted from 0 as a u32, and all of the
 // section but the checksum itself. So a burst of 32 flipped bits is always found, any other damage but for
 // one in 2^32, and one in 2^64 where zstd's own checksum of the raw bytes sees it too. A section's raw bytes
-// are at most 2^20; what is longer is cut into sections of the same name and of that length but for the last.
-// Sections stand in this order:
+// are at most 2^20. Longer data are cut into sections of the same name, all but the last of that length.
+// Sections follow in this order:
 //
 //   UNIV  u32 depth, i32 background (0 but for grey), 16 f64 of lps_from_voxel, column by column
 //   NAME  UTF-8, may be missing
@@ -32,7 +32,7 @@
 //   TREE  binary: the packed treecode (packed_treecode.h); partial: that of the voxels inside
 //   TOUC  partial: the packed treecode of the voxels touched
 //   FRAC  partial: u16 fractions of the voxels between, in tree order
-//   GRID  grey: a bit a block of 16 x 16 x 16 voxels, x fastest, low bits first: set where it has a brick;
+//   GRID  grey: a bit a block of 16 x 16 x 16 voxels, x fastest, low bits first: set if it has a brick;
 //         the others are background
 //   BRIK  grey: the bricks of up to 64 blocks in the grid's order, first the low bytes of all their numbers,
 //         then the high bytes. A number stands for a sample, in tree order (leaves, and samples within each,
@@ -55,13 +55,13 @@ struct OctreeFile {
 
 const Universe& universe(const OctreeFile& file);
 
-/// The file's bytes: the same for the same voxels, whatever the tree's history and the number of threads.
+/// The file's bytes: the same for the same voxels, for any history of the tree and any number of threads.
 /// Parallel. Memory: the packed tree and, for grey, the compressed bricks.
 std::vector<std::uint8_t> octree_file_bytes(const OctreeFile& file);
 
 /// The inverse; `source` begins what is thrown. Throws Error with the code Input, naming the section and its
-/// first byte where a checksum, a size or a tree is not right, where the file is cut short or goes on, and
-/// where it is of a later version. Every checksum is verified before anything is built. Memory: at most 2^15
+/// first byte if a checksum, a size or a tree is not right, if the file is cut short or goes on, and
+/// if it is of a later version. Every checksum is verified before anything is built. Memory: at most 2^15
 /// times the bytes, which is as far as zstd compresses, and an empty tree of the universe.
 OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::string& source);
 

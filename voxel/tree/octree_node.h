@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -19,8 +20,14 @@
 
 namespace octotomy::voxel {
 
-/// What the voxels of a node, a block or a box are: none, all, or some of them in the object.
+/// How many of the voxels of a node, a block or a box are in the object: none, all, or some.
 enum class Status : std::uint8_t { Empty, Full, Partial };
+
+/// Status of the children, or the voxels, of a mask: those in `full` are Full, those outside `some` Empty.
+constexpr Status status_of(std::uint64_t mask, std::uint64_t full, std::uint64_t some) {
+  if ((full & mask) == mask) return Status::Full;
+  return (some & mask) == 0 ? Status::Empty : Status::Partial;
+}
 
 constexpr int child_index(int x, int y, int z) {
   return x + 4 * y + 16 * z;
@@ -50,8 +57,11 @@ struct Node {
   std::uint64_t full = 0;         ///< children that are Full
   std::uint64_t partial = 0;      ///< children with a payload each, in ascending child number
 
-  /// Where child `child` of `partial` stands in the payload.
-  int rank(int child) const { return std::popcount(partial & ((std::uint64_t{1} << child) - 1)); }
+  /// Place of child `child` of `partial` in the payload. Precondition: its bit is set.
+  int rank(int child) const {
+    assert((partial >> child) & 1);
+    return std::popcount(partial & ((std::uint64_t{1} << child) - 1));
+  }
   int payload_count() const { return std::popcount(partial); }
 
   /// Payload of a node of height 2: the words of its leaves that are neither Full nor Empty.
@@ -62,7 +72,7 @@ struct Node {
   const Node** nodes() { return reinterpret_cast<const Node**>(this + 1); }
 };
 
-/// A block as a walk meets it: Empty (nullptr), Full, or a node it does not own.
+/// A block as a walk meets it: Empty (nullptr), Full, or a node that it does not own.
 class BlockRef {
  public:
   constexpr BlockRef() = default;
@@ -73,8 +83,10 @@ class BlockRef {
   bool is_full() const { return bits_ == 1; }
   // A child slot in one word, as node addresses are never 0 or 1. NOLINTNEXTLINE(performance-no-int-to-ptr)
   const Node* node() const { return bits_ > 1 ? reinterpret_cast<const Node*>(bits_) : nullptr; }
+  Status status() const { return is_empty() ? Status::Empty : is_full() ? Status::Full : Status::Partial; }
   /// Child of a block of height 3 and up; of a homogeneous block, the block itself.
   BlockRef child(int index) const {
+    assert(index >= 0 && index < 64);
     const Node* parent = node();
     if (parent == nullptr) return *this;
     if ((parent->partial >> index) & 1) return of(parent->nodes()[parent->rank(index)]);
@@ -82,6 +94,7 @@ class BlockRef {
   }
   /// Leaf word of a block of height 2.
   std::uint64_t word(int index) const {
+    assert(index >= 0 && index < 64);
     const Node* parent = node();
     if (parent == nullptr) return is_full() ? all_children : 0;
     if ((parent->partial >> index) & 1) return parent->words()[parent->rank(index)];
@@ -94,8 +107,8 @@ class BlockRef {
   std::uintptr_t bits_ = 0;
 };
 
-/// Asks for a node's count ahead of retain() or release(): counting is atomic, and atomic operations wait for
-/// memory one after the other where plain ones overlap.
+/// Fetches a node's count ahead of retain() or release(): atomic operations wait for memory one after the
+/// other, plain ones overlap.
 inline void prefetch_references(const Node* node) {
   __builtin_prefetch(&node->references, 1);
 }

@@ -13,10 +13,10 @@ namespace octotomy::voxel {
 /// 2 Partial. Then every Partial node, in preorder, gives its eight children: a byte of which bit x + 2y + 4z
 /// says that the child is Full, and a byte that says likewise which are Partial; the others are Empty.
 /// Children that are voxels cannot be Partial, their second byte is left out.
-/// Cost: one walk; two bytes a Partial node, one where its children are voxels.
+/// Cost: one walk; two bytes a Partial node, one if its children are voxels.
 std::vector<std::uint8_t> packed_treecode(const Octree& octree);
 
-/// The inverse. Throws std::invalid_argument with the number of the byte where the code is none, is not
+/// The inverse. Throws std::invalid_argument with the number of the byte if the code is none, is not
 /// condensed, ends early or goes on. Memory: the octree's.
 Octree octree_of_packed_treecode(const Universe& universe, std::span<const std::uint8_t> code);
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <stdexcept>
 #include <string>
 
@@ -38,11 +39,11 @@ class LevelCounter {
     for (int octant = 0; octant < 8; ++octant) {
       const std::uint64_t mask = octant_mask(octant);
       if ((mask & within) == 0) continue;
-      // Where the universe is one octant of its root block, the octant is the root: level 0 is not counted.
+      // If the universe is one octant of its root block, the octant is the root: level 0 is not counted.
       if (within == all_children && !count(2 * height - 1, masks, mask)) continue;
       for (std::uint64_t rest = mask & within; rest != 0; rest &= rest - 1) {
         const int child = std::countr_zero(rest);
-        // Likewise where the universe is a single leaf.
+        // Likewise if the universe is a single leaf.
         if (within != 1 && !count(2 * height - 2, masks, rest & (~rest + 1))) continue;
         if (height > 2)
           count_block(inside.child(child), touching.child(child), height - 1, all_children);
@@ -61,7 +62,7 @@ class LevelCounter {
       if (count(1, words, mask)) tally_.count_voxels(words.some, mask);
     }
   }
-  // Counts the node made of the children of `mask`; true where it is Partial.
+  // Counts the node made of the children of `mask`; true if it is Partial.
   bool count(int side_log2, const Masks& masks, std::uint64_t mask) {
     return tally_.count(side_log2, (masks.full & mask) == mask, (masks.some & mask) == 0);
   }
@@ -86,6 +87,7 @@ void for_each_boundary_leaf(BlockRef inside, BlockRef touching, int height, cons
 
 // The voxels inside and those of the boundary at least half filled; fractions are taken in tree order.
 Block half_filled(BlockRef inside, BlockRef touching, int height, const std::uint16_t*& next) {
+  assert(height >= 2);
   if (inside == touching) return Block::share(inside);
   std::array<std::uint64_t, 64> words{};
   std::array<BlockRef, 64> children;
@@ -152,6 +154,7 @@ void for_each_boundary_voxel(
 }
 
 Octree at_least_half(const PartialOctree& partial) {
+  assert(partial.inside.universe() == partial.touching.universe());
   const std::uint16_t* next = partial.fractions.data();
   return {partial.touching.universe(),
           half_filled(partial.inside.root(), partial.touching.root(), partial.touching.root_height(), next)};

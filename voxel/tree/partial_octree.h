@@ -9,8 +9,8 @@
 
 namespace octotomy::voxel {
 
-/// A solid in its voxels with the share of each that it fills. Two octrees hold where it is certain: the
-/// voxels wholly inside (D1) and those that any of it touches (D2); the voxels between them are its boundary.
+/// A solid in its voxels with the share of each that it fills. Two octrees hold the voxels
+/// wholly inside (D1) and those that any of it touches (D2). The voxels between them are its boundary.
 struct PartialOctree {
   /// A fraction that stands for a whole voxel.
   static constexpr std::uint16_t whole = 65535;
@@ -22,12 +22,12 @@ struct PartialOctree {
   std::vector<std::uint16_t> fractions;
 };
 
-/// Throws std::invalid_argument where the universes differ, a voxel is inside and not touching, or the number
+/// Throws std::invalid_argument if the universes differ, a voxel is inside and not touching, or the number
 /// of fractions is not that of the voxels between the two.
 void check(const PartialOctree& partial);
 
-/// Levels 1..n as the thesis counts its digital sphere (table 3.1): a node is Full only where it lies wholly
-/// inside and Empty only where nothing touches it; at level n a boundary voxel counts as Full, without
+/// Levels 1..n as the thesis counts its digital sphere (table 3.1): a node is Full only if it lies wholly
+/// inside and Empty only if nothing touches it; at level n a boundary voxel counts as Full, without
 /// being merged into its parent. Precondition: passes check().
 std::vector<LevelCount> level_counts(const PartialOctree& partial);
 

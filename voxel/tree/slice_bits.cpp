@@ -2,12 +2,14 @@
 #include "voxel/tree/slice_bits.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace octotomy::voxel {
 namespace {
 
 // Sets `count` bits of a row from voxel x on; runs of a block are 4^k long and aligned to their length.
 void set_run(std::uint64_t* row, int x, int count) {
+  assert(x >= 0 && count > 0 && x % std::min(count, 64) == 0);
   if (count >= 64) {
     std::fill_n(row + x / 64, count / 64, all_children);
     return;
@@ -57,6 +59,7 @@ class SliceReader {
 }  // namespace
 
 void read_slice(const Octree& octree, int z, SliceBits& slice) {
+  assert(z >= 0 && z < octree.universe().side());
   slice.side = octree.universe().side();
   slice.words_per_row = (slice.side + 63) / 64;
   slice.words.assign(static_cast<std::size_t>(slice.side) * static_cast<std::size_t>(slice.words_per_row), 0);

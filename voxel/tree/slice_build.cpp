@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 
 #include "voxel/tree/logical_build.h"
 
@@ -170,6 +171,7 @@ Octree octree_of_slices(const Universe& universe, const std::function<bool(int z
 }
 
 void set_row(SliceBits& slice, int y, int first, int last) {
+  assert(y >= 0 && y < slice.side && first >= 0 && first <= last && last < slice.side);
   std::uint64_t* row =
       slice.words.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(slice.words_per_row);
   const std::uint64_t from = all_children << (first % 64);
@@ -184,6 +186,7 @@ void set_row(SliceBits& slice, int y, int first, int last) {
 }
 
 bool next_run(const SliceBits& slice, int y, int from, int& first, int& last) {
+  assert(y >= 0 && y < slice.side && from >= 0 && from <= slice.side);
   const std::uint64_t* row = slice.row(y);
   // The first voxel from x on that is in the object, or is not: `flip` is all ones for the latter.
   const auto find = [&](int x, std::uint64_t flip) {

@@ -24,7 +24,7 @@ Octree octree_of_slices(const Universe& universe, const std::function<bool(int z
 /// Sets the voxels first..last of a row. Precondition: within the slice.
 void set_row(SliceBits& slice, int y, int first, int last);
 
-/// The runs of voxels of a row in ascending order: the first from `from` on. False where there is none.
+/// The runs of voxels of a row in ascending order: the first from `from` on. False if there is none.
 /// Precondition: from <= side.
 bool next_run(const SliceBits& slice, int y, int from, int& first, int& last);
 

@@ -18,7 +18,7 @@ struct Window16 {
   std::int16_t high = 0;
 };
 
-/// The int16 samples that lie in low..high; none where no int16 value does.
+/// The int16 samples that lie in low..high; none if no int16 value does.
 inline std::optional<Window16> window16(double low, double high) {
   constexpr double smallest = std::numeric_limits<std::int16_t>::min();
   constexpr double largest = std::numeric_limits<std::int16_t>::max();
@@ -28,7 +28,7 @@ inline std::optional<Window16> window16(double low, double high) {
   return Window16{static_cast<std::int16_t>(first), static_cast<std::int16_t>(last)};
 }
 
-/// Bit i is set where samples[i] lies in the window, for 16 samples.
+/// Bit i is set if samples[i] lies in the window, for 16 samples.
 inline std::uint16_t window_bits16(const std::int16_t* samples, Window16 window) {
 #if defined(__SSE2__)
   const __m128i low = _mm_set1_epi16(window.low);

@@ -72,8 +72,7 @@ class VisibleCells {
           for (int corner = 1; corner < 8; ++corner) {
             const glm::ivec3 next(x + (corner & 1), y + ((corner >> 1) & 1), z + (corner >> 2));
             if (glm::any(glm::greaterThanEqual(next, glm::ivec3(side)))) continue;
-            range.low = std::min(range.low, ranges[level.index(next)].low);
-            range.high = std::max(range.high, ranges[level.index(next)].high);
+            range.widen(ranges[level.index(next)]);
           }
           level.visible[level.index({x, y, z})] = table.visible(range) ? 1 : 0;
         }
@@ -219,8 +218,7 @@ class March {
 
   static MinMax root_range(const GreyOctree& grey) {
     MinMax range = grey.range(std::max(2, root_height(grey.universe().depth)), glm::ivec3(0));
-    range.low = std::min(range.low, grey.background());
-    range.high = std::max(range.high, grey.background());
+    range.widen({grey.background(), grey.background()});
     return range;
   }
 

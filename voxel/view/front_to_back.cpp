@@ -16,51 +16,49 @@
 namespace octotomy::voxel {
 namespace {
 
-enum class Cover : std::uint8_t { Empty, Partial, Covered };
-
 template <typename Node, typename Counter>
 class AxisWalk {
  public:
   AxisWalk(const AxisFrame& frame, Counter& counter, ColumnDepths& columns)
       : frame_(frame), counter_(counter), columns_(columns) {
     for (int level = 0; level <= frame.depth(); ++level)
-      covers_.emplace_back(std::size_t{1} << (2 * level), Cover::Empty);
+      covers_.emplace_back(std::size_t{1} << (2 * level), Status::Empty);
   }
 
   /// `is_virtual`: the octree node is homogeneous and above the quadtree node's level; its visit is counted
   /// already.
   void walk(const Node& node, int level, int p, int q, int d, bool is_virtual) {
     const Status status = node.status();
-    Cover& cover = at(level, p, q);
+    Status& cover = at(level, p, q);
     counter_.quadtree(1, 0);
     if (!is_virtual) counter_.direct(level, status, {p, q, d});
-    if (status == Status::Empty || cover == Cover::Covered) return;
-    if (status == Status::Full && cover == Cover::Empty) {
+    if (status == Status::Empty || cover == Status::Full) return;
+    if (status == Status::Full && cover == Status::Empty) {
       frame_.paint(columns_, p, q, level, d);
-      cover = Cover::Covered;
+      cover = Status::Full;
       return;
     }
-    cover = Cover::Partial;
+    cover = Status::Partial;
     const int half = frame_.side() >> (level + 1);
     bool covered = true;
     for (int i = 0; i < 4; ++i) {
       const int at_p = p + (i & 1) * half;
       const int at_q = q + (i >> 1) * half;
-      const Cover& child = at(level + 1, at_p, at_q);
+      const Status& child = at(level + 1, at_p, at_q);
       for (const bool behind : {false, true}) {
         if (status == Status::Partial)
           walk(node.child(frame_.child(i, behind)), level + 1, at_p, at_q, d + (behind ? half : 0), false);
         else
           walk(node, level + 1, at_p, at_q, d, true);
-        if (child == Cover::Covered) break;
+        if (child == Status::Full) break;
       }
-      covered = covered && child == Cover::Covered;
+      covered = covered && child == Status::Full;
     }
-    if (covered) cover = Cover::Covered;
+    if (covered) cover = Status::Full;
   }
 
  private:
-  Cover& at(int level, int p, int q) {
+  Status& at(int level, int p, int q) {
     const int shift = frame_.depth() - level;
     return covers_[static_cast<std::size_t>(level)]
                   [static_cast<std::size_t>(p >> shift) + (static_cast<std::size_t>(q >> shift) << level)];
@@ -69,7 +67,7 @@ class AxisWalk {
   const AxisFrame& frame_;
   Counter& counter_;
   ColumnDepths& columns_;
-  std::vector<std::vector<Cover>> covers_;  ///< by level
+  std::vector<std::vector<Status>> covers_;  ///< by level
 };
 
 /// The quadtree of a picture. Its root is the smallest square of 2^levels pixels that covers the projection

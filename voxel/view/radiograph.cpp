@@ -37,8 +37,7 @@ MinMax range_about(const GreyOctree& grey, const glm::dvec3& p) {
     for (int corner = 1; corner < 8; ++corner) {
       const glm::ivec3 at = glm::mix(low, high, glm::bvec3(corner & 1, corner & 2, corner & 4));
       const MinMax& part = grey.range(2, at >> 4);
-      range.low = std::min(range.low, part.low);
-      range.high = std::max(range.high, part.high);
+      range.widen(part);
     }
   return range;
 }

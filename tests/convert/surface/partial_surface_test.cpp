@@ -10,7 +10,6 @@
 #include "tests/convert/surfaces.h"
 #include "tests/unit_universe.h"
 #include "voxel/solid/digitise.h"
-#include "voxel/solid/shape.h"
 
 namespace octotomy::convert {
 namespace {

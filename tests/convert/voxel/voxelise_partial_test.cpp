@@ -13,7 +13,6 @@
 #include "tests/unit_universe.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/digitise.h"
-#include "voxel/solid/shape.h"
 
 namespace octotomy::convert {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "tests/voxel/dense.h"
 #include "voxel/solid/combine.h"
-#include "voxel/solid/digitise.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -76,7 +75,7 @@ TEST(Morphology, AgreesWithBallsDrawnVoxelByVoxel) {
 
 TEST(Morphology, ABallDilatedAndErodedIsTheBallThatItsRadiusSays) {
   const Universe universe = universe_around({glm::dvec3(-16), glm::dvec3(16)}, 0.5);
-  const Octree ball = digitise(universe, Sphere{{0, 0, 0}, 9}, Digitisation::Centre);
+  const Octree ball = combine(universe, Sphere{{0, 0, 0}, 9});
   const double larger = 4.0 / 3.0 * 3.14159265358979 * 12 * 12 * 12;
   EXPECT_NEAR(static_cast<double>(dilate(ball, 3).voxel_count()) / 8 / larger, 1.0, 0.05);
   EXPECT_TRUE(erode(ball, 10).is_empty());
@@ -86,9 +85,8 @@ TEST(Morphology, ABallDilatedAndErodedIsTheBallThatItsRadiusSays) {
 
 TEST(Morphology, FillsCavitiesButNotTunnelsNorDents) {
   const Universe universe = universe_around({glm::dvec3(-16), glm::dvec3(16)}, 1);
-  const Octree shell =
-      digitise(universe, Shape(Sphere{{0, 0, 0}, 12}) - Sphere{{0, 0, 0}, 8}, Digitisation::Centre);
-  const Octree ball = digitise(universe, Sphere{{0, 0, 0}, 12}, Digitisation::Centre);
+  const Octree shell = combine(universe, Expression(Sphere{{0, 0, 0}, 12}) - Sphere{{0, 0, 0}, 8});
+  const Octree ball = combine(universe, Sphere{{0, 0, 0}, 12});
   EXPECT_TRUE(fill_cavities(shell) == ball);
   const Octree pierced = combine(universe, Expression(shell) - Expression(Box{{-2, -2, 0}, {2, 2, 16}}));
   EXPECT_TRUE(fill_cavities(pierced) == pierced);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "voxel/solid/combine.h"
+#include "voxel/solid/polygon.h"
 #include "voxel/solid/region_mask.h"
 
 namespace octotomy::voxel {
@@ -39,16 +40,16 @@ TEST(SliceContours, OfAConeIsItsCircleToWithinTheInterpolation) {
   // Along a row or column the cone is bent by at most 1 / (8 r) of a voxel between two samples.
   for (const glm::dvec2& p : contours[0])
     ASSERT_NEAR(std::hypot(p.x - 30.3, p.y - 23.6), 17.0, 1.0 / (8 * 16));
-  EXPECT_NEAR(area(contours[0]), std::numbers::pi * 17 * 17, 2.0);
-  EXPECT_GT(area(contours[0]), 0.0);
+  EXPECT_NEAR(signed_area(contours[0]), std::numbers::pi * 17 * 17, 2.0);
+  EXPECT_GT(signed_area(contours[0]), 0.0);
 }
 
 TEST(SliceContours, RunRoundHolesTheOtherWay) {
   const Scene scene = scene_of(one_slice, [](const glm::ivec3& p) { return 4.0 - std::abs(cone(p, 14.0)); });
   const std::vector<SliceContour> contours = slice_contours(scene, 0, 0.0);
   ASSERT_EQ(contours.size(), 2U);
-  EXPECT_NEAR(area(contours[0]), std::numbers::pi * 18 * 18, 2.0);
-  EXPECT_NEAR(area(contours[1]), -std::numbers::pi * 10 * 10, 2.0);
+  EXPECT_NEAR(signed_area(contours[0]), std::numbers::pi * 18 * 18, 2.0);
+  EXPECT_NEAR(signed_area(contours[1]), -std::numbers::pi * 10 * 10, 2.0);
 }
 
 TEST(SliceContours, KeepApartWhatTouchesByACornerAndCloseAtTheBorder) {
@@ -59,13 +60,13 @@ TEST(SliceContours, KeepApartWhatTouchesByACornerAndCloseAtTheBorder) {
   const std::vector<SliceContour> contours = slice_contours(scene, 0, 0.0);
   ASSERT_EQ(contours.size(), 2U);
   // Half-way between samples all round: the voxels' own edges, corners cut off by an eighth of a voxel each.
-  EXPECT_DOUBLE_EQ(area(contours[0]), 5 * 4 - 4 / 8.0);
-  EXPECT_DOUBLE_EQ(area(contours[1]), 3 * 2 - 4 / 8.0);
+  EXPECT_DOUBLE_EQ(signed_area(contours[0]), 5 * 4 - 4 / 8.0);
+  EXPECT_DOUBLE_EQ(signed_area(contours[1]), 3 * 2 - 4 / 8.0);
   EXPECT_EQ(contours[0][0], glm::dvec2(0, -0.5));
   // The twin: everything inside.
   const Scene full = scene_of(one_slice, [](const glm::ivec3&) { return 1.0; });
   ASSERT_EQ(slice_contours(full, 0, 0.0).size(), 1U);
-  EXPECT_DOUBLE_EQ(area(slice_contours(full, 0, 0.0)[0]), 64 * 48 - 4 / 8.0);
+  EXPECT_DOUBLE_EQ(signed_area(slice_contours(full, 0, 0.0)[0]), 64 * 48 - 4 / 8.0);
   EXPECT_TRUE(slice_contours(full, 0, 2.0).empty());
 }
 
@@ -80,7 +81,7 @@ TEST(SliceContours, BoundExactlyTheSamplesInsideOnNoise) {
     const Scene scene = scene_of(lattice, [&](const glm::ivec3&) { return noise(random); });
     const std::vector<SliceContour> contours = slice_contours(scene, 0, threshold);
     contours_seen += contours.size();
-    for (const SliceContour& contour : contours) holes += area(contour) < 0;
+    for (const SliceContour& contour : contours) holes += signed_area(contour) < 0;
     const auto& samples = std::get<FloatSamples>(scene.samples);
     // Inside by the even-odd rule: a sample is inside the contours where it is at least the threshold.
     for (int y = 0; y < 29; ++y)
@@ -120,7 +121,7 @@ TEST(Thinned, LeavesCornersAndStraysNoFartherThanAllowed) {
   const SliceContour circle = slice_contours(scene, 0, 0.0)[0];
   const SliceContour thin = thinned(circle, 0.2);
   EXPECT_LT(thin.size(), circle.size() / 3);
-  EXPECT_NEAR(area(thin) / area(circle), 1.0, 0.02);
+  EXPECT_NEAR(signed_area(thin) / signed_area(circle), 1.0, 0.02);
   EXPECT_EQ(thinned({{0, 0}, {1, 0}, {0, 1}}, 9).size(), 3U);
 }
 

@@ -6,7 +6,7 @@
 
 #include "tests/voxel/dense.h"
 #include "voxel/filter/components.h"
-#include "voxel/solid/digitise.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -18,16 +18,16 @@ Universe unit_universe(int depth) {
 
 TEST(EulerNumbers, OfBallShellRingAndTwoPartsAreThoseOfTheTextbook) {
   const Universe universe = unit_universe(6);
-  const auto both = [&](const Shape& shape) {
-    const EulerNumbers numbers = euler_numbers(digitise(universe, shape, Digitisation::Centre));
+  const auto both = [&](const Expression& solid) {
+    const EulerNumbers numbers = euler_numbers(combine(universe, solid));
     EXPECT_EQ(numbers.by_faces, numbers.by_corners);
     return numbers.by_faces;
   };
   EXPECT_EQ(both(Sphere{{0, 0, 0}, 20}), 1);
-  EXPECT_EQ(both(Shape(Sphere{{0, 0, 0}, 20}) - Sphere{{1, 0, 0}, 10}), 2);
+  EXPECT_EQ(both(Expression(Sphere{{0, 0, 0}, 20}) - Sphere{{1, 0, 0}, 10}), 2);
   EXPECT_EQ(both(Torus{{0, 0, 0}, {0, 0, 1}, 18, 6}), 0);
-  EXPECT_EQ(both(Shape(Torus{{0, 0, 0}, {0, 0, 1}, 18, 6}) & HalfSpace{{1, 0, 0}, 0}), 1);
-  EXPECT_EQ(both(Shape(Torus{{0, 0, 0}, {0, 0, 1}, 18, 6}) - Box{{-5, -40, -40}, {5, 40, 40}}), 2);
+  EXPECT_EQ(both(Expression(Torus{{0, 0, 0}, {0, 0, 1}, 18, 6}) & HalfSpace{{1, 0, 0}, 0}), 1);
+  EXPECT_EQ(both(Expression(Torus{{0, 0, 0}, {0, 0, 1}, 18, 6}) - Box{{-5, -40, -40}, {5, 40, 40}}), 2);
   EXPECT_EQ(euler_numbers(Octree::full(universe)).by_faces, 1);
   EXPECT_EQ(euler_numbers(Octree::full(universe)).by_corners, 1);
   EXPECT_EQ(euler_numbers(Octree::empty(universe)).by_faces, 0);
@@ -79,7 +79,7 @@ TEST(EulerNumbers, AgreeWithCellsCountedOneByOneOnRandomObjects) {
 }
 
 TEST(CellCounts, AreTheSameOnOneThreadAndTwoAndAcrossWords) {
-  const Octree octree = digitise(unit_universe(7), Sphere{{0, 0, 0}, 63.9}, Digitisation::Centre);
+  const Octree octree = combine(unit_universe(7), Sphere{{0, 0, 0}, 63.9});
   const auto two = cell_counts(octree);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(cell_counts(octree), two);

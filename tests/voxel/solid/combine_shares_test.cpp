@@ -19,8 +19,8 @@ Universe universe_of_32() {
 struct Pair {
   ShareOperand a, b;
 };
-ShareOperand operand(const Shape& shape) {
-  PartialOctree partial = digitise_partial(universe_of_32(), shape);
+ShareOperand operand(const Expression& solid) {
+  PartialOctree partial = digitise_partial(universe_of_32(), solid);
   return {Expression(partial.touching), bracket_of(partial)};
 }
 Pair two_balls() {
@@ -33,7 +33,7 @@ VolumeBracket volume(const Pair& pair, const Expression& expression) {
 
 TEST(CombineShares, EveryOperationBracketsTheClosedFormsShares) {
   const Pair pair = two_balls();
-  const Shape a(Sphere{{-3.1, 0.2, 0.3}, 8.3}), b(Sphere{{2.7, 1.4, -0.6}, 7.4});
+  const Expression a(Sphere{{-3.1, 0.2, 0.3}, 8.3}), b(Sphere{{2.7, 1.4, -0.6}, 7.4});
   const double va = volume_mm3(digitise_partial(universe_of_32(), a));
   const double vb = volume_mm3(digitise_partial(universe_of_32(), b));
   const double shared = volume_mm3(digitise_partial(universe_of_32(), a & b));
@@ -61,7 +61,7 @@ TEST(CombineShares, WhatNoneTouchesIsNotTouched) {
 TEST(CombineShares, AnAxisAlignedCutLosesItsCoherentError) {
   // Half a voxel of the cut's area is what a binary count may be off by.
   const ShareOperand ball = operand(Sphere{{0.1, 0.2, 0.3}, 10.2});
-  const Shape both = Shape(Sphere{{0.1, 0.2, 0.3}, 10.2}) & HalfSpace{{0, 0, 1}, 2.45};
+  const Expression both = Expression(Sphere{{0.1, 0.2, 0.3}, 10.2}) & HalfSpace{{0, 0, 1}, 2.45};
   const double truth = volume_mm3(digitise_partial(universe_of_32(), both));
   const ShareOperand half = operand(HalfSpace{{0, 0, 1}, 2.45});
   const VolumeBracket found = volume_mm3(combine_shares(ball.symbol & half.symbol, {ball, half}));
@@ -102,7 +102,7 @@ TEST(CombineShares, MotionsStrangersAndOtherUniversesAreRefused) {
   EXPECT_THROW(combine_shares(moved(pair.a.symbol, glm::dmat4(1.0)), {pair.a}), std::invalid_argument);
   EXPECT_THROW(combine_shares(pair.a.symbol & pair.b.symbol, {pair.a}), std::invalid_argument);
   const PartialOctree coarse =
-      digitise_partial(universe_around({glm::dvec3(-16.0), glm::dvec3(16.0)}, 2.0), Shape(Sphere{}));
+      digitise_partial(universe_around({glm::dvec3(-16.0), glm::dvec3(16.0)}, 2.0), Expression(Sphere{}));
   const ShareOperand other{Expression(coarse.touching), bracket_of(coarse)};
   EXPECT_THROW(combine_shares(pair.a.symbol & other.symbol, {pair.a, other}), std::invalid_argument);
 }

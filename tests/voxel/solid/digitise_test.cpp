@@ -9,7 +9,7 @@
 
 #include "tests/voxel/dense.h"
 #include "voxel/solid/combine.h"
-#include "voxel/solid/shape_classifier.h"
+#include "voxel/solid/target_expression.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -45,28 +45,30 @@ Region ring_of_squares() {
 
 struct Named {
   std::string name;
-  Shape shape;
+  Expression solid;
 };
 
-std::vector<Named> shapes() {
+std::vector<Named> solids() {
   const glm::dmat3 turn = some_turn();
-  return {{"sphere", Sphere{{0.3, -0.7, 0.2}, 7.3}},
-          {"sphere on the lattice", Sphere{{0, 0, 0}, 8}},
-          {"ellipsoid", Ellipsoid{{0.3, -0.7, 0.2}, {9, 4, 2.5}, turn}},
-          {"box on the lattice", Box{{-4, -8, 2}, {6, -3, 8}}},
-          {"box between voxels", Box{{-4.3, -8.1, 2.6}, {6.4, -3.2, 8.1}}},
-          {"oriented box", OrientedBox{{0.3, -0.7, 0.2}, {8, 5, 1.5}, turn}},
-          {"half-space", HalfSpace{glm::normalize(glm::dvec3(1, -2, 0.4)), 1.3}},
-          {"half-space on the lattice", HalfSpace{{0, 0, 1}, 2}},
-          {"cylinder", Cylinder{{-6, -5, -3}, {5, 6, 4}, 3.3}},
-          {"upright cylinder", Cylinder{{1, 0, -6}, {1, 0, 4.5}, 5}},
-          {"torus", Torus{{0.2, 0.1, -0.4}, glm::normalize(glm::dvec3(1, 2, 3)), 6.5, 2.4}},
-          {"upright torus", Torus{{0.2, 0.1, -0.4}, {0, 1, 0}, 6.5, 2.4}},
-          {"prism", Prism{ring_of_squares(), -4.2, 6.1}},
-          {"lens", Shape(Sphere{{-4, 0, 0}, 8}) & Sphere{{5, 1, 0}, 7}},
-          {"shell", Shape(Sphere{{0, 0, 0}, 9}) - Sphere{{0.5, 0, 0}, 7}},
-          {"ball less a wedge", Shape(Sphere{{0, 0, 0}, 9}) & HalfSpace{{0, 0, 1}, 1.2} &
-                                    ~Shape(OrientedBox{{4, 0, 0}, {5, 2, 12}, turn})}};
+  const glm::dvec3 look = ring_of_squares().view.look;
+  return {
+      {"sphere", Sphere{{0.3, -0.7, 0.2}, 7.3}},
+      {"sphere on the lattice", Sphere{{0, 0, 0}, 8}},
+      {"ellipsoid", Ellipsoid{{0.3, -0.7, 0.2}, {9, 4, 2.5}, turn}},
+      {"box on the lattice", Box{{-4, -8, 2}, {6, -3, 8}}},
+      {"box between voxels", Box{{-4.3, -8.1, 2.6}, {6.4, -3.2, 8.1}}},
+      {"oriented box", OrientedBox{{0.3, -0.7, 0.2}, {8, 5, 1.5}, turn}},
+      {"half-space", HalfSpace{glm::normalize(glm::dvec3(1, -2, 0.4)), 1.3}},
+      {"half-space on the lattice", HalfSpace{{0, 0, 1}, 2}},
+      {"cylinder", Cylinder{{-6, -5, -3}, {5, 6, 4}, 3.3}},
+      {"upright cylinder", Cylinder{{1, 0, -6}, {1, 0, 4.5}, 5}},
+      {"torus", Torus{{0.2, 0.1, -0.4}, glm::normalize(glm::dvec3(1, 2, 3)), 6.5, 2.4}},
+      {"upright torus", Torus{{0.2, 0.1, -0.4}, {0, 1, 0}, 6.5, 2.4}},
+      {"prism", Expression(RegionMask{{ring_of_squares()}}) & HalfSpace{look, 6.1} & HalfSpace{-look, 4.2}},
+      {"lens", Expression(Sphere{{-4, 0, 0}, 8}) & Sphere{{5, 1, 0}, 7}},
+      {"shell", Expression(Sphere{{0, 0, 0}, 9}) - Sphere{{0.5, 0, 0}, 7}},
+      {"ball less a wedge", Expression(Sphere{{0, 0, 0}, 9}) & HalfSpace{{0, 0, 1}, 1.2} &
+                                ~Expression(OrientedBox{{4, 0, 0}, {5, 2, 12}, turn})}};
 }
 
 TEST(Digitise, TheThesissSphereHasTheNodesOfTable3_1) {
@@ -89,15 +91,15 @@ TEST(Digitise, TheThesissSphereHasTheNodesOfTable3_1) {
 
 TEST(Digitise, InsideAndTouchingSwapUnderComplementToTheVoxel) {
   for (const Universe& universe : {unit_universe(5), oblique_universe(4), unit_universe(3), unit_universe(2)})
-    for (const Named& named : shapes()) {
+    for (const Named& named : solids()) {
       SCOPED_TRACE(named.name + " in " + std::to_string(universe.side()));
-      const Octree inside = digitise(universe, named.shape, Digitisation::Inside);
-      const Octree touching = digitise(universe, named.shape, Digitisation::Touching);
-      const Octree touching_rest = digitise(universe, ~named.shape, Digitisation::Touching);
-      const Octree inside_rest = digitise(universe, ~named.shape, Digitisation::Inside);
+      const Octree inside = digitise(universe, named.solid, Digitisation::Inside);
+      const Octree touching = digitise(universe, named.solid, Digitisation::Touching);
+      const Octree touching_rest = digitise(universe, ~named.solid, Digitisation::Touching);
+      const Octree inside_rest = digitise(universe, ~named.solid, Digitisation::Inside);
       EXPECT_TRUE(combine(universe, ~Expression(touching_rest)) == inside);
       EXPECT_TRUE(combine(universe, ~Expression(inside_rest)) == touching);
-      const PartialOctree partial = digitise_partial(universe, named.shape);
+      const PartialOctree partial = digitise_partial(universe, named.solid);
       EXPECT_NO_THROW(check(partial));
       EXPECT_TRUE(partial.inside == inside);
       EXPECT_TRUE(partial.touching == touching);
@@ -116,12 +118,12 @@ void for_each_point(const glm::ivec3& voxel, int fineness, const Visit& visit) {
 TEST(Digitise, AgreesWithPointsSampledInEveryVoxel) {
   constexpr int fineness = 12;
   for (const Universe& universe : {unit_universe(5), oblique_universe(4)})
-    for (const Named& named : shapes()) {
+    for (const Named& named : solids()) {
       SCOPED_TRACE(named.name + " in " + std::to_string(universe.side()));
-      const ShapeClassifier cut(named.shape, universe.lps_from_voxel);
-      const tests::Dense inside = tests::dense_of(digitise(universe, named.shape, Digitisation::Inside));
-      const tests::Dense touching = tests::dense_of(digitise(universe, named.shape, Digitisation::Touching));
-      const tests::Dense centre = tests::dense_of(digitise(universe, named.shape, Digitisation::Centre));
+      const TargetExpression cut(postfix_of(named.solid), universe);
+      const tests::Dense inside = tests::dense_of(digitise(universe, named.solid, Digitisation::Inside));
+      const tests::Dense touching = tests::dense_of(digitise(universe, named.solid, Digitisation::Touching));
+      const tests::Dense centre = tests::dense_of(digitise(universe, named.solid, Digitisation::Centre));
       int wrong = 0;
       int boundary = 0;
       int without_witness = 0;
@@ -160,11 +162,11 @@ TEST(Digitise, AgreesWithPointsSampledInEveryVoxel) {
 TEST(Digitise, FractionsAreThoseOfPointsSampledInTheVoxel) {
   constexpr int fineness = 24;
   for (const Universe& universe : {unit_universe(5), oblique_universe(4)})
-    for (const Named& named : shapes()) {
+    for (const Named& named : solids()) {
       SCOPED_TRACE(named.name + " in " + std::to_string(universe.side()));
-      const ShapeClassifier cut(named.shape, universe.lps_from_voxel);
-      const PartialOctree partial = digitise_partial(universe, named.shape);
-      const Octree half = digitise(universe, named.shape, Digitisation::Half);
+      const TargetExpression cut(postfix_of(named.solid), universe);
+      const PartialOctree partial = digitise_partial(universe, named.solid);
+      const Octree half = digitise(universe, named.solid, Digitisation::Half);
       double worst = 0.0;
       int visited = 0;
       for_each_boundary_voxel(partial, [&](const glm::ivec3& v, std::uint16_t fraction) {
@@ -222,20 +224,46 @@ TEST(Digitise, ABoxOfWholeVoxelsIsThoseVoxelsByEveryDigitisation) {
   });
 }
 
-TEST(Digitise, CentresAgreeWithExpressions) {
-  const Universe universe = oblique_universe(5);
-  const Sphere sphere{{1, 2, 3}, 11};
-  const Box box{{-5, -7, -9}, {4, 8, 6}};
-  const HalfSpace half_space{glm::normalize(glm::dvec3(1, 1, -2)), 2};
-  EXPECT_TRUE(digitise(universe, (Shape(sphere) & box) - half_space, Digitisation::Centre) ==
-              combine(universe, (Expression(sphere) & Expression(box)) - Expression(half_space)));
+TEST(Digitise, AnOctreeStandsForItsWholeVoxels) {
+  const Universe universe = unit_universe(5);
+  const Sphere sphere{{1, 2, 3}, 9.3};
+  const Octree board =
+      combine(universe, Expression(Box{{-20, -20, -20}, {2, 3, 4}}) ^ Box{{-5, -6, -7}, {20, 20, 20}});
+  const PartialOctree whole = digitise_partial(universe, sphere);
+  const PartialOctree part = digitise_partial(universe, Expression(sphere) & board);
+  EXPECT_TRUE(part.inside == combine(universe, Expression(whole.inside) & board));
+  EXPECT_TRUE(part.touching == combine(universe, Expression(whole.touching) & board));
+  std::vector<std::uint16_t> kept;
+  for_each_boundary_voxel(whole, [&](const glm::ivec3& v, std::uint16_t fraction) {
+    if (board.contains(v)) kept.push_back(fraction);
+  });
+  ASSERT_FALSE(kept.empty());
+  EXPECT_EQ(part.fractions, kept);
+}
+
+TEST(Digitise, UnionsAndDifferencesAddUpToTheirParts) {
+  const Universe universe = unit_universe(5);
+  const Expression a = Sphere{{-3.1, 0.2, 0.3}, 8.3}, b = Torus{{2.7, 1.4, -0.6}, {0, 0, 1}, 6.2, 2.4};
+  const auto mm3 = [&](const Expression& solid) { return volume_mm3(digitise_partial(universe, solid)); };
+  EXPECT_NEAR(mm3(a | b), mm3(a) + mm3(b) - mm3(a & b), 1.0);
+  EXPECT_NEAR(mm3(a ^ b), mm3(a - b) + mm3(b - a), 1.0);
+  EXPECT_GT(mm3(a & b), 100.0);
+}
+
+TEST(Digitise, AMovedSolidIsTheSolidMadeInItsPlace) {
+  const Universe universe = unit_universe(5);
+  const glm::dmat4 motion = moved_from_still({.translate_mm = {1.5, -2.25, 3}});
+  const PartialOctree moved_there = digitise_partial(universe, moved(Sphere{{0, 0, 0}, 7.3}, motion));
+  const PartialOctree made_there = digitise_partial(universe, Sphere{{1.5, -2.25, 3}, 7.3});
+  EXPECT_TRUE(moved_there.touching == made_there.touching);
+  EXPECT_EQ(moved_there.fractions, made_there.fractions);
 }
 
 TEST(Digitise, IsTheSameOnOneThreadAndTwo) {
-  const Shape shape = shapes().back().shape;
-  const PartialOctree two = digitise_partial(unit_universe(6), shape);
+  const Expression solid = solids().back().solid;
+  const PartialOctree two = digitise_partial(unit_universe(6), solid);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const PartialOctree one = digitise_partial(unit_universe(6), shape);
+  const PartialOctree one = digitise_partial(unit_universe(6), solid);
   EXPECT_TRUE(one.inside == two.inside && one.touching == two.touching);
   EXPECT_EQ(one.fractions, two.fractions);
 }
@@ -264,13 +292,28 @@ TEST(Digitise, APlanesShareOfACubeIsItsClosedForm) {
 }
 
 TEST(Digitise, RefusesSolidsThatAreNone) {
-  EXPECT_THROW(Shape(Sphere{{0, 0, 0}, -1}), std::invalid_argument);
-  EXPECT_THROW(Shape(Box{{0, 0, 0}, {1, 0, 1}}), std::invalid_argument);
-  EXPECT_THROW(Shape(Torus{{0, 0, 0}, {0, 0, 1}, 2, 2}), std::invalid_argument);
-  EXPECT_THROW(Shape(Torus{{0, 0, 0}, {0, 0, 2}, 3, 2}), std::invalid_argument);
-  EXPECT_THROW(Shape(Cylinder{{0, 0, 0}, {0, 0, 0}, 2}), std::invalid_argument);
-  EXPECT_THROW(Shape(Prism{Region{}, 0, 1}), std::invalid_argument);
-  EXPECT_THROW(~(Shape(Sphere{}) & Box{{0, 0, 0}, {1, 1, 1}}) & Sphere{}, std::invalid_argument);
+  EXPECT_THROW(Expression(Sphere{{0, 0, 0}, -1}), std::invalid_argument);
+  EXPECT_THROW(Expression(Sphere{{0, 0, 0}, 0}), std::invalid_argument);
+  EXPECT_THROW(Expression(Sphere{{NAN, 0, 0}, 1}), std::invalid_argument);
+  EXPECT_THROW(Expression(Box{{0, 0, 0}, {1, 0, 1}}), std::invalid_argument);
+  EXPECT_THROW(Expression(Ellipsoid{{0, 0, 0}, {1, 0, 1}}), std::invalid_argument);
+  EXPECT_THROW(Expression(OrientedBox{{0, 0, 0}, {1, 1, 1}, glm::dmat3(2)}), std::invalid_argument);
+  EXPECT_THROW(Expression(Torus{{0, 0, 0}, {0, 0, 1}, 2, 2}), std::invalid_argument);
+  EXPECT_THROW(Expression(Torus{{0, 0, 0}, {0, 0, 2}, 3, 2}), std::invalid_argument);
+  EXPECT_THROW(Expression(Cylinder{{0, 0, 0}, {0, 0, 0}, 2}), std::invalid_argument);
+  EXPECT_THROW(Expression(HalfSpace{{0, 0, 1}, INFINITY}), std::invalid_argument);
+  EXPECT_THROW(Expression(RegionMask{{Region{}}}), std::invalid_argument);
+}
+
+TEST(Digitise, RefusesAWindowWhichHasNoShapeWithinAVoxel) {
+  const Universe universe = unit_universe(4);
+  Scene scene;
+  scene.lattice = universe.lattice();
+  scene.samples = Int16Samples(16 * 16 * 16, 100);
+  const Window window{grey_octree_of(universe, scene), 50, 200};
+  EXPECT_EQ(digitise(universe, window, Digitisation::Centre).voxel_count(), 4096U);
+  EXPECT_THROW(digitise(universe, window, Digitisation::Inside), std::invalid_argument);
+  EXPECT_THROW(digitise_partial(universe, window), std::invalid_argument);
 }
 
 TEST(PartialOctree, ChecksItsFractionsAndItsOrder) {

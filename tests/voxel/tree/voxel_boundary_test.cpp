@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "verify/voxel_boundary.h"
+#include "voxel/tree/voxel_boundary.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,13 @@
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 
-namespace octotomy::verify {
+namespace octotomy::voxel {
 namespace {
 
 using tests::unit_universe;
 
 TEST(VoxelBoundary, ABoxAcrossBlocksHasTheFacesOfItsSixSides) {
-  const voxel::Octree box = voxel::combine(unit_universe(5), voxel::Box{{2.5, 3.5, 0.5}, {18.5, 20.5, 9.5}});
+  const Octree box = combine(unit_universe(5), Box{{2.5, 3.5, 0.5}, {18.5, 20.5, 9.5}});
   ASSERT_EQ(box.voxel_count(), 16u * 17u * 9u);
   glm::ivec3 low(0), high(0);
   for (const VoxelFace& face : voxel_boundary(box)) {
@@ -26,12 +26,12 @@ TEST(VoxelBoundary, ABoxAcrossBlocksHasTheFacesOfItsSixSides) {
 }
 
 TEST(VoxelBoundary, AFullUniverseEndsAtItsOwnSides) {
-  EXPECT_EQ(voxel_boundary(voxel::Octree::full(unit_universe(4))).size(), 6u * 16u * 16u);
-  EXPECT_TRUE(voxel_boundary(voxel::Octree::empty(unit_universe(4))).empty());
+  EXPECT_EQ(voxel_boundary(Octree::full(unit_universe(4))).size(), 6u * 16u * 16u);
+  EXPECT_TRUE(voxel_boundary(Octree::empty(unit_universe(4))).empty());
 }
 
 TEST(VoxelBoundary, EveryFaceOfASphereLiesBetweenInsideAndOutsideAndNoneIsMissing) {
-  const voxel::Octree sphere = voxel::combine(unit_universe(6), voxel::Sphere{{30.2, 31.1, 29.7}, 21.3});
+  const Octree sphere = combine(unit_universe(6), Sphere{{30.2, 31.1, 29.7}, 21.3});
   glm::dvec3 faces(0.0);
   for (const VoxelFace& face : voxel_boundary(sphere)) {
     glm::ivec3 beyond = face.voxel;
@@ -40,8 +40,8 @@ TEST(VoxelBoundary, EveryFaceOfASphereLiesBetweenInsideAndOutsideAndNoneIsMissin
     EXPECT_FALSE(sphere.contains(beyond));
     faces[face.axis] += 1.0;
   }
-  EXPECT_EQ(faces, voxel::measure(sphere).exposed_mm2);
+  EXPECT_EQ(faces, measure(sphere).exposed_mm2);
 }
 
 }  // namespace
-}  // namespace octotomy::verify
+}  // namespace octotomy::voxel

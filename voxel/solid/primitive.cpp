@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/solid/shape.h"
+#include "voxel/solid/primitive.h"
 
 #include <cmath>
 #include <limits>
@@ -17,25 +17,23 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// A direction computed in double precision, then normalised, misses length 1 by a few units in the last
-// place; one read from text with nine digits by 1e-9.
-constexpr double unit_slack = 1e-8;
-
-bool unit(const glm::dvec3& v) {
-  return finite(v) && std::abs(glm::length(v) - 1.0) <= unit_slack;
+// A product of a few rotations keeps its columns orthonormal to a few units in the last place, and numbers
+// read from text with nine digits to 1e-9. A scale or shear that moves anything in a head by a micrometre
+// over 300 mm is 3e-9. Half of the digits separate them.
+double unit_slack() {
+  return std::sqrt(std::numeric_limits<double>::epsilon());
 }
 
-bool rotation(const glm::dmat3& turn) {
-  return unit(turn[0]) && unit(turn[1]) && unit(turn[2]) &&
-         std::abs(glm::dot(turn[0], turn[1])) <= unit_slack &&
-         std::abs(glm::dot(turn[0], turn[2])) <= unit_slack &&
-         std::abs(glm::dot(turn[1], turn[2])) <= unit_slack;
+bool unit(const glm::dvec3& v) {
+  return finite(v) && std::abs(glm::length(v) - 1.0) <= unit_slack();
 }
 
 void positive(const std::string& what, double length_mm) {
   need(std::isfinite(length_mm) && length_mm > 0.0,
        what + " must be a positive number of millimetres, not " + std::to_string(length_mm));
 }
+
+}  // namespace
 
 void check(const Sphere& sphere) {
   need(finite(sphere.centre_mm), "a sphere's centre has a coordinate that is not a finite number");
@@ -45,7 +43,7 @@ void check(const Sphere& sphere) {
 void check(const Ellipsoid& ellipsoid) {
   need(finite(ellipsoid.centre_mm), "an ellipsoid's centre has a coordinate that is not a finite number");
   for (int axis = 0; axis < 3; ++axis) positive("an ellipsoid's radius", ellipsoid.radii_mm[axis]);
-  need(rotation(ellipsoid.lps_from_axes), "an ellipsoid's axes must be unit vectors at right angles");
+  need(is_isometry(ellipsoid.lps_from_axes), "an ellipsoid's axes must be unit vectors at right angles");
 }
 
 void check(const Box& box) {
@@ -56,7 +54,7 @@ void check(const Box& box) {
 void check(const OrientedBox& box) {
   need(finite(box.centre_mm), "a box's centre has a coordinate that is not a finite number");
   for (int axis = 0; axis < 3; ++axis) positive("half a box's edge", box.half_mm[axis]);
-  need(rotation(box.lps_from_axes), "a box's axes must be unit vectors at right angles");
+  need(is_isometry(box.lps_from_axes), "a box's axes must be unit vectors at right angles");
 }
 
 void check(const HalfSpace& half_space) {
@@ -78,34 +76,12 @@ void check(const Torus& torus) {
   positive("a torus's ring radius less its tube radius", torus.ring_radius_mm - torus.tube_radius_mm);
 }
 
-void check(const Prism& prism) {
-  check(RegionMask{{prism.region}});
-  need(rotation(glm::dmat3(prism.region.view.right, prism.region.view.up, prism.region.view.look)),
-       "a prism's view must have unit vectors at right angles");
-  need(std::isfinite(prism.low_mm) && std::isfinite(prism.high_mm), "a prism's depth is not a finite number");
-  positive("a prism's height", prism.high_mm - prism.low_mm);
-}
-
-}  // namespace
-
-Shape::Shape(const Primitive& primitive) : parts_{{primitive, false}} {
-  std::visit([](const auto& solid) { check(solid); }, primitive);
-}
-
-Shape operator~(Shape shape) {
-  if (shape.parts_.size() == 1 && !shape.complement_)
-    shape.parts_.front().complement = !shape.parts_.front().complement;
-  else
-    shape.complement_ = !shape.complement_;
-  return shape;
-}
-
-Shape operator&(const Shape& a, const Shape& b) {
-  need(!a.complement_ && !b.complement_,
-       "the complement of an intersection cannot be intersected: digitise it and combine the octrees");
-  Shape both = a;
-  both.parts_.insert(both.parts_.end(), b.parts_.begin(), b.parts_.end());
-  return both;
+bool is_isometry(const glm::dmat3& matrix) {
+  const glm::dmat3 gram = glm::transpose(matrix) * matrix;
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row)
+      if (!(std::abs(gram[column][row] - (column == row ? 1.0 : 0.0)) <= unit_slack())) return false;
+  return true;
 }
 
 }  // namespace octotomy::voxel

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/tree/voxel_boundary.h"
+
+#include <bit>
+#include <cassert>
+#include <cstdint>
+#include <oneapi/tbb/parallel_for.h>
+
+#include "voxel/tree/octree_node.h"
+
+namespace octotomy::voxel {
+namespace {
+
+// The word of a leaf, numbered in leaves; outside the universe there is no voxel.
+std::uint64_t word_at(const Octree& octree, const glm::ivec3& leaf) {
+  return octree.leaf_block(leaf >> 2).word(child_index(leaf.x & 3, leaf.y & 3, leaf.z & 3));
+}
+
+// The voxels of a word whose neighbour at +axis or -axis is inside, given the word beyond that side.
+std::uint64_t neighbours(std::uint64_t word, std::uint64_t beyond, int axis, int side) {
+  assert(axis >= 0 && axis < 3 && (side == 1 || side == -1));
+  constexpr std::uint64_t first_layer[3]{0x1111111111111111ULL, 0x000f000f000f000fULL, 0x000000000000ffffULL};
+  const int step = 1 << (2 * axis);
+  const std::uint64_t first = first_layer[axis], last = first << (3 * step);
+  if (side > 0) return ((word & ~first) >> step) | ((beyond & first) << (3 * step));
+  return ((word & ~last) << step) | ((beyond & last) >> (3 * step));
+}
+
+void append_faces(const Octree& octree, const glm::ivec3& leaf, std::vector<VoxelFace>& faces) {
+  const std::uint64_t word = word_at(octree, leaf);
+  if (word == 0) return;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      glm::ivec3 beyond = leaf;
+      beyond[axis] += side;
+      std::uint64_t exposed = word & ~neighbours(word, word_at(octree, beyond), axis, side);
+      for (; exposed != 0; exposed &= exposed - 1)
+        faces.push_back({leaf * 4 + child_place(std::countr_zero(exposed)), axis, side});
+    }
+}
+
+}  // namespace
+
+std::vector<VoxelFace> voxel_boundary(const Octree& octree) {
+  const int leaves = octree.universe().side() / 4;
+  std::vector<std::vector<VoxelFace>> layers(static_cast<std::size_t>(leaves));
+  tbb::parallel_for(0, leaves, [&](int z) {
+    for (int y = 0; y < leaves; ++y)
+      for (int x = 0; x < leaves; ++x) {
+        if (x % 4 == 0 && octree.leaf_block(glm::ivec3(x, y, z) >> 2).is_empty())
+          x += 3;
+        else
+          append_faces(octree, {x, y, z}, layers[static_cast<std::size_t>(z)]);
+      }
+  });
+  std::vector<VoxelFace> faces;
+  for (const std::vector<VoxelFace>& layer : layers) faces.insert(faces.end(), layer.begin(), layer.end());
+  return faces;
+}
+
+}  // namespace octotomy::voxel
