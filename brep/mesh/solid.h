@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <glm/glm.hpp>
 #include <memory>
+#include <utility>
 
 #include "brep/mesh/distance.h"
 #include "brep/mesh/measure.h"
