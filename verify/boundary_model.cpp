@@ -198,8 +198,8 @@ constexpr double large_facet = 16.0;
 /// The model of one mesh in the making.
 class Modeller {
  public:
-  Modeller(const brep::Mesh& mesh, const BoundaryFrame& frame)
-      : mesh_(mesh), frame_(frame), triangles_(brep::triangles_of(mesh)), moved_(triangles_.faces.size()) {}
+  Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
+      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()), moved_(triangles_.faces.size()) {}
 
   BoundaryModel run() {
     add_faces();
@@ -449,7 +449,7 @@ class Modeller {
 
   const brep::Mesh& mesh_;
   const BoundaryFrame& frame_;
-  brep::Triangles triangles_;
+  const brep::Triangles& triangles_;
   std::vector<std::optional<Moved>> moved_;  ///< of each face that is part of a lattice plane
   const double longest_mm_ =
       std::max({frame_.sample_spacing_mm.x, frame_.sample_spacing_mm.y, frame_.sample_spacing_mm.z});
@@ -458,10 +458,8 @@ class Modeller {
 
 }  // namespace
 
-BoundaryModel boundary_model(const brep::Mesh& mesh, const BoundaryFrame& frame) {
-  assert(std::none_of(mesh.faces_begin(), mesh.faces_end(),
-                      [&](const auto face) { return mesh.status(face).deleted(); }));
-  return Modeller(mesh, frame).run();
+BoundaryModel boundary_model(const brep::Solid& solid, const BoundaryFrame& frame) {
+  return Modeller(solid, frame).run();
 }
 
 }  // namespace octotomy::verify

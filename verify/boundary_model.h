@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "voxel/space/lattice.h"
 
 // The theory of a solid's boundary when voxels count its inside, and when it is an isosurface of samples. The
@@ -62,7 +62,7 @@ struct BoundaryFrame {
   glm::dvec3 sample_spacing_mm{1.0};  ///< of the isosurface's samples, along the LPS axes
   glm::dvec3 about_mm{0.0};           ///< origin of the moments
 };
-/// Precondition: no element of the mesh is marked as deleted. Cost: n log n in the mesh's edges.
-BoundaryModel boundary_model(const brep::Mesh& mesh, const BoundaryFrame& frame);
+/// Cost: n log n in the solid's edges.
+BoundaryModel boundary_model(const brep::Solid& solid, const BoundaryFrame& frame);
 
 }  // namespace octotomy::verify

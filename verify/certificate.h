@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "voxel/space/scene.h"
 #include "voxel/tree/octree.h"
 
@@ -119,7 +119,7 @@ bool is_worse(const Certificate& a, const Certificate& b);
 struct Contested {
   Certificate certificate;
   voxel::Octree octree;
-  std::shared_ptr<const brep::Mesh> mesh;
+  std::optional<brep::Solid> solid;
 };
 /// Keeps the worse one, the first of equals, so that the order alone decides.
 void keep_worse(std::optional<Contested>& kept, const Contested& found);

@@ -237,13 +237,13 @@ struct Evidence {
 };
 
 /// Half a sample times the mesh's faces on the scan's border.
-VolumeSpread border_of(const brep::Mesh& mesh, const BoundInputs& inputs, const glm::dvec3& about_mm) {
+VolumeSpread border_of(const brep::Solid& solid, const BoundInputs& inputs, const glm::dvec3& about_mm) {
   VolumeSpread border;
   if (!inputs.scan_box_mm) return border;
   const voxel::Box& box = *inputs.scan_box_mm;
   const double near_mm = 1e3 * std::numeric_limits<double>::epsilon() *
                          glm::length(glm::max(glm::abs(box.low_mm), glm::abs(box.high_mm)));
-  const brep::Triangles triangles = brep::triangles_of(mesh);
+  const brep::Triangles& triangles = solid.triangles();
   for (const auto& face : triangles.faces) {
     const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
                      &c = triangles.points_mm[face[2]];
@@ -338,10 +338,10 @@ Comparison area_of(const Evidence& evidence, double thin_mm2) {
           "by the Crofton formula of 13 directions"};
 }
 
-void compare_inertia(Certificate& certificate, const Evidence& evidence, const brep::Mesh& solid) {
+void compare_inertia(Certificate& certificate, const Evidence& evidence, const brep::Solid& solid) {
   const BoundaryModel& model = evidence.model;
   if (!evidence.voxels.inertia_mm5 || !(evidence.mesh.volume_mm3 > 0.0)) return;
-  const glm::dmat3 inertia = inertia_about(brep::triangles_of(solid), *evidence.mesh.centroid_mm);
+  const glm::dmat3 inertia = inertia_about(solid.triangles(), *evidence.mesh.centroid_mm);
   double most = 0.0, largest = 0.0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
@@ -389,8 +389,8 @@ Comparison without_verdict(Comparison comparison) {
 /// Compares area and distances: with a witness without a verdict, as it has judged every place of the
 /// surfaces. Looks for parts thinner than a voxel only if these leave a doubt.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
-                      const brep::Mesh& solid, bool witnessed) {
-  const brep::SurfaceTree tree(solid);
+                      const brep::Solid& solid, bool witnessed) {
+  const brep::SurfaceTree& tree = solid.tree();
   Distances distances = surface_distances(octree, solid, tree);
   certificate.hausdorff_mm = distances.largest_mm();
   certificate.hausdorff95_mm = distances.percentile95_mm();
@@ -458,13 +458,13 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
 /// Both objects must have one topology if the voxels are the mesh's samples. The mesh parts inside corners
 /// that meet at edges and corners, and outside corners that meet at a cell's corners only. The voxels' Euler
 /// number by faces joins the latter, by a tunnel each.
-void compare_topology(Certificate& certificate, const voxel::Octree& octree, const brep::Mesh& solid) {
+void compare_topology(Certificate& certificate, const voxel::Octree& octree, const brep::Solid& solid) {
   std::int64_t solid_euler = voxel::euler_numbers(octree).by_faces;
   const std::array<std::uint64_t, 256> cells = voxel::cell_counts(octree);
   for (unsigned corner = 0; corner < 4; ++corner)
     solid_euler += static_cast<std::int64_t>(cells[255U - (1U << corner) - (1U << (7U - corner))]);
   const auto twice = 2.0 * static_cast<double>(solid_euler);
-  const auto surface = static_cast<double>(brep::health(brep::triangles_of(solid), {false}).euler);
+  const auto surface = static_cast<double>(brep::health(solid.triangles(), {false}).euler);
   add_comparison(certificate, {"euler", "", twice, surface, std::abs(twice - surface), 0.0,
                                "0: one topology; a surface has twice its solid's Euler number",
                                "The Euler numbers of the two surfaces differ by %"});
@@ -540,7 +540,7 @@ void judge_volume(Certificate& certificate, const Evidence& evidence, bool witne
 
 }  // namespace
 
-Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs,
+Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& solid, const BoundInputs& inputs,
                             const voxel::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const voxel::Lattice lattice = octree.universe().lattice();
@@ -548,7 +548,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid
   progress.at(0.0);
   evidence.voxels = voxel::measure(octree);
   progress.at(0.1);
-  evidence.mesh = brep::measure(solid);
+  evidence.mesh = solid.measures();
   evidence.voxel_mm = lattice.spacing_mm();
   evidence.voxel_mm3 = lattice.voxel_mm3();
   evidence.sample_mm = seen_spacing_mm(inputs.scan_spacing_mm, evidence.voxel_mm);

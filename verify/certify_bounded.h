@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "verify/certificate.h"
 #include "verify/reading.h"
 #include "voxel/space/progress.h"
@@ -28,10 +28,10 @@ struct BoundInputs {
   Witness witness = {};
 };
 
-/// Compares an octree with a solid of separate lineage (tier Bounded). The source derives the terms. A mesh
-/// without faces is the empty solid. Throws as convert::voxelise(); voxel::Stopped. Cost: about that of
-/// making both objects.
-Certificate certify_bounded(const voxel::Octree& octree, const brep::Mesh& solid, const BoundInputs& inputs,
+/// Compares an octree with a solid of separate lineage (tier Bounded). The source derives the terms. A solid
+/// by Connection may be inside out or meet itself: the comparison shows it. Throws as convert::voxelise();
+/// voxel::Stopped. Cost: about that of making both objects.
+Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& solid, const BoundInputs& inputs,
                             const voxel::Progress& progress = {});
 
 }  // namespace octotomy::verify

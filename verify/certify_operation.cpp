@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "brep/mesh/distance.h"
-#include "brep/mesh/measure.h"
+#include "brep/mesh/error.h"
 #include "convert/voxel/voxelise.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/measure/measure.h"
@@ -31,7 +30,7 @@ struct DifferingCentres {
   double distance_mm = 0.0;  ///< of the farthest
 };
 
-DifferingCentres differing_centres(const voxel::Octree& differing, const brep::Mesh& result,
+DifferingCentres differing_centres(const voxel::Octree& differing, const brep::Solid& result,
                                    double within_mm) {
   const voxel::Lattice lattice = differing.universe().lattice();
   std::vector<glm::dvec3> centres_mm;
@@ -41,12 +40,12 @@ DifferingCentres differing_centres(const voxel::Octree& differing, const brep::M
       for (int x = range.low.x; x <= range.high.x; ++x)
         if (differing.contains({x, y, z})) centres_mm.push_back(lattice.lps_mm({x, y, z}));
   if (centres_mm.empty()) return {};
-  if (result.n_faces() == 0) {
+  if (result.empty()) {
     const glm::ivec3 dims = range.dims();
     return {centres_mm.size(), centres_mm[centres_mm.size() / 2],
             lattice.spacing_mm().x * std::max({dims.x, dims.y, dims.z})};
   }
-  const std::vector<double> distances_mm = brep::SurfaceTree(result).distances_mm(centres_mm);
+  const std::vector<double> distances_mm = result.tree().distances_mm(centres_mm);
   const auto farthest = std::max_element(distances_mm.begin(), distances_mm.end());
   return {
       static_cast<std::size_t>(std::count_if(distances_mm.begin(), distances_mm.end(),
@@ -66,10 +65,10 @@ voxel::Expression expression_of(const voxel::Octree& a, brep::Operation operatio
   return voxel::Expression(a) - b;
 }
 
-Certificate compared(const voxel::Octree& octree, const brep::Mesh& mesh,
+Certificate compared(const voxel::Octree& octree, const brep::Solid& solid,
                      const std::vector<std::string>& findings) {
   const voxel::Measures voxels = voxel::measure(octree);
-  const brep::Measures triangles = brep::measure(mesh);
+  const brep::Measures& triangles = solid.measures();
   const voxel::Lattice lattice = octree.universe().lattice();
   const double h = lattice.spacing_mm().x;
   Certificate certificate;
@@ -90,13 +89,13 @@ Certificate compared(const voxel::Octree& octree, const brep::Mesh& mesh,
                   std::abs(certificate.difference_mm3), certificate.tolerance_mm3, "sum of the terms"});
 
   const voxel::Octree differing = voxel::combine(
-      octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), mesh));
+      octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), solid));
   certificate.symmetric_difference_mm3 = static_cast<double>(differing.voxel_count()) * lattice.voxel_mm3();
   const bool shifted = std::any_of(findings.begin(), findings.end(), [](const std::string& finding) {
     return finding.rfind("shifted", 0) == 0;
   });
   const double reach_mm = glm::length(glm::max(glm::abs(triangles.low_mm), glm::abs(triangles.high_mm)));
-  const DifferingCentres beyond = differing_centres(differing, mesh, undecided_mm(reach_mm, shifted));
+  const DifferingCentres beyond = differing_centres(differing, solid, undecided_mm(reach_mm, shifted));
   add_comparison(certificate, {.quantity = "centres of voxels on different sides",
                                .unit = "",
                                .difference = static_cast<double>(beyond.count),
@@ -116,9 +115,9 @@ Certificate compared(const voxel::Octree& octree, const brep::Mesh& mesh,
 
 }  // namespace
 
-OperationAnswers certify_operation(const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
+OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
                                    const MeshOperationOptions& options) {
-  const brep::Measures of_a = brep::measure(a), of_b = brep::measure(b);
+  const brep::Size &of_a = a.size(), &of_b = b.size();
   voxel::Box box{glm::min(of_a.low_mm, of_b.low_mm), glm::max(of_a.high_mm, of_b.high_mm)};
   const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
   const double voxel_mm =
@@ -133,10 +132,15 @@ OperationAnswers certify_operation(const brep::Mesh& a, brep::Operation operatio
   answers.octree =
       voxel::combine(universe, expression_of(voxels_of_a, operation, convert::voxelise(universe, b)));
   progress.at(0.3);
-  brep::BooleanResult result = brep::boolean(a, operation, b);
-  answers.mesh = std::move(result.mesh);
+  brep::BooleanResult result;
+  try {
+    result = brep::boolean(a, operation, b, progress.stop);
+  } catch (const brep::Stopped& stopped) {
+    throw voxel::Stopped(stopped.what());
+  }
+  answers.solid = std::move(result.solid);
   progress.at(0.7);
-  answers.certificate = compared(*answers.octree, answers.mesh, result.findings);
+  answers.certificate = compared(*answers.octree, answers.solid, result.findings);
   answers.certificate.operation = operation == brep::Operation::Union          ? "a | b"
                                   : operation == brep::Operation::Intersection ? "a & b"
                                                                                : "a - b";

@@ -11,7 +11,7 @@ namespace octotomy::verify {
 
 struct OperationAnswers {
   std::optional<voxel::Octree> octree;
-  brep::Mesh mesh;
+  brep::Solid solid;
   Certificate certificate;
 };
 
@@ -25,7 +25,7 @@ struct MeshOperationOptions {
 /// corefinement reported, decides. Volumes are compared loosely, by the error of sampling at centres. Throws
 /// as brep::boolean() and convert::voxelise(), std::length_error if the voxels are too small for a universe,
 /// voxel::Stopped.
-OperationAnswers certify_operation(const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
+OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
                                    const MeshOperationOptions& options = {});
 
 }  // namespace octotomy::verify

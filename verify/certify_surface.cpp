@@ -26,12 +26,13 @@ Certificate without_mesh(const voxel::Octree& octree, const BoundInputs& inputs)
 
 Certificate certify_surface(const voxel::Octree& octree, const brep::Triangles& triangles,
                             const BoundInputs& inputs, const voxel::Progress& progress) {
-  if (triangles.faces.empty()) return certify_bounded(octree, brep::Mesh(), inputs, progress);
+  if (triangles.faces.empty()) return certify_bounded(octree, brep::Solid(), inputs, progress);
   const brep::Health health = brep::health(triangles, {.self_intersections = false});
   Certificate certificate = without_mesh(octree, inputs);
   // A halfedge mesh cannot hold some of these faults, and an open mesh has no inside.
   if (health.closed && health.manifold && health.misoriented_edges == 0)
-    certificate = certify_bounded(octree, brep::mesh_of(triangles), inputs, progress);
+    certificate =
+        certify_bounded(octree, brep::trusted_solid(triangles, brep::Proof::Connection), inputs, progress);
   if (!health.closed || !health.manifold || !health.oriented || health.duplicate_faces > 0)
     for (const std::string& finding : health.findings)
       lower(certificate, Verdict::Fail, "The mesh is no solid: " + finding);

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "brep/boolean/boolean.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/move.h"
@@ -65,7 +66,7 @@ brep::Mesh with_whole_numbers(brep::Mesh mesh) {
 
 /// A solid, or all that it leaves.
 struct Piece {
-  std::shared_ptr<const brep::Mesh> mesh;
+  brep::Solid solid;
   bool complement = false;
 };
 
@@ -143,8 +144,7 @@ class Evaluation {
           const glm::dmat4 motion = refined_motion(term, own_, position_.refinement);
           for (std::vector<Piece>* side : {&part.in, &part.out})
             for (Piece& piece : *side)
-              if (piece.mesh->n_faces() > 0)
-                piece.mesh = std::make_shared<const brep::Mesh>(brep::moved(*piece.mesh, motion));
+              if (!piece.solid.empty()) piece.solid = brep::moved(piece.solid, motion);
           return part;
         },
         [&](const Term& term, const Sides& left, const Sides& right) { return joined(term, left, right); });
@@ -154,23 +154,22 @@ class Evaluation {
   std::vector<std::string> findings() { return std::move(findings_); }
 
   /// The part of a piece in the universe.
-  brep::Mesh within_universe(const Piece& piece) {
+  brep::Solid within_universe(const Piece& piece) {
     const double side = position_.universe.side();
-    const Piece world{std::make_shared<const brep::Mesh>(
-                          brep::mesh_of(brep::Prism{{0, 1, 0},
-                                                    {0, 0, 1},
-                                                    {1, 0, 0},
-                                                    {{{0.0, 0.0}, {side, 0.0}, {side, side}, {0.0, side}}},
-                                                    0.0,
-                                                    side})),
+    const Piece world{brep::solid_of(brep::Prism{{0, 1, 0},
+                                                 {0, 0, 1},
+                                                 {1, 0, 0},
+                                                 {{{0.0, 0.0}, {side, 0.0}, {side, side}, {0.0, side}}},
+                                                 0.0,
+                                                 side}),
                       false};
     if (!piece.complement) {
-      const brep::Measures measures = brep::measure(*piece.mesh);
-      if (glm::all(glm::greaterThan(measures.low_mm, glm::dvec3(0.0))) &&
-          glm::all(glm::lessThan(measures.high_mm, glm::dvec3(side))))
-        return *piece.mesh;
+      const brep::Size& size = piece.solid.size();
+      if (glm::all(glm::greaterThan(size.low_mm, glm::dvec3(0.0))) &&
+          glm::all(glm::lessThan(size.high_mm, glm::dvec3(side))))
+        return piece.solid;
     }
-    return *intersection(world, piece).mesh;
+    return intersection(world, piece).solid;
   }
 
  private:
@@ -188,7 +187,7 @@ class Evaluation {
                 joined(pairs(left.in, right.in), pairs(left.out, right.out))};
     }
   }
-  static Sides both(const Piece& piece) { return {{piece}, {{piece.mesh, !piece.complement}}}; }
+  static Sides both(const Piece& piece) { return {{piece}, {{piece.solid, !piece.complement}}}; }
   static Sides other(Sides sides) {
     std::swap(sides.in, sides.out);
     return sides;
@@ -202,7 +201,7 @@ class Evaluation {
     for (const Piece& left : a)
       for (const Piece& right : b) {
         Piece piece = intersection(left, right);
-        if (piece.complement || piece.mesh->n_faces() > 0) pieces.push_back(std::move(piece));
+        if (piece.complement || !piece.solid.empty()) pieces.push_back(std::move(piece));
       }
     return pieces;
   }
@@ -214,20 +213,23 @@ class Evaluation {
   }
   Piece intersection(const Piece& a, const Piece& b) {
     using brep::Operation;
-    if (a.complement && b.complement) return {boolean(a.mesh, Operation::Union, b.mesh), true};
-    if (a.complement) return {boolean(b.mesh, Operation::Difference, a.mesh), false};
-    if (b.complement) return {boolean(a.mesh, Operation::Difference, b.mesh), false};
-    return {boolean(a.mesh, Operation::Intersection, b.mesh), false};
+    if (a.complement && b.complement) return {boolean(a.solid, Operation::Union, b.solid), true};
+    if (a.complement) return {boolean(b.solid, Operation::Difference, a.solid), false};
+    if (b.complement) return {boolean(a.solid, Operation::Difference, b.solid), false};
+    return {boolean(a.solid, Operation::Intersection, b.solid), false};
   }
-  std::shared_ptr<const brep::Mesh> boolean(const std::shared_ptr<const brep::Mesh>& a,
-                                            brep::Operation operation,
-                                            const std::shared_ptr<const brep::Mesh>& b) {
+  brep::Solid boolean(const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
     ++corefined_;
     progress_.at(static_cast<double>(corefined_) /
                  static_cast<double>(corefined_ + position_.operands.size()));
-    brep::BooleanResult result = brep::boolean(*a, operation, *b);
+    brep::BooleanResult result;
+    try {
+      result = brep::boolean(a, operation, b, progress_.stop);
+    } catch (const brep::Stopped& stopped) {
+      throw voxel::Stopped(stopped.what());
+    }
     findings_.insert(findings_.end(), result.findings.begin(), result.findings.end());
-    return std::make_shared<const brep::Mesh>(with_whole_numbers(std::move(result.mesh)));
+    return brep::trusted_solid(with_whole_numbers(result.solid), brep::Proof::Rounded);
   }
 
   const voxel::Universe& own_;
@@ -289,8 +291,8 @@ ExactAnswers exact_answers(const Expression& expression, const voxel::Progress& 
       true,
       {}};
   for (const Piece& piece : evaluation.on_meshes(expression).in) {
-    brep::Mesh solid = evaluation.within_universe(piece);
-    if (solid.n_faces() > 0) answers.solids.push_back(std::move(solid));
+    const brep::Solid solid = evaluation.within_universe(piece);
+    if (!solid.empty()) answers.solids.push_back(solid);
   }
   answers.areas_add_up = evaluation.areas_add_up();
   answers.findings = evaluation.findings();

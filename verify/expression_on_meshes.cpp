@@ -13,6 +13,9 @@
 #include <cctype>
 #include <optional>
 #include <stdexcept>
+#include <utility>
+
+#include "brep/mesh/error.h"
 
 namespace octotomy::verify {
 
@@ -107,23 +110,25 @@ ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string
   return tree;
 }
 
-SharedMesh MeshExpressions::evaluate(std::string_view text,
-                                     const std::function<SharedMesh(std::string_view)>& lookup) {
+brep::Solid MeshExpressions::evaluate(std::string_view text,
+                                      const std::function<brep::Solid(std::string_view)>& lookup,
+                                      const std::stop_token& stop) {
   findings_.clear();
+  stop_ = stop;
   std::vector<std::string> names;
   ExpressionTree tree = expression_tree_of(text, names);
-  std::vector<SharedMesh> leaves;
+  std::vector<brep::Solid> leaves;
   for (const std::string& name : names) leaves.push_back(lookup(name));
   // Without a repeated name the expression stays as it is, so that earlier answers serve again.
   if (tree.leaf_count() > static_cast<int>(leaves.size()))
     if (std::optional<ExpressionTree> once = read_once(tree)) tree = std::move(*once);
   const Signed answer = value(tree, leaves);
-  return answer.complement ? boolean(world_, brep::Operation::Difference, answer.mesh) : answer.mesh;
+  return answer.complement ? boolean(world_, brep::Operation::Difference, answer.solid) : answer.solid;
 }
 
 MeshExpressions::Signed MeshExpressions::value(const ExpressionTree& tree,
-                                               const std::vector<SharedMesh>& leaves) {
-  const auto complement = [](Signed a) { return Signed{std::move(a.mesh), !a.complement}; };
+                                               const std::vector<brep::Solid>& leaves) {
+  const auto complement = [](Signed a) { return Signed{std::move(a.solid), !a.complement}; };
   if (tree.parts.empty()) return {leaves[static_cast<std::size_t>(tree.leaf)], false};
   Signed a = value(tree.parts[0], leaves);
   if (tree.symbol == '~') return complement(a);
@@ -148,31 +153,31 @@ MeshExpressions::Signed MeshExpressions::value(const ExpressionTree& tree,
 }
 
 MeshExpressions::Signed MeshExpressions::intersection(const Signed& a, const Signed& b) {
-  if (a.complement && b.complement) return {boolean(a.mesh, brep::Operation::Union, b.mesh), true};
-  if (a.complement) return {boolean(b.mesh, brep::Operation::Difference, a.mesh), false};
-  if (b.complement) return {boolean(a.mesh, brep::Operation::Difference, b.mesh), false};
-  return {boolean(a.mesh, brep::Operation::Intersection, b.mesh), false};
+  if (a.complement && b.complement) return {boolean(a.solid, brep::Operation::Union, b.solid), true};
+  if (a.complement) return {boolean(b.solid, brep::Operation::Difference, a.solid), false};
+  if (b.complement) return {boolean(a.solid, brep::Operation::Difference, b.solid), false};
+  return {boolean(a.solid, brep::Operation::Intersection, b.solid), false};
 }
 
-SharedMesh MeshExpressions::boolean(const SharedMesh& a, brep::Operation operation, const SharedMesh& b) {
+brep::Solid MeshExpressions::boolean(const brep::Solid& a, brep::Operation operation, const brep::Solid& b) {
   using brep::Operation;
   // Decided without geometry; corefinement wants two distinct surfaces.
-  if (a == b) return operation == Operation::Difference ? std::make_shared<brep::Mesh>() : a;
-  if (a->n_faces() == 0) return operation == Operation::Union ? b : a;
-  if (b->n_faces() == 0) return operation == Operation::Intersection ? b : a;
+  if (a.is_same(b)) return operation == Operation::Difference ? brep::Solid() : a;
+  if (a.empty()) return operation == Operation::Union ? b : a;
+  if (b.empty()) return operation == Operation::Intersection ? b : a;
 
-  auto& known = answers_[{a, b}];
-  if (const auto found = known.find(operation); found != known.end()) return found->second;
-  corefine(a, operation, b, known);
-  return known.at(operation);
+  Pair& pair = pairs_.try_emplace({&a.mesh(), &b.mesh()}, Pair{a, b, {}}).first->second;
+  if (const auto found = pair.answers.find(operation); found != pair.answers.end()) return found->second;
+  corefine(a, operation, b, pair.answers);
+  return pair.answers.at(operation);
 }
 
-void MeshExpressions::corefine(const SharedMesh& a, brep::Operation operation, const SharedMesh& b,
-                               std::map<brep::Operation, SharedMesh>& known) {
+void MeshExpressions::corefine(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
+                               Answers& known) {
   using brep::Operation;
-  const auto learn = [&](brep::Booleans& answers) {
-    const auto keep = [&](Operation of, std::optional<brep::Mesh>& mesh) {
-      if (mesh && !known.contains(of)) known[of] = std::make_shared<const brep::Mesh>(std::move(*mesh));
+  const auto learn = [&](const brep::Booleans& answers) {
+    const auto keep = [&](Operation of, const std::optional<brep::Solid>& solid) {
+      if (solid) known.try_emplace(of, *solid);
     };
     keep(Operation::Union, answers.united);
     keep(Operation::Intersection, answers.intersection);
@@ -181,17 +186,16 @@ void MeshExpressions::corefine(const SharedMesh& a, brep::Operation operation, c
   };
   // A plan that takes a piece out of a skull asks for the rest next, and one that merges for the overlap.
   try {
-    brep::Booleans answers = brep::booleans(*a, *b, {true, true, true, false});
-    learn(answers);
+    learn(brep::booleans(a, b, {true, true, true, false}, stop_));
     if (known.contains(operation)) return;
-  } catch (const std::runtime_error&) {
-    // Perhaps only an answer that nobody asked for cannot be represented. A stop ends the next call, too.
+  } catch (const brep::Error& error) {
+    // Perhaps only an answer that nobody asked for cannot be represented.
+    if (error.code() == brep::ErrorCode::Cancelled) throw;
   }
-  brep::Booleans answers =
-      brep::booleans(*a, *b,
-                     {operation == Operation::Union, operation == Operation::Intersection,
-                      operation == Operation::Difference, false});
-  learn(answers);
+  learn(brep::booleans(a, b,
+                       {operation == Operation::Union, operation == Operation::Intersection,
+                        operation == Operation::Difference, false},
+                       stop_));
 }
 
 }  // namespace octotomy::verify

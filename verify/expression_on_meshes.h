@@ -3,19 +3,17 @@
 
 #include <functional>
 #include <map>
-#include <memory>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "brep/boolean/boolean.h"
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "verify/expression_tree.h"
 
 namespace octotomy::verify {
-
-using SharedMesh = std::shared_ptr<const brep::Mesh>;
 
 /// Reads an expression as MeshExpressions does: leaf i is names[i]. Throws as MeshExpressions::evaluate().
 ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string>& names);
@@ -31,31 +29,37 @@ ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string
 class MeshExpressions {
  public:
   /// `world` is the solid that the complement of everything is taken in: the universe's box.
-  explicit MeshExpressions(SharedMesh world) : world_(std::move(world)) {}
+  explicit MeshExpressions(brep::Solid world) : world_(std::move(world)) {}
 
-  /// The solid of the expression; without faces if the set is empty. Throws std::invalid_argument with the
-  /// position and the expected symbol; as `lookup` and brep::boolean().
-  SharedMesh evaluate(std::string_view text, const std::function<SharedMesh(std::string_view name)>& lookup);
+  /// The solid of the expression. Throws std::invalid_argument with the position and the expected symbol; as
+  /// `lookup` and brep::boolean().
+  brep::Solid evaluate(std::string_view text, const std::function<brep::Solid(std::string_view name)>& lookup,
+                       const std::stop_token& stop = {});
 
   /// Doubts of the corefinements in the last evaluate().
   const std::vector<std::string>& findings() const { return findings_; }
 
  private:
   struct Signed {
-    SharedMesh mesh;
+    brep::Solid solid;
     bool complement = false;
   };
-  Signed value(const ExpressionTree& tree, const std::vector<SharedMesh>& leaves);
-  SharedMesh boolean(const SharedMesh& a, brep::Operation operation, const SharedMesh& b);
+  Signed value(const ExpressionTree& tree, const std::vector<brep::Solid>& leaves);
+  brep::Solid boolean(const brep::Solid& a, brep::Operation operation, const brep::Solid& b);
+  using Answers = std::map<brep::Operation, brep::Solid>;
   /// Adds the answers of one corefinement to the known ones of the pair, `operation` among them.
-  void corefine(const SharedMesh& a, brep::Operation operation, const SharedMesh& b,
-                std::map<brep::Operation, SharedMesh>& known);
+  void corefine(const brep::Solid& a, brep::Operation operation, const brep::Solid& b, Answers& known);
   Signed intersection(const Signed& a, const Signed& b);
 
-  SharedMesh world_;
-  /// By operands and operation. Keeps the operands alive, so that no address is reused.
-  std::map<std::pair<SharedMesh, SharedMesh>, std::map<brep::Operation, SharedMesh>> answers_;
+  brep::Solid world_;
+  /// By the operands' meshes. Keeps the operands, so that no address is reused.
+  struct Pair {
+    brep::Solid a, b;
+    Answers answers;
+  };
+  std::map<std::pair<const brep::Mesh*, const brep::Mesh*>, Pair> pairs_;
   std::vector<std::string> findings_;
+  std::stop_token stop_;  ///< of the evaluate() under way
 };
 
 }  // namespace octotomy::verify

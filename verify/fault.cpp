@@ -84,14 +84,15 @@ voxel::Octree voxel_answer(const Subject& subject, const Making& making) {
 }
 
 brep::Triangles mesh_answer(const Subject& subject, const Making& making) {
-  const brep::Mesh window = brep::mesh_of(
-      convert::isosurface(scan_of(subject, making), making.low, std::numeric_limits<double>::infinity()));
+  const brep::Solid window = brep::trusted_solid(
+      convert::isosurface(scan_of(subject, making), making.low, std::numeric_limits<double>::infinity()),
+      brep::Proof::Construction);
   const glm::dvec3 a = subject.box.low_mm + making.box_shift_mm,
                    b = subject.box.high_mm + making.box_shift_mm;
-  const brep::Mesh box = brep::mesh_of(brep::Prism{
+  const brep::Solid box = brep::solid_of(brep::Prism{
       {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {{{a.x, a.z}, {b.x, a.z}, {b.x, b.z}, {a.x, b.z}}}, a.y, b.y});
-  const brep::Mesh still = making.swapped ? brep::boolean(box, brep::Operation::Difference, window).mesh
-                                          : brep::boolean(window, brep::Operation::Difference, box).mesh;
+  const brep::Solid still = making.swapped ? brep::boolean(box, brep::Operation::Difference, window).solid
+                                           : brep::boolean(window, brep::Operation::Difference, box).solid;
   return brep::triangles_of(brep::moved(still, motion_of(subject, making)));
 }
 

@@ -83,7 +83,7 @@ GeneralPosition general_position(const std::vector<voxel::Octree>& sets, const v
       triangles.points_mm.push_back(glm::dvec3(p_half * (cell / 2) - shift));
     position.operands.push_back(
         {voxel::combine(position.universe, voxel::Octree(placed, voxel::Block::share(cells.root()))),
-         std::make_shared<const brep::Mesh>(brep::mesh_of(triangles))});
+         brep::trusted_solid(std::move(triangles), brep::Proof::Construction)});
   }
   return position;
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
 
@@ -12,8 +11,8 @@ namespace octotomy::verify {
 
 /// One set of voxels in both kernels.
 struct ExactOperand {
-  voxel::Octree octree;                     ///< on the refined lattice
-  std::shared_ptr<const brep::Mesh> solid;  ///< its cuberille
+  voxel::Octree octree;  ///< on the refined lattice
+  brep::Solid solid;     ///< its cuberille
 };
 
 /// Sets of voxels whose surfaces meet only by crossing.

@@ -178,17 +178,21 @@ const std::array<SpacingName, 3> spacings{{{{1, 1, 1}, "1:1:1"}, {{1, 1, 2}, "2:
 struct Answers {
   voxel::Octree octree;
   std::optional<double> shares_mm3;  // volume by filled shares, if the voxels have them
-  brep::Mesh mesh;
+  brep::Solid solid;
   double blur_mm2 = 0.0;  // deviation squared along the coarsest axis
 };
+
+brep::Solid isosurface_of(const voxel::Scene& scan, double high) {
+  return brep::trusted_solid(convert::isosurface(scan, 0.0, high), brep::Proof::Construction);
+}
 
 Answers answers_of(const SolidPhantom& solid, Sampling sampling, Chance& chance) {
   const voxel::PartialOctree partial = digitise_partial(solid);
   std::vector<double> shares = shares_of(partial);
   if (sampling != Sampling::Blurred) {
     const voxel::Scene scan = scan_of(solid, shares);
-    Answers answers{voxel::at_least_half(partial), voxel::volume_mm3(partial),
-                    brep::mesh_of(convert::isosurface(scan, 0.0, contrast)), 0.0};
+    Answers answers{voxel::at_least_half(partial), voxel::volume_mm3(partial), isosurface_of(scan, contrast),
+                    0.0};
     if (sampling == Sampling::Binary) {
       answers.octree = digitise(solid, voxel::Digitisation::Centre);
       answers.shares_mm3.reset();
@@ -202,7 +206,7 @@ Answers answers_of(const SolidPhantom& solid, Sampling sampling, Chance& chance)
   const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
   const double deviation_mm = blur_voxels * longest(spacing_mm);
   return {voxel::combine(solid.universe, voxel::Window{grey, 0.0}), std::nullopt,
-          brep::mesh_of(convert::isosurface(scan, 0.0, 32767.0)), deviation_mm * deviation_mm};
+          isosurface_of(scan, 32767.0), deviation_mm * deviation_mm};
 }
 
 Certificate bounded_of(const SolidPhantom& solid, const Answers& answers, const PhantomCase& of) {
@@ -213,7 +217,7 @@ Certificate bounded_of(const SolidPhantom& solid, const Answers& answers, const 
                                                             : "voxels whose centre is in the closed form";
   inputs.mesh_lineage = "isosurface of the samples";
   inputs.scan_spacing_mm = solid.universe.lattice().spacing_mm();
-  return certify_bounded(answers.octree, answers.mesh, inputs);
+  return certify_bounded(answers.octree, answers.solid, inputs);
 }
 
 /// The share of its thickness that a plate loses at the half level of its blurred samples, for a thickness in
@@ -238,9 +242,9 @@ Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, co
                            double plate_voxels) {
   const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
   const double s = longest(spacing_mm);
-  const brep::Measures mesh = brep::measure(answers.mesh);
+  const brep::Measures mesh = answers.solid.measures();
   const BoundaryModel model =
-      boundary_model(answers.mesh, {solid.universe.lattice(), spacing_mm, solid.centroid_mm});
+      boundary_model(answers.solid, {solid.universe.lattice(), spacing_mm, solid.centroid_mm});
   Certificate certificate;
   certificate.operation = bounded.operation;
   certificate.tier = Tier::ClosedForm;
@@ -344,14 +348,14 @@ class Suite {
           const SolidPhantom solid = posed(kinds()[k], spacings[s].mm, chance);
           const Answers answers = answers_of(solid, Sampling::Binary, chance);
           const BoundaryModel model =
-              boundary_model(answers.mesh, {solid.universe.lattice(), spacings[s].mm, solid.centroid_mm});
+              boundary_model(answers.solid, {solid.universe.lattice(), spacings[s].mm, solid.centroid_mm});
           const double voxels_mm3 =
               static_cast<double>(answers.octree.voxel_count()) * solid.universe.lattice().voxel_mm3();
           // Along the lattice what the rims hide is not of this kind.
           if (kinds()[k].turned)
             counts.push_back(std::abs(voxels_mm3 - solid.volume_mm3) / std::sqrt(model.count_mm6));
           if (kinds()[k].turned)
-            bends.push_back((solid.volume_mm3 - brep::volume_mm3(answers.mesh)) /
+            bends.push_back((solid.volume_mm3 - brep::volume_mm3(answers.solid)) /
                             model.bent_without_sign.mm3);
         }
     }
@@ -397,9 +401,7 @@ class Suite {
     const Answers answers = answers_of(solid, samplings[m].sampling, chance);
     one.bounded = bounded_of(solid, answers, one);
     one.closed_form = closed_form_of(solid, answers, one.bounded, kinds()[k].thickness);
-    if (kinds()[k].thickness == 0.0)
-      keep_worse(suite_.worst,
-                 {one.bounded, answers.octree, std::make_shared<const brep::Mesh>(answers.mesh)});
+    if (kinds()[k].thickness == 0.0) keep_worse(suite_.worst, {one.bounded, answers.octree, answers.solid});
     // A box around a plate that is turned does not show how thin it is; the truth is known.
     if (kinds()[k].thickness > 0.0)
       for (Certificate* certificate : {&one.bounded, &one.closed_form})

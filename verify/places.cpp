@@ -273,7 +273,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
 
 /// The largest piece of the mesh that could be lost unseen. A part that is lost or added otherwise leaves
 /// vertices where the witness has none.
-double piece_limit_mm3(const brep::Mesh& solid, const brep::Triangles& mesh, const voxel::Lattice& lattice,
+double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Lattice& lattice,
                        const Witness& witness) {
   const std::vector<brep::Component> pieces = brep::components(solid);
   std::vector<double> lost_mm3(pieces.size(), 0.0);
@@ -328,10 +328,10 @@ std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_m
 
 }  // namespace
 
-Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Mesh& solid,
+Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress) {
   Places places;
-  const brep::Triangles mesh = brep::triangles_of(solid);
+  const brep::Triangles& mesh = solid.triangles();
   const std::vector<voxel::VoxelFace> boundary = voxel::voxel_boundary(octree);
   const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
   progress.at(0.2);

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "verify/certificate.h"
 #include "verify/reading.h"
 #include "voxel/space/progress.h"
@@ -26,7 +26,7 @@ struct Places {
 /// boundary, and the triangles' centroids. `digitised` are the voxels whose centre lies inside of the mesh.
 /// Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: the witness once for each of these
 /// points, and some ten thousand times for the limit.
-Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Mesh& solid,
+Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::verify

@@ -20,7 +20,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <mutex>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -345,18 +344,10 @@ Witness witness_of_box(const voxel::Box& box) {
   };
 }
 
-Witness witness_of_surface(std::shared_ptr<const brep::Mesh> solid) {
-  struct Lazy {
-    std::shared_ptr<const brep::Mesh> solid;
-    std::once_flag once;
-    std::optional<brep::SurfaceTree> tree;
-  };
-  const auto lazy = std::make_shared<Lazy>();
-  lazy->solid = std::move(solid);
-  return [lazy](const glm::dvec3& p_mm) {
-    std::call_once(lazy->once, [&] { lazy->tree.emplace(*lazy->solid); });
+Witness witness_of_surface(brep::Solid solid) {
+  return [solid = std::move(solid)](const glm::dvec3& p_mm) {
     const double near_mm = rounding * (1.0 + glm::length(p_mm));
-    const bool near = lazy->tree->distances_mm({p_mm}).front() <= near_mm;
+    const bool near = !solid.empty() && solid.tree().distances_mm({p_mm}).front() <= near_mm;
     return Reading{near ? on_surface : untold, near ? on_surface : untold, near ? 2 : 0};
   };
 }

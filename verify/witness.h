@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "verify/reading.h"
 #include "voxel/space/lattice.h"
 #include "voxel/space/scene.h"
@@ -31,9 +31,8 @@ struct DrawnRegion {
 /// The points whose projection lies inside of every region. Throws std::invalid_argument for an unknown view.
 Witness witness_of_regions(const std::vector<DrawnRegion>& regions);
 Witness witness_of_box(const voxel::Box& box);
-/// Knows where the surface is and not which side is inside: for solids that come from no scan. Builds a
-/// search tree at the first question.
-Witness witness_of_surface(std::shared_ptr<const brep::Mesh> solid);
+/// Knows where the surface is and not which side is inside: for solids that come from no scan.
+Witness witness_of_surface(brep::Solid solid);
 
 Witness both(Witness a, Witness b);
 Witness without(Witness a, Witness b);

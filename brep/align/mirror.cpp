@@ -92,17 +92,24 @@ MirrorFit fit_from(const Mesh& mesh, const MirrorPlane& start, const glm::dvec3&
   return found;
 }
 
-}  // namespace
-
-Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane) {
+Triangles mirrored_triangles(Triangles triangles, const MirrorPlane& plane) {
   const double length = glm::length(plane.normal);
   if (!(length > 0.0) || !std::isfinite(length))
     throw std::invalid_argument("mirrored: the plane's normal has no length");
   const glm::dmat4 image_of = reflection({plane.point_mm, plane.normal / length});
-  Triangles triangles = triangles_of(mesh);
   for (glm::dvec3& p : triangles.points_mm) p = glm::dvec3(image_of * glm::dvec4(p, 1.0));
   for (auto& face : triangles.faces) std::swap(face[1], face[2]);
-  return mesh_of(triangles);
+  return triangles;
+}
+
+}  // namespace
+
+Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane) {
+  return mesh_of(mirrored_triangles(triangles_of(mesh), plane));
+}
+
+Solid mirrored(const Solid& solid, const MirrorPlane& plane) {
+  return trusted_solid(mirrored_triangles(solid.triangles(), plane), proof_of_image(solid.proof()));
 }
 
 MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options) {

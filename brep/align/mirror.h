@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
 
@@ -17,9 +17,10 @@ struct MirrorPlane {
   glm::dvec3 point_mm{0.0}, normal{1, 0, 0};
 };
 
-/// The mesh mirrored about a plane, its triangles outward still. Throws std::invalid_argument where the
-/// normal has no length.
+/// The mesh mirrored about a plane, its triangles outward still. Throws std::invalid_argument if the normal
+/// has no length.
 Mesh mirrored(const Mesh& mesh, const MirrorPlane& plane);
+Solid mirrored(const Solid& solid, const MirrorPlane& plane);
 
 struct MirrorFitOptions {
   /// Near which the plane lies, to some 20 degrees; none tries those square to the surface's three axes.

@@ -17,6 +17,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/move.h"
 #include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/sample_surface.h"
@@ -181,7 +182,7 @@ class Refinement {
  private:
   void refine(Fit& fit, int rounds) const {
     for (int round = 0; round < rounds && !fit.converged; ++round, ++fit.rounds) {
-      if (stop_.stop_requested()) throw std::runtime_error("register: stopped");
+      if (stop_.stop_requested()) throw Stopped("register: stopped");
       if (!step(fit)) break;
     }
   }

@@ -42,7 +42,7 @@ struct SurfaceFit {
 /// either may be missing: samples whose nearest point lies on the other's border, or whose normal looks the
 /// other way, have no counterpart, and of the rest the furthest are trimmed; at last all within three
 /// standard deviations of those kept count. Throws std::invalid_argument where a surface has no area, an
-/// option is out of its range, or the overlap keeps fewer than six samples; std::runtime_error where stopped.
+/// option is out of its range, or the overlap keeps fewer than six samples; Stopped.
 /// The same bits on any number of threads. Cost: some 70 short searches of 500 samples, then about 50 rounds
 /// of `samples`: a second for heads. Source: Chen and Medioni, "Object modelling by registration of multiple
 /// range images", IVC 10, 1992 (point to plane); Chetverikov et al., "Robust Euclidean alignment of 3D point

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 refuse open and inside-out operands; 2 put the operands in an order of their own, so that neither the
+// 1 refuse inside-out operands; 2 put the operands in an order of their own, so that neither the
 // caller's order nor its addresses show in the bits; 3 cut near the common lines only, or corefine the whole
 // where that will not do; 4 let the volumes vouch for each other; 5 where a wanted result is not manifold or
 // the volumes do not add up, try again with the second operand moved by far less than any bound, and tell.
@@ -17,6 +17,7 @@
 
 #include "brep/boolean/corefine.h"
 #include "brep/boolean/near_boolean.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/short_text.h"
 #include "brep/mesh/triangles.h"
@@ -35,14 +36,10 @@ struct Names {
   }
 };
 
-void check_operand(const Mesh& mesh, const Size& size, const std::string& name) {
-  for (const auto h : mesh.halfedges())
-    if (mesh.is_boundary(h))
-      throw std::invalid_argument(
-          "operand " + name + " is open: triangle " + std::to_string(mesh.opposite_face_handle(h).idx()) +
-          " has no neighbour along a side; a Boolean takes solids, close the surface first");
-  if (!std::isfinite(size.volume_mm3) || size.volume_mm3 < 0.0)
-    throw std::invalid_argument("operand " + name + " has volume " + std::to_string(size.volume_mm3) +
+void check_operand(const Solid& solid, const std::string& name) {
+  const double volume_mm3 = solid.size().volume_mm3;
+  if (!std::isfinite(volume_mm3) || volume_mm3 < 0.0)
+    throw std::invalid_argument("operand " + name + " has volume " + std::to_string(volume_mm3) +
                                 " mm3: its triangles face inward; turn them round first");
 }
 
@@ -136,19 +133,15 @@ struct Attempt {
 };
 
 struct Question {
-  const Mesh& a;
-  const Triangles& triangles_a;
-  Size size_a;
-  const Mesh& b;
-  const Triangles& triangles_b;
-  Size size_b;
+  const Solid& a;
+  const Solid& b;
   Wanted wanted;
   Names names;
   const std::stop_token& stop;
 };
 
 /// All triangles corefined.
-Attempt whole_attempt(const Question& question, const Mesh& b) {
+Attempt whole_attempt(const Question& question, const Solid& b) {
   Attempt attempt;
   Corefined corefined =
       corefine(question.a, b, with_witnesses(question.wanted, question.a, question.b), question.stop);
@@ -165,10 +158,9 @@ Attempt whole_attempt(const Question& question, const Mesh& b) {
   return attempt;
 }
 
-Attempt near_attempt(const Question& question, const Mesh& b, const Triangles& triangles_b) {
+Attempt near_attempt(const Question& question, const Solid& b) {
   Attempt attempt;
-  NearBoolean answer =
-      near_boolean({question.a, question.triangles_a}, {b, triangles_b}, question.wanted, question.stop);
+  NearBoolean answer = near_boolean(question.a, b, question.wanted, question.stop);
   attempt.failure = answer.obstacle;
   if (answer.meets_itself) attempt.failure = "an operand meets itself where the other cuts it";
   attempt.results = std::move(answer.results);
@@ -187,19 +179,19 @@ void judge(const Question& question, Attempt& attempt) {
   }
   attempt.failure.clear();
   attempt.disagreement_mm3 =
-      disagreement_mm3(attempt.volumes_mm3, question.size_a.volume_mm3, question.size_b.volume_mm3);
+      disagreement_mm3(attempt.volumes_mm3, volume_mm3(question.a), volume_mm3(question.b));
   if (!attempt.disagreement_mm3) {
     attempt.findings.emplace_back("too few results are manifold for their volumes to be compared");
     return;
   }
-  const double tolerance = volume_tolerance_mm3(question.size_a, question.size_b);
+  const double tolerance = volume_tolerance_mm3(question.a.size(), question.b.size());
   if (*attempt.disagreement_mm3 > tolerance)
     attempt.failure = "the results' volumes are " + std::to_string(*attempt.disagreement_mm3) +
                       " mm3 from adding up, " + std::to_string(tolerance) + " is allowed";
 }
 
-Attempt best_attempt(const Question& question, const Mesh& b, const Triangles& triangles_b) {
-  Attempt near = near_attempt(question, b, triangles_b);
+Attempt best_attempt(const Question& question, const Solid& b) {
+  Attempt near = near_attempt(question, b);
   if (near.failure.empty()) judge(question, near);
   if (near.failure.empty()) return near;
   Attempt whole = whole_attempt(question, b);
@@ -208,16 +200,17 @@ Attempt best_attempt(const Question& question, const Mesh& b, const Triangles& t
 }
 
 Attempt shifted_attempt(const Question& question, const glm::dvec3& shift) {
-  Mesh b = question.b;
+  Mesh b = question.b.mesh();
   for (const auto v : b.vertices()) b.set_point(v, b.point(v) + Mesh::Point(shift.x, shift.y, shift.z));
-  return best_attempt(question, b, triangles_of(b));
+  return best_attempt(question, trusted_solid(b, Proof::Rounded));
 }
 
 /// Sheets come to touch where both operands are, so the rest need not be searched.
 void tell_touching(const Question& question, Attempt& attempt) {
-  const double margin = glm::length(shift_mm(attempt_count, extent_mm(question.size_a, question.size_b)));
-  const glm::dvec3 low = glm::max(question.size_a.low_mm, question.size_b.low_mm) - margin;
-  const glm::dvec3 high = glm::min(question.size_a.high_mm, question.size_b.high_mm) + margin;
+  const Size &a = question.a.size(), &b = question.b.size();
+  const double margin = glm::length(shift_mm(attempt_count, extent_mm(a, b)));
+  const glm::dvec3 low = glm::max(a.low_mm, b.low_mm) - margin;
+  const glm::dvec3 high = glm::min(a.high_mm, b.high_mm) + margin;
   for (std::size_t r = 0; r < attempt.results.size(); ++r) {
     const std::size_t count = question.wanted[r] ? shared_point_count(*attempt.results[r], low, high) : 0;
     if (count > 0)
@@ -255,7 +248,7 @@ Answer answer_of(const Question& question, Attempt attempt) {
   tell_films(question, attempt);
   tell_flat(attempt);
   Answer answer;
-  const double whole = question.size_a.volume_mm3 + question.size_b.volume_mm3;
+  const double whole = volume_mm3(question.a) + volume_mm3(question.b);
   if (attempt.disagreement_mm3) answer.residual = whole > 0.0 ? *attempt.disagreement_mm3 / whole : 0.0;
   answer.results = std::move(attempt.results);
   answer.findings = std::move(attempt.findings);
@@ -264,25 +257,24 @@ Answer answer_of(const Question& question, Attempt attempt) {
 
 Answer answer(const Question& question) {
   std::string first_failure;
-  const double extent = extent_mm(question.size_a, question.size_b);
+  const double extent = extent_mm(question.a.size(), question.b.size());
   for (int i = 0; i < attempt_count; ++i) {
     const glm::dvec3 shift = shift_mm(i, extent);
-    Attempt attempt =
-        i == 0 ? best_attempt(question, question.b, question.triangles_b) : shifted_attempt(question, shift);
+    Attempt attempt = i == 0 ? best_attempt(question, question.b) : shifted_attempt(question, shift);
     if (attempt.failure.empty()) {
       if (i > 0)
         attempt.findings.push_back(
             "shifted: " + question.names.second + " was moved by (" + short_text(shift.x) + ", " +
             short_text(shift.y) + ", " + short_text(shift.z) + ") mm, which changes a volume by at most " +
-            short_text(glm::length(shift) * question.size_b.area_mm2) + " mm3, as " + first_failure);
+            short_text(glm::length(shift) * question.b.size().area_mm2) + " mm3, as " + first_failure);
       return answer_of(question, std::move(attempt));
     }
     if (i == 0) first_failure = attempt.failure;
   }
-  throw std::runtime_error(
-      "no Boolean: " + first_failure + ", and moving " + question.names.second + " by up to " +
-      short_text(glm::length(shift_mm(attempt_count - 1, extent))) +
-      " mm did not help; ask for the health of both operands and repair them, or move one");
+  throw Error(ErrorCode::Geometry,
+              "no Boolean: " + first_failure + ", and moving " + question.names.second + " by up to " +
+                  short_text(glm::length(shift_mm(attempt_count - 1, extent))) +
+                  " mm did not help; ask for the health of both operands and repair them, or move one");
 }
 
 /// An order of meshes that does not hang on who is called first.
@@ -295,35 +287,25 @@ bool comes_after(const Triangles& a, const Triangles& b) {
                                       a.points_mm.end(), less);
 }
 
-Answer answer(const Mesh& a, const Mesh& b, const Wanted& wanted, const std::stop_token& stop) {
+Answer answer(const Solid& a, const Solid& b, const Wanted& wanted, const std::stop_token& stop) {
   if (stop.stop_requested()) throw BooleanStopped();
-  const Triangles triangles_a = triangles_of(a), triangles_b = triangles_of(b);
-  const Size size_a = size_of(triangles_a), size_b = size_of(triangles_b);
-  check_operand(a, size_a, "a");
-  check_operand(b, size_b, "b");
-  if (!comes_after(triangles_a, triangles_b))
-    return answer({a, triangles_a, size_a, b, triangles_b, size_b, wanted, {"a", "b"}, stop});
+  check_operand(a, "a");
+  check_operand(b, "b");
+  if (!comes_after(a.triangles(), b.triangles())) return answer({a, b, wanted, {"a", "b"}, stop});
   Wanted turned = wanted;
   std::swap(turned[of_a_minus_b], turned[of_b_minus_a]);
-  Answer answer_to_turned =
-      answer({b, triangles_b, size_b, a, triangles_a, size_a, turned, {"b", "a"}, stop});
+  Answer answer_to_turned = answer({b, a, turned, {"b", "a"}, stop});
   std::swap(answer_to_turned.results[of_a_minus_b], answer_to_turned.results[of_b_minus_a]);
   return answer_to_turned;
 }
 
-/// Makes a mesh where it is to stand, as meshes cannot be moved, only copied.
-struct MeshInPlace {
-  const Triangles& triangles;
-  operator Mesh() const { return mesh_of(triangles); }
-};
-
 }  // namespace
 
-Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted, const std::stop_token& stop) {
+Booleans booleans(const Solid& a, const Solid& b, const BooleansWanted& wanted, const std::stop_token& stop) {
   Answer found = answer(a, b, {wanted.united, wanted.intersection, wanted.a_minus_b, wanted.b_minus_a}, stop);
   Booleans booleans;
-  const auto make = [&](ResultPlace place, std::optional<Mesh>& mesh) {
-    if (found.results[place]) mesh.emplace(MeshInPlace{*found.results[place]});
+  const auto make = [&](ResultPlace place, std::optional<Solid>& solid) {
+    if (found.results[place]) solid = trusted_solid(std::move(*found.results[place]), Proof::Rounded);
   };
   make(of_union, booleans.united);
   make(of_intersection, booleans.intersection);
@@ -334,40 +316,41 @@ Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted, co
   return booleans;
 }
 
-BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b, const std::stop_token& stop) {
+BooleanResult boolean(const Solid& a, Operation operation, const Solid& b, const std::stop_token& stop) {
   const ResultPlace place = operation == Operation::Union          ? of_union
                             : operation == Operation::Intersection ? of_intersection
                                                                    : of_a_minus_b;
   Wanted wanted{};
   wanted[place] = true;
   Answer found = answer(a, b, wanted, stop);
-  return {mesh_of(found.results[place].value()), found.residual, std::move(found.findings)};
+  return {trusted_solid(std::move(found.results[place].value()), Proof::Rounded), found.residual,
+          std::move(found.findings)};
 }
 
-BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation, const std::stop_token& stop) {
+BooleanResult boolean(const std::vector<Solid>& operands, Operation operation, const std::stop_token& stop) {
   if (operands.empty()) throw std::invalid_argument("a Boolean needs an operand");
   BooleanResult all;
-  const auto combine = [&](const Mesh& a, Operation step, const Mesh& b) {
+  const auto combine = [&](const Solid& a, Operation step, const Solid& b) {
     BooleanResult result = boolean(a, step, b, stop);
     if (result.residual) all.residual = std::max(all.residual.value_or(0.0), *result.residual);
     all.findings.insert(all.findings.end(), result.findings.begin(), result.findings.end());
-    return result.mesh;
+    return result.solid;
   };
-  const auto in_pairs = [&](std::vector<Mesh> meshes, Operation step) {
-    while (meshes.size() > 1) {
-      std::vector<Mesh> half;
-      for (std::size_t i = 0; i + 1 < meshes.size(); i += 2)
-        half.push_back(combine(meshes[i], step, meshes[i + 1]));
-      if (meshes.size() % 2 == 1) half.push_back(meshes.back());
-      meshes = std::move(half);
+  const auto in_pairs = [&](std::vector<Solid> solids, Operation step) {
+    while (solids.size() > 1) {
+      std::vector<Solid> half;
+      for (std::size_t i = 0; i + 1 < solids.size(); i += 2)
+        half.push_back(combine(solids[i], step, solids[i + 1]));
+      if (solids.size() % 2 == 1) half.push_back(solids.back());
+      solids = std::move(half);
     }
-    return meshes.front();
+    return solids.front();
   };
   if (operation != Operation::Difference || operands.size() == 1) {
-    all.mesh = in_pairs(operands, operation);
+    all.solid = in_pairs(operands, operation);
   } else {
-    const Mesh others = in_pairs({operands.begin() + 1, operands.end()}, Operation::Union);
-    all.mesh = combine(operands.front(), Operation::Difference, others);
+    const Solid others = in_pairs({operands.begin() + 1, operands.end()}, Operation::Union);
+    all.solid = combine(operands.front(), Operation::Difference, others);
   }
   return all;
 }

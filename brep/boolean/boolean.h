@@ -6,38 +6,36 @@
 #include <string>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
 
 enum class Operation { Union, Intersection, Difference };
 
 struct BooleanResult {
-  Mesh mesh;
+  Solid solid;
   /// How far the volumes are from adding up, see Booleans; none where too few of them could be computed.
   std::optional<double> residual;
   std::vector<std::string> findings;  ///< doubts, see Booleans
 };
 
-/// Boolean of two solids by corefinement on OpenMesh; Difference is a - b. The result is closed and oriented,
-/// or has no faces where the set is empty; an operand without faces is the empty set. As new points are
-/// rounded to doubles, triangles thinner than that rounding may overlap their neighbours: ask health() before
-/// a mesh generator does. What the residual needs is computed with it, so an empty result is never silent:
-/// the volumes must add up. Preconditions are the caller's to know from health(): both without
-/// self-intersection and with shells placed rightly. The bits are the same on any number of threads and for
-/// either order of the operands. Throws std::invalid_argument where an operand is open, naming the first such
-/// triangle, or inside out; std::runtime_error where the result cannot be represented as a manifold surface
-/// or the volumes do not add up, after the remedy below, or where stopped. Cost: linear in all triangles,
-/// some 0.4 us each, and n log n, about 2 us each, for those near the common lines. Source: CGAL's Polygon
-/// Mesh Processing, corefinement (Loriot et al.), EPICK predicates; only triangles near the common lines are
-/// given to it, see near_boolean().
-BooleanResult boolean(const Mesh& a, Operation operation, const Mesh& b, const std::stop_token& stop = {});
+/// The Boolean of two solids by corefinement on OpenMesh; Difference is a - b. The result's proof is Rounded:
+/// new points are rounded to doubles, so triangles thinner than that rounding may overlap their neighbours.
+/// Ask health() before a mesh generator does. Volumes beside the result's are computed with it and must add
+/// up, so an empty result is never silent. An operand that meets itself, which a proof below Health allows,
+/// is found near the cut only. The bits are the same on any number of threads and for either order of the
+/// operands. Throws std::invalid_argument if an operand is inside out; Error (Geometry) if the result cannot
+/// be represented as a manifold surface or the volumes do not add up, after the remedy below; Stopped. Cost:
+/// linear in all triangles, some 0.4 us each, and n log n, about 2 us each, for those near the common lines.
+/// Source: CGAL's Polygon Mesh Processing, corefinement (Loriot et al.), EPICK predicates; only triangles
+/// near the common lines are given to it, see near_boolean().
+BooleanResult boolean(const Solid& a, Operation operation, const Solid& b, const std::stop_token& stop = {});
 
 /// The Boolean of any number of solids: their union, their intersection, or the first less all others. The
-/// residual is the largest of the steps', and findings are all of them. Throws std::invalid_argument where
-/// there are no operands, else as above. Cost: unions are taken in pairs, so that each triangle passes log n
-/// of them.
-BooleanResult boolean(const std::vector<Mesh>& operands, Operation operation,
+/// residual is the largest of the steps', and findings are all of them. Throws std::invalid_argument if there
+/// are no operands, else as above. Cost: unions are taken in pairs, so that each triangle passes log n of
+/// them.
+BooleanResult boolean(const std::vector<Solid>& operands, Operation operation,
                       const std::stop_token& stop = {});
 
 /// Which results booleans() must give.
@@ -50,10 +48,10 @@ struct BooleansWanted {
 
 /// Results of one corefinement. One that was not wanted may be there or not.
 struct Booleans {
-  std::optional<Mesh> united;
-  std::optional<Mesh> intersection;
-  std::optional<Mesh> a_minus_b;
-  std::optional<Mesh> b_minus_a;
+  std::optional<Solid> united;
+  std::optional<Solid> intersection;
+  std::optional<Solid> a_minus_b;
+  std::optional<Solid> b_minus_a;
   /// The largest of |(A + B) - (A u B + A n B)|, |A - (A-B) - (A n B)| and |B - (B-A) - (A n B)|, volumes,
   /// relative to A + B; those of them whose parts were computed.
   std::optional<double> residual;
@@ -69,7 +67,7 @@ struct Booleans {
 
 /// As boolean(), which see, for several results at the price of one. Only wanted results decide whether it
 /// throws or resorts to the shift.
-Booleans booleans(const Mesh& a, const Mesh& b, const BooleansWanted& wanted = {},
+Booleans booleans(const Solid& a, const Solid& b, const BooleansWanted& wanted = {},
                   const std::stop_token& stop = {});
 
 }  // namespace octotomy::brep

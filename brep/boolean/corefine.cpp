@@ -12,6 +12,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
@@ -255,6 +256,8 @@ Corefined corefine(const Mesh& a, const Mesh& b, const Wanted& wanted, const std
       corefined.meets_itself = !strict;
       return corefined;
     } catch (const BooleanStopped&) {
+      throw;
+    } catch (const std::bad_alloc&) {
       throw;
     } catch (const pmp::Corefinement::Self_intersection_exception&) {
       failed.failure = "an operand meets itself where the other cuts it";

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <stdexcept>
 #include <stop_token>
 #include <string>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/mesh.h"
 #include "brep/mesh/triangles.h"
 
@@ -18,9 +18,8 @@ enum ResultPlace { of_union, of_intersection, of_a_minus_b, of_b_minus_a };
 using Results = std::array<std::optional<Triangles>, 4>;
 using Wanted = std::array<bool, 4>;
 
-/// A stop token was set.
-struct BooleanStopped : std::runtime_error {
-  BooleanStopped() : std::runtime_error("the Boolean was stopped") {}
+struct BooleanStopped : Stopped {
+  BooleanStopped() : Stopped("the Boolean was stopped") {}
 };
 
 struct Corefined {

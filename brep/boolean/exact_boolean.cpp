@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "brep/mesh/coordinate_order.h"
-#include "brep/mesh/measure.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/surface_mesh.h"
 #include "brep/mesh/triangles.h"
 
@@ -21,16 +21,10 @@ using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Rational = Kernel::Exact_kernel::FT;
 
-Surface surface_of(const Mesh& mesh, const std::string& name) {
-  const Triangles triangles = triangles_of(mesh);
-  for (const auto h : mesh.halfedges())
-    if (mesh.is_boundary(h))
-      throw std::invalid_argument("operand " + name + " is open at triangle " +
-                                  std::to_string(mesh.opposite_face_handle(h).idx()) +
-                                  "; a Boolean takes solids, close the surface first");
-  if (size_of(triangles).volume_mm3 < 0.0)
+Surface surface_of(const Solid& solid, const std::string& name) {
+  if (volume_mm3(solid) < 0.0)
     throw std::invalid_argument("operand " + name + "'s triangles face inward; turn them round first");
-  return surface_mesh_of<Kernel::Point_3>(triangles);
+  return surface_mesh_of<Kernel::Point_3>(solid.triangles());
 }
 
 /// Halves added to halves, so that most sums are of numbers of like length.
@@ -64,12 +58,12 @@ double mm3_of(const Rational& six) {
 
 void prove(const Rational& whole, const Rational& parts, const std::string& identity) {
   if (whole == parts) return;
-  throw std::runtime_error("exact volumes do not add up: " + identity + " misses by " +
-                           std::to_string(mm3_of(whole - parts)) +
-                           " mm3; an operand meets itself: ask for its health");
+  throw Error(ErrorCode::Geometry, "exact volumes do not add up: " + identity + " misses by " +
+                                       std::to_string(mm3_of(whole - parts)) +
+                                       " mm3; an operand meets itself: ask for its health");
 }
 
-Mesh rounded(const Surface& surface, std::size_t& moved) {
+Triangles rounded(const Surface& surface, std::size_t& moved) {
   Triangles triangles;
   std::vector<std::uint32_t> number(surface.num_vertices());
   for (const auto v : surface.vertices()) {
@@ -86,12 +80,12 @@ Mesh rounded(const Surface& surface, std::size_t& moved) {
     triangles.faces.push_back(face);
   }
   // CGAL's order hangs on addresses.
-  return mesh_of(in_coordinate_order(mesh_of(triangles)));
+  return in_coordinate_order(mesh_of(triangles));
 }
 
 /// What CGAL tells while it works: meeting edges and faces are half of the work, cutting faces the other.
 struct Watched : pmp::Corefinement::Default_visitor<Surface> {
-  const Watch* watch = nullptr;
+  const Progress* progress = nullptr;
   std::size_t steps = 0, step = 0;
   double from = 0.0;
 
@@ -101,9 +95,8 @@ struct Watched : pmp::Corefinement::Default_visitor<Surface> {
     from = share;
   }
   void advance() {
-    if (watch->stop.stop_requested()) throw std::runtime_error("the exact Boolean was stopped");
-    if (watch->progress)
-      watch->progress(from + 0.45 * static_cast<double>(++step) / static_cast<double>(steps));
+    if (progress->stop.stop_requested()) throw Stopped("the exact Boolean was stopped");
+    progress->at(from + 0.45 * static_cast<double>(++step) / static_cast<double>(steps));
   }
   void start_handling_edge_face_intersections(std::size_t count) { begin(count, 0.0); }
   void edge_face_intersections_step() { advance(); }
@@ -113,7 +106,7 @@ struct Watched : pmp::Corefinement::Default_visitor<Surface> {
 
 }  // namespace
 
-ExactBoolean exact_boolean(const Mesh& a, Operation operation, const Mesh& b, const Watch& watch) {
+ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, const Progress& progress) {
   Surface exact_a = surface_of(a, "a"), exact_b = surface_of(b, "b");
   const Rational of_a = six_volumes(exact_a), of_b = six_volumes(exact_b);
   std::array<Surface, 4> results;
@@ -125,16 +118,17 @@ ExactBoolean exact_boolean(const Mesh& a, Operation operation, const Mesh& b, co
        {wanted, std::size_t{pmp::Corefinement::UNION}, std::size_t{pmp::Corefinement::INTERSECTION}})
     output[r] = &results[r];
   Watched watched;
-  watched.watch = &watch;
+  watched.progress = &progress;
   const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
       exact_a, exact_b, output, CGAL::parameters::visitor(watched));
   for (std::size_t r = 0; r < output.size(); ++r)
     if (output[r] && !manifold[r])
-      throw std::runtime_error(
+      throw Error(
+          ErrorCode::Geometry,
           "no exact Boolean: a result would not be manifold, as the surfaces only touch; without exactness "
           "one is moved by far less than matters");
 
-  if (watch.progress) watch.progress(0.9);
+  progress.at(0.9);
   const Rational united = six_volumes(results[pmp::Corefinement::UNION]);
   const Rational common = six_volumes(results[pmp::Corefinement::INTERSECTION]);
   prove(of_a + of_b, united + common, "|A| + |B| = |A u B| + |A n B|");
@@ -144,9 +138,9 @@ ExactBoolean exact_boolean(const Mesh& a, Operation operation, const Mesh& b, co
   if (operation == Operation::Difference) prove(of_a, result + common, "|A| = |A - B| + |A n B|");
 
   std::size_t moved = 0;
-  const Mesh mesh = rounded(results[wanted], moved);
-  const double rounding = mesh.n_faces() == 0 ? 0.0 : volume_mm3(mesh) - mm3_of(result);
-  return {mesh, mm3_of(of_a), mm3_of(of_b), mm3_of(united), mm3_of(common), mm3_of(result), rounding, moved};
+  const Solid solid = trusted_solid(rounded(results[wanted], moved), Proof::Rounded);
+  const double rounding = solid.empty() ? 0.0 : volume_mm3(solid) - mm3_of(result);
+  return {solid, mm3_of(of_a), mm3_of(of_b), mm3_of(united), mm3_of(common), mm3_of(result), rounding, moved};
 }
 
 }  // namespace octotomy::brep

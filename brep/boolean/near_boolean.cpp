@@ -18,7 +18,6 @@
 #include <utility>
 
 #include "brep/mesh/disjoint_sets.h"
-#include "brep/mesh/distance.h"
 #include "brep/mesh/intersecting_triangles.h"
 #include "brep/mesh/measure.h"
 
@@ -39,6 +38,13 @@ Place place_of(const glm::dvec3& p) {
 Edge edge_of(std::uint32_t v, std::uint32_t w) {
   return {std::min(v, w), std::max(v, w)};
 }
+
+/// A solid's parts at hand, for loops over all triangles.
+struct Operand {
+  const Solid& solid;
+  const Mesh& mesh = solid.mesh();
+  const Triangles& triangles = solid.triangles();
+};
 
 /// What keeps a Boolean from being made near the cut only.
 struct Obstacle : std::runtime_error {
@@ -231,7 +237,7 @@ void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
   for (const std::uint32_t v : side.first) probes.push_back(operand.triangles.points_mm[v]);
   std::vector<std::uint8_t> inside;
   if (probes.size() >= probes_worth_a_tree)
-    inside = SurfaceTree(other.triangles).inside(probes);
+    inside = other.solid.tree().inside(probes);
   else
     for (const glm::dvec3& probe : probes) inside.push_back(is_inside(probe, other.triangles));
   for (std::size_t part = 0; part < inside.size(); ++part) {
@@ -364,11 +370,10 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
 
 }  // namespace
 
-NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted,
-                         const std::stop_token& stop) {
+NearBoolean near_boolean(const Solid& a, const Solid& b, const Wanted& wanted, const std::stop_token& stop) {
   NearBoolean answer;
   try {
-    sew(a, b, wanted, stop, answer);
+    sew({a}, {b}, wanted, stop, answer);
     return answer;
   } catch (const Obstacle& obstacle) {
     answer = {};

@@ -4,15 +4,9 @@
 #include <string>
 
 #include "brep/boolean/corefine.h"
-#include "brep/mesh/triangles.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
-
-/// A closed mesh and its triangles, in the same order.
-struct Operand {
-  const Mesh& mesh;
-  const Triangles& triangles;
-};
 
 struct NearBoolean {
   Results results;  ///< those wanted, closed; none of them where `obstacle` says why
@@ -30,7 +24,7 @@ struct NearBoolean {
 /// with the reason, where that is no gain or not certain: more than half of the triangles are near, a part
 /// only touches, faces all but coincide, a result is not manifold, or border, ray and seam disagree. Cost:
 /// linear in all triangles, some 0.2 us each, and corefine()'s for the near ones.
-NearBoolean near_boolean(const Operand& a, const Operand& b, const Wanted& wanted,
+NearBoolean near_boolean(const Solid& a, const Solid& b, const Wanted& wanted,
                          const std::stop_token& stop = {});
 
 }  // namespace octotomy::brep

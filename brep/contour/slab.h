@@ -4,10 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "brep/contour/contour.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 
@@ -32,12 +33,12 @@ struct SlabSurface {
 };
 
 /// Contours of one section cross or touch each other.
-struct ContoursMeet : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct ContoursMeet : Error {
+  explicit ContoursMeet(const std::string& message) : Error(ErrorCode::Geometry, message) {}
 };
 /// A point of one section stands exactly over a point or side of the other's: move one by a little.
-struct SectionsCoincide : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct SectionsCoincide : Error {
+  explicit SectionsCoincide(const std::string& message) : Error(ErrorCode::Geometry, message) {}
 };
 
 /// The surface of an object between two sections, oriented outward, whose border are both sections' contours:

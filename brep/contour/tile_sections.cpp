@@ -14,6 +14,7 @@
 #include <tbb/parallel_for.h>
 
 #include "brep/contour/slab.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 
 namespace octotomy::brep {
@@ -189,7 +190,7 @@ std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
     const std::lock_guard lock(telling);
     options.progress(static_cast<double>(count) / static_cast<double>(slabs.size()));
   });
-  if (options.stop.stop_requested()) throw std::runtime_error("tiling was stopped");
+  if (options.stop.stop_requested()) throw Stopped("tiling was stopped");
   return slabs;
 }
 
@@ -255,7 +256,8 @@ TiledSections tile_sections(const std::vector<Section>& sections, const TileSect
       trouble = coincide.what();
     }
   }
-  throw std::runtime_error("tile_sections: " + trouble + " wherever they are moved to: move one by hand");
+  throw Error(ErrorCode::Geometry,
+              "tile_sections: " + trouble + " wherever they are moved to: move one by hand");
 }
 
 }  // namespace octotomy::brep

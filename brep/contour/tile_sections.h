@@ -43,7 +43,7 @@ struct TiledSections {
 /// Sections may be unevenly apart. So that contours of neighbours never coincide, every other one is moved by
 /// 2^-30 of the largest coordinate, a quarter of a nanometre on a head. In section coordinates: x and y of
 /// the contours, z up. Throws std::invalid_argument where sections are not in ascending order, a contour is
-/// open, has fewer than three points or one that is not finite, and std::runtime_error naming section and
+/// open, has fewer than three points or one that is not finite, and Error (Geometry) naming section and
 /// contours where two of one section cross or touch. Cost: some 40 us a point; parallel over sections, the
 /// same bits on any number of threads. Source: sections overlaid as Boissonnat's "Shape reconstruction from
 /// planar cross sections" (1988) does, in the plane instead of with Delaunay tetrahedra; tile.h for strips.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -15,8 +17,9 @@ bool is_space(char c) {
 
 std::uint32_t checked_corner(const Triangles& triangles, long long corner) {
   if (corner < 0 || corner >= static_cast<long long>(triangles.points_mm.size()))
-    throw std::runtime_error("triangle " + std::to_string(triangles.faces.size()) + " refers to point " +
-                             std::to_string(corner) + " of " + std::to_string(triangles.points_mm.size()));
+    throw Error(ErrorCode::Input, "triangle " + std::to_string(triangles.faces.size()) + " refers to point " +
+                                      std::to_string(corner) + " of " +
+                                      std::to_string(triangles.points_mm.size()));
   return static_cast<std::uint32_t>(corner);
 }
 
@@ -24,7 +27,8 @@ std::uint32_t checked_corner(const Triangles& triangles, long long corner) {
 
 void MeshScanner::fail(const std::string& why) const {
   const auto passed = bytes_.substr(0, std::min(at_, bytes_.size()));
-  throw std::runtime_error(
+  throw Error(
+      ErrorCode::Input,
       binary_ ? "byte " + std::to_string(at_) + ": " + why
               : "line " + std::to_string(1 + std::count(passed.begin(), passed.end(), '\n')) + ": " + why);
 }
@@ -61,7 +65,7 @@ double number_of(std::string_view word) {
   if (error == std::errc::result_out_of_range && end == word.data() + word.size() && std::abs(value) < 1.0)
     return 0.0;
   if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-    throw std::runtime_error("'" + std::string(word.substr(0, 40)) + "' where a number should be");
+    throw Error(ErrorCode::Input, "'" + std::string(word.substr(0, 40)) + "' where a number should be");
   return value;
 }
 
@@ -70,7 +74,7 @@ long long integer_of(std::string_view word) {
   long long value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size())
-    throw std::runtime_error("'" + std::string(word.substr(0, 40)) + "' where a whole number should be");
+    throw Error(ErrorCode::Input, "'" + std::string(word.substr(0, 40)) + "' where a whole number should be");
   return value;
 }
 
@@ -112,8 +116,8 @@ void MeshScanner::skip(std::size_t byte_count) {
 
 void add_fan(Triangles& triangles, const std::vector<long long>& corners) {
   if (corners.size() < 3)
-    throw std::runtime_error("a polygon of " + std::to_string(corners.size()) + " corners after triangle " +
-                             std::to_string(triangles.faces.size()));
+    throw Error(ErrorCode::Input, "a polygon of " + std::to_string(corners.size()) +
+                                      " corners after triangle " + std::to_string(triangles.faces.size()));
   for (std::size_t i = 2; i < corners.size(); ++i)
     triangles.faces.push_back({checked_corner(triangles, corners[0]),
                                checked_corner(triangles, corners[i - 1]),

@@ -12,7 +12,7 @@
 
 namespace octotomy::brep {
 
-/// Walks over the bytes of a mesh file, as text or as numbers. What cannot be there is a std::runtime_error
+/// Walks over the bytes of a mesh file, as text or as numbers. What cannot be there is an Error (Input)
 /// that says the line (or the byte, once binary numbers were read).
 class MeshScanner {
  public:
@@ -56,16 +56,16 @@ class MeshScanner {
   bool binary_ = false;
 };
 
-/// A word as a number; throws std::runtime_error without place.
+/// A word as a number; throws Error (Input) without place.
 double number_of(std::string_view word);
 long long integer_of(std::string_view word);
 
-/// Adds a polygon as a fan; throws std::runtime_error where it has too few corners or a corner is no point.
+/// Adds a polygon as a fan; throws Error (Input) if it has too few corners or a corner is no point.
 void add_fan(Triangles& triangles, const std::vector<long long>& corners);
 /// Adds a strip of triangles; ones that repeat a point only turn the strip and are left out.
 void add_strip(Triangles& triangles, const std::vector<long long>& corners);
 
-/// The formats that fill a source of their own. All throw std::runtime_error without the path.
+/// The formats that fill a source of their own. All throw Error (Input) without the path.
 Triangles read_ply(std::string_view bytes);
 Triangles read_vtk(std::string_view bytes);
 Triangles read_vtp(std::string_view bytes);

@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "brep/io/mesh_scanner.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -110,7 +111,7 @@ Triangles read_stl(std::string_view bytes) {
   const std::size_t start = bytes.find_first_not_of(" \t\r\n");
   if (start != std::string_view::npos && bytes.substr(start).starts_with("solid"))
     return read_ascii_stl(bytes.substr(start));
-  if (bytes.size() < stl_header_bytes) throw std::runtime_error("too short for an STL file");
+  if (bytes.size() < stl_header_bytes) throw Error(ErrorCode::Input, "too short for an STL file");
   return read_binary_stl(bytes);
 }
 
@@ -187,10 +188,10 @@ std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!file || error) throw std::runtime_error("cannot be read; check its name and rights");
+  if (!file || error) throw Error(ErrorCode::Input, "cannot be read; check its name and rights");
   std::string bytes(size, '\0');
   if (!file.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw std::runtime_error("reading broke off");
+    throw Error(ErrorCode::Input, "reading broke off");
   return bytes;
 }
 
@@ -203,17 +204,18 @@ Triangles read_triangles(const std::filesystem::path& path) {
   try {
     if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".off" &&
         extension != ".vtk" && extension != ".vtp")
-      throw std::runtime_error("'" + extension +
-                               "' is no mesh format that is read; use .stl, .ply, .obj, .off, .vtk or .vtp");
+      throw Error(
+          ErrorCode::Input,
+          "'" + extension + "' is no mesh format that is read; use .stl, .ply, .obj, .off, .vtk or .vtp");
     const std::string bytes = bytes_of(path);
-    if (bytes.empty()) throw std::runtime_error("the file is empty");
+    if (bytes.empty()) throw Error(ErrorCode::Input, "the file is empty");
     if (extension == ".stl") return read_stl(bytes);
     if (extension == ".ply") return read_ply(bytes);
     if (extension == ".obj") return read_obj(bytes);
     if (extension == ".off") return read_off(bytes);
     return extension == ".vtk" ? read_vtk(bytes) : read_vtp(bytes);
   } catch (const std::runtime_error& e) {
-    throw std::runtime_error(path.string() + ": " + e.what());
+    throw Error(ErrorCode::Input, path.string() + ": " + e.what());
   }
 }
 

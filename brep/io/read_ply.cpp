@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "brep/io/mesh_scanner.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -216,7 +217,7 @@ Triangles read_ply(std::string_view bytes) {
   for (const auto& corners : polygons) add_fan(triangles, corners);
   for (const glm::dvec3& p : triangles.points_mm)
     if (!(std::abs(p.x) < INFINITY && std::abs(p.y) < INFINITY && std::abs(p.z) < INFINITY))
-      throw std::runtime_error("a point is not finite");
+      throw Error(ErrorCode::Input, "a point is not finite");
   return triangles;
 }
 

@@ -9,6 +9,7 @@
 #include <zlib.h>
 
 #include "brep/io/mesh_scanner.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -37,7 +38,7 @@ Element element_of(std::string_view tag, std::string_view content) {
     const std::size_t open = tag.find_first_of("\"'", equals);
     const std::size_t close = open == tag.npos ? tag.npos : tag.find(tag[open], open + 1);
     if (close == tag.npos)
-      throw std::runtime_error("an attribute of <" + std::string(element.name) + "> does not end");
+      throw Error(ErrorCode::Input, "an attribute of <" + std::string(element.name) + "> does not end");
     element.attributes[tag.substr(key, tag.find_last_not_of(blanks, equals - 1) + 1 - key)] =
         tag.substr(open + 1, close - open - 1);
     at = close + 1;
@@ -75,7 +76,7 @@ class Reader {
   Triangles run() {
     for (std::size_t at = bytes_.find('<'); at != bytes_.npos;) {
       const std::size_t end = bytes_.find('>', at), next = end == bytes_.npos ? end : bytes_.find('<', end);
-      if (end == bytes_.npos) throw std::runtime_error("a tag does not end");
+      if (end == bytes_.npos) throw Error(ErrorCode::Input, "a tag does not end");
       const Element element = element_of(bytes_.substr(at + 1, end - at - 1),
                                          bytes_.substr(end + 1, next == bytes_.npos ? next : next - end - 1));
       if (element.name == "AppendedData") {
@@ -87,7 +88,7 @@ class Reader {
       take(element);
       at = next;
     }
-    if (!is_polydata_) throw std::runtime_error("the data set is not PolyData; export a surface");
+    if (!is_polydata_) throw Error(ErrorCode::Input, "the data set is not PolyData; export a surface");
     for (const Piece& piece : pieces_) add(piece);
     return std::move(triangles_);
   }
@@ -107,8 +108,8 @@ class Reader {
       const std::string_view compressor = element.get("compressor");
       is_compressed_ = !compressor.empty();
       if (is_compressed_ && compressor != "vtkZLibDataCompressor")
-        throw std::runtime_error("data compressed by " + std::string(compressor.substr(0, 40)) +
-                                 " are not read; write them with zlib or plain");
+        throw Error(ErrorCode::Input, "data compressed by " + std::string(compressor.substr(0, 40)) +
+                                          " are not read; write them with zlib or plain");
     }
     if (element.name == "Piece") pieces_.emplace_back();
     if (element.name == "/DataArray") return;
@@ -126,11 +127,11 @@ class Reader {
     if (piece.points.name.empty()) return;
     const std::vector<double> numbers = numbers_of<double>(piece.points);
     if (numbers.size() % 3 != 0)
-      throw std::runtime_error("points have " + std::to_string(numbers.size()) + " numbers");
+      throw Error(ErrorCode::Input, "points have " + std::to_string(numbers.size()) + " numbers");
     const auto first = static_cast<long long>(triangles_.points_mm.size());
     for (std::size_t i = 0; i < numbers.size(); i += 3) {
       if (!std::isfinite(numbers[i]) || !std::isfinite(numbers[i + 1]) || !std::isfinite(numbers[i + 2]))
-        throw std::runtime_error("point " + std::to_string(i / 3) + " is not finite");
+        throw Error(ErrorCode::Input, "point " + std::to_string(i / 3) + " is not finite");
       triangles_.points_mm.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
     }
     for (const auto& corners : cells_of(piece.polys, first)) add_fan(triangles_, corners);
@@ -145,10 +146,10 @@ class Reader {
     long long begin = 0;
     for (const long long end : numbers_of<long long>(arrays.at("offsets"))) {
       if (end < begin || end > static_cast<long long>(list.size()))
-        throw std::runtime_error("a cell reaches beyond the list of cells");
+        throw Error(ErrorCode::Input, "a cell reaches beyond the list of cells");
       cells.emplace_back(list.begin() + begin, list.begin() + end);
       for (long long& corner : cells.back()) {
-        if (corner < 0) throw std::runtime_error("a corner is numbered " + std::to_string(corner));
+        if (corner < 0) throw Error(ErrorCode::Input, "a corner is numbered " + std::to_string(corner));
         corner += first;
       }
       begin = end;
@@ -190,7 +191,7 @@ class Reader {
     else if (type == "UInt64")
       read(std::uint64_t{});
     else
-      throw std::runtime_error("numbers of type '" + std::string(type.substr(0, 40)) + "' are not read");
+      throw Error(ErrorCode::Input, "numbers of type '" + std::string(type.substr(0, 40)) + "' are not read");
     return numbers;
   }
 
@@ -209,7 +210,7 @@ class Reader {
     if (array.get("format") == "appended") {
       const long long offset = integer_of(array.get("offset"));
       if (offset < 0 || static_cast<std::size_t>(offset) >= appended_.size())
-        throw std::runtime_error("an array lies beyond the end of the file");
+        throw Error(ErrorCode::Input, "an array lies beyond the end of the file");
       source = appended_.substr(static_cast<std::size_t>(offset));
       raw = appended_is_raw_;
     } else {
@@ -222,13 +223,13 @@ class Reader {
     if (!is_compressed_) {
       const std::size_t length = header_number(head(header_bytes()), 0);
       const std::size_t most = source.size();
-      if (length > most) throw std::runtime_error("the file ends too early");
+      if (length > most) throw Error(ErrorCode::Input, "the file ends too early");
       const std::string all = head(header_bytes() + length);
-      if (all.size() < header_bytes() + length) throw std::runtime_error("the file ends too early");
+      if (all.size() < header_bytes() + length) throw Error(ErrorCode::Input, "the file ends too early");
       return all.substr(header_bytes());
     }
     const std::size_t blocks = header_number(head(header_bytes()), 0);
-    if (blocks > source.size()) throw std::runtime_error("the file ends too early");
+    if (blocks > source.size()) throw Error(ErrorCode::Input, "the file ends too early");
     const std::size_t header_length = (3 + blocks) * header_bytes();
     const std::string header = head(header_length);
     source.remove_prefix(std::min(source.size(), raw ? header_length : base64_length(header_length)));
@@ -244,13 +245,13 @@ class Reader {
       const std::size_t wanted = b + 1 == blocks && last > 0 ? last : size;
       // zlib packs no more than 1032 bytes into one.
       if (at > packed.size() || length > packed.size() - at || wanted / 1032 > length)
-        throw std::runtime_error("a compressed block is longer than the file");
+        throw Error(ErrorCode::Input, "a compressed block is longer than the file");
       std::string block(wanted, '\0');
       uLongf got = wanted;
       if (uncompress(reinterpret_cast<Bytef*>(block.data()), &got,
                      reinterpret_cast<const Bytef*>(packed.data() + at), length) != Z_OK ||
           got != wanted)
-        throw std::runtime_error("a compressed block is damaged");
+        throw Error(ErrorCode::Input, "a compressed block is damaged");
       bytes += block;
       at += length;
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #include "brep/io/mesh_bytes.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
@@ -110,24 +112,33 @@ std::string off_of(const Triangles& triangles) {
   return bytes;
 }
 
+/// The code of a failed system call: Resource if the disk or memory gave out.
+ErrorCode code_of(int number) {
+  return number == ENOSPC || number == EDQUOT || number == EIO || number == ENOMEM || number == EMFILE
+             ? ErrorCode::Resource
+             : ErrorCode::Input;
+}
+
 void replace_file(const std::filesystem::path& path, const std::string& bytes) {
   std::filesystem::path beside = path;
   beside += "." + std::to_string(::getpid()) + ".part";
   std::error_code ignored, error;
   {
+    errno = 0;
     std::ofstream file(beside, std::ios::binary);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.close();
     if (!file) {
+      const ErrorCode code = code_of(errno);
       std::filesystem::remove(beside, ignored);
-      throw std::runtime_error(
-          path.string() + ": cannot be written; check that its folder exists, may be written and has room");
+      throw Error(code, path.string() +
+                            ": cannot be written; check that its folder exists, may be written and has room");
     }
   }
   std::filesystem::rename(beside, path, error);
   if (error) {
     std::filesystem::remove(beside, ignored);
-    throw std::runtime_error(path.string() + ": cannot be replaced: " + error.message());
+    throw Error(code_of(error.value()), path.string() + ": cannot be replaced: " + error.message());
   }
 }
 
@@ -155,14 +166,16 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Verte
   if (extension == ".vtp") return replace_file(path, vtp_of(triangles, data));
   if (extension == ".glb" && data.scalars.empty()) return replace_file(path, glb_of(triangles, data));
   if (!data.colours.empty() || !data.scalars.empty())
-    throw std::runtime_error(path.string() +
-                             ": colours of vertices go into .ply, .vtp and .glb, scalars into .ply and "
-                             ".vtp");
+    throw Error(ErrorCode::Input,
+                path.string() +
+                    ": colours of vertices go into .ply, .vtp and .glb, scalars into .ply and "
+                    ".vtp");
   if (extension == ".stl") return replace_file(path, stl_of(triangles));
   if (extension == ".obj") return replace_file(path, obj_of(triangles));
   if (extension == ".off") return replace_file(path, off_of(triangles));
-  throw std::runtime_error(path.string() + ": '" + extension +
-                           "' is no mesh format that is written; use .stl, .ply, .obj, .off, .vtp or .glb");
+  throw Error(ErrorCode::Input,
+              path.string() + ": '" + extension +
+                  "' is no mesh format that is written; use .stl, .ply, .obj, .off, .vtp or .glb");
 }
 
 }  // namespace octotomy::brep

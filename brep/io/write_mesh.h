@@ -23,9 +23,9 @@ struct VertexData {
 /// normals; turned to that format's axes and metres by its node) as the extension says; LPS millimetres.
 /// Colours go into .ply, .vtp and .glb, scalars under their own name into .ply and .vtp. Written beside and
 /// renamed into place, so that a reader sees the old file or the whole new one. Precondition: nothing is
-/// marked as deleted. Throws std::invalid_argument where vertex data do not fit the mesh, std::runtime_error
-/// with path and reason where the format holds none or the file cannot be written; what was there before
-/// stays.
+/// marked as deleted. Throws std::invalid_argument if vertex data do not fit the mesh; Error with path and
+/// reason: Input if the format holds none or the file cannot be written, Resource if the disk gave out. What
+/// was there before stays.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexData& data = {});
 
 }  // namespace octotomy::brep

@@ -129,7 +129,7 @@ double area_of(const Distances& distances) {
 }  // namespace
 
 Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& options) {
-  const double area_a = measure(a).area_mm2, area_b = measure(b).area_mm2;
+  const double area_a = size_of(a).area_mm2, area_b = size_of(b).area_mm2;
   check(options, area_a, area_b);
   const double spacing = options.spacing_mm.value_or(spacing_mm(std::max(area_a, area_b)));
   const Distances from_a = distances_to(a, OrientedSurface(b), spacing);

@@ -16,6 +16,7 @@
 
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/surface_mesh.h"
 #include "brep/mesh/triangles.h"
 
@@ -99,8 +100,8 @@ SurfacePath shortest_path(const Mesh& mesh, const glm::dvec3& from_mm, const glm
   const std::vector<Foot> ends = SurfaceTree(all).feet({from_mm, to_mm});
   const double bound_mm = length_along_edges(mesh, all, ends[0], ends[1]);
   if (!std::isfinite(bound_mm))
-    throw std::runtime_error(
-        "shortest_path: the two points lie on pieces of the surface that nothing connects");
+    throw Error(ErrorCode::Geometry,
+                "shortest_path: the two points lie on pieces of the surface that nothing connects");
   // The margin is for the rounding of sums over thousands of edges.
   const Triangles triangles =
       triangles_of(part_of(mesh, within_reach(all, ends[0], ends[1], bound_mm * (1.0 + 0x1p-40))));

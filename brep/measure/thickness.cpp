@@ -18,6 +18,7 @@
 #include <tbb/parallel_for.h>
 
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 
 namespace octotomy::brep {
@@ -75,7 +76,7 @@ void shrink(const SurfaceTree& tree, const std::vector<SurfacePoint>& points, do
     return points[i].p_mm - 0.5 * thickness[i].ball_mm * points[i].normal;
   };
   while (!shrinking.empty()) {
-    if (options.stop.stop_requested()) throw std::runtime_error("thickness: stopped");
+    if (options.stop.stop_requested()) throw Stopped("thickness: stopped");
     std::vector<glm::dvec3> centres;
     centres.reserve(shrinking.size());
     for (const std::size_t i : shrinking) centres.push_back(centre_of(i));
@@ -101,14 +102,13 @@ void shrink(const SurfaceTree& tree, const std::vector<SurfacePoint>& points, do
 
 }  // namespace
 
-std::vector<Thickness> thickness(const Mesh& solid, const std::vector<SurfacePoint>& points,
+std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePoint>& points,
                                  const ThicknessOptions& options) {
-  if (solid.n_faces() == 0) throw std::invalid_argument("thickness: the solid has no triangles");
+  if (solid.empty()) throw std::invalid_argument("thickness: the solid has no triangles");
   if (!(options.least_angle_deg >= 1.0 && options.least_angle_deg <= 120.0))
     throw std::invalid_argument("thickness: the least angle is from 1 to 120 degrees");
-  const Triangles surface = triangles_of(solid);
-  const double step = step_mm(size_of(surface));
-  const Rays rays(surface, step);
+  const double step = step_mm(solid.size());
+  const Rays rays(solid.triangles(), step);
   std::vector<Thickness> thickness(points.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 256), [&](const auto& range) {
     if (options.stop.stop_requested()) return;
@@ -117,13 +117,13 @@ std::vector<Thickness> thickness(const Mesh& solid, const std::vector<SurfacePoi
       thickness[i] = {length, length};
     }
   });
-  if (options.stop.stop_requested()) throw std::runtime_error("thickness: stopped");
+  if (options.stop.stop_requested()) throw Stopped("thickness: stopped");
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!std::isfinite(thickness[i].ray_mm))
       throw std::invalid_argument("thickness: the ray from point " + std::to_string(i) +
                                   " leaves without meeting the surface; it is not closed, or the normal does "
                                   "not point out of it");
-  shrink(SurfaceTree(surface), points, step, std::cos(options.least_angle_deg * std::numbers::pi / 180.0),
+  shrink(solid.tree(), points, step, std::cos(options.least_angle_deg * std::numbers::pi / 180.0),
          options, thickness);
   return thickness;
 }

@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
 
@@ -35,13 +35,12 @@ struct ThicknessOptions {
 
 /// The thickness at each point. Balls shrink from the ray's half until no other sheet lies in them; towards a
 /// sharp edge they shrink to nothing, as a ball does that is to touch both its sides. Both are good to 2^-30
-/// of the solid's extent. Precondition: closed and oriented; a point lies on the surface. Throws
-/// std::invalid_argument where there are no triangles, the angle is out of its range, or a ray leaves without
-/// meeting the surface, naming the point; std::runtime_error where stopped. The same bits on any number of
-/// threads. Cost: about log n a point for the ray, and for each step of the ball; parallel.
-/// Source: Ma, Bae and Choi, "3D medial axis point approximation using nearest neighbors and the normal
-/// field", The Visual Computer 28, 2012, with triangles for points.
-std::vector<Thickness> thickness(const Mesh& solid, const std::vector<SurfacePoint>& points,
+/// of the solid's extent. Precondition: a point lies on the surface. Throws std::invalid_argument if the
+/// solid is empty, the angle is out of its range, or a ray leaves without meeting the surface, naming the
+/// point; Stopped. The same bits on any number of threads. Cost: about log n a point for the ray, and for
+/// each step of the ball; parallel. Source: Ma, Bae and Choi, "3D medial axis point approximation using
+/// nearest neighbors and the normal field", The Visual Computer 28, 2012, with triangles for points.
+std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePoint>& points,
                                  const ThicknessOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -13,13 +13,13 @@
 #include <cstdio>
 #include <limits>
 #include <map>
-#include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tuple>
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -35,11 +35,12 @@ void check_points(const Triangles& triangles) {
   for (std::size_t f = 0; f < triangles.faces.size(); ++f)
     for (const std::uint32_t v : triangles.faces[f]) {
       if (v >= triangles.points_mm.size())
-        throw std::runtime_error("triangle " + std::to_string(f) + " refers to point " + std::to_string(v) +
-                                 " of " + std::to_string(triangles.points_mm.size()));
+        throw Error(ErrorCode::Input, "triangle " + std::to_string(f) + " refers to point " +
+                                          std::to_string(v) + " of " +
+                                          std::to_string(triangles.points_mm.size()));
       const glm::dvec3& p = triangles.points_mm[v];
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        throw std::runtime_error("triangle " + std::to_string(f) + " has a point that is not finite");
+        throw Error(ErrorCode::Input, "triangle " + std::to_string(f) + " has a point that is not finite");
     }
 }
 
@@ -336,30 +337,38 @@ std::string place_of(const Triangles& triangles, std::uint32_t triangle) {
 }
 
 void tell(const Triangles& triangles, Health& health, const Offenders& offenders, double volume_mm3) {
-  const auto say = [&](std::size_t count, const std::string& what, std::uint32_t first) {
-    if (count > 0)
-      health.findings.push_back(std::to_string(count) + " " + what + " (first: " + "triangle " +
-                                std::to_string(first) + place_of(triangles, first) + ")");
+  const auto add = [&](Defect defect, std::string finding) {
+    if (!health.first_defect) health.first_defect = defect;
+    health.findings.push_back(std::move(finding));
   };
-  if (health.faces == 0) health.findings.emplace_back("no triangles");
-  say(health.boundary_edges, "edges with one triangle: the surface is open", offenders.boundary);
-  say(health.nonmanifold_edges, "edges with more than two triangles", offenders.nonmanifold_edge);
-  say(health.nonmanifold_vertices, "vertices where more than one fan of triangles meets",
-      offenders.nonmanifold_vertex);
-  say(health.misoriented_edges, "edges whose triangles wind against each other", offenders.misoriented);
-  say(health.degenerate_faces, "triangles without area", offenders.degenerate);
-  say(health.duplicate_faces, "pairs of triangles with the same points", offenders.duplicate);
-  say(health.misplaced_shells, "shells that face the wrong way for the shells around them",
-      offenders.misplaced);
+  const auto say = [&](Defect defect, std::size_t count, const std::string& what, std::uint32_t first) {
+    if (count > 0)
+      add(defect, std::to_string(count) + " " + what + " (first: " + "triangle " + std::to_string(first) +
+                      place_of(triangles, first) + ")");
+  };
+  if (health.faces == 0) add(Defect::NoTriangles, "no triangles");
+  say(Defect::Open, health.boundary_edges, "edges with one triangle: the surface is open",
+      offenders.boundary);
+  say(Defect::NonmanifoldEdge, health.nonmanifold_edges, "edges with more than two triangles",
+      offenders.nonmanifold_edge);
+  say(Defect::NonmanifoldVertex, health.nonmanifold_vertices,
+      "vertices where more than one fan of triangles meets", offenders.nonmanifold_vertex);
+  say(Defect::Misoriented, health.misoriented_edges, "edges whose triangles wind against each other",
+      offenders.misoriented);
+  say(Defect::Degenerate, health.degenerate_faces, "triangles without area", offenders.degenerate);
+  say(Defect::Duplicate, health.duplicate_faces, "pairs of triangles with the same points",
+      offenders.duplicate);
+  say(Defect::MisplacedShell, health.misplaced_shells,
+      "shells that face the wrong way for the shells around them", offenders.misplaced);
   if (health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0 && !(volume_mm3 > 0.0))
-    health.findings.push_back("the volume is " + std::to_string(volume_mm3) +
-                              " mm3: the triangles face inward or enclose nothing");
+    add(Defect::InsideOut,
+        "the volume is " + std::to_string(volume_mm3) + " mm3: the triangles face inward or enclose nothing");
   if (health.crossing.empty()) return;
   const auto [one, other] = health.crossing.front();
-  health.findings.push_back(std::to_string(health.self_intersections) +
-                            " pairs of triangles that intersect (first: triangles " + std::to_string(one) +
-                            " and " + std::to_string(other) +
-                            place_of(triangles, static_cast<std::uint32_t>(other)) + ")");
+  add(Defect::SelfIntersection, std::to_string(health.self_intersections) +
+                                    " pairs of triangles that intersect (first: triangles " +
+                                    std::to_string(one) + " and " + std::to_string(other) +
+                                    place_of(triangles, static_cast<std::uint32_t>(other)) + ")");
 }
 
 }  // namespace

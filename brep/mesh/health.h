@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,20 @@
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
+
+/// What keeps triangles from being a solid, in the order of the checks.
+enum class Defect {
+  NoTriangles,
+  Open,               ///< an edge with one triangle
+  NonmanifoldEdge,    ///< one with more than two
+  NonmanifoldVertex,  ///< a point where more than one fan of triangles meets
+  Misoriented,        ///< neighbours that wind against each other
+  Degenerate,         ///< a triangle without area
+  Duplicate,          ///< triangles with the same points
+  MisplacedShell,     ///< a shell that faces the wrong way for those around it
+  InsideOut,          ///< the whole volume is not positive
+  SelfIntersection,
+};
 
 /// What a mesh is fit for, checked in this order; an empty `findings` means a solid (or, where the
 /// intersection test was not asked for, that nothing else speaks against one). An edge is a pair of points
@@ -39,8 +54,9 @@ struct Health {
   /// total volume is positive.
   bool oriented = false;
   std::vector<std::string> findings;  ///< each names the first triangle that it is about, by number and place
+  std::optional<Defect> first_defect;  ///< that of the first finding
 
-  bool solid() const { return findings.empty(); }
+  bool solid() const { return !first_defect; }
 };
 
 struct HealthOptions {
@@ -48,9 +64,9 @@ struct HealthOptions {
 };
 
 /// Health of triangles as they are connected by their point numbers. Degenerate triangles are left out of the
-/// intersection test, which is exact and parallel, with the same answer on any thread count. Throws
-/// std::runtime_error where a triangle refers to no point or to one that is not finite. Cost: n log n; the
-/// intersection test dominates (about 1 s for 300k triangles).
+/// intersection test, which is exact and parallel, with the same answer on any thread count. Throws Error
+/// (Input) if a triangle refers to no point or to one that is not finite. Cost: n log n; the intersection
+/// test dominates (about 1 s for 300k triangles).
 Health health(const Triangles& triangles, const HealthOptions& options = {});
 Health health(const Mesh& mesh, const HealthOptions& options = {});
 

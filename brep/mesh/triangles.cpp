@@ -16,6 +16,8 @@
 // 1 refuse triangles that are none; 2 pair halfedges by sorting those of each point; 3 tell the fans at each
 // point apart; 4 write edges, faces and the loops along the boundary.
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -29,14 +31,14 @@ std::uint32_t previous_corner(std::uint32_t corner) {
 }
 
 [[noreturn]] void refuse(std::size_t face, const std::string& why, const std::string& advice) {
-  throw std::runtime_error("triangle " + std::to_string(face) + " " + why + "; " + advice);
+  throw Error(ErrorCode::Input, "triangle " + std::to_string(face) + " " + why + "; " + advice);
 }
 
 void check_triangles(const Triangles& triangles) {
   // Three corners of each triangle are numbered in 32 bits.
   if (triangles.faces.size() >= none / 3 || triangles.points_mm.size() >= none / 2)
-    throw std::runtime_error("a mesh of " + std::to_string(triangles.faces.size()) +
-                             " triangles is more than 32-bit numbers hold; reduce it first");
+    throw Error(ErrorCode::Resource, "a mesh of " + std::to_string(triangles.faces.size()) +
+                                         " triangles is more than 32-bit numbers hold; reduce it first");
   for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
     const auto& face = triangles.faces[f];
     for (const std::uint32_t v : face) {

@@ -18,10 +18,11 @@ struct Triangles {
 
 /// The mesh of these triangles: face i is triangle i, vertex i is point i, whether a triangle uses it or not.
 /// Where fans of triangles only touch at a point, the first keeps it and each further fan gets a copy behind
-/// the last point, so that the surface stays where it is and every vertex is manifold. Throws
-/// std::runtime_error naming the first triangle that refers to no point, repeats a point, is not finite, or
-/// cannot be joined to the others without an edge of more than two triangles or of two that run along it the
-/// same way. Cost: n log n, about 100 bytes a triangle beside the mesh.
+/// the last point, so that the surface stays where it is and every vertex is manifold. Throws Error (Input)
+/// naming the first triangle that refers to no point, repeats a point, is not finite, or cannot be joined to
+/// the others without an edge of more than two triangles or of two that run along it the same way; Error
+/// (Resource) if 32 bits do not number the triangles. Cost: n log n, about 100 bytes a triangle beside the
+/// mesh.
 Mesh mesh_of(const Triangles& triangles);
 
 /// Throws where mesh_of() would, at a third of its cost.

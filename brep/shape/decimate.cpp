@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 
 namespace octotomy::brep {
@@ -99,10 +100,10 @@ Mesh decimate(const Mesh& mesh, const DecimateOptions& options) {
       more += lock_about(coarse, a, mesh, locked) + lock_about(coarse, b, mesh, locked);
     if (more == 0) break;
   }
-  throw std::runtime_error(
-      "decimate: " + std::to_string(intersections) +
-      " pairs of triangles intersect and stay: does the mesh intersect itself before, by "
-      "its health? If not, allow less error or more rounds");
+  throw Error(ErrorCode::Geometry,
+              "decimate: " + std::to_string(intersections) +
+                  " pairs of triangles intersect and stay: does the mesh intersect itself before, by "
+                  "its health? If not, allow less error or more rounds");
 }
 
 }  // namespace octotomy::brep

@@ -22,7 +22,7 @@ struct DecimateOptions {
 /// the order of the error they make. Collapses know nothing of triangles further along the surface, so a
 /// round that makes the mesh intersect itself is done again with the vertices about those places locked.
 /// Precondition: closed, manifold, without self-intersection; the result is that too. Throws
-/// std::invalid_argument where an option is out of its range or the mesh is open, std::runtime_error where
+/// std::invalid_argument where an option is out of its range or the mesh is open, Error (Geometry) if
 /// `max_rounds` do not get rid of self-intersections. Deterministic. Cost: n log n a round, two rounds as a
 /// rule.
 /// Source: Garland and Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997, by

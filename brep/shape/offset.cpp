@@ -11,11 +11,8 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
-
-#include "brep/mesh/distance.h"
-#include "brep/mesh/measure.h"
-#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 namespace {
@@ -42,15 +39,10 @@ Place corner_place(int corner) {
   return {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
 }
 
-void stop_where_asked(const OffsetOptions& options, double done) {
-  if (options.stop.stop_requested()) throw std::runtime_error("the offset was stopped");
-  if (options.progress) options.progress(done);
-}
-
 /// Signed distance to the offset surface, negative within.
 class Field {
  public:
-  Field(const Mesh& solid, double by_mm) : tree_(solid), by_mm_(by_mm) {}
+  Field(const Solid& solid, double by_mm) : tree_(solid.tree()), by_mm_(by_mm) {}
 
   std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const {
     std::vector<double> values = tree_.distances_mm(points_mm);
@@ -60,7 +52,7 @@ class Field {
   }
 
  private:
-  SurfaceTree tree_;
+  const SurfaceTree& tree_;
   double by_mm_;
 };
 
@@ -73,8 +65,8 @@ struct Lattice {
   glm::dvec3 at(const Place& p) const { return origin_mm + cell_mm * glm::dvec3(p); }
 };
 
-Lattice lattice_about(const Mesh& solid, const OffsetOptions& options) {
-  const Size size = size_of(solid);
+Lattice lattice_about(const Solid& solid, const OffsetOptions& options) {
+  const Size& size = solid.size();
   const double margin = std::max(options.by_mm, 0.0) + options.cell_mm;
   const glm::dvec3 extent = size.high_mm - size.low_mm + 2.0 * margin;
   const double cells = std::max({extent.x, extent.y, extent.z}) / options.cell_mm;
@@ -92,7 +84,7 @@ std::vector<std::uint64_t> blocks_near(const Field& field, const Lattice& lattic
                                        const OffsetOptions& options) {
   std::vector<std::uint64_t> blocks = {0};
   for (int side = lattice.side; side > 2; side /= 2) {
-    stop_where_asked(options, 0.0);
+    options.progress.at(0.0);
     std::vector<std::uint64_t> halves;
     std::vector<glm::dvec3> centres_mm;
     for (const std::uint64_t block : blocks)
@@ -264,8 +256,8 @@ std::vector<glm::dvec3> points_on(const std::vector<Edge>& edges, const Corners&
   return points_mm;
 }
 
-void check(const Mesh& solid, const OffsetOptions& options) {
-  if (solid.n_faces() == 0) throw std::invalid_argument("a surface without triangles has no offset");
+void check(const Solid& solid, const OffsetOptions& options) {
+  if (solid.empty()) throw std::invalid_argument("a surface without triangles has no offset");
   if (!std::isfinite(options.by_mm)) throw std::invalid_argument("an offset is by a finite length");
   if (!std::isfinite(options.cell_mm) || options.cell_mm <= 0.0)
     throw std::invalid_argument("an offset's cells have an edge above 0 mm");
@@ -273,28 +265,28 @@ void check(const Mesh& solid, const OffsetOptions& options) {
 
 }  // namespace
 
-Mesh offset(const Mesh& solid, const OffsetOptions& options) {
+Solid offset(const Solid& solid, const OffsetOptions& options) {
   check(solid, options);
   const Lattice lattice = lattice_about(solid, options);
   const Field field(solid, options.by_mm);
   const std::vector<std::uint64_t> blocks = blocks_near(field, lattice, options);
-  stop_where_asked(options, 0.25);
+  options.progress.at(0.25);
   const Corners corners = corners_of(blocks, field, lattice);
-  stop_where_asked(options, 0.5);
+  options.progress.at(0.5);
   const std::vector<EdgeTriangle> triangles = triangles_in(blocks, corners);
   std::vector<Edge> edges;
   for (const EdgeTriangle& triangle : triangles) edges.insert(edges.end(), triangle.begin(), triangle.end());
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  stop_where_asked(options, 0.6);
+  options.progress.at(0.6);
   Triangles surface;
   surface.points_mm = points_on(edges, corners, field, lattice);
   const auto number = [&](const Edge& edge) {
     return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
   };
   for (const EdgeTriangle& t : triangles) surface.faces.push_back({number(t[0]), number(t[1]), number(t[2])});
-  stop_where_asked(options, 1.0);
-  return mesh_of(surface);
+  options.progress.at(1.0);
+  return trusted_solid(std::move(surface), Proof::Construction);
 }
 
 }  // namespace octotomy::brep

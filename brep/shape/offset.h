@@ -1,32 +1,28 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <functional>
-#include <stop_token>
-
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/progress.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
 
 struct OffsetOptions {
   double by_mm = 1.0;    ///< above 0 outward, below 0 inward
   double cell_mm = 1.0;  ///< edge of the lattice's cells and about that of the triangles; above 0
-  std::function<void(double)> progress = {};  ///< is called with 0..1
-  std::stop_token stop = {};
+  Progress progress = {};
 };
 
 /// The surface of all points within by_mm of a solid, its sum with a ball; or for by_mm below 0 of those that
-/// far inside, what a ball within can reach the middle of; without triangles where there are none. Walls and
+/// far inside, what a ball within can reach the middle of; empty if there are none. Walls and
 /// clefts thinner than a cell may be missed. Points lie within cell_mm / 1000 of that surface, and triangles
 /// between them within a chord's height, cell_mm^2 / (8 r) at a radius of curvature r; edges that are sharp
 /// still come out cut off within a cell. The result is closed and manifold, and no triangles intersect, as
-/// each lies in a tetrahedron of its own. Precondition: the solid is closed and outward. Throws
-/// std::invalid_argument where the solid has no triangles or an option is out of its range, std::length_error
-/// where the lattice would have more than 2^20 cells a side or 2^23 near the surface, std::runtime_error
-/// where stopped. The same bits on any number of threads. Cost: a distance, about log n, for each
-/// corner of the cells near the surface and a few for each edge that it crosses; parallel. Source: the
-/// lattice's six tetrahedra a cell after Kuhn; blocks far from the surface are passed over, as distances
-/// change no faster than places do.
-Mesh offset(const Mesh& solid, const OffsetOptions& options);
+/// each lies in a tetrahedron of its own: a solid by Construction. Throws std::invalid_argument if the solid
+/// is empty or an option is out of its range, std::length_error if the lattice would have more than 2^20
+/// cells a side or 2^23 near the surface, Stopped. The same bits on any number of threads. Cost: a distance,
+/// about log n, for each corner of the cells near the surface and a few for each edge that it crosses;
+/// parallel. Source: the lattice's six tetrahedra a cell after Kuhn; blocks far from the surface are passed
+/// over, as distances change no faster than places do.
+Solid offset(const Solid& solid, const OffsetOptions& options);
 
 }  // namespace octotomy::brep

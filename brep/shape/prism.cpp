@@ -144,7 +144,7 @@ void count_nesting(Triangulation& triangulation) {
 
 }  // namespace
 
-Mesh mesh_of(const Prism& prism) {
+Solid solid_of(const Prism& prism) {
   check_frame(prism);
 
   // Gather points and sides; refuse what is no polygon.
@@ -194,7 +194,7 @@ Mesh mesh_of(const Prism& prism) {
       triangles.faces.push_back({b, a + count, b + count});
     }
   }
-  return mesh_of(triangles);
+  return trusted_solid(std::move(triangles), Proof::Construction);
 }
 
 }  // namespace octotomy::brep

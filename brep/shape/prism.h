@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
 
@@ -18,11 +18,11 @@ struct Prism {
   double to_mm = 1.0;
 };
 
-/// The solid of a prism, outward whatever the polygons' winding. A point that repeats the one before it, or a
-/// last point that repeats the first, is one point. Throws std::invalid_argument naming the polygon where
-/// polygons cross or touch each other or themselves (the solid would not be manifold), have fewer than three
-/// points or no area, and where the frame is not orthonormal or the depths are not in order. Cost: n log n
-/// for n points, more where many sides overlap in u.
-Mesh mesh_of(const Prism& prism);
+/// The solid of a prism, by Construction; outward whatever the polygons' winding. A point that repeats the
+/// one before it, or a last point that repeats the first, is one point. Throws std::invalid_argument naming
+/// the polygon if polygons cross or touch each other or themselves (the solid would not be manifold), have
+/// fewer than three points or no area, and if the frame is not orthonormal or the depths are not in order.
+/// Cost: n log n for n points, more where many sides overlap in u.
+Solid solid_of(const Prism& prism);
 
 }  // namespace octotomy::brep

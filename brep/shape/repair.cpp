@@ -15,6 +15,7 @@
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/short_text.h"
 #include "brep/mesh/triangle_places.h"
@@ -340,8 +341,8 @@ void check(const Triangles& surface, const RepairOptions& options) {
   for (std::size_t f = 0; f < surface.faces.size(); ++f)
     for (const std::uint32_t v : surface.faces[f])
       if (v >= surface.points_mm.size() || !std::isfinite(glm::dot(surface.points_mm[v], glm::dvec3(1.0))))
-        throw std::runtime_error("repair: triangle " + std::to_string(f) +
-                                 " refers to no point, or to one that is not finite");
+        throw Error(ErrorCode::Input, "repair: triangle " + std::to_string(f) +
+                                          " refers to no point, or to one that is not finite");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ struct Repair {
 
 /// Repairs a surface as asked and lists each change. Never moves a point but to weld it to the first of its
 /// set or where intersections are taken out. Ask health() what is left to be wished for. Throws
-/// std::invalid_argument where an option is out of its range, std::runtime_error where a triangle refers to
+/// std::invalid_argument if an option is out of its range, Error (Input) if a triangle refers to
 /// no point or to one that is not finite. Cost: n log n, and most for triangles that intersect.
 /// Source: holes after Liepa, "Filling holes in meshes", SGP 2003; both holes and intersections as CGAL has
 /// them.

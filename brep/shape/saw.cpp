@@ -33,7 +33,7 @@ std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double 
 
 }  // namespace
 
-Mesh saw_blade(const SawCut& cut) {
+Solid saw_blade(const SawCut& cut) {
   if (!(glm::length(cut.direction) > 0.0)) throw std::invalid_argument("saw_blade: there is no direction");
   if (!(cut.depth_mm > 0.0) || !(cut.kerf_mm > 0.0))
     throw std::invalid_argument("saw_blade: depth and kerf must be positive");
@@ -60,7 +60,7 @@ Mesh saw_blade(const SawCut& cut) {
   const std::vector<glm::dvec2> other = moved_aside(line, 0.5 * cut.kerf_mm);
   outline.insert(outline.end(), other.rbegin(), other.rend());
   prism.polygons_mm = {outline};
-  return mesh_of(prism);
+  return solid_of(prism);
 }
 
 }  // namespace octotomy::brep

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
 
@@ -18,8 +18,8 @@ struct SawCut {
 };
 
 /// The solid that a saw cut takes away: what to subtract. Pieces of the line meet in mitres; its ends are
-/// square. Throws std::invalid_argument where the line has fewer than two points apart as seen along the
+/// square. Throws std::invalid_argument if the line has fewer than two points apart as seen along the
 /// direction, depth or kerf is not positive, or the line turns so sharply for the kerf that its sides cross.
-Mesh saw_blade(const SawCut& cut);
+Solid saw_blade(const SawCut& cut);
 
 }  // namespace octotomy::brep

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 
 namespace octotomy::brep {
@@ -60,10 +61,10 @@ Mesh smooth(const Mesh& mesh, const SmoothOptions& options) {
   }
   const double volume = volume_mm3(mesh), now = volume_mm3(smoothed);
   if (!(std::abs(now - volume) <= options.max_volume_share * std::abs(volume)))
-    throw std::runtime_error("smooth: the volume went from " + std::to_string(volume) + " to " +
-                             std::to_string(now) +
-                             " mm3, more than its share: ask for fewer rounds or a "
-                             "wider pass band, or allow a larger share");
+    throw Error(ErrorCode::Geometry, "smooth: the volume went from " + std::to_string(volume) + " to " +
+                                         std::to_string(now) +
+                                         " mm3, more than its share: ask for fewer rounds or a "
+                                         "wider pass band, or allow a larger share");
   return smoothed;
 }
 

@@ -11,9 +11,9 @@
 
 namespace octotomy::convert {
 
-Filled fill_cavities(const brep::Mesh& solid, double smaller_than_mm3) {
+Filled fill_cavities(const brep::Solid& solid, double smaller_than_mm3) {
   if (!(smaller_than_mm3 > 0.0)) throw std::invalid_argument("fill_cavities: the volume must be positive");
-  const brep::Triangles surface = brep::triangles_of(solid);
+  const brep::Triangles& surface = solid.triangles();
   brep::DisjointSets shells(surface.points_mm.size());
   for (const auto& [a, b, c] : surface.faces) {
     shells.join(a, b);
@@ -37,7 +37,9 @@ Filled fill_cavities(const brep::Mesh& solid, double smaller_than_mm3) {
     const double own_mm3 = volume_mm3[shells.set_of(surface.faces[f][0])];
     if (own_mm3 >= 0.0 || -own_mm3 >= smaller_than_mm3) kept.push_back(f);
   }
-  filled.mesh = filled.cavities == 0 ? solid : brep::part_of(solid, kept);
+  filled.solid = filled.cavities == 0
+                     ? solid
+                     : brep::trusted_solid(brep::part_of(solid, kept), brep::proof_of_part(solid.proof()));
   return filled;
 }
 

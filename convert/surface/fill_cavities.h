@@ -3,13 +3,13 @@
 
 #include <cstddef>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 
 namespace octotomy::convert {
 
 /// A solid without its small cavities.
 struct Filled {
-  brep::Mesh mesh;
+  brep::Solid solid;
   std::size_t cavities = 0;  ///< filled ones
   double volume_mm3 = 0.0;   ///< of all filled cavities
 };
@@ -17,8 +17,8 @@ struct Filled {
 /// Fills the cavities of a solid that are smaller than a volume: connected shells that are inside out. A
 /// single sample just outside the window gives an isosurface an octahedral cavity as small as a thousandth of
 /// a voxel. The scan shows nothing there, yet a mesher that keeps the surface makes flat elements beside it,
-/// and one that makes its own surface loses it. Preconditions: closed, and no body within such a cavity.
+/// and one that makes its own surface loses it. Precondition: no body within such a cavity.
 /// Throws std::invalid_argument if the volume is not positive. Cost: linear.
-Filled fill_cavities(const brep::Mesh& solid, double smaller_than_mm3);
+Filled fill_cavities(const brep::Solid& solid, double smaller_than_mm3);
 
 }  // namespace octotomy::convert

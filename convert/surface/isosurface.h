@@ -11,11 +11,12 @@ namespace octotomy::convert {
 /// The surface on which the scan's own samples, interpolated linearly along the lattice's edges, enter the
 /// window low..high, both included. In LPS millimetres; the bounds may be infinite.
 ///
-/// Closed, manifold and oriented outward for any samples, noise included, and any handedness of the lattice:
-/// ambiguous faces of cells keep the inside corners apart. Vertices keep a thousandth of an edge's distance
-/// from samples, so no triangle is degenerate. An object that reaches the scan's border is closed half a
-/// voxel beyond the outermost samples, at the voxels' ends. Samples that are not numbers are outside. Between
-/// neighbouring samples below and above the window there is no surface. Empty if nothing is inside.
+/// Closed, manifold, oriented outward and free of self-intersection for any samples, noise included, and any
+/// handedness of the lattice: ambiguous faces of cells keep the inside corners apart. Vertices keep a
+/// thousandth of an edge's distance from samples, so no triangle is degenerate. An object that reaches the
+/// scan's border is closed half a voxel beyond the outermost samples, at the voxels' ends. Samples that are
+/// not numbers are outside. Between neighbouring samples below and above the window there is no surface.
+/// Empty if nothing is inside.
 ///
 /// On a sphere of r voxels of partial-volume samples the volume is 0.82 / r^2 of it low: 0.6 because
 /// triangles are chords, the rest because the mean of a voxel is not its centre's value. The area is 0.4 %
@@ -29,8 +30,8 @@ brep::Triangles isosurface(const voxel::Scene& scene, double low, double high,
                            const voxel::Progress& progress = {});
 
 /// The isosurface of a grey octree's samples: the same bits as of a scene with these samples. Skips blocks
-/// that lie wholly in or out of the window. Samples beyond the scan are in no window: if the window holds their
-/// value, the surface closes half a voxel beyond the scan's outermost samples.
+/// that lie wholly in or out of the window. Samples beyond the scan are in no window: if the window holds
+/// their value, the surface closes half a voxel beyond the scan's outermost samples.
 brep::Triangles isosurface(const voxel::GreyOctree& grey, double low, double high,
                            const voxel::Progress& progress = {});
 

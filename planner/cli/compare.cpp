@@ -3,8 +3,7 @@
 #include "brep/boolean/boolean.h"
 #include "brep/io/write_mesh.h"
 #include "brep/measure/difference.h"
-#include "brep/mesh/health.h"
-#include "brep/mesh/measure.h"
+#include "brep/mesh/error.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
 #include "planner/measure/result_json.h"
@@ -35,21 +34,23 @@ Json to_json(const brep::OneWay& way, const std::vector<double>& tolerances) {
 }
 
 /// Twice the common volume by the sum of both; none with a finding where there is no such volume.
-std::optional<double> dice(const brep::Mesh& a, const brep::Mesh& b, std::vector<std::string>& findings) {
-  const auto none = [&](const std::string& why) {
-    findings.push_back("no Dice: " + why);
-    return std::nullopt;
+std::optional<double> dice(const brep::Mesh& a, const brep::Mesh& b, const std::stop_token& stop,
+                           std::vector<std::string>& findings) {
+  std::string doing;
+  const auto solid = [&](const brep::Mesh& mesh, const char* name) {
+    doing = std::string(name) + " ";
+    return brep::solid_of(mesh);
   };
-  for (const auto& [mesh, name] : {std::pair(&a, "A"), std::pair(&b, "B")}) {
-    const brep::Health health = brep::health(*mesh);
-    if (!health.solid()) return none(std::string(name) + " is not a solid: " + health.findings.front());
-  }
   try {
-    const brep::BooleanResult common = brep::boolean(a, brep::Operation::Intersection, b);
+    const brep::Solid solid_a = solid(a, "A"), solid_b = solid(b, "B");
+    doing.clear();
+    const brep::BooleanResult common = brep::boolean(solid_a, brep::Operation::Intersection, solid_b, stop);
     findings.insert(findings.end(), common.findings.begin(), common.findings.end());
-    return 2.0 * brep::volume_mm3(common.mesh) / (brep::volume_mm3(a) + brep::volume_mm3(b));
-  } catch (const std::runtime_error& error) {
-    return none(error.what());
+    return 2.0 * brep::volume_mm3(common.solid) / (brep::volume_mm3(solid_a) + brep::volume_mm3(solid_b));
+  } catch (const brep::Error& error) {
+    if (error.code() != brep::ErrorCode::Geometry) throw;
+    findings.push_back("no Dice: " + doing + error.what());
+    return std::nullopt;
   }
 }
 
@@ -98,7 +99,7 @@ int compare(const Program& program, const CompareText& text) {
   std::optional<double> overlap;
   if (!text.no_dice) {
     const Stopwatch watch(timings, "dice");
-    overlap = dice(a, b, findings);
+    overlap = dice(a, b, program.stop.get_token(), findings);
   }
   if (difference.on_border_count > 0)
     findings.push_back(std::to_string(difference.on_border_count) + " of " +

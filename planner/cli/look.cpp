@@ -29,13 +29,13 @@ int look(Program& program, LookText& text) {
   const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Object& object : result.evaluation.objects)
-    rows.emplace_back(
-        object.id,
-        grouped(object.voxel.measures.volume_mm3, 0) + " mm\u00b3 (voxels)" +
-            (object.mesh.measures ? ", " + grouped(object.mesh.measures->volume_mm3, 0) + " mm\u00b3 and " +
-                                        grouped(object.mesh.measures->area_mm2, 0) + " mm\u00b2 (mesh)"
-                                  : "") +
-            (object.certificate ? ", " + verify::verdict_text(*object.certificate) : ""));
+    rows.emplace_back(object.id,
+                      grouped(object.voxel.measures.volume_mm3, 0) + " mm\u00b3 (voxels)" +
+                          (object.mesh.within
+                               ? ", " + grouped(object.mesh.within->size().volume_mm3, 0) + " mm\u00b3 and " +
+                                     grouped(object.mesh.within->size().area_mm2, 0) + " mm\u00b2 (mesh)"
+                               : "") +
+                          (object.certificate ? ", " + verify::verdict_text(*object.certificate) : ""));
   for (const Parts& parts : result.parts)
     rows.emplace_back(parts.object + " parts", std::to_string(parts.volumes_mm3.size()));
   rows.emplace_back("written", (text.out / "report.html").string());

@@ -4,12 +4,10 @@
 // 2 for what the user can mend, 3 for time, memory and disk.
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -22,11 +20,13 @@
 #include <thread>
 #include <vector>
 
+#include "brep/mesh/error.h"
 #include "planner/cli/manual.h"
 #include "planner/cli/operation_verb.h"
 #include "planner/cli/scan_verbs.h"
 #include "planner/cli/verb.h"
 #include "planner/table/nearest_name.h"
+#include "voxel/space/error.h"
 
 namespace {
 
@@ -66,10 +66,10 @@ int refuse(const std::string& text, int status) {
   return status;
 }
 
-/// Whether an error is the disk's: libraries pass the system's own words on.
-bool no_space(const std::string& text) {
-  return text.find(std::strerror(ENOSPC)) != std::string::npos ||
-         text.find(std::strerror(EDQUOT)) != std::string::npos;
+/// The exit status of a kernel's error code: both kernels name theirs alike.
+template <typename Code>
+int status_of(Code code) {
+  return code == Code::Cancelled || code == Code::Resource ? cli::out_of_resources : cli::bad_input;
 }
 
 int run_chosen(Program& program) {
@@ -82,19 +82,18 @@ int run_chosen(Program& program) {
     return program.chosen();
   } catch (const CLI::ParseError& error) {
     return refuse(error.what(), cli::bad_input);
-  } catch (const octotomy::planner::Stopped& error) {
-    return refuse(error.what(), cli::out_of_resources);
+  } catch (const octotomy::voxel::Error& error) {
+    return refuse(error.what(), status_of(error.code()));
+  } catch (const octotomy::brep::Error& error) {
+    return refuse(error.what(), status_of(error.code()));
   } catch (const std::bad_alloc&) {
     return refuse(
         "out of memory: nothing was written; use larger voxels (universe, voxel_mm) or a smaller scan",
         cli::out_of_resources);
   } catch (const std::system_error& error) {
-    const bool disk = error.code().value() == ENOSPC || error.code().value() == EDQUOT ||
-                      error.code().value() == EIO || error.code().value() == ENOMEM;
-    return refuse(error.what(), disk ? cli::out_of_resources : cli::bad_input);
+    return refuse(error.what(), status_of(octotomy::voxel::code_of_errno(error.code().value())));
   } catch (const std::exception& error) {
-    const bool ended = program.stop.stop_requested() || no_space(error.what());
-    return refuse(error.what(), ended ? cli::out_of_resources : cli::bad_input);
+    return refuse(error.what(), cli::bad_input);
   }
 }
 

@@ -69,10 +69,10 @@ int measure_mesh(const Program& program, const MeasureText& text) {
         text.file.string() + ": is not a closed, oriented surface (" +
         (health.findings.empty() ? std::string("no triangles") : health.findings.front()) +
         "), so it has no volume: mend it first, octotomy info tells all");
-  const brep::Mesh mesh = brep::mesh_of(triangles);
-  const brep::Measures measures = brep::measure(mesh);
+  const brep::Solid solid = brep::trusted_solid(triangles, brep::Proof::Connection);
+  const brep::Measures& measures = solid.measures();
   watch.reset();
-  const Json asked = answer_surface_questions(program, text.surface, mesh, timings);
+  const Json asked = answer_surface_questions(program, text.surface, solid, timings);
   Json json = answer(timings);
   json["kind"] = "mesh";
   json.update(to_json(measures));
@@ -102,8 +102,8 @@ void add_half_width(const voxel::Octree& octree, const Digitised& digitised, Jso
   json["volume_half_width_terms"] = to_json(width);
 }
 
-void add_area_half_width(const brep::Mesh& surface, const voxel::Lattice& lattice, const Digitised& digitised,
-                         Json& json) {
+void add_area_half_width(const brep::Solid& surface, const voxel::Lattice& lattice,
+                         const Digitised& digitised, Json& json) {
   const verify::BoundaryModel model =
       verify::boundary_model(surface, {lattice, digitised.sample_mm, glm::dvec3(0.0)});
   const HalfWidth width = area_half_width({model.area_mm2, model.curvature_mm}, digitised);
@@ -191,18 +191,17 @@ int measure_scan(const Program& program, const MeasureText& text) {
     digitised.shift_mm = window_shift_mm(window);
     add_half_width(inside, digitised, json);
   }
-  brep::Mesh mesh;
-  brep::Measures surface;
+  brep::Solid isosurface;
   brep::Health health;
   {
     const Stopwatch watch(timings, "isosurface");
     const double high = parse_window(text.window).high.value_or(std::numeric_limits<double>::infinity());
     const brep::Triangles triangles = convert::isosurface(scene, window.low, high);
     health = brep::health(triangles, {false});
-    mesh = brep::mesh_of(triangles);
-    surface = brep::measure(mesh);
+    isosurface = brep::trusted_solid(triangles, brep::Proof::Construction);
   }
-  add_area_half_width(mesh, grey->universe().lattice(), digitised, json);
+  const brep::Size& surface = isosurface.size();
+  add_area_half_width(isosurface, grey->universe().lattice(), digitised, json);
   json["area_crofton13_mm2"] = json["area_mm2"];
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;

@@ -97,16 +97,17 @@ Json curvature_json(const brep::Mesh& mesh, AtVertices& shown) {
           {"total_gaussian", total}};
 }
 
-std::vector<brep::Thickness> thickness_of(const Program& program, const brep::Mesh& mesh,
+std::vector<brep::Thickness> thickness_of(const Program& program, const brep::Solid& solid,
                                           const std::vector<brep::SurfacePoint>& points) {
   brep::ThicknessOptions options;
   options.progress = program.progress("thickness");
   options.stop = program.stop.get_token();
-  return brep::thickness(mesh, points, options);
+  return brep::thickness(solid, points, options);
 }
 
 /// At vertices, where a picture shows it.
-Json thickness_json(const Program& program, const brep::Mesh& mesh, AtVertices& shown) {
+Json thickness_json(const Program& program, const brep::Solid& solid, AtVertices& shown) {
+  const brep::Mesh& mesh = solid.mesh();
   const brep::Curvature surface = brep::curvature(mesh);
   std::vector<brep::SurfacePoint> points;
   std::vector<std::size_t> vertices;
@@ -117,7 +118,7 @@ Json thickness_json(const Program& program, const brep::Mesh& mesh, AtVertices& 
     points.push_back({{p[0], p[1], p[2]}, surface.normals[v]});
     vertices.push_back(v);
   }
-  const std::vector<brep::Thickness> found = thickness_of(program, mesh, points);
+  const std::vector<brep::Thickness> found = thickness_of(program, solid, points);
   std::vector<std::pair<double, double>> ray, ball;
   shown = {"thickness_mm", std::vector<double>(mesh.n_vertices(), 0.0)};
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -178,7 +179,7 @@ void add_surface_questions(CLI::App& verb, SurfaceQuestions& questions) {
 }
 
 Json answer_surface_questions(const Program& program, const SurfaceQuestions& questions,
-                              const brep::Mesh& mesh, Timings& timings) {
+                              const brep::Solid& solid, Timings& timings) {
   if (!questions.out.empty()) {
     need_folder_of(questions.out);
     if (!questions.thickness && !questions.curvature)
@@ -192,25 +193,25 @@ Json answer_surface_questions(const Program& program, const SurfaceQuestions& qu
     const Stopwatch watch(timings, key);
     json[key] = make();
   };
-  put("oriented_box", [&] { return box_json(mesh); });
-  if (!questions.section.empty()) put("section", [&] { return section_json(questions, mesh); });
+  put("oriented_box", [&] { return box_json(solid); });
+  if (!questions.section.empty()) put("section", [&] { return section_json(questions, solid); });
   if (!questions.distance.empty())
     json["distance_mm"] = glm::distance(parse_point("--distance", questions.distance[0]),
                                         parse_point("--distance", questions.distance[1]));
   if (!questions.angle.empty()) json["angle_deg"] = angle_deg(questions.angle);
-  if (!questions.along.empty()) put("along", [&] { return along_json(questions, mesh); });
+  if (!questions.along.empty()) put("along", [&] { return along_json(questions, solid); });
   if (!questions.to.empty()) {
     const brep::Mesh other = read_surface(questions.to, timings);
-    put("gap", [&] { return gap_json(mesh, other); });
+    put("gap", [&] { return gap_json(solid, other); });
   }
-  if (questions.curvature) put("curvature", [&] { return curvature_json(mesh, shown); });
-  if (questions.thickness) put("thickness", [&] { return thickness_json(program, mesh, shown); });
+  if (questions.curvature) put("curvature", [&] { return curvature_json(solid, shown); });
+  if (questions.thickness) put("thickness", [&] { return thickness_json(program, solid, shown); });
   if (!questions.out.empty()) {
     const Stopwatch watch(timings, "write");
     brep::VertexData data;
     data.scalar_name = shown.name;
     data.scalars = std::move(shown.values);
-    brep::write_mesh(mesh, questions.out, data);
+    brep::write_mesh(solid, questions.out, data);
     json["path"] = questions.out.string();
   }
   return json;

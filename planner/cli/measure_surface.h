@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "planner/cli/verb.h"
 #include "planner/measure/result_json.h"
 
@@ -30,9 +30,9 @@ struct SurfaceQuestions {
 
 void add_surface_questions(CLI::App& verb, SurfaceQuestions& questions);
 
-/// Answers them, each under a key of its own. Precondition: the mesh is closed and oriented.
+/// Answers them, each under a key of its own.
 Json answer_surface_questions(const Program& program, const SurfaceQuestions& questions,
-                              const brep::Mesh& mesh, Timings& timings);
+                              const brep::Solid& solid, Timings& timings);
 
 /// The answers that are there, as rows for people.
 std::vector<std::pair<std::string, std::string>> surface_rows(const Json& answers);

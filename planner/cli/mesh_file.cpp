@@ -3,19 +3,20 @@
 
 #include "brep/io/read_mesh.h"
 #include "brep/io/write_mesh.h"
-#include "brep/mesh/health.h"
+#include "brep/mesh/error.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 
-brep::Mesh read_solid(const std::filesystem::path& path, Timings& timings) {
+brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
   const Stopwatch watch(timings, "read");
   const brep::Triangles triangles = brep::read_triangles(path);
-  const brep::Health health = brep::health(triangles);
-  if (!health.solid())
-    throw std::runtime_error(path.string() + ": is not a solid: " + health.findings.front() +
-                             "; mend it first, octotomy info tells all");
-  return brep::mesh_of(triangles);
+  try {
+    return brep::solid_of(triangles);
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(),
+                      path.string() + ": " + error.what() + "; mend it first, octotomy info tells all");
+  }
 }
 
 brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings) {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "planner/cli/verb.h"
 #include "planner/measure/result_json.h"
 
 // What the verbs that read or write meshes have in common.
 namespace octotomy::planner::cli {
 
-/// A mesh that Booleans and tetrahedra can be made of; "read" in the timings. Throws std::runtime_error where
-/// it is not closed and oriented.
-brep::Mesh read_solid(const std::filesystem::path& path, Timings& timings);
+/// A mesh file's solid, proven by its health; "read" in the timings. Throws as brep::read_triangles() and
+/// brep::solid_of(), naming the path.
+brep::Solid read_solid(const std::filesystem::path& path, Timings& timings);
 
 /// A mesh that need not be closed; "read" in the timings. Throws std::runtime_error where its triangles
 /// cannot be joined.

@@ -2,7 +2,6 @@
 #include "brep/boolean/boolean.h"
 #include "brep/boolean/exact_boolean.h"
 #include "brep/mesh/health.h"
-#include "brep/mesh/measure.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
 #include "planner/measure/result_json.h"
@@ -18,12 +17,12 @@ struct BooleanText {
   bool exact = false;
 };
 
-/// What the proof says, and the mesh in place of the result's.
-Json proven(const Program& program, const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
+/// What the proof says, and the solid in place of the result's.
+Json proven(const Program& program, const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
             brep::BooleanResult& result) {
-  const brep::Watch watch{.progress = program.progress("exact"), .stop = program.stop.get_token()};
-  brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, watch);
-  result.mesh = std::move(exact.mesh);
+  const brep::ExactBoolean exact =
+      brep::exact_boolean(a, operation, b, {program.stop.get_token(), program.progress("exact")});
+  result.solid = exact.solid;
   result.residual = 0.0;
   return {{"identity", "|A| + |B| = |A u B| + |A n B|, as rational numbers"},
           {"a_mm3", exact.a_mm3},
@@ -41,7 +40,7 @@ int boolean(const Program& program, const BooleanText& text) {
   Timings timings;
   if (text.exact && !text.further.empty())
     throw std::runtime_error("--exact proves one step at a time: leave --with out");
-  std::vector<brep::Mesh> operands = {read_solid(text.a, timings), read_solid(text.b, timings)};
+  std::vector<brep::Solid> operands = {read_solid(text.a, timings), read_solid(text.b, timings)};
   for (const auto& path : text.further) operands.push_back(read_solid(path, timings));
   const brep::Operation operation = text.operation == "union"          ? brep::Operation::Union
                                     : text.operation == "intersection" ? brep::Operation::Intersection
@@ -55,12 +54,12 @@ int boolean(const Program& program, const BooleanText& text) {
     else
       result = brep::boolean(operands, operation, program.stop.get_token());
   }
-  if (result.mesh.n_faces() == 0)
+  if (result.solid.empty())
     throw std::runtime_error("the " + text.operation + " of " + text.a.string() + " and " + text.b.string() +
                              " is empty: there is no surface to write");
-  const brep::Health health = brep::health(result.mesh);
-  const brep::Measures measures = brep::measure(result.mesh);
-  write_surface(result.mesh, text.out, timings);
+  const brep::Health health = brep::health(result.solid.triangles());
+  const brep::Measures& measures = result.solid.measures();
+  write_surface(result.solid, text.out, timings);
   for (const std::string& finding : result.findings) warn(finding);
   Json json = answer(timings);
   json["path"] = text.out.string();

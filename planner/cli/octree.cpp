@@ -26,7 +26,9 @@ void write_content(const std::string& content, const fs::path& path) {
   bool written =
       stream != nullptr && std::fwrite(content.data(), 1, content.size(), stream) == content.size();
   if (stream != nullptr && std::fclose(stream) != 0) written = false;  // a full disk may show only here
-  if (!written) throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+  if (!written)
+    throw voxel::Error(voxel::code_of_errno(errno),
+                       path.string() + ": cannot be written: " + std::strerror(errno));
   staging.commit(path.filename());
 }
 

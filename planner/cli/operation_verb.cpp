@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include "brep/mesh/health.h"
-#include "brep/mesh/measure.h"
 #include "convert/voxel/voxelise.h"
 #include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
@@ -120,7 +119,7 @@ class OperationRun {
         universe_ = object.voxel.octree.universe();
         has_octree_ = true;
       } else {
-        object.mesh.whole = shared(read_solid(path, timings_));
+        object.mesh.whole = read_solid(path, timings_);
         object.mesh.lineage = "triangles of " + object.definition;
       }
       inputs_.push_back(std::move(object));
@@ -133,7 +132,7 @@ class OperationRun {
     if (has_octree_) return;
     voxel::Box box{glm::dvec3(1e300), glm::dvec3(-1e300)};
     for (const Object& object : inputs_) {
-      const brep::Size size = brep::size_of(*object.mesh.whole);
+      const brep::Size& size = object.mesh.whole->size();
       box = {glm::min(box.low_mm, size.low_mm), glm::max(box.high_mm, size.high_mm)};
     }
     const glm::dvec3 extent = box.high_mm - box.low_mm;
@@ -157,12 +156,12 @@ class OperationRun {
         throw std::runtime_error(object.id +
                                  ": is an octree: write an .octree, or make its mesh first by octotomy mesh");
     const voxel::Box box = voxel::bounds(universe_.lattice());
-    verify::MeshExpressions expressions(nullptr);
+    verify::MeshExpressions expressions({});
     operation_.mesh(action_.value(),
                     {box.low_mm, box.high_mm, objects_, no_scan_, expressions, timings_, progress()},
                     made.mesh);
     made.findings = made.mesh.findings;
-    if (made.mesh.whole->n_faces() == 0)
+    if (made.mesh.whole->empty())
       throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
   }
 
@@ -196,10 +195,10 @@ class OperationRun {
   }
 
   int write_mesh(const Object& made) {
-    const brep::Mesh& mesh = *made.mesh.whole;
-    const brep::Health health = brep::health(mesh);
-    const brep::Measures measures = brep::measure(mesh);
-    write_surface(mesh, text_.out, timings_);
+    const brep::Solid& solid = *made.mesh.whole;
+    const brep::Health health = brep::health(solid.triangles());
+    const brep::Measures& measures = solid.measures();
+    write_surface(solid, text_.out, timings_);
     for (const std::string& finding : made.findings) warn(finding);
     Json json = answer(timings_);
     json["path"] = text_.out.string();

@@ -81,14 +81,12 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
   if (is_mesh(a) != is_mesh(b))
     throw CLI::ValidationError("verify", "two meshes or two label maps, not one of each");
   if (is_mesh(a)) {
-    const brep::Mesh left = read_solid(a, answer.timings), right = read_solid(b, answer.timings);
+    const brep::Solid left = read_solid(a, answer.timings), right = read_solid(b, answer.timings);
     const Stopwatch watch(answer.timings, "verify");
     verify::OperationAnswers answers = verify::certify_operation(
         left, operation, right, {text.operand_voxel_mm, {program.stop.get_token(), {}}});
     certificate = answers.certificate;
-    if (answers.octree)
-      answer.worst = {certificate, *answers.octree,
-                      std::make_shared<const brep::Mesh>(std::move(answers.mesh))};
+    if (answers.octree) answer.worst = {certificate, *answers.octree, answers.solid};
   } else {
     if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "label maps have voxels of their own");
     const LabelMaps found = of_label_maps(program, a, operation, b, answer.timings);

@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "brep/mesh/distance.h"
-#include "brep/mesh/triangles.h"
-
 namespace octotomy::planner {
 namespace {
 
@@ -23,7 +20,7 @@ std::vector<bool> on_wall(const std::vector<glm::dvec3>& points_mm, const CutWal
   std::transform(points_mm.begin(), points_mm.end(), still_mm.begin(), [&](const glm::dvec3& p_mm) {
     return glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0));
   });
-  const std::vector<double> distances_mm = brep::SurfaceTree(*cut.wall).distances_mm(still_mm);
+  const std::vector<double> distances_mm = cut.wall.tree().distances_mm(still_mm);
   std::vector<bool> on(points_mm.size());
   for (std::size_t i = 0; i < on.size(); ++i) on[i] = distances_mm[i] <= on_wall_mm();
   return on;
@@ -49,14 +46,14 @@ std::vector<std::size_t> cuts_of(const brep::Triangles& surface, const std::vect
 std::vector<convert::DeckSurface> cut_surfaces(const Object& object, const convert::Tetrahedra& tetrahedra) {
   const std::vector<convert::ElementFace> faces = convert::surface_faces(tetrahedra);
   if (object.walls.empty()) return {{"OUTER", faces}};
-  const brep::Triangles surface = brep::triangles_of(*object.mesh.within);
-  const std::vector<std::size_t> cut_of = cuts_of(surface, object.walls);
+  const brep::Solid& solid = *object.mesh.within;
+  const std::vector<std::size_t> cut_of = cuts_of(solid.triangles(), object.walls);
   std::vector<glm::dvec3> middles_mm;
   for (const convert::ElementFace& face : faces) {
     const auto [a, b, c] = convert::corners_of(tetrahedra, face);
     middles_mm.push_back((tetrahedra.nodes_mm[a] + tetrahedra.nodes_mm[b] + tetrahedra.nodes_mm[c]) / 3.0);
   }
-  const std::vector<brep::Foot> feet = brep::SurfaceTree(surface).feet(middles_mm);
+  const std::vector<brep::Foot> feet = solid.tree().feet(middles_mm);
 
   std::vector<convert::DeckSurface> surfaces{{"OUTER", {}}};
   for (std::size_t f = 0; f < faces.size(); ++f) {

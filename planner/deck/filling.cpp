@@ -24,8 +24,8 @@ constexpr double crumb() {
 
 /// The parts of the mesh that a deck is made of: crumbs that a cut leaves are no bodies to load and hold;
 /// what is left out is a finding, and so are several bodies.
-brep::Mesh bodies_of(const brep::Mesh& mesh, Filling& filling) {
-  const auto parts = brep::components(mesh);
+brep::Solid bodies_of(const brep::Solid& solid, Filling& filling) {
+  const auto parts = brep::components(solid);
   std::vector<std::uint32_t> faces;
   std::size_t bodies = 0;
   double left_out_mm3 = 0.0;
@@ -45,17 +45,18 @@ brep::Mesh bodies_of(const brep::Mesh& mesh, Filling& filling) {
     filling.findings.push_back(
         std::to_string(parts.size() - bodies) + " crumbs, " + grouped(left_out_mm3, 1) +
         " mm\u00b3 together, each under a hundredth of the largest body, are left out");
-  return bodies < parts.size() ? brep::part_of(mesh, faces) : mesh;
+  if (bodies == parts.size()) return solid;
+  return brep::trusted_solid(brep::part_of(solid, faces), brep::proof_of_part(solid.proof()));
 }
 
 /// The mesh without cavities smaller than a voxel, which are noise at the threshold; what is filled is a
 /// finding.
-brep::Mesh filled(const brep::Mesh& mesh, const voxel::Universe& universe, Filling& filling) {
-  convert::Filled made = convert::fill_cavities(mesh, universe.lattice().voxel_mm3());
+brep::Solid filled(const brep::Solid& solid, const voxel::Universe& universe, Filling& filling) {
+  convert::Filled made = convert::fill_cavities(solid, universe.lattice().voxel_mm3());
   if (made.cavities > 0)
     filling.findings.push_back(std::to_string(made.cavities) + " cavities smaller than a voxel, " +
                                grouped(made.volume_mm3, 3) + " mm\u00b3 together, are filled");
-  return std::move(made.mesh);
+  return std::move(made.solid);
 }
 
 /// A third of the voxel's edge: no more than sampling leaves unknown of a surface anyhow.
@@ -108,7 +109,7 @@ Filling fallback_of(const Object& object, const std::string& why, const voxel::P
 Filling by_meshers(const Object& object, const FillingOptions& wanted) {
   Filling filling;
   const voxel::Universe& universe = object.voxel.octree.universe();
-  const brep::Mesh bodies = filled(bodies_of(*object.mesh.within, filling), universe, filling);
+  const brep::Solid bodies = filled(bodies_of(*object.mesh.within, filling), universe, filling);
   convert::TetOptions options;
   options.mesher = convert::Mesher::Best;
   options.progress = wanted.progress;
@@ -124,7 +125,7 @@ Filling by_meshers(const Object& object, const FillingOptions& wanted) {
 /// What meshers made, or why they made nothing.
 std::variant<Filling, std::string> tried(const Object& object, const FillingOptions& options) {
   if (!object.mesh.within) return "it has no mesh";
-  if (object.mesh.within->n_faces() == 0) return "its mesh is empty";
+  if (object.mesh.within->empty()) return "its mesh is empty";
   try {
     return by_meshers(object, options);
   } catch (const voxel::Stopped&) {

@@ -17,10 +17,10 @@ std::vector<convert::Refinement> refinements(const Objects& objects, const Deck&
       place.points_mm = {text.at.point_mm};
     } else {
       const Object& object = objects.at(text.at.object);
-      if (!object.mesh.within || object.mesh.within->n_faces() == 0)
+      if (!object.mesh.within || object.mesh.within->empty())
         throw std::runtime_error("elements cannot be finer at '" + text.at.object +
                                  "', which has no mesh: see its findings, or name a point");
-      place.surface = brep::triangles_of(*object.mesh.within);
+      place.surface = object.mesh.within->triangles();
     }
     places.push_back(std::move(place));
   }

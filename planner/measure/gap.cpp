@@ -6,8 +6,6 @@
 #include <limits>
 
 #include "brep/measure/gap.h"
-#include "brep/mesh/distance.h"
-#include "brep/mesh/triangles.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/voxel_boundary.h"
@@ -47,16 +45,15 @@ bool is_within(const brep::Triangles& one, const brep::Triangles& other) {
 }
 
 /// 0 where one solid holds a part of the other.
-double mesh_gap_mm(const brep::Mesh& a, const brep::Mesh& b) {
-  const brep::Triangles surface_a = brep::triangles_of(a), surface_b = brep::triangles_of(b);
-  if (is_within(surface_a, surface_b) || is_within(surface_b, surface_a)) return 0.0;
+double mesh_gap_mm(const brep::Solid& a, const brep::Solid& b) {
+  if (is_within(a.triangles(), b.triangles()) || is_within(b.triangles(), a.triangles())) return 0.0;
   return brep::gap(a, b).distance_mm;
 }
 
 }  // namespace
 
-Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const brep::Mesh* mesh_a,
-                const brep::Mesh* mesh_b) {
+Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const std::optional<brep::Solid>& solid_a,
+                const std::optional<brep::Solid>& solid_b) {
   const voxel::Lattice lattice = a.universe().lattice();
   Gap gap;
   gap.overlap_mm3 =
@@ -69,8 +66,8 @@ Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const brep::Mesh
   if (gap.overlap_mm3 == 0.0)
     gap.voxel_mm =
         glm::length(glm::dvec3(glm::max(glm::abs(nearest.b - nearest.a) - 1, 0)) * lattice.spacing_mm());
-  if (mesh_a != nullptr && mesh_b != nullptr && mesh_a->n_faces() > 0 && mesh_b->n_faces() > 0)
-    gap.mesh_mm = mesh_gap_mm(*mesh_a, *mesh_b);
+  if (solid_a && solid_b && !solid_a->empty() && !solid_b->empty())
+    gap.mesh_mm = mesh_gap_mm(*solid_a, *solid_b);
   return gap;
 }
 

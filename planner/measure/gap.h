@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "voxel/tree/octree.h"
 
 namespace octotomy::planner {
@@ -17,9 +17,9 @@ struct Gap {
   glm::dvec3 from_mm{0.0}, to_mm{0.0};  ///< the nearest voxels' centres
 };
 
-/// Precondition: neither octree is empty and both are of one universe. The mesh kernel answers where both
-/// meshes are given; they must be closed. Cost: a distance map over the first object's extents; brep::gap().
-Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const brep::Mesh* mesh_a,
-                const brep::Mesh* mesh_b);
+/// Precondition: neither octree is empty and both are of one universe. The mesh kernel answers if both
+/// solids are given and not empty. Cost: a distance map over the first object's extents; brep::gap().
+Gap gap_between(const voxel::Octree& a, const voxel::Octree& b, const std::optional<brep::Solid>& solid_a,
+                const std::optional<brep::Solid>& solid_b);
 
 }  // namespace octotomy::planner

@@ -179,8 +179,8 @@ Json to_json(const Object& object) {
       {"kind", object.kind},
       {"definition", object.definition},
       {"voxel", to_json(object.voxel.measures)},
-      {"mesh", object.mesh.measures ? to_json(*object.mesh.measures) : Json(nullptr)},
-      {"mesh_faces", object.mesh.within ? Json(object.mesh.within->n_faces()) : Json(nullptr)},
+      {"mesh", object.mesh.within ? to_json(object.mesh.within->measures()) : Json(nullptr)},
+      {"mesh_faces", object.mesh.within ? Json(object.mesh.within->mesh().n_faces()) : Json(nullptr)},
       {"verdict", object.certificate ? Json(verify::to_string(object.certificate->verdict)) : Json(nullptr)},
       {"resolved", object.certificate ? Json(object.certificate->resolved()) : Json(nullptr)},
       {"findings", object.findings}};

@@ -48,7 +48,8 @@ void voxels(const Combine& combine, const VoxelBench& bench, VoxelSide& made) {
 void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "boolean_mesh");
   made.whole = bench.expressions.evaluate(
-      combine.expression, [&](std::string_view name) { return bench.object(std::string(name)); });
+      combine.expression, [&](std::string_view name) { return bench.object(std::string(name)); },
+      bench.progress.stop);
   made.findings = bench.expressions.findings();
   made.lineage = "corefinement of meshes";
 }

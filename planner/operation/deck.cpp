@@ -88,7 +88,7 @@ void check(const Deck& deck, const Place& place) {
 std::string obstacle_of(const Object& object, const Deck& deck) {
   const bool wants_mesh = !deck.is_held() && !deck.fallback && deck.regions.empty();
   if (wants_mesh && !object.mesh.within) return "'" + object.id + "' has no mesh, see its findings";
-  const bool has_faces = object.mesh.within && object.mesh.within->n_faces() > 0;
+  const bool has_faces = object.mesh.within && !object.mesh.within->empty();
   const bool is_empty =
       wants_mesh ? !has_faces : object.voxel.octree.is_empty() && !(deck.fallback && has_faces);
   return is_empty ? "'" + object.id + "' is empty" : "";
@@ -161,7 +161,7 @@ std::variant<Filled, std::string> fill(const Object& object, const Deck& deck, c
   }
   if (const auto* why = std::get_if<std::string>(&filling)) return *why;
   Filled filled{std::get<Filling>(std::move(filling)), {}};
-  if (object.mesh.within && object.mesh.within->n_faces() > 0)
+  if (object.mesh.within && !object.mesh.within->empty())
     filled.surfaces = cut_surfaces(object, filled.filling.tetrahedra);
   return filled;
 }

@@ -30,9 +30,9 @@ void voxels(const Fill& fill, const VoxelBench& bench, VoxelSide& made) {
 void triangles(const Fill& fill, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "components");
   convert::Filled filled =
-      convert::fill_cavities(*bench.object(fill.object.name), std::numeric_limits<double>::infinity());
+      convert::fill_cavities(bench.object(fill.object.name), std::numeric_limits<double>::infinity());
   made.details = {{"cavities", filled.cavities}, {"filled_mm3", filled.volume_mm3}};
-  made.whole = shared(std::move(filled.mesh));
+  made.whole = filled.solid;
   made.lineage = "the mesh without shells that enclose cavities";
 }
 

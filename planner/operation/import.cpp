@@ -2,7 +2,7 @@
 // A mesh of any program as an object. Its voxels are made of it, so that it has no certificate of its own;
 // the objects made with it have.
 #include "brep/io/read_mesh.h"
-#include "brep/mesh/health.h"
+#include "brep/mesh/error.h"
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
 
@@ -21,11 +21,12 @@ void triangles(const Import& import, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "read");
   const std::filesystem::path path = import.path.is_absolute() ? import.path : bench.folder / import.path;
   const brep::Triangles read = brep::read_triangles(path);
-  const brep::Health health = brep::health(read);
-  if (!health.solid())
-    throw std::runtime_error(path.string() + ": is not a solid: " + health.findings.front() +
-                             "; mend it first by octotomy repair");
-  made.whole = shared(brep::mesh_of(read));
+  try {
+    made.whole = brep::solid_of(read);
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(),
+                      path.string() + ": " + error.what() + "; mend it first by octotomy repair");
+  }
   made.lineage = "triangles of " + import.path.filename().string();
 }
 

@@ -45,7 +45,7 @@ void check(const Mask& mask, const Place& place) {
   try {
     voxel::check(mask_of(mask));
     for (const Mask::Region& region : mask.regions)
-      brep::mesh_of(prism_of(region, glm::dvec3(0.0), glm::dvec3(1.0)));
+      brep::solid_of(prism_of(region, glm::dvec3(0.0), glm::dvec3(1.0)));
   } catch (const std::invalid_argument& error) {
     place.at("regions").refuse(error.what());
   }
@@ -71,13 +71,13 @@ void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
 void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "boolean_mesh");
   const auto prism = [&](const Mask::Region& region) {
-    return brep::mesh_of(prism_of(region, bench.low_mm, bench.high_mm));
+    return brep::solid_of(prism_of(region, bench.low_mm, bench.high_mm));
   };
-  brep::Mesh solid = prism(mask.regions.front());
+  brep::Solid solid = prism(mask.regions.front());
   for (std::size_t i = 1; i < mask.regions.size(); ++i)
-    solid =
-        brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop).mesh;
-  made.whole = shared(std::move(solid));
+    solid = brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop)
+                .solid;
+  made.whole = solid;
   made.lineage = "prisms of the regions";
 }
 
@@ -86,7 +86,7 @@ void bound(const Mask& mask, const BoundBench&, Object& made) {
   std::vector<verify::DrawnRegion> drawn;
   for (const Mask::Region& region : mask.regions) drawn.push_back({region.view, region.polygons_mm});
   made.witness = verify::witness_of_regions(drawn);
-  if (made.mesh.whole) made.walls = {{made.id, made.mesh.whole}};
+  if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
 }
 
 }  // namespace

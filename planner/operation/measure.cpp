@@ -77,8 +77,7 @@ Json gap_json(const Measure& asked, const AnswerBench& bench) {
         "there is no gap: " + (object.voxel.octree.is_empty() ? object.id : other.id) + " is empty";
     return json;
   }
-  const Gap gap =
-      gap_between(object.voxel.octree, other.voxel.octree, object.mesh.within.get(), other.mesh.within.get());
+  const Gap gap = gap_between(object.voxel.octree, other.voxel.octree, object.mesh.within, other.mesh.within);
   const HalfWidth width =
       gap_half_width(gap.to_mm - gap.from_mm, digitised_of(bench, object), digitised_of(bench, other));
   json["gap_mm"] = gap.voxel_mm;
@@ -113,10 +112,11 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
     for (const verify::Comparison& comparison : object.certificate->comparisons)
       if (comparison.quantity == "area" && comparison.tolerance)
         json["area_half_width_mm2"] = *comparison.tolerance;
-  if (object.mesh.measures) {
-    const double mesh_mm3 = object.mesh.measures->volume_mm3;
-    json["area_mm2"] = object.mesh.measures->area_mm2;
-    json["mesh"] = to_json(*object.mesh.measures);
+  if (object.mesh.within) {
+    const brep::Measures& measures = object.mesh.within->measures();
+    const double mesh_mm3 = measures.volume_mm3;
+    json["area_mm2"] = measures.area_mm2;
+    json["mesh"] = to_json(measures);
     json["difference_mm3"] = voxels_mm3 - mesh_mm3;
     if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;
   } else {

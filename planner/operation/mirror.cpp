@@ -36,8 +36,8 @@ void voxels(const Mirror& mirror, const VoxelBench& bench, VoxelSide& made) {
 }
 
 void triangles(const Mirror& mirror, const MeshBench& bench, MeshSide& made) {
-  made.whole = shared(
-      brep::mirrored(*bench.object(mirror.object.name), {mirror.point_mm, glm::normalize(mirror.normal)}));
+  made.whole =
+      brep::mirrored(bench.object(mirror.object.name), {mirror.point_mm, glm::normalize(mirror.normal)});
   made.lineage = "vertices of a mesh under a reflection";
 }
 

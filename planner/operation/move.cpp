@@ -57,7 +57,7 @@ void voxels(const Move& move, const VoxelBench& bench, VoxelSide& made) {
 
 void triangles(const Move& move, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "boolean_mesh");
-  made.whole = shared(brep::moved(*bench.object(move.object.name), motion_of(move)));
+  made.whole = brep::moved(bench.object(move.object.name), motion_of(move));
   made.lineage = "vertices of a mesh under a rigid motion";
 }
 

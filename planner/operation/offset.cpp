@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "brep/mesh/measure.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -20,9 +19,8 @@ struct Offset {
 };
 
 /// Fine enough for the offset's own roundness, and no finer than some 200 cells along the solid.
-double cell_for(const brep::Mesh& solid, double by_mm) {
-  const brep::Size size = brep::size_of(solid);
-  const glm::dvec3 extent = size.high_mm - size.low_mm;
+double cell_for(const brep::Solid& solid, double by_mm) {
+  const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
   return std::max(0.25 * std::abs(by_mm), std::max({extent.x, extent.y, extent.z}) / 200.0);
 }
 
@@ -32,16 +30,15 @@ std::string definition(const Offset& offset, const Objects&) {
 
 void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "offset");
-  const brep::Mesh& solid = *bench.object(offset.object.name);
+  const brep::Solid& solid = bench.object(offset.object.name);
   brep::OffsetOptions options{.by_mm = offset.by_mm,
                               .cell_mm = offset.cell_mm.value_or(cell_for(solid, offset.by_mm))};
-  options.stop = bench.progress.stop;
-  options.progress = bench.progress.report;
-  brep::Mesh moved = brep::offset(solid, options);
+  options.progress = {bench.progress.stop, bench.progress.report};
+  const brep::Solid moved = brep::offset(solid, options);
   made.details = {{"by_mm", offset.by_mm},
                   {"cell_mm", options.cell_mm},
                   {"volume_change_mm3", brep::volume_mm3(moved) - brep::volume_mm3(solid)}};
-  made.whole = shared(std::move(moved));
+  made.whole = moved;
   made.lineage = "level set of the distance to the mesh";
 }
 

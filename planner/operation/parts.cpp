@@ -56,8 +56,8 @@ void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
 
 void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "components");
-  const brep::Mesh& mesh = *bench.object(parts.object.name);
-  std::vector<brep::Component> all = brep::components(mesh);
+  const brep::Solid& solid = bench.object(parts.object.name);
+  std::vector<brep::Component> all = brep::components(solid);
   std::stable_sort(all.begin(), all.end(), [](const brep::Component& a, const brep::Component& b) {
     return a.volume_mm3 > b.volume_mm3;
   });
@@ -72,7 +72,7 @@ void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   }
   std::sort(faces.begin(), faces.end());
   made.details = {{"parts", kept}, {"of", all.size()}};
-  made.whole = shared(brep::part_of(mesh, faces));
+  made.whole = brep::trusted_solid(brep::part_of(solid, faces), brep::proof_of_part(solid.proof()));
   made.lineage = "triangles that share vertices";
 }
 

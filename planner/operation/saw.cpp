@@ -4,7 +4,6 @@
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/components.h"
-#include "brep/mesh/measure.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -49,17 +48,17 @@ void voxels(const Saw& saw, const VoxelBench& bench, VoxelSide& made) {
 
 void triangles(const Saw& saw, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "boolean_mesh");
-  const brep::Mesh& solid = *bench.object(saw.object.name);
+  const brep::Solid& solid = bench.object(saw.object.name);
   brep::BooleanResult rest =
       brep::boolean(solid, brep::Operation::Difference, brep::saw_blade(cut_of(saw)), bench.progress.stop);
   made.findings = rest.findings;
   made.details["residuals"] = {
       {"volume_relative", rest.residual ? nlohmann::ordered_json(*rest.residual) : nullptr}};
-  made.details["sawn_away_mm3"] = brep::volume_mm3(solid) - brep::volume_mm3(rest.mesh);
+  made.details["sawn_away_mm3"] = brep::volume_mm3(solid) - brep::volume_mm3(rest.solid);
   made.details["pieces"] = nlohmann::ordered_json::array();
-  for (const brep::Component& piece : brep::components(rest.mesh))
+  for (const brep::Component& piece : brep::components(rest.solid))
     made.details["pieces"].push_back({{"volume_mm3", piece.volume_mm3}, {"area_mm2", piece.area_mm2}});
-  made.whole = shared(std::move(rest.mesh));
+  made.whole = rest.solid;
   made.lineage = "corefinement with the blade's mesh";
 }
 

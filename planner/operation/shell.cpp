@@ -21,14 +21,13 @@ std::string definition(const Shell& shell, const Objects&) {
 
 void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "offset");
-  const brep::Mesh& solid = *bench.object(shell.object.name);
-  const brep::Mesh core = brep::offset(solid, {.by_mm = -shell.thickness_mm,
-                                               .cell_mm = 0.25 * shell.thickness_mm,
-                                               .progress = bench.progress.report,
-                                               .stop = bench.progress.stop});
+  const brep::Solid& solid = bench.object(shell.object.name);
+  const brep::Solid core = brep::offset(solid, {.by_mm = -shell.thickness_mm,
+                                                .cell_mm = 0.25 * shell.thickness_mm,
+                                                .progress = {bench.progress.stop, bench.progress.report}});
   brep::BooleanResult rest = brep::boolean(solid, brep::Operation::Difference, core, bench.progress.stop);
   made.findings = rest.findings;
-  made.whole = shared(std::move(rest.mesh));
+  made.whole = rest.solid;
   made.lineage = "the mesh less a level set of the distance to it";
 }
 

@@ -3,7 +3,6 @@
 // steps find it in both kernels, and has no certificate of its own.
 #include "brep/shape/smooth.h"
 
-#include "brep/mesh/measure.h"
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
 
@@ -23,10 +22,12 @@ std::string definition(const Smooth& smooth, const Objects&) {
 
 void triangles(const Smooth& smooth, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "smooth");
-  const brep::Mesh& solid = *bench.object(smooth.object.name);
-  brep::Mesh smoothed = brep::smooth(solid, {smooth.rounds, smooth.pass_band, smooth.max_volume_share});
+  const brep::Solid& solid = bench.object(smooth.object.name);
+  const brep::Solid smoothed =
+      brep::trusted_solid(brep::smooth(solid, {smooth.rounds, smooth.pass_band, smooth.max_volume_share}),
+                          brep::Proof::Connection);
   made.details = {{"volume_change_mm3", brep::volume_mm3(smoothed) - brep::volume_mm3(solid)}};
-  made.whole = shared(std::move(smoothed));
+  made.whole = smoothed;
   made.lineage = "steps in and out along the mesh (Taubin 1995)";
 }
 

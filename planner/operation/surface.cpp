@@ -31,7 +31,7 @@ void write(const Surface& surface, const AnswerBench& bench, Exported& made) {
   made.content = grouped(static_cast<double>(mesh.n_faces()), 0) + " triangles";
   made.details = {{"faces", mesh.n_faces()},
                   {"vertices", mesh.n_vertices()},
-                  {"volume_mm3", object.mesh.measures->volume_mm3}};
+                  {"volume_mm3", object.mesh.within->size().volume_mm3}};
 }
 
 }  // namespace

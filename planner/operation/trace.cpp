@@ -40,10 +40,6 @@ std::vector<CutPlane> moved_planes(std::vector<CutPlane> planes, const glm::dmat
 
 }  // namespace
 
-SharedMesh shared(brep::Mesh mesh) {
-  return std::make_shared<const brep::Mesh>(std::move(mesh));
-}
-
 bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe) {
   const glm::dvec3 first = scan.voxel(universe.lps_mm(glm::dvec3(0.0)));
   for (int axis = 0; axis < 3; ++axis) {

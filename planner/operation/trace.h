@@ -12,8 +12,6 @@
 // of masks, and the samples that show its surface.
 namespace octotomy::planner {
 
-SharedMesh shared(brep::Mesh mesh);
-
 /// Whether every voxel's centre within the scan is one of its samples, but for rounding.
 bool on_samples(const voxel::Lattice& scan, const voxel::Lattice& universe);
 

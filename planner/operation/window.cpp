@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "brep/mesh/triangles.h"
 #include "convert/surface/isosurface.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
@@ -59,7 +58,8 @@ void voxels(const Window& window, const VoxelBench& bench, VoxelSide& made) {
 void triangles(const Window& window, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "isosurface");
   const double high = window.high.value_or(std::numeric_limits<double>::infinity());
-  made.whole = shared(brep::mesh_of(convert::isosurface(bench.samples(window.scan.name), window.low, high)));
+  made.whole = brep::trusted_solid(convert::isosurface(bench.samples(window.scan.name), window.low, high),
+                                   brep::Proof::Construction);
   made.lineage = "isosurface of the scan's own samples";
 }
 

@@ -12,7 +12,7 @@
 #include <memory>
 
 #include "brep/boolean/boolean.h"
-#include "brep/mesh/triangles.h"
+#include "brep/mesh/error.h"
 #include "brep/shape/prism.h"
 #include "convert/voxel/voxelise.h"
 #include "planner/operation/trace.h"
@@ -50,6 +50,14 @@ ScanRecord record_of(const std::string& name, const std::filesystem::path& path,
   return record;
 }
 
+/// Whether either kernel says that it was stopped.
+bool was_stopped(const std::exception& error) {
+  const auto* of_voxels = dynamic_cast<const voxel::Error*>(&error);
+  const auto* of_meshes = dynamic_cast<const brep::Error*>(&error);
+  return (of_voxels != nullptr && of_voxels->code() == voxel::ErrorCode::Cancelled) ||
+         (of_meshes != nullptr && of_meshes->code() == brep::ErrorCode::Cancelled);
+}
+
 /// One evaluation in progress.
 class Evaluator {
  public:
@@ -66,6 +74,10 @@ class Evaluator {
         make(step);
       } catch (const Stopped&) {
         throw;
+      } catch (const voxel::Error& error) {
+        throw voxel::Error(error.code(), "step '" + step.id + "': " + error.what());
+      } catch (const brep::Error& error) {
+        throw brep::Error(error.code(), "step '" + step.id + "': " + error.what());
       } catch (const std::runtime_error& error) {
         throw std::runtime_error("step '" + step.id + "': " + error.what());
       } catch (const std::invalid_argument& error) {
@@ -120,7 +132,7 @@ class Evaluator {
       if (result_.scans.empty()) {
         result_.universe = universe_of(scene.lattice, plan_.voxel_mm);
         box_ = voxel::bounds(result_.universe.lattice());
-        world_ = shared(brep::mesh_of(prism_of(box_)));
+        world_ = brep::solid_of(prism_of(box_));
         expressions_ = std::make_unique<verify::MeshExpressions>(world_);
       }
       result_.scans.push_back(record_of(name, source.path, scene));
@@ -147,7 +159,6 @@ class Evaluator {
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
     take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
-    if (object.mesh.within) object.mesh.measures = brep::measure(*object.mesh.within);
     if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) certify(object);
     if (object.ends_with_universe) {
       object.mesh.whole = object.mesh.within;
@@ -190,7 +201,7 @@ class Evaluator {
                      object.mesh);
       object.findings = object.mesh.findings;
     } catch (const std::runtime_error& error) {
-      if (options_.stop.stop_requested()) throw Stopped(error.what());
+      if (was_stopped(error)) throw Stopped(error.what());
       object.findings.push_back(std::string("the mesh kernel has no answer: ") + error.what());
     }
   }
@@ -199,18 +210,18 @@ class Evaluator {
   /// piece that comes from a scan and does has lost voxels, which is a finding.
   void take_within(Object& object) {
     object.mesh.within = object.mesh.whole;
-    if (!object.mesh.whole || object.mesh.whole->n_faces() == 0) return;
-    const brep::Measures measures = brep::measure(*object.mesh.whole);
-    const bool inside = glm::all(glm::greaterThanEqual(measures.low_mm, box_.low_mm)) &&
-                        glm::all(glm::lessThanEqual(measures.high_mm, box_.high_mm));
+    if (!object.mesh.whole || object.mesh.whole->empty()) return;
+    const brep::Size& size = object.mesh.whole->size();
+    const bool inside = glm::all(glm::greaterThanEqual(size.low_mm, box_.low_mm)) &&
+                        glm::all(glm::lessThanEqual(size.high_mm, box_.high_mm));
     if (inside) return;
     const Stopwatch watch(result_.timings, "boolean_mesh");
     try {
-      object.mesh.within = shared(
-          brep::boolean(*object.mesh.whole, brep::Operation::Intersection, *world_, options_.stop).mesh);
+      object.mesh.within =
+          brep::boolean(*object.mesh.whole, brep::Operation::Intersection, world_, options_.stop).solid;
     } catch (const std::runtime_error& error) {
-      if (options_.stop.stop_requested()) throw Stopped(error.what());
-      object.mesh.within = nullptr;
+      if (was_stopped(error)) throw Stopped(error.what());
+      object.mesh.within.reset();
       object.findings.push_back(std::string("the mesh kernel cannot cut it at the universe's border: ") +
                                 error.what());
     }
@@ -243,7 +254,7 @@ class Evaluator {
   std::map<std::string, std::size_t> uses_left_;
   const Scans scan_ = [this](const std::string& name) -> const LoadedScan& { return loaded_.at(name); };
   voxel::Box box_;  ///< of the universe
-  SharedMesh world_;
+  brep::Solid world_;
   std::unique_ptr<verify::MeshExpressions> expressions_;
 };
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int picture_px = 420;
 
-/// Distances to the mesh at all voxels that shading at the boundary may interpolate between; 0 elsewhere.
-voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& octree) {
+/// Distances to the solid at all voxels that shading at the boundary may interpolate between; 0 elsewhere.
+voxel::SurfaceScalar distances_to(const brep::Solid& solid, const voxel::Octree& octree) {
   voxel::SurfaceScalar scalar{octree.universe(), voxel::grown(voxel::range_of(octree), 2), {}, 1.0};
   const glm::ivec3 dims = scalar.range.dims();
   const auto index = [&](const glm::ivec3& v) {
@@ -44,7 +44,7 @@ voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& o
           places.push_back(index(v));
           points_mm.push_back(lattice.lps_mm(v));
         }
-  const brep::SurfaceTree tree(mesh);
+  const brep::SurfaceTree& tree = solid.tree();
   const std::vector<double> distances_mm = tree.distances_mm(points_mm);
   const std::vector<std::uint8_t> inside = tree.inside(points_mm);
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -58,7 +58,7 @@ voxel::SurfaceScalar distances_to(const brep::Mesh& mesh, const voxel::Octree& o
 }  // namespace
 
 DifferencePictures difference_pictures(const verify::Contested& contested) {
-  voxel::SurfaceScalar scalar = distances_to(*contested.mesh, contested.octree);
+  voxel::SurfaceScalar scalar = distances_to(*contested.solid, contested.octree);
   DifferencePictures pictures;
   pictures.most_mm = scalar.most;
   pictures.group.name = "difference";

@@ -145,7 +145,7 @@ std::string colour_scale(double most_mm) {
 
 std::string worst_pictures(const Verification& verification) {
   const auto& worst = verification.worst;
-  if (!worst || worst->octree.is_empty() || !worst->mesh || worst->mesh->n_faces() == 0) return "";
+  if (!worst || worst->octree.is_empty() || !worst->solid || worst->solid->empty()) return "";
   const DifferencePictures pictures = difference_pictures(*worst);
   std::string figures;
   for (const ScenePicture& picture : pictures.group.pictures)

@@ -60,7 +60,7 @@ struct MeshBench {
   std::filesystem::path folder = {};  ///< paths of files are relative to it
 
   /// An earlier object's answer in this kernel. Precondition: it has one.
-  const SharedMesh& object(const std::string& name) const { return objects.at(name).mesh.whole; }
+  const brep::Solid& object(const std::string& name) const { return *objects.at(name).mesh.whole; }
   /// The scan's samples as they are, not resampled to voxels.
   const voxel::Scene& samples(const std::string& name) const { return scan(name).scene(); }
 };

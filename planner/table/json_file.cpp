@@ -2,11 +2,13 @@
 #include "planner/table/json_file.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
 
 #include "planner/table/nearest_name.h"
+#include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
@@ -35,10 +37,11 @@ Json read_json(const std::filesystem::path& path) {
 
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path) {
   voxel::StagedFiles staging(std::filesystem::absolute(path).parent_path());
+  errno = 0;
   std::ofstream stream(staging.folder() / path.filename());
   stream << json.dump() << '\n';
   stream.close();
-  if (!stream) refuse(path.string(), "cannot be written");
+  if (!stream) throw voxel::Error(voxel::code_of_errno(errno), path.string() + ": cannot be written");
   staging.commit(path.filename());
 }
 

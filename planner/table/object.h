@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "brep/mesh/measure.h"
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/solid.h"
 #include "verify/certificate.h"
 #include "verify/reading.h"
 #include "voxel/measure/measure.h"
@@ -20,8 +19,6 @@
 #include "voxel/tree/octree.h"
 
 namespace octotomy::planner {
-
-using SharedMesh = std::shared_ptr<const brep::Mesh>;
 
 /// The voxel kernel's answer to an operation.
 struct VoxelSide {
@@ -36,9 +33,8 @@ struct VoxelSide {
 
 /// The mesh kernel's answer to the same operation.
 struct MeshSide {
-  SharedMesh whole;                        ///< as far as it reaches; null where the kernel has no answer
-  SharedMesh within;                       ///< the part of it within the universe
-  std::optional<brep::Measures> measures;  ///< of `within`
+  std::optional<brep::Solid> whole;   ///< as far as it reaches; none if the kernel has no answer
+  std::optional<brep::Solid> within;  ///< the part of it within the universe
   std::string lineage;
   std::vector<std::string> findings;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
@@ -71,7 +67,7 @@ struct Shown {
 /// A wall of an object that a mask cut, and the motion of all the steps that moved it since, LPS to LPS.
 struct CutWall {
   std::string mask;
-  SharedMesh wall;
+  brep::Solid wall;
   glm::dmat4 moved_from_still{1.0};
 };
 

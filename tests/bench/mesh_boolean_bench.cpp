@@ -67,10 +67,10 @@ Pair twins(std::uint32_t rings) {
 }
 
 void run_ours(benchmark::State& state, const Pair& pair) {
-  const brep::Mesh a = brep::mesh_of(pair.a), b = brep::mesh_of(pair.b);
+  const brep::Solid a = brep::solid_of(pair.a), b = brep::solid_of(pair.b);
   std::size_t faces = 0;
-  for (auto _ : state) faces = brep::boolean(a, pair.operation, b).mesh.n_faces();
-  state.counters["triangles_in"] = static_cast<double>(a.n_faces() + b.n_faces());
+  for (auto _ : state) faces = brep::boolean(a, pair.operation, b).solid.mesh().n_faces();
+  state.counters["triangles_in"] = static_cast<double>(a.mesh().n_faces() + b.mesh().n_faces());
   state.counters["triangles_out"] = static_cast<double>(faces);
 }
 

@@ -21,13 +21,14 @@ voxel::Lattice unit_lattice() {
   return voxel::axis_aligned_lattice({64, 64, 64}, {1, 1, 1}, {-31.5, -31.5, -31.5});
 }
 
-brep::Mesh surface_of(const char* kind, double radius, const glm::dvec3& centre, const glm::dmat3& turn) {
+brep::Solid surface_of(const char* kind, double radius, const glm::dvec3& centre, const glm::dmat3& turn) {
   SolidPhantomOptions options;
   options.voxels = 64;
   options.radius_voxels = radius;
   options.centre_mm = centre;
   options.lps_from_axes = turn;
-  return brep::mesh_of(convert::isosurface(digitise_partial(solid_phantom(kind, options))));
+  return brep::trusted_solid(convert::isosurface(digitise_partial(solid_phantom(kind, options))),
+                             brep::Proof::Construction);
 }
 
 glm::dmat4 shifted(const glm::dvec3& by_mm) {
@@ -45,7 +46,7 @@ TEST(BoundaryModel, ASphereCountsWithKendallsDeviation) {
 
 TEST(BoundaryModel, TheDeviationPredictedIsThatOfACountOverManyPlaces) {
   for (const char* kind : {"sphere", "ellipsoid", "lens", "box"}) {
-    const brep::Mesh mesh = surface_of(kind, 10, {0, 0, 0}, turned({23, 41, 67}));
+    const brep::Solid mesh = surface_of(kind, 10, {0, 0, 0}, turned({23, 41, 67}));
     const double truth_mm3 = brep::volume_mm3(mesh);
     const BoundaryModel model = boundary_model(mesh, {unit_lattice(), glm::dvec3(1.0), {}});
     const voxel::Universe universe{6, unit_lattice().lps_from_voxel};
@@ -68,7 +69,7 @@ TEST(BoundaryModel, TheDeviationPredictedIsThatOfACountOverManyPlaces) {
 }
 
 TEST(BoundaryModel, ABallsCurvatureIntegralIsFourPiRadiiByEachSpacingSquared) {
-  const brep::Mesh mesh = surface_of("sphere", 16, {0.1, 0.2, 0.3}, glm::dmat3(1));
+  const brep::Solid mesh = surface_of("sphere", 16, {0.1, 0.2, 0.3}, glm::dmat3(1));
   const double one = boundary_model(mesh, {unit_lattice(), {1, 1, 1}, {}}).bent.mm3;
   EXPECT_NEAR(one / (4.0 * std::numbers::pi * 16.0), 1.0, 0.05);
   // A third of a sphere's curvature lies along each axis.
@@ -81,7 +82,7 @@ TEST(BoundaryModel, APlanesDisplacementIsExactAndASlopesIsNone) {
   prism.polygons_mm = {{{-8.2, -6.0}, {9.4, -6.0}, {9.4, 7.3}, {-8.2, 7.3}}};
   prism.from_mm = -5.3;
   prism.to_mm = 4.4;
-  const brep::Mesh box = brep::mesh_of(prism);
+  const brep::Solid box = brep::solid_of(prism);
   const BoundaryModel model = boundary_model(box, {unit_lattice(), glm::dvec3(1.0), {}});
   const voxel::Universe universe{6, unit_lattice().lps_from_voxel};
   const auto count = static_cast<double>(convert::voxelise(universe, box).voxel_count());

@@ -66,17 +66,20 @@ voxel::Scene scan_of(const Distance& distance, double spacing_mm, double half_ex
 
 struct Pair {
   voxel::Octree octree;
-  brep::Mesh mesh;
+  brep::Solid solid;
   double spacing_mm;
 };
+
+brep::Solid isosurface_solid(const voxel::Scene& scan) {
+  return brep::trusted_solid(convert::isosurface(scan, 0.0, 32767.0), brep::Proof::Construction);
+}
 
 // The window's octree on a universe of voxels of its own, and the isosurface of the same scan.
 Pair both_kernels(const Distance& distance, double spacing_mm, double voxel_mm, double half_extent_mm) {
   const voxel::Scene scan = scan_of(distance, spacing_mm, half_extent_mm);
   const voxel::Universe universe = voxel::universe_around(voxel::bounds(scan.lattice), voxel_mm);
   const voxel::GreyOctree grey = voxel::grey_octree_of(universe, scan, -1000);
-  return {voxel::combine(universe, voxel::Window{grey, 0.0, 32767.0}),
-          brep::mesh_of(convert::isosurface(scan, 0.0, 32767.0)), spacing_mm};
+  return {voxel::combine(universe, voxel::Window{grey, 0.0, 32767.0}), isosurface_solid(scan), spacing_mm};
 }
 
 Certificate certify(const Pair& pair) {
@@ -85,7 +88,7 @@ Certificate certify(const Pair& pair) {
   inputs.voxel_lineage = "octree";
   inputs.mesh_lineage = "isosurface";
   inputs.scan_spacing_mm = glm::dvec3(pair.spacing_mm);
-  return certify_bounded(pair.octree, pair.mesh, inputs);
+  return certify_bounded(pair.octree, pair.solid, inputs);
 }
 
 std::string told(const Certificate& certificate) {
@@ -139,7 +142,7 @@ TEST(CertifyBounded, AShiftOfHalfAVoxelDoesNotPassOnAnyPhantom) {
     Pair pair = both_kernels(phantom.distance, 1.0, 1.0, 18.0);
     // Faces along the voxels' planes can move half a voxel without any voxel changing, so the box moves by
     // one.
-    pair.mesh = brep::moved(pair.mesh, shifted({phantom.name == "box" ? 1.0 : 0.5, 0, 0}));
+    pair.solid = brep::moved(pair.solid, shifted({phantom.name == "box" ? 1.0 : 0.5, 0, 0}));
     const Certificate certificate = certify(pair);
     EXPECT_NE(certificate.verdict, Verdict::Pass) << phantom.name << ": " << told(certificate);
   }
@@ -158,7 +161,7 @@ TEST(CertifyBounded, AShiftThatNoVolumeSeesHasVerdictsOfItsOwn) {
   for (const char* quantity :
        {"volume", "symmetric difference", "centroid", "area", "inertia", "hausdorff95", "mean distance"})
     EXPECT_EQ(verdict_on(right, quantity), Verdict::Pass) << quantity;
-  pair.mesh = brep::moved(pair.mesh, shifted({0.5, 0, 0}));
+  pair.solid = brep::moved(pair.solid, shifted({0.5, 0, 0}));
   const Certificate wrong = certify(pair);
   EXPECT_EQ(verdict_on(wrong, "volume"), Verdict::Pass);
   EXPECT_EQ(verdict_on(wrong, "area"), Verdict::Pass);
@@ -187,32 +190,29 @@ TEST(CertifyBounded, WhereVoxelsAreTheSamplesTopologyIsCertifiedAndALostHandleFa
   const voxel::Octree octree = voxel::combine(universe, voxel::Window{grey, 0.0, 32767.0});
   BoundInputs inputs;
   inputs.voxels_are_samples = true;
-  const Certificate right =
-      certify_bounded(octree, brep::mesh_of(convert::isosurface(scan, 0.0, 32767.0)), inputs);
+  const Certificate right = certify_bounded(octree, isosurface_solid(scan), inputs);
   EXPECT_EQ(verdict_on(right, "euler"), Verdict::Pass) << told(right);
   const voxel::Scene plug = scan_of(either(ring, ball({0, 0, 0}, 8.0)), 1.0, 16.0);
-  const Certificate wrong =
-      certify_bounded(octree, brep::mesh_of(convert::isosurface(plug, 0.0, 32767.0)), inputs);
+  const Certificate wrong = certify_bounded(octree, isosurface_solid(plug), inputs);
   EXPECT_EQ(verdict_on(wrong, "euler"), Verdict::Fail) << told(wrong);
   EXPECT_EQ(verdict_on(right, "components"), Verdict::Pass) << told(right);
   const voxel::Scene stray = scan_of(either(ring, ball({0, 0, 0}, 3.0)), 1.0, 16.0);
-  const Certificate parted =
-      certify_bounded(octree, brep::mesh_of(convert::isosurface(stray, 0.0, 32767.0)), inputs);
+  const Certificate parted = certify_bounded(octree, isosurface_solid(stray), inputs);
   EXPECT_EQ(verdict_on(parted, "components"), Verdict::Fail) << told(parted);
 }
 
 TEST(CertifyBounded, AMeshTurnedInsideOutFails) {
   Pair pair = both_kernels(phantoms()[0].distance, 1.0, 1.0, 18.0);
-  brep::Triangles triangles = brep::triangles_of(pair.mesh);
+  brep::Triangles triangles = pair.solid.triangles();
   for (auto& face : triangles.faces) std::swap(face[0], face[1]);
-  pair.mesh = brep::mesh_of(triangles);
+  pair.solid = brep::trusted_solid(triangles, brep::Proof::Connection);
   EXPECT_EQ(certify(pair).verdict, Verdict::Fail);
 }
 
 TEST(CertifyBounded, ASmallLostComponentDoesNotPass) {
   Pair pair = both_kernels(either(ball({-4, 0, 0}, 11.0), ball({14.2, 1.1, 0.4}, 2.4)), 1.0, 1.0, 18.0);
   EXPECT_EQ(certify(pair).verdict, Verdict::Pass) << told(certify(pair));
-  pair.mesh = both_kernels(ball({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0).mesh;
+  pair.solid = both_kernels(ball({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0).solid;
   EXPECT_NE(certify(pair).verdict, Verdict::Pass) << told(certify(pair));
 }
 
@@ -230,8 +230,8 @@ TEST(CertifyBounded, NamesThePlaceThatDiffersMostAndTheKernelThatHasAPartThere) 
     EXPECT_EQ(std::count(certificate.reasons.begin(), certificate.reasons.end(), place), 1)
         << told(certificate);
   };
-  expect_at({both.octree, one.mesh, 1.0}, part_of_voxels_only);
-  expect_at({one.octree, both.mesh, 1.0}, part_of_mesh_only);
+  expect_at({both.octree, one.solid, 1.0}, part_of_voxels_only);
+  expect_at({one.octree, both.solid, 1.0}, part_of_mesh_only);
   EXPECT_EQ(text_of({{12.2, -80.0, 43.9}, 6.035699, part_of_mesh_only}),
             "The two surfaces differ by up to 6.04 mm near (12, -80, 44): the mesh has a part there that the "
             "voxels "
@@ -261,7 +261,7 @@ TEST(CertifyBounded, StopsWhenAsked) {
   const voxel::Progress progress{source.get_token(), [&](double) {
                                    if (++reports == 3) source.request_stop();
                                  }};
-  EXPECT_THROW(certify_bounded(pair.octree, pair.mesh, {}, progress), voxel::Stopped);
+  EXPECT_THROW(certify_bounded(pair.octree, pair.solid, {}, progress), voxel::Stopped);
   EXPECT_EQ(reports, 3);
 }
 
@@ -270,9 +270,9 @@ TEST(CertifyBounded, ADifferenceOfMeshesPassesAndItsSwappedOperandsFail) {
   const Pair b = both_kernels(ball({5, 0.4, 0.3}, 9.0), 1.0, 1.0, 18.0);
   const voxel::Octree octree =
       voxel::combine(a.octree.universe(), voxel::Expression(a.octree) - voxel::Expression(b.octree));
-  const Pair right{octree, brep::boolean(a.mesh, brep::Operation::Difference, b.mesh).mesh, 1.0};
+  const Pair right{octree, brep::boolean(a.solid, brep::Operation::Difference, b.solid).solid, 1.0};
   EXPECT_EQ(certify(right).verdict, Verdict::Pass) << told(certify(right));
-  const Pair swapped{octree, brep::boolean(b.mesh, brep::Operation::Difference, a.mesh).mesh, 1.0};
+  const Pair swapped{octree, brep::boolean(b.solid, brep::Operation::Difference, a.solid).solid, 1.0};
   EXPECT_EQ(certify(swapped).verdict, Verdict::Fail) << told(certify(swapped));
 }
 
@@ -289,12 +289,14 @@ TEST(CertifyBounded, ACutAt45DegreesErrsInStepAndIsAllowedThatNoMore) {
     prism.polygons_mm = {{{-40, -40}, {40, -40}, {40, offset_mm}, {-40, offset_mm}}};
     const voxel::Octree octree = voxel::combine(
         a.octree.universe(), voxel::Expression(a.octree) & voxel::HalfSpace{diagonal, offset_mm});
-    const brep::Mesh mesh = brep::boolean(a.mesh, brep::Operation::Intersection, brep::mesh_of(prism)).mesh;
-    const Certificate certificate = certify({octree, mesh, 1.0});
+    const brep::Solid piece =
+        brep::boolean(a.solid, brep::Operation::Intersection, brep::solid_of(prism)).solid;
+    const Certificate certificate = certify({octree, piece, 1.0});
     EXPECT_EQ(certificate.verdict, Verdict::Pass) << offset_mm << ": " << told(certificate);
     // The twin: the mesh is cut a millimetre further on.
     prism.polygons_mm[0][2].y = prism.polygons_mm[0][3].y = offset_mm + 1.0;
-    const brep::Mesh wrong = brep::boolean(a.mesh, brep::Operation::Intersection, brep::mesh_of(prism)).mesh;
+    const brep::Solid wrong =
+        brep::boolean(a.solid, brep::Operation::Intersection, brep::solid_of(prism)).solid;
     EXPECT_NE(certify({octree, wrong, 1.0}).verdict, Verdict::Pass) << offset_mm;
   }
 }
@@ -319,7 +321,7 @@ TEST(CertifyBounded, HalfOfAnObjectThatIsNotResolvedMissingDoesNotPass) {
     EXPECT_FALSE(right.resolved()) << object.name << ": " << told(right);
     EXPECT_EQ(right.verdict, Verdict::Pass) << object.name << ": " << told(right);
     const Pair half = both_kernels(cut_by(object.distance, {1, 0, 0}, 0.2), 1.0, 1.0, 12.0);
-    for (const Pair& spoiled : {Pair{half.octree, whole.mesh, 1.0}, Pair{whole.octree, half.mesh, 1.0}}) {
+    for (const Pair& spoiled : {Pair{half.octree, whole.solid, 1.0}, Pair{whole.octree, half.solid, 1.0}}) {
       const Certificate wrong = certify(spoiled);
       EXPECT_FALSE(wrong.resolved()) << object.name << ": " << told(wrong);
       EXPECT_NE(wrong.verdict, Verdict::Pass) << object.name << ": " << told(wrong);
@@ -329,9 +331,9 @@ TEST(CertifyBounded, HalfOfAnObjectThatIsNotResolvedMissingDoesNotPass) {
 
 TEST(CertifyBounded, AFailureOfWhatIsNotResolvedStaysAFailure) {
   Pair pair = both_kernels(ball({0, 0, 0}, 2.5), 1.0, 1.0, 6.0);
-  brep::Triangles triangles = brep::triangles_of(pair.mesh);
+  brep::Triangles triangles = pair.solid.triangles();
   for (auto& face : triangles.faces) std::swap(face[0], face[1]);
-  pair.mesh = brep::mesh_of(triangles);
+  pair.solid = brep::trusted_solid(triangles, brep::Proof::Connection);
   const Certificate certificate = certify(pair);
   EXPECT_EQ(certificate.verdict, Verdict::Fail);
   EXPECT_FALSE(certificate.resolved());
@@ -352,9 +354,9 @@ TEST(Certificates, AreRankedByVerdictThenByWhetherVoxelsResolveThem) {
 TEST(CertifyBounded, NothingAgreesWithNothingOnly) {
   const Pair something = both_kernels(ball({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
   const voxel::Octree none = voxel::Octree::empty(something.octree.universe());
-  EXPECT_EQ(certify({none, brep::Mesh(), 1.0}).verdict, Verdict::Pass);
-  EXPECT_EQ(certify({none, something.mesh, 1.0}).verdict, Verdict::Fail);
-  EXPECT_EQ(certify({something.octree, brep::Mesh(), 1.0}).verdict, Verdict::Fail);
+  EXPECT_EQ(certify({none, brep::Solid(), 1.0}).verdict, Verdict::Pass);
+  EXPECT_EQ(certify({none, something.solid, 1.0}).verdict, Verdict::Fail);
+  EXPECT_EQ(certify({something.octree, brep::Solid(), 1.0}).verdict, Verdict::Fail);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "voxel/space/itk_compiler.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -70,10 +71,13 @@ template <typename Call>
 void call_itk(const fs::path& path, VolumeFormat format, const char* what, const Call& call) {
   try {
     const QuietErrors quiet;  // MetaIO prints its reasons as well
+    errno = 0;
     call();
   } catch (const itk::ExceptionObject& error) {
+    const ErrorCode code = code_of_errno(errno);
     refuse(path,
-           std::string(what) + " as " + name_of(format) + ": " + innermost_cause(error.GetDescription()));
+           std::string(what) + " as " + name_of(format) + ": " + innermost_cause(error.GetDescription()),
+           code);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {

@@ -24,15 +24,15 @@ Triangles head() {
 }
 
 TEST(Mirror, AMirrorImageIsASolidAndTwiceIsTheSame) {
-  const Mesh still = mesh_of(head());
+  const Solid still = solid_of(head());
   const MirrorPlane plane{{1, 2, 3}, {2, -1, 0.5}};
-  const Mesh image = mirrored(still, plane), back = mirrored(image, plane);
+  const Solid image = mirrored(still, plane), back = mirrored(image, plane);
   EXPECT_TRUE(health(image).solid());
   EXPECT_NEAR(volume_mm3(image), volume_mm3(still), 1e-9 * volume_mm3(still));
-  for (const auto v : still.vertices()) {
-    EXPECT_LT((back.point(v) - still.point(v)).norm(), 1e-12 * 200);
+  for (const auto v : still.mesh().vertices()) {
+    EXPECT_LT((back.mesh().point(v) - still.mesh().point(v)).norm(), 1e-12 * 200);
     // Half way between lies the plane.
-    const auto middle = 0.5 * (image.point(v) + still.point(v));
+    const auto middle = 0.5 * (image.mesh().point(v) + still.mesh().point(v));
     EXPECT_NEAR(
         glm::dot(glm::dvec3(middle[0], middle[1], middle[2]) - plane.point_mm, glm::normalize(plane.normal)),
         0.0, 1e-11);
@@ -55,9 +55,9 @@ TEST(Mirror, TheMidPlaneOfAHeadIsFoundWhereverItStands) {
 }
 
 TEST(Mirror, APieceMissingOnOneSideDoesNotPullThePlane) {
-  const Mesh cut =
-      boolean(mesh_of(head()), Operation::Difference, mesh_of(shapes::box({25, -150, -60}, {100, 20, 20})))
-          .mesh;
+  const Solid cut =
+      boolean(solid_of(head()), Operation::Difference, solid_of(shapes::box({25, -150, -60}, {100, 20, 20})))
+          .solid;
   const MirrorFit fit = fit_mirror_plane(cut);
   EXPECT_GT(fit.plane.normal.x, std::cos(0.005));
   EXPECT_NEAR(glm::dot(-fit.plane.point_mm, fit.plane.normal), 0.0, 0.2);

@@ -66,7 +66,7 @@ Triangles tiled_contours(Random& random) {
 }
 
 /// A ball, box, turned box, torus, bumpy blob or tiled contours.
-Mesh any_solid(Random& random) {
+Solid any_solid(Random& random) {
   const int kind = static_cast<int>(random() % 6), splits = 2 + static_cast<int>(random() % 2);
   Triangles t;
   if (kind == 0) t = shapes::sphere({0, 0, 0}, uniform(random, 3, 6), splits);
@@ -81,7 +81,7 @@ Mesh any_solid(Random& random) {
   if (kind == 5) t = tiled_contours(random);
   const glm::dmat4 motion = kind == 1 ? glm::translate(glm::dmat4(1.0), glm::dvec3(uniform(random, -3, 3)))
                                       : any_motion(random, 4.0);
-  return moved(mesh_of(t), motion);
+  return moved(trusted_solid(t, Proof::Construction), motion);
 }
 
 void expect_closed(const Mesh& mesh, const std::string& what) {
@@ -98,7 +98,7 @@ TEST(BooleanPairs, VolumesOfRandomPairsAddUp) {
   for (int pair = one_text ? std::atoi(one_text) : 0; pair < (one_text ? std::atoi(one_text) + 1 : count);
        ++pair) {
     Random random(static_cast<std::uint64_t>(pair));
-    const Mesh a = any_solid(random), b = any_solid(random);
+    const Solid a = any_solid(random), b = any_solid(random);
     const std::string what = "replay with OCTOTOMY_PAIR=" + std::to_string(pair);
     const Booleans results = booleans(a, b);
     ASSERT_TRUE(results.united && results.intersection && results.a_minus_b && results.b_minus_a) << what;
@@ -113,7 +113,7 @@ TEST(BooleanPairs, VolumesOfRandomPairsAddUp) {
     expect_closed(*results.intersection, what + ", intersection");
     expect_closed(*results.a_minus_b, what + ", a - b");
     expect_closed(*results.b_minus_a, what + ", b - a");
-    ++(results.intersection->n_faces() > 0 ? cutting : apart);
+    ++(results.intersection->mesh().n_faces() > 0 ? cutting : apart);
   }
   if (!one_text) {
     EXPECT_GT(cutting, count / 3);
@@ -124,9 +124,9 @@ TEST(BooleanPairs, VolumesOfRandomPairsAddUp) {
 TEST(BooleanPairs, TheOrderOfTheOperandsDoesNotShowInTheBits) {
   for (std::uint64_t pair = 0; pair < 12; ++pair) {
     Random random(1000 + pair);
-    const Mesh a = any_solid(random), b = any_solid(random);
+    const Solid a = any_solid(random), b = any_solid(random);
     const Booleans ab = booleans(a, b), ba = booleans(b, a);
-    const auto same = [&](const std::optional<Mesh>& one, const std::optional<Mesh>& other) {
+    const auto same = [&](const std::optional<Solid>& one, const std::optional<Solid>& other) {
       const Triangles s = triangles_of(one.value()), t = triangles_of(other.value());
       return s.points_mm == t.points_mm && s.faces == t.faces;
     };
@@ -183,7 +183,7 @@ TEST(BooleanPairs, TouchingSolidsComeOutRightInEveryPose) {
     int pose = 0;
     for (const glm::dmat4& motion : poses()) {
       const std::string what = std::string(touching.name) + ", pose " + std::to_string(pose++);
-      const Mesh a = moved(mesh_of(touching.a), motion), b = moved(mesh_of(touching.b), motion);
+      const Solid a = moved(solid_of(touching.a), motion), b = moved(solid_of(touching.b), motion);
       const Booleans results = booleans(a, b);
       bool was_shifted = false;
       for (const std::string& finding : results.findings) was_shifted |= finding.rfind("shifted", 0) == 0;
@@ -216,14 +216,14 @@ TEST(BooleanPairs, FilmsBetweenFacesThatCoincideButForRoundingAreLeftOutAndCount
     // Turned only: a shift's rounding may exceed the last places of where it leads to.
     const glm::dmat4 motion(glm::dmat3(poses().at(static_cast<std::size_t>(i / 2))));
     const Booleans results =
-        booleans(moved(mesh_of(cube), motion), moved(mesh_of(i % 2 ? two : one), motion));
+        booleans(moved(solid_of(cube), motion), moved(solid_of(i % 2 ? two : one), motion));
     int films = 0;
     for (const std::string& finding : results.findings) {
       EXPECT_EQ(finding.find(" 0 "), std::string::npos) << finding;
       if (finding.rfind("the intersection is without", 0) != 0) continue;
       films = std::max(number_before(finding, " film thinner"), number_before(finding, " films thinner"));
       EXPECT_EQ(films == 1, finding.find(" film thinner") != std::string::npos) << finding;
-      EXPECT_EQ(results.intersection.value().n_faces(), 0u) << finding;
+      EXPECT_EQ(results.intersection.value().mesh().n_faces(), 0u) << finding;
     }
     EXPECT_GE(films, 0);
     // The parts of `two` are apart: one must not be taken for inside because it all but touches.
@@ -241,9 +241,9 @@ TEST(BooleanPairs, SurfacesARoundingApartEndAndAddUp) {
   const Triangles exact = shapes::sphere({1, 2, 3}, 12, 3);
   Triangles rounded = exact;
   for (glm::dvec3& p : rounded.points_mm) p = glm::dvec3(glm::vec3(p));
-  const BooleanResult common = boolean(mesh_of(exact), Operation::Intersection, mesh_of(rounded));
+  const BooleanResult common = boolean(solid_of(exact), Operation::Intersection, solid_of(rounded));
   const double whole = size_of(exact).volume_mm3;
-  EXPECT_NEAR(volume_mm3(common.mesh), whole, 4 * 0x1p-18 * 42.0 * size_of(exact).area_mm2);
+  EXPECT_NEAR(volume_mm3(common.solid), whole, 4 * 0x1p-18 * 42.0 * size_of(exact).area_mm2);
   // Too few of the results may be manifold for a residual; then that is told.
   if (common.residual) {
     EXPECT_LE(*common.residual, 1e-9);
@@ -295,14 +295,16 @@ TEST(BooleanPairs, EveryPairOfReferenceMeshesGivesSolidsOrIsRefusedByWhatIsWrong
     for (const auto& [name_b, b] : solids)
       for (const bool as_they_stand : {true, false}) {
         const std::string what = name_a + " and " + name_b + (as_they_stand ? " as they stand" : " centred");
-        const Booleans results = as_they_stand ? booleans(mesh_of(a), mesh_of(b))
-                                               : booleans(mesh_of(centred(a)), mesh_of(centred(b)));
+        const Booleans results =
+            as_they_stand ? booleans(trusted_solid(a, Proof::Connection), trusted_solid(b, Proof::Connection))
+                          : booleans(trusted_solid(centred(a), Proof::Connection),
+                                     trusted_solid(centred(b), Proof::Connection));
         EXPECT_LE(results.residual.value_or(1.0), 1e-9) << what;
         expect_closed(results.united.value(), what + ", union");
         expect_closed(results.intersection.value(), what + ", intersection");
         expect_closed(results.a_minus_b.value(), what + ", a - b");
         expect_closed(results.b_minus_a.value(), what + ", b - a");
-        cutting += results.intersection->n_faces() > 0 && results.a_minus_b->n_faces() > 0;
+        cutting += results.intersection->mesh().n_faces() > 0 && results.a_minus_b->mesh().n_faces() > 0;
       }
   EXPECT_GE(cutting, 20);
 }

@@ -10,32 +10,34 @@ namespace octotomy::brep {
 namespace {
 
 TEST(ExactBoolean, VolumesAddUpAsRationalsAndAgreeWithTheRoundedKernel) {
-  const Mesh a = mesh_of(shapes::sphere({0.1, 0.2, 0.3}, 3, 2)),
-             b = mesh_of(shapes::sphere({2.1, 0.5, 0.7}, 2, 2));
+  const Solid a = solid_of(shapes::sphere({0.1, 0.2, 0.3}, 3, 2)),
+              b = solid_of(shapes::sphere({2.1, 0.5, 0.7}, 2, 2));
   for (const Operation operation : {Operation::Union, Operation::Intersection, Operation::Difference}) {
     const ExactBoolean exact = exact_boolean(a, operation, b);
     EXPECT_NEAR(exact.a_mm3 + exact.b_mm3, exact.united_mm3 + exact.intersection_mm3, 1e-12);
-    EXPECT_NEAR(exact.result_mm3, volume_mm3(boolean(a, operation, b).mesh), 1e-11);
+    EXPECT_NEAR(exact.result_mm3, volume_mm3(boolean(a, operation, b).solid), 1e-11);
     EXPECT_LT(std::abs(exact.rounding_mm3), 1e-11);
     EXPECT_GT(exact.points, 0u);
   }
 }
 
 TEST(ExactBoolean, BoxesHaveTheirExactVolumes) {
-  const ExactBoolean exact = exact_boolean(mesh_of(shapes::box({0, 0, 0}, {2, 2, 2})), Operation::Difference,
-                                           mesh_of(shapes::box({1, 1, 1}, {3, 3, 3})));
+  const ExactBoolean exact = exact_boolean(solid_of(shapes::box({0, 0, 0}, {2, 2, 2})), Operation::Difference,
+                                           solid_of(shapes::box({1, 1, 1}, {3, 3, 3})));
   EXPECT_EQ(exact.result_mm3, 7.0);
   EXPECT_EQ(exact.points, 0u);
 }
 
 TEST(ExactBoolean, RefusesWhatHasNoSolidAnswer) {
   const Triangles box = shapes::box({0, 0, 0}, {2, 2, 2});
-  EXPECT_THROW(exact_boolean(mesh_of(box), Operation::Union, mesh_of(shapes::box({2, 2, 0}, {4, 4, 2}))),
+  EXPECT_THROW(exact_boolean(solid_of(box), Operation::Union, solid_of(shapes::box({2, 2, 0}, {4, 4, 2}))),
                std::runtime_error);
   Triangles open = box;
   open.faces.pop_back();
-  EXPECT_THROW(exact_boolean(mesh_of(open), Operation::Union, mesh_of(box)), std::invalid_argument);
-  EXPECT_THROW(exact_boolean(mesh_of(box), Operation::Union, mesh_of(shapes::inside_out(box))),
+  EXPECT_THROW(exact_boolean(trusted_solid(open, Proof::Rounded), Operation::Union, solid_of(box)),
+               std::invalid_argument);
+  EXPECT_THROW(exact_boolean(solid_of(box), Operation::Union,
+                             trusted_solid(shapes::inside_out(box), Proof::Connection)),
                std::invalid_argument);
 }
 
@@ -43,8 +45,8 @@ TEST(ExactBoolean, AnOperandThatMeetsItselfDoesNotPassForASolid) {
   // Two balls in one mesh that overlap: their common part counts twice in the volume but not in the result.
   const Triangles twice =
       shapes::together(shapes::sphere({0, 0, 0}, 2, 2), shapes::sphere({1, 0.1, 0.2}, 2, 2));
-  EXPECT_ANY_THROW(
-      exact_boolean(mesh_of(twice), Operation::Union, mesh_of(shapes::box({-3, -3, 0.31}, {0.7, 3, 3}))));
+  EXPECT_ANY_THROW(exact_boolean(trusted_solid(twice, Proof::Connection), Operation::Union,
+                                 solid_of(shapes::box({-3, -3, 0.31}, {0.7, 3, 3}))));
 }
 
 }  // namespace

@@ -13,8 +13,7 @@ namespace {
 constexpr Wanted all = {true, true, true, true};
 
 NearBoolean near(const Triangles& a, const Triangles& b, const Wanted& wanted = all) {
-  const Mesh mesh_a = mesh_of(a), mesh_b = mesh_of(b);
-  return near_boolean({mesh_a, a}, {mesh_b, b}, wanted);
+  return near_boolean(trusted_solid(a, Proof::Connection), trusted_solid(b, Proof::Connection), wanted);
 }
 
 TEST(NearBoolean, HasTheVolumesOfWholeCorefinementAndIsSolid) {

@@ -60,10 +60,10 @@ TEST(CrossSection, APlaneThroughCornersEdgesAndFacesCutsAsIfJustBelow) {
 }
 
 TEST(CrossSection, SectionsOfADifferenceAreThoseOfTheWholeLessTheCommon) {
-  const Mesh a = mesh_of(shapes::sphere({0, 0, 0}, 5, 3)),
-             b = mesh_of(shapes::box({-6, -1, -2}, {6, 1.5, 2.5}));
-  const Mesh rest = boolean(a, Operation::Difference, b).mesh,
-             common = boolean(a, Operation::Intersection, b).mesh;
+  const Solid a = solid_of(shapes::sphere({0, 0, 0}, 5, 3)),
+              b = solid_of(shapes::box({-6, -1, -2}, {6, 1.5, 2.5}));
+  const Solid rest = boolean(a, Operation::Difference, b).solid,
+              common = boolean(a, Operation::Intersection, b).solid;
   int met = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     std::mt19937_64 random(seed);

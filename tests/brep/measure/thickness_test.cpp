@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/sample_surface.h"
 #include "tests/brep/shapes.h"
 
@@ -19,7 +20,7 @@ std::vector<SurfacePoint> points_on(const Mesh& mesh, double spacing_mm) {
 }
 
 TEST(Thickness, APlatesIsItsOwnByRayAndByBallAwayFromItsRim) {
-  const Mesh plate = mesh_of(shapes::box({0, 0, 0}, {40, 30, 3}));
+  const Solid plate = solid_of(shapes::box({0, 0, 0}, {40, 30, 3}));
   const auto points = points_on(plate, 1.0);
   const auto found = thickness(plate, points);
   int inner = 0, rim = 0;
@@ -37,8 +38,8 @@ TEST(Thickness, APlatesIsItsOwnByRayAndByBallAwayFromItsRim) {
 }
 
 TEST(Thickness, AShellsIsTheDifferenceOfItsRadii) {
-  const Mesh shell = mesh_of(shapes::together(shapes::sphere({0, 0, 0}, 10, 5),
-                                              shapes::inside_out(shapes::sphere({0, 0, 0}, 8, 5))));
+  const Solid shell = solid_of(shapes::together(shapes::sphere({0, 0, 0}, 10, 5),
+                                                shapes::inside_out(shapes::sphere({0, 0, 0}, 8, 5))));
   const auto points = points_on(shell, 3.0);
   for (const Thickness& t : thickness(shell, points)) {
     EXPECT_NEAR(t.ray_mm, 2.0, 0.02);
@@ -54,7 +55,7 @@ TEST(Thickness, InAWedgeTheBallIsThinnerThanTheRay) {
       {{0, 0, -50}, {20, 0, -50}, {20, 20 * slope, -50}, {0, 0, 50}, {20, 0, 50}, {20, 20 * slope, 50}},
       {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};
   const std::vector<SurfacePoint> points = {{{5, 0, 0}, {0, -1, 0}}, {{10, 0, 0}, {0, -1, 0}}};
-  const auto found = thickness(mesh_of(wedge), points);
+  const auto found = thickness(solid_of(wedge), points);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_NEAR(found[i].ray_mm, points[i].p_mm.x * slope, 1e-6);
     EXPECT_NEAR(found[i].ball_mm, 2 * points[i].p_mm.x * std::tan(std::numbers::pi / 12), 1e-6);
@@ -62,7 +63,7 @@ TEST(Thickness, InAWedgeTheBallIsThinnerThanTheRay) {
 }
 
 TEST(Thickness, IsTheSameOnOneThread) {
-  const Mesh ball = mesh_of(shapes::sphere({0, 0, 0}, 10, 3));
+  const Solid ball = solid_of(shapes::sphere({0, 0, 0}, 10, 3));
   const auto points = points_on(ball, 1.0);
   const auto many = thickness(ball, points);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -74,12 +75,12 @@ TEST(Thickness, IsTheSameOnOneThread) {
 }
 
 TEST(Thickness, RefusesWhatHasNoOtherSide) {
-  const Mesh ball = mesh_of(shapes::sphere({0, 0, 0}, 1, 1));
+  const Solid ball = solid_of(shapes::sphere({0, 0, 0}, 1, 1));
   EXPECT_THROW(thickness(ball, {{{5, 0, 0}, {-1, 0, 0}}}), std::invalid_argument);
-  EXPECT_THROW(thickness(Mesh(), {}), std::invalid_argument);
+  EXPECT_THROW(thickness(Solid(), {}), std::invalid_argument);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(thickness(ball, points_on(ball, 1.0), {30.0, {}, stop.get_token()}), std::runtime_error);
+  EXPECT_THROW(thickness(ball, points_on(ball, 1.0), {30.0, {}, stop.get_token()}), Stopped);
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ namespace {
 
 using std::numbers::pi;
 
-Mesh ball(double radius) {
-  return mesh_of(shapes::sphere({0.1, 0.2, 0.3}, radius, 5));
+Solid ball(double radius) {
+  return solid_of(shapes::sphere({0.1, 0.2, 0.3}, radius, 5));
 }
 
 void expect_solid(const Mesh& mesh) {
@@ -27,8 +27,8 @@ void expect_solid(const Mesh& mesh) {
 }
 
 /// Box of sides 6, 8, 10, turned so that nothing lies along the lattice.
-Mesh turned_box() {
-  return moved(mesh_of(shapes::box({-3, -4, -5}, {3, 4, 5})),
+Solid turned_box() {
+  return moved(solid_of(shapes::box({-3, -4, -5}, {3, 4, 5})),
                glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(glm::dvec3(1, 2, 3))));
 }
 
@@ -41,7 +41,7 @@ TEST(Offset, ABallGrowsAndShrinksToBallsAtSecondOrder) {
   for (const double by : {3.0, -3.0}) {
     double last = 0.0;
     for (const double cell : {2.0, 1.0, 0.5}) {
-      const Mesh grown = offset(ball(10), {.by_mm = by, .cell_mm = cell});
+      const Solid grown = offset(ball(10), {.by_mm = by, .cell_mm = cell});
       expect_solid(grown);
       // The given ball has facets: its own closed form is within 2e-3 of a ball's.
       const double truth = 4.0 / 3.0 * pi * std::pow(10 + by, 3);
@@ -57,22 +57,22 @@ TEST(Offset, ABallGrowsAndShrinksToBallsAtSecondOrder) {
 }
 
 TEST(Offset, ABoxGrowsBySteinersFormulaAndShrinksToABox) {
-  const Mesh box = turned_box();
+  const Solid box = turned_box();
   for (const double d : {0.5, 2.0, 5.0}) {
-    const Mesh grown = offset(box, {.by_mm = d, .cell_mm = 0.5});
+    const Solid grown = offset(box, {.by_mm = d, .cell_mm = 0.5});
     expect_solid(grown);
     EXPECT_NEAR(volume_mm3(grown), box_grown_mm3(d), 0.006 * box_grown_mm3(d)) << d;
   }
-  const Mesh shrunk = offset(box, {.by_mm = -2, .cell_mm = 0.25});
+  const Solid shrunk = offset(box, {.by_mm = -2, .cell_mm = 0.25});
   expect_solid(shrunk);
   EXPECT_NEAR(volume_mm3(shrunk), 2 * 4 * 6, 0.02 * 48);
 }
 
 TEST(Offset, EveryPointIsAsFarFromTheSolidAsAsked) {
-  const Mesh box = turned_box();
+  const Solid box = turned_box();
   const SurfaceTree tree(box);
   for (const double by : {1.5, -1.5}) {
-    const Mesh grown = offset(box, {.by_mm = by, .cell_mm = 0.4});
+    const Solid grown = offset(box, {.by_mm = by, .cell_mm = 0.4});
     const Triangles points = triangles_of(grown);
     const auto distances = tree.distances_mm(points.points_mm);
     const auto inside = tree.inside(points.points_mm);
@@ -87,15 +87,15 @@ TEST(Offset, EveryPointIsAsFarFromTheSolidAsAsked) {
 TEST(Offset, ANeckThinnerThanTwiceTheOffsetFallsApartAndACleftFills) {
   // A dumb-bell of two cubes with a neck 2 mm thick.
   Triangles t = shapes::box({0, 0, 0}, {10, 10, 10});
-  const Mesh cubes = mesh_of(shapes::together(t, shapes::box({12, 0, 0}, {22, 10, 10})));
+  const Solid cubes = solid_of(shapes::together(t, shapes::box({12, 0, 0}, {22, 10, 10})));
   EXPECT_EQ(components(offset(cubes, {.by_mm = 0.5, .cell_mm = 0.5})).size(), 2u);
   EXPECT_EQ(components(offset(cubes, {.by_mm = 1.5, .cell_mm = 0.5})).size(), 1u);
   EXPECT_EQ(components(offset(cubes, {.by_mm = -2, .cell_mm = 0.5})).size(), 2u);
-  EXPECT_EQ(offset(cubes, {.by_mm = -5.5, .cell_mm = 0.5}).n_faces(), 0u);
+  EXPECT_EQ(offset(cubes, {.by_mm = -5.5, .cell_mm = 0.5}).mesh().n_faces(), 0u);
 }
 
 TEST(Offset, ByNothingIsTheSurfaceItself) {
-  const Mesh same = offset(ball(8), {.by_mm = 0.0, .cell_mm = 0.5});
+  const Solid same = offset(ball(8), {.by_mm = 0.0, .cell_mm = 0.5});
   expect_solid(same);
   EXPECT_NEAR(volume_mm3(same), volume_mm3(ball(8)), 3e-3 * volume_mm3(ball(8)));
 }
@@ -103,7 +103,7 @@ TEST(Offset, ByNothingIsTheSurfaceItself) {
 TEST(Offset, ShellsThatFaceInwardAreCavitiesThatShrinkAsTheSolidGrows) {
   const Triangles hollow =
       shapes::together(shapes::sphere({0, 0, 0}, 9, 4), shapes::inside_out(shapes::sphere({0, 0, 0}, 5, 4)));
-  const Mesh grown = offset(mesh_of(hollow), {.by_mm = 1, .cell_mm = 0.5});
+  const Solid grown = offset(solid_of(hollow), {.by_mm = 1, .cell_mm = 0.5});
   ASSERT_EQ(components(grown).size(), 1u);
   EXPECT_EQ(components(grown).front().cavities, 1u);
   const double truth = 4.0 / 3.0 * pi * (1000 - 64);
@@ -121,15 +121,15 @@ TEST(Offset, TheSameBitsComeOnAnyNumberOfThreads) {
 }
 
 TEST(Offset, RefusesWhatItCannotDoAndStops) {
-  const Mesh box = turned_box();
-  EXPECT_THROW(offset(Mesh(), {}), std::invalid_argument);
+  const Solid box = turned_box();
+  EXPECT_THROW(offset(Solid(), {}), std::invalid_argument);
   EXPECT_THROW(offset(box, {.cell_mm = 0.0}), std::invalid_argument);
   EXPECT_THROW(offset(box, {.by_mm = std::nan("")}), std::invalid_argument);
   EXPECT_THROW(offset(box, {.cell_mm = 1e-6}), std::length_error);
   EXPECT_THROW(offset(box, {.cell_mm = 0.005}), std::length_error);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(offset(box, {.stop = stop.get_token()}), std::runtime_error);
+  EXPECT_THROW(offset(box, {.progress = {.stop = stop.get_token()}}), Stopped);
 }
 
 }  // namespace

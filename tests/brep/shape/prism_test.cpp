@@ -30,7 +30,7 @@ Prism prism_of(std::vector<Polygon> polygons) {
 
 std::string refusal_of(const Prism& prism) {
   try {
-    mesh_of(prism);
+    solid_of(prism);
   } catch (const std::invalid_argument& e) {
     return e.what();
   }
@@ -39,28 +39,28 @@ std::string refusal_of(const Prism& prism) {
 
 TEST(Prism, HolesAndIslandsAlternateWhateverTheWinding) {
   for (int winding = 0; winding < 8; ++winding) {
-    const Mesh mesh =
-        mesh_of(prism_of({winding & 1 ? reversed(square) : square, winding & 2 ? reversed(hole) : hole,
-                          winding & 4 ? reversed(island) : island}));
-    const Health h = health(mesh);
+    const Solid solid =
+        solid_of(prism_of({winding & 1 ? reversed(square) : square, winding & 2 ? reversed(hole) : hole,
+                           winding & 4 ? reversed(island) : island}));
+    const Health h = health(solid);
     EXPECT_TRUE(h.solid()) << (h.findings.empty() ? "" : h.findings[0]);
     EXPECT_EQ(h.components, 2u);
     EXPECT_EQ(h.euler, 2);  // a ring has 0, the island 2
-    EXPECT_NEAR(measure(mesh).volume_mm3, 5.0 * (100 - 6 + 2), 1e-11);
-    EXPECT_NEAR(measure(mesh).area_mm2, 2 * 96 + 5.0 * (40 + 10 + 6), 1e-11);
+    EXPECT_NEAR(measure(solid).volume_mm3, 5.0 * (100 - 6 + 2), 1e-11);
+    EXPECT_NEAR(measure(solid).area_mm2, 2 * 96 + 5.0 * (40 + 10 + 6), 1e-11);
   }
 }
 
 TEST(Prism, LiesWhereItsFrameSays) {
   Prism prism = prism_of({square});
-  Measures m = measure(mesh_of(prism));
+  Measures m = measure(solid_of(prism));
   EXPECT_EQ(m.low_mm, glm::dvec3(0, -1, 0));
   EXPECT_EQ(m.high_mm, glm::dvec3(10, 4, 10));
   // Seen from the patient's left: look (1,0,0), right (0,-1,0).
   prism.look = {1, 0, 0};
   prism.up = {0, 0, 1};
   prism.right = {0, -1, 0};
-  m = measure(mesh_of(prism));
+  m = measure(solid_of(prism));
   EXPECT_EQ(m.low_mm, glm::dvec3(-1, -10, 0));
   EXPECT_EQ(m.high_mm, glm::dvec3(4, 0, 10));
   EXPECT_GT(m.volume_mm3, 0.0);
@@ -79,14 +79,14 @@ TEST(Prism, AStarOfManyPointsHasTheShoelaceArea) {
                      &q = star[static_cast<std::size_t>((i + 1) % count)];
     twice_area += p.x * q.y - p.y * q.x;
   }
-  const Mesh mesh = mesh_of(prism_of({star}));
-  EXPECT_TRUE(health(mesh).solid());
-  EXPECT_NEAR(measure(mesh).volume_mm3, 2.5 * twice_area, 1e-10 * twice_area);
+  const Solid solid = solid_of(prism_of({star}));
+  EXPECT_TRUE(health(solid).solid());
+  EXPECT_NEAR(measure(solid).volume_mm3, 2.5 * twice_area, 1e-10 * twice_area);
 }
 
 TEST(Prism, RepeatedPointsAreOne) {
   const Polygon repeating{{0, 0}, {10, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}};
-  EXPECT_EQ(mesh_of(prism_of({repeating})).n_vertices(), 8u);
+  EXPECT_EQ(solid_of(prism_of({repeating})).mesh().n_vertices(), 8u);
 }
 
 TEST(Prism, RefusesPolygonsThatCrossOrTouchAndNamesThem) {

@@ -26,8 +26,8 @@ class Verify : public tests::CommandLine {
     }
     // Surfaces that do not touch themselves, as those of noise would.
     const verify::GeneralPosition position = verify::general_position(sets);
-    brep::write_mesh(*position.operands[0].solid, folder_ / "a.ply");
-    brep::write_mesh(*position.operands[1].solid, folder_ / "b.ply");
+    brep::write_mesh(position.operands[0].solid, folder_ / "a.ply");
+    brep::write_mesh(position.operands[1].solid, folder_ / "b.ply");
   }
 };
 

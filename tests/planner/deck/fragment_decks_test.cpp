@@ -116,7 +116,7 @@ TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAl
              without = folder.plan(R"("path": "ball.inp")");
   Evaluation evaluation = evaluate(with);
   EXPECT_FALSE(deck_of(with, evaluation, folder / "out").details["fallback"].get<bool>());
-  evaluation.objects.change(0).mesh.within = nullptr;
+  evaluation.objects.change(0).mesh.within.reset();
   EXPECT_FALSE(deck_of(without, evaluation, folder / "out").written);
   const Exported deck = deck_of(with, evaluation, folder / "out");
   ASSERT_TRUE(deck.written);
@@ -164,8 +164,7 @@ TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
              without = folder.plan(R"("path": "ball.inp")");
   Evaluation evaluation = evaluate(with);
   // A plate of a hundredth of a voxel: no mesher can make good elements of it.
-  brep::Mesh plate = brep::mesh_of(tests::box({-10, -10, 0}, {10, 10, 0.01}));
-  evaluation.objects.change(0).mesh.within = std::make_shared<const brep::Mesh>(plate);
+  evaluation.objects.change(0).mesh.within = brep::solid_of(tests::box({-10, -10, 0}, {10, 10, 0.01}));
   const Exported kept = deck_of(without, evaluation, folder / "out");
   ASSERT_TRUE(kept.written) << testing::PrintToString(kept.findings);
   EXPECT_LT(kept.details["quality"]["min_dihedral_deg"].get<double>(), convert::fit_dihedral_deg());

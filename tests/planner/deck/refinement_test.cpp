@@ -48,7 +48,7 @@ TEST_F(RefinementOfDecks, DecksOfOneObjectMayBeGradedEachInItsOwnWay) {
 TEST_F(RefinementOfDecks, AnObjectWithoutAMeshIsNamedAndNothingIsWritten) {
   const Plan along_cut = plan(R"("path": "deck.vtu", "finer": [{ "at": "cut", "size_mm": 1 }])");
   Evaluation evaluation = evaluate(along_cut);
-  evaluation.objects.change(1).mesh.within = nullptr;
+  evaluation.objects.change(1).mesh.within.reset();
   Timings timings;
   const Exported deck = write_files(along_cut, evaluation, folder_ / "out", timings).back();
   EXPECT_FALSE(deck.written);

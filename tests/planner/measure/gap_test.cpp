@@ -26,9 +26,9 @@ TEST(Gap, BetweenBallsIsWithinItsHalfWidthInBothKernelsHoweverTheyLie) {
     const glm::dvec3 second = first + (16.0 + truth_mm) * along;
     const voxel::Octree a = voxel::combine(universe_of_64(), voxel::Sphere{first, 9.0}),
                         b = voxel::combine(universe_of_64(), voxel::Sphere{second, 7.0});
-    const brep::Mesh mesh_a = brep::mesh_of(brep::shapes::sphere(first, 9.0, 5)),
-                     mesh_b = brep::mesh_of(brep::shapes::sphere(second, 7.0, 5));
-    const Gap gap = gap_between(a, b, &mesh_a, &mesh_b);
+    const brep::Solid solid_a = brep::solid_of(brep::shapes::sphere(first, 9.0, 5)),
+                      solid_b = brep::solid_of(brep::shapes::sphere(second, 7.0, 5));
+    const Gap gap = gap_between(a, b, solid_a, solid_b);
     const HalfWidth width = gap_half_width(along, {glm::dvec3(1.0)}, {glm::dvec3(1.0)});
     EXPECT_NEAR(gap.voxel_mm, truth_mm, width.value) << "number " << i;
     ASSERT_TRUE(gap.mesh_mm);
@@ -43,21 +43,21 @@ TEST(Gap, OfObjectsThatOverlapIsNothingAndTheOverlapIsTold) {
   const glm::dvec3 second(10.0, 0.2, 0.1);
   const voxel::Octree a = voxel::combine(universe_of_64(), voxel::Sphere{glm::dvec3(0.0), 9.0}),
                       b = voxel::combine(universe_of_64(), voxel::Sphere{second, 7.0});
-  const brep::Mesh mesh_a = brep::mesh_of(brep::shapes::sphere(glm::dvec3(0.0), 9.0, 4)),
-                   mesh_b = brep::mesh_of(brep::shapes::sphere(second, 7.0, 4));
-  const Gap gap = gap_between(a, b, &mesh_a, &mesh_b);
+  const brep::Solid solid_a = brep::solid_of(brep::shapes::sphere(glm::dvec3(0.0), 9.0, 4)),
+                    solid_b = brep::solid_of(brep::shapes::sphere(second, 7.0, 4));
+  const Gap gap = gap_between(a, b, solid_a, solid_b);
   EXPECT_EQ(gap.voxel_mm, 0.0);
   EXPECT_EQ(*gap.mesh_mm, 0.0);
   EXPECT_GT(gap.overlap_mm3, 100.0);
-  EXPECT_FALSE(gap_between(a, b, nullptr, &mesh_b).mesh_mm);
+  EXPECT_FALSE(gap_between(a, b, std::nullopt, solid_b).mesh_mm);
 }
 
 TEST(Gap, OfVoxelsSideBySideIsNothingAndOfOneBetweenIsOne) {
   const auto slab = [](double low, double high) {
     return voxel::combine(universe_of_64(), voxel::Box{{low, -10, -10}, {high, 10, 10}});
   };
-  EXPECT_EQ(gap_between(slab(-10, 0), slab(0, 10), nullptr, nullptr).voxel_mm, 0.0);
-  EXPECT_EQ(gap_between(slab(-10, 0), slab(1, 10), nullptr, nullptr).voxel_mm, 1.0);
+  EXPECT_EQ(gap_between(slab(-10, 0), slab(0, 10), std::nullopt, std::nullopt).voxel_mm, 0.0);
+  EXPECT_EQ(gap_between(slab(-10, 0), slab(1, 10), std::nullopt, std::nullopt).voxel_mm, 1.0);
 }
 
 }  // namespace

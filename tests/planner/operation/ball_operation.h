@@ -23,8 +23,8 @@ inline planner::Plan ball_plan(const TestFolder& folder, const std::string& step
 /// Both kernels have the volume within `share` of the truth, and their certificate passes.
 inline void expect_certified(const planner::Object& object, double truth_mm3, double share) {
   EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
-  ASSERT_TRUE(object.mesh.measures) << object.id << testing::PrintToString(object.findings);
-  EXPECT_NEAR(object.mesh.measures->volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  ASSERT_TRUE(object.mesh.within) << object.id << testing::PrintToString(object.findings);
+  EXPECT_NEAR(object.mesh.within->measures().volume_mm3 / truth_mm3, 1.0, share) << object.id;
   ASSERT_TRUE(object.certificate) << object.id;
   EXPECT_EQ(verify::to_string(object.certificate->verdict), "PASS")
       << object.id << testing::PrintToString(object.certificate->reasons);
@@ -32,8 +32,8 @@ inline void expect_certified(const planner::Object& object, double truth_mm3, do
 
 /// The mesh kernel has the volume within `share` of the truth, its voxels too, and there is no certificate.
 inline void expect_of_mesh(const planner::Object& object, double truth_mm3, double share) {
-  ASSERT_TRUE(object.mesh.measures) << object.id << testing::PrintToString(object.findings);
-  EXPECT_NEAR(object.mesh.measures->volume_mm3 / truth_mm3, 1.0, share) << object.id;
+  ASSERT_TRUE(object.mesh.within) << object.id << testing::PrintToString(object.findings);
+  EXPECT_NEAR(object.mesh.within->measures().volume_mm3 / truth_mm3, 1.0, share) << object.id;
   EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, share) << object.id;
   EXPECT_FALSE(object.certificate) << object.id;
 }

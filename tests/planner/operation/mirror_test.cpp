@@ -18,12 +18,12 @@ TEST(MirrorStep, AnImageLiesBehindThePlaneAndItsImageIsTheObject) {
       {"id": "back", "do": "mirror", "object": "twin", "point_mm": [0, 0, 1], "normal": [0, 0, 1]})"));
   const double cap = cap_mm3(ball_radius_mm, 5.0);
   expect_certified(evaluation.object("twin"), cap, 0.05);
-  const glm::dvec3 before = *evaluation.object("cap").mesh.measures->centroid_mm;
-  const glm::dvec3 after = *evaluation.object("twin").mesh.measures->centroid_mm;
+  const glm::dvec3 before = *evaluation.object("cap").mesh.within->measures().centroid_mm;
+  const glm::dvec3 after = *evaluation.object("twin").mesh.within->measures().centroid_mm;
   EXPECT_NEAR(after.z, 2.0 - before.z, 1e-9);
   EXPECT_NEAR(evaluation.object("twin").voxel.measures.centroid_mm->z, after.z, 0.5);
   EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("cap").voxel.octree);
-  EXPECT_GT(evaluation.object("twin").mesh.measures->volume_mm3, 0.0) << "the image is inside out";
+  EXPECT_GT(evaluation.object("twin").mesh.within->measures().volume_mm3, 0.0) << "the image is inside out";
 }
 
 TEST(MirrorStep, ANormalWithoutLengthIsRefused) {

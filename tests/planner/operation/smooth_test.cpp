@@ -13,7 +13,7 @@ TEST(SmoothStep, TheVolumeStaysAndOneKernelAloneHasNoCertificate) {
   const Evaluation evaluation =
       evaluate(ball_plan(folder, R"({"id": "even", "do": "smooth", "object": "ball", "rounds": 5})"));
   const Object& even = evaluation.object("even");
-  EXPECT_NEAR(even.mesh.measures->volume_mm3 / ball_mm3(ball_radius_mm), 1.0, 0.01);
+  EXPECT_NEAR(even.mesh.within->measures().volume_mm3 / ball_mm3(ball_radius_mm), 1.0, 0.01);
   EXPECT_NEAR(even.voxel.measures.volume_mm3 / ball_mm3(ball_radius_mm), 1.0, 0.01);
   EXPECT_FALSE(even.certificate);
   ASSERT_FALSE(even.findings.empty());

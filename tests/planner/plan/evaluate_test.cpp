@@ -69,16 +69,17 @@ TEST_F(Evaluate, BothKernelsFindABallAndItsCap) {
     const Object& object = evaluation.object(names[i]);
     EXPECT_NEAR(object.voxel.measures.volume_mm3, truth[i], counting_mm3(sphere_mm2, i == 0 ? 0.0 : flat_mm2))
         << names[i];
-    ASSERT_TRUE(object.mesh.measures) << names[i];
+    ASSERT_TRUE(object.mesh.within) << names[i];
     // Chords of an edge length cut at most edge^2 / (8 r) of depth off the sphere.
-    EXPECT_NEAR(object.mesh.measures->volume_mm3, truth[i], sphere_mm2 * 2.0 / (8.0 * radius_mm)) << names[i];
+    EXPECT_NEAR(object.mesh.within->measures().volume_mm3, truth[i], sphere_mm2 * 2.0 / (8.0 * radius_mm))
+        << names[i];
     ASSERT_TRUE(object.certificate) << names[i];
     EXPECT_EQ(object.certificate->verdict, verify::Verdict::Pass)
         << names[i] << ": " << testing::PrintToString(object.certificate->reasons);
   }
-  EXPECT_NEAR(
-      evaluation.object("cap").mesh.measures->volume_mm3 + evaluation.object("cup").mesh.measures->volume_mm3,
-      evaluation.object("ball").mesh.measures->volume_mm3, 1e-6);
+  EXPECT_NEAR(evaluation.object("cap").mesh.within->measures().volume_mm3 +
+                  evaluation.object("cup").mesh.within->measures().volume_mm3,
+              evaluation.object("ball").mesh.within->measures().volume_mm3, 1e-6);
 }
 
 TEST_F(Evaluate, AMovedPieceGoesWhereTheMotionSaysInBothKernels) {
@@ -92,10 +93,10 @@ TEST_F(Evaluate, AMovedPieceGoesWhereTheMotionSaysInBothKernels) {
   const Object& still = evaluation.object("cap");
   const Object& turned = evaluation.object("turned");
   // A right-handed quarter turn about x carries z to -y.
-  const glm::dvec3 from = *still.mesh.measures->centroid_mm;
+  const glm::dvec3 from = *still.mesh.within->measures().centroid_mm;
   const glm::dvec3 expected(from.x - 3.0, -from.z + 4.0, from.y);
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR((*turned.mesh.measures->centroid_mm)[axis], expected[axis], 1e-9) << axis;
+    EXPECT_NEAR((*turned.mesh.within->measures().centroid_mm)[axis], expected[axis], 1e-9) << axis;
     EXPECT_NEAR((*turned.voxel.measures.centroid_mm)[axis], expected[axis], 0.5) << axis;
   }
 }
@@ -119,7 +120,8 @@ TEST_F(Evaluate, APieceThatLeavesTheUniverseSaysSo) {
   ASSERT_FALSE(gone.findings.empty());
   EXPECT_NE(gone.findings[0].find("outside of the universe"), std::string::npos) << gone.findings[0];
   EXPECT_LT(gone.voxel.measures.volume_mm3, 0.9 * ball_mm3(radius_mm));
-  EXPECT_NEAR(gone.voxel.measures.volume_mm3, gone.mesh.measures->volume_mm3, 0.01 * ball_mm3(radius_mm));
+  EXPECT_NEAR(gone.voxel.measures.volume_mm3, gone.mesh.within->measures().volume_mm3,
+              0.01 * ball_mm3(radius_mm));
   EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("ball").voxel.octree);
 }
 
@@ -131,8 +133,8 @@ TEST_F(Evaluate, AnEmptyOverlapMeasuresZeroInBothKernels) {
   const Evaluation evaluation = evaluated();
   const Object& overlap = evaluation.object("overlap");
   EXPECT_EQ(overlap.voxel.measures.volume_mm3, 0.0);
-  ASSERT_TRUE(overlap.mesh.measures);
-  EXPECT_EQ(overlap.mesh.measures->volume_mm3, 0.0);
+  ASSERT_TRUE(overlap.mesh.within);
+  EXPECT_EQ(overlap.mesh.within->measures().volume_mm3, 0.0);
   ASSERT_TRUE(overlap.certificate);
   EXPECT_NE(overlap.certificate->verdict, verify::Verdict::Fail);
 }
@@ -142,7 +144,7 @@ TEST_F(Evaluate, AMasksNumbersAreOfWhatIsInTheUniverse) {
   const Object& top = evaluation.object("top");
   // Universe -32..32 in x and y; the mask reaches from z = 5.3 beyond 32, its sides beyond -32..32.
   const double truth_mm3 = 64.0 * 64.0 * (32.0 - 5.3);
-  EXPECT_NEAR(top.mesh.measures->volume_mm3, truth_mm3, 1e-6);
+  EXPECT_NEAR(top.mesh.within->measures().volume_mm3, truth_mm3, 1e-6);
   EXPECT_NEAR(top.voxel.measures.volume_mm3, truth_mm3, 0.5 * 64.0 * 64.0);
 }
 

@@ -52,13 +52,13 @@ TEST(ExamplePlan, EachFragmentIsWithinOnePerCentOfItsTruthInBothKernels) {
   for (const auto& [id, truth_mm3] : truths_mm3()) {
     const Object& object = evaluation.object(id);
     EXPECT_NEAR(object.voxel.measures.volume_mm3 / truth_mm3, 1.0, 0.01) << id << " by voxels";
-    ASSERT_TRUE(object.mesh.measures.has_value()) << id;
-    EXPECT_NEAR(object.mesh.measures->volume_mm3 / truth_mm3, 1.0, 0.01) << id << " by meshes";
+    ASSERT_TRUE(object.mesh.within) << id;
+    EXPECT_NEAR(object.mesh.within->measures().volume_mm3 / truth_mm3, 1.0, 0.01) << id << " by meshes";
     ASSERT_TRUE(object.certificate.has_value()) << id;
     EXPECT_EQ(object.certificate->verdict, verify::Verdict::Pass) << id;
     RecordProperty(id + "_truth_mm3", std::to_string(truth_mm3));
     RecordProperty(id + "_voxel_mm3", std::to_string(object.voxel.measures.volume_mm3));
-    RecordProperty(id + "_mesh_mm3", std::to_string(object.mesh.measures->volume_mm3));
+    RecordProperty(id + "_mesh_mm3", std::to_string(object.mesh.within->measures().volume_mm3));
   }
   // Advanced and raised, the piece meets the bone above it.
   EXPECT_GT(evaluation.object("overlap").voxel.measures.volume_mm3, 100.0);
