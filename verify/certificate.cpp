@@ -51,7 +51,7 @@ void lower(Certificate& certificate, Verdict verdict, const std::string& reason)
 void add_comparison(Certificate& certificate, Comparison comparison, Verdict worst_verdict) {
   // Written so that a difference that is no number fails.
   const auto within = [&](double allowed) { return comparison.difference <= allowed; };
-  if (comparison.tolerance && !within(*comparison.tolerance)) {
+  if (comparison.judged && comparison.tolerance && !within(*comparison.tolerance)) {
     comparison.verdict =
         std::min(within(doubt * *comparison.tolerance) ? Verdict::Warn : Verdict::Fail, worst_verdict);
     lower(certificate, comparison.verdict, disagreement(certificate, comparison));
@@ -67,7 +67,7 @@ std::string text_of(const WorstPlace& worst) {
 double worst_share(const Certificate& certificate) {
   double worst = 0.0;
   for (const Comparison& comparison : certificate.comparisons) {
-    if (!comparison.tolerance || comparison.difference == 0.0) continue;
+    if (!comparison.judged || !comparison.tolerance || comparison.difference == 0.0) continue;
     assert(*comparison.tolerance >= 0.0);
     worst = std::max(worst, *comparison.tolerance > 0.0 ? comparison.difference / *comparison.tolerance
                                                         : std::numeric_limits<double>::infinity());

@@ -46,6 +46,7 @@ struct Comparison {
   /// Empty: both answers are quoted.
   std::string statement = {};
   Verdict verdict = Verdict::Pass;
+  bool judged = true;  ///< false: for information, as every place was judged by itself
 };
 
 /// An object that is too small or too thin for its voxels: a PASS proves little, a FAIL stays one.

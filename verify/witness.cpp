@@ -63,11 +63,16 @@ Witness complement(Witness a) {
   };
 }
 
-/// Rounding of coordinates and of a few sums of them: a share of the largest magnitude.
+/// Rounding of numbers and of a few sums of them: a share of the largest magnitude.
 constexpr double rounding = 1e-9;
 
-/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
-constexpr double kept_from_samples = 1e-3;
+/// Corefinement may move an operand that touches another by three steps of 4e-6 of its extent
+/// (brep::Booleans), so that a plane of the plan lies this share of its coordinates away.
+constexpr double moved_by_corefinement = 12e-6;
+
+/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h),
+/// and corefinement may move them by some thousandths of an edge.
+constexpr double kept_from_samples = 4e-3;
 
 /// A voxel's sample is rounded to an integer, and so is a window's bound.
 constexpr double rounded_samples = 1.0;
@@ -175,7 +180,7 @@ class WindowWitness {
 
   /// Where it is near, the surface has vertices on the edges between samples alone.
   int surfaces(const glm::dvec3& u) const {
-    constexpr double on_edge = 1e-6;
+    constexpr double on_edge = kept_from_samples;
     int whole = 0;
     for (int axis = 0; axis < 3; ++axis) whole += std::abs(u[axis] - std::round(u[axis])) < on_edge ? 1 : 0;
     return whole >= 2 ? 2 : 1;
@@ -282,7 +287,7 @@ class RegionWitness {
   }
 
  private:
-  double near_mm(double p_mm) const { return 1e-9 * (reach_mm_ + p_mm) + 1e-9; }
+  double near_mm(double p_mm) const { return moved_by_corefinement * (reach_mm_ + p_mm); }
   std::size_t row_of(double y) const {
     const double share = high_ > low_ ? (y - low_) / (high_ - low_) : 0.0;
     return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(rows_.size() - 1));
@@ -335,7 +340,7 @@ Witness witness_of_box(const voxel::Box& box) {
     bool inside = true;
     for (int axis = 0; axis < 3; ++axis)
       for (const double inner_mm : {p_mm[axis] - box.low_mm[axis], box.high_mm[axis] - p_mm[axis]}) {
-        const double near_mm = rounding * (1.0 + std::max(std::abs(p_mm[axis]), std::abs(box.low_mm[axis])));
+        const double near_mm = moved_by_corefinement * (std::abs(p_mm[axis]) + std::abs(box.low_mm[axis]));
         sides += std::abs(inner_mm) <= near_mm ? 1 : 0;
         inside = inside && inner_mm >= -near_mm;
       }
@@ -346,7 +351,7 @@ Witness witness_of_box(const voxel::Box& box) {
 
 Witness witness_of_surface(brep::Solid solid) {
   return [solid = std::move(solid)](const glm::dvec3& p_mm) {
-    const double near_mm = rounding * (1.0 + glm::length(p_mm));
+    const double near_mm = moved_by_corefinement * (1.0 + glm::length(p_mm));
     const bool near = !solid.empty() && solid.tree().distances_mm({p_mm}).front() <= near_mm;
     return Reading{near ? on_surface : untold, near ? on_surface : untold, near ? 2 : 0};
   };

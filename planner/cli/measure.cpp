@@ -16,6 +16,7 @@
 #include "verify/boundary_model.h"
 #include "voxel/filter/components.h"
 #include "voxel/measure/cell_counts.h"
+#include "voxel/measure/flat_parts.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/partial_volume.h"
@@ -96,7 +97,8 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings) {
   return json;
 }
 
-void add_half_width(const voxel::Octree& octree, const Digitised& digitised, Json& json) {
+void add_half_width(const voxel::Octree& octree, Digitised digitised, Json& json) {
+  digitised.flat_mm2 = voxel::flat_parts_mm2(octree);
   const HalfWidth width = volume_half_width(voxel::measure(octree), digitised);
   json["volume_half_width_mm3"] = width.value;
   json["volume_half_width_terms"] = to_json(width);

@@ -50,6 +50,10 @@ HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& di
   if (digitised.sample_mm != glm::dvec3(0.0))
     terms.push_back(
         {"samples", "3 * 0.26 v sqrt(F) of the scan's samples", count_mm3(measures, digitised.sample_mm)});
+  // Parts of one solid may be off to the same side: their errors are added, not their squares.
+  if (digitised.flat_mm2 != glm::dvec3(0.0))
+    terms.push_back({"flat", "h/2 * area of flat parts along the lattice",
+                     glm::dot(digitised.flat_mm2, 0.5 * digitised.voxel_mm)});
   if (digitised.shift_mm)
     terms.push_back(
         {"window", "area * shift for ten sample units", measures.area_crofton13_mm2 * *digitised.shift_mm});

@@ -33,11 +33,13 @@ struct Digitised {
   glm::dvec3 sample_mm{0.0};  ///< spacing of the scan's samples; zero where it comes from no scan
   /// How far the boundary moves for ten sample units of its window's lower bound; none where it has none.
   std::optional<double> shift_mm = {};
+  glm::dvec3 flat_mm2{0.0};  ///< as voxel::flat_parts_mm2()
 };
 
 /// Half-width of a volume that was counted. 3 * 0.26 v sqrt(F), v a voxel's volume and F the boundary's area
 /// in voxel faces (Kendall 1948; verify/boundary_model.h), once for the voxels and once for the scan's
-/// samples, whose slices may be far apart; and the boundary's area times its shift for ten sample units.
+/// samples, whose slices may be far apart; half a voxel's edge times the area of flat parts along the
+/// lattice, which are off all alike; and the boundary's area times its shift for ten sample units.
 HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& digitised);
 
 /// Half-width of the area of an isosurface, in square millimetres: what marching cubes' ripple and the

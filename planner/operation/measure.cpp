@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The size of an object, the gap between two, the distance of two points or the angle of three; every number
 // with its half-width and the terms that make it.
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "planner/measure/gap.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/operation.h"
+#include "voxel/measure/flat_parts.h"
 
 namespace octotomy::planner {
 namespace {
@@ -40,10 +43,17 @@ Digitised digitised_of(const AnswerBench& bench) {
   return digitised;
 }
 
-/// What the object's scan and window make doubtful.
+/// What the object's scans, windows and flat parts make doubtful. A part is no surer than the windows that
+/// its whole was made of.
 Digitised digitised_of(const AnswerBench& bench, const Object& object) {
   Digitised digitised = digitised_of(bench);
-  if (object.shown) digitised.shift_mm = window_shift_mm({object.shown->grey, object.shown->threshold});
+  digitised.flat_mm2 = voxel::flat_parts_mm2(object.voxel.octree);
+  std::set<std::pair<std::string, double>> known;
+  for (const Shown& window : object.bound.windows) {
+    if (!known.emplace(window.scan, window.threshold).second) continue;
+    const std::optional<double> shift_mm = window_shift_mm({window.grey, window.threshold});
+    if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), *shift_mm);
+  }
   return digitised;
 }
 

@@ -76,6 +76,7 @@ void inherit(const Object& operand, Object& made) {
   BoundTerms& to = made.bound;
   to.planes.insert(to.planes.end(), from.planes.begin(), from.planes.end());
   to.spacing_mm = glm::max(to.spacing_mm, from.spacing_mm);
+  to.windows.insert(to.windows.end(), from.windows.begin(), from.windows.end());
   if (from.scan_box_mm) to.scan_box_mm = from.scan_box_mm;
 }
 
@@ -89,6 +90,7 @@ void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel:
   if (made.shown) made.shown->moved_from_still = moved_from_still * made.shown->moved_from_still;
   made.bound.spacing_mm = still.bound.spacing_mm;
   made.bound.planes = still.bound.planes;
+  made.bound.windows = still.bound.windows;
   if (still.bound.scan_box_mm) {
     const auto ends =
         ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, universe.lattice().spacing_mm());

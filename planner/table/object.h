@@ -48,20 +48,21 @@ struct CutPlane {
   double voxels = 1.0;         ///< the error of its area, relative to a cut through voxels
 };
 
-/// What a certificate's bound is made of.
-struct BoundTerms {
-  std::vector<CutPlane> planes;
-  glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan it comes from; zero where it comes from none
-  std::optional<voxel::Box> scan_box_mm;  ///< of the scan that it comes from, while it has not moved
-  bool voxels_are_samples = false;
-};
-
 /// The samples that show an object's surface: it is one window's lower bound wherever it is not a cut.
 struct Shown {
   voxel::GreyOctree grey;
   double threshold = 0.0;
   std::string scan;                  ///< that grey is of
   glm::dmat4 moved_from_still{1.0};  ///< LPS to LPS, of all the steps that moved it since
+};
+
+/// What a certificate's bound is made of.
+struct BoundTerms {
+  std::vector<CutPlane> planes;
+  glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan it comes from; zero where it comes from none
+  std::optional<voxel::Box> scan_box_mm;  ///< of the scan that it comes from, while it has not moved
+  bool voxels_are_samples = false;
+  std::vector<Shown> windows;  ///< of all that it was made of: their bounds decide where its surface lies
 };
 
 /// A wall of an object that a mask cut, and the motion of all the steps that moved it since, LPS to LPS.

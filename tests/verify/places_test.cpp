@@ -39,10 +39,10 @@ using Scan = std::shared_ptr<const voxel::Scene>;
 struct Subject {
   std::string name;
   voxel::Octree octree;
-  brep::Mesh mesh;
+  brep::Solid mesh;
   Witness witness;
 
-  Places judged(const voxel::Octree& voxels, const brep::Mesh& surface) const {
+  Places judged(const voxel::Octree& voxels, const brep::Solid& surface) const {
     return judge_places(voxels, convert::voxelise(octree.universe(), surface), surface, witness);
   }
   Places judged() const { return judged(octree, mesh); }
@@ -51,8 +51,8 @@ struct Subject {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 const std::vector<std::vector<glm::dvec2>> drawn{{{-31, -46.3}, {37.2, -40}, {30, 21}, {-22.7, 25}}};
 
-brep::Mesh prism_of(const DrawnRegion& region) {
-  return brep::mesh_of(brep::Prism{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, region.polygons_mm, -900, 900});
+brep::Solid prism_of(const DrawnRegion& region) {
+  return brep::solid_of(brep::Prism{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, region.polygons_mm, -900, 900});
 }
 
 /// The window, the part of it in a region, the rest, and that part moved.
@@ -66,7 +66,8 @@ std::vector<Subject> subjects_of(const std::string& name, const Scan& scan, doub
   const Expression mask = voxel::RegionMask{{{voxel::parse_view(region.view), region.polygons_mm}}};
   const glm::dmat4 motion =
       voxel::moved_from_still({{0.3, -6.1, 2.2}, 5.0, {1, 0.2, 0}, {region_middle_mm.x, 0, 0}});
-  const brep::Mesh surface = brep::mesh_of(convert::isosurface(*scan, low, infinite));
+  const brep::Solid surface =
+      brep::trusted_solid(convert::isosurface(*scan, low, infinite), brep::Proof::Construction);
   const Witness whole = witness_of_window(scan, low, infinite, universe), cut = witness_of_regions({region});
   const Witness world = witness_of_box(box);
   const auto digitised = [&](const Expression& expression) { return voxel::combine(universe, expression); };
@@ -110,7 +111,7 @@ void expect_right(const Subject& subject) {
 struct Spoiled {
   std::string what;
   voxel::Octree octree;
-  brep::Mesh mesh;
+  brep::Solid mesh;
   double volume_mm3 = 0.0;
   double shift_mm = 0.0;
 };
@@ -172,13 +173,13 @@ class Spoiler {
   glm::dmat4 turn() {
     return voxel::moved_from_still({glm::dvec3(0.0), between(0.3, 2.0), direction(), place_mm()});
   }
-  brep::Mesh scaled(double by) {
+  brep::Solid scaled(double by) {
     brep::Triangles triangles = brep::triangles_of(subject_.mesh);
     const glm::dvec3 about_mm = place_mm();
     for (glm::dvec3& p : triangles.points_mm) p = about_mm + by * (p - about_mm);
-    return brep::mesh_of(triangles);
+    return brep::trusted_solid(triangles, brep::Proof::Connection);
   }
-  brep::Mesh moved(const glm::dmat4& motion) { return brep::moved(subject_.mesh, motion); }
+  brep::Solid moved(const glm::dmat4& motion) { return brep::moved(subject_.mesh, motion); }
 
   Spoiled voxels(const std::string& what, const Expression& expression) {
     const voxel::Octree made = voxel::combine(subject_.octree.universe(), expression);
@@ -194,9 +195,11 @@ class Spoiler {
     for (std::size_t i = 0; i < pieces.size(); ++i)
       if (i != lost) kept.insert(kept.end(), pieces[i].faces.begin(), pieces[i].faces.end());
     std::sort(kept.begin(), kept.end());
-    return {"a lost part", subject_.octree, brep::part_of(subject_.mesh, kept), pieces[lost].volume_mm3, 0.0};
+    return {"a lost part", subject_.octree,
+            brep::trusted_solid(brep::part_of(subject_.mesh, kept), brep::Proof::Connection),
+            pieces[lost].volume_mm3, 0.0};
   }
-  Spoiled surface(const std::string& what, brep::Mesh mesh, double shifts) {
+  Spoiled surface(const std::string& what, brep::Solid mesh, double shifts) {
     return {what, subject_.octree, std::move(mesh), infinite, shifts * shift_mm_};
   }
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/measure/half_width.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <random>
+#include <vector>
 
 #include "tests/voxel/field_scene.h"
+#include "voxel/measure/flat_parts.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -31,6 +35,42 @@ TEST(VolumeHalfWidth, HoldsTheTruthOfBallsWhereverTheyLieAndIsNotIdle) {
     outside_of_a_tenth += std::abs(measures.volume_mm3 - truth) > 0.1 * found.value;
   }
   EXPECT_GT(outside_of_a_tenth, 15);
+}
+
+/// Solids with flat parts along the lattice, anywhere between its planes: boxes, and balls cut by a plane.
+TEST(VolumeHalfWidth, HoldsTheTruthOfSolidsCutAlongTheLattice) {
+  std::mt19937_64 random(1);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  constexpr int trials = 400;
+  std::vector<double> errors, widths;
+  int held = 0;
+  for (int i = 0; i < trials; ++i) {
+    const glm::dvec3 middle(between(-0.5, 0.5), between(-0.5, 0.5), between(-0.5, 0.5));
+    voxel::Expression solid = voxel::Sphere{};
+    double truth_mm3 = 0.0;
+    if (i % 2 == 0) {
+      const glm::dvec3 half(between(6, 24), between(6, 24), between(6, 24));
+      solid = voxel::Box{middle - half, middle + half};
+      truth_mm3 = 8.0 * half.x * half.y * half.z;
+    } else {
+      const double radius = between(10, 26), height = between(0.4, 1.6) * radius;
+      solid = voxel::Sphere{middle, radius} & voxel::HalfSpace{{0, 0, 1}, middle.z - radius + height};
+      truth_mm3 = std::numbers::pi * height * height * (radius - height / 3.0);
+    }
+    const voxel::Octree octree = voxel::combine(universe_of_64(), solid);
+    Digitised digitised{glm::dvec3(1.0)};
+    digitised.flat_mm2 = voxel::flat_parts_mm2(octree);
+    const voxel::Measures measures = voxel::measure(octree);
+    widths.push_back(volume_half_width(measures, digitised).value / truth_mm3);
+    errors.push_back(std::abs(measures.volume_mm3 - truth_mm3) / truth_mm3);
+    held += errors.back() <= widths.back();
+  }
+  EXPECT_GE(held, 394) << "of " << trials;
+  std::sort(errors.begin(), errors.end());
+  std::sort(widths.begin(), widths.end());
+  EXPECT_LT(widths[trials / 2], 3.0 * errors[trials * 99 / 100]);
 }
 
 TEST(VolumeHalfWidth, CoarseSlicesWidenIt) {
