@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -68,6 +69,7 @@ double volume_tolerance_mm3(const Size& a, const Size& b) {
 /// go the other way and further. It lies 2^34 units of the last place above rounding, so that nothing stays
 /// in touch, and far below a voxel. The direction has no plane or edge in common with anything likely.
 glm::dvec3 shift_mm(int attempt, double extent) {
+  assert(attempt >= 0 && std::isfinite(extent));
   if (attempt == 0) return glm::dvec3(0.0);
   const glm::dvec3 direction = glm::normalize(glm::dvec3(1.0, std::cbrt(2.0), std::cbrt(4.0)));
   const double steps = attempt % 2 == 1 ? attempt : -attempt;
@@ -78,6 +80,7 @@ constexpr int attempt_count = 4;
 /// What is wanted and what the volumes need to vouch for it: the intersection always, and where nothing else
 /// is wanted the difference that is the smaller mesh.
 Wanted with_witnesses(Wanted wanted, const Mesh& a, const Mesh& b) {
+  assert(wanted[of_union] || wanted[of_intersection] || wanted[of_a_minus_b] || wanted[of_b_minus_a]);
   wanted[of_intersection] = true;
   if (!wanted[of_union] && !wanted[of_a_minus_b] && !wanted[of_b_minus_a])
     wanted[a.n_faces() < b.n_faces() ? of_a_minus_b : of_b_minus_a] = true;
@@ -102,6 +105,7 @@ std::optional<double> disagreement_mm3(const Volumes& volumes, double a_mm3, dou
 /// Points in a box that more than one vertex has: where sheets of the surface touch, corefinement gives each
 /// its own.
 std::size_t shared_point_count(const Triangles& surface, const glm::dvec3& low, const glm::dvec3& high) {
+  assert(!glm::any(glm::isnan(low)) && !glm::any(glm::isnan(high)));
   std::vector<glm::dvec3> points;
   for (const glm::dvec3& p : surface.points_mm)
     if (glm::all(glm::greaterThanEqual(p, low)) && glm::all(glm::lessThanEqual(p, high))) points.push_back(p);
@@ -212,6 +216,7 @@ void tell_touching(const Question& question, Attempt& attempt) {
   const glm::dvec3 low = glm::max(a.low_mm, b.low_mm) - margin;
   const glm::dvec3 high = glm::min(a.high_mm, b.high_mm) + margin;
   for (std::size_t r = 0; r < attempt.results.size(); ++r) {
+    assert(!question.wanted[r] || attempt.results[r]);
     const std::size_t count = question.wanted[r] ? shared_point_count(*attempt.results[r], low, high) : 0;
     if (count > 0)
       attempt.findings.push_back(question.names.of(r) + " touches itself at " + std::to_string(count) +
@@ -244,6 +249,7 @@ struct Answer {
 };
 
 Answer answer_of(const Question& question, Attempt attempt) {
+  assert(attempt.failure.empty());
   tell_touching(question, attempt);
   tell_films(question, attempt);
   tell_flat(attempt);

@@ -4,6 +4,7 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <array>
+#include <cassert>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
@@ -29,6 +30,7 @@ Surface surface_of(const Solid& solid, const std::string& name) {
 
 /// Halves added to halves, so that most sums are of numbers of like length.
 Rational sum_of(const std::vector<Rational>& terms, std::size_t begin, std::size_t end) {
+  assert(begin <= end && end <= terms.size());
   if (end - begin == 0) return Rational(0);
   if (end - begin == 1) return terms[begin];
   const std::size_t middle = begin + (end - begin) / 2;
@@ -76,7 +78,10 @@ Triangles rounded(const Surface& surface, std::size_t& moved) {
   for (const auto f : surface.faces()) {
     std::array<std::uint32_t, 3> face{};
     auto corner = face.begin();
-    for (const auto v : surface.vertices_around_face(surface.halfedge(f))) *corner++ = number[v];
+    for (const auto v : surface.vertices_around_face(surface.halfedge(f))) {
+      assert(corner != face.end());
+      *corner++ = number[v];
+    }
     triangles.faces.push_back(face);
   }
   // CGAL's order hangs on addresses.

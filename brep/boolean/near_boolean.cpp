@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -77,9 +78,11 @@ double cone_mm3(const Triangles& triangles, const std::array<std::uint32_t, 3>& 
 /// points for different ones where a surface has two at one place.
 void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting, Side& side) {
   const Mesh& mesh = operand.mesh;
+  assert(operand.triangles.faces.size() == mesh.n_faces());
   side.near.assign(operand.triangles.faces.size(), 0);
   std::vector<std::uint32_t> unseen;
   const auto mark = [&](std::uint32_t f) {
+    assert(f < side.near.size());
     if (side.near[f]) return;
     side.near[f] = 1;
     side.near_faces.push_back(f);
@@ -119,6 +122,7 @@ void find_parts(const Operand& operand, Side& side) {
       side.part[v] = static_cast<std::uint32_t>(side.first.size());
       side.first.push_back(v);
     } else {
+      assert(parts.set_of(v) < v);
       side.part[v] = side.part[parts.set_of(v)];
     }
   }
@@ -134,6 +138,7 @@ void find_border(const Operand& operand, Side& side) {
       if (side.near[static_cast<std::size_t>(mesh.opposite_face_handle(h).idx())]) continue;
       const auto from = static_cast<std::uint32_t>(mesh.from_vertex_handle(h).idx());
       const auto to = static_cast<std::uint32_t>(mesh.to_vertex_handle(h).idx());
+      assert(side.part[from] != none && side.part[from] == side.part[to]);
       side.border[edge_of(from, to)] = side.part[from];
       for (const std::uint32_t v : {from, to}) {
         const auto [known, is_new] =
@@ -152,6 +157,7 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
     if (side.near[f]) continue;
     const auto& face = operand.triangles.faces[f];
     const std::uint32_t part = side.part_of(face);
+    assert(part < side.volumes_mm3.size());
     const double term = cone_mm3(operand.triangles, face, tip), sum = side.volumes_mm3[part] + term;
     lost[part] += std::abs(side.volumes_mm3[part]) >= std::abs(term) ? (side.volumes_mm3[part] - sum) + term
                                                                      : (term - sum) + side.volumes_mm3[part];
@@ -223,6 +229,7 @@ bool turns_round(std::size_t result, bool of_a) {
 /// Sets each part's place by the borders of one result, or checks it by a further one.
 void place_parts(const std::set<Edge>& edges, bool inside_where_there, Side& side) {
   for (const auto& [edge, part] : side.border) {
+    assert(part < side.known.size());
     const bool inside = edges.contains(edge) == inside_where_there;
     if (side.known[part] && (side.inside[part] != 0) != inside)
       throw Obstacle("the borders of a part disagree about its place");
@@ -245,6 +252,7 @@ void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
       throw Obstacle("a ray and the borders of a part disagree about its place");
     side.inside[part] = inside[part];
   }
+  assert(inside.size() == side.inside.size());
 }
 
 /// The far triangles of one operand that belong to a result, and the near result's points that are theirs.
@@ -262,6 +270,7 @@ class Sewing {
     for (std::uint32_t f = 0; f < side.near.size(); ++f) {
       const auto& face = operand.triangles.faces[f];
       if (side.near[f] || numbers[face[0]] == none) continue;
+      assert(numbers[face[1]] != none && numbers[face[2]] != none);
       const std::size_t second = turned ? 2 : 1;
       sewn_.faces.push_back({numbers[face[0]], numbers[face[second]], numbers[face[3 - second]]});
     }
@@ -278,6 +287,7 @@ class Sewing {
     }
     for (std::array<std::uint32_t, 3> face : near.faces) {
       for (std::uint32_t& v : face) v = numbers[v];
+      assert(std::max({face[0], face[1], face[2]}) < sewn_.points_mm.size());
       sewn_.faces.push_back(face);
     }
   }

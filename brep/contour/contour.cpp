@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -80,6 +81,7 @@ class Follower {
   }
 
   void link(std::size_t from, std::size_t to) {
+    assert(from < next_.size() && to < next_.size() && next_[from] == none);
     next_[from] = to;
     led_to_[to] = 1;
   }
@@ -96,6 +98,7 @@ class Follower {
       if (inside && !beyond) leaving[crossings++] = k;
       if (!inside && beyond) entering = k;
     }
+    assert(crossings <= 2);
     if (crossings == 1) link(edge[leaving[0]], edge[entering]);
     if (crossings != 2) return;
     // The saddle of the bilinear interpolant is inside where the inner corners outweigh the outer ones. No
@@ -111,6 +114,7 @@ class Follower {
     double fraction = 0.5;
     if (sampled(i, j) && sampled(i2, j2)) {
       const double a = above(i, j), b = above(i2, j2);
+      assert((a >= 0.0) != (b >= 0.0));
       fraction = std::clamp(a / (a - b), least_fraction(), 1.0 - least_fraction());
     }
     glm::dvec2 p(static_cast<double>(i) - 1.0, static_cast<double>(j) - 1.0);
@@ -121,6 +125,7 @@ class Follower {
   Contour walk(std::size_t start) {
     Contour contour;
     std::size_t e = start;
+    assert(next_[start] != none);
     do {
       contour.points_mm.push_back(crossing_mm(e));
       e = std::exchange(next_[e], none);
@@ -233,7 +238,10 @@ std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contour
 std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& around) {
   std::vector<std::size_t> depths(around.size(), 0);
   for (std::size_t c = 0; c < around.size(); ++c)
-    for (auto outer = around[c]; outer; outer = around[*outer]) ++depths[c];
+    for (auto outer = around[c]; outer; outer = around[*outer]) {
+      assert(depths[c] < around.size());
+      ++depths[c];
+    }
   return depths;
 }
 

@@ -6,6 +6,7 @@
 #include "brep/contour/cross_section.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -45,6 +46,7 @@ class PlaneSection {
     return Mesh::HalfedgeHandle();
   }
   Mesh::HalfedgeHandle exit_of(Mesh::HalfedgeHandle entry) const {
+    assert(is_above(mesh_.from_vertex_handle(entry)) && !is_above(mesh_.to_vertex_handle(entry)));
     const Mesh::HalfedgeHandle after = mesh_.next_halfedge_handle(entry);
     return is_above(mesh_.to_vertex_handle(after)) ? after : mesh_.next_halfedge_handle(after);
   }
@@ -55,6 +57,7 @@ class PlaneSection {
     if (is_above(low)) std::swap(low, high);
     const double below = -height_[static_cast<std::size_t>(low.idx())],
                  above = height_[static_cast<std::size_t>(high.idx())];
+    assert(below > 0.0 && above >= 0.0);
     const glm::dvec3 from = glm_of(mesh_.point(low)) - plane_.origin_mm,
                      to = glm_of(mesh_.point(high)) - plane_.origin_mm;
     const glm::dvec3 p = from + below / (below + above) * (to - from);
@@ -72,6 +75,7 @@ class PlaneSection {
         break;
       }
       entry = entry_of(mesh_.face_handle(before));
+      assert(entry.is_valid());
       if (entry == start) break;
     }
     const Mesh::HalfedgeHandle first = entry;

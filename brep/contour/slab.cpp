@@ -12,6 +12,7 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <cassert>
 #include <limits>
 #include <string>
 #include <unordered_map>
@@ -91,6 +92,7 @@ class Overlay {
       std::vector<Vertex> ring;
       for (const glm::dvec2& p : section[c].points_mm) {
         const std::size_t before = plane_.number_of_vertices();
+        assert(std::isfinite(p.x) && std::isfinite(p.y));
         const Vertex v = plane_.insert(Kernel::Point_2(p.x, p.y), hint);
         if (plane_.number_of_vertices() == before) refuse_same_place(v, level, first_contour + c);
         v->info() = {level, point_count_++, first_contour + c};
@@ -106,6 +108,7 @@ class Overlay {
   }
 
   [[noreturn]] void refuse_same_place(Vertex there, Level level, std::uint32_t contour) const {
+    assert(there->info().level != half_way);
     if (there->info().level == level)
       throw ContoursMeet(name(contour) + " and " + name(there->info().contour) + " have a point in common");
     throw SectionsCoincide(name(contour) + " and " + name(there->info().contour) + " share a point");
@@ -117,6 +120,7 @@ class Overlay {
     for (auto v = plane_.vertices_in_constraint_begin(side.constraint);
          v != plane_.vertices_in_constraint_end(side.constraint); ++v)
       side.chain.push_back(*v);
+    assert(side.chain.size() >= 2);
     if (side.chain.front() != side.from) std::reverse(side.chain.begin(), side.chain.end());
     for (std::size_t k = 1; k + 1 < side.chain.size(); ++k) {
       Mark& mark = side.chain[k]->info();
@@ -170,12 +174,14 @@ class Overlay {
   }
 
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool turned, std::uint32_t contour) {
+    assert(a != b && b != c && c != a);
     surface_.faces.push_back({a, turned ? c : b, turned ? b : c});
     surface_.group.push_back(contour);
   }
 
   /// Upward where the lower section holds it, downward where the upper does.
   void lift(Face face) {
+    assert(face->info().by == 1 || face->info().by == 2);
     const bool turned = face->info().by == 2;
     std::array<std::uint32_t, 3> corner{}, middle{};
     std::uint32_t contour = none;
@@ -248,6 +254,7 @@ class Overlay {
       else
         surface_.groups[group].upper.push_back(c - lower_count);
     }
+    assert(surface_.group.size() == surface_.faces.size());
     for (std::uint32_t& group : surface_.group) group = number[joined_.set_of(group)];
   }
 

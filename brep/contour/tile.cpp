@@ -8,6 +8,7 @@
 #include "brep/contour/tile.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -29,6 +30,7 @@ struct Pair {
 
   /// The triangle of a step from a span.
   Triangle triangle(std::size_t i, std::size_t j, Step step) const {
+    assert(i + (step == along_lower) <= m() && j + (step == along_upper) <= n());
     return step == along_lower ? Triangle{lower[i], lower[i + 1], upper[j]}
                                : Triangle{upper[j + 1], upper[j], lower[i]};
   }
@@ -65,6 +67,7 @@ std::array<std::size_t, 2> start_of(const Ring& lower, const Ring& upper) {
 }
 
 std::vector<glm::dvec3> turned(const Ring& ring, std::size_t start) {
+  assert(start < ring.points_mm.size());
   std::vector<glm::dvec3> points;
   for (std::size_t k = 0; k <= ring.points_mm.size(); ++k)
     points.emplace_back(ring.points_mm[(start + k) % ring.points_mm.size()], ring.z_mm);
@@ -256,6 +259,7 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
   const std::size_t m = lower.points_mm.size(), n = upper.points_mm.size();
   const auto lower_point = [&](std::size_t i) { return static_cast<std::uint32_t>((start[0] + i) % m); };
   const auto upper_point = [&](std::size_t j) { return static_cast<std::uint32_t>(m + (start[1] + j) % n); };
+  assert(steps.size() == m + n);
   std::vector<std::array<std::uint32_t, 3>> faces;
   std::size_t i = 0, j = 0;
   for (const Step step : steps) {

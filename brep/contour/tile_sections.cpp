@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <mutex>
 #include <stdexcept>
@@ -128,6 +129,7 @@ class Strips {
       for (std::uint32_t c = 0; c < contour; ++c) first += section[c].points_mm.size();
       return static_cast<std::uint32_t>(first);
     };
+    assert(is_pair(group));
     const Contour &lower = slab_.lower[group.lower[0]], &upper = slab_.upper[group.upper[0]];
     FaceList strip = tile({lower.points_mm, slab_.low_mm}, {upper.points_mm, slab_.high_mm}, cost);
     const auto m = static_cast<std::uint32_t>(lower.points_mm.size());
@@ -154,6 +156,7 @@ class Strips {
       all.faces.insert(all.faces.end(), strips_[g].begin(), strips_[g].end());
       group.insert(group.end(), strips_[g].size(), g);
     }
+    assert(group.size() == all.faces.size());
     return all;
   }
 
@@ -179,6 +182,7 @@ Tiled tile_slab(const Slab& slab, const std::optional<TileCost>& cost) {
 /// All slabs, those beyond the ends too. Throws SectionsCoincide where another shift is needed.
 std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
                               const std::vector<double>& heights_mm, const TileSectionsOptions& options) {
+  assert(!contours.empty() && contours.size() == heights_mm.size());
   std::vector<Tiled> slabs(contours.size() - 1);
   std::atomic<std::size_t> finished = 0;
   std::mutex telling;
@@ -196,6 +200,7 @@ std::vector<Tiled> tile_slabs(const std::vector<std::vector<Contour>>& contours,
 
 TiledSections joined(const std::vector<std::vector<Contour>>& contours, const std::vector<double>& heights_mm,
                      std::vector<Tiled> slabs) {
+  assert(slabs.size() + 1 == contours.size());
   TiledSections tiled;
   std::vector<std::uint32_t> first;
   for (std::size_t s = 0; s < contours.size(); ++s) {

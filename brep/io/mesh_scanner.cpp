@@ -2,6 +2,7 @@
 #include "brep/io/mesh_scanner.h"
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -99,6 +100,7 @@ long long MeshScanner::integer() {
 }
 
 std::size_t MeshScanner::bounded(long long count, std::size_t bytes_each) const {
+  assert(bytes_each > 0);
   if (count < 0 || static_cast<unsigned long long>(count) > rest() / bytes_each)
     fail("a count of " + std::to_string(count) + " is more than the rest of the file, " +
          std::to_string(rest()) + " bytes, can hold; it is cut short or damaged");
@@ -112,6 +114,7 @@ std::size_t MeshScanner::count(std::size_t bytes_each) {
 void MeshScanner::skip(std::size_t byte_count) {
   if (byte_count > rest()) fail("the file ends too early");
   at_ += byte_count;
+  assert(at_ <= bytes_.size());
 }
 
 void add_fan(Triangles& triangles, const std::vector<long long>& corners) {

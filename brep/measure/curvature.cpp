@@ -4,7 +4,9 @@
 // other angles, which cross and dot products give without trigonometry.
 #include "brep/measure/curvature.h"
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
@@ -59,6 +61,7 @@ void add(const Triangles& surface, const std::array<std::uint32_t, 3>& face, Sum
     const double along = glm::dot(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
     corners[k] = {std::atan2(twice_area, along), along / twice_area};
   }
+  assert(std::max({face[0], face[1], face[2]}) < sums.area.size());
   const std::array<double, 3> shares = shares_of(p, corners, 0.5 * twice_area);
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t v = face[k];

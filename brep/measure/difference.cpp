@@ -5,6 +5,7 @@
 #include "brep/measure/difference.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -67,6 +68,7 @@ Distances distances_to(const Mesh& from, const OrientedSurface& to, double spaci
 }
 
 double percentile_mm(const Distances& distances, double share) {
+  assert(!distances.sample_mm.empty() && distances.areas_mm2.size() == distances.sample_mm.size());
   std::vector<std::size_t> order(distances.sample_mm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto size = [&](std::size_t i) { return std::abs(distances.sample_mm[i]); };
@@ -96,6 +98,7 @@ OneWay one_way(const Distances& distances, const std::vector<double>& tolerances
       if (std::abs(d) <= tolerances[k]) way.within[k] += area;
   }
   for (const double d : distances.vertex_mm) way.max_mm = std::max(way.max_mm, std::abs(d));
+  assert(whole > 0.0);
   way.mean_mm /= whole;
   way.signed_mean_mm /= whole;
   way.rms_mm = std::sqrt(way.rms_mm / whole);
@@ -106,6 +109,7 @@ OneWay one_way(const Distances& distances, const std::vector<double>& tolerances
 
 /// Bins lie evenly about zero and reach as far as the largest distance.
 DistanceHistogram histogram_of(const Distances& distances, double max_mm, std::size_t bins) {
+  assert(max_mm >= 0.0 && bins > 0);
   DistanceHistogram histogram;
   histogram.low_mm = -max_mm;
   histogram.width_mm = 2.0 * max_mm / static_cast<double>(bins);

@@ -9,6 +9,7 @@
 #include <CGAL/intersections.h>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
@@ -73,6 +74,7 @@ Gap corner_gap(const Triangles& corners, const Triangles& surface) {
   for (const auto& face : corners.faces)
     for (const std::uint32_t v : face) points.push_back(corners.points_mm[v]);
   const std::vector<Foot> feet = SurfaceTree(surface).feet(points);
+  assert(!feet.empty());
   const auto nearest = std::min_element(
       feet.begin(), feet.end(), [](const Foot& f, const Foot& g) { return f.distance_mm < g.distance_mm; });
   return {nearest->distance_mm, points[static_cast<std::size_t>(nearest - feet.begin())], nearest->p_mm};
@@ -106,6 +108,7 @@ glm::dvec3 common_point(const Triangles& a, const Triangles& b, const Intersecti
         return {p.x(), p.y(), p.z()};
       }
     }
+  assert(!meeting.of_a.empty());
   // Only triangles without area meet: a corner of one stands for it.
   return a.points_mm[a.faces[meeting.of_a.front()][0]];
 }
@@ -132,6 +135,7 @@ Gap gap(const Mesh& a, const Mesh& b) {
   std::pair<std::uint32_t, std::uint32_t> first;
   CGAL::box_intersection_d(boxes_a.begin(), boxes_a.end(), boxes_b.begin(), boxes_b.end(),
                            [&](const Box& s, const Box& t) {
+                             assert(s.info() < edges_a.size() && t.info() < edges_b.size());
                              const Gap between = gap_of(edges_a[s.info()], edges_b[t.info()]);
                              const std::pair pair(s.info(), t.info());
                              if (between.distance_mm > best.distance_mm) return;

@@ -8,6 +8,7 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -70,6 +71,7 @@ class Rays {
 /// Diameters of the balls, from upper bounds of them.
 void shrink(const SurfaceTree& tree, const std::vector<SurfacePoint>& points, double step,
             double least_cosine, const ThicknessOptions& options, std::vector<Thickness>& thickness) {
+  assert(thickness.size() == points.size() && step > 0.0);
   std::vector<std::size_t> shrinking(points.size());
   std::iota(shrinking.begin(), shrinking.end(), std::size_t{0});
   const auto centre_of = [&](std::size_t i) {
@@ -85,6 +87,7 @@ void shrink(const SurfaceTree& tree, const std::vector<SurfacePoint>& points, do
     for (std::size_t k = 0; k < shrinking.size(); ++k) {
       const std::size_t i = shrinking[k];
       const double radius = 0.5 * thickness[i].ball_mm;
+      assert(std::isfinite(radius) && radius >= 0.0);
       if (feet[k].distance_mm >= radius - step) continue;
       const glm::dvec3 to_foot = points[i].p_mm - feet[k].p_mm, from_centre = points[i].p_mm - centres[k];
       const double cosine = glm::dot(from_centre, feet[k].p_mm - centres[k]) /
@@ -123,8 +126,8 @@ std::vector<Thickness> thickness(const Solid& solid, const std::vector<SurfacePo
       throw std::invalid_argument("thickness: the ray from point " + std::to_string(i) +
                                   " leaves without meeting the surface; it is not closed, or the normal does "
                                   "not point out of it");
-  shrink(solid.tree(), points, step, std::cos(options.least_angle_deg * std::numbers::pi / 180.0),
-         options, thickness);
+  shrink(solid.tree(), points, step, std::cos(options.least_angle_deg * std::numbers::pi / 180.0), options,
+         thickness);
   return thickness;
 }
 

@@ -2,9 +2,11 @@
 #include "brep/mesh/components.h"
 
 #include <algorithm>
+#include <cassert>
 #include <glm/glm.hpp>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -76,7 +78,11 @@ std::vector<std::uint8_t> mark_touching(const Mesh& mesh, const std::vector<std:
 std::vector<Shell> measure_shells(const Mesh& mesh, const std::vector<std::uint32_t>& label,
                                   std::uint32_t shell_count) {
   std::vector<Shell> shells(shell_count);
-  for (std::uint32_t f = 0; f < label.size(); ++f) shells[label[f]].faces.push_back(f);
+  assert(label.size() == mesh.n_faces());
+  for (std::uint32_t f = 0; f < label.size(); ++f) {
+    assert(label[f] < shell_count);
+    shells[label[f]].faces.push_back(f);
+  }
   const std::vector<std::uint8_t> touching =
       shell_count > 1 ? mark_touching(mesh, label) : std::vector<std::uint8_t>(mesh.n_vertices(), 0);
   for (Shell& shell : shells) {
@@ -107,6 +113,7 @@ std::vector<Shell> measure_shells(const Mesh& mesh, const std::vector<std::uint3
 /// The smallest outward shell around a cavity's.
 std::optional<std::uint32_t> shell_around(std::uint32_t cavity, const std::vector<Shell>& shells,
                                           const std::vector<std::uint32_t>& label, const SurfaceTree& tree) {
+  assert(cavity < shells.size() && shells[cavity].volume_mm3 < 0.0);
   std::map<std::uint32_t, bool> odd;
   for (const Crossing& crossing : tree.crossings(shells[cavity].probe_mm)) {
     bool& parity = odd[label[crossing.face]];
@@ -140,6 +147,9 @@ std::vector<Component> components(const Mesh& mesh) {
     owner[s] = shell_around(s, shells, label, *tree).value_or(s);
   }
 
+  assert(std::accumulate(shells.begin(), shells.end(), std::size_t{0},
+                         [](std::size_t sum, const Shell& shell) { return sum + shell.faces.size(); }) ==
+         mesh.n_faces());
   std::vector<Component> by_shell(shell_count);
   for (std::uint32_t s = 0; s < shell_count; ++s) {
     Component& component = by_shell[owner[s]];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <numeric>
 #include <vector>
@@ -33,9 +34,11 @@ Triangles in_coordinate_order(const Mesh& mesh) {
   Triangles sorted;
   std::vector<std::uint32_t> rank(order.size());
   for (const std::uint32_t v : order) {
+    assert(v < rank.size());
     rank[v] = static_cast<std::uint32_t>(sorted.points_mm.size());
     sorted.points_mm.push_back(triangles.points_mm[v]);
   }
+  assert(sorted.points_mm.size() == triangles.points_mm.size());
   sorted.faces = std::move(triangles.faces);
   for (auto& face : sorted.faces) {
     for (std::uint32_t& v : face) v = rank[v];

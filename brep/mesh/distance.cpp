@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -83,6 +84,7 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
   const auto side = std::min_element(std::begin(sides), std::end(sides)) - std::begin(sides);
   const glm::dvec3 corners[] = {t.a, t.b, t.c};
   const double share = share_along(p, corners[side], corners[(side + 1) % 3]);
+  assert(share >= 0.0 && share <= 1.0);
   glm::dvec3 weights(0.0);
   weights[static_cast<int>(side)] = 1.0 - share;
   weights[static_cast<int>((side + 1) % 3)] = share;
@@ -148,6 +150,7 @@ struct SurfaceTree::Tree {
     std::vector<Corners> unordered;
     std::vector<glm::dvec3> centres;
     for (const auto& f : source.faces) {
+      assert(std::max({f[0], f[1], f[2]}) < source.points_mm.size());
       unordered.push_back({source.points_mm[f[0]], source.points_mm[f[1]], source.points_mm[f[2]]});
       TreeBox box;
       box.add(unordered.back());
@@ -159,6 +162,7 @@ struct SurfaceTree::Tree {
 
   void build(const std::vector<Corners>& unordered, const std::vector<glm::dvec3>& centres,
              std::uint32_t begin, std::uint32_t end) {
+    assert(begin < end && end <= faces.size());
     const std::size_t self = nodes.size();
     nodes.emplace_back();
     TreeBox box;
@@ -190,6 +194,7 @@ struct SurfaceTree::Tree {
   /// `nearest_triangle` is where to look first, and becomes the one found: neighbours in a list of points are
   /// often neighbours in space.
   double distance(const glm::dvec3& p, std::uint32_t& nearest_triangle) const {
+    assert(nearest_triangle < triangles.size());
     double nearest = squared_distance_to_triangle(p, triangles[nearest_triangle]);
     // Depth is at most 32 and each level leaves one node waiting.
     std::array<std::pair<std::uint32_t, double>, 64> waiting;
@@ -211,6 +216,7 @@ struct SurfaceTree::Tree {
       std::pair<std::uint32_t, double> near{index + 1, nodes[index + 1].box.squared_distance(p)};
       std::pair<std::uint32_t, double> far{node.first, nodes[node.first].box.squared_distance(p)};
       if (far.second < near.second) std::swap(near, far);
+      assert(top + 2 <= waiting.size());
       waiting[top++] = far;
       waiting[top++] = near;
     }
@@ -247,6 +253,7 @@ struct SurfaceTree::Tree {
           node.box.high.z < p.z)
         continue;
       if (node.count == 0) {
+        assert(top + 2 <= waiting.size());
         waiting[top++] = node.first;
         waiting[top++] = index + 1;
         continue;

@@ -6,6 +6,7 @@
 #include "brep/mesh/flat_triangles.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <cassert>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -24,6 +25,7 @@ Kernel::Point_3 exact(const Point& p) {
 /// them are off by less than eight roundings of the longest sides' product.
 template <typename Point>
 bool is_flat(const Point& p, const Point& q, const Point& r) {
+  assert(std::isfinite(p[0] + p[1] + p[2] + q[0] + q[1] + q[2] + r[0] + r[1] + r[2]));
   const double ux = q[0] - p[0], uy = q[1] - p[1], uz = q[2] - p[2];
   const double vx = r[0] - p[0], vy = r[1] - p[1], vz = r[2] - p[2];
   const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
@@ -67,6 +69,7 @@ class Flattener {
   }
 
   void take_out(Mesh::FaceHandle face) {
+    assert(is_flat(face) && !mesh_.status(face).deleted());
     Mesh::HalfedgeHandle h = mesh_.halfedge_handle(face), longest = h;
     for (int k = 0; k < 3; ++k, h = mesh_.next_halfedge_handle(h)) {
       if (mesh_.point(mesh_.from_vertex_handle(h)) == mesh_.point(mesh_.to_vertex_handle(h)))
@@ -82,6 +85,7 @@ class Flattener {
   }
 
   void collapse(Mesh::HalfedgeHandle h) {
+    assert(length(h) == 0.0);
     if (!mesh_.is_collapse_ok(h)) return;
     mesh_.collapse(h);
     ++done_.collapses;

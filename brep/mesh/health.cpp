@@ -9,6 +9,7 @@
 #include <CGAL/box_intersection_d.h>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -93,6 +94,7 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
     }
     ++edges;
     const std::uint32_t first = sides[i].corner / 3;
+    assert(first < triangles.faces.size());
     if (j - i == 1) {
       ++health.boundary_edges;
       Offenders::note(offenders.boundary, first);
@@ -177,6 +179,7 @@ std::vector<std::uint8_t> mark_touching(const Triangles& triangles, const std::v
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::tie(a.p_mm.x, a.p_mm.y, a.p_mm.z) < std::tie(b.p_mm.x, b.p_mm.y, b.p_mm.z);
   });
+  assert(corners.size() == 3 * triangles.faces.size());
   std::vector<std::uint8_t> touching(triangles.points_mm.size(), 0);
   for (std::size_t i = 0, j; i < corners.size(); i = j) {
     bool several = false;
@@ -193,6 +196,7 @@ std::vector<std::uint8_t> mark_touching(const Triangles& triangles, const std::v
 /// consistently wound mesh.
 double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& shell, Health& health,
                     Offenders& offenders) {
+  assert(health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0);
   struct Probe {
     double volume_mm3 = 0.0;
     /// The shell's point of largest x, one that no other shell shares where there is any.
@@ -261,6 +265,7 @@ class MeetsElsewhere {
     if (shared == 1)
       return CGAL::do_intersect(triangle(a), opposite(b, shared_b)) ||
              CGAL::do_intersect(triangle(b), opposite(a, shared_a));
+    assert(shared == 2);
     for (std::size_t i = 0; i < 3; ++i)
       if (std::find(a.begin(), a.end(), b[i]) == a.end()) own_b = i;
     // Folded flat onto each other: coplanar, with both free corners on one side of the shared edge.
@@ -329,6 +334,7 @@ void test_intersections(const Triangles& triangles, const std::vector<std::uint8
 
 /// " at (12.5, -80.25, 3) mm", where a triangle's middle is.
 std::string place_of(const Triangles& triangles, std::uint32_t triangle) {
+  assert(triangle < triangles.faces.size());
   const auto& [a, b, c] = triangles.faces[triangle];
   const glm::dvec3 middle = (triangles.points_mm[a] + triangles.points_mm[b] + triangles.points_mm[c]) / 3.0;
   std::array<char, 96> place{};

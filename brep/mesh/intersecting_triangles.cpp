@@ -6,6 +6,7 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <tbb/blocked_range.h>
@@ -39,6 +40,7 @@ struct Box {
 };
 
 Box box_of(const Triangles& surface, std::uint32_t face) {
+  assert(face < surface.faces.size());
   Box box;
   for (const std::uint32_t v : surface.faces[face]) box.add(surface.points_mm[v]);
   return box;
@@ -53,6 +55,7 @@ Box box_of(const Triangles& surface) {
 
 /// 20 bits spread to every third.
 std::uint64_t spread(std::uint64_t bits) {
+  assert(bits < (1u << 20));
   bits = (bits | bits << 32) & 0x001f00000000ffffu;
   bits = (bits | bits << 16) & 0x001f0000ff0000ffu;
   bits = (bits | bits << 8) & 0x100f00f00f00f00fu;
@@ -106,12 +109,16 @@ class MortonTree {
 
   bool empty() const { return faces_.empty(); }
   Node root() const { return {1, 0, faces_.size()}; }
-  const Box& box(const Node& node) const { return node_boxes_[node.number]; }
+  const Box& box(const Node& node) const {
+    assert(node.number < node_boxes_.size());
+    return node_boxes_[node.number];
+  }
   const Box& box(std::size_t i) const { return boxes_[i]; }
   std::uint32_t face(std::size_t i) const { return faces_[i]; }
 
  private:
   Box build(const Node& node) {
+    assert(node.begin < node.end && node.end <= faces_.size());
     if (node_boxes_.size() <= node.number) node_boxes_.resize(2 * node.number + 2);
     Box box;
     if (node.is_leaf()) {
@@ -178,6 +185,7 @@ IntersectingTriangles intersecting_triangles(const Triangles& a, const Triangles
   std::vector<std::uint8_t> meets(pairs.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      assert(pairs[i].first < a.faces.size() && pairs[i].second < b.faces.size());
       const Kernel::Triangle_3 s = exact(a, pairs[i].first), t = exact(b, pairs[i].second);
       meets[i] = s.is_degenerate() || t.is_degenerate() || CGAL::do_intersect(s, t);
     }

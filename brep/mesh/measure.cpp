@@ -5,6 +5,7 @@
 #include "brep/mesh/measure.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -62,6 +63,7 @@ struct MeshCorners {
   const Mesh& mesh;
   std::size_t count() const { return mesh.n_faces(); }
   Corners operator()(std::size_t f) const {
+    assert(f < count() && !mesh.status(Mesh::FaceHandle(static_cast<int>(f))).deleted());
     const Mesh::HalfedgeHandle h = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
     return {end_of(mesh.prev_halfedge_handle(h)), end_of(h), end_of(mesh.next_halfedge_handle(h))};
   }
@@ -81,6 +83,7 @@ struct ListCorners {
   std::size_t count() const { return triangles.faces.size(); }
   Corners operator()(std::size_t f) const {
     const auto& face = triangles.faces[f];
+    assert(std::max({face[0], face[1], face[2]}) < triangles.points_mm.size());
     return {triangles.points_mm[face[0]], triangles.points_mm[face[1]], triangles.points_mm[face[2]]};
   }
 
@@ -153,6 +156,7 @@ double edge_curvature_mm(const glm::dvec3& n, const glm::dvec3& m, double length
 
 /// Edges with one triangle count nothing. Precondition: normals are in the order of the faces.
 double absolute_mean_curvature_mm(const Mesh& mesh, const std::vector<glm::dvec3>& normals) {
+  assert(normals.size() == mesh.n_faces());
   return blockwise_sum<double>(mesh.n_edges(), [&](std::size_t i) {
     const Mesh::EdgeHandle e(static_cast<int>(i));
     if (mesh.is_boundary(e)) return 0.0;
@@ -194,6 +198,7 @@ SecondMoments second_moments(const Corners& t, const glm::dvec3& tip) {
 
 /// The tensor about the centroid, which stands at `arm` from where the moments were taken (Steiner).
 glm::dmat3 inertia_of(SecondMoments moments, double volume, const glm::dvec3& arm) {
+  assert(volume != 0.0);
   moments.squares -= volume * arm * arm;
   moments.products -= volume * products_of(arm, arm);
   const glm::dvec3 &s = moments.squares, &p = moments.products;

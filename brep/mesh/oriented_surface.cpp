@@ -2,6 +2,7 @@
 #include "brep/mesh/oriented_surface.h"
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <tbb/blocked_range.h>
@@ -68,6 +69,7 @@ struct OrientedSurface::Surface {
   }
 
   SignedFoot signed_foot(const glm::dvec3& p_mm, const Foot& foot) const {
+    assert(foot.face < faces.size());
     const Face& face = faces[foot.face];
     SignedFoot answer{foot.p_mm, face.normal, foot.distance_mm, false};
     std::size_t zeros = 0, zero = 0, full = 0;
@@ -79,6 +81,7 @@ struct OrientedSurface::Surface {
         full = k;
       }
     }
+    assert(zeros < 3);
     if (zeros == 2) {
       answer.normal = corner_normals[face.corners[full]];
       answer.on_border = corner_on_border[face.corners[full]] != 0;

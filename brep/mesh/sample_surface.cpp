@@ -2,6 +2,7 @@
 #include "brep/mesh/sample_surface.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 
@@ -25,6 +26,7 @@ SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm) {
     const glm::dvec3 normal = glm::cross(ab, ac);
     const double twice = glm::length(normal);
     if (twice == 0.0) continue;
+    assert(parts >= 1.0 && parts < 1e6);
     const auto n = static_cast<int>(parts);
     const auto add = [&](double u, double v) {
       samples.points_mm.push_back(a + (u / parts) * ab + (v / parts) * ac);

@@ -11,12 +11,12 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "brep/mesh/error.h"
+
 // The halfedge structure is written directly rather than by add_face, which prints to the standard error,
 // depends on the order of the triangles at vertices where several fans meet, and cannot say what is wrong.
 // 1 refuse triangles that are none; 2 pair halfedges by sorting those of each point; 3 tell the fans at each
 // point apart; 4 write edges, faces and the loops along the boundary.
-
-#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -73,6 +73,7 @@ std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
   std::vector<std::uint32_t> place(begin.begin(), begin.end() - 1);
   for (std::uint32_t c = 0; c < corner_count; ++c) {
     const Side side = side_of(c);
+    assert(place[side.low] < begin[side.low + 1]);
     sides[place[side.low]++] = side;
   }
   tbb::parallel_for(
@@ -99,6 +100,7 @@ std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
       }
       continue;
     }
+    assert(opposite[first] == none && opposite[second] == none);
     opposite[first] = second;
     opposite[second] = first;
   }

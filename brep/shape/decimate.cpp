@@ -6,6 +6,7 @@
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -44,6 +45,7 @@ Mesh round_of_collapses(const Mesh& mesh, const DecimateOptions& options, const 
   Mesh coarse = mesh;
   coarse.request_face_normals();
   coarse.update_face_normals();
+  assert(locked.size() == mesh.n_vertices());
   for (const auto vertex : coarse.vertices())
     coarse.status(vertex).set_locked(locked[static_cast<std::size_t>(vertex.idx())]);
 
@@ -68,6 +70,7 @@ Mesh round_of_collapses(const Mesh& mesh, const DecimateOptions& options, const 
 
 /// Locks the vertices of `mesh` about a triangle of `coarse`; how many that are that were not.
 std::size_t lock_about(const Mesh& coarse, int face, const Mesh& mesh, std::vector<bool>& locked) {
+  assert(face >= 0 && static_cast<std::size_t>(face) < coarse.n_faces());
   OpenMesh::Vec3d centre(0.0, 0.0, 0.0);
   for (const auto vertex : coarse.fv_range(OpenMesh::FaceHandle(face))) centre += coarse.point(vertex) / 3.0;
   double reach = 0.0;

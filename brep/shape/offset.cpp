@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -25,6 +26,7 @@ using Place = glm::ivec3;
 
 /// A place as a number that sorts by z, y, x.
 std::uint64_t key_of(const Place& p) {
+  assert(glm::all(glm::greaterThanEqual(p, Place(0))) && glm::all(glm::lessThan(p, Place(1 << side_bits))));
   return (static_cast<std::uint64_t>(p.z) << 2 * side_bits) | (static_cast<std::uint64_t>(p.y) << side_bits) |
          static_cast<std::uint64_t>(p.x);
 }
@@ -36,6 +38,7 @@ Place place_of(std::uint64_t key) {
 
 /// Bit 0 is x: one of a cell's corners, or the way along an edge from its lower end.
 Place corner_place(int corner) {
+  assert(corner >= 0 && corner < 8);
   return {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
 }
 
@@ -112,6 +115,7 @@ struct Corners {
 
   double at(const Place& p) const {
     const auto found = std::lower_bound(keys.begin(), keys.end(), key_of(p));
+    assert(found != keys.end() && *found == key_of(p));
     return values[static_cast<std::size_t>(found - keys.begin())];
   }
 };
@@ -149,6 +153,7 @@ constexpr std::array<Tetrahedron, 6> tetrahedra = {
     {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
 
 Edge edge_between(const Place& cell, int p, int q) {
+  assert(((p & q) == p || (p & q) == q) && p != q);
   const int low = p & q;  // one of the two, as the tetrahedra's edges only ascend
   return {key_of(cell + corner_place(low)), (p | q) ^ low};
 }
@@ -200,7 +205,10 @@ struct Root {
   double low = 0.0, high = 1.0, at_low = 0.0, at_high = 0.0, share = 0.5;
   int kept = 0;  // the end that stayed: -1 low, 1 high
 
-  void guess() { share = std::clamp(low + (high - low) * at_low / (at_low - at_high), low, high); }
+  void guess() {
+    assert((at_low < 0.0) != (at_high < 0.0));
+    share = std::clamp(low + (high - low) * at_low / (at_low - at_high), low, high);
+  }
   void learn(double value) {
     if ((value < 0.0) == (at_low < 0.0)) {
       low = share;
@@ -238,6 +246,7 @@ std::vector<glm::dvec3> points_on(const std::vector<Edge>& edges, const Corners&
     tried_mm.reserve(open.size());
     for (const std::size_t i : open) tried_mm.push_back(place(i));
     const std::vector<double> values = field.at(tried_mm);
+    assert(values.size() == open.size());
     std::vector<std::size_t> still_open;
     for (std::size_t k = 0; k < open.size(); ++k) {
       if (std::abs(values[k]) <= 0x1p-11 * lattice.cell_mm) continue;
@@ -282,6 +291,7 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
   Triangles surface;
   surface.points_mm = points_on(edges, corners, field, lattice);
   const auto number = [&](const Edge& edge) {
+    assert(std::binary_search(edges.begin(), edges.end(), edge));
     return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
   };
   for (const EdgeTriangle& t : triangles) surface.faces.push_back({number(t[0]), number(t[1]), number(t[2])});

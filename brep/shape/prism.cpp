@@ -9,6 +9,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -82,6 +83,7 @@ std::vector<glm::dvec2> distinct_points(const std::vector<glm::dvec2>& polygon, 
 }
 
 bool follows(const Side& a, const Side& b) {
+  assert(a.index < a.side_count && b.index < b.side_count);
   return a.polygon == b.polygon && (a.index + 1) % a.side_count == b.index;
 }
 
@@ -121,6 +123,7 @@ void count_nesting(Triangulation& triangulation) {
   std::deque<std::pair<Triangulation::Face_handle, int>> borders{{triangulation.infinite_face(), 0}};
   while (!borders.empty()) {
     const auto [start, level] = borders.front();
+    assert(level >= 0);
     borders.pop_front();
     if (start->info() != unseen) continue;
     start->info() = level;
@@ -185,6 +188,7 @@ Solid solid_of(const Prism& prism) {
     if (face->info() % 2 == 0) continue;
     const std::array<std::uint32_t, 3> v{face->vertex(0)->info(), face->vertex(1)->info(),
                                          face->vertex(2)->info()};
+    assert(std::max({v[0], v[1], v[2]}) < count);
     triangles.faces.push_back({v[0], v[1], v[2]});
     triangles.faces.push_back({v[0] + count, v[2] + count, v[1] + count});
     for (int i = 0; i < 3; ++i) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -129,9 +130,11 @@ class Mender {
 
  private:
   std::string name(std::size_t f) const {
+    assert(f < origin_.size());
     return origin_[f] == is_new ? "of a closed hole" : std::to_string(origin_[f]);
   }
   glm::dvec3 centre(std::size_t f) const {
+    assert(f < repair_.surface.faces.size());
     const Face& face = repair_.surface.faces[f];
     const auto& points = repair_.surface.points_mm;
     return (points[face[0]] + points[face[1]] + points[face[2]]) / 3.0;
@@ -176,6 +179,7 @@ class Mender {
       repair_.surface.faces[count] = repair_.surface.faces[f];
       origin_[count++] = origin_[f];
     }
+    assert(origin_.size() == kept.size());
     repair_.surface.faces.resize(count);
     origin_.resize(count);
   }
@@ -265,6 +269,7 @@ class Mender {
   /// Turns closed shells outward, or inward within an odd number of others; of open ones, so that fewer of
   /// their triangles have been turned.
   void place_shells(const std::vector<std::uint32_t>& shell, std::vector<std::uint8_t>& turned) {
+    assert(turned.size() == repair_.surface.faces.size() && shell.size() == turned.size());
     Triangles wound = repair_.surface;
     for (std::size_t f = 0; f < turned.size(); ++f)
       if (turned[f]) std::swap(wound.faces[f][1], wound.faces[f][2]);

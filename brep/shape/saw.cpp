@@ -2,6 +2,7 @@
 #include "brep/shape/saw.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -13,11 +14,13 @@ namespace octotomy::brep {
 namespace {
 
 glm::dvec2 left_of(const glm::dvec2& along) {
+  assert(glm::length(along) > 0.0);
   return glm::dvec2(-along.y, along.x) / glm::length(along);
 }
 
 /// The line moved by `side` to its left; at a corner both moved pieces meet.
 std::vector<glm::dvec2> moved_aside(const std::vector<glm::dvec2>& line, double side) {
+  assert(line.size() >= 2);
   std::vector<glm::dvec2> moved;
   for (std::size_t k = 0; k < line.size(); ++k) {
     const glm::dvec2 before = left_of(k > 0 ? line[k] - line[k - 1] : line[1] - line[0]);

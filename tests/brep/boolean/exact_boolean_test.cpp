@@ -2,6 +2,7 @@
 #include "brep/boolean/exact_boolean.h"
 
 #include <gtest/gtest.h>
+#include <stop_token>
 
 #include "brep/mesh/measure.h"
 #include "tests/brep/shapes.h"
@@ -47,6 +48,21 @@ TEST(ExactBoolean, AnOperandThatMeetsItselfDoesNotPassForASolid) {
       shapes::together(shapes::sphere({0, 0, 0}, 2, 2), shapes::sphere({1, 0.1, 0.2}, 2, 2));
   EXPECT_ANY_THROW(exact_boolean(trusted_solid(twice, Proof::Connection), Operation::Union,
                                  solid_of(shapes::box({-3, -3, 0.31}, {0.7, 3, 3}))));
+}
+
+TEST(ExactBoolean, ReportsItsProgressAndStopsWhenAsked) {
+  const Solid a = solid_of(shapes::sphere({0, 0, 0}, 3, 2)),
+              b = solid_of(shapes::sphere({2, 0.3, 0.4}, 2, 2));
+  std::stop_source source;
+  double last = 0.0;
+  const Progress progress{source.get_token(), [&](double fraction) {
+                            EXPECT_GE(fraction, last);
+                            last = fraction;
+                            if (fraction > 0.3) source.request_stop();
+                          }};
+  EXPECT_THROW(exact_boolean(a, Operation::Union, b, progress), Stopped);
+  EXPECT_GT(last, 0.3);
+  EXPECT_LT(last, 0.9) << "it went on after the stop";
 }
 
 }  // namespace
