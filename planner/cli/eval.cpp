@@ -96,10 +96,7 @@ Operand operand_of(const std::string& name, const fs::path& path,
     if (window == windows.end())
       throw std::runtime_error(path.string() + ": is grey, say which object '" + name + "' is: --window " +
                                name + "=LOW:HIGH, for example --window " + name + "=300:");
-    const WindowText range = parse_window(window->second);
-    voxel::Window leaf{*grey, range.low};
-    if (range.high) leaf.high = *range.high;
-    return {leaf, grey->universe(), std::nullopt};
+    return {window_on(*grey, parse_window(window->second)), grey->universe(), std::nullopt};
   }
   if (window != windows.end())
     throw std::runtime_error(path.string() + ": holds no samples to take a --window of: leave '" + name +

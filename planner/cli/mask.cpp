@@ -4,7 +4,7 @@
 
 #include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
-#include "planner/plan/region_file.h"
+#include "planner/file/region_file.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 

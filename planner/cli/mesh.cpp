@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include <limits>
-
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "brep/shape/decimate.h"
@@ -10,10 +8,10 @@
 #include "convert/surface/isosurface.h"
 #include "convert/surface/partial_surface.h"
 #include "convert/surface/trace_contours.h"
-#include "planner/cli/mesh_file.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
+#include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
 #include "voxel/solid/combine.h"
@@ -31,10 +29,6 @@ struct MeshText {
   std::optional<std::size_t> faces;
   ScanIn scan;
 };
-
-double high_of(const WindowText& window) {
-  return window.high.value_or(std::numeric_limits<double>::infinity());
-}
 
 brep::Triangles cuberille_of(const voxel::Octree& octree, const MeshText& text) {
   return triangles_of(convert::cuberille(
@@ -56,7 +50,7 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const WindowText& wind
                  : text.tiling == "greatest-volume" ? brep::TileCost::greatest_volume
                  : text.tiling == "least-angle"     ? brep::TileCost::least_angle
                                                     : brep::TileCost::shortest_span;
-  brep::TiledSections tiled = convert::contour_surface(scene, window.low, high_of(window), options);
+  brep::TiledSections tiled = convert::contour_surface(scene, window.low, window.high_or_infinity(), options);
   findings.push_back("contours: " + std::to_string(tiled.strips) + " pairs joined by strips, " +
                      std::to_string(tiled.crossed_strips) +
                      " by overlay as their strips would cross something, " + std::to_string(tiled.overlaid) +
@@ -73,10 +67,8 @@ brep::Triangles of_octree(const MeshText& text, Timings& timings, std::vector<st
   const Stopwatch watch(timings, text.surface);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     const WindowText window = window_of(text, findings);
-    if (!cubes) return convert::isosurface(*grey, window.low, high_of(window));
-    voxel::Window leaf{*grey, window.low};
-    if (window.high) leaf.high = *window.high;
-    return cuberille_of(voxel::combine(grey->universe(), voxel::Expression(leaf)), text);
+    if (!cubes) return convert::isosurface(*grey, window.low, window.high_or_infinity());
+    return cuberille_of(voxel::combine(grey->universe(), voxel::Expression(window_on(*grey, window))), text);
   }
   if (!text.window.empty())
     throw std::runtime_error(text.in.string() + ": holds no samples to take a --window of: leave it out");
@@ -100,7 +92,7 @@ brep::Triangles of_scan(const Program& program, const MeshText& text, Timings& t
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   need_hounsfield(text.window, scene);
   const Stopwatch watch(timings, text.surface);
-  if (text.surface == "isosurface") return convert::isosurface(scene, window.low, high_of(window));
+  if (text.surface == "isosurface") return convert::isosurface(scene, window.low, window.high_or_infinity());
   if (text.surface == "contours") return tiled_contours(scene, window, text, findings);
   throw std::runtime_error(
       text.in.string() +

@@ -3,8 +3,9 @@
 #include "brep/boolean/exact_boolean.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
-#include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
+#include "planner/cli/verb.h"
+#include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
 

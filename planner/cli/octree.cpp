@@ -40,9 +40,7 @@ struct OctreeText {
 };
 
 voxel::Octree windowed(const voxel::GreyOctree& grey, const WindowText& window) {
-  voxel::Window leaf{grey, window.low};
-  if (window.high) leaf.high = *window.high;
-  return voxel::combine(grey.universe(), voxel::Expression(leaf));
+  return voxel::combine(grey.universe(), voxel::Expression(window_on(grey, window)));
 }
 
 std::string content_of(const fs::path& path) {

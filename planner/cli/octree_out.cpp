@@ -2,19 +2,10 @@
 #include "planner/cli/octree_out.h"
 
 #include "planner/plan/octree_summary.h"
-#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 
 namespace fs = std::filesystem;
-
-bool is_octree(const fs::path& path) {
-  return voxel::extension_of(path) == ".octree";
-}
-
-void need_octree_extension(const fs::path& out) {
-  if (!is_octree(out)) throw std::runtime_error(out.string() + ": an octree is written as .octree");
-}
 
 voxel::OctreeFile read_timed(const fs::path& path, Timings& timings) {
   const Stopwatch watch(timings, "read");

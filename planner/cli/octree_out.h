@@ -7,9 +7,6 @@
 // What the verbs that write an .octree file have in common.
 namespace octotomy::planner::cli {
 
-/// Throws std::runtime_error where a path does not end in .octree.
-void need_octree_extension(const std::filesystem::path& out);
-
 /// Reads the file; "read" in the timings.
 voxel::OctreeFile read_timed(const std::filesystem::path& path, Timings& timings);
 

@@ -11,7 +11,6 @@ namespace octotomy::planner::cli {
 
 void add_prepare(Program& program);
 void add_segment(Program& program);
-void add_slice(Program& program);
 
 /// Throws std::runtime_error where the window is a tissue's name, which parse_window() takes too (tissue.h),
 /// and the samples are no Hounsfield units.
@@ -19,7 +18,5 @@ void need_hounsfield(const std::string& window, const voxel::Scene& scene);
 
 /// #RRGGBB, each part 0 to 1; throws CLI::ValidationError where it is not that.
 glm::vec3 parse_colour(const std::string& text);
-/// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
-glm::vec3 colour_of(std::size_t number);
 
 }  // namespace octotomy::planner::cli

@@ -6,20 +6,20 @@
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "convert/deck/deck.h"
-#include "convert/deck/materials.h"
 #include "convert/tet/octree_tetrahedra.h"
 #include "convert/tet/region_tetrahedra.h"
 #include "convert/tet/separate_regions.h"
 #include "convert/tet/tetrahedralise.h"
 #include "convert/voxel/voxelise.h"
 #include "convert/voxel/winding_number.h"
-#include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/deck/filling.h"
+#include "planner/deck/stiffness.h"
+#include "planner/file/landmarks_file.h"
+#include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
-#include "planner/plan/landmarks_file.h"
 #include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
@@ -28,14 +28,13 @@ namespace {
 struct TetText {
   std::filesystem::path in, out, scan;
   convert::TetOptions options;
-  convert::MaterialOptions materials;
+  Stiffness stiffness;
   std::string mesher = "best";
   std::optional<double> max_volume_mm3, voxel_mm, size_mm;
   std::vector<std::filesystem::path> regions;
   std::vector<std::string> finer;
   std::filesystem::path landmarks;
   bool contact = false;
-  std::vector<double> density;
   double seconds = 60.0;
   bool fallback = false, msh_2_2 = false;
   int order = 1;
@@ -226,20 +225,11 @@ convert::DeckOptions deck_of(const Program& program, const TetText& text, Filled
   for (std::string& note : quality_notes(quality)) deck.notes.push_back(std::move(note));
   for (const std::string& finding : filled.findings) deck.notes.push_back(finding);
   if (text.scan.empty()) return deck;
-  convert::MaterialOptions options = text.materials;
-  if (!text.density.empty())
-    options.calibration = convert::DensityCalibration{text.density[0], text.density[1]};
-  options.progress = {program.stop.get_token(), program.progress("materials")};
   const voxel::Scene scan = read_scan(program, text.scan, text.scan_in, timings);
   const Stopwatch watch(timings, "materials");
-  convert::ElementMaterials made = convert::element_materials(filled.tetrahedra, scan, options);
-  deck.materials = std::move(made.materials);
-  deck.material_of_tet = std::move(made.material_of_tet);
-  deck.fields = {{"HU", std::move(made.hu)},
-                 {"density_g_cm3", std::move(made.density_g_cm3)},
-                 {"E_MPa", std::move(made.youngs_modulus_mpa)}};
-  deck.notes.push_back("stiffness: " + convert::stiffness_law(options.law).source);
-  for (const std::string& finding : made.findings) {
+  for (const std::string& finding :
+       add_stiffness(text.stiffness, filled.tetrahedra, glm::dmat4(1.0), scan,
+                     {program.stop.get_token(), program.progress("materials")}, deck)) {
     deck.notes.push_back(finding);
     filled.findings.push_back(finding);
   }
@@ -299,26 +289,26 @@ void add_material_options(CLI::App& verb, TetText& text) {
   std::vector<std::string> laws;
   for (const convert::StiffnessLaw& law : convert::stiffness_laws()) laws.push_back(law.name);
   verb.add_option("--scan", text.scan, "Take each element's stiffness from this scan in HU")->group(group);
-  verb.add_option("--density", text.density,
+  verb.add_option("--density", text.stiffness.density,
                   "SLOPE,INTERCEPT: g/cm3 = intercept + slope HU, as the scan's calibration phantom says")
       ->delimiter(',')
       ->expected(2)
       ->group(group);
-  verb.add_option("--law", text.materials.law, "Stiffness of a density")
+  verb.add_option("--law", text.stiffness.law, "Stiffness of a density")
       ->check(CLI::IsMember(laws))
       ->capture_default_str()
       ->group(group);
-  verb.add_option("--bins", text.materials.bins, "Materials that elements are gathered into, by stiffness")
+  verb.add_option("--bins", text.stiffness.bins, "Materials that elements are gathered into, by stiffness")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
       ->group(group);
-  verb.add_option("--surface-depth", text.materials.surface_depth_mm,
+  verb.add_option("--surface-depth", text.stiffness.surface_depth_mm,
                   "Take what is nearer to the surface than so many mm from this depth, as voxels there hold "
                   "bone and what is beside it; 0: from where it is")
       ->check(between(0.0, 20.0))
       ->capture_default_str()
       ->group(group);
-  verb.add_option("--poisson", text.materials.poisson_ratio, "Poisson's ratio of them")
+  verb.add_option("--poisson", text.stiffness.poisson_ratio, "Poisson's ratio of them")
       ->check(between(0.0, 0.499))
       ->capture_default_str()
       ->group(group);

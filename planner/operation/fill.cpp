@@ -48,10 +48,7 @@ Operation fill_operation() {
       .takes(field("object", &Fill::object, "The object.").required().positional("solid"))
       .example(R"({"id": "full", "do": "fill", "object": "skull"})")
       .on_files("octotomy fill skull.stl -o full.stl")
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -102,10 +102,7 @@ Operation mask_operation() {
         {"view": "left", "polygons_mm": [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]]}]})")
       .tool()
       .check(check)
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner
