@@ -127,17 +127,10 @@ int parse_and_run(int count, char** arguments) {
   cli::add_verify_verbs(program);
   cli::add_info(program);
   cli::add_convert(program);
-  cli::add_mesh(program);
   cli::add_mark(program);
   cli::add_prepare(program);
   cli::add_segment(program);
-  cli::add_mesh_verbs(program);
-  cli::add_tet(program);
-  cli::add_voxelise(program);
   cli::add_operation_verbs(program);
-  cli::add_octree(program);
-  cli::add_eval(program);
-  cli::add_mask(program);
   cli::add_phantom(program);
   try {
     app.parse(count, arguments);

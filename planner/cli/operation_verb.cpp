@@ -67,6 +67,15 @@ std::string in_options(std::string text, const std::string& operation, const std
   return text;
 }
 
+/// A refusal of an option's words, which it shows.
+std::string with_words(std::string text, const Field& field, const std::vector<std::string>& words) {
+  if (text.starts_with(field.name + ": ")) text.erase(0, field.name.size() + 2);
+  if (text.find(words.back()) != std::string::npos) return text;
+  std::string shown;
+  for (const std::string& word : words) shown += (shown.empty() ? "'" : " ") + word;
+  return shown + "' " + text;
+}
+
 /// The fields that the command line has: positionals and options.
 std::vector<Field> fields_of(const Operation& operation) {
   std::vector<Field> fields;
@@ -238,12 +247,7 @@ int answer_from_files(const Program& program, const Action& action, const Operat
   Timings timings;
   const FileBench bench{timings, program.stop.get_token(), program.progress(),
                         [&](const fs::path& path) { return read_scan(program, path, text.scan, timings); }};
-  const FileAnswer made = action.operation().on_files(action.value(), bench);
-  for (const std::string& finding : made.findings) warn(finding);
-  Json json = answer(timings);
-  json.update(made.json);
-  program.say(json, lines(made.rows));
-  return done;
+  return say(program, action.operation().on_files(action.value(), bench), timings);
 }
 
 void add_object_options(CLI::App& verb, OperationText& text) {
@@ -289,14 +293,14 @@ void add_field_options(CLI::App& verb, const Operation& operation, const std::ve
         verb.add_option(field.argument.value_or(option_of(field)), given, help_of(field, fresh.get()));
     option->type_name(word_form(field, fresh.get()));
     if (field.has_commas)
-      option->delimiter(',')->expected(1, -1);
+      option->delimiter(',')->expected(1, -1)->allow_extra_args(false);
     else if (field.is_repeated)
-      option->expected(1)->take_all();
+      option->expected(1)->take_all()->allow_extra_args(false);
     else if (takes_several(field, fresh.get()))
       option->expected(static_cast<int>(field.least.value_or(1.0)),
                        field.most ? static_cast<int>(*field.most) : -1);
     else
-      option->expected(1);
+      option->expected(1)->allow_extra_args(false);
     option->required(field.is_required);
     const bool is_named = names_scan(field, fresh.get()) || names_objects(field, fresh.get());
     if (field.is_input || is_named)
@@ -316,7 +320,8 @@ Action read_action(const Operation& operation, const FieldWords& words) {
       step[field.name] = json_of_words(field, action.value(), given->second);
       read_fields({field}, {{field.name, step[field.name]}}, Action(operation).value(), {});
     } catch (const std::runtime_error& error) {
-      throw CLI::ValidationError(field.argument.value_or(option_of(field)), error.what());
+      throw CLI::ValidationError(field.argument.value_or(option_of(field)),
+                                 with_words(error.what(), field, given->second));
     }
   }
   try {

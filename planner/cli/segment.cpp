@@ -9,7 +9,7 @@
 #include "planner/cli/scan_in.h"
 #include "planner/cli/scan_verbs.h"
 #include "planner/file/slice_contours.h"
-#include "planner/plan/octree_summary.h"
+#include "planner/measure/octree_summary.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "voxel/filter/label_map.h"

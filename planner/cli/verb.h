@@ -50,15 +50,8 @@ void add_convert(Program& program);
 void add_phantom(Program& program);
 void add_plan_verbs(Program& program);
 void add_look(Program& program);
-void add_mesh(Program& program);
-void add_mesh_verbs(Program& program);
-void add_tet(Program& program);
 void add_verify_verbs(Program& program);
-void add_voxelise(Program& program);
-void add_octree(Program& program);
-void add_eval(Program& program);
 void add_mark(Program& program);
-void add_mask(Program& program);
 
 /// LOW:HIGH, LOW: or LOW in sample units, or a tissue (tissue.h); throws CLI::ValidationError else.
 using WindowText = SampleWindow;

@@ -3,10 +3,10 @@
 // edited.
 #include "brep/contour/contour.h"
 #include "planner/file/file_kind.h"
+#include "planner/file/output_path.h"
 #include "planner/file/region_file.h"
 #include "planner/file/slice_contours.h"
 #include "planner/measure/result_json.h"
-#include "planner/file/output_path.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -155,7 +155,8 @@ Operation contours_operation() {
               .greater_than(0.0))
       .reads_scans()
       .example(
-          R"({"id": "lines", "do": "contours", "scan": "ct", "path": "bone.json", "window": "300:", "by_mm": 2})")
+          R"({"id": "lines", "do": "contours", "scan": "ct", "path": "bone.json",
+        "window": "300:", "by_mm": 2})")
       .on_files(
           "octotomy contours head.nrrd --window 300: --least-area 20 --thin 0.2 -o bone.json\n"
           "  octotomy contours bone.json --by 2 --edits mine.json -o margin.json\n"

@@ -11,6 +11,7 @@
 #include "planner/table/operation.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/morphology.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
@@ -87,6 +88,16 @@ voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::
   const double reach_mm = glm::length(parts.universe().lattice().spacing_mm());
   return symbol & (voxel::Expression(voxel::dilate(parts, reach_mm)) -
                    (voxel::Expression(object) - voxel::Expression(parts)));
+}
+
+voxel::Expression symbol_of_filled(const voxel::Expression& symbol, const voxel::Octree& object,
+                                   const voxel::Octree& filled) {
+  const voxel::Universe universe = filled.universe();
+  const double reach_mm = glm::length(universe.lattice().spacing_mm());
+  const voxel::Octree cavities =
+      voxel::combine(universe, voxel::Expression(filled) - voxel::Expression(object));
+  if (cavities.is_empty()) return symbol;
+  return symbol | (voxel::Expression(voxel::dilate(cavities, reach_mm)) & voxel::Expression(filled));
 }
 
 Operation parts_operation() {

@@ -23,4 +23,9 @@ KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::op
 voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::Octree& object,
                                   const voxel::Octree& parts);
 
+/// The same where cavities were filled: the filling reaches into the voxels about it, so that a motion leaves
+/// no gap between them and the surface that the samples show.
+voxel::Expression symbol_of_filled(const voxel::Expression& symbol, const voxel::Octree& object,
+                                   const voxel::Octree& filled);
+
 }  // namespace octotomy::planner

@@ -215,7 +215,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   const voxel::Octree window = bench.combined(*made.symbol);
   const voxel::Octree kept = bench.combined(voxel::Expression(made.octree) & voxel::Expression(window));
   if (chooses_parts(segment)) made.symbol = symbol_of_parts(*made.symbol, window, kept);
-  if (segment.fill) made.symbol = *made.symbol | (voxel::Expression(made.octree) - voxel::Expression(window));
+  if (segment.fill) made.symbol = symbol_of_filled(*made.symbol, kept, made.octree);
 }
 
 void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planner/file/file_kind.h"
+#include "planner/file/octree_in.h"
 #include "planner/file/output_path.h"
 #include "planner/measure/result_json.h"
 #include "planner/picture/colour.h"
@@ -13,7 +14,6 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/scan/image_file.h"
-#include "voxel/tree/octree_file.h"
 #include "voxel/view/reformat.h"
 
 namespace octotomy::planner {
@@ -50,11 +50,6 @@ struct Subject {
 Subject subject_of(const voxel::Scene& scene, const Slice& slice) {
   if (slice.window) need_hounsfield(*slice.window, scene);
   return {&scene, scene.lattice, voxel::unit(scene)};
-}
-
-voxel::OctreeFile read_timed(const fs::path& path, Timings& timings) {
-  const Stopwatch watch(timings, "read");
-  return voxel::read_octree(path);
 }
 
 Subject subject_of(const fs::path& path, Timings& timings) {

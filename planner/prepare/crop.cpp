@@ -28,7 +28,8 @@ Operation crop_operation() {
       .takes(field("low_mm", &Crop::low_mm, "A corner of the box, LPS.").required())
       .takes(field("high_mm", &Crop::high_mm, "The opposite corner, LPS.").required())
       .example(
-          R"({"id": "face", "do": "crop", "scan": "ct", "low_mm": [-90, -120, -80], "high_mm": [90, 110, 90]})")
+          R"({"id": "face", "do": "crop", "scan": "ct", "low_mm": [-90, -120, -80],
+        "high_mm": [90, 110, 90]})")
       .on_files("crop=X0,Y0,Z0,X1,Y1,Z1 (mm)")
       .scan(made);
 }

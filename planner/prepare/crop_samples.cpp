@@ -31,7 +31,8 @@ Operation crop_samples_operation() {
                  .required())
       .takes(field("last", &CropSamples::last, "Indices of the last sample that stays.").required())
       .example(
-          R"({"id": "part", "do": "crop_samples", "scan": "ct", "first": [0, 0, 10], "last": [255, 255, 90]})")
+          R"({"id": "part", "do": "crop_samples", "scan": "ct", "first": [0, 0, 10],
+        "last": [255, 255, 90]})")
       .on_files("crop_samples=I0,J0,K0,I1,J1,K1")
       .check(check)
       .scan(made);

@@ -30,7 +30,7 @@ TEST(PreparedScan, AHeadrestIsTakenOutAndThePlansScanStays) {
   voxel::Scene scene = ball_scene(12.0);
   auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   for (std::size_t at = 0; at < samples.size(); ++at)
-    if (at / 64 % 64 > 58) samples[at] = 500;  // a table at the back
+    if (at / 64 % 64 > 58 && at % 64 > 27 && at % 64 < 36) samples[at] = 500;  // a narrow table at the back
   voxel::write_scene(scene, folder / "ball.nrrd");
   const Evaluation evaluation =
       evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "table", "scans": {"ct": {"path": "ball.nrrd"}},
@@ -39,7 +39,7 @@ TEST(PreparedScan, AHeadrestIsTakenOutAndThePlansScanStays) {
                 {"id": "both", "do": "window", "scan": "ct", "low": 0}]})",
                           folder.path()));
   EXPECT_NEAR(evaluation.object("ball").voxel.measures.volume_mm3 / ball_mm3(12.0), 1.0, 0.02);
-  EXPECT_GT(evaluation.object("both").voxel.measures.volume_mm3, 2.0 * ball_mm3(12.0));
+  EXPECT_GT(evaluation.object("both").voxel.measures.volume_mm3, 1.3 * ball_mm3(12.0));
   EXPECT_EQ(evaluation.scans[1].details["parts_removed"], 1);
 }
 

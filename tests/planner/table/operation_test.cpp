@@ -67,7 +67,7 @@ TEST(Operation, EveryFieldSaysWhatItIsInOneSentence) {
                               ? (operation.voxel || operation.mesh) && operation.bound
                           : operation.makes == Makes::Scan        ? static_cast<bool>(operation.scan)
                           : operation.makes == Makes::Measurement ? static_cast<bool>(operation.measure)
-                                                                  : static_cast<bool>(operation.write);
+                                                                  : operation.write || operation.on_files;
     EXPECT_TRUE(is_whole) << operation.name;
   }
 }

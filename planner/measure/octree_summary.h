@@ -21,4 +21,10 @@ Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> b
 /// The same for people.
 std::string octree_text(const std::string& title, const Json& answer);
 
+/// Writes the file and says of it what octree_answer() does, the findings, and what else `more` has; its text
+/// for people is octree_text(). Throws voxel::Stopped before anything is written.
+FileAnswer octree_written(const voxel::OctreeFile& file, const std::filesystem::path& out,
+                          const std::stop_token& stop, Timings& timings,
+                          const std::vector<std::string>& findings = {}, const Json& more = Json::object());
+
 }  // namespace octotomy::planner

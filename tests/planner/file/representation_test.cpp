@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/plan/representation.h"
+#include "planner/file/representation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,36 +1,38 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+// A Boolean expression of octrees in files; in a plan it is combine's voxel kernel.
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "planner/cli/octree_out.h"
+#include "planner/file/file_kind.h"
+#include "planner/measure/octree_summary.h"
 #include "planner/table/nearest_name.h"
+#include "planner/table/operation.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/combine_grey.h"
 #include "voxel/solid/combine_shares.h"
 #include "voxel/solid/expression.h"
 
-namespace octotomy::planner::cli {
+namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct EvalText {
+struct Eval {
   std::string expression;
   fs::path out;
   std::vector<std::string> lets, windows, motions;
   bool grey = false;
-  std::string digitise = "centre";
-  std::string interpolate = "linear";
+  std::string digitise = "centre", interpolate = "linear";
 };
 
-voxel::Resampling resampling_of(const EvalText& text) {
+voxel::Resampling resampling_of(const Eval& asked) {
   using voxel::Interpolation;
-  return {text.digitise == "half" ? voxel::Resampling::Voxels::Half : voxel::Resampling::Voxels::Centre,
-          text.interpolate == "nearest" ? Interpolation::Nearest
-          : text.interpolate == "cubic" ? Interpolation::Cubic
-                                        : Interpolation::Linear};
+  return {asked.digitise == "half" ? voxel::Resampling::Voxels::Half : voxel::Resampling::Voxels::Centre,
+          asked.interpolate == "nearest" ? Interpolation::Nearest
+          : asked.interpolate == "cubic" ? Interpolation::Cubic
+                                         : Interpolation::Linear};
 }
 
 /// NAME=VALUE texts by name; refuses others, and names said twice.
@@ -40,10 +42,9 @@ std::map<std::string, std::string> bound(const std::vector<std::string>& texts, 
   for (const std::string& text : texts) {
     const auto equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-      throw CLI::ValidationError(option,
-                                 std::string("'").append(text).append("' binds nothing: give NAME=") + value);
+      throw std::runtime_error(option + ": '" + text + "' binds nothing: give NAME=" + value);
     if (!values.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
-      throw CLI::ValidationError(option, "'" + text.substr(0, equals) + "' is bound twice");
+      throw std::runtime_error(option + ": '" + text.substr(0, equals) + "' is bound twice");
   }
   return values;
 }
@@ -63,10 +64,9 @@ glm::dmat4 parse_motion(const std::string& name, const std::string& text) {
     const bool read = end != at;
     if (read && *end == ',') continue;
     if (read && *end == '\0' && (numbers.size() == 3 || numbers.size() == 7 || numbers.size() == 10)) break;
-    throw CLI::ValidationError("--motion",
-                               std::string("'").append(name).append("=").append(text) +
-                                   "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the "
-                                   "axis X,Y,Z, then perhaps the point X,Y,Z in mm it passes through");
+    throw std::runtime_error("--motion: '" + name + "=" + text +
+                             "' is no motion: give X,Y,Z in mm, then perhaps DEGREES and the "
+                             "axis X,Y,Z, then perhaps the point X,Y,Z in mm it passes through");
   }
   voxel::Motion motion;
   motion.translate_mm = {numbers[0], numbers[1], numbers[2]};
@@ -96,7 +96,7 @@ Operand operand_of(const std::string& name, const fs::path& path,
     if (window == windows.end())
       throw std::runtime_error(path.string() + ": is grey, say which object '" + name + "' is: --window " +
                                name + "=LOW:HIGH, for example --window " + name + "=300:");
-    return {window_on(*grey, parse_window(window->second)), grey->universe(), std::nullopt};
+    return {window_on(*grey, parse_sample_window(window->second)), grey->universe(), std::nullopt};
   }
   if (window != windows.end())
     throw std::runtime_error(path.string() + ": holds no samples to take a --window of: leave '" + name +
@@ -150,25 +150,24 @@ ShareResult combine_shares(const voxel::Expression& expression,
   return result;
 }
 
-int eval(const Program& program, const EvalText& text) {
-  need_octree_extension(text.out);
-  need_folder_of(text.out);
-  const auto lets = bound(text.lets, "--let", "FILE");
-  const auto windows = bound(text.windows, "--window", "LOW:HIGH");
-  const auto motions = bound(text.motions, "--motion", "X,Y,Z");
+FileAnswer on_files(const Eval& asked, const FileBench& bench) {
+  need_octree_extension(asked.out);
+  need_folder_of(asked.out);
+  const auto lets = bound(asked.lets, "--let", "FILE");
+  const auto windows = bound(asked.windows, "--window", "LOW:HIGH");
+  const auto motions = bound(asked.motions, "--motion", "X,Y,Z");
   const std::vector<std::string> known = names_of(lets);
   for (const auto& [name, unused] : windows)
     if (!lets.contains(name))
-      throw CLI::ValidationError("--window",
-                                 "'" + name + "' is not bound by --let" + suggestion(name, known));
+      throw std::runtime_error("--window: '" + name + "' is not bound by --let" + suggestion(name, known));
 
   // Read what the expression names, and no more.
-  const std::vector<std::string> used = voxel::names_in(text.expression);
+  const std::vector<std::string> used = voxel::names_in(asked.expression);
   std::vector<std::string> findings;
   for (const std::string& name : known)
     if (std::find(used.begin(), used.end(), name) == used.end())
       findings.push_back("--let " + name + ": the expression does not name it");
-  Timings timings;
+  Timings& timings = bench.timings;
   std::map<std::string, Operand> operands;
   {
     const Stopwatch watch(timings, "read");
@@ -193,25 +192,25 @@ int eval(const Program& program, const EvalText& text) {
                                                            "=X,Y,Z");
                              return parse_motion(found->first, found->second);
                            }};
-  const voxel::Expression expression = voxel::parse_expression(text.expression, names);
+  const voxel::Expression expression = voxel::parse_expression(asked.expression, names);
   const voxel::Universe universe = operands.at(used.front()).universe;
   for (const std::string& name : used)
     if (!(operands.at(name).universe == universe))
       findings.push_back(name + ": lives in another universe than " + used.front() +
                          ", whose voxels the result has: it is resampled there");
-  voxel::OctreeFile result{voxel::Octree::empty(universe), text.expression, ""};
+  voxel::OctreeFile result{voxel::Octree::empty(universe), asked.expression, ""};
   Json more = Json::object();
   const bool with_shares = std::any_of(operands.begin(), operands.end(),
                                        [](const auto& operand) { return operand.second.shares.has_value(); });
   {
     const Stopwatch watch(timings, "combine");
-    const voxel::Resampling resampling = resampling_of(text);
+    const voxel::Resampling resampling = resampling_of(asked);
     if (with_shares) {
-      if (text.grey) throw CLI::ValidationError("--grey", "filled shares are no samples: leave it out");
+      if (asked.grey) throw std::runtime_error("--grey: filled shares are no samples: leave it out");
       ShareResult combined = combine_shares(expression, operands);
       result.tree = std::move(combined.tree);
       more = std::move(combined.said);
-    } else if (text.grey) {
+    } else if (asked.grey) {
       voxel::GreyResult options;
       options.resampling = resampling;
       result.tree = voxel::combine_grey(universe, expression, options);
@@ -219,56 +218,48 @@ int eval(const Program& program, const EvalText& text) {
       result.tree = voxel::combine(universe, expression, resampling);
     }
   }
-  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"expression", text.expression}};
+  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"expression", asked.expression}};
   for (const std::string& name : used) made["let"][name] = fs::path(lets.at(name)).filename().string();
   for (const auto& [name, window] : windows) made["window"][name] = window;
   for (const auto& [name, motion] : motions) made["motion"][name] = motion;
   result.metadata = made.dump();
-  return write_and_say(program, result, text.out, timings, findings, more);
+  return octree_written(result, asked.out, bench.stop, timings, findings, more);
 }
 
 }  // namespace
 
-void add_eval(Program& program) {
-  const auto to_evaluate = std::make_shared<EvalText>();
-  CLI::App& evaluate = program.verb(
-      "eval", "Evaluates a Boolean expression of octrees: & | - ^ ~, parentheses, move(a, m)",
-      "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"
-      "  Files of filled shares (--digitise partial) give shares again, with bounds of the volume.",
-      [&program, to_evaluate] { return eval(program, *to_evaluate); });
-  evaluate.add_option("expression", to_evaluate->expression, "For example \"(a | b) - c\"")->required();
-  evaluate.add_option("-o,--out", to_evaluate->out, "An .octree file, in the universe of the first name")
-      ->required();
-  evaluate.add_option("--let", to_evaluate->lets, "NAME=FILE: what a name stands for, an .octree file")
-      ->type_name("NAME=FILE")
-      ->expected(1)
-      ->take_all();
-  evaluate
-      .add_option("--window", to_evaluate->windows,
-                  "NAME=LOW:HIGH or NAME=TISSUE: which object of a grey octree")
-      ->type_name("NAME=LOW:HIGH")
-      ->expected(1)
-      ->take_all();
-  evaluate
-      .add_option(
-          "--motion", to_evaluate->motions,
-          "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a translation in mm after a rotation about an axis through "
-          "a point")
-      ->type_name("NAME=X,Y,Z")
-      ->expected(1)
-      ->take_all();
-  evaluate.add_flag("--grey", to_evaluate->grey,
-                    "Keep samples: each voxel those of the first window that holds it");
-  evaluate
-      .add_option("--digitise", to_evaluate->digitise,
-                  "Which voxels a moved octree becomes: those whose centre it holds, or fills to the half")
-      ->check(CLI::IsMember({"centre", "half"}))
-      ->capture_default_str();
-  evaluate
-      .add_option("--interpolate", to_evaluate->interpolate,
-                  "How samples of a moved grey octree are read: nearest, linear or cubic")
-      ->check(CLI::IsMember({"nearest", "linear", "cubic"}))
-      ->capture_default_str();
+Operation eval_operation() {
+  return Describe<Eval>("eval",
+                        "Evaluates a Boolean expression of octrees: & | - ^ ~, parentheses, move(a, m).",
+                        Makes::File)
+      .takes(field("expression", &Eval::expression, "For example \"(a | b) - c\".")
+                 .required()
+                 .positional("expression"))
+      .takes(field("out", &Eval::out, "An .octree file, in the universe of the first name.").required())
+      .takes(field("lets", &Eval::lets, "NAME=FILE: what a name stands for, an .octree file.")
+                 .repeated()
+                 .called("let"))
+      .takes(field("windows", &Eval::windows, "NAME=LOW:HIGH or NAME=TISSUE: which object of a grey octree.")
+                 .repeated()
+                 .called("window"))
+      .takes(field("motions", &Eval::motions,
+                   "NAME=X,Y,Z[,DEGREES,X,Y,Z[,X,Y,Z]]: a translation in mm after a rotation about an axis "
+                   "through "
+                   "a point.")
+                 .repeated()
+                 .called("motion"))
+      .takes(field("grey", &Eval::grey, "Keeps samples: each voxel those of the first window that holds it."))
+      .takes(field("digitise", &Eval::digitise,
+                   "Which voxels a moved octree becomes: those whose centre it holds, or fills to the half.")
+                 .one_of({"centre", "half"}))
+      .takes(field("interpolate", &Eval::interpolate,
+                   "How samples of a moved grey octree are read: nearest, linear or cubic.")
+                 .one_of({"nearest", "linear", "cubic"}))
+      .example(R"({"id": "rest", "do": "eval", "expression": "skull - cut", "out": "rest.octree"})")
+      .on_files(
+          "octotomy eval \"skull - cut\" -o rest.octree --let skull=skull.octree --let cut=cut.octree\n"
+          "  Files of filled shares (--digitise partial) give shares again, with bounds of the volume.",
+          on_files);
 }
 
-}  // namespace octotomy::planner::cli
+}  // namespace octotomy::planner

@@ -1,33 +1,31 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/mask_file.h"
+
 #include <cmath>
 #include <limits>
 
-#include "planner/cli/numbers.h"
-#include "planner/cli/octree_out.h"
+#include "planner/file/file_kind.h"
+#include "planner/file/octree_in.h"
 #include "planner/file/region_file.h"
+#include "planner/measure/octree_summary.h"
+#include "planner/table/plan_universe.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 
-namespace octotomy::planner::cli {
+namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct MaskText {
-  fs::path out, slices, like, edit;
-  std::vector<std::string> regions;
-  std::optional<double> voxel_mm;
-};
-
 voxel::Region region_of(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos || colon == 0 || colon + 1 == text.size())
-    throw CLI::ValidationError("--region",
-                               "'" + text + "' is no region: give VIEW:FILE.json, as anterior:cut.json");
+    throw std::runtime_error("--region: '" + text +
+                             "' is no region: give VIEW:FILE.json, as anterior:cut.json");
   try {
     return read_region(voxel::parse_view(text.substr(0, colon)), text.substr(colon + 1));
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--region", error.what());
+    throw std::runtime_error(std::string("--region: ") + error.what());
   }
 }
 
@@ -89,26 +87,27 @@ voxel::Universe universe_around(const voxel::RegionMask& regions,
   return voxel::universe_around(bounds.box(), voxel_mm);
 }
 
-int mask(const Program& program, const MaskText& text) {
-  need_octree_extension(text.out);
-  need_folder_of(text.out);
-  if (text.regions.empty() && text.slices.empty())
-    throw CLI::ValidationError("--region", "a mask needs --region VIEW:FILE.json or --slices FILE.json");
-  Timings timings;
+}  // namespace
+
+FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
+  need_octree_extension(asked.out);
+  need_folder_of(asked.out);
+  if (asked.region_files.empty() && asked.slices.empty())
+    throw std::runtime_error("a mask needs --region VIEW:FILE.json or --slices FILE.json");
   voxel::RegionMask regions;
   std::optional<voxel::SliceMask> slices;
   std::optional<voxel::Expression> expression;
   std::optional<voxel::Universe> universe;
   {
-    const Stopwatch watch(timings, "read");
-    for (const std::string& region : text.regions) regions.regions.push_back(region_of(region));
-    if (!text.slices.empty()) slices = read_slices(text.slices);
-    if (!text.like.empty()) universe = universe_of_file(text.like, text.voxel_mm);
-    if (!text.edit.empty()) {
-      const voxel::OctreeFile old = voxel::read_octree(text.edit);
+    const Stopwatch watch(bench.timings, "read");
+    for (const std::string& region : asked.region_files) regions.regions.push_back(region_of(region));
+    if (!asked.slices.empty()) slices = read_slices(asked.slices);
+    if (!asked.like.empty()) universe = universe_of_file(asked.like, asked.voxel_mm);
+    if (!asked.edit.empty()) {
+      const voxel::OctreeFile old = voxel::read_octree(asked.edit);
       const auto* octree = std::get_if<voxel::Octree>(&old.tree);
       if (octree == nullptr)
-        throw std::runtime_error(text.edit.string() + ": only a binary octree is a mask that can be edited");
+        throw std::runtime_error(asked.edit.string() + ": only a binary octree is a mask that can be edited");
       if (!universe) universe = octree->universe();
       expression = *octree;
     }
@@ -118,49 +117,20 @@ int mask(const Program& program, const MaskText& text) {
   };
   if (!regions.regions.empty()) also(regions);
   if (slices) also(*slices);
-  if (!universe) universe = universe_around(regions, slices, text.voxel_mm.value_or(1.0));
-  voxel::OctreeFile file{voxel::Octree::empty(*universe), text.out.stem().string(), ""};
+  if (!universe) universe = universe_around(regions, slices, asked.voxel_mm.value_or(1.0));
+  voxel::OctreeFile file{voxel::Octree::empty(*universe), asked.out.stem().string(), ""};
   {
-    const Stopwatch watch(timings, "combine");
+    const Stopwatch watch(bench.timings, "combine");
     file.tree = voxel::combine(*universe, *expression);
   }
   std::vector<std::string> findings;
   if (std::get<voxel::Octree>(file.tree).is_empty())
     findings.emplace_back("the mask holds no voxel: its regions do not overlap, or lie outside the universe");
-  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"regions", text.regions}};
-  if (slices) made["slices"] = text.slices.filename().string();
-  if (!text.edit.empty()) made["edited"] = text.edit.filename().string();
+  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"regions", asked.region_files}};
+  if (slices) made["slices"] = asked.slices.filename().string();
+  if (!asked.edit.empty()) made["edited"] = asked.edit.filename().string();
   file.metadata = made.dump();
-  return write_and_say(program, file, text.out, timings, findings);
+  return octree_written(file, asked.out, bench.stop, bench.timings, findings);
 }
 
-}  // namespace
-
-void add_mask(Program& program) {
-  const auto text = std::make_shared<MaskText>();
-  CLI::App& verb = program.verb(
-      "mask", "Makes a volume of interest from regions drawn in views or on parallel slices",
-      "octotomy mask -o cut.octree --region anterior:front.json --region left:side.json --like head.nrrd\n"
-      "  octotomy mask -o less.octree --edit cut.octree --region 35,15:oblique.json\n"
-      "A region's file: {\"polygons_mm\": [[[-40,-60],[40,-60],[40,-25],[-40,-25]]]}",
-      [&program, text] { return mask(program, *text); });
-  verb.add_option("-o,--out", text->out, "An .octree file")->required();
-  verb.add_option("--region", text->regions,
-                  "VIEW:FILE.json, repeated: the mask is what all of their back-projections enclose")
-      ->type_name("VIEW:FILE")
-      ->expected(1)
-      ->take_all();
-  verb.add_option("--slices", text->slices,
-                  "FILE.json of regions on parallel slices: {\"view\": \"inferior\", \"slices\": "
-                  "[{\"position_mm\": -40, \"polygons_mm\": [...]}, ...]}")
-      ->check(CLI::ExistingFile);
-  verb.add_option("--edit", text->edit, "A mask's .octree that the regions cut further")
-      ->check(CLI::ExistingFile);
-  verb.add_option("--like", text->like, "A scan or .octree whose voxels the mask has")
-      ->check(CLI::ExistingPath);
-  verb.add_option("--voxel", text->voxel_mm,
-                  "Edge of a voxel, mm, around a scan or the regions; default: the scan's, or 1")
-      ->check(above_zero());
-}
-
-}  // namespace octotomy::planner::cli
+}  // namespace octotomy::planner

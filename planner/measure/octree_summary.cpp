@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/plan/octree_summary.h"
+#include "planner/measure/octree_summary.h"
 
 #include <array>
 #include <cstdio>
@@ -99,6 +99,22 @@ std::string octree_text(const std::string& title, const Json& answer) {
     text += row.data();
   }
   return text;
+}
+
+FileAnswer octree_written(const voxel::OctreeFile& file, const std::filesystem::path& out,
+                          const std::stop_token& stop, Timings& timings,
+                          const std::vector<std::string>& findings, const Json& more) {
+  if (stop.stop_requested()) throw voxel::Stopped("stopped before " + out.string() + " was written");
+  {
+    const Stopwatch watch(timings, "write");
+    voxel::write_octree(file, out);
+  }
+  FileAnswer written{octree_answer(file, std::filesystem::file_size(out), timings)};
+  written.json["path"] = out.string();
+  written.json.update(more);
+  for (const std::string& finding : findings) written.json["findings"].push_back(finding);
+  written.findings = findings;
+  return written;
 }
 
 }  // namespace octotomy::planner

@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+// Octrees and label maps of meshes in files; in a plan it is the voxels of import.
 #include "convert/voxel/voxelise.h"
 
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/health.h"
 #include "convert/voxel/voxelise_partial.h"
 #include "convert/voxel/winding_number.h"
-#include "planner/cli/numbers.h"
-#include "planner/cli/octree_out.h"
+#include "planner/file/file_kind.h"
+#include "planner/file/octree_in.h"
+#include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
+#include "planner/table/operation.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/volume_header.h"
 #include "voxel/scan/write_scene.h"
 
-namespace octotomy::planner::cli {
+namespace octotomy::planner {
 namespace {
 
-struct VoxeliseText {
-  std::vector<std::filesystem::path> meshes;
-  std::filesystem::path out, like;
-  double voxel_mm = 1.0;
+struct Voxelise {
+  std::vector<ObjectName> meshes;
+  std::filesystem::path out;
+  std::optional<double> voxel_mm;
+  std::optional<ObjectName> like;
   std::string digitise = "centre";
 };
 
@@ -63,11 +67,10 @@ voxel::Box box_of(const std::vector<Subject>& subjects) {
   return box;
 }
 
-voxel::Universe universe_of(const VoxeliseText& text, const std::vector<Subject>& subjects,
-                            Timings& timings) {
-  if (!text.like.empty()) return voxel::universe(read_timed(text.like, timings));
+voxel::Universe universe_of(const Voxelise& asked, const std::vector<Subject>& subjects, Timings& timings) {
+  if (asked.like) return voxel::universe(read_timed(asked.like->name, timings));
   try {
-    return voxel::universe_around(box_of(subjects), text.voxel_mm);
+    return voxel::universe_around(box_of(subjects), asked.voxel_mm.value_or(1.0));
   } catch (const std::length_error& error) {
     throw std::runtime_error(subjects.front().path.string() + ": " + error.what() +
                              ": is its unit millimetres? Give larger voxels by --voxel");
@@ -89,13 +92,12 @@ bool is_nothing(const decltype(voxel::OctreeFile::tree)& tree) {
   return std::get<voxel::PartialOctree>(tree).touching.is_empty();
 }
 
-decltype(voxel::OctreeFile::tree) voxelised(const Program& program, const VoxeliseText& text,
-                                            const Subject& subject, const voxel::Universe& universe,
-                                            Timings& timings) {
-  const voxel::Progress progress{program.stop.get_token(), program.progress("voxelising")};
-  const Stopwatch watch(timings, "voxelise");
+decltype(voxel::OctreeFile::tree) voxelised(const FileBench& bench, const Voxelise& asked,
+                                            const Subject& subject, const voxel::Universe& universe) {
+  const voxel::Progress progress = bench.progress("voxelising");
+  const Stopwatch watch(bench.timings, "voxelise");
   decltype(voxel::OctreeFile::tree) tree =
-      subject.health.solid() ? of_solid(universe, brep::mesh_of(subject.triangles), text.digitise, progress)
+      subject.health.solid() ? of_solid(universe, brep::mesh_of(subject.triangles), asked.digitise, progress)
                              : convert::voxelise_by_winding_number(universe, subject.triangles, progress);
   if (is_nothing(tree))
     throw std::runtime_error(subject.path.string() +
@@ -104,17 +106,16 @@ decltype(voxel::OctreeFile::tree) voxelised(const Program& program, const Voxeli
   return tree;
 }
 
-int write_octree(const Program& program, const VoxeliseText& text, const Subject& subject, Timings& timings,
-                 const std::vector<std::string>& findings) {
-  const voxel::Universe universe = universe_of(text, {subject}, timings);
-  voxel::OctreeFile file{voxelised(program, text, subject, universe, timings), subject.path.stem().string(),
-                         ""};
+FileAnswer write_octree(const FileBench& bench, const Voxelise& asked, const Subject& subject,
+                        const std::vector<std::string>& findings) {
+  const voxel::Universe universe = universe_of(asked, {subject}, bench.timings);
+  voxel::OctreeFile file{voxelised(bench, asked, subject, universe), subject.path.stem().string(), ""};
   file.metadata = Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
                        {"mesh", subject.path.filename().string()},
-                       {"digitise", text.digitise},
+                       {"digitise", asked.digitise},
                        {"method", subject.health.solid() ? "parity" : "winding number"}}
                       .dump();
-  return write_and_say(program, file, text.out, timings, findings);
+  return octree_written(file, asked.out, bench.stop, bench.timings, findings);
 }
 
 /// The voxels of a universe that a box reaches, as a lattice of their own.
@@ -128,28 +129,25 @@ voxel::Lattice lattice_of(const voxel::Universe& universe, const voxel::Box& box
   return lattice;
 }
 
-int write_labels(const Program& program, const VoxeliseText& text, const std::vector<Subject>& subjects,
-                 Timings& timings, std::vector<std::string>& findings) {
-  const voxel::Universe universe = universe_of(text, subjects, timings);
+FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std::vector<Subject>& subjects,
+                        std::vector<std::string>& findings) {
+  const voxel::Universe universe = universe_of(asked, subjects, bench.timings);
   std::vector<voxel::Octree> octrees;
   for (const Subject& subject : subjects)
-    octrees.push_back(std::get<voxel::Octree>(voxelised(program, text, subject, universe, timings)));
-  const voxel::Lattice lattice =
-      text.like.empty() ? lattice_of(universe, box_of(subjects)) : universe.lattice();
-  const voxel::LabelMap map = voxel::label_map(lattice, octrees, {program.stop.get_token(), {}});
+    octrees.push_back(std::get<voxel::Octree>(voxelised(bench, asked, subject, universe)));
+  const voxel::Lattice lattice = !asked.like ? lattice_of(universe, box_of(subjects)) : universe.lattice();
+  const voxel::LabelMap map = voxel::label_map(lattice, octrees, {bench.stop, {}});
   if (map.overlaps > 0)
     findings.push_back(std::to_string(map.overlaps) +
                        " voxels lie in several meshes: they have the first one's label");
   {
-    const Stopwatch watch(timings, "write");
-    voxel::write_scene(map.scene, text.out);
+    const Stopwatch watch(bench.timings, "write");
+    voxel::write_scene(map.scene, asked.out);
   }
-  Json json = answer(timings);
-  json["kind"] = "label map";
-  json["path"] = text.out.string();
+  Json json{{"kind", "label map"}, {"path", asked.out.string()}};
   json["dims"] = {lattice.dims.x, lattice.dims.y, lattice.dims.z};
   json["spacing_mm"] = to_json(lattice.spacing_mm());
-  std::vector<std::pair<std::string, std::string>> rows = {{"written", text.out.string()}};
+  std::vector<std::pair<std::string, std::string>> rows = {{"written", asked.out.string()}};
   for (std::size_t i = 0; i < subjects.size(); ++i) {
     const std::uint64_t voxels = octrees[i].voxel_count();
     json["labels"].push_back({{"label", i + 1},
@@ -162,60 +160,54 @@ int write_labels(const Program& program, const VoxeliseText& text, const std::ve
         subjects[i].path.stem().string() + ", " + grouped(static_cast<double>(voxels), 0) + " voxels");
   }
   json["overlaps"] = map.overlaps;
-  for (const std::string& finding : findings) {
-    warn(finding);
-    json["findings"].push_back(finding);
-  }
-  program.say(json, lines(rows));
-  return done;
+  for (const std::string& finding : findings) json["findings"].push_back(finding);
+  return {std::move(json), std::move(rows), findings};
 }
 
-int voxelise(const Program& program, const VoxeliseText& text) {
-  need_folder_of(text.out);
-  const bool labels = !is_octree(text.out) && voxel::volume_format(text.out);
-  if (!labels) need_octree_extension(text.out);
-  if (!labels && text.meshes.size() > 1)
-    throw CLI::ValidationError("--out", "an .octree holds one object: write several as a label map, .nrrd");
-  if (labels && text.digitise == "partial")
-    throw CLI::ValidationError("--digitise",
-                               "a label map has no shares of voxels: write an .octree for those");
-  Timings timings;
+FileAnswer on_files(const Voxelise& asked, const FileBench& bench) {
+  need_folder_of(asked.out);
+  const bool labels = !is_octree(asked.out) && voxel::volume_format(asked.out);
+  if (!labels) need_octree_extension(asked.out);
+  if (asked.like && asked.voxel_mm)
+    throw std::runtime_error("--like has voxels of its own: leave --voxel out");
+  if (!labels && asked.meshes.size() > 1)
+    throw std::runtime_error("--out: an .octree holds one object: write several as a label map, .nrrd");
+  if (labels && asked.digitise == "partial")
+    throw std::runtime_error("--digitise: a label map has no shares of voxels: write an .octree for those");
   std::vector<std::string> findings;
   std::vector<Subject> subjects;
-  for (const auto& path : text.meshes)
-    subjects.push_back(read_subject(path, text.digitise, timings, findings));
-  return labels ? write_labels(program, text, subjects, timings, findings)
-                : write_octree(program, text, subjects.front(), timings, findings);
+  for (const ObjectName& path : asked.meshes)
+    subjects.push_back(read_subject(path.name, asked.digitise, bench.timings, findings));
+  return labels ? write_labels(bench, asked, subjects, findings)
+                : write_octree(bench, asked, subjects.front(), findings);
 }
 
 }  // namespace
 
-void add_voxelise(Program& program) {
-  const auto text = std::make_shared<VoxeliseText>();
-  CLI::App& verb =
-      program.verb("voxelise", "Makes an octree of a mesh, or a label map of several",
-                   "octotomy voxelise maxilla.stl -o maxilla.octree --voxel 0.5\n"
-                   "  octotomy voxelise maxilla.stl mandible.stl -o jaws.nii.gz --voxel 0.5\n"
-                   "  octotomy voxelise plate.stl -o plate.octree --like skull.octree --digitise partial",
-                   [&program, text] { return voxelise(program, *text); });
-  verb.add_option("mesh", text->meshes,
-                  "One or more .stl, .ply, .obj, .off or .vtk files; where one is no solid, its holes and "
-                  "crossings are "
-                  "bridged by the winding number")
-      ->required()
-      ->check(CLI::ExistingFile);
-  verb.add_option("-o,--out", text->out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha")->required();
-  CLI::Option* voxel = verb.add_option("--voxel", text->voxel_mm, "Edge of a voxel, mm")
-                           ->check(above_zero())
-                           ->capture_default_str();
-  verb.add_option("--like", text->like, "Take the universe of this .octree file, to combine with it")
-      ->check(CLI::ExistingFile)
-      ->excludes(voxel);
-  verb.add_option("--digitise", text->digitise,
-                  "Which voxels: inside (D1), touching (D2), centre (D3), half (D4), or partial, with the "
-                  "share of each that is filled")
-      ->check(CLI::IsMember({"inside", "touching", "centre", "half", "partial"}))
-      ->capture_default_str();
+Operation voxelise_operation() {
+  return Describe<Voxelise>("voxelise", "Makes an octree of a mesh, or a label map of several.", Makes::File)
+      .takes(field("meshes", &Voxelise::meshes,
+                   "One or more .stl, .ply, .obj, .off or .vtk files; where one is no solid, its holes and "
+                   "crossings are bridged by the winding number.")
+                 .required()
+                 .from(1)
+                 .positional("mesh"))
+      .takes(
+          field("out", &Voxelise::out, "An .octree file, or a label map: .nrrd, .nii.gz, .mha.").required())
+      .takes(field("voxel_mm", &Voxelise::voxel_mm, "Edge of a voxel. Default: 1.").greater_than(0.0))
+      .takes(field("like", &Voxelise::like, "Takes the universe of this .octree file, to combine with it."))
+      .takes(
+          field(
+              "digitise", &Voxelise::digitise,
+              "Which voxels: inside (D1), touching (D2), centre (D3), half (D4), or partial, with the share "
+              "of each that is filled.")
+              .one_of({"inside", "touching", "centre", "half", "partial"}))
+      .example(R"({"id": "plate", "do": "voxelise", "meshes": ["skull"], "out": "plate.octree"})")
+      .on_files(
+          "octotomy voxelise maxilla.stl -o maxilla.octree --voxel 0.5\n"
+          "  octotomy voxelise maxilla.stl mandible.stl -o jaws.nii.gz --voxel 0.5\n"
+          "  octotomy voxelise plate.stl -o plate.octree --like skull.octree --digitise partial",
+          on_files);
 }
 
-}  // namespace octotomy::planner::cli
+}  // namespace octotomy::planner
