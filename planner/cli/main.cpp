@@ -24,7 +24,6 @@
 
 #include "planner/cli/manual.h"
 #include "planner/cli/operation_verb.h"
-#include "planner/cli/scan_verbs.h"
 #include "planner/cli/verb.h"
 #include "planner/table/nearest_name.h"
 

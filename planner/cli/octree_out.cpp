@@ -16,11 +16,6 @@ int say(const Program& program, const FileAnswer& made, const Timings& timings) 
   return done;
 }
 
-int write_and_say(const Program& program, const voxel::OctreeFile& file, const fs::path& out,
-                  Timings& timings, const std::vector<std::string>& findings, const Json& more) {
-  return say(program, octree_written(file, out, program.stop.get_token(), timings, findings, more), timings);
-}
-
 int info_of_octree(const Program& program, const fs::path& path) {
   Timings timings;
   const voxel::OctreeFile file = read_timed(path, timings);

@@ -18,6 +18,7 @@
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/file/mesh_file.h"
+#include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
@@ -200,7 +201,8 @@ class OperationRun {
             .dump()};
     Json more = Json::object();
     if (made.certificate) more["certificate"] = to_json(*made.certificate);
-    write_and_say(program_, file, text_.out, timings_, made.findings, more);
+    say(program_, octree_written(file, text_.out, program_.stop.get_token(), timings_, made.findings, more),
+        timings_);
     return status(made);
   }
 

@@ -2,7 +2,6 @@
 // A plan of steps that each make a scan of the one before, from the table of operations.
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
-#include "planner/cli/scan_verbs.h"
 #include "planner/table/field_json.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"

@@ -7,7 +7,6 @@
 #include "planner/cli/octree_out.h"
 #include "planner/cli/operation_verb.h"
 #include "planner/cli/scan_in.h"
-#include "planner/cli/scan_verbs.h"
 #include "planner/file/slice_contours.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/table/json_file.h"
@@ -38,6 +37,14 @@ struct Named {
   Segmented made;
 };
 
+SampleWindow window_of(const std::string& text) {
+  try {
+    return parse_sample_window(text);
+  } catch (const std::runtime_error& error) {
+    throw CLI::ValidationError("--window", error.what());
+  }
+}
+
 /// An object for each window, or the one of the class, seeds or label; then the octrees.
 std::vector<Named> segments_of(const Program& program, const SegmentText& text, Segment asked,
                                const voxel::Scene& scene, const voxel::Universe& universe, Timings& timings) {
@@ -59,7 +66,7 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
   if (asked.label) add("label " + std::to_string(*asked.label));
   if (asked.tolerance) add("grown");
   for (const std::string& window : text.windows) {
-    asked.window = parse_window(window);
+    asked.window = window_of(window);
     add(window);
   }
   for (const fs::path& path : text.objects) {
@@ -164,10 +171,10 @@ int segment(const Program& program, const SegmentText& text) {
   Segment asked = action.get<Segment>();
   check_text(text, asked);
   std::optional<SampleWindow> first;
-  if (!text.windows.empty()) first = parse_window(text.windows.front());
+  if (!text.windows.empty()) first = window_of(text.windows.front());
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.scan, text.in, timings);
-  for (const std::string& window : text.windows) need_hounsfield(window, scene);
+  for (const std::string& window : text.windows) need_hounsfield(window_of(window), scene);
   Json json{{"source", text.scan.string()}, {"unit", voxel::unit(scene)}};
   if (asked.otsu) {
     const Stopwatch watch(timings, "otsu");

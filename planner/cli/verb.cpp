@@ -62,14 +62,6 @@ void warn(const std::string& line) {
   std::fprintf(stderr, "octotomy: %s\n", line.c_str());
 }
 
-WindowText parse_window(const std::string& text) {
-  try {
-    return parse_sample_window(text);
-  } catch (const std::runtime_error& error) {
-    throw CLI::ValidationError("--window", error.what());
-  }
-}
-
 std::string dims_text(const glm::ivec3& dims) {
   return std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z);
 }

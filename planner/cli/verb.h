@@ -11,7 +11,6 @@
 #include "planner/file/file_kind.h"
 #include "planner/measure/result_json.h"
 #include "planner/plan/evaluate.h"
-#include "planner/table/sample_window.h"
 #include "voxel/space/lattice.h"
 
 // What the verbs of the command line have in common: one file a verb group adds its verbs to the program.
@@ -48,14 +47,12 @@ void warn(const std::string& line);
 void add_info(Program& program);
 void add_convert(Program& program);
 void add_phantom(Program& program);
+void add_prepare(Program& program);
+void add_segment(Program& program);
 void add_plan_verbs(Program& program);
 void add_look(Program& program);
 void add_verify_verbs(Program& program);
 void add_mark(Program& program);
-
-/// LOW:HIGH, LOW: or LOW in sample units, or a tissue (tissue.h); throws CLI::ValidationError else.
-using WindowText = SampleWindow;
-WindowText parse_window(const std::string& text);
 
 /// What info does for an .octree file.
 int info_of_octree(const Program& program, const std::filesystem::path& path);

