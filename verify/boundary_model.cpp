@@ -338,6 +338,7 @@ class Modeller {
   struct Moved {
     double mm = 0.0;
     bool tied = false;  ///< it goes through voxel centres and may as well go the other way
+    glm::ivec3 normal{0};
   };
 
   Moved add_plane(const LatticePlane& plane, const Triangle& triangle, double area_mm2) {
@@ -352,7 +353,7 @@ class Modeller {
     const double shift = std::floor(plane.offset) + 0.5 - plane.offset;
     const double outward = glm::dot(triangle.area_vector(), normal) < 0.0 ? -1.0 : 1.0;
     const Moved moved{outward * shift / glm::length(normal),
-                      0.5 - std::abs(shift) < flatness_voxels * largest_index};
+                      0.5 - std::abs(shift) < flatness_voxels * largest_index, plane.normal};
     const double most_mm = moved.tied ? 0.5 / glm::length(normal) : std::abs(moved.mm);
     for (const Piece& piece : pieces_of(triangle)) {
       const double arm_mm = glm::distance(piece.p, frame_.about_mm);
@@ -405,7 +406,9 @@ class Modeller {
   }
   /// The volume that two displaced planes gain at their common edge beyond their own gains.
   void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
-    if (!(std::abs(std::sin(angle)) > flatness_voxels)) return;
+    // Triangles of parallel planes have no common edge but one that rounding bends, however they are moved.
+    if (a.normal == b.normal || a.normal == -b.normal || !(std::abs(std::sin(angle)) > flatness_voxels))
+      return;
     const double mm2 = (a.mm * b.mm - 0.5 * (a.mm * a.mm + b.mm * b.mm) * std::cos(angle)) / std::sin(angle);
     if (a.tied || b.tied)
       model_.unsure.add(std::abs(mm2) * length_mm, glm::length(arm_mm));

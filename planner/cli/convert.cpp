@@ -4,8 +4,8 @@
 
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
+#include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
-#include "planner/plan/octree_summary.h"
 #include "voxel/scan/write_dicom_seg.h"
 #include "voxel/scan/write_scene.h"
 

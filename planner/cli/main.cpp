@@ -23,7 +23,6 @@
 #include "brep/mesh/error.h"
 #include "planner/cli/manual.h"
 #include "planner/cli/operation_verb.h"
-#include "planner/cli/scan_verbs.h"
 #include "planner/cli/verb.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
@@ -126,26 +125,10 @@ int parse_and_run(int count, char** arguments) {
   cli::add_verify_verbs(program);
   cli::add_info(program);
   cli::add_convert(program);
-  cli::add_measure(program);
-  cli::add_picture_verbs(program);
-  cli::add_mesh(program);
   cli::add_mark(program);
   cli::add_prepare(program);
   cli::add_segment(program);
-  cli::add_slice(program);
-  cli::add_mesh_verbs(program);
-  cli::add_tet(program);
-  cli::add_warp(program);
-  cli::add_voxelise(program);
-  cli::add_register(program);
-  cli::add_mirror(program);
-  cli::add_repair(program);
   cli::add_operation_verbs(program);
-  cli::add_compare(program);
-  cli::add_octree(program);
-  cli::add_eval(program);
-  cli::add_contours(program);
-  cli::add_mask(program);
   cli::add_phantom(program);
   try {
     app.parse(count, arguments);

@@ -22,13 +22,6 @@ std::optional<double> parse_number(const std::string& text) {
   return number ? std::optional((*number)[0]) : std::nullopt;
 }
 
-glm::dvec3 parse_point(const std::string& option, const std::string& text) {
-  const auto point = parse_numbers<3>(text);
-  if (!point)
-    throw CLI::ValidationError(option, "'" + text + "' is no point: give X,Y,Z, for example -10,25.5,40");
-  return {(*point)[0], (*point)[1], (*point)[2]};
-}
-
 CLI::Validator finite() {
   return number_that("", [](double) { return true; });
 }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 
@@ -37,9 +36,6 @@ std::array<double, Count> numbers_of(const std::string& option, const std::strin
   message.append(std::to_string(Count)).append(" numbers between commas, for example ").append(example);
   throw CLI::ValidationError(option, message);
 }
-
-/// X,Y,Z; throws CLI::ValidationError, naming the option, where it is not that.
-glm::dvec3 parse_point(const std::string& option, const std::string& text);
 
 /// Checks of options that are numbers. CLI11's own let NaN through, which is on no side of any bound.
 CLI::Validator finite();

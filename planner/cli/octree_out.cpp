@@ -1,41 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/octree_out.h"
 
-#include "planner/plan/octree_summary.h"
-#include "voxel/space/file_text.h"
+#include "planner/measure/octree_summary.h"
 
 namespace octotomy::planner::cli {
 
 namespace fs = std::filesystem;
 
-bool is_octree(const fs::path& path) {
-  return voxel::extension_of(path) == ".octree";
-}
-
-void need_octree_extension(const fs::path& out) {
-  if (!is_octree(out)) throw std::runtime_error(out.string() + ": an octree is written as .octree");
-}
-
-voxel::OctreeFile read_timed(const fs::path& path, Timings& timings) {
-  const Stopwatch watch(timings, "read");
-  return voxel::read_octree(path);
-}
-
-int write_and_say(const Program& program, const voxel::OctreeFile& file, const fs::path& out,
-                  Timings& timings, const std::vector<std::string>& findings, const Json& more) {
-  if (program.stop.stop_requested()) throw Stopped("stopped before " + out.string() + " was written");
-  {
-    const Stopwatch watch(timings, "write");
-    voxel::write_octree(file, out);
-  }
-  Json json = octree_answer(file, fs::file_size(out), timings);
-  json["path"] = out.string();
-  json.update(more);
-  for (const std::string& finding : findings) {
-    warn(finding);
-    json["findings"].push_back(finding);
-  }
-  program.say(json, octree_text(out.string(), json));
+int say(const Program& program, const FileAnswer& made, const Timings& timings) {
+  for (const std::string& finding : made.findings) warn(finding);
+  Json json = answer(timings);
+  json.update(made.json);
+  program.say(json,
+              made.rows.empty() ? octree_text(json["path"].get<std::string>(), json) : lines(made.rows));
   return done;
 }
 

@@ -2,21 +2,12 @@
 #pragma once
 
 #include "planner/cli/verb.h"
-#include "voxel/tree/octree_file.h"
+#include "planner/file/octree_in.h"
 
 // What the verbs that write an .octree file have in common.
 namespace octotomy::planner::cli {
 
-/// Throws std::runtime_error where a path does not end in .octree.
-void need_octree_extension(const std::filesystem::path& out);
-
-/// Reads the file; "read" in the timings.
-voxel::OctreeFile read_timed(const std::filesystem::path& path, Timings& timings);
-
-/// Writes the file and says of it what info does, the findings, and what else `more` has. Throws Stopped
-/// before anything is written where the program is asked to stop.
-int write_and_say(const Program& program, const voxel::OctreeFile& file, const std::filesystem::path& out,
-                  Timings& timings, const std::vector<std::string>& findings = {},
-                  const Json& more = Json::object());
+/// Puts an answer on standard output, its findings on standard error. Without rows it is of an octree.
+int say(const Program& program, const FileAnswer& made, const Timings& timings);
 
 }  // namespace octotomy::planner::cli

@@ -13,15 +13,17 @@
 
 #include "brep/mesh/health.h"
 #include "convert/voxel/voxelise.h"
-#include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/octree_out.h"
+#include "planner/cli/scan_in.h"
+#include "planner/file/mesh_file.h"
+#include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
+#include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
 #include "planner/table/field_json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
-#include "verify/certify_bounded.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -30,14 +32,16 @@ namespace fs = std::filesystem;
 
 /// What the command line says.
 struct OperationText {
-  std::map<std::string, std::vector<std::string>> words;  ///< by field
+  FieldWords words;
   fs::path out;
   std::optional<double> voxel_mm;
   bool certify = false;
+  ScanIn scan;
 };
 
 /// A field's option: its name without the unit, words joined by hyphens.
 std::string option_of(const Field& field) {
+  if (field.name == "out") return "-o,--out";
   std::string name = field.option.empty() ? field.name : field.option;
   for (const char* ending : {"_mm", "_mm2", "_mm3", "_deg"})
     if (field.option.empty() && name.ends_with(ending)) name.resize(name.size() - std::string(ending).size());
@@ -54,25 +58,34 @@ std::string help_of(const Field& field, void* fresh) {
   return printed.empty() ? text : text + " Default: " + printed.begin()->dump() + ".";
 }
 
-Action read_action(const Operation& operation, const OperationText& text) {
-  Action action(operation);
-  nlohmann::json step = nlohmann::json::object();
-  for (const Field& field : operation.fields) {
-    const auto words = text.words.find(field.name);
-    if (words == text.words.end() || words->second.empty()) continue;
-    try {
-      step[field.name] = json_of_words(field, action.value(), words->second);
-      read_fields({field}, {{field.name, step[field.name]}}, Action(operation).value(), {});
-    } catch (const std::runtime_error& error) {
-      throw CLI::ValidationError(field.argument.value_or(option_of(field)), error.what());
-    }
-  }
-  read_fields(operation.fields, step, action.value(), {operation.name});
-  if (operation.check) operation.check(action.value(), {operation.name});
-  return action;
+/// A refusal that names fields, with the options in their place.
+std::string in_options(std::string text, const std::string& operation, const std::vector<Field>& fields) {
+  for (const Field& field : fields)
+    for (const std::string& said : {operation + ", " + field.name + ":", "'" + field.name + "'"})
+      for (std::size_t at = 0; (at = text.find(said, at)) != std::string::npos; ++at)
+        text.replace(at, said.size(), option_of(field) + (said.ends_with(':') ? ":" : ""));
+  return text;
 }
 
-/// One run of a verb.
+/// A refusal of an option's words, which it shows.
+std::string with_words(std::string text, const Field& field, const std::vector<std::string>& words) {
+  if (text.starts_with(field.name + ": ")) text.erase(0, field.name.size() + 2);
+  if (text.find(words.back()) != std::string::npos) return text;
+  std::string shown;
+  for (const std::string& word : words) shown += (shown.empty() ? "'" : " ") + word;
+  return shown + "' " + text;
+}
+
+/// The fields that the command line has: positionals and options.
+std::vector<Field> fields_of(const Operation& operation) {
+  std::vector<Field> fields;
+  for (const std::vector<Field>* all : {&operation.fields, &operation.verb_fields})
+    for (const Field& field : *all)
+      if (!field.is_of_plans) fields.push_back(field);
+  return fields;
+}
+
+/// One run of a verb whose answer is the object that the kernels make.
 class OperationRun {
  public:
   OperationRun(const Program& program, const Action& action, const OperationText& text)
@@ -93,11 +106,13 @@ class OperationRun {
     made.definition = operation_.definition(action_.value(), objects_);
     if (with_voxels) {
       if (!operation_.voxel)
-        throw std::runtime_error(operation_.name + " is done by the mesh kernel alone: write a mesh, .stl");
+        throw std::runtime_error(
+            operation_.name + " is done by the mesh kernel alone: " +
+            (text_.certify ? "there is no certificate, leave --certify out" : "write a mesh, .stl"));
       operation_.voxel(action_.value(), {universe_, objects_, no_scan_, timings_, progress()}, made.voxel);
     }
     if (!wants_octree || text_.certify) answer_by_mesh(made);
-    if (text_.certify) certify(made);
+    if (text_.certify) certify_answer(made);
     return wants_octree ? write_voxels(made) : write_mesh(made);
   }
 
@@ -165,16 +180,11 @@ class OperationRun {
       throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
   }
 
-  void certify(Object& made) {
+  void certify_answer(Object& made) {
     const Stopwatch watch(timings_, "certify");
+    made.mesh.within = made.mesh.whole;
     operation_.bound(action_.value(), {universe_, objects_, no_scan_}, made);
-    verify::BoundInputs inputs;
-    inputs.operation = operation_.name + " = " + made.definition;
-    inputs.voxel_lineage = made.voxel.lineage;
-    inputs.mesh_lineage = made.mesh.lineage;
-    inputs.scan_spacing_mm = glm::dvec3(0.0);
-    inputs.flat_cut_mm2 = area_on_planes(*made.mesh.whole, made.bound.planes);
-    made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.whole, inputs);
+    certify(made, operation_.name + " = " + made.definition, progress());
   }
 
   int status(const Object& made) const {
@@ -190,7 +200,8 @@ class OperationRun {
             .dump()};
     Json more = Json::object();
     if (made.certificate) more["certificate"] = to_json(*made.certificate);
-    write_and_say(program_, file, text_.out, timings_, made.findings, more);
+    say(program_, octree_written(file, text_.out, program_.stop.get_token(), timings_, made.findings, more),
+        timings_);
     return status(made);
   }
 
@@ -232,48 +243,100 @@ class OperationRun {
   Objects objects_;
 };
 
+/// One run of a verb that answers from files by itself.
+int answer_from_files(const Program& program, const Action& action, const OperationText& text) {
+  Timings timings;
+  const FileBench bench{timings, program.stop.get_token(), program.progress(),
+                        [&](const fs::path& path) { return read_scan(program, path, text.scan, timings); }};
+  return say(program, action.operation().on_files(action.value(), bench), timings);
+}
+
+void add_object_options(CLI::App& verb, OperationText& text) {
+  verb.add_option(
+          "-o,--out", text.out,
+          "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file by the mesh kernel, or an .octree by "
+          "the voxel kernel")
+      ->required();
+  verb.add_option("--voxel", text.voxel_mm,
+                  "Edge of a voxel, mm, for the voxel kernel; default: a 128th of the objects' extent")
+      ->check(above_zero());
+  verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
+}
+
 void add_verb(Program& program, const Operation& operation) {
   const auto text = std::make_shared<OperationText>();
   std::string says = operation.says;
   says.pop_back();
   CLI::App& verb = program.verb(operation.name, says, operation.verb_example, [&program, &operation, text] {
-    const Action action = read_action(operation, *text);
-    return OperationRun(program, action, *text).run();
+    const Action action = read_action(operation, text->words);
+    return operation.on_files ? answer_from_files(program, action, *text)
+                              : OperationRun(program, action, *text).run();
   });
-  const std::shared_ptr<void> fresh = operation.fresh();
-  for (const Field& field : operation.fields) {
-    std::vector<std::string>& words = text->words[field.name];
-    CLI::Option* option = nullptr;
-    if (is_flag(field, fresh.get())) {
-      option = verb.add_flag_callback(
-          option_of(field), [&words] { words = {"true"}; }, field.says);
-      continue;
-    }
-    option = verb.add_option(field.argument.value_or(option_of(field)), words, help_of(field, fresh.get()));
-    option->type_name(word_form(field, fresh.get()));
-    if (takes_several(field, fresh.get()))
-      option->expected(static_cast<int>(field.least.value_or(1.0)), -1);
-    else
-      option->expected(1);
-    option->required(field.is_required);
-    if (field.argument) option->check(CLI::ExistingFile);
-  }
-  verb.add_option(
-          "-o,--out", text->out,
-          "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file by the mesh kernel, or an .octree by "
-          "the voxel kernel")
-      ->required();
-  verb.add_option("--voxel", text->voxel_mm,
-                  "Edge of a voxel, mm, for the voxel kernel; default: a 128th of the objects' extent")
-      ->check(above_zero());
-  verb.add_flag("--certify", text->certify, "Let both kernels answer and tell their certificate");
+  const std::vector<Field> fields = fields_of(operation);
+  add_field_options(verb, operation, fields, text->words);
+  if (!operation.on_files) add_object_options(verb, *text);
+  if (operation.reads_scans) add_scan_options(verb, text->scan);
 }
 
 }  // namespace
 
+void add_field_options(CLI::App& verb, const Operation& operation, const std::vector<Field>& fields,
+                       FieldWords& words) {
+  const std::shared_ptr<void> fresh = operation.fresh();
+  for (const Field& field : fields) {
+    std::vector<std::string>& given = words[field.name];
+    if (is_flag(field, fresh.get())) {
+      verb.add_flag_callback(
+          option_of(field), [&given] { given = {"true"}; }, field.says);
+      continue;
+    }
+    CLI::Option* option =
+        verb.add_option(field.argument.value_or(option_of(field)), given, help_of(field, fresh.get()));
+    option->type_name(word_form(field, fresh.get()));
+    if (field.has_commas)
+      option->delimiter(',')->expected(1, -1)->allow_extra_args(false);
+    else if (field.is_repeated)
+      option->expected(1)->take_all()->allow_extra_args(false);
+    else if (takes_several(field, fresh.get()))
+      option->expected(static_cast<int>(field.least.value_or(1.0)),
+                       field.most ? static_cast<int>(*field.most) : -1);
+    else
+      option->expected(1)->allow_extra_args(false);
+    option->required(field.is_required);
+    const bool is_named = names_scan(field, fresh.get()) || names_objects(field, fresh.get());
+    if (field.is_input || is_named)
+      option->check(is_named && operation.reads_scans ? scan_path() : CLI::Validator(CLI::ExistingFile));
+  }
+}
+
+Action read_action(const Operation& operation, const FieldWords& words) {
+  Action action(operation);
+  nlohmann::json step = nlohmann::json::object();
+  std::vector<Field> fields = operation.fields;
+  fields.insert(fields.end(), operation.verb_fields.begin(), operation.verb_fields.end());
+  for (const Field& field : fields) {
+    const auto given = words.find(field.name);
+    if (given == words.end() || given->second.empty()) continue;
+    try {
+      step[field.name] = json_of_words(field, action.value(), given->second);
+      read_fields({field}, {{field.name, step[field.name]}}, Action(operation).value(), {});
+    } catch (const std::runtime_error& error) {
+      throw CLI::ValidationError(field.argument.value_or(option_of(field)),
+                                 with_words(error.what(), field, given->second));
+    }
+  }
+  try {
+    read_fields(fields, step, action.value(), {operation.name});
+    if (operation.check) operation.check(action.value(), {operation.name});
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(in_options(error.what(), operation.name, fields));
+  }
+  return action;
+}
+
 void add_operation_verbs(Program& program) {
   for (const Operation& operation : operations())
-    if (!operation.verb_example.empty()) add_verb(program, operation);
+    if (!operation.verb_example.empty() && operation.makes != Makes::Scan) add_verb(program, operation);
 }
 
 }  // namespace octotomy::planner::cli

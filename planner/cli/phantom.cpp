@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/numbers.h"
 #include "planner/cli/verb.h"
+#include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
-#include "planner/plan/octree_summary.h"
 #include "planner/table/number_format.h"
 #include "verify/head_phantom.h"
 #include "verify/implicit_solid.h"

@@ -4,14 +4,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <limits>
 #include <system_error>
 #include <unistd.h>
 
 #include "planner/cli/numbers.h"
-#include "planner/table/nearest_name.h"
-#include "voxel/filter/tissue.h"
-#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -22,12 +18,6 @@ void put(const std::string& text) {
   const bool written =
       std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   if (!written && errno != EPIPE) throw std::system_error(errno, std::generic_category(), "standard output");
-}
-
-std::vector<std::string> tissue_names() {
-  std::vector<std::string> names;
-  for (const voxel::Tissue& tissue : voxel::tissues()) names.emplace_back(tissue.name);
-  return names;
 }
 
 }  // namespace
@@ -70,46 +60,6 @@ std::function<void(double)> Program::progress(const std::string& doing) const {
 
 void warn(const std::string& line) {
   std::fprintf(stderr, "octotomy: %s\n", line.c_str());
-}
-
-WindowText parse_window(const std::string& text) {
-  if (const std::optional<voxel::Tissue> tissue = voxel::tissue(text)) {
-    // Below any sample: what has no lower bound is a window from there.
-    constexpr double lowest = std::numeric_limits<std::int16_t>::min();
-    return {tissue->low.value_or(lowest), tissue->high};
-  }
-  const auto colon = text.find(':');
-  const std::string low = text.substr(0, colon);
-  const std::string high = colon == std::string::npos ? "" : text.substr(colon + 1);
-  WindowText window;
-  const auto low_value = parse_number(low);
-  const auto high_value = parse_number(high);
-  if (!low_value || (!high.empty() && !high_value))
-    throw CLI::ValidationError("--window",
-                               "'" + text + "' is no window: give LOW:HIGH or LOW:, for example 300:3000, " +
-                                   "or a tissue" + suggestion(text, tissue_names()));
-  window.low = *low_value;
-  if (!high.empty()) window.high = high_value;
-  if (window.high && *window.high < window.low)
-    throw CLI::ValidationError("--window", "'" + text + "' ends before it begins: swap LOW and HIGH");
-  return window;
-}
-
-bool is_mesh(const std::filesystem::path& path) {
-  const std::string extension = voxel::extension_of(path);
-  for (const char* known : {".stl", ".ply", ".obj", ".off", ".vtk", ".vtp"})
-    if (extension == known) return true;
-  return false;
-}
-
-void need_folder_of(const std::filesystem::path& out) {
-  const std::filesystem::path folder = std::filesystem::absolute(out).lexically_normal().parent_path();
-  if (!std::filesystem::is_directory(folder))
-    throw std::runtime_error(out.string() + ": there is no folder " + folder.string() +
-                             ": make it, or choose another -o");
-  if (::access(folder.c_str(), W_OK) != 0)
-    throw std::runtime_error(out.string() + ": " + folder.string() +
-                             " cannot be written to: choose another -o");
 }
 
 std::string dims_text(const glm::ivec3& dims) {

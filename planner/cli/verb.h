@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/file/file_kind.h"
 #include "planner/measure/result_json.h"
 #include "planner/plan/evaluate.h"
 #include "voxel/space/lattice.h"
@@ -46,43 +47,15 @@ void warn(const std::string& line);
 void add_info(Program& program);
 void add_convert(Program& program);
 void add_phantom(Program& program);
+void add_prepare(Program& program);
+void add_segment(Program& program);
 void add_plan_verbs(Program& program);
 void add_look(Program& program);
-void add_picture_verbs(Program& program);
-void add_measure(Program& program);
-void add_mesh(Program& program);
-void add_mesh_verbs(Program& program);
-void add_tet(Program& program);
 void add_verify_verbs(Program& program);
-void add_voxelise(Program& program);
-void add_register(Program& program);
-void add_repair(Program& program);
-void add_mirror(Program& program);
-void add_compare(Program& program);
-void add_contours(Program& program);
-void add_warp(Program& program);
-void add_octree(Program& program);
-void add_eval(Program& program);
 void add_mark(Program& program);
-void add_mask(Program& program);
 
-/// LOW:HIGH, LOW: or LOW in sample units, or a tissue (tissue.h); throws CLI::ValidationError else.
-struct WindowText {
-  double low = 0.0;
-  std::optional<double> high;
-};
-WindowText parse_window(const std::string& text);
-
-/// Whether a path is a surface's by its extension.
-bool is_mesh(const std::filesystem::path& path);
-
-/// Whether a path is an octree's by its extension.
-bool is_octree(const std::filesystem::path& path);
 /// What info does for an .octree file.
 int info_of_octree(const Program& program, const std::filesystem::path& path);
-
-/// Throws std::runtime_error where a file cannot be made at `out`: before the work, so that none is lost.
-void need_folder_of(const std::filesystem::path& out);
 
 /// Numbers of samples for people: 512 x 512 x 300.
 std::string dims_text(const glm::ivec3& dims);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/mesh_file.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/verify_suites.h"
+#include "planner/file/mesh_file.h"
 #include "planner/table/number_format.h"
 #include "verify/certify_operation.h"
 #include "verify/exact_agreement.h"

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "planner/deck/stiffness.h"
 #include "planner/table/field.h"
 
 namespace octotomy::planner {
@@ -44,6 +45,7 @@ struct Deck {
   std::string between = "shared";
   NamePairs sliding;
   std::vector<std::pair<std::string, Material>> materials;  ///< by region
+  std::optional<Stiffness> stiffness;                       ///< of a filled object
 
   /// Whether others hold the object: soft tissue on bone.
   bool is_held() const { return !moved.empty() || !fixed.empty(); }

@@ -161,16 +161,19 @@ Json to_json(const HalfWidth& width) {
 }
 
 Json to_json(const ScanRecord& scan) {
-  return {{"name", scan.name},
-          {"path", scan.path.generic_string()},
-          {"sha256", scan.sha256},
-          {"dims", {scan.lattice.dims.x, scan.lattice.dims.y, scan.lattice.dims.z}},
-          {"spacing_mm", to_json(scan.lattice.spacing_mm())},
-          {"lps_from_voxel", to_json(scan.lattice.lps_from_voxel)},
-          {"range", {finite(scan.range.low), finite(scan.range.high)}},
-          {"modality", scan.modality},
-          {"unit", scan.unit},
-          {"audit", to_json(scan.audit)}};
+  Json json{{"name", scan.name},
+            {"path", scan.path.generic_string()},
+            {"sha256", scan.sha256},
+            {"dims", {scan.lattice.dims.x, scan.lattice.dims.y, scan.lattice.dims.z}},
+            {"spacing_mm", to_json(scan.lattice.spacing_mm())},
+            {"lps_from_voxel", to_json(scan.lattice.lps_from_voxel)},
+            {"range", {finite(scan.range.low), finite(scan.range.high)}},
+            {"modality", scan.modality},
+            {"unit", scan.unit},
+            {"audit", to_json(scan.audit)}};
+  if (!scan.made_by.empty()) json["made_by"] = scan.made_by;
+  if (!scan.details.empty()) json["details"] = scan.details;
+  return json;
 }
 
 Json to_json(const Object& object) {

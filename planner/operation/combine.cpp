@@ -73,11 +73,8 @@ Operation combine_operation() {
                  .required())
       .example(R"({"id": "maxilla", "do": "combine", "expression": "skull & cut"})")
       .check(check)
-      .definition(definition)
       .uses(uses)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -10,7 +10,7 @@
 #include "planner/deck/filling.h"
 #include "planner/deck/refinement.h"
 #include "planner/deck/region_deck.h"
-#include "planner/operation/output_path.h"
+#include "planner/file/output_path.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -80,6 +80,8 @@ void check(const Deck& deck, const Place& place) {
   if (deck.order == 2 && deck.path.extension() == ".node")
     place.at("order").refuse("is of tetrahedra in .inp, .feb, .vtu or .msh: leave it out");
   check_regions(deck, place);
+  if (deck.stiffness && (deck.is_held() || !deck.regions.empty()))
+    place.at("stiffness").refuse("is of one object that is filled: leave it out, or 'regions' and holders");
   if (!deck.finer.empty() && !deck.smooth_mm && (deck.is_held() || !deck.regions.empty()))
     place.at("finer").refuse("is not of voxels' elements: add 'smooth_mm', or leave it out");
 }
@@ -131,7 +133,7 @@ void write_elements(const convert::Tetrahedra& tetrahedra, convert::DeckOptions 
   options.second_order = deck.order == 2;
   options.progress = bench.progress("writing " + made.path);
   add_midline(tetrahedra, deck, options, made);
-  options.notes = bench.origins;
+  options.notes.insert(options.notes.begin(), bench.origins.begin(), bench.origins.end());
   for (std::string& note : quality_notes(quality)) options.notes.push_back(std::move(note));
   options.notes.insert(options.notes.end(), made.findings.begin(), made.findings.end());
   convert::write_deck(tetrahedra, output_file(bench.folder, made.path), options);
@@ -166,6 +168,18 @@ std::variant<Filled, std::string> fill(const Object& object, const Deck& deck, c
   return filled;
 }
 
+/// The motion of all the steps that moved an object.
+glm::dmat4 moved_from_still(const Object& object, const Objects& objects) {
+  return object.moved ? object.moved->motion * moved_from_still(objects.at(object.moved->object), objects)
+                      : glm::dmat4(1.0);
+}
+
+std::vector<Field> stiffness_record() {
+  std::vector<Field> fields{field("scan", &Stiffness::scan, "The scan, in HU.").required()};
+  for (Field& field : stiffness_fields()) fields.push_back(std::move(field));
+  return fields;
+}
+
 void write_filled(const Object& object, const Deck& deck, const AnswerBench& bench, Exported& made) {
   const std::string key = object.id + (deck.fallback ? " or its voxels" : "") + refinement_key(deck);
   std::shared_ptr<const void>& kept = bench.kept[key];
@@ -181,6 +195,14 @@ void write_filled(const Object& object, const Deck& deck, const AnswerBench& ben
   made.findings = filling.findings;
   convert::DeckOptions options;
   options.surfaces = surfaces;
+  if (deck.stiffness) {
+    const Stopwatch watch(bench.timings, "materials");
+    const std::vector<std::string> findings = add_stiffness(
+        *deck.stiffness, filling.tetrahedra, glm::inverse(moved_from_still(object, bench.objects)),
+        bench.samples(deck.stiffness->scan.name), bench.progress("materials of " + object.id), options);
+    made.findings.insert(made.findings.end(), findings.begin(), findings.end());
+    made.details["materials"] = options.materials.size();
+  }
   write_elements(filling.tetrahedra, std::move(options), deck, bench, made);
 }
 
@@ -267,6 +289,8 @@ Operation deck_operation() {
                  .for_example("[[\"upper_lip\", \"lower_lip\"]]"))
       .takes(records_by_name("materials", &Deck::materials, "Materials of regions, by their names.",
                              material_fields()))
+      .takes(
+          record("stiffness", &Deck::stiffness, "Materials of the elements from a scan.", stiffness_record()))
       .example(R"({"id": "deck", "do": "deck", "object": "advanced", "path": "maxilla.inp"})")
       .check(check)
       .write(write);

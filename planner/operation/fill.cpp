@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "convert/surface/fill_cavities.h"
+#include "planner/operation/parts.h"
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
 #include "verify/witness.h"
@@ -22,8 +23,7 @@ std::string definition(const Fill& fill, const Objects&) {
 void voxels(const Fill& fill, const VoxelBench& bench, VoxelSide& made) {
   const VoxelSide& object = bench.object(fill.object.name);
   made.octree = voxel::fill_cavities(object.octree);
-  const voxel::Expression filled = voxel::Expression(made.octree) - voxel::Expression(object.octree);
-  made.symbol = *object.symbol | filled;
+  made.symbol = symbol_of_filled(*object.symbol, object.octree, made.octree);
   made.lineage = "voxels that no path of face neighbours joins to the outside";
 }
 
@@ -50,10 +50,7 @@ Operation fill_operation() {
       .takes(field("object", &Fill::object, "The object.").required().positional("solid"))
       .example(R"({"id": "full", "do": "fill", "object": "skull"})")
       .on_files("octotomy fill skull.stl -o full.stl")
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

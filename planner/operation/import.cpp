@@ -40,9 +40,7 @@ Operation import_operation() {
                    "The file: .stl, .ply, .obj, .off, .vtk or .vtp, relative to the plan's folder.")
                  .required())
       .example(R"({"id": "plate", "do": "import", "path": "plate.stl"})")
-      .definition(definition)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, nullptr, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -2,7 +2,7 @@
 // An object's voxels as a label map of the universe.
 #include "voxel/filter/label_map.h"
 
-#include "planner/operation/output_path.h"
+#include "planner/file/output_path.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/scan/write_scene.h"

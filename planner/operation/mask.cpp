@@ -3,6 +3,8 @@
 
 #include "brep/boolean/boolean.h"
 #include "brep/shape/prism.h"
+#include "planner/file/region_file.h"
+#include "planner/operation/mask_file.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -35,6 +37,9 @@ brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const
 }
 
 void check(const Mask& mask, const Place& place) {
+  if (place.scope == nullptr) return;
+  if (mask.regions.empty() && mask.slices.empty()) place.refuse("'regions' is missing: add it, or 'slices'");
+  if (mask.regions.empty()) return;
   std::size_t index = 0;
   for (const Mask::Region& region : mask.regions) try {
       voxel::parse_view(region.view);
@@ -55,11 +60,16 @@ std::string definition(const Mask& mask, const Objects&) {
   std::string views;
   for (const Mask::Region& region : mask.regions)
     views += (views.empty() ? "regions in " : ", ") + region.view;
-  return views;
+  if (mask.slices.empty()) return views;
+  return views + (views.empty() ? "slices of " : ", slices of ") + mask.slices.filename().string();
 }
 
 void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
-  made.symbol = voxel::Expression(mask_of(mask));
+  if (!mask.regions.empty()) made.symbol = voxel::Expression(mask_of(mask));
+  if (!mask.slices.empty()) {
+    const voxel::Expression slices = read_slices(bench.folder / mask.slices);
+    made.symbol = made.symbol ? *made.symbol & slices : slices;
+  }
   made.octree = bench.combined(*made.symbol);
   made.lineage = "regions projected at voxel centres";
   if (made.octree.is_empty())
@@ -69,6 +79,8 @@ void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
 }
 
 void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
+  if (!mask.slices.empty())
+    throw std::runtime_error("what lies between slices is interpolated for voxels alone");
   const Stopwatch watch(bench.timings, "boolean_mesh");
   const auto prism = [&](const Mask::Region& region) {
     return brep::solid_of(prism_of(region, bench.low_mm, bench.high_mm));
@@ -82,6 +94,7 @@ void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
 }
 
 void bound(const Mask& mask, const BoundBench&, Object& made) {
+  if (mask.regions.empty()) return;
   made.bound.planes = planes_of(mask_of(mask));
   std::vector<verify::DrawnRegion> drawn;
   for (const Mask::Region& region : mask.regions) drawn.push_back({region.view, region.polygons_mm});
@@ -99,17 +112,33 @@ Operation mask_operation() {
                       field("polygons_mm", &Mask::Region::polygons_mm,
                             "Closed polygons of points [u, v] in the view's millimetres.")
                           .required()})
-                 .required()
-                 .from(1))
+                 .from(1)
+                 .in_plans_only())
+      .takes(field("slices", &Mask::slices,
+                   "A file of regions on parallel slices, {\"view\", \"slices\": [{\"position_mm\", "
+                   "\"polygons_mm\"}]}, which cut the mask too.")
+                 .a_file())
+      .verb_takes(field("region", &Mask::region_files,
+                        "VIEW:FILE.json, repeated: the mask is what all of their back-projections enclose.")
+                      .repeated())
+      .verb_takes(field("edit", &Mask::edit, "A mask's .octree that the regions cut further.").a_file())
+      .verb_takes(field("like", &Mask::like, "A scan or .octree whose voxels the mask has."))
+      .verb_takes(field("voxel_mm", &Mask::voxel_mm,
+                        "Edge of a voxel, around a scan or the regions. Default: the scan's, or 1.")
+                      .greater_than(0.0))
+      .verb_takes(field("out", &Mask::out, "An .octree file.").required())
+      .on_files(
+          "octotomy mask -o cut.octree --region anterior:front.json --region left:side.json --like "
+          "head.nrrd\n"
+          "  octotomy mask -o less.octree --edit cut.octree --region 35,15:oblique.json\n"
+          "A region's file: {\"polygons_mm\": [[[-40,-60],[40,-60],[40,-25],[-40,-25]]]}",
+          mask_file)
       .example(R"({"id": "cut", "do": "mask", "regions": [
         {"view": "anterior", "polygons_mm": [[[-40, -60], [40, -60], [40, -25], [-40, -25]]]},
         {"view": "left", "polygons_mm": [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]]}]})")
       .tool()
       .check(check)
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,13 +10,19 @@
 
 namespace octotomy::planner {
 
-/// A volume of interest: the intersection of the back-projections of regions drawn in views.
+/// A volume of interest: the intersection of the back-projections of regions drawn in views, and of what
+/// regions on slices enclose.
 struct Mask {
   struct Region {
     std::string view;  ///< as the views of pictures are called: "anterior", "35,15"
     Polygons polygons_mm;
   };
   std::vector<Region> regions;
+  std::filesystem::path slices;  ///< a file of regions on parallel slices, which cut the others
+  // Of the verb.
+  std::vector<std::string> region_files;  ///< VIEW:FILE.json
+  std::filesystem::path edit, like, out;
+  std::optional<double> voxel_mm;
 };
 
 }  // namespace octotomy::planner

@@ -7,19 +7,19 @@
 
 #include "planner/measure/gap.h"
 #include "planner/measure/result_json.h"
+#include "planner/measure/surface_questions.h"
+#include "planner/operation/measure_file.h"
 #include "planner/table/operation.h"
 #include "voxel/measure/flat_parts.h"
 
 namespace octotomy::planner {
 namespace {
 
-struct Measure {
-  std::optional<ObjectName> object, to;
-  std::vector<glm::dvec3> points_mm;
-};
-
 void check(const Measure& measure, const Place& place) {
+  if (place.scope == nullptr) return;
   const Place points = place.at("points_mm");
+  if (measure.asks_surface() && (measure.to || !measure.points_mm.empty()))
+    place.refuse("asks a surface and a gap or points: measure them in a step each");
   if (measure.points_mm.empty()) {
     if (!measure.object) place.refuse("'object' is missing: add it");
     if (measure.to && measure.to->name == measure.object->name)
@@ -136,7 +136,27 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
   return json;
 }
 
+/// What is asked of the mesh kernel's answer beyond its size; null with a finding where it has none.
+Json surface_json(const Measure& asked, const AnswerBench& bench) {
+  const Object& object = bench.objects.at(asked.object->name);
+  Json json = size_json(asked, bench);
+  if (!object.mesh.within || object.mesh.within->n_faces() == 0) {
+    for (const char* key : {"section", "along", "thickness", "curvature"}) json[key] = nullptr;
+    json["finding"] = "'" + object.id + "' has no mesh, see its findings";
+    return json;
+  }
+  AtVertices shown;
+  json.update(surface_answers({.section = asked.section,
+                               .along = asked.along,
+                               .thickness = asked.thickness,
+                               .curvature = asked.curvature},
+                              *object.mesh.within, bench.progress("measuring " + object.id), bench.timings,
+                              shown));
+  return json;
+}
+
 Json measure(const Measure& asked, const AnswerBench& bench) {
+  if (asked.asks_surface()) return surface_json(asked, bench);
   return !asked.points_mm.empty() ? points_json(asked, bench)
          : asked.to               ? gap_json(asked, bench)
                                   : size_json(asked, bench);
@@ -147,11 +167,39 @@ Json measure(const Measure& asked, const AnswerBench& bench) {
 Operation measure_operation() {
   return Describe<Measure>("measure", "Measures an object, the gap between two, or a distance or angle.",
                            Makes::Measurement)
-      .takes(field("object", &Measure::object, "The object whose volume, area and extents are wanted."))
+      .takes(
+          field(
+              "object", &Measure::object,
+              "The object whose volume, area and extents are wanted; of the verb a scan or grey octree (with "
+              "a window), an octree or a mesh.")
+              .positional("file"))
       .takes(field("to", &Measure::to, "A second object: the gap between the two is wanted instead."))
       .takes(field("points_mm", &Measure::points_mm,
-                   "Two points, for their distance, or three, for the angle at the second."))
+                   "Two points, for their distance, or three, for the angle at the second.")
+                 .in_plans_only())
+      .takes(field("section", &Measure::section,
+                   "A point and a normal: area and perimeter of the surface where that plane cuts it.")
+                 .from(2)
+                 .to(2))
+      .takes(field("along", &Measure::along, "Two points: the shortest way along the surface.").from(2).to(2))
+      .takes(field("thickness", &Measure::thickness, "Walls of the surface, by rays and by balls."))
+      .takes(field("curvature", &Measure::curvature, "Mean and Gaussian curvature of the surface."))
+      .verb_takes(
+          field("distance", &Measure::distance, "Two points: the straight way between them.").from(2).to(2))
+      .verb_takes(field("angle", &Measure::angle, "Three points: the angle at the second.").from(3).to(3))
+      .verb_takes(field("window", &Measure::window, "LOW:HIGH or LOW: in sample units, or a tissue."))
+      .verb_takes(field("voxel_mm", &Measure::voxel_mm,
+                        "Edge of a voxel. Default: as fine as the scan, at most 512 a side.")
+                      .greater_than(0.0))
+      .verb_takes(field("out", &Measure::out,
+                        "The mesh with thickness, or curvature, as scalars: a .vtp or .ply file."))
+      .reads_scans()
       .example(R"({"id": "maxilla_size", "do": "measure", "object": "maxilla"})")
+      .on_files(
+          "octotomy measure head.nrrd --window 300: --json\n"
+          "  octotomy measure skull.octree\n"
+          "  octotomy measure skull.stl --section 0,0,20 0,0,1 --thickness --json",
+          measure_file)
       .check(check)
       .measure(measure);
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An object's mirror image about a plane.
+// An object's mirror image about a plane: one that is given, or the one that fits the object's mesh best. A
+// fit is settled first, so that both kernels mirror about the same plane.
 #include "brep/align/mirror.h"
 
+#include "planner/file/mesh_file.h"
+#include "planner/measure/result_json.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -12,21 +15,73 @@ namespace {
 
 struct Mirror {
   ObjectName object;
-  glm::dvec3 point_mm{0.0};
-  glm::dvec3 normal{1, 0, 0};
+  std::optional<glm::dvec3> point_mm, normal;
+  bool fit = false;
+  double overlap = brep::MirrorFitOptions{}.overlap;
+  // Of the verb.
+  std::vector<glm::dvec3> plane;
+  bool exactly = false;
+  std::filesystem::path out;
 };
+
+/// The plane as it is given; the patient's mid-plane where it is not.
+brep::MirrorPlane plane_of(const Mirror& mirror) {
+  return {mirror.point_mm.value_or(glm::dvec3(0.0)),
+          glm::normalize(mirror.normal.value_or(glm::dvec3(1, 0, 0)))};
+}
+
+brep::MirrorFit fit(const brep::Mesh& mesh, const Mirror& mirror, const voxel::Progress& progress) {
+  brep::MirrorFitOptions options;
+  if (mirror.point_mm && mirror.normal) options.start = plane_of(mirror);
+  options.overlap = mirror.overlap;
+  options.stop = progress.stop;
+  options.progress = progress.report;
+  return brep::fit_mirror_plane(mesh, options);
+}
+
+/// What is told of a fit; null values where there was none.
+Json fit_json(const brep::MirrorPlane& plane, const std::optional<brep::MirrorFit>& found) {
+  const auto of_fit = [&](double brep::MirrorFit::*value) {
+    return found ? Json((*found).*value) : Json(nullptr);
+  };
+  return {{"plane", {{"point_mm", to_json(plane.point_mm)}, {"normal", to_json(plane.normal)}}},
+          {"rms_mm", of_fit(&brep::MirrorFit::rms_mm)},
+          {"kept_share", of_fit(&brep::MirrorFit::kept_share)},
+          {"twist_deg", of_fit(&brep::MirrorFit::twist_deg)},
+          {"slide_mm", of_fit(&brep::MirrorFit::slide_mm)}};
+}
+
+void check(const Mirror& mirror, const Place& place) {
+  if (mirror.exactly && mirror.plane.empty())
+    place.at("exactly").refuse("mirrors about a plane as it stands: add 'plane'");
+  if (!mirror.plane.empty() && mirror.plane[1] == glm::dvec3(0.0))
+    place.at("plane").refuse("its normal has no length");
+}
+
+Mirror settle(const Mirror& mirror, const SettleBench& bench) {
+  if (!mirror.fit) return mirror;
+  const Stopwatch watch(bench.timings, "fit");
+  const brep::MirrorFit found = fit(*bench.object(mirror.object.name), mirror, bench.progress);
+  bench.details = fit_json(found.plane, found);
+  bench.findings.insert(bench.findings.end(), found.findings.begin(), found.findings.end());
+  Mirror settled = mirror;
+  settled.point_mm = found.plane.point_mm;
+  settled.normal = found.plane.normal;
+  return settled;
+}
 
 /// The reflection in the plane: Householder's matrix about the plane's point.
 glm::dmat4 reflection_of(const Mirror& mirror) {
-  const glm::dvec3 n = glm::normalize(mirror.normal);
+  const auto [point_mm, n] = plane_of(mirror);
   glm::dmat4 mirrored(glm::dmat3(1.0) - 2.0 * glm::outerProduct(n, n));
-  mirrored[3] = glm::dvec4(2.0 * glm::dot(n, mirror.point_mm) * n, 1.0);
+  mirrored[3] = glm::dvec4(2.0 * glm::dot(n, point_mm) * n, 1.0);
   return mirrored;
 }
 
 std::string definition(const Mirror& mirror, const Objects&) {
-  return mirror.object.name + " mirrored about the plane through (" + plain(mirror.point_mm.x) + ", " +
-         plain(mirror.point_mm.y) + ", " + plain(mirror.point_mm.z) + ") mm";
+  const glm::dvec3 p = plane_of(mirror).point_mm;
+  return mirror.object.name + " mirrored about the plane through (" + plain(p.x) + ", " + plain(p.y) + ", " +
+         plain(p.z) + ") mm";
 }
 
 void voxels(const Mirror& mirror, const VoxelBench& bench, VoxelSide& made) {
@@ -36,8 +91,7 @@ void voxels(const Mirror& mirror, const VoxelBench& bench, VoxelSide& made) {
 }
 
 void triangles(const Mirror& mirror, const MeshBench& bench, MeshSide& made) {
-  made.whole =
-      brep::mirrored(bench.object(mirror.object.name), {mirror.point_mm, glm::normalize(mirror.normal)});
+  made.whole = brep::mirrored(bench.object(mirror.object.name), plane_of(mirror));
   made.lineage = "vertices of a mesh under a reflection";
 }
 
@@ -49,20 +103,72 @@ void bound(const Mirror& mirror, const BoundBench& bench, Object& made) {
   made.shown.reset();
 }
 
+FileAnswer on_files(const Mirror& asked, const FileBench& bench) {
+  if (!asked.out.empty()) {
+    need_mesh_extension(asked.out);
+    need_folder_of(asked.out);
+  }
+  Mirror mirror = asked;
+  if (!asked.plane.empty()) {
+    mirror.point_mm = asked.plane[0];
+    mirror.normal = asked.plane[1];
+  }
+  const brep::Mesh mesh = read_surface(asked.object.name, bench.timings);
+  std::optional<brep::MirrorFit> found;
+  if (!asked.exactly) {
+    const Stopwatch watch(bench.timings, "fit");
+    found = fit(mesh, mirror, bench.progress("mid-plane"));
+  }
+  const brep::MirrorPlane plane = found ? found->plane : plane_of(mirror);
+  if (!asked.out.empty()) write_surface(brep::mirrored(mesh, plane), asked.out, bench.timings);
+  FileAnswer answer{fit_json(plane, found)};
+  if (found) answer.findings = found->findings;
+  answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
+  answer.json["findings"] = answer.findings;
+  const auto point = [](const glm::dvec3& p, int decimals) {
+    return grouped(p.x, decimals) + ", " + grouped(p.y, decimals) + ", " + grouped(p.z, decimals);
+  };
+  answer.rows = {{"through", point(plane.point_mm, 2) + " mm"},
+                 {"normal", point(plane.normal, 4)},
+                 {"rms", found ? grouped(found->rms_mm, 3) + " mm" : "not fitted"},
+                 {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
+  return answer;
+}
+
 }  // namespace
 
 Operation mirror_operation() {
-  return Describe<Mirror>("mirror", "Makes an object's mirror image about a plane.", Makes::Object)
-      .takes(field("object", &Mirror::object, "The object.").required())
-      .takes(field("point_mm", &Mirror::point_mm, "A point of the plane, LPS."))
+  return Describe<Mirror>("mirror", "Makes an object's mirror image about a plane, given or fitted.",
+                          Makes::Object)
+      .takes(field("object", &Mirror::object, "The object.").required().positional("mesh"))
+      .takes(field("point_mm", &Mirror::point_mm, "A point of the plane, LPS. Default: the frame's origin.")
+                 .in_plans_only())
       .takes(field("normal", &Mirror::normal, "The plane's normal, LPS. Default: the patient's left.")
-                 .direction())
+                 .direction()
+                 .in_plans_only())
+      .takes(field("fit", &Mirror::fit,
+                   "Takes the plane that fits the object best, near the one given or about its own axes.")
+                 .in_plans_only())
+      .takes(field("overlap", &Mirror::overlap, "Share of the surface that has a counterpart, of a fit.")
+                 .from(0.0)
+                 .to(1.0))
+      .verb_takes(
+          field("plane", &Mirror::plane,
+                "A point X,Y,Z and a normal X,Y,Z near the plane; else the surface's own axes are tried.")
+              .from(2)
+              .to(2))
+      .verb_takes(field("exactly", &Mirror::exactly, "Mirrors about the plane as it stands, without a fit."))
+      .verb_takes(
+          field("out", &Mirror::out, "The mirror image: a .stl, .ply, .obj, .off, .vtp or .glb file."))
       .example(
           R"({"id": "twin", "do": "mirror", "object": "maxilla", "point_mm": [0, 0, 0], "normal": [1, 0, 0]})")
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .on_files(
+          "octotomy mirror skull.stl -o mirrored.stl --json\n"
+          "  octotomy compare skull.stl mirrored.stl -o asymmetry.ply",
+          on_files)
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A rigid motion: a rotation, then a translation.
-#include "brep/mesh/move.h"
+#include "planner/operation/move.h"
 
+#include "brep/mesh/move.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -50,15 +51,11 @@ std::string definition(const Move& move, const Objects&) {
 }
 
 void voxels(const Move& move, const VoxelBench& bench, VoxelSide& made) {
-  made.symbol = moved(*bench.object(move.object.name).symbol, motion_of(move));
-  made.octree = bench.combined(*made.symbol);
-  made.lineage = "the object's own definition under a rigid motion, windows on interpolated samples";
+  move_voxels(move.object.name, motion_of(move), bench, made);
 }
 
 void triangles(const Move& move, const MeshBench& bench, MeshSide& made) {
-  const Stopwatch watch(bench.timings, "boolean_mesh");
-  made.whole = brep::moved(bench.object(move.object.name), motion_of(move));
-  made.lineage = "vertices of a mesh under a rigid motion";
+  move_triangles(move.object.name, motion_of(move), bench, made);
 }
 
 void bound(const Move& move, const BoundBench& bench, Object& made) {
@@ -66,6 +63,20 @@ void bound(const Move& move, const BoundBench& bench, Object& made) {
 }
 
 }  // namespace
+
+void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, const VoxelBench& bench,
+                 VoxelSide& made) {
+  made.symbol = moved(*bench.object(object).symbol, moved_from_still);
+  made.octree = bench.combined(*made.symbol);
+  made.lineage = "the object's own definition under a rigid motion, windows on interpolated samples";
+}
+
+void move_triangles(const std::string& object, const glm::dmat4& moved_from_still, const MeshBench& bench,
+                    MeshSide& made) {
+  const Stopwatch watch(bench.timings, "boolean_mesh");
+  made.whole = brep::moved(bench.object(object), moved_from_still);
+  made.lineage = "vertices of a mesh under a rigid motion";
+}
 
 Operation move_operation() {
   using Rotation = Move::Rotation;
@@ -80,10 +91,7 @@ Operation move_operation() {
       .example(R"({"id": "advanced", "do": "move", "object": "maxilla", "translate_mm": [0, -6, 2],
         "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, -40, -30]}})")
       .check(check)
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -63,9 +63,7 @@ Operation offset_operation() {
       .on_files(
           "octotomy offset tumour.stl --by 5 -o margin.stl\n"
           "  octotomy offset skull.stl --by -1 --cell 0.4 -o core.ply --json")
-      .definition(definition)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, nullptr, triangles, bound);
 }
 
 }  // namespace octotomy::planner

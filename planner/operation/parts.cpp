@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The connected parts of an object that are large enough.
+#include "planner/operation/parts.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,7 @@
 #include "verify/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/morphology.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
@@ -45,34 +48,16 @@ void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
     throw std::runtime_error("no part of '" + parts.object.name + "' has " + plain(*parts.at_least_mm3) +
                              " mm\u00b3: the largest has " +
                              plain(static_cast<double>(counts[0]) * bench.universe.lattice().voxel_mm3()));
-  // The samples about the parts still say where their surface lies within a voxel, so that a motion samples
-  // it there: a voxel's width around them, without the voxels of other parts.
-  const glm::dvec3 spacing_mm = bench.universe.lattice().spacing_mm();
-  const voxel::Expression around = voxel::Expression(voxel::dilate(made.octree, glm::length(spacing_mm))) -
-                                   (voxel::Expression(object.octree) - voxel::Expression(made.octree));
-  made.symbol = *object.symbol & around;
+  made.symbol = symbol_of_parts(*object.symbol, object.octree, made.octree);
   made.lineage = "voxels that touch by faces";
 }
 
 void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "components");
   const brep::Solid& solid = bench.object(parts.object.name);
-  std::vector<brep::Component> all = brep::components(solid);
-  std::stable_sort(all.begin(), all.end(), [](const brep::Component& a, const brep::Component& b) {
-    return a.volume_mm3 > b.volume_mm3;
-  });
-  std::vector<std::uint32_t> faces;
-  std::size_t kept = 0;
-  for (const brep::Component& part : all) {
-    if (parts.largest ? kept == static_cast<std::size_t>(*parts.largest)
-                      : part.volume_mm3 < *parts.at_least_mm3)
-      break;
-    faces.insert(faces.end(), part.faces.begin(), part.faces.end());
-    ++kept;
-  }
-  std::sort(faces.begin(), faces.end());
-  made.details = {{"parts", kept}, {"of", all.size()}};
-  made.whole = brep::trusted_solid(brep::part_of(solid, faces), brep::proof_of_part(solid.proof()));
+  KeptParts kept = kept_parts(solid, parts.largest, parts.at_least_mm3);
+  made.details = {{"parts", kept.kept}, {"of", kept.of}};
+  made.whole = brep::trusted_solid(kept.mesh, brep::proof_of_part(solid.proof()));
   made.lineage = "triangles that share vertices";
 }
 
@@ -85,6 +70,39 @@ void bound(const Parts& parts, const BoundBench& bench, Object& made) {
 
 }  // namespace
 
+KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3) {
+  const std::vector<brep::Component> all = brep::components(mesh);
+  KeptParts parts{{}, 0, all.size()};
+  std::vector<std::uint32_t> faces;
+  for (const brep::Component& part : all) {
+    if (largest && parts.kept == static_cast<std::size_t>(*largest)) break;
+    if (at_least_mm3 && part.volume_mm3 < *at_least_mm3) break;
+    faces.insert(faces.end(), part.faces.begin(), part.faces.end());
+    ++parts.kept;
+  }
+  std::sort(faces.begin(), faces.end());
+  parts.mesh = brep::part_of(mesh, faces);
+  return parts;
+}
+
+voxel::Expression symbol_of_parts(const voxel::Expression& symbol, const voxel::Octree& object,
+                                  const voxel::Octree& parts) {
+  // A voxel's width around the parts, without the voxels of others.
+  const double reach_mm = glm::length(parts.universe().lattice().spacing_mm());
+  return symbol & (voxel::Expression(voxel::dilate(parts, reach_mm)) -
+                   (voxel::Expression(object) - voxel::Expression(parts)));
+}
+
+voxel::Expression symbol_of_filled(const voxel::Expression& symbol, const voxel::Octree& object,
+                                   const voxel::Octree& filled) {
+  const voxel::Universe universe = filled.universe();
+  const double reach_mm = glm::length(universe.lattice().spacing_mm());
+  const voxel::Octree cavities =
+      voxel::combine(universe, voxel::Expression(filled) - voxel::Expression(object));
+  if (cavities.is_empty()) return symbol;
+  return symbol | (voxel::Expression(voxel::dilate(cavities, reach_mm)) & voxel::Expression(filled));
+}
+
 Operation parts_operation() {
   return Describe<Parts>("parts", "Keeps the connected parts of an object that are large enough.",
                          Makes::Object)
@@ -95,10 +113,7 @@ Operation parts_operation() {
       .example(R"({"id": "bone", "do": "parts", "object": "skull", "largest": 1})")
       .on_files("octotomy parts skull.stl --largest 1 -o bone.stl")
       .check(check)
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

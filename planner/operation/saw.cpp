@@ -94,10 +94,7 @@ Operation saw_operation() {
           "octotomy saw skull.stl --line -60,-120,-20 60,-120,-20 --direction 0,1,0 --depth 80 "
           "--kerf 0.8 -o cut.stl")
       .check(check)
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

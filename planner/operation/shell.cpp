@@ -44,9 +44,7 @@ Operation shell_operation() {
       .takes(field("thickness_mm", &Shell::thickness_mm, "The thickness of the layer.").greater_than(0.0))
       .example(R"({"id": "crust", "do": "shell", "object": "skull", "thickness_mm": 2})")
       .on_files("octotomy shell skull.stl --thickness 2 -o crust.stl")
-      .definition(definition)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, nullptr, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -51,9 +51,7 @@ Operation smooth_operation() {
                  .greater_than(0.0))
       .example(R"({"id": "even", "do": "smooth", "object": "skull", "rounds": 10})")
       .on_files("octotomy smooth skull.stl -o smooth.stl --rounds 10 --json")
-      .definition(definition)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, nullptr, triangles, bound);
 }
 
 }  // namespace octotomy::planner

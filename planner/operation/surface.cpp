@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // An object's mesh as a file.
 #include "brep/io/write_mesh.h"
-#include "planner/operation/output_path.h"
+#include "planner/file/output_path.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 

@@ -29,19 +29,13 @@ std::string unit_of(const voxel::Scene& scene) {
   return voxel::unit(scene) == "1" ? "" : " " + voxel::unit(scene);
 }
 
-voxel::Window leaf_of(const Window& window, const voxel::GreyOctree& grey) {
-  voxel::Window leaf{grey, window.low};
-  if (window.high) leaf.high = *window.high;
-  return leaf;
-}
-
 std::string definition(const Window& window, const Objects&) {
   return window.scan.name + " from " + plain(window.low) + (window.high ? " to " + plain(*window.high) : "");
 }
 
 void voxels(const Window& window, const VoxelBench& bench, VoxelSide& made) {
   const LoadedScan& scan = bench.loaded(window.scan.name);
-  const voxel::Expression leaf(leaf_of(window, scan.grey));
+  const voxel::Expression leaf(window_on(scan.grey, {window.low, window.high}));
   {
     const Stopwatch watch(bench.timings, "octree");
     made.octree = voxel::combine(bench.universe, leaf);
@@ -88,10 +82,7 @@ Operation window_operation() {
       .takes(field("high", &Window::high, "The highest sample that belongs to it. Default: no upper limit."))
       .example(R"({"id": "skull", "do": "window", "scan": "ct", "low": 300})")
       .check(check)
-      .definition(definition)
-      .voxel(voxels)
-      .mesh(triangles)
-      .bound(bound);
+      .object(definition, voxels, triangles, bound);
 }
 
 }  // namespace octotomy::planner

@@ -16,8 +16,13 @@ std::vector<std::string> origins_of(const Plan& plan, const Evaluation& evaluati
   std::vector<std::string> lines{std::string("octotomy ") + OCTOTOMY_VERSION,
                                  "plan: " + plan.name + ", SHA-256 " + sha256_of(plan.text)};
   for (const ScanRecord& scan : evaluation.scans)
-    lines.push_back("scan " + scan.name + ": SHA-256 " + scan.sha256);
+    lines.push_back("scan " + scan.name + ": " +
+                    (scan.made_by.empty() ? "SHA-256 " + scan.sha256 : scan.made_by));
   return lines;
+}
+
+Scans scans_of(const Evaluation& evaluation) {
+  return [&evaluation](const std::string& name) -> const LoadedScan& { return *evaluation.loaded.at(name); };
 }
 
 }  // namespace
@@ -30,7 +35,8 @@ Json measurements_json(const Plan& plan, const Evaluation& evaluation) {
                           .objects = evaluation.objects,
                           .scans = evaluation.scans,
                           .timings = timings,
-                          .kept = kept};
+                          .kept = kept,
+                          .scan = scans_of(evaluation)};
   for (const Step& step : plan.steps) {
     if (step.action.operation().makes != Makes::Measurement) continue;
     Json json{{"id", step.id}};
@@ -51,7 +57,8 @@ Exported write_file(const Plan& plan, const Evaluation& evaluation, const Step& 
                           .report = options.progress,
                           .folder = folder,
                           .origins = origins_of(plan, evaluation),
-                          .kept = kept};
+                          .kept = kept,
+                          .scan = scans_of(evaluation)};
   Exported exported;
   exported.id = step.id;
   step.action.operation().write(step.action.value(), bench, exported);

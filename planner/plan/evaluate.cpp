@@ -15,10 +15,10 @@
 #include "brep/mesh/error.h"
 #include "brep/shape/prism.h"
 #include "convert/voxel/voxelise.h"
+#include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
 #include "planner/plan/sha256.h"
 #include "planner/table/number_format.h"
-#include "verify/certify_bounded.h"
 #include "verify/witness.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_scene.h"
@@ -69,9 +69,10 @@ class Evaluator {
     for (const Step& step : plan_.steps) {
       report(verb(step) + " " + step.id,
              static_cast<double>(done++) / static_cast<double>(plan_.steps.size()));
-      if (step.action.operation().makes != Makes::Object) continue;
+      const Makes makes = step.action.operation().makes;
+      if (makes != Makes::Object && makes != Makes::Scan) continue;
       try {
-        make(step);
+        makes == Makes::Scan ? make_scan(step) : make(step);
       } catch (const Stopped&) {
         throw;
       } catch (const voxel::Error& error) {
@@ -86,6 +87,9 @@ class Evaluator {
       for (const std::string& scan : scans_used(step.action))
         if (--uses_left_[scan] == 0) loaded_.erase(scan);
     }
+    for (auto& [name, scan] : loaded_)
+      if (uses_left_[name] > 0)
+        result_.loaded.emplace(name, std::make_shared<const LoadedScan>(std::move(scan)));
     report("evaluated", 1.0);
     return std::move(result_);
   }
@@ -96,12 +100,13 @@ class Evaluator {
     if (options_.progress) options_.progress(doing, fraction);
   }
 
-  /// The scans that steps use, the first step's first: it fixes the universe.
+  /// The plan's scans that steps use, the first step's first: it fixes the universe. Those that steps make
+  /// are counted, too.
   std::vector<std::string> scans_in_use() {
     std::vector<std::string> names;
     for (const Step& step : plan_.steps)
       for (const std::string& scan : scans_used(step.action))
-        if (uses_left_[scan]++ == 0) names.push_back(scan);
+        if (uses_left_[scan]++ == 0 && plan_.scans.contains(scan)) names.push_back(scan);
     if (names.empty()) names.push_back(plan_.scans.begin()->first);
     return names;
   }
@@ -137,29 +142,70 @@ class Evaluator {
       }
       result_.scans.push_back(record_of(name, source.path, scene));
       result_.scans.back().sha256 = std::move(sha256);
-      const Stopwatch watch(result_.timings, "octree");
-      voxel::GreyOctree grey = voxel::grey_octree_of(result_.universe, scene, background_of(scene));
-      loaded_.emplace(name,
-                      LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
+      load(name, std::move(scene));
     }
+  }
+
+  void load(const std::string& name, voxel::Scene scene) {
+    const Stopwatch watch(result_.timings, "octree");
+    voxel::GreyOctree grey = voxel::grey_octree_of(result_.universe, scene, background_of(scene));
+    loaded_.insert_or_assign(name,
+                             LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
+  }
+
+  /// Makes a scan of another one. The universe stays that of the first scan that was read.
+  void make_scan(const Step& step) {
+    const Operation& operation = step.action.operation();
+    MadeScan made;
+    {
+      const Stopwatch watch(result_.timings, operation.name);
+      const auto samples = [this](const std::string& name) -> const voxel::Scene& {
+        return loaded_.at(name).scene;
+      };
+      made =
+          operation.scan(step.action.value(), {samples, result_.timings, {options_.stop, {}}, plan_.folder});
+    }
+    ScanRecord record = record_of(step.id, {}, made.scene);
+    record.made_by = operation.name + " of " + scans_used(step.action).front();
+    record.details = std::move(made.details);
+    for (const std::string& finding : made.findings)
+      record.audit.push_back({operation.name, voxel::Verdict::Warn, finding});
+    result_.scans.push_back(std::move(record));
+    if (uses_left_.contains(step.id)) load(step.id, std::move(made.scene));
   }
 
   /// Makes an object in both kernels and certifies it.
   void make(const Step& step) {
     const Operation& operation = step.action.operation();
-    const void* value = step.action.value();
     Object object(step.id, operation.name, result_.universe);
+    std::shared_ptr<void> settled;
+    nlohmann::ordered_json told = nlohmann::ordered_json::object();
+    if (operation.settle)
+      settled = operation.settle(step.action.value(), {result_.objects,
+                                                       scan_,
+                                                       result_.timings,
+                                                       {options_.stop, {}},
+                                                       plan_.folder,
+                                                       told,
+                                                       object.findings});
+    const void* value = settled ? settled.get() : step.action.value();
     object.is_tool = operation.is_tool;
     object.definition = operation.definition(value, result_.objects);
     if (operation.voxel)
-      operation.voxel(value, {result_.universe, result_.objects, scan_, result_.timings, {options_.stop, {}}},
-                      object.voxel);
-    make_mesh(step, object);
+      operation.voxel(
+          value,
+          {result_.universe, result_.objects, scan_, result_.timings, {options_.stop, {}}, plan_.folder},
+          object.voxel);
+    make_mesh(step, value, object);
+    object.mesh.details.update(told);
     if (!operation.voxel) voxelise(object);
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
     take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
-    if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) certify(object);
+    if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) {
+      const Stopwatch watch(result_.timings, "certify");
+      certify(object, object.id + " = " + object.definition, {options_.stop, {}});
+    }
     if (object.ends_with_universe) {
       object.mesh.whole = object.mesh.within;
       object.witness = verify::both(object.witness, verify::witness_of_box(box_));
@@ -182,14 +228,14 @@ class Evaluator {
   }
 
   /// The mesh kernel's answer; a finding where it has none.
-  void make_mesh(const Step& step, Object& object) {
+  void make_mesh(const Step& step, const void* value, Object& object) {
     const Operation& operation = step.action.operation();
     if (!operation.mesh) return object.findings.push_back("no mesh: the mesh kernel does not do this");
     for (const std::string& name : objects_used(step.action))
       if (!result_.object(name).mesh.whole)
         return object.findings.push_back("no mesh, as '" + name + "' has none");
     try {
-      operation.mesh(step.action.value(),
+      operation.mesh(value,
                      {box_.low_mm,
                       box_.high_mm,
                       result_.objects,
@@ -199,7 +245,7 @@ class Evaluator {
                       {options_.stop, {}},
                       plan_.folder},
                      object.mesh);
-      object.findings = object.mesh.findings;
+      object.findings.insert(object.findings.end(), object.mesh.findings.begin(), object.mesh.findings.end());
     } catch (const std::runtime_error& error) {
       if (was_stopped(error)) throw Stopped(error.what());
       object.findings.push_back(std::string("the mesh kernel has no answer: ") + error.what());
@@ -231,22 +277,6 @@ class Evaluator {
           ") and is left out of every number and picture: move less, or use a scan with more room");
   }
 
-  void certify(Object& object) {
-    const Stopwatch watch(result_.timings, "certify");
-    verify::BoundInputs inputs;
-    inputs.operation = object.id + " = " + object.definition;
-    inputs.voxel_lineage = object.voxel.lineage;
-    inputs.mesh_lineage = object.mesh.lineage;
-    inputs.scan_spacing_mm = object.bound.spacing_mm;
-    inputs.flat_cut_mm2 = area_on_planes(*object.mesh.within, object.bound.planes);
-    inputs.scan_box_mm = object.bound.scan_box_mm;
-    inputs.voxels_are_samples = object.bound.voxels_are_samples;
-    // What lies outside of the universe has been cut away from both answers.
-    inputs.witness = verify::both(object.witness, verify::witness_of_box(box_));
-    object.certificate =
-        verify::certify_bounded(object.voxel.octree, *object.mesh.within, inputs, {options_.stop, {}});
-  }
-
   const Plan& plan_;
   const EvaluateOptions& options_;
   Evaluation result_;
@@ -259,27 +289,6 @@ class Evaluator {
 };
 
 }  // namespace
-
-voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm) {
-  const voxel::Box box = voxel::bounds(scan);
-  const glm::dvec3 spacing_mm = scan.spacing_mm();
-  const glm::dvec3 extent_mm = box.high_mm - box.low_mm;
-  constexpr double most_a_side = 512.0;
-  const double finest_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
-  const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
-  const double edge_mm = voxel_mm.value_or(std::max(finest_mm, longest_mm / most_a_side));
-  voxel::Universe universe = voxel::universe_around(box, edge_mm);
-  // A universe around an odd number of samples lies half a voxel off them, and resampling would blur what
-  // need not be touched: put a voxel's centre on the first sample, where the box stays inside.
-  const glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
-  const double spare_voxels = 0.5 * universe.side();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double shift = first[axis] - std::floor(first[axis] + 0.5);
-    if (0.5 * extent_mm[axis] / edge_mm + std::abs(shift) <= spare_voxels)
-      universe.lps_from_voxel[3][axis] += shift * edge_mm;
-  }
-  return universe;
-}
 
 Evaluation evaluate(const Plan& plan, const EvaluateOptions& options) {
   return Evaluator(plan, options).run();

@@ -10,6 +10,7 @@
 #include "planner/plan/plan.h"
 #include "planner/table/bench.h"
 #include "planner/table/object.h"
+#include "planner/table/plan_universe.h"
 #include "planner/table/stopwatch.h"
 
 namespace octotomy::planner {
@@ -20,6 +21,8 @@ struct Evaluation {
   voxel::Universe universe;
   Objects objects;  ///< in the order of their steps
   Timings timings;
+  /// The scans that measurements and files use, read or made.
+  std::map<std::string, std::shared_ptr<const LoadedScan>> loaded;
 
   const Object& object(const std::string& id) const { return objects.at(id); }
 };
@@ -34,15 +37,10 @@ struct EvaluateOptions {
   bool certify = true;
 };
 
-/// The universe a plan is evaluated in: around the scan's bounds, voxels of the asked edge; by default the
-/// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger. A voxel's centre
-/// lies on the scan's first sample, so that samples as far apart as voxels are taken over as they are.
-voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
-
-/// Evaluates every step that makes an object, in the voxel kernel and in the mesh kernel, as its operation
-/// says (planner/operation), and certifies their agreement object by object. Neither kernel sees the other's
-/// answer before both are there. A moved object keeps its motion symbolic, so that moving it again samples
-/// the still object once.
+/// Evaluates every step that makes an object or a scan, objects in the voxel kernel and in the mesh kernel,
+/// as its operation says (planner/operation), and certifies their agreement object by object. Neither kernel
+/// sees the other's answer before both are there. A moved object keeps its motion symbolic, so that moving it
+/// again samples the still object once.
 ///
 /// Throws std::runtime_error with step and reason where a scan cannot be read, is not the one whose SHA-256
 /// is given, or an operation refuses; Stopped. An object whose operation the mesh kernel cannot do keeps its

@@ -94,10 +94,16 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
   return scans;
 }
 
+/// Whether plans have such a step. What only goes from files to files has another one there, as tet has deck.
+bool is_step(const Operation& operation) {
+  return operation.makes != Makes::File || operation.write;
+}
+
 /// What a step may do: the operations, and "export".
 std::vector<std::string> step_words() {
   std::vector<std::string> words;
-  for (const Operation& operation : operations()) words.push_back(operation.name);
+  for (const Operation& operation : operations())
+    if (is_step(operation)) words.push_back(operation.name);
   words.emplace_back("export");
   return words;
 }
@@ -123,7 +129,7 @@ Step step_of(const Json& value, std::size_t index, Scope& scope) {
     place.refuse("'do' is missing" + suggestion("", step_words()));
   const std::string word = found->get<std::string>();
   const Operation* operation = find_operation(word == "export" ? export_of(value) : word);
-  if (operation == nullptr)
+  if (operation == nullptr || !is_step(*operation))
     place.at("do").refuse("unknown step '" + word + "'" + suggestion(word, step_words()));
   const auto id = value.find("id");
   if (id == value.end() || id->is_null()) place.refuse("'id' is missing: add it");
@@ -219,7 +225,8 @@ Ordered plan_schema() {
                      {"required", {"path"}},
                      {"additionalProperties", false}};
   Ordered steps = Ordered::array();
-  for (const Operation& operation : operations()) steps.push_back(step_schema(operation));
+  for (const Operation& operation : operations())
+    if (is_step(operation)) steps.push_back(step_schema(operation));
   // "export" stands for the operation that writes the path's extension.
   for (const char* name : {"surface", "deck", "label_map"}) {
     Ordered schema = step_schema(*find_operation(name));

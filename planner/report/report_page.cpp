@@ -11,7 +11,7 @@
 
 #include "planner/measure/result_json.h"
 #include "planner/operation/mask.h"
-#include "planner/report/colour.h"
+#include "planner/picture/colour.h"
 #include "planner/report/html.h"
 #include "planner/table/number_format.h"
 #include "voxel/view/annotation.h"
@@ -24,7 +24,8 @@ namespace {
 std::string heading(const Result& result) {
   std::string scans;
   for (const ScanRecord& scan : result.evaluation.scans)
-    scans += (scans.empty() ? "" : ", ") + escaped(scan.path.generic_string());
+    scans += (scans.empty() ? "" : ", ") +
+             escaped(scan.made_by.empty() ? scan.path.generic_string() : scan.made_by);
   const std::string left =
       element("div", element("h1", escaped(result.plan.name)) +
                          element("p class=\"soft\"", "Scan " + scans + " \u00b7 Octotomy " OCTOTOMY_VERSION));
@@ -343,14 +344,16 @@ std::string scans(const Result& result) {
     const std::string unit = scan.unit == "1" ? " (no unit known)" : " " + escaped(scan.unit);
     html += element(
         "dl class=\"facts\"",
-        fact("Scan", escaped(scan.name) + ": " + escaped(scan.path.generic_string())) +
+        fact("Scan",
+             escaped(scan.name + ": " + (scan.made_by.empty() ? scan.path.generic_string() : scan.made_by))) +
             fact("Modality", scan.modality.empty() ? "not stated" : escaped(scan.modality)) +
             fact("Samples", std::to_string(dims.x) + " \u00d7 " + std::to_string(dims.y) + " \u00d7 " +
                                 std::to_string(dims.z)) +
             fact("Spacing", matrix_text(scan.lattice.spacing_mm())) +
             fact("Range", grouped(scan.range.low, 0) + " to " + grouped(scan.range.high, 0) + unit) +
-            fact("SHA-256",
-                 element("code title=\"" + scan.sha256 + "\"", scan.sha256.substr(0, 16) + "\u2026")));
+            fact("SHA-256", scan.made_by.empty() ? element("code title=\"" + scan.sha256 + "\"",
+                                                           scan.sha256.substr(0, 16) + "\u2026")
+                                                 : "made by a step of the plan"));
     std::string rows = "<tr><th>Check</th><th></th><th>Finding</th></tr>";
     for (const voxel::Finding& finding : scan.audit)
       rows += "<tr>" + cell(escaped(finding.check)) + cell(pill(finding.verdict)) +

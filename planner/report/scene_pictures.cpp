@@ -114,16 +114,6 @@ Frame frame_of(const std::vector<voxel::DrawnObject>& objects, const voxel::View
 
 }  // namespace
 
-voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour) {
-  voxel::DrawnObject drawn{object.id, object.voxel.octree, colour, std::nullopt, 0.0};
-  if (!object.shown) return drawn;
-  drawn.grey = object.shown->grey;
-  drawn.threshold = object.shown->threshold;
-  if (object.shown->moved_from_still != glm::dmat4(1.0))
-    drawn.moved_from_still = object.shown->moved_from_still;
-  return drawn;
-}
-
 FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
   FinalScene scene;
   std::size_t accent = 0;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/picture/drawn_files.h"
 #include "planner/plan/evaluate.h"
 #include "voxel/view/render.h"
 
@@ -38,9 +39,6 @@ struct FinalScene {
 /// none, its last object that is neither a mask nor empty, if any. Moved pieces keep their colour in
 /// `before`.
 FinalScene final_scene(const Plan& plan, const Evaluation& evaluation);
-
-/// How an object is drawn: with the samples its surface is interpolated from, where it has some.
-voxel::DrawnObject drawn(const Object& object, const glm::vec3& colour);
 
 /// Draws the group's objects from every view; all pictures of all groups that share `framed` are of one scale
 /// and centre a view. Nothing is drawn where there are no objects.

@@ -11,7 +11,7 @@
 #include <map>
 #include <tuple>
 
-#include "planner/report/colour.h"
+#include "planner/picture/colour.h"
 #include "planner/report/difference_pictures.h"
 #include "planner/report/html.h"
 #include "planner/report/result_folder.h"

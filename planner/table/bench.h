@@ -29,6 +29,38 @@ struct LoadedScan {
 /// Answers a scan by its name in the document.
 using Scans = std::function<const LoadedScan&(const std::string& name)>;
 
+/// The bench of operations that make a scan of another one.
+struct ScanBench {
+  /// The samples of an earlier scan.
+  std::function<const voxel::Scene&(const std::string& name)> samples;
+  Timings& timings;
+  voxel::Progress progress;
+  std::filesystem::path folder = {};  ///< paths of files are relative to it
+};
+
+/// A scan that an operation made.
+struct MadeScan {
+  voxel::Scene scene;
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
+  std::optional<voxel::GreyOctree> removed = {};  ///< samples taken out, so that they can be put back
+  std::vector<std::string> findings = {};
+};
+
+/// The bench on which an operation settles values that it finds itself, as a plane that fits best.
+struct SettleBench {
+  const Objects& objects;
+  const Scans& scan;
+  Timings& timings;
+  voxel::Progress progress;
+  std::filesystem::path folder = {};  ///< paths of files are relative to it
+  /// What is told of the values that were found.
+  nlohmann::ordered_json& details;
+  std::vector<std::string>& findings;
+
+  /// An earlier object's mesh. Throws std::runtime_error where it has none.
+  const SharedMesh& object(const std::string& name) const;
+};
+
 /// The voxel kernel's bench.
 struct VoxelBench {
   const voxel::Universe& universe;
@@ -36,6 +68,7 @@ struct VoxelBench {
   const Scans& scan;
   Timings& timings;
   voxel::Progress progress;
+  std::filesystem::path folder = {};  ///< paths of files are relative to it
 
   /// An earlier object's answer in this kernel.
   const VoxelSide& object(const std::string& name) const { return objects.at(name).voxel; }
@@ -83,6 +116,8 @@ struct ScanRecord {
   std::string unit;
   voxel::Range range;
   std::vector<voxel::Finding> audit;
+  std::string made_by = {};  ///< the step that made it, in words; empty: it was read
+  nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what that step tells of it
 };
 
 /// The bench of operations that make numbers or files from objects.
@@ -98,8 +133,31 @@ struct AnswerBench {
   std::vector<std::string> origins = {};  ///< where the objects come from, for files' headers
   /// What several operations share, by their own keys.
   std::map<std::string, std::shared_ptr<const void>>& kept;
+  Scans scan = {};  ///< those that measurements and files use
+
+  /// The scan's samples as they are.
+  const voxel::Scene& samples(const std::string& name) const { return scan(name).scene; }
 
   voxel::Progress progress(const std::string& doing) const;
+};
+
+/// The bench of a verb that answers from files by itself.
+struct FileBench {
+  Timings& timings;
+  std::stop_token stop = {};
+  /// Called with what is being done and a fraction of it, 0..1; may be empty.
+  std::function<void(const std::string& doing, double fraction)> report = {};
+  /// Reads a scan as the command line's options say; timed.
+  std::function<voxel::Scene(const std::filesystem::path& path)> read_scan = {};
+
+  voxel::Progress progress(const std::string& doing) const;
+};
+
+/// What a verb says: a JSON object below what every answer begins with, and a table for people.
+struct FileAnswer {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  std::vector<std::pair<std::string, std::string>> rows = {};
+  std::vector<std::string> findings = {};  ///< said as warnings, too
 };
 
 /// A file that an operation wrote, or the reason why it did not.

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "planner/table/sample_window.h"
+
 // The fields of operations: what each is called, holds and means. Reading and printing JSON, refusals, the
 // schema, the command line's options and their help all derive from this one description.
 namespace octotomy::planner {
@@ -46,7 +48,8 @@ struct Records {
 using Slot = std::variant<bool*, int*, double*, std::string*, std::filesystem::path*, glm::dvec3*,
                           ObjectName*, ScanName*, Site*, std::optional<double>*, std::optional<int>*,
                           std::optional<std::string>*, std::optional<glm::dvec3>*, std::optional<ObjectName>*,
-                          std::vector<double>*, std::vector<std::string>*, std::vector<glm::dvec3>*,
+                          SampleWindow*, std::optional<SampleWindow>*, std::vector<double>*,
+                          std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*,
                           std::vector<ObjectName>*, Polygons*, NamePairs*, Records>;
 
 /// One field of an operation or of a record within it.
@@ -67,6 +70,10 @@ struct Field {
 
   std::optional<std::string> argument = {};  ///< on the command line a positional argument of this name
   std::string option = {};                   ///< on the command line "--" and this; default: from `name`
+  bool has_commas = false;                   ///< a list that is one word with commas
+  bool is_repeated = false;                  ///< a list whose option is said once for each entry
+  bool is_of_plans = false;                  ///< the command line has another way to say it
+  bool is_input = false;                     ///< a path that is read: on the command line it must be there
 
   Field required() && { return is_required = true, std::move(*this); }
   Field direction() && { return is_direction = true, std::move(*this); }
@@ -77,6 +84,10 @@ struct Field {
   Field one_of(std::vector<std::string> allowed) && { return words = std::move(allowed), std::move(*this); }
   Field for_example(std::string json) && { return sample = std::move(json), std::move(*this); }
   Field positional(std::string as) && { return argument = std::move(as), std::move(*this); }
+  Field comma_separated() && { return has_commas = true, std::move(*this); }
+  Field repeated() && { return is_repeated = true, std::move(*this); }
+  Field in_plans_only() && { return is_of_plans = true, std::move(*this); }
+  Field a_file() && { return is_input = true, std::move(*this); }
   Field called(std::string as) && { return option = std::move(as), std::move(*this); }
 
   /// The unit that the name ends in, for people: "mm", "mm³", "°"; empty for what has none.

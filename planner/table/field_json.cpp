@@ -53,10 +53,8 @@ class Reader {
   }
   void read(double* value) const { *value = number(json_, place_); }
   void read(int* value) const {
-    const double read = number(json_, place_);
-    if (read != std::trunc(read) || std::abs(read) > std::numeric_limits<int>::max())
-      place_.refuse("must be a whole number");
-    *value = static_cast<int>(read);
+    number(json_, place_);
+    *value = whole(json_, place_);
   }
   void read(std::string* value) const {
     *value = text(json_, place_);
@@ -78,6 +76,14 @@ class Reader {
     value->object = text(json_, place_);
     place_.need_object(value->object);
   }
+  void read(SampleWindow* value) const {
+    const std::string said = text(json_, place_);
+    try {
+      *value = parse_sample_window(said);
+    } catch (const std::runtime_error& error) {
+      place_.refuse(error.what());
+    }
+  }
   void read(glm::dvec3* value) const {
     *value = point(json_, place_);
     if (field_.is_direction && *value == glm::dvec3(0.0))
@@ -88,7 +94,12 @@ class Reader {
     read(&value->emplace());
   }
   void read(std::vector<double>* value) const {
-    each("numbers", [&](const Json& entry, const Place& at) { value->push_back(number(entry, at)); });
+    value->clear();  // of the default
+    each("numbers",
+         [&](const Json& entry, const Place& at) { value->push_back(number_of(entry, at.where)); });
+  }
+  void read(std::vector<int>* value) const {
+    each("whole numbers", [&](const Json& entry, const Place& at) { value->push_back(whole(entry, at)); });
   }
   void read(std::vector<std::string>* value) const {
     each("texts",
@@ -146,6 +157,12 @@ class Reader {
     if (!in_range(field_, value)) place.refuse("must be " + range_text(field_) + for_example(field_));
     return value;
   }
+  static int whole(const Json& json, const Place& place) {
+    const double value = number_of(json, place.where);
+    if (value != std::trunc(value) || std::abs(value) > std::numeric_limits<int>::max())
+      place.refuse("must be a whole number");
+    return static_cast<int>(value);
+  }
   static glm::dvec3 point(const Json& json, const Place& place) {
     if (!json.is_array() || json.size() != 3) place.refuse("must be three numbers [x, y, z]");
     return {number_of(json[0], place.where), number_of(json[1], place.where),
@@ -155,7 +172,8 @@ class Reader {
   void each(const std::string& of, const Act& act) const {
     if (!json_.is_array()) place_.refuse("must be a list of " + of + for_example(field_));
     if (field_.least && static_cast<double>(json_.size()) < *field_.least)
-      place_.refuse("must be a list of at least " + number_text(*field_.least) + " " + of);
+      place_.refuse("must be a list of at least " + number_text(*field_.least) + " " + of +
+                    for_example(field_));
     if (field_.most && static_cast<double>(json_.size()) > *field_.most)
       place_.refuse("must be a list of at most " + number_text(*field_.most) + " " + of);
     std::size_t index = 0;
@@ -189,6 +207,7 @@ struct Printer {
   Ordered operator()(const Site* value) const {
     return value->object.empty() ? json_of(value->point_mm) : Ordered(value->object);
   }
+  Ordered operator()(const SampleWindow* value) const { return to_string(*value); }
   template <typename Value>
   Ordered operator()(const std::optional<Value>* value) const {
     return *value ? (*this)(&**value) : Ordered();
@@ -242,6 +261,7 @@ struct Schema {
   Ordered operator()(const glm::dvec3*) const { return vector_schema; }
   Ordered operator()(const ObjectName*) const { return {{"type", "string"}, {"minLength", 1}}; }
   Ordered operator()(const ScanName*) const { return {{"type", "string"}, {"minLength", 1}}; }
+  Ordered operator()(const SampleWindow*) const { return {{"type", "string"}, {"minLength", 1}}; }
   Ordered operator()(const Site*) const {
     return {{"oneOf", {Ordered(vector_schema), {{"type", "string"}, {"minLength", 1}}}}};
   }
@@ -339,6 +359,8 @@ struct Form {
   std::string operator()(const glm::dvec3*) const { return "X,Y,Z"; }
   std::string operator()(const ObjectName*) const { return "FILE"; }
   std::string operator()(const ScanName*) const { return "SCAN"; }
+  std::string operator()(const SampleWindow*) const { return "LOW:HIGH"; }
+  std::string operator()(const std::filesystem::path*) const { return "FILE"; }
   template <typename Value>
   std::string operator()(const std::optional<Value>*) const {
     return (*this)(static_cast<const Value*>(nullptr));
@@ -413,6 +435,37 @@ Json json_of_words(const Field& field, void* fresh, const std::vector<std::strin
   return list;
 }
 
+Json json_of_values(const std::vector<Field>& fields, void* fresh, const std::vector<std::string>& values) {
+  Json object = Json::object();
+  std::size_t at = 0;
+  for (const Field& field : fields) {
+    if (names_scan(field, fresh)) continue;
+    if (at == values.size()) break;
+    const bool is_point = std::holds_alternative<glm::dvec3*>(field.slot(fresh));
+    const std::size_t left = values.size() - at;
+    const std::size_t count = is_point ? 3 : takes_several(field, fresh) ? left : 1;
+    if (count > left) throw std::runtime_error(field.name + ": must be three numbers");
+    std::vector<std::string> words(values.begin() + static_cast<std::ptrdiff_t>(at),
+                                   values.begin() + static_cast<std::ptrdiff_t>(at + count));
+    if (is_point) words = {words[0] + "," + words[1] + "," + words[2]};
+    object[field.name] = json_of_words(field, fresh, words);
+    at += count;
+  }
+  if (at < values.size()) throw std::runtime_error("takes " + std::to_string(at) + " values at most");
+  return object;
+}
+
+bool names_objects(const Field& field, void* fresh) {
+  const Slot slot = field.slot(fresh);
+  return std::holds_alternative<ObjectName*>(slot) ||
+         std::holds_alternative<std::vector<ObjectName>*>(slot) ||
+         std::holds_alternative<std::optional<ObjectName>*>(slot);
+}
+
+bool names_scan(const Field& field, void* fresh) {
+  return std::holds_alternative<ScanName*>(field.slot(fresh));
+}
+
 bool takes_several(const Field& field, void* fresh) {
   return std::visit([](const auto& slot) { return is_list<std::decay_t<decltype(slot)>>; },
                     field.slot(fresh));
@@ -423,8 +476,11 @@ bool is_flag(const Field& field, void* fresh) {
 }
 
 std::string word_form(const Field& field, void* fresh) {
-  if (field.unit() == "mm" && std::holds_alternative<double*>(field.slot(fresh))) return "MM";
-  return std::visit(Form{}, field.slot(fresh));
+  const Slot slot = field.slot(fresh);
+  const bool is_number =
+      std::holds_alternative<double*>(slot) || std::holds_alternative<std::optional<double>*>(slot);
+  if (field.unit() == "mm" && is_number) return "MM";
+  return std::visit(Form{}, slot);
 }
 
 }  // namespace octotomy::planner

@@ -29,8 +29,18 @@ nlohmann::ordered_json fields_schema(const std::vector<Field>& fields, void* fre
 /// std::runtime_error where a word is not of the field's type.
 nlohmann::json json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words);
 
+/// The same for several fields in their order: a point takes three values, a list all that are left, any
+/// other field one. Scans are passed over. Throws std::runtime_error where there are too many values or too
+/// few.
+nlohmann::json json_of_values(const std::vector<Field>& fields, void* fresh,
+                              const std::vector<std::string>& values);
+
 /// Whether the field holds several words on the command line.
 bool takes_several(const Field& field, void* fresh);
+/// Whether it names objects, which are files on the command line.
+bool names_objects(const Field& field, void* fresh);
+/// Whether it names a scan.
+bool names_scan(const Field& field, void* fresh);
 /// Whether it is a flag, which has no word.
 bool is_flag(const Field& field, void* fresh);
 /// What help calls one word: "MM", "X,Y,Z", "NAME".

@@ -7,6 +7,17 @@
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
+namespace {
+
+voxel::Progress progress_of(const std::stop_token& stop,
+                            const std::function<void(const std::string&, double)>& report,
+                            const std::string& doing) {
+  voxel::Progress progress{stop, {}};
+  if (report) progress.report = [report, doing](double fraction) { report(doing, fraction); };
+  return progress;
+}
+
+}  // namespace
 
 const Object& Objects::at(const std::string& name) const {
   const auto found = index_.find(name);
@@ -17,6 +28,12 @@ const Object& Objects::at(const std::string& name) const {
 const Object& Objects::add(Object object) {
   index_[object.id] = objects_.size();
   return objects_.emplace_back(std::move(object));
+}
+
+const SharedMesh& SettleBench::object(const std::string& name) const {
+  const SharedMesh& mesh = objects.at(name).mesh.whole;
+  if (!mesh) throw std::runtime_error("'" + name + "' has no mesh, to which something is to be fitted");
+  return mesh;
 }
 
 voxel::Box VoxelBench::box_mm() const {
@@ -33,9 +50,11 @@ voxel::Expression VoxelBench::within_universe(const voxel::Expression& symbol) c
 }
 
 voxel::Progress AnswerBench::progress(const std::string& doing) const {
-  voxel::Progress progress{stop, {}};
-  if (report) progress.report = [this, doing](double fraction) { report(doing, fraction); };
-  return progress;
+  return progress_of(stop, report, doing);
+}
+
+voxel::Progress FileBench::progress(const std::string& doing) const {
+  return progress_of(stop, report, doing);
 }
 
 }  // namespace octotomy::planner

@@ -18,8 +18,9 @@
 // what each kernel does with it. Plan steps, verbs, help and the schema derive from the entry.
 namespace octotomy::planner {
 
-/// What a step leaves behind: an object that later steps use, numbers, or a file in the result's folder.
-enum class Makes { Object, Measurement, File };
+/// What a step leaves behind: an object or a scan that later steps use, numbers, or a file in the result's
+/// folder.
+enum class Makes { Object, Scan, Measurement, File };
 
 /// An entry of the table. Its functions take the operation's value behind a pointer; Describe binds them.
 struct Operation {
@@ -36,6 +37,11 @@ struct Operation {
   std::function<void(const void* value, const Place& place)> check;
   /// The operation in words, for people: "skull & cut".
   std::function<std::string(const void* value, const Objects& objects)> definition;
+  /// The value with what the operation finds itself, as a plane that fits best; the other functions get that
+  /// value. Empty where there is nothing to find.
+  std::function<std::shared_ptr<void>(const void* value, const SettleBench& bench)> settle;
+  /// The scan that it makes of another one.
+  std::function<MadeScan(const void* value, const ScanBench& bench)> scan;
   /// The voxel kernel's answer; empty where it has none: then the mesh kernel's answer is voxelised.
   std::function<void(const void* value, const VoxelBench& bench, VoxelSide& made)> voxel;
   /// The mesh kernel's answer; empty where it has none.
@@ -48,8 +54,16 @@ struct Operation {
   std::function<void(const void* value, const AnswerBench& bench, Exported& made)> write;
   /// The objects that it uses beside those that its fields name.
   std::function<std::vector<std::string>(const void* value)> uses;
-  /// Examples of the operation as a verb on files; empty: it is none.
+  /// Examples of the operation as a verb on files; empty: it is none. Of an operation that makes a scan the
+  /// form of prepare's step: "gaussian=SIGMA (mm)".
   std::string verb_example;
+  /// What the verb does where its answer is not the object that both kernels make; its objects are paths of
+  /// files.
+  std::function<FileAnswer(const void* value, const FileBench& bench)> on_files;
+  /// Fields that only the verb has.
+  std::vector<Field> verb_fields;
+  /// The verb has the options that say how a scan is read.
+  bool reads_scans = false;
   /// An object that only helps to make others, as a mask: it has no certificate of its own.
   bool is_tool = false;
 };
@@ -70,20 +84,34 @@ class Describe {
   Describe&& on_files(std::string command) && {
     return entry_.verb_example = std::move(command), std::move(*this);
   }
+  Describe&& on_files(std::string command, FileAnswer (*part)(const Value&, const FileBench&)) && {
+    entry_.verb_example = std::move(command);
+    return bind(entry_.on_files, part);
+  }
+  Describe&& verb_takes(Field field) && {
+    return entry_.verb_fields.push_back(std::move(field)), std::move(*this);
+  }
+  Describe&& reads_scans() && { return entry_.reads_scans = true, std::move(*this); }
   Describe&& tool() && { return entry_.is_tool = true, std::move(*this); }
   Describe&& check(void (*part)(const Value&, const Place&)) && { return bind(entry_.check, part); }
-  Describe&& definition(std::string (*part)(const Value&, const Objects&)) && {
-    return bind(entry_.definition, part);
+  using Definition = std::string (*)(const Value&, const Objects&);
+  using Voxels = void (*)(const Value&, const VoxelBench&, VoxelSide&);
+  using Triangles = void (*)(const Value&, const MeshBench&, MeshSide&);
+  using Bound = void (*)(const Value&, const BoundBench&, Object&);
+  /// What an operation that makes an object needs; null for a kernel that has no answer.
+  Describe&& object(Definition definition, Voxels voxels, Triangles triangles, Bound bound) && {
+    bind(entry_.definition, definition);
+    if (voxels != nullptr) bind(entry_.voxel, voxels);
+    if (triangles != nullptr) bind(entry_.mesh, triangles);
+    return bind(entry_.bound, bound);
   }
-  Describe&& voxel(void (*part)(const Value&, const VoxelBench&, VoxelSide&)) && {
-    return bind(entry_.voxel, part);
+  Describe&& settle(Value (*part)(const Value&, const SettleBench&)) && {
+    entry_.settle = [part](const void* value, const SettleBench& bench) -> std::shared_ptr<void> {
+      return std::make_shared<Value>(part(*static_cast<const Value*>(value), bench));
+    };
+    return std::move(*this);
   }
-  Describe&& mesh(void (*part)(const Value&, const MeshBench&, MeshSide&)) && {
-    return bind(entry_.mesh, part);
-  }
-  Describe&& bound(void (*part)(const Value&, const BoundBench&, Object&)) && {
-    return bind(entry_.bound, part);
-  }
+  Describe&& scan(MadeScan (*part)(const Value&, const ScanBench&)) && { return bind(entry_.scan, part); }
   Describe&& measure(nlohmann::ordered_json (*part)(const Value&, const AnswerBench&)) && {
     return bind(entry_.measure, part);
   }

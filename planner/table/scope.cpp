@@ -32,9 +32,12 @@ void Scope::bind(const std::string& where, const std::string& id, const Operatio
   const Place place{where};
   if (!is_identifier(id))
     place.refuse("id '" + id + "' is not a name: use letters, digits and underscores, a letter first");
+  if (operation.makes == Makes::Scan && contains(scans_, id))
+    place.refuse("id '" + id + "' is taken by a scan of the plan: choose another");
   if (!operations_.emplace(id, &operation).second)
     place.refuse("id '" + id + "' is taken by an earlier step: choose another");
   if (operation.makes == Makes::Object) objects_.push_back(id);
+  if (operation.makes == Makes::Scan) scans_.push_back(id);
 }
 
 void Scope::need_object(const std::string& where, const std::string& name) const {

@@ -33,5 +33,19 @@ TEST(MirrorStep, ANormalWithoutLengthIsRefused) {
             std::string::npos);
 }
 
+TEST(MirrorStep, ThePlaneThatFitsIsSettledForBothKernels) {
+  const TestFolder folder;
+  // A lens that leans: its mid-planes all hold the direction (1, 0, 1) or are square to it.
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "off", "do": "move", "object": "ball", "translate_mm": [12, 0, 12]},
+      {"id": "lens", "do": "combine", "expression": "ball & off"},
+      {"id": "twin", "do": "mirror", "object": "lens", "fit": true, "overlap": 0.9})"));
+  const Object &lens = evaluation.object("lens"), &twin = evaluation.object("twin");
+  expect_certified(twin, lens.mesh.measures->volume_mm3, 0.02);
+  EXPECT_LT(twin.mesh.details["rms_mm"].get<double>(), 0.1);
+  EXPECT_LT(glm::distance(*twin.mesh.measures->centroid_mm, *lens.mesh.measures->centroid_mm), 0.1);
+  EXPECT_LT(glm::distance(*twin.voxel.measures.centroid_mm, *lens.voxel.measures.centroid_mm), 0.2);
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -62,10 +62,12 @@ TEST(Operation, EveryFieldSaysWhatItIsInOneSentence) {
   for (const Operation& operation : operations()) {
     EXPECT_TRUE(operation.says.ends_with(".")) << operation.name;
     look(operation.fields, operation.name);
+    look(operation.verb_fields, operation.name);
     const bool is_whole = operation.makes == Makes::Object
                               ? (operation.voxel || operation.mesh) && operation.bound
+                          : operation.makes == Makes::Scan        ? static_cast<bool>(operation.scan)
                           : operation.makes == Makes::Measurement ? static_cast<bool>(operation.measure)
-                                                                  : static_cast<bool>(operation.write);
+                                                                  : operation.write || operation.on_files;
     EXPECT_TRUE(is_whole) << operation.name;
   }
 }

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/file/landmarks_file.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "planner/table/nearest_name.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::json;
+
+glm::dvec3 point_of(const Json& numbers, const std::string& name) {
+  const bool three = numbers.is_array() && numbers.size() == 3 && numbers[0].is_number() &&
+                     numbers[1].is_number() && numbers[2].is_number();
+  if (!three) throw std::runtime_error("the point of '" + name + "' is not a list of three numbers");
+  return {numbers[0].get<double>(), numbers[1].get<double>(), numbers[2].get<double>()};
+}
+
+std::vector<brep::Landmark> own_landmarks(const Json& list) {
+  static const std::vector<std::string> known = {"name", "point_mm", "weight"};
+  std::vector<brep::Landmark> landmarks;
+  for (const Json& entry : list) {
+    const std::string number = "landmark " + std::to_string(landmarks.size());
+    if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string())
+      throw std::runtime_error(number + " has no name");
+    brep::Landmark landmark;
+    landmark.name = entry["name"].get<std::string>();
+    for (const auto& [key, value] : entry.items())
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        throw std::runtime_error("'" + landmark.name + "' has an unknown key '" + key + "'" +
+                                 suggestion(key, known));
+    landmark.p_mm = point_of(entry.value("point_mm", Json()), landmark.name);
+    const Json weight = entry.value("weight", Json(1.0));
+    if (!weight.is_number()) throw std::runtime_error("the weight of '" + landmark.name + "' is no number");
+    landmark.weight = weight.get<double>();
+    landmarks.push_back(landmark);
+  }
+  return landmarks;
+}
+
+/// Control points of every list in the file.
+std::vector<brep::Landmark> slicer_landmarks(const Json& markups) {
+  std::vector<brep::Landmark> landmarks;
+  for (const Json& list : markups) {
+    const std::string system = list.value("coordinateSystem", "LPS");
+    if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
+      throw std::runtime_error("the coordinate system '" + system + "' is neither LPS nor RAS");
+    const bool ras = system == "RAS" || system == "0";
+    for (const Json& entry : list.value("controlPoints", Json::array())) {
+      if (entry.value("positionStatus", "defined") != "defined") continue;
+      brep::Landmark landmark;
+      landmark.name = entry.value("label", "");
+      if (landmark.name.empty())
+        throw std::runtime_error("control point " + std::to_string(landmarks.size()) + " has no label");
+      landmark.p_mm = point_of(entry.value("position", Json()), landmark.name);
+      if (ras) landmark.p_mm *= glm::dvec3(-1.0, -1.0, 1.0);
+      landmarks.push_back(landmark);
+    }
+  }
+  return landmarks;
+}
+
+}  // namespace
+
+std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(path.string() + ": cannot be read");
+  try {
+    const Json root = Json::parse(file);
+    const auto is_list = [&](const char* key) {
+      return root.is_object() && root.contains(key) && root[key].is_array();
+    };
+    std::vector<brep::Landmark> landmarks;
+    if (is_list("landmarks"))
+      landmarks = own_landmarks(root["landmarks"]);
+    else if (is_list("markups"))
+      landmarks = slicer_landmarks(root["markups"]);
+    else
+      throw std::runtime_error(
+          R"(there is no list "landmarks" of { "name": ..., "point_mm": [x, y, z] }, nor Slicer's "markups")");
+    return landmarks;
+  } catch (const Json::exception& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/file/mesh_file.h"
+
+#include "brep/io/read_mesh.h"
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/error.h"
+
+namespace octotomy::planner {
+
+brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  const brep::Triangles triangles = brep::read_triangles(path);
+  try {
+    return brep::solid_of(triangles);
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(),
+                      path.string() + ": " + error.what() + "; mend it first, octotomy info tells all");
+  }
+}
+
+brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings) {
+  const Stopwatch watch(timings, "read");
+  const brep::Triangles triangles = brep::read_triangles(path);
+  try {
+    return brep::mesh_of(triangles);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(path.string() + ": " + error.what());
+  }
+}
+
+void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings) {
+  const Stopwatch watch(timings, "write");
+  brep::write_mesh(mesh, out);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/file/output_path.h"
+
+#include <algorithm>
+
+#include "planner/table/nearest_name.h"
+
+namespace octotomy::planner {
+
+void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
+                       const Place& place) {
+  const std::string name = output_path(path).generic_string();
+  if (std::none_of(extensions.begin(), extensions.end(),
+                   [&](const std::string& known) { return name.ends_with(known); }))
+    place.refuse("nothing can be written as '" + name + "'" +
+                 suggestion(path.extension().string(), extensions));
+  if (place.scope == nullptr) return;
+  if (path.is_absolute() || name.starts_with("..") || name.starts_with("views/"))
+    place.refuse("'" + name + "' must be a path within the result folder, outside of views/");
+  place.scope->take_path(place.where, name);
+}
+
+std::filesystem::path output_file(const std::filesystem::path& folder, const std::filesystem::path& path) {
+  const std::filesystem::path file = folder / output_path(path);
+  std::filesystem::create_directories(file.parent_path());
+  return file;
+}
+
+std::filesystem::path output_path(const std::filesystem::path& path) {
+  return path.lexically_normal().generic_string();
+}
+
+}  // namespace octotomy::planner

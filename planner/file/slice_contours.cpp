@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/file/slice_contours.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "brep/contour/chain_code.h"
+#include "brep/contour/contour_edit.h"
+#include "brep/contour/offset_contours.h"
+#include "convert/surface/trace_contours.h"
+#include "planner/table/json_file.h"
+#include "voxel/filter/slice_contour.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Polygon = std::vector<glm::dvec2>;
+
+constexpr std::array view_names = {"anterior", "posterior", "left", "right", "superior", "inferior"};
+constexpr double rounding = 1e-6;  // of unit vectors that files hold
+
+/// The text that parse_view() makes this view of.
+std::string name_of(const voxel::View& view) {
+  for (const char* name : view_names) {
+    const voxel::View named = voxel::parse_view(name);
+    if (glm::distance(view.look, named.look) < rounding && glm::distance(view.up, named.up) < rounding)
+      return name;
+  }
+  const double elevation = std::asin(glm::clamp(-view.look.z, -1.0, 1.0));
+  // Straight from above or below only `up` tells the azimuth.
+  const glm::dvec2 forward = std::abs(view.look.z) < 1.0 - rounding
+                                 ? glm::dvec2(view.look)
+                                 : glm::dvec2(view.up) * (view.look.z > 0.0 ? -1.0 : 1.0);
+  const double azimuth = std::atan2(-forward.x, forward.y);
+  return std::to_string(glm::degrees(azimuth)) + "," + std::to_string(glm::degrees(elevation));
+}
+
+std::string place_of(const voxel::SliceMask::Slice& slice) {
+  return "the slice at " + std::to_string(slice.position_mm) + " mm";
+}
+
+void check_crossing(const brep::Contour& contour, const std::string& where) {
+  const auto crossing = brep::first_crossing(contour);
+  if (!crossing) return;
+  const glm::dvec2 at = contour.points_mm[crossing->first];
+  throw std::runtime_error(where + ": a contour crosses itself between its pieces " +
+                           std::to_string(crossing->first) + " and " + std::to_string(crossing->second) +
+                           ", near [" + std::to_string(at.x) + ", " + std::to_string(at.y) + "]");
+}
+
+/// The pairs of slices at either end that hold nothing, but for one that shows where the object ends.
+void drop_empty_ends(std::vector<voxel::SliceMask::Slice>& slices) {
+  const auto empty = [](const auto& slice) { return slice.polygons_mm.empty(); };
+  while (slices.size() > 2 && empty(slices.back()) && empty(slices[slices.size() - 2])) slices.pop_back();
+  std::size_t leading = 0;
+  while (leading + 2 < slices.size() && empty(slices[leading]) && empty(slices[leading + 1])) ++leading;
+  slices.erase(slices.begin(), slices.begin() + static_cast<std::ptrdiff_t>(leading));
+}
+
+Polygon refined_contour(const Polygon& points_mm, const Refinement& refinement, const std::string& where) {
+  brep::Contour contour{points_mm};
+  if (refinement.thin_mm > 0.0) contour = brep::thin(contour, refinement.thin_mm);
+  if (refinement.harmonics)
+    contour = brep::fourier_smooth(contour,
+                                   {.harmonics = *refinement.harmonics,
+                                    .points = std::max(contour.points_mm.size(), 4 * *refinement.harmonics)});
+  if (refinement.thin_mm > 0.0 || refinement.harmonics) check_crossing(contour, where);
+  return contour.points_mm;
+}
+
+/// One edit of a file: where it stands, and the contours of its slice.
+class Edit {
+ public:
+  Edit(const nlohmann::json& json, std::string where, voxel::SliceMask& mask)
+      : json_(json), where_(std::move(where)), polygons_(slice_of(mask).polygons_mm) {}
+
+  void make() {
+    const std::string what = word_of(need(json_, "do", where_), where_ + ".do");
+    if (what == "add") {
+      known({"points_mm"}, false);
+      brep::Contour added;
+      for (const nlohmann::json& point : need(json_, "points_mm", where_))
+        added.points_mm.push_back(point_of(point, where_ + ".points_mm"));
+      if (added.points_mm.size() < 3) refuse(where_ + ".points_mm", "must be three points or more");
+      polygons_.emplace_back();
+      return put(polygons_.size() - 1, added);
+    }
+    const std::size_t number = index("contour", polygons_.size());
+    const brep::Contour contour{polygons_[number]};
+    if (what == "move") {
+      known({"point", "to_mm"});
+      put(number, brep::point_moved(contour, count("point"), point("to_mm")));
+    } else if (what == "insert") {
+      known({"piece", "at_mm"});
+      put(number, brep::point_inserted(contour, count("piece"), point("at_mm")));
+    } else if (what == "delete") {
+      known({"point"});
+      put(number, brep::point_deleted(contour, count("point")));
+    } else if (what == "split") {
+      known({"first", "second"});
+      const auto [first, second] = brep::split(contour, count("first"), count("second"));
+      put(number, first);
+      polygons_.emplace_back();
+      put(polygons_.size() - 1, second);
+    } else if (what == "join") {
+      known({"piece", "with", "its_piece"});
+      const std::size_t other = index("with", polygons_.size());
+      if (other == number) refuse(where_ + ".with", "is the contour itself");
+      put(number, brep::joined(contour, count("piece"), {polygons_[other]}, count("its_piece")));
+      remove(other);
+    } else if (what == "remove") {
+      known({});
+      remove(number);
+    } else {
+      refuse(where_ + ".do", "is move, insert, delete, split, join, remove or add, not '" + what + "'");
+    }
+  }
+
+ private:
+  voxel::SliceMask::Slice& slice_of(voxel::SliceMask& mask) const {
+    return mask.slices[index("slice", mask.slices.size())];
+  }
+  std::size_t count(const std::string& key) const {
+    return count_of(need(json_, key, where_), where_ + "." + key);
+  }
+  std::size_t index(const std::string& key, std::size_t end) const {
+    const std::size_t number = count(key);
+    if (number >= end) refuse(where_ + "." + key, "there are " + std::to_string(end) + ", counted from 0");
+    return number;
+  }
+  glm::dvec2 point(const std::string& key) const {
+    return point_of(need(json_, key, where_), where_ + "." + key);
+  }
+  void known(std::vector<std::string> keys, bool of_a_contour = true) const {
+    keys.insert(keys.end(), {"slice", "do"});
+    if (of_a_contour) keys.emplace_back("contour");
+    check_keys(json_, where_, keys);
+  }
+  void put(std::size_t number, const brep::Contour& contour) {
+    check_crossing(contour, where_);
+    polygons_[number] = contour.points_mm;
+  }
+  void remove(std::size_t number) {
+    polygons_.erase(polygons_.begin() + static_cast<std::ptrdiff_t>(number));
+  }
+
+  const nlohmann::json& json_;
+  std::string where_;
+  std::vector<Polygon>& polygons_;
+};
+
+}  // namespace
+
+voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double high) {
+  voxel::SliceMask mask;
+  try {
+    mask.view = voxel::parse_view(voxel::contour_view(scene.lattice));
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(std::string(error.what()) +
+                             ": straighten the scan first, for example with octotomy prepare");
+  }
+  const glm::dvec3 spacing = scene.lattice.spacing_mm();
+  bool is_empty = true;
+  for (const brep::Section& section : convert::trace_contours(scene, low, high)) {
+    const auto lps = [&](const glm::dvec2& p) {
+      return scene.lattice.lps_mm(glm::dvec3(p, section.z_mm) / spacing);
+    };
+    voxel::SliceMask::Slice slice;
+    slice.position_mm = glm::dot(lps({0.0, 0.0}), mask.view.look);
+    for (const brep::Contour& contour : section.contours) {
+      slice.polygons_mm.emplace_back();
+      for (const glm::dvec2& p : contour.points_mm)
+        slice.polygons_mm.back().push_back(mask.view.project(lps(p)));
+    }
+    is_empty = is_empty && slice.polygons_mm.empty();
+    mask.slices.push_back(std::move(slice));
+  }
+  if (is_empty) throw std::runtime_error("no slice has anything in the window: choose another");
+  if (mask.slices.size() < 2)
+    throw std::runtime_error("a scan of one slice has no contours on parallel slices");
+  if (mask.slices.front().position_mm > mask.slices.back().position_mm)
+    std::reverse(mask.slices.begin(), mask.slices.end());
+  drop_empty_ends(mask.slices);
+  return mask;
+}
+
+voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement) {
+  voxel::SliceMask result = mask;
+  bool is_empty = true;
+  for (voxel::SliceMask::Slice& slice : result.slices) {
+    std::vector<brep::Contour> contours;
+    for (const Polygon& polygon : slice.polygons_mm)
+      if (std::abs(brep::signed_area_mm2({polygon})) >= refinement.least_area_mm2)
+        contours.push_back({refined_contour(polygon, refinement, place_of(slice))});
+    try {
+      if (refinement.offset_mm != 0.0) contours = brep::offset(contours, refinement.offset_mm);
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error(place_of(slice) + ": " + error.what());
+    }
+    slice.polygons_mm.clear();
+    for (brep::Contour& contour : contours) slice.polygons_mm.push_back(std::move(contour.points_mm));
+    is_empty = is_empty && slice.polygons_mm.empty();
+  }
+  if (is_empty) throw std::runtime_error("nothing is left of any contour: ask for less");
+  return result;
+}
+
+voxel::SliceMask edited(const voxel::SliceMask& mask, const std::filesystem::path& edits) {
+  const nlohmann::json json = read_json(edits);
+  check_keys(json, edits.string(), {"edits"});
+  const nlohmann::json& list = need(json, "edits", edits.string());
+  if (!list.is_array()) refuse(edits.string() + ": edits", "must be a list");
+  voxel::SliceMask result = mask;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string where = edits.string() + ": edits[" + std::to_string(i) + "]";
+    if (!list[i].is_object()) refuse(where, "must be an object");
+    try {
+      Edit(list[i], where, result).make();
+    } catch (const std::invalid_argument& error) {
+      refuse(where, error.what());
+    }
+  }
+  return result;
+}
+
+Json to_json(const voxel::SliceMask& mask) {
+  Json slices = Json::array();
+  for (const voxel::SliceMask::Slice& slice : mask.slices) {
+    Json polygons = Json::array();
+    for (const Polygon& polygon : slice.polygons_mm) {
+      polygons.emplace_back(Json::array());
+      for (const glm::dvec2& p : polygon) polygons.back().push_back({p.x, p.y});
+    }
+    slices.push_back({{"position_mm", slice.position_mm}, {"polygons_mm", std::move(polygons)}});
+  }
+  return {{"view", name_of(mask.view)},
+          {"between", mask.between == voxel::SliceMask::Between::Nearest ? "nearest" : "shape_based"},
+          {"slices", std::move(slices)}};
+}
+
+Json chain_codes(const voxel::SliceMask& mask, double spacing_mm) {
+  Json slices = Json::array();
+  for (const voxel::SliceMask::Slice& slice : mask.slices) {
+    Json chains = Json::array();
+    for (const Polygon& polygon : slice.polygons_mm) {
+      const brep::ChainCode code = brep::chain_code({polygon}, glm::dvec2(spacing_mm));
+      std::string steps;
+      for (const std::uint8_t step : code.steps) steps.push_back(static_cast<char>('0' + step));
+      chains.push_back({{"start", {code.start.x, code.start.y}}, {"steps", steps}});
+    }
+    slices.push_back({{"position_mm", slice.position_mm}, {"chains", std::move(chains)}});
+  }
+  return {{"spacing_mm", spacing_mm}, {"slices", std::move(slices)}};
+}
+
+}  // namespace octotomy::planner

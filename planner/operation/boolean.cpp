@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The Boolean of meshes in files, by corefinement; in a plan it is combine's mesh kernel.
+#include "brep/boolean/boolean.h"
+
+#include "brep/boolean/exact_boolean.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "planner/file/mesh_file.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Boolean {
+  ObjectName a, b;
+  std::string operation;
+  std::vector<ObjectName> further;
+  bool exact = false;
+  std::filesystem::path out;
+};
+
+/// What the proof says, and the mesh in place of the result's.
+Json proven(const FileBench& bench, const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
+            brep::BooleanResult& result) {
+  const voxel::Progress progress = bench.progress("exact");
+  const brep::Watch watch{.progress = progress.report, .stop = progress.stop};
+  brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, watch);
+  result.mesh = std::move(exact.mesh);
+  result.residual = 0.0;
+  return {{"identity", "|A| + |B| = |A u B| + |A n B|, as rational numbers"},
+          {"a_mm3", exact.a_mm3},
+          {"b_mm3", exact.b_mm3},
+          {"union_mm3", exact.united_mm3},
+          {"intersection_mm3", exact.intersection_mm3},
+          {"result_mm3", exact.result_mm3},
+          {"rounding_mm3", exact.rounding_mm3},
+          {"rounded_points", exact.points}};
+}
+
+FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
+  need_mesh_extension(asked.out);
+  need_folder_of(asked.out);
+  if (asked.exact && !asked.further.empty())
+    throw std::runtime_error("--exact proves one step at a time: leave --with out");
+  std::vector<brep::Mesh> operands = {read_solid(asked.a.name, bench.timings),
+                                      read_solid(asked.b.name, bench.timings)};
+  for (const ObjectName& path : asked.further) operands.push_back(read_solid(path.name, bench.timings));
+  const brep::Operation operation = asked.operation == "union"          ? brep::Operation::Union
+                                    : asked.operation == "intersection" ? brep::Operation::Intersection
+                                                                        : brep::Operation::Difference;
+  brep::BooleanResult result;
+  Json proof = nullptr;
+  {
+    const Stopwatch watch(bench.timings, "boolean_mesh");
+    if (asked.exact)
+      proof = proven(bench, operands[0], operation, operands[1], result);
+    else
+      result = brep::boolean(operands, operation, bench.stop);
+  }
+  if (result.mesh.n_faces() == 0)
+    throw std::runtime_error("the " + asked.operation + " of " + asked.a.name + " and " + asked.b.name +
+                             " is empty: there is no surface to write");
+  const brep::Health health = brep::health(result.mesh);
+  const brep::Measures measures = brep::measure(result.mesh);
+  write_surface(result.mesh, asked.out, bench.timings);
+  FileAnswer answer{{{"path", asked.out.string()}}};
+  answer.findings = result.findings;
+  answer.json.update(to_json(measures));
+  answer.json["area_estimator"] = "triangles";
+  answer.json["health"] = to_json(health);
+  answer.json["residuals"] = {{"volume_relative", result.residual ? Json(*result.residual) : Json(nullptr)}};
+  answer.json["exact"] = proof;
+  answer.json["findings"] = result.findings;
+  answer.rows = {{"written", asked.out.string()},
+                 {"volume", grouped(measures.volume_mm3, 3) + " mm\u00b3"},
+                 {"area", grouped(measures.area_mm2, 3) + " mm\u00b2"}};
+  return answer;
+}
+
+}  // namespace
+
+Operation boolean_operation() {
+  return Describe<Boolean>("boolean", "Makes the Boolean of two solids, by corefinement of their meshes.",
+                           Makes::File)
+      .takes(field("a", &Boolean::a, "A mesh.").required().positional("a"))
+      .takes(field("op", &Boolean::operation, "union, intersection or difference.")
+                 .required()
+                 .one_of({"union", "intersection", "difference"})
+                 .positional("op"))
+      .takes(field("b", &Boolean::b, "A mesh.").required().positional("b"))
+      .takes(field("with", &Boolean::further,
+                   "Further meshes: all are united, intersected, or taken from the first."))
+      .takes(field("exact", &Boolean::exact,
+                   "New points as exact numbers, and proof that the volumes add up as rationals; slower."))
+      .takes(field("out", &Boolean::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
+      .example(
+          R"({"id": "rest", "do": "boolean", "a": "skull", "op": "difference", "b": "cut",
+        "out": "rest.stl"})")
+      .on_files("octotomy boolean skull.stl difference box.stl -o rest.stl --json", on_files);
+}
+
+}  // namespace octotomy::planner

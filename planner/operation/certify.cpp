@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/certify.h"
+
+#include "planner/operation/trace.h"
+#include "verify/certify_bounded.h"
+#include "verify/witness.h"
+
+namespace octotomy::planner {
+
+void certify(Object& made, const std::string& title, const voxel::Progress& progress) {
+  verify::BoundInputs inputs;
+  inputs.operation = title;
+  inputs.voxel_lineage = made.voxel.lineage;
+  inputs.mesh_lineage = made.mesh.lineage;
+  inputs.scan_spacing_mm = made.bound.spacing_mm;
+  inputs.flat_cut_mm2 = area_on_planes(*made.mesh.within, made.bound.planes);
+  inputs.scan_box_mm = made.bound.scan_box_mm;
+  inputs.voxels_are_samples = made.bound.voxels_are_samples;
+  // What lies outside of the universe has been cut away from both answers.
+  const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
+  inputs.witness = verify::both(made.witness, verify::witness_of_box(world));
+  made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.within, inputs, progress);
+}
+
+}  // namespace octotomy::planner

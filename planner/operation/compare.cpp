@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How far two objects' surfaces lie apart, both ways, and how much they have in common.
+#include "brep/boolean/boolean.h"
+#include "brep/io/write_mesh.h"
+#include "brep/measure/difference.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "planner/file/mesh_file.h"
+#include "planner/measure/distance_histogram.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+#include "voxel/scan/image_file.h"
+
+namespace octotomy::planner {
+namespace {
+
+struct Compare {
+  ObjectName a, b;
+  std::vector<double> tolerances_mm = brep::DifferenceOptions{}.tolerances_mm;
+  std::optional<double> spacing_mm;
+  int bins = static_cast<int>(brep::DifferenceOptions{}.bins);
+  bool no_dice = false;
+  // Of the verb.
+  std::filesystem::path out, picture;
+  std::optional<double> range_mm;
+};
+
+Json to_json(const brep::OneWay& way, const std::vector<double>& tolerances) {
+  Json bands = Json::array();
+  for (std::size_t k = 0; k < tolerances.size(); ++k)
+    bands.push_back({{"tolerance_mm", tolerances[k]}, {"share_within", way.within[k]}});
+  return {{"mean_mm", way.mean_mm},
+          {"rms_mm", way.rms_mm},
+          {"p95_mm", way.p95_mm},
+          {"max_mm", way.max_mm},
+          {"signed_mean_mm", way.signed_mean_mm},
+          {"bands", bands}};
+}
+
+/// Twice the common volume by the sum of both; none with a finding where there is no such volume.
+std::optional<double> dice(const brep::Mesh& a, const brep::Mesh& b, std::vector<std::string>& findings) {
+  const auto none = [&](const std::string& why) {
+    findings.push_back("no Dice: " + why);
+    return std::nullopt;
+  };
+  for (const auto& [mesh, name] : {std::pair(&a, "A"), std::pair(&b, "B")}) {
+    const brep::Health health = brep::health(*mesh);
+    if (!health.solid()) return none(std::string(name) + " is not a solid: " + health.findings.front());
+  }
+  try {
+    const brep::BooleanResult common = brep::boolean(a, brep::Operation::Intersection, b);
+    findings.insert(findings.end(), common.findings.begin(), common.findings.end());
+    return 2.0 * brep::volume_mm3(common.mesh) / (brep::volume_mm3(a) + brep::volume_mm3(b));
+  } catch (const std::runtime_error& error) {
+    return none(error.what());
+  }
+}
+
+Json definitions(const brep::Difference& difference) {
+  return {
+      {"hausdorff_mm", "largest distance of a point of either surface to the other's nearest triangle, at " +
+                           std::to_string(difference.sample_count) + " samples and all vertices"},
+      {"hausdorff95_mm", "larger of the two directed, area-weighted 95th percentiles, point to triangle"},
+      {"mean_mm", "area-weighted mean of absolute distances, point to triangle, over both surfaces"},
+      {"signed", "positive where A lies outside B (a_to_b), or B outside A (b_to_a)"},
+      {"dice", "twice the intersection's volume by the sum of both volumes, by mesh Boolean"}};
+}
+
+/// Both surfaces held against each other.
+struct Compared {
+  brep::Difference difference;
+  std::optional<double> dice;
+  std::vector<std::string> findings;
+};
+
+Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b, Timings& timings) {
+  Compared made;
+  {
+    const Stopwatch watch(timings, "distances");
+    brep::DifferenceOptions options;
+    options.tolerances_mm = asked.tolerances_mm;
+    options.spacing_mm = asked.spacing_mm;
+    options.bins = static_cast<decltype(options.bins)>(asked.bins);
+    made.difference = brep::difference(a, b, options);
+  }
+  if (!asked.no_dice) {
+    const Stopwatch watch(timings, "dice");
+    made.dice = dice(a, b, made.findings);
+  }
+  if (made.difference.on_border_count > 0)
+    made.findings.push_back(std::to_string(made.difference.on_border_count) + " of " +
+                            std::to_string(made.difference.sample_count) +
+                            " samples are nearest to a border, where the sign is a guess");
+  return made;
+}
+
+Json to_json(const Compare& asked, const Compared& made) {
+  const brep::Difference& difference = made.difference;
+  return {{"hausdorff_mm", difference.hausdorff_mm},
+          {"hausdorff95_mm", difference.hausdorff95_mm},
+          {"mean_mm", difference.mean_mm},
+          {"rms_mm", difference.rms_mm},
+          {"dice", made.dice ? Json(*made.dice) : Json(nullptr)},
+          {"definition", definitions(difference)},
+          {"a_to_b", to_json(difference.a_to_b, asked.tolerances_mm)},
+          {"b_to_a", to_json(difference.b_to_a, asked.tolerances_mm)},
+          {"hausdorff_short_by_mm", difference.hausdorff_short_by_mm},
+          {"samples", difference.sample_count},
+          {"histogram",
+           {{"low_mm", difference.histogram.low_mm},
+            {"width_mm", difference.histogram.width_mm},
+            {"shares", difference.histogram.shares}}}};
+}
+
+/// The distances of the mesh kernel's answers; null with a finding where one has none.
+Json measure(const Compare& asked, const AnswerBench& bench) {
+  Json json{{"a", asked.a.name}, {"b", asked.b.name}};
+  for (const ObjectName& name : {asked.a, asked.b}) {
+    const SharedMesh& mesh = bench.objects.at(name.name).mesh.within;
+    if (mesh && mesh->n_faces() > 0) continue;
+    json["mean_mm"] = nullptr;
+    json["findings"] = {"'" + name.name + (mesh ? "' is empty" : "' has no mesh, see its findings")};
+    return json;
+  }
+  const Compared made = compared(asked, *bench.objects.at(asked.a.name).mesh.within,
+                                 *bench.objects.at(asked.b.name).mesh.within, bench.timings);
+  json.update(to_json(asked, made));
+  json["findings"] = made.findings;
+  return json;
+}
+
+void write_coloured(const Compare& asked, const brep::Mesh& a, const brep::Difference& difference,
+                    double range_mm) {
+  brep::VertexData data;
+  for (const double distance : difference.vertex_mm)
+    data.colours.push_back(distance_colour(distance, range_mm));
+  if (asked.out.extension() != ".glb") {
+    data.scalar_name = "distance_mm";
+    data.scalars = difference.vertex_mm;
+  }
+  brep::write_mesh(a, asked.out, data);
+}
+
+FileAnswer on_files(const Compare& asked, const FileBench& bench) {
+  if (!asked.out.empty()) {
+    const auto extension = asked.out.extension();
+    if (extension != ".ply" && extension != ".vtp" && extension != ".glb")
+      throw std::runtime_error(asked.out.string() + ": the coloured mesh is written as .ply, .vtp or .glb");
+    need_folder_of(asked.out);
+  }
+  if (!asked.picture.empty()) {
+    if (asked.picture.extension() != ".png")
+      throw std::runtime_error(asked.picture.string() + ": the histogram is drawn as .png");
+    need_folder_of(asked.picture);
+  }
+  const brep::Mesh a = read_surface(asked.a.name, bench.timings),
+                   b = read_surface(asked.b.name, bench.timings);
+  const Compared made = compared(asked, a, b, bench.timings);
+  const double range_mm = asked.range_mm.value_or(made.difference.hausdorff95_mm);
+  if (!asked.out.empty()) {
+    const Stopwatch watch(bench.timings, "write");
+    write_coloured(asked, a, made.difference, range_mm);
+  }
+  if (!asked.picture.empty()) {
+    const Stopwatch watch(bench.timings, "picture");
+    const HistogramPicture picture = draw_histogram(made.difference, range_mm);
+    voxel::write_image(asked.picture, picture.size_px, picture.rgb);
+  }
+  FileAnswer answer{to_json(asked, made)};
+  answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
+  answer.json["picture"] = asked.picture.empty() ? Json(nullptr) : Json(asked.picture.string());
+  answer.json["colour_range_mm"] =
+      asked.out.empty() && asked.picture.empty() ? Json(nullptr) : Json(range_mm);
+  answer.json["findings"] = answer.findings = made.findings;
+  answer.rows = {{"mean", grouped(made.difference.mean_mm, 3) + " mm"},
+                 {"Hausdorff 95", grouped(made.difference.hausdorff95_mm, 3) + " mm"},
+                 {"Hausdorff", grouped(made.difference.hausdorff_mm, 3) + " mm"},
+                 {"Dice", made.dice ? grouped(*made.dice, 5) : "none"}};
+  return answer;
+}
+
+}  // namespace
+
+Operation compare_operation() {
+  return Describe<Compare>("compare", "Measures how far two surfaces lie apart, both ways.",
+                           Makes::Measurement)
+      .takes(field("a", &Compare::a, "An object.").required().positional("a"))
+      .takes(field("b", &Compare::b, "Another one in the same frame.").required().positional("b"))
+      .takes(field("tolerances_mm", &Compare::tolerances_mm, "Bands whose share of the area is told."))
+      .takes(field("spacing_mm", &Compare::spacing_mm,
+                   "Distance of the samples. Default: 200 000 samples a surface.")
+                 .greater_than(0.0))
+      .takes(field("bins", &Compare::bins, "Of the histogram.").from(1).to(10000))
+      .takes(field("no_dice", &Compare::no_dice,
+                   "Leaves out the common volume, the dearest part for large meshes."))
+      .verb_takes(field("out", &Compare::out,
+                        "A coloured by its distance to B, red outside, blue inside: .ply, .vtp or .glb."))
+      .verb_takes(
+          field("picture", &Compare::picture, "The histogram of distances in those colours: a .png file."))
+      .verb_takes(field("range_mm", &Compare::range_mm, "Distance of full colour. Default: the Hausdorff 95.")
+                      .greater_than(0.0))
+      .example(
+          R"({"id": "apart", "do": "compare", "a": "maxilla", "b": "advanced", "tolerances_mm": [1, 2]})")
+      .on_files("octotomy compare planned.stl after.stl -o difference.ply --picture difference.png --json",
+                on_files)
+      .measure(measure);
+}
+
+}  // namespace octotomy::planner

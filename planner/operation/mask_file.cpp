@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/mask_file.h"
+
+#include <cmath>
+#include <limits>
+
+#include "planner/file/file_kind.h"
+#include "planner/file/octree_in.h"
+#include "planner/file/region_file.h"
+#include "planner/measure/octree_summary.h"
+#include "planner/table/plan_universe.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+voxel::Region region_of(const std::string& text) {
+  const auto colon = text.find(':');
+  if (colon == std::string::npos || colon == 0 || colon + 1 == text.size())
+    throw std::runtime_error("--region: '" + text +
+                             "' is no region: give VIEW:FILE.json, as anterior:cut.json");
+  try {
+    return read_region(voxel::parse_view(text.substr(0, colon)), text.substr(colon + 1));
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(std::string("--region: ") + error.what());
+  }
+}
+
+/// The mask's bounds along the patient's axes, from views along them.
+class Bounds {
+ public:
+  void add(const glm::dvec3& direction, double low_mm, double high_mm) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(direction[axis]) != 1.0) continue;
+      box_.low_mm[axis] = std::max(box_.low_mm[axis], direction[axis] > 0 ? low_mm : -high_mm);
+      box_.high_mm[axis] = std::min(box_.high_mm[axis], direction[axis] > 0 ? high_mm : -low_mm);
+    }
+  }
+  void add(const voxel::View& view, const std::vector<std::vector<glm::dvec2>>& polygons_mm) {
+    glm::dvec2 low(std::numeric_limits<double>::infinity());
+    glm::dvec2 high = -low;
+    for (const auto& polygon : polygons_mm)
+      for (const glm::dvec2& point : polygon) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+      }
+    add(view.right, low.x, high.x);
+    add(view.up, low.y, high.y);
+  }
+  voxel::Box box() const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!std::isfinite(box_.high_mm[axis] - box_.low_mm[axis]) || box_.high_mm[axis] <= box_.low_mm[axis])
+        throw std::runtime_error(
+            "the regions do not bound the mask along x, y and z: draw it in another view too, or say whose "
+            "voxels it has with --like FILE");
+    return box_;
+  }
+
+ private:
+  static constexpr double far = std::numeric_limits<double>::infinity();
+  voxel::Box box_{glm::dvec3(-far), glm::dvec3(far)};
+};
+
+voxel::Universe universe_of_file(const fs::path& path, const std::optional<double>& voxel_mm) {
+  if (is_octree(path)) return voxel::universe(voxel::read_octree(path));
+  return universe_of(voxel::read_scene(path).lattice, voxel_mm);
+}
+
+/// The universe about what regions and slices enclose.
+voxel::Universe universe_around(const voxel::RegionMask& regions,
+                                const std::optional<voxel::SliceMask>& slices, double voxel_mm) {
+  Bounds bounds;
+  for (const voxel::Region& region : regions.regions) bounds.add(region.view, region.polygons_mm);
+  if (slices) {
+    const auto& all = slices->slices;
+    std::vector<std::vector<glm::dvec2>> drawn;
+    for (const auto& slice : all)
+      drawn.insert(drawn.end(), slice.polygons_mm.begin(), slice.polygons_mm.end());
+    bounds.add(slices->view, drawn);
+    const std::size_t last = all.size() - 1;
+    bounds.add(slices->view.look, all[0].position_mm - 0.5 * (all[1].position_mm - all[0].position_mm),
+               all[last].position_mm + 0.5 * (all[last].position_mm - all[last - 1].position_mm));
+  }
+  return voxel::universe_around(bounds.box(), voxel_mm);
+}
+
+}  // namespace
+
+FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
+  need_octree_extension(asked.out);
+  need_folder_of(asked.out);
+  if (asked.region_files.empty() && asked.slices.empty())
+    throw std::runtime_error("a mask needs --region VIEW:FILE.json or --slices FILE.json");
+  voxel::RegionMask regions;
+  std::optional<voxel::SliceMask> slices;
+  std::optional<voxel::Expression> expression;
+  std::optional<voxel::Universe> universe;
+  {
+    const Stopwatch watch(bench.timings, "read");
+    for (const std::string& region : asked.region_files) regions.regions.push_back(region_of(region));
+    if (!asked.slices.empty()) slices = read_slices(asked.slices);
+    if (!asked.like.empty()) universe = universe_of_file(asked.like, asked.voxel_mm);
+    if (!asked.edit.empty()) {
+      const voxel::OctreeFile old = voxel::read_octree(asked.edit);
+      const auto* octree = std::get_if<voxel::Octree>(&old.tree);
+      if (octree == nullptr)
+        throw std::runtime_error(asked.edit.string() + ": only a binary octree is a mask that can be edited");
+      if (!universe) universe = octree->universe();
+      expression = *octree;
+    }
+  }
+  const auto also = [&](const voxel::Expression& part) {
+    expression = expression ? *expression & part : part;
+  };
+  if (!regions.regions.empty()) also(regions);
+  if (slices) also(*slices);
+  if (!universe) universe = universe_around(regions, slices, asked.voxel_mm.value_or(1.0));
+  voxel::OctreeFile file{voxel::Octree::empty(*universe), asked.out.stem().string(), ""};
+  {
+    const Stopwatch watch(bench.timings, "combine");
+    file.tree = voxel::combine(*universe, *expression);
+  }
+  std::vector<std::string> findings;
+  if (std::get<voxel::Octree>(file.tree).is_empty())
+    findings.emplace_back("the mask holds no voxel: its regions do not overlap, or lie outside the universe");
+  Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"regions", asked.region_files}};
+  if (slices) made["slices"] = asked.slices.filename().string();
+  if (!asked.edit.empty()) made["edited"] = asked.edit.filename().string();
+  file.metadata = made.dump();
+  return octree_written(file, asked.out, bench.stop, bench.timings, findings);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/operation/measure_file.h"
+
+#include "brep/io/read_mesh.h"
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/components.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/measure.h"
+#include "convert/surface/isosurface.h"
+#include "planner/file/mesh_file.h"
+#include "planner/measure/result_json.h"
+#include "planner/measure/surface_questions.h"
+#include "planner/table/number_format.h"
+#include "planner/table/plan_universe.h"
+#include "verify/boundary_model.h"
+#include "voxel/filter/components.h"
+#include "voxel/measure/cell_counts.h"
+#include "voxel/measure/flat_parts.h"
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/partial_volume.h"
+#include "voxel/tree/octree_file.h"
+
+namespace octotomy::planner {
+namespace {
+
+FileAnswer said(Json json) {
+  const auto value = [&](const char* key, int decimals) {
+    return json[key].is_null() ? "none" : grouped(json[key].get<double>(), decimals);
+  };
+  const auto doubtful = [&](const char* key, const char* half_width) {
+    return value(key, 1) + (json.contains(half_width)
+                                ? " \u00b1 " + three_figures(json[half_width].get<double>())
+                                : std::string());
+  };
+  std::vector<std::pair<std::string, std::string>> rows = {
+      {"volume", doubtful("volume_mm3", "volume_half_width_mm3") + " mm\u00b3, " +
+                     json["volume_estimator"].get<std::string>()},
+      {"partial", value("volume_partial_mm3", 1) + " mm\u00b3"},
+      {"area", doubtful("area_mm2", "area_half_width_mm2") + " mm\u00b2, " +
+                   json["area_estimator"].get<std::string>()},
+      {"components", value("components", 0)},
+      {"euler", value("euler", 0)}};
+  const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
+  rows.insert(rows.end(), asked.begin(), asked.end());
+  return {std::move(json), std::move(rows)};
+}
+
+/// What is asked of a closed mesh beyond its size, and the file that it is written to.
+Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const FileBench& bench) {
+  const std::filesystem::path& out = asked.out;
+  if (!out.empty()) {
+    need_folder_of(out);
+    if (!asked.thickness && !asked.curvature)
+      throw std::runtime_error(out.string() + ": say what to write, --thickness or --curvature");
+    if (out.extension() != ".vtp" && out.extension() != ".ply")
+      throw std::runtime_error(out.string() + ": scalars are written as .vtp or .ply");
+  }
+  std::optional<brep::Mesh> other;
+  if (asked.to) other = read_surface(asked.to->name, bench.timings);
+  AtVertices shown;
+  Json json = surface_answers({asked.section, asked.distance, asked.angle, asked.along,
+                               other ? &*other : nullptr, asked.thickness, asked.curvature},
+                              solid, bench.progress("thickness"), bench.timings, shown);
+  if (out.empty()) return json;
+  const Stopwatch watch(bench.timings, "write");
+  brep::VertexData data;
+  data.scalar_name = shown.name;
+  data.scalars = std::move(shown.values);
+  brep::write_mesh(solid, out, data);
+  json["path"] = out.string();
+  return json;
+}
+
+FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
+  Timings& timings = bench.timings;
+  brep::Triangles triangles;
+  {
+    const Stopwatch watch(timings, "read");
+    triangles = brep::read_triangles(file);
+  }
+  auto watch = std::make_unique<Stopwatch>(timings, "measure");
+  const brep::Health health = brep::health(triangles, {false});
+  if (!health.closed || !health.manifold || !health.oriented)
+    throw std::runtime_error(
+        file.string() + ": is not a closed, oriented surface (" +
+        (health.findings.empty() ? std::string("no triangles") : health.findings.front()) +
+        "), so it has no volume: mend it first, octotomy info tells all");
+  const brep::Solid solid = brep::trusted_solid(triangles, brep::Proof::Connection);
+  const brep::Measures& measures = solid.measures();
+  watch.reset();
+  const Json more = asked_of_surface(asked, solid, bench);
+  Json json{{"kind", "mesh"}};
+  json.update(to_json(measures));
+  json.update(more);
+  json["area_estimator"] = "triangles";
+  json["volume_partial_mm3"] = nullptr;
+  json["components"] = health.components;
+  json["euler"] = health.euler;
+  json["findings"] = {"volume_partial_mm3: a mesh has no voxels to fill partly"};
+  return said(std::move(json));
+}
+
+/// What voxels alone tell of an object.
+Json of_voxels(const voxel::Octree& octree, Timings& timings) {
+  const Stopwatch watch(timings, "measure");
+  Json json = to_json(voxel::measure(octree));
+  json["components"] = voxel::components(octree).voxel_counts.size();
+  json["euler"] = voxel::euler_numbers(octree).by_faces;
+  json["euler_of"] = "voxels that touch by faces";
+  json["findings"] = Json::array();
+  return json;
+}
+
+void add_half_width(const voxel::Octree& octree, Digitised digitised, Json& json) {
+  digitised.flat_mm2 = voxel::flat_parts_mm2(octree);
+  const HalfWidth width = volume_half_width(voxel::measure(octree), digitised);
+  json["volume_half_width_mm3"] = width.value;
+  json["volume_half_width_terms"] = to_json(width);
+}
+
+void add_area_half_width(const brep::Solid& surface, const voxel::Lattice& lattice,
+                         const Digitised& digitised, Json& json) {
+  const verify::BoundaryModel model =
+      verify::boundary_model(surface, {lattice, digitised.sample_mm, glm::dvec3(0.0)});
+  const HalfWidth width = area_half_width({model.area_mm2, model.curvature_mm}, digitised);
+  json["area_half_width_mm2"] = width.value;
+  json["area_half_width_terms"] = to_json(width);
+}
+
+void add_partial_volume(const voxel::Window& window, Timings& timings, Json& json) {
+  const Stopwatch watch(timings, "partial volume");
+  json["volume_partial_mm3"] = nullptr;
+  try {
+    json["volume_partial_mm3"] = voxel::partial_volume_mm3(window);
+    json["volume_partial_estimator"] = "trilinear interpolant of the samples";
+  } catch (const std::invalid_argument& error) {
+    json["findings"].push_back(std::string("volume_partial_mm3: ") + error.what());
+  }
+}
+
+voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::path& file,
+                        const Measure& asked) {
+  if (!asked.window)
+    throw std::runtime_error(
+        file.string() + ": holds samples, say which are meant: --window LOW:HIGH, for example --window 300:");
+  return window_on(grey, *asked.window);
+}
+
+FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
+                          const FileBench& bench) {
+  Timings& timings = bench.timings;
+  voxel::OctreeFile file{voxel::Octree::empty({}), "", ""};
+  {
+    const Stopwatch watch(timings, "read");
+    file = voxel::read_octree(file_path);
+  }
+  Json json;
+  if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
+    const voxel::Window window = window_of(*grey, file_path, asked);
+    const voxel::Octree inside = voxel::combine(grey->universe(), window);
+    json = of_voxels(inside, timings);
+    add_partial_volume(window, timings, json);
+    const Stopwatch watch(timings, "half_width");
+    add_half_width(inside, {grey->universe().lattice().spacing_mm(), {}, window_shift_mm(window)}, json);
+  } else if (asked.window) {
+    throw std::runtime_error(file_path.string() + ": holds no samples to take a --window of: leave it out");
+  } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
+    json = of_voxels(voxel::at_least_half(*partial), timings);
+    add_half_width(voxel::at_least_half(*partial), {partial->inside.universe().lattice().spacing_mm()}, json);
+    json["volume_estimator"] = "voxels at least half filled, counted";
+    json["volume_partial_mm3"] = voxel::volume_mm3(*partial);
+    json["volume_partial_estimator"] = "the voxels' filled shares";
+  } else {
+    const auto& octree = std::get<voxel::Octree>(file.tree);
+    json = of_voxels(octree, timings);
+    add_half_width(octree, {octree.universe().lattice().spacing_mm()}, json);
+    json["volume_partial_mm3"] = nullptr;
+    json["findings"].push_back(
+        "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
+        "shares (--digitise partial)");
+  }
+  Json whole{{"kind", "octree"}};
+  whole["source"] = file_path.string();
+  whole.update(json);
+  return said(std::move(whole));
+}
+
+FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
+  Timings& timings = bench.timings;
+  const voxel::Scene scene = bench.read_scan(file);
+  if (asked.window) need_hounsfield(*asked.window, scene);
+  std::optional<voxel::GreyOctree> grey;
+  {
+    const Stopwatch watch(timings, "octree");
+    grey = voxel::grey_octree_of(universe_of(scene.lattice, asked.voxel_mm), scene);
+  }
+  const voxel::Window window = window_of(*grey, file, asked);
+  const voxel::Octree inside = voxel::combine(grey->universe(), window);
+  Json json = of_voxels(inside, timings);
+  add_partial_volume(window, timings, json);
+  Digitised digitised{grey->universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
+  {
+    const Stopwatch watch(timings, "half_width");
+    digitised.shift_mm = window_shift_mm(window);
+    add_half_width(inside, digitised, json);
+  }
+  brep::Solid isosurface;
+  brep::Health health;
+  {
+    const Stopwatch watch(timings, "isosurface");
+    const brep::Triangles triangles =
+        convert::isosurface(scene, window.low, asked.window->high_or_infinity());
+    health = brep::health(triangles, {false});
+    isosurface = brep::trusted_solid(triangles, brep::Proof::Construction);
+  }
+  const brep::Size& surface = isosurface.size();
+  add_area_half_width(isosurface, grey->universe().lattice(), digitised, json);
+  json["area_crofton13_mm2"] = json["area_mm2"];
+  json["area_mm2"] = surface.area_mm2;
+  json["area_estimator"] = mesh_area_estimator;
+  json["volume_isosurface_mm3"] = surface.volume_mm3;
+  json["euler"] = health.euler;
+  json["euler_of"] = "the isosurface: V - E + F";
+  Json whole{{"kind", "scan"}};
+  whole["window"] = {window.low, asked.window->high ? Json(window.high) : Json(nullptr)};
+  whole.update(json);
+  whole["audit"] = to_json(scene.audit);
+  return said(std::move(whole));
+}
+
+}  // namespace
+
+FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
+  if (!asked.object) throw std::runtime_error("file is required: a scan, an octree or a mesh");
+  const std::filesystem::path file = asked.object->name;
+  if ((asked.asks_surface() || asked.to) && !is_mesh(file))
+    throw std::runtime_error(file.string() +
+                             ": sections, ways, angles, walls and curvature are asked of a mesh: octotomy "
+                             "mesh makes one");
+  if (is_octree(file)) return measure_octree(file, asked, bench);
+  return is_mesh(file) ? measure_mesh(file, asked, bench) : measure_scan(file, asked, bench);
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Both kernels start from the scan: the voxel kernel from a window on its grey octree, the mesh kernel from
+// the isosurface of its own samples. Choices that only voxels know leave the mesh kernel without an answer.
+#include "planner/operation/segment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "brep/mesh/triangles.h"
+#include "convert/surface/fill_cavities.h"
+#include "convert/surface/isosurface.h"
+#include "planner/file/region_file.h"
+#include "planner/operation/parts.h"
+#include "planner/operation/trace.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+#include "voxel/filter/components.h"
+#include "voxel/filter/label_map.h"
+#include "voxel/filter/morphology.h"
+#include "voxel/filter/otsu.h"
+#include "voxel/filter/region_grow.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+voxel::Neighbours neighbours_of(const Segment& segment) {
+  if (segment.neighbours == 18) return voxel::Neighbours::Edges;
+  return segment.neighbours == 26 ? voxel::Neighbours::Corners : voxel::Neighbours::Faces;
+}
+
+std::vector<glm::ivec3> seed_voxels(const Segment& segment, const voxel::Universe& universe) {
+  std::vector<glm::ivec3> seeds;
+  for (const glm::dvec3& p_mm : segment.seeds_mm) {
+    const glm::ivec3 voxel(glm::floor(universe.lattice().voxel(p_mm) + 0.5));
+    if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) ||
+        glm::any(glm::greaterThanEqual(voxel, glm::ivec3(universe.side()))))
+      throw std::runtime_error("seed " + plain(p_mm.x) + "," + plain(p_mm.y) + "," + plain(p_mm.z) +
+                               " mm lies outside the scan");
+    seeds.push_back(voxel);
+  }
+  return seeds;
+}
+
+/// One object on its way.
+class Segmenter {
+ public:
+  Segmenter(const Segment& segment, const SegmentSource& source) : segment_(segment), source_(source) {}
+
+  Segmented run() {
+    begin();
+    refine();
+    if (made_.octree.is_empty())
+      throw std::runtime_error(
+          source_.name + ": '" + name() + "' holds no voxel" +
+          (made_.steps.size() > 1
+               ? " after its " + std::to_string(made_.steps.size()) + " steps: leave some out"
+               : ": choose another window, or see what --otsu 3 suggests"));
+    return std::move(made_);
+  }
+
+ private:
+  std::string name() const {
+    if (segment_.label) return "label " + std::to_string(*segment_.label);
+    return segment_.window ? to_string(*segment_.window) : "grown";
+  }
+
+  void become(voxel::Octree octree, Json step) {
+    made_.octree = std::move(octree);
+    step["voxels"] = made_.octree.voxel_count();
+    made_.steps.push_back(std::move(step));
+  }
+
+  void begin() {
+    if (segment_.label)
+      return become(voxel::octree_of_label(source_.universe, source_.scene, *segment_.label),
+                    {{"do", "label"}, {"label", *segment_.label}});
+    if (segment_.tolerance) {
+      voxel::GrowOptions options;
+      options.seeds = seed_voxels(segment_, source_.universe);
+      options.tolerance = *segment_.tolerance;
+      options.neighbours = neighbours_of(segment_);
+      return become(voxel::grow_region(source_.grey(), options),
+                    {{"do", "grow"}, {"tolerance", *segment_.tolerance}});
+    }
+    const SampleWindow& window = *segment_.window;
+    // Beyond the scan is what no window means.
+    const voxel::Octree within = voxel::combine(source_.universe, voxel::bounds(source_.scene.lattice));
+    become(
+        voxel::combine(source_.universe,
+                       voxel::Expression(window_on(source_.grey(), window)) & voxel::Expression(within)),
+        {{"do", "window"}, {"low", window.low}, {"high", window.high ? Json(*window.high) : Json(nullptr)}});
+  }
+
+  void go_on() const {
+    if (source_.stop.stop_requested()) throw voxel::Stopped("stopped before '" + name() + "' was made");
+  }
+
+  void refine() {
+    const voxel::Neighbours neighbours = neighbours_of(segment_);
+    const double voxel_mm3 = source_.universe.lattice().voxel_mm3();
+    if (!segment_.regions.empty())
+      become(voxel::combine(source_.universe,
+                            voxel::Expression(made_.octree) & read_slices(source_.folder / segment_.regions)),
+             {{"do", "regions"}, {"path", segment_.regions.string()}});
+    go_on();
+    if (segment_.open_mm)
+      become(voxel::open(made_.octree, *segment_.open_mm),
+             {{"do", "open"}, {"radius_mm", *segment_.open_mm}});
+    go_on();
+    if (!segment_.seeds_mm.empty() && !segment_.tolerance)
+      become(voxel::components_at(made_.octree, seed_voxels(segment_, source_.universe), neighbours),
+             {{"do", "components_at_seeds"}});
+    go_on();
+    if (segment_.largest || segment_.components) {
+      const voxel::Components parts = voxel::components(made_.octree, neighbours);
+      const auto wanted = static_cast<std::size_t>(segment_.components.value_or(1));
+      become(wanted == 1 ? parts.largest
+             : wanted < parts.voxel_counts.size()
+                 ? voxel::components_of_at_least(made_.octree, parts.voxel_counts[wanted - 1], neighbours)
+                 : made_.octree,
+             {{"do", "largest_components"}, {"of", parts.voxel_counts.size()}});
+    }
+    go_on();
+    if (segment_.at_least_mm3)
+      become(voxel::components_of_at_least(
+                 made_.octree, static_cast<std::uint64_t>(std::ceil(*segment_.at_least_mm3 / voxel_mm3)),
+                 neighbours),
+             {{"do", "components_at_least"}, {"volume_mm3", *segment_.at_least_mm3}});
+    go_on();
+    if (segment_.close_mm)
+      become(voxel::close(made_.octree, *segment_.close_mm),
+             {{"do", "close"}, {"radius_mm", *segment_.close_mm}});
+    go_on();
+    if (segment_.fill) become(voxel::fill_cavities(made_.octree), {{"do", "fill"}});
+  }
+
+  const Segment& segment_;
+  const SegmentSource& source_;
+  Segmented made_{voxel::Octree::empty(source_.universe)};
+};
+
+void check(const Segment& segment, const Place& place) {
+  const int ways = (segment.window ? 1 : 0) + (segment.otsu ? 1 : 0) + (segment.tolerance ? 1 : 0) +
+                   (segment.label ? 1 : 0);
+  if (ways != 1 && place.scope != nullptr)
+    place.refuse("needs one of 'window', 'otsu', 'tolerance' with 'seeds_mm', and 'label'");
+  if (segment.tolerance && segment.seeds_mm.empty())
+    place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
+  if (segment.otsu_class && (!segment.otsu || *segment.otsu_class > *segment.otsu))
+    place.at("class").refuse("is one of the classes of 'otsu', from 1, the darkest");
+  if (segment.neighbours != 6 && segment.neighbours != 18 && segment.neighbours != 26)
+    place.at("neighbours").refuse("must be 6 (faces), 18 (edges) or 26 (corners)");
+}
+
+Segment settle(const Segment& segment, const SettleBench& bench) {
+  if (!segment.otsu) return segment;
+  Segment settled = segment;
+  OtsuWindow found = otsu_window(bench.scan(segment.scan.name).scene, *segment.otsu,
+                                 segment.otsu_class.value_or(*segment.otsu));
+  settled.window = found.window;
+  bench.details["thresholds"] = found.suggestion["thresholds"];
+  return settled;
+}
+
+std::string definition(const Segment& segment, const Objects&) {
+  std::string text = segment.scan.name;
+  if (segment.window) text += " in " + to_string(*segment.window);
+  if (segment.label) text += ", label " + std::to_string(*segment.label);
+  if (segment.tolerance) text += " grown within " + plain(*segment.tolerance);
+  if (!segment.regions.empty()) text += ", within " + segment.regions.filename().string();
+  if (segment.open_mm) text += ", opened by " + plain(*segment.open_mm) + " mm";
+  if (!segment.seeds_mm.empty() && !segment.tolerance) text += ", parts at seeds";
+  if (segment.largest || segment.components)
+    text += ", the " + std::to_string(segment.components.value_or(1)) + " largest";
+  if (segment.at_least_mm3) text += ", parts of at least " + plain(*segment.at_least_mm3) + " mm\u00b3";
+  if (segment.close_mm) text += ", closed by " + plain(*segment.close_mm) + " mm";
+  return segment.fill ? text + ", filled" : text;
+}
+
+/// Why only voxels know the object; null where the mesh kernel does, too.
+const char* why_voxels_alone(const Segment& segment) {
+  if (segment.label) return "a label map has no samples for an isosurface to run between";
+  if (segment.tolerance) return "growing from seeds goes from voxel to voxel";
+  if (!segment.regions.empty()) return "regions on slices choose voxels";
+  if (segment.open_mm || segment.close_mm) return "opening and closing go by voxels";
+  if (!segment.seeds_mm.empty()) return "seeds choose parts of voxels";
+  return segment.neighbours != 6 ? "edges and corners join voxels" : nullptr;
+}
+
+bool chooses_parts(const Segment& segment) {
+  return segment.largest || segment.components || segment.at_least_mm3;
+}
+
+void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
+  const LoadedScan& scan = bench.loaded(segment.scan.name);
+  const Stopwatch watch(bench.timings, "segment");
+  const auto grey = [&]() -> const voxel::GreyOctree& { return scan.grey; };
+  made.octree = segmented(segment, {"scan '" + segment.scan.name + "'", scan.scene, bench.universe, grey,
+                                    bench.folder, bench.progress.stop})
+                    .octree;
+  made.lineage = "voxels of a window on a grey octree of the scan";
+  if (why_voxels_alone(segment) != nullptr) {
+    made.symbol = voxel::Expression(made.octree);
+    made.lineage = "voxels chosen in the scan";
+    return;
+  }
+  // The window still says where the surface lies within a voxel, so that a motion samples it there.
+  made.symbol = bench.within_universe(window_on(scan.grey, *segment.window)) &
+                voxel::Expression(voxel::bounds(scan.scene.lattice));
+  if (!chooses_parts(segment) && !segment.fill) return;
+  const voxel::Octree window = bench.combined(*made.symbol);
+  const voxel::Octree kept = bench.combined(voxel::Expression(made.octree) & voxel::Expression(window));
+  if (chooses_parts(segment)) made.symbol = symbol_of_parts(*made.symbol, window, kept);
+  if (segment.fill) made.symbol = symbol_of_filled(*made.symbol, kept, made.octree);
+}
+
+void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
+  if (const char* why = why_voxels_alone(segment)) throw std::runtime_error(why);
+  const voxel::Scene& scene = bench.samples(segment.scan.name);
+  need_hounsfield(*segment.window, scene);
+  brep::Mesh mesh;
+  {
+    const Stopwatch watch(bench.timings, "isosurface");
+    mesh = brep::mesh_of(convert::isosurface(scene, segment.window->low, segment.window->high_or_infinity()));
+  }
+  const Stopwatch watch(bench.timings, "components");
+  if (segment.largest || segment.components)
+    mesh = kept_parts(mesh, segment.components.value_or(1), std::nullopt).mesh;
+  if (segment.at_least_mm3) mesh = kept_parts(mesh, std::nullopt, segment.at_least_mm3).mesh;
+  if (segment.fill) mesh = convert::fill_cavities(mesh, std::numeric_limits<double>::infinity()).mesh;
+  made.whole = shared(std::move(mesh));
+  made.lineage = "isosurface of the scan's own samples";
+}
+
+void bound(const Segment& segment, const BoundBench& bench, Object& made) {
+  const LoadedScan& scan = bench.scan(segment.scan.name);
+  const voxel::Lattice& lattice = scan.scene.lattice;
+  made.bound.spacing_mm = lattice.spacing_mm();
+  made.bound.scan_box_mm = voxel::bounds(lattice);
+  made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
+  // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
+  if (segment.window && !segment.window->high && why_voxels_alone(segment) == nullptr)
+    made.shown = Shown{scan.grey, segment.window->low, segment.scan.name};
+}
+
+}  // namespace
+
+Segmented segmented(const Segment& segment, const SegmentSource& source) {
+  if (segment.window) need_hounsfield(*segment.window, source.scene);
+  return Segmenter(segment, source).run();
+}
+
+OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number) {
+  const voxel::Histogram histogram = voxel::histogram(scene);
+  const std::vector<double> thresholds = voxel::otsu_thresholds(histogram, classes);
+  const auto which = static_cast<std::size_t>(number) - 1;
+  OtsuWindow otsu;
+  otsu.window.low = which == 0 ? std::numeric_limits<std::int16_t>::min() : std::ceil(thresholds[which - 1]);
+  if (which < thresholds.size()) otsu.window.high = std::ceil(thresholds[which]) - 1.0;
+  otsu.suggestion = {
+      {"method", "Otsu 1979, " + std::to_string(classes) + " classes"},
+      {"thresholds", thresholds},
+      {"histogram", {{"low", histogram.low}, {"bin", histogram.width()}, {"counts", histogram.counts}}}};
+  return otsu;
+}
+
+Operation segment_operation() {
+  return Describe<Segment>("segment", "Makes an object of a scan, then chooses its parts.", Makes::Object)
+      .takes(field("scan", &Segment::scan, "The scan; with a label, a label map.").required())
+      .takes(field("window", &Segment::window, "LOW:HIGH or LOW: in the scan's unit, or a tissue.")
+                 .for_example("\"bone\""))
+      .takes(field("otsu", &Segment::otsu,
+                   "Parts the samples into so many classes of least variance; the object is one of them.")
+                 .from(2)
+                 .to(8))
+      .takes(field("class", &Segment::otsu_class, "The class, from 1, the darkest. Default: the brightest.")
+                 .from(1)
+                 .to(8))
+      .takes(field("tolerance", &Segment::tolerance,
+                   "Grows from the seeds through samples no farther from theirs.")
+                 .from(0)
+                 .to(65535))
+      .takes(field("label", &Segment::label, "The object of that number in a label map.").from(1).to(32767))
+      .takes(
+          field("regions", &Segment::regions, "Keeps the voxels within regions drawn on slices, a JSON file.")
+              .a_file())
+      .takes(
+          field("open_mm", &Segment::open_mm, "Takes away what a ball of that radius does not reach inside.")
+              .greater_than(0.0))
+      .takes(field("seeds_mm", &Segment::seeds_mm, "Keeps the parts that hold these points, LPS.")
+                 .repeated()
+                 .called("seed"))
+      .takes(field("largest", &Segment::largest, "Keeps the largest part."))
+      .takes(field("components", &Segment::components,
+                   "Keeps so many of the largest parts, and those as large as the last of them.")
+                 .from(1)
+                 .to(1000000))
+      .takes(field("at_least_mm3", &Segment::at_least_mm3, "Keeps the parts of at least this volume.")
+                 .greater_than(0.0))
+      .takes(field("close_mm", &Segment::close_mm, "Closes gaps that a ball of that radius does not pass.")
+                 .greater_than(0.0))
+      .takes(field("fill", &Segment::fill, "Fills cavities."))
+      .takes(
+          field("neighbours", &Segment::neighbours, "Parts touch by faces (6), edges (18) or corners (26)."))
+      .example(R"({"id": "skull", "do": "segment", "scan": "ct", "window": "bone", "largest": true})")
+      .check(check)
+      .settle(settle)
+      .object(definition, voxels, triangles, bound);
+}
+
+}  // namespace octotomy::planner

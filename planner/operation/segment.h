@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/table/field.h"
+#include "voxel/space/progress.h"
+#include "voxel/tree/grey_octree.h"
+#include "voxel/tree/octree.h"
+
+namespace octotomy::planner {
+
+/// An object of a scan: by window, suggestion, seeds or label; then choices among what that holds, in the
+/// order of the fields.
+struct Segment {
+  ScanName scan;
+  std::optional<SampleWindow> window;
+  std::optional<int> otsu, otsu_class, label;
+  std::optional<double> tolerance;
+  std::filesystem::path regions;
+  std::optional<double> open_mm;
+  std::vector<glm::dvec3> seeds_mm;
+  bool largest = false;
+  std::optional<int> components;
+  std::optional<double> at_least_mm3, close_mm;
+  bool fill = false;
+  int neighbours = 6;
+};
+
+/// What an object is segmented from.
+struct SegmentSource {
+  std::string name;  ///< of the scan, for refusals
+  const voxel::Scene& scene;
+  const voxel::Universe& universe;
+  std::function<const voxel::GreyOctree&()> grey;  ///< the samples in the universe; not asked for a label
+  std::filesystem::path folder = {};               ///< paths of files are relative to it
+  std::stop_token stop = {};
+};
+
+/// The voxels, and each choice with what it left.
+struct Segmented {
+  voxel::Octree octree;
+  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+};
+
+/// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(). Throws
+/// std::runtime_error where nothing is left or a seed lies outside; Stopped between choices.
+Segmented segmented(const Segment& segment, const SegmentSource& source);
+
+/// The window of one of the classes of least variance (Otsu 1979), from the darkest, 1, and the thresholds
+/// with the histogram that they part.
+struct OtsuWindow {
+  SampleWindow window;
+  nlohmann::ordered_json suggestion;
+};
+OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number);
+
+}  // namespace octotomy::planner

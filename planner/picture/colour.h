@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+
+namespace octotomy::planner {
+
+/// The sRGB colour, 0..1, that #RRGGBB names; none where the text is anything else.
+std::optional<glm::vec3> colour_of_text(const std::string& text);
+/// The same; throws std::runtime_error with an example where the text is anything else.
+glm::vec3 need_colour(const std::string& text);
+/// #rrggbb.
+std::string text_of_colour(const glm::vec3& colour);
+/// Colours of objects that were given none: bone, then colours told apart by readers with any colour vision.
+glm::vec3 colour_of(std::size_t number);
+
+}  // namespace octotomy::planner

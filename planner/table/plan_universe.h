@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+
+#include "voxel/space/lattice.h"
+
+namespace octotomy::planner {
+
+/// The universe a plan is evaluated in: around the scan's bounds, voxels of the asked edge; by default the
+/// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger. A voxel's centre
+/// lies on the scan's first sample, so that samples as far apart as voxels are taken over as they are.
+voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
+
+}  // namespace octotomy::planner

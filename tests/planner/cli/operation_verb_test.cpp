@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// The verbs that derive from the table of operations, with both kernels' answers and their certificate.
+#include "tests/planner/cli/command_line.h"
+
+namespace octotomy::planner {
+namespace {
+
+using tests::CommandAnswer;
+using tests::Json;
+
+class OperationVerbs : public tests::CommandLine {
+ protected:
+  OperationVerbs() {
+    EXPECT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
+    EXPECT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("ball.octree")).status, 0);
+  }
+};
+
+TEST_F(OperationVerbs, EveryKernelAnswersOnFilesAndNoCertificateFails) {
+  for (const std::string verb :
+       {"saw ball.off --line -40,-40,0 40,-40,0 --direction 0,1,0 --depth 80 --kerf 2",
+        "parts ball.off --largest 1", "fill ball.off"}) {
+    const std::string name = verb.substr(0, verb.find(' '));
+    for (const char* out : {"out.ply", "out.octree"}) {
+      const std::string command = name + " " + at("ball.off") + verb.substr(verb.find(".off") + 4) +
+                                  " --voxel 0.5 --certify -o " + at(out);
+      const CommandAnswer answer = run(command + " --json");
+      ASSERT_EQ(answer.status, 0) << command << answer.errors;
+      const Json certificate = Json::parse(answer.out).at("certificate");
+      // Voxels centred on a ball count it worse than the bound's ball in any place: a WARN is no FAIL.
+      EXPECT_NE(certificate["verdict"], "FAIL") << command << certificate.dump(1);
+      EXPECT_EQ(certificate["tier"], "bounded");
+      const double mm3 = certificate["voxel"]["volume_mm3"];
+      EXPECT_GT(mm3, 100.0);
+      // The blade's sides go through voxel centres, whose sides rounding decides triangle by triangle.
+      EXPECT_LT(certificate["tolerance_mm3"], 0.1 * mm3) << command;
+      EXPECT_TRUE(std::filesystem::exists(folder_ / out)) << command;
+    }
+  }
+}
+
+TEST_F(OperationVerbs, WhatOneKernelAloneDoesIsSaid) {
+  for (const std::string verb : {"smooth", "decimate", "offset --by=1", "shell --thickness=2"})
+    expect_refused(run(verb + " " + at("ball.off") + " --certify -o " + at("x.ply")), "mesh kernel alone");
+  expect_refused(run("fill " + at("ball.octree") + " -o " + at("x.ply")), "octotomy mesh");
+  EXPECT_EQ(run("fill " + at("ball.octree") + " -o " + at("full.octree")).status, 0);
+}
+
+TEST_F(OperationVerbs, ARefusalNamesTheOption) {
+  expect_refused(run("mirror " + at("ball.off") + " --exactly"), "--plane");
+  expect_refused(run("decimate " + at("ball.off") + " --max-error -1 -o " + at("x.ply")), "--max-error");
+  expect_refused(run("repair " + at("ball.off") + " -o " + at("x.ply")), "--weld");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.ply"));
+}
+
+}  // namespace
+}  // namespace octotomy::planner

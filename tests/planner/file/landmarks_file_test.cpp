@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/file/landmarks_file.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::planner {
+namespace {
+
+class LandmarksFile : public testing::Test {
+ protected:
+  std::vector<brep::Landmark> read(const std::string& text) const {
+    std::ofstream(folder_ / "marks.json") << text;
+    return read_landmarks(folder_ / "marks.json");
+  }
+  /// What it says where it refuses.
+  std::string refusal(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  tests::TestFolder folder_;
+};
+
+TEST_F(LandmarksFile, OwnLandmarksKeepTheirOrderAndWeights) {
+  const auto marks = read(R"({"landmarks":[{"name":"nasion","point_mm":[1,-2,3.5],"weight":2},
+                                           {"name":"sella","point_mm":[4,5,6]}]})");
+  ASSERT_EQ(marks.size(), 2u);
+  EXPECT_EQ(marks[0].name, "nasion");
+  EXPECT_EQ(marks[0].p_mm, glm::dvec3(1, -2, 3.5));
+  EXPECT_EQ(marks[0].weight, 2.0);
+  EXPECT_EQ(marks[1].weight, 1.0);
+}
+
+TEST_F(LandmarksFile, SlicersMarkupsAreTurnedFromRasToLps) {
+  const std::string points = R"("controlPoints":[{"label":"N","position":[1,2,3]},
+                               {"label":"later","position":[0,0,0],"positionStatus":"undefined"}])";
+  const auto lps = read(R"({"markups":[{"type":"Fiducial","coordinateSystem":"LPS",)" + points + "}]}");
+  const auto ras = read(R"({"markups":[{"type":"Fiducial","coordinateSystem":"RAS",)" + points + "}]}");
+  ASSERT_EQ(lps.size(), 1u);
+  ASSERT_EQ(ras.size(), 1u);
+  EXPECT_EQ(lps[0].p_mm, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(ras[0].p_mm, glm::dvec3(-1, -2, 3));
+}
+
+TEST_F(LandmarksFile, EveryRefusalNamesWhatIsWrong) {
+  EXPECT_NE(refusal("{").find("marks.json"), std::string::npos);
+  EXPECT_NE(refusal("{}").find("\"landmarks\""), std::string::npos);
+  EXPECT_NE(refusal(R"({"landmarks":[{"point_mm":[0,0,0]}]})").find("landmark 0 has no name"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"landmarks":[{"name":"A","point_mm":[0,0]}]})").find("'A'"), std::string::npos);
+  EXPECT_NE(refusal(R"({"landmarks":[{"name":"A","point":[0,0,0]}]})").find("point_mm"), std::string::npos);
+  EXPECT_NE(
+      refusal(R"({"landmarks":[{"name":"A","point_mm":[0,0,0],"weight":"big"}]})").find("weight of 'A'"),
+      std::string::npos);
+  EXPECT_NE(refusal(R"({"markups":[{"coordinateSystem":"XYZ","controlPoints":[]}]})").find("XYZ"),
+            std::string::npos);
+  EXPECT_THROW(read_landmarks(folder_ / "absent.json"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace octotomy::planner

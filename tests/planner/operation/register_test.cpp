@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/planner/operation/ball_operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+using namespace tests;
+
+/// An egg, whose place and axis a fit can find, and the egg moved.
+constexpr const char* egg = R"(
+    {"id": "a", "do": "mask", "regions": [{"view": "anterior",
+      "polygons_mm": [[[-30, -30], [4, -30], [11, 30], [-30, 30]]]}]},
+    {"id": "b", "do": "mask", "regions": [{"view": "left",
+      "polygons_mm": [[[-30, -30], [9, -30], [2, 30], [-30, 30]]]}]},
+    {"id": "egg", "do": "combine", "expression": "ball & a & b"},
+    {"id": "off", "do": "move", "object": "egg", "translate_mm": [1.5, -2, 1],
+      "rotate": {"degrees": 8, "axis": [0, 1, 1]}})";
+
+TEST(RegisterStep, AMovedObjectIsLaidBackOnItsOriginInBothKernels) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(
+      folder, std::string(egg) +
+                  R"(, {"id": "back", "do": "register", "object": "off", "onto": "egg", "overlap": 1})"));
+  const Object &still = evaluation.object("egg"), &back = evaluation.object("back");
+  expect_certified(back, still.mesh.measures->volume_mm3, 0.02);
+  EXPECT_LT(glm::distance(*back.mesh.measures->centroid_mm, *still.mesh.measures->centroid_mm), 0.05);
+  EXPECT_LT(glm::distance(*back.voxel.measures.centroid_mm, *still.voxel.measures.centroid_mm), 0.2);
+  EXPECT_LT(back.mesh.details["rms_mm"].get<double>(), 0.05);
+  ASSERT_TRUE(back.moved);
+  EXPECT_EQ(back.moved->object, "off");
+}
+
+TEST(RegisterStep, LandmarksAloneGiveTheMotion) {
+  const TestFolder folder;
+  std::ofstream(folder / "here.json") << R"({"landmarks": [{"name": "a", "point_mm": [0, 0, 0]},
+      {"name": "b", "point_mm": [10, 0, 0]}, {"name": "c", "point_mm": [0, 10, 0]}]})";
+  std::ofstream(folder / "there.json") << R"({"landmarks": [{"name": "a", "point_mm": [0, 0, 3]},
+      {"name": "b", "point_mm": [10, 0, 3]}, {"name": "c", "point_mm": [0, 10, 3]}]})";
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"({"id": "up", "do": "register", "object": "ball",
+      "onto": "ball", "landmarks": ["here.json", "there.json"], "landmarks_only": true})"));
+  EXPECT_NEAR(evaluation.object("up").mesh.measures->centroid_mm->z, 3.0, 1e-3);
+  EXPECT_NEAR(evaluation.object("up").voxel.measures.centroid_mm->z, 3.0, 0.05);
+}
+
+TEST(RegisterStep, AScaleIsRefused) {
+  const TestFolder folder;
+  EXPECT_NE(ball_refusal(folder, R"({"id": "r", "do": "register", "object": "ball", "onto": "ball",
+      "motion": "similarity"})")
+                .find("scales"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace octotomy::planner

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "tests/planner/operation/ball_operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+using namespace tests;
+
+/// A scan of two balls of 8 and 5 mm and a hollow one, and a plan on it.
+Plan two_balls(const TestFolder& folder, const std::string& steps) {
+  voxel::Scene scene = ball_scene(20.0);
+  auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  std::size_t at = 0;
+  for (int z = 0; z < 64; ++z)
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x, ++at) {
+        const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
+        // Partial volumes as ball_scene() has them.
+        const auto ball = [&](const glm::dvec3& centre, double radius) {
+          return std::clamp(radius - glm::distance(p, centre), -0.5, 0.5) * 2000.0;
+        };
+        const double hollow = std::min(ball({12, 0, 0}, 10), -ball({12, 0, 0}, 5));
+        samples[at] = static_cast<std::int16_t>(std::lround(std::max(ball({-14, 0, 0}, 8), hollow)));
+      }
+  voxel::write_scene(scene, folder / "two.nrrd");
+  return parse_plan(R"({"octotomy_plan": 1, "name": "two", "scans": {"ct": {"path": "two.nrrd"}},
+      "universe": {"voxel_mm": 1.0}, "steps": [)" +
+                        steps + "]}",
+                    folder.path());
+}
+
+TEST(SegmentStep, ThePartsOfAWindowAreChosenAlikeInBothKernels) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(two_balls(folder, R"(
+      {"id": "all", "do": "segment", "scan": "ct", "window": "0:"},
+      {"id": "large", "do": "segment", "scan": "ct", "window": "0:", "largest": true},
+      {"id": "full", "do": "segment", "scan": "ct", "window": "0:", "largest": true, "fill": true},
+      {"id": "enough", "do": "segment", "scan": "ct", "window": "0:", "at_least_mm3": 3000},
+      {"id": "on", "do": "move", "object": "full", "translate_mm": [0.3, 0.2, -0.4]})"));
+  const double hollow = ball_mm3(10) - ball_mm3(5);
+  expect_certified(evaluation.object("all"), ball_mm3(8) + hollow, 0.03);
+  expect_certified(evaluation.object("large"), hollow, 0.03);
+  expect_certified(evaluation.object("full"), ball_mm3(10), 0.03);
+  expect_certified(evaluation.object("enough"), hollow, 0.03);
+  expect_certified(evaluation.object("on"), ball_mm3(10), 0.03);
+}
+
+TEST(SegmentStep, WhatOnlyVoxelsKnowHasNoMeshAndSaysWhy) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(two_balls(folder, R"(
+      {"id": "grown", "do": "segment", "scan": "ct", "tolerance": 400, "seeds_mm": [[-14, 0, 0]]},
+      {"id": "seeded", "do": "segment", "scan": "ct", "window": "0:", "seeds_mm": [[-14, 0, 0]]},
+      {"id": "opened", "do": "segment", "scan": "ct", "window": "0:", "open_mm": 2, "largest": true})"));
+  for (const char* id : {"grown", "seeded", "opened"}) {
+    const Object& object = evaluation.object(id);
+    EXPECT_FALSE(object.mesh.whole) << id;
+    ASSERT_EQ(object.findings.size(), 1u) << id;
+    EXPECT_NE(object.findings[0].find("voxel"), std::string::npos) << object.findings[0];
+  }
+  EXPECT_NEAR(evaluation.object("seeded").voxel.measures.volume_mm3 / ball_mm3(8), 1.0, 0.03);
+}
+
+TEST(SegmentStep, OtsuSettlesTheWindowThatBothKernelsTake) {
+  const TestFolder folder;
+  const Evaluation evaluation =
+      evaluate(two_balls(folder, R"({"id": "bright", "do": "segment", "scan": "ct", "otsu": 2})"));
+  const Object& bright = evaluation.object("bright");
+  expect_certified(bright, ball_mm3(8) + ball_mm3(10) - ball_mm3(5), 0.05);
+  ASSERT_EQ(bright.mesh.details["thresholds"].size(), 1u);
+}
+
+TEST(SegmentStep, WhatCannotBeMeantIsRefused) {
+  const TestFolder folder;
+  const auto refusal = [&](const std::string& rest) {
+    return ball_refusal(folder, R"({"id": "s", "do": "segment", "scan": "ct")" + rest + "}");
+  };
+  EXPECT_NE(refusal("").find("needs one of"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "window": "0:", "label": 2)").find("needs one of"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "tolerance": 3)").find("seeds_mm"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "otsu": 2, "class": 3)").find("one of the classes"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "window": "bonne")").find("did you mean 'bone'"), std::string::npos);
+  EXPECT_NE(refusal(R"(, "window": "0:", "neighbours": 7)").find("18"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace octotomy::planner

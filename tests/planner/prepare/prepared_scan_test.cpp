@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "tests/planner/operation/ball_operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+using namespace tests;
+
+TEST(PreparedScan, AScanThatStepsMakeIsSegmentedInBothKernels) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "face", "do": "crop", "scan": "ct", "low_mm": [-25, -25, -25], "high_mm": [25, 25, 25]},
+      {"id": "even", "do": "slices", "scan": "face", "spacing_mm": 0.7, "kernel": "cubic"},
+      {"id": "calm", "do": "median", "scan": "even", "radius_samples": [1]},
+      {"id": "again", "do": "window", "scan": "calm", "low": 0})"));
+  expect_certified(evaluation.object("again"), ball_mm3(ball_radius_mm), 0.02);
+  ASSERT_EQ(evaluation.scans.size(), 4u);
+  EXPECT_EQ(evaluation.scans[1].lattice.dims, glm::ivec3(50));
+  EXPECT_EQ(evaluation.scans[1].made_by, "crop of ct");
+  EXPECT_EQ(evaluation.scans[2].details["kernel"], "cubic");
+  EXPECT_NEAR(evaluation.scans[3].lattice.spacing_mm().z, 0.7, 1e-12);
+  EXPECT_EQ(evaluation.universe.lattice().spacing_mm(), glm::dvec3(1.0)) << "the universe is the plan's";
+  EXPECT_TRUE(evaluation.loaded.empty()) << "samples are let go after their last use";
+}
+
+TEST(PreparedScan, AHeadrestIsTakenOutAndThePlansScanStays) {
+  const TestFolder folder;
+  voxel::Scene scene = ball_scene(12.0);
+  auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+  for (std::size_t at = 0; at < samples.size(); ++at)
+    if (at / 64 % 64 > 58 && at % 64 > 27 && at % 64 < 36) samples[at] = 500;  // a narrow table at the back
+  voxel::write_scene(scene, folder / "ball.nrrd");
+  const Evaluation evaluation =
+      evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "table", "scans": {"ct": {"path": "ball.nrrd"}},
+      "steps": [{"id": "head", "do": "remove_headrest", "scan": "ct", "near_mm": 3},
+                {"id": "ball", "do": "window", "scan": "head", "low": 0},
+                {"id": "both", "do": "window", "scan": "ct", "low": 0}]})",
+                          folder.path()));
+  EXPECT_NEAR(evaluation.object("ball").voxel.measures.volume_mm3 / ball_mm3(12.0), 1.0, 0.02);
+  EXPECT_GT(evaluation.object("both").voxel.measures.volume_mm3, 1.3 * ball_mm3(12.0));
+  EXPECT_EQ(evaluation.scans[1].details["parts_removed"], 1);
+}
+
+TEST(PreparedScan, NamesAndValuesThatCannotBeAreRefused) {
+  const TestFolder folder;
+  EXPECT_NE(
+      ball_refusal(folder, R"({"id": "ct", "do": "gaussian", "scan": "ct", "sigma_mm": 1})").find("taken"),
+      std::string::npos);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "gaussian", "scan": "ball", "sigma_mm": 1})")
+                .find("no scan is called 'ball'"),
+            std::string::npos);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "median", "scan": "ct", "radius_samples": [1, 2]})")
+                .find("each axis"),
+            std::string::npos);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "median", "scan": "ct", "radius_samples": [1]},
+                {"id": "m", "do": "measure", "object": "s"})")
+                .find("'s' is a median step, not an object"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace octotomy::planner
