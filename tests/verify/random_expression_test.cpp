@@ -23,7 +23,7 @@ int count(const ExpressionTree& tree, char symbol) {
 bool value(const voxel::Expression::Term& term, unsigned values) {
   using Kind = voxel::Expression::Kind;
   if (term.kind == Kind::Leaf)
-    return (values >> static_cast<int>(std::get<voxel::Sphere>(*term.leaf).radius_mm)) & 1;
+    return (values >> static_cast<int>(std::get<voxel::Sphere>(*term.leaf).centre_mm.x)) & 1;
   const bool a = value(*term.left, values);
   if (term.kind == Kind::Not) return !a;
   const bool b = value(*term.right, values);
@@ -52,7 +52,7 @@ TEST(RandomTree, KeepsItsLimitsReachesThemAndUsesEveryOperator) {
 
 TEST(RandomTree, AsTextMeansTheSameToTheParser) {
   voxel::Names names;
-  names.object = [](std::string_view name) { return voxel::Sphere{{}, static_cast<double>(name[0] - 'a')}; };
+  names.object = [](std::string_view name) { return voxel::Sphere{{name[0] - 'a', 0, 0}, 1}; };
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
     const ExpressionTree tree = random_tree(random, {.depth = 6, .leaves = 8, .names = 5, .xors = 3});
