@@ -16,7 +16,7 @@
 #include "voxel/space/scene.h"
 
 // What an operation works with. Each kernel has a bench of its own that shows only that kernel's answers, so
-// that neither can see the other's.
+// that neither can see the other's. One header, as an operation uses most of them.
 namespace octotomy::planner {
 
 /// A scan while steps need its samples.

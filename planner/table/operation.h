@@ -15,7 +15,8 @@
 #include "planner/table/scope.h"
 
 // The table of operations. An operation is a typed value; its entry says what the value's fields mean and
-// what each kernel does with it. Plan steps, verbs, help and the schema derive from the entry.
+// what each kernel does with it. Plan steps, verbs, help and the schema derive from the entry. Describe
+// stands beside the entry that it builds, which makes the header long.
 namespace octotomy::planner {
 
 /// What a step leaves behind: an object or a scan that later steps use, numbers, or a file in the result's
