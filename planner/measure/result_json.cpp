@@ -120,8 +120,9 @@ Json to_json(const verify::Certificate& certificate) {
              {"what", certificate.worst->what}};
   Json limit = nullptr;
   if (certificate.limit)
-    limit = {{"volume_mm3", finite(certificate.limit->volume_mm3)},
-             {"shift_mm", certificate.limit->shift_mm ? finite(*certificate.limit->shift_mm) : Json(nullptr)}};
+    limit = {
+        {"volume_mm3", finite(certificate.limit->volume_mm3)},
+        {"shift_mm", certificate.limit->shift_mm ? finite(*certificate.limit->shift_mm) : Json(nullptr)}};
   Json comparisons = Json::array();
   for (const verify::Comparison& comparison : certificate.comparisons)
     comparisons.push_back(comparison_json(comparison));

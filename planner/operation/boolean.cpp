@@ -27,7 +27,7 @@ Json proven(const FileBench& bench, const brep::Mesh& a, brep::Operation operati
   const voxel::Progress progress = bench.progress("exact");
   const brep::Watch watch{.progress = progress.report, .stop = progress.stop};
   brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, watch);
-  result.mesh = std::move(exact.mesh);
+  result.solid = std::move(exact.solid);
   result.residual = 0.0;
   return {{"identity", "|A| + |B| = |A u B| + |A n B|, as rational numbers"},
           {"a_mm3", exact.a_mm3},
@@ -44,8 +44,8 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
   need_folder_of(asked.out);
   if (asked.exact && !asked.further.empty())
     throw std::runtime_error("--exact proves one step at a time: leave --with out");
-  std::vector<brep::Mesh> operands = {read_solid(asked.a.name, bench.timings),
-                                      read_solid(asked.b.name, bench.timings)};
+  std::vector<brep::Solid> operands = {read_solid(asked.a.name, bench.timings),
+                                       read_solid(asked.b.name, bench.timings)};
   for (const ObjectName& path : asked.further) operands.push_back(read_solid(path.name, bench.timings));
   const brep::Operation operation = asked.operation == "union"          ? brep::Operation::Union
                                     : asked.operation == "intersection" ? brep::Operation::Intersection
@@ -59,12 +59,12 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
     else
       result = brep::boolean(operands, operation, bench.stop);
   }
-  if (result.mesh.n_faces() == 0)
+  if (result.solid.empty())
     throw std::runtime_error("the " + asked.operation + " of " + asked.a.name + " and " + asked.b.name +
                              " is empty: there is no surface to write");
-  const brep::Health health = brep::health(result.mesh);
-  const brep::Measures measures = brep::measure(result.mesh);
-  write_surface(result.mesh, asked.out, bench.timings);
+  const brep::Health health = brep::health(result.solid);
+  const brep::Measures& measures = result.solid.measures();
+  write_surface(result.solid, asked.out, bench.timings);
   FileAnswer answer{{{"path", asked.out.string()}}};
   answer.findings = result.findings;
   answer.json.update(to_json(measures));

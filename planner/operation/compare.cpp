@@ -118,7 +118,7 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
   Json json{{"a", asked.a.name}, {"b", asked.b.name}};
   for (const ObjectName& name : {asked.a, asked.b}) {
     const SharedMesh& mesh = bench.objects.at(name.name).mesh.within;
-    if (mesh && mesh->n_faces() > 0) continue;
+    if (mesh && !mesh->empty()) continue;
     json["mean_mm"] = nullptr;
     json["findings"] = {"'" + name.name + (mesh ? "' is empty" : "' has no mesh, see its findings")};
     return json;

@@ -24,15 +24,15 @@ std::string definition(const Decimate& decimate, const Objects&) {
 
 void triangles(const Decimate& decimate, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "decimate");
-  const brep::Mesh& solid = *bench.object(decimate.object.name);
+  const brep::Solid& solid = bench.object(decimate.object.name);
   brep::DecimateOptions options;
   options.max_error_mm = decimate.max_error_mm;
   if (decimate.faces) options.faces = static_cast<std::size_t>(*decimate.faces);
   options.max_normal_deviation_deg = decimate.max_normal_deviation_deg;
   brep::Mesh fewer = brep::decimate(solid, options);
-  made.details = {{"faces_before", solid.n_faces()},
+  made.details = {{"faces_before", solid.mesh().n_faces()},
                   {"volume_change_mm3", brep::volume_mm3(fewer) - brep::volume_mm3(solid)}};
-  made.whole = shared(std::move(fewer));
+  made.whole = brep::trusted_solid(fewer, brep::Proof::Construction);
   made.lineage = "edges collapsed within an error";
 }
 

@@ -140,7 +140,7 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
 Json surface_json(const Measure& asked, const AnswerBench& bench) {
   const Object& object = bench.objects.at(asked.object->name);
   Json json = size_json(asked, bench);
-  if (!object.mesh.within || object.mesh.within->n_faces() == 0) {
+  if (!object.mesh.within || object.mesh.within->empty()) {
     for (const char* key : {"section", "along", "thickness", "curvature"}) json[key] = nullptr;
     json["finding"] = "'" + object.id + "' has no mesh, see its findings";
     return json;

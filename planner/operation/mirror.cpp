@@ -61,7 +61,7 @@ void check(const Mirror& mirror, const Place& place) {
 Mirror settle(const Mirror& mirror, const SettleBench& bench) {
   if (!mirror.fit) return mirror;
   const Stopwatch watch(bench.timings, "fit");
-  const brep::MirrorFit found = fit(*bench.object(mirror.object.name), mirror, bench.progress);
+  const brep::MirrorFit found = fit(bench.object(mirror.object.name), mirror, bench.progress);
   bench.details = fit_json(found.plane, found);
   bench.findings.insert(bench.findings.end(), found.findings.begin(), found.findings.end());
   Mirror settled = mirror;

@@ -99,7 +99,7 @@ Register settle(const Register& asked, const SettleBench& bench) {
     laid = by_landmarks(bench.folder / asked.landmarks[0], bench.folder / asked.landmarks[1], asked.motion,
                         bench.timings);
   if (!asked.landmarks_only)
-    by_surfaces(*bench.object(asked.object.name), *bench.object(asked.onto.name), asked,
+    by_surfaces(bench.object(asked.object.name), bench.object(asked.onto.name), asked,
                 !asked.landmarks.empty(), bench.progress, bench.timings, laid);
   bench.details = {{"transform", to_json(laid.onto_from_object)}, {"rms_mm", laid.rms_mm}};
   bench.details.update(laid.details);

@@ -15,6 +15,7 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "verify/witness.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/morphology.h"
@@ -199,7 +200,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   const LoadedScan& scan = bench.loaded(segment.scan.name);
   const Stopwatch watch(bench.timings, "segment");
   const auto grey = [&]() -> const voxel::GreyOctree& { return scan.grey; };
-  made.octree = segmented(segment, {"scan '" + segment.scan.name + "'", scan.scene, bench.universe, grey,
+  made.octree = segmented(segment, {"scan '" + segment.scan.name + "'", scan.scene(), bench.universe, grey,
                                     bench.folder, bench.progress.stop})
                     .octree;
   made.lineage = "voxels of a window on a grey octree of the scan";
@@ -210,7 +211,7 @@ void voxels(const Segment& segment, const VoxelBench& bench, VoxelSide& made) {
   }
   // The window still says where the surface lies within a voxel, so that a motion samples it there.
   made.symbol = bench.within_universe(window_on(scan.grey, *segment.window)) &
-                voxel::Expression(voxel::bounds(scan.scene.lattice));
+                voxel::Expression(voxel::bounds(scan.scene().lattice));
   if (!chooses_parts(segment) && !segment.fill) return;
   const voxel::Octree window = bench.combined(*made.symbol);
   const voxel::Octree kept = bench.combined(voxel::Expression(made.octree) & voxel::Expression(window));
@@ -232,19 +233,24 @@ void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
     mesh = kept_parts(mesh, segment.components.value_or(1), std::nullopt).mesh;
   if (segment.at_least_mm3) mesh = kept_parts(mesh, std::nullopt, segment.at_least_mm3).mesh;
   if (segment.fill) mesh = convert::fill_cavities(mesh, std::numeric_limits<double>::infinity()).mesh;
-  made.whole = shared(std::move(mesh));
+  made.whole = brep::trusted_solid(mesh, brep::Proof::Construction);
   made.lineage = "isosurface of the scan's own samples";
 }
 
 void bound(const Segment& segment, const BoundBench& bench, Object& made) {
   const LoadedScan& scan = bench.scan(segment.scan.name);
-  const voxel::Lattice& lattice = scan.scene.lattice;
+  const voxel::Lattice& lattice = scan.scene().lattice;
   made.bound.spacing_mm = lattice.spacing_mm();
   made.bound.scan_box_mm = voxel::bounds(lattice);
   made.bound.voxels_are_samples = on_samples(lattice, bench.universe.lattice());
   // Depth is interpolated where samples pass the lower bound; an upper bound inside the object breaks that.
-  if (segment.window && !segment.window->high && why_voxels_alone(segment) == nullptr)
-    made.shown = Shown{scan.grey, segment.window->low, segment.scan.name};
+  if (!segment.window || why_voxels_alone(segment) != nullptr) return;
+  made.bound.windows = {Shown{scan.grey, segment.window->low, segment.scan.name}};
+  if (!segment.window->high) made.shown = made.bound.windows.front();
+  made.witness = verify::witness_of_window(scan.shared, segment.window->low,
+                                           segment.window->high_or_infinity(), bench.universe);
+  if (chooses_parts(segment)) made.witness = verify::witness_of_parts(made.witness);
+  if (segment.fill) made.witness = verify::witness_of_filled(made.witness);
 }
 
 }  // namespace

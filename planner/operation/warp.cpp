@@ -56,7 +56,8 @@ std::string definition(const Warp& warp, const Objects&) {
 void triangles(const Warp& warp, const MeshBench& bench, MeshSide& made) {
   Displaced by = displaced(bench.folder / warp.result, {bench.progress.stop, {}}, bench.timings);
   const Stopwatch watch(bench.timings, "warp");
-  made.whole = shared(convert::warped(*bench.object(warp.object.name), by.field));
+  made.whole =
+      brep::trusted_solid(convert::warped(bench.object(warp.object.name), by.field), brep::Proof::Connection);
   made.details = std::move(by.details);
   made.findings = std::move(by.findings);
   made.lineage = "vertices of a mesh, displaced as the elements about them";

@@ -149,8 +149,8 @@ class Evaluator {
   void load(const std::string& name, voxel::Scene scene) {
     const Stopwatch watch(result_.timings, "octree");
     voxel::GreyOctree grey = voxel::grey_octree_of(result_.universe, scene, background_of(scene));
-    loaded_.insert_or_assign(name,
-                             LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
+    loaded_.insert_or_assign(
+        name, LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
   }
 
   /// Makes a scan of another one. The universe stays that of the first scan that was read.

@@ -57,8 +57,8 @@ struct SettleBench {
   nlohmann::ordered_json& details;
   std::vector<std::string>& findings;
 
-  /// An earlier object's mesh. Throws std::runtime_error where it has none.
-  const SharedMesh& object(const std::string& name) const;
+  /// An earlier object's solid. Throws std::runtime_error where it has none.
+  const brep::Solid& object(const std::string& name) const;
 };
 
 /// The voxel kernel's bench.

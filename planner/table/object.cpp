@@ -30,10 +30,10 @@ const Object& Objects::add(Object object) {
   return objects_.emplace_back(std::move(object));
 }
 
-const SharedMesh& SettleBench::object(const std::string& name) const {
+const brep::Solid& SettleBench::object(const std::string& name) const {
   const SharedMesh& mesh = objects.at(name).mesh.whole;
   if (!mesh) throw std::runtime_error("'" + name + "' has no mesh, to which something is to be fitted");
-  return mesh;
+  return *mesh;
 }
 
 voxel::Box VoxelBench::box_mm() const {

@@ -25,8 +25,8 @@ TEST(RegisterStep, AMovedObjectIsLaidBackOnItsOriginInBothKernels) {
       folder, std::string(egg) +
                   R"(, {"id": "back", "do": "register", "object": "off", "onto": "egg", "overlap": 1})"));
   const Object &still = evaluation.object("egg"), &back = evaluation.object("back");
-  expect_certified(back, still.mesh.measures->volume_mm3, 0.02);
-  EXPECT_LT(glm::distance(*back.mesh.measures->centroid_mm, *still.mesh.measures->centroid_mm), 0.05);
+  expect_certified(back, still.mesh.within->measures().volume_mm3, 0.02);
+  EXPECT_LT(glm::distance(*back.mesh.within->measures().centroid_mm, *still.mesh.within->measures().centroid_mm), 0.05);
   EXPECT_LT(glm::distance(*back.voxel.measures.centroid_mm, *still.voxel.measures.centroid_mm), 0.2);
   EXPECT_LT(back.mesh.details["rms_mm"].get<double>(), 0.05);
   ASSERT_TRUE(back.moved);
@@ -41,7 +41,7 @@ TEST(RegisterStep, LandmarksAloneGiveTheMotion) {
       {"name": "b", "point_mm": [10, 0, 3]}, {"name": "c", "point_mm": [0, 10, 3]}]})";
   const Evaluation evaluation = evaluate(ball_plan(folder, R"({"id": "up", "do": "register", "object": "ball",
       "onto": "ball", "landmarks": ["here.json", "there.json"], "landmarks_only": true})"));
-  EXPECT_NEAR(evaluation.object("up").mesh.measures->centroid_mm->z, 3.0, 1e-3);
+  EXPECT_NEAR(evaluation.object("up").mesh.within->measures().centroid_mm->z, 3.0, 1e-3);
   EXPECT_NEAR(evaluation.object("up").voxel.measures.centroid_mm->z, 3.0, 0.05);
 }
 
