@@ -232,8 +232,9 @@ void triangles(const Segment& segment, const MeshBench& bench, MeshSide& made) {
   if (segment.largest || segment.components)
     mesh = kept_parts(mesh, segment.components.value_or(1), std::nullopt).mesh;
   if (segment.at_least_mm3) mesh = kept_parts(mesh, std::nullopt, segment.at_least_mm3).mesh;
-  if (segment.fill) mesh = convert::fill_cavities(mesh, std::numeric_limits<double>::infinity()).mesh;
   made.whole = brep::trusted_solid(mesh, brep::Proof::Construction);
+  if (segment.fill)
+    made.whole = convert::fill_cavities(*made.whole, std::numeric_limits<double>::infinity()).solid;
   made.lineage = "isosurface of the scan's own samples";
 }
 
