@@ -22,11 +22,10 @@ struct Boolean {
 };
 
 /// What the proof says, and the mesh in place of the result's.
-Json proven(const FileBench& bench, const brep::Mesh& a, brep::Operation operation, const brep::Mesh& b,
+Json proven(const FileBench& bench, const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
             brep::BooleanResult& result) {
   const voxel::Progress progress = bench.progress("exact");
-  const brep::Watch watch{.progress = progress.report, .stop = progress.stop};
-  brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, watch);
+  brep::ExactBoolean exact = brep::exact_boolean(a, operation, b, {progress.stop, progress.report});
   result.solid = std::move(exact.solid);
   result.residual = 0.0;
   return {{"identity", "|A| + |B| = |A u B| + |A n B|, as rational numbers"},

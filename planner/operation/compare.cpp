@@ -39,21 +39,23 @@ Json to_json(const brep::OneWay& way, const std::vector<double>& tolerances) {
 }
 
 /// Twice the common volume by the sum of both; none with a finding where there is no such volume.
-std::optional<double> dice(const brep::Mesh& a, const brep::Mesh& b, std::vector<std::string>& findings) {
-  const auto none = [&](const std::string& why) {
-    findings.push_back("no Dice: " + why);
-    return std::nullopt;
+std::optional<double> dice(const brep::Mesh& a, const brep::Mesh& b, const std::stop_token& stop,
+                           std::vector<std::string>& findings) {
+  std::string doing;
+  const auto solid = [&](const brep::Mesh& mesh, const char* name) {
+    doing = std::string(name) + " ";
+    return brep::solid_of(mesh);
   };
-  for (const auto& [mesh, name] : {std::pair(&a, "A"), std::pair(&b, "B")}) {
-    const brep::Health health = brep::health(*mesh);
-    if (!health.solid()) return none(std::string(name) + " is not a solid: " + health.findings.front());
-  }
   try {
-    const brep::BooleanResult common = brep::boolean(a, brep::Operation::Intersection, b);
+    const brep::Solid solid_a = solid(a, "A"), solid_b = solid(b, "B");
+    doing.clear();
+    const brep::BooleanResult common = brep::boolean(solid_a, brep::Operation::Intersection, solid_b, stop);
     findings.insert(findings.end(), common.findings.begin(), common.findings.end());
-    return 2.0 * brep::volume_mm3(common.mesh) / (brep::volume_mm3(a) + brep::volume_mm3(b));
-  } catch (const std::runtime_error& error) {
-    return none(error.what());
+    return 2.0 * brep::volume_mm3(common.solid) / (brep::volume_mm3(solid_a) + brep::volume_mm3(solid_b));
+  } catch (const brep::Error& error) {
+    if (error.code() != brep::ErrorCode::Geometry) throw;
+    findings.push_back("no Dice: " + doing + error.what());
+    return std::nullopt;
   }
 }
 
@@ -74,7 +76,8 @@ struct Compared {
   std::vector<std::string> findings;
 };
 
-Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b, Timings& timings) {
+Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b, const std::stop_token& stop,
+                  Timings& timings) {
   Compared made;
   {
     const Stopwatch watch(timings, "distances");
@@ -86,7 +89,7 @@ Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b
   }
   if (!asked.no_dice) {
     const Stopwatch watch(timings, "dice");
-    made.dice = dice(a, b, made.findings);
+    made.dice = dice(a, b, stop, made.findings);
   }
   if (made.difference.on_border_count > 0)
     made.findings.push_back(std::to_string(made.difference.on_border_count) + " of " +
@@ -117,14 +120,14 @@ Json to_json(const Compare& asked, const Compared& made) {
 Json measure(const Compare& asked, const AnswerBench& bench) {
   Json json{{"a", asked.a.name}, {"b", asked.b.name}};
   for (const ObjectName& name : {asked.a, asked.b}) {
-    const SharedMesh& mesh = bench.objects.at(name.name).mesh.within;
+    const std::optional<brep::Solid>& mesh = bench.objects.at(name.name).mesh.within;
     if (mesh && !mesh->empty()) continue;
     json["mean_mm"] = nullptr;
     json["findings"] = {"'" + name.name + (mesh ? "' is empty" : "' has no mesh, see its findings")};
     return json;
   }
   const Compared made = compared(asked, *bench.objects.at(asked.a.name).mesh.within,
-                                 *bench.objects.at(asked.b.name).mesh.within, bench.timings);
+                                 *bench.objects.at(asked.b.name).mesh.within, bench.stop, bench.timings);
   json.update(to_json(asked, made));
   json["findings"] = made.findings;
   return json;
@@ -156,7 +159,7 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
   }
   const brep::Mesh a = read_surface(asked.a.name, bench.timings),
                    b = read_surface(asked.b.name, bench.timings);
-  const Compared made = compared(asked, a, b, bench.timings);
+  const Compared made = compared(asked, a, b, bench.stop, bench.timings);
   const double range_mm = asked.range_mm.value_or(made.difference.hausdorff95_mm);
   if (!asked.out.empty()) {
     const Stopwatch watch(bench.timings, "write");

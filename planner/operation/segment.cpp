@@ -160,7 +160,7 @@ void check(const Segment& segment, const Place& place) {
 Segment settle(const Segment& segment, const SettleBench& bench) {
   if (!segment.otsu) return segment;
   Segment settled = segment;
-  OtsuWindow found = otsu_window(bench.scan(segment.scan.name).scene, *segment.otsu,
+  OtsuWindow found = otsu_window(bench.scan(segment.scan.name).scene(), *segment.otsu,
                                  segment.otsu_class.value_or(*segment.otsu));
   settled.window = found.window;
   bench.details["thresholds"] = found.suggestion["thresholds"];

@@ -160,7 +160,7 @@ class Evaluator {
     {
       const Stopwatch watch(result_.timings, operation.name);
       const auto samples = [this](const std::string& name) -> const voxel::Scene& {
-        return loaded_.at(name).scene;
+        return loaded_.at(name).scene();
       };
       made =
           operation.scan(step.action.value(), {samples, result_.timings, {options_.stop, {}}, plan_.folder});

@@ -136,7 +136,7 @@ struct AnswerBench {
   Scans scan = {};  ///< those that measurements and files use
 
   /// The scan's samples as they are.
-  const voxel::Scene& samples(const std::string& name) const { return scan(name).scene; }
+  const voxel::Scene& samples(const std::string& name) const { return scan(name).scene(); }
 
   voxel::Progress progress(const std::string& doing) const;
 };

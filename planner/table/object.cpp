@@ -31,7 +31,7 @@ const Object& Objects::add(Object object) {
 }
 
 const brep::Solid& SettleBench::object(const std::string& name) const {
-  const SharedMesh& mesh = objects.at(name).mesh.whole;
+  const std::optional<brep::Solid>& mesh = objects.at(name).mesh.whole;
   if (!mesh) throw std::runtime_error("'" + name + "' has no mesh, to which something is to be fitted");
   return *mesh;
 }
