@@ -3,7 +3,7 @@
 #include "brep/boolean/boolean.h"
 #include "brep/io/write_mesh.h"
 #include "brep/measure/difference.h"
-#include "brep/mesh/health.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "planner/file/mesh_file.h"
 #include "planner/measure/distance_histogram.h"

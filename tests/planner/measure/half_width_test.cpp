@@ -56,7 +56,8 @@ TEST(VolumeHalfWidth, HoldsTheTruthOfSolidsCutAlongTheLattice) {
       truth_mm3 = 8.0 * half.x * half.y * half.z;
     } else {
       const double radius = between(10, 26), height = between(0.4, 1.6) * radius;
-      solid = voxel::Sphere{middle, radius} & voxel::HalfSpace{{0, 0, 1}, middle.z - radius + height};
+      solid = voxel::Expression(voxel::Sphere{middle, radius}) &
+              voxel::HalfSpace{{0, 0, 1}, middle.z - radius + height};
       truth_mm3 = std::numbers::pi * height * height * (radius - height / 3.0);
     }
     const voxel::Octree octree = voxel::combine(universe_of_64(), solid);
