@@ -155,7 +155,7 @@ class Spoiler {
         glm::dvec3(boundary_[random_() % boundary_.size()].voxel));
   }
   double voxel_mm() const { return subject_.octree.universe().lattice().spacing_mm().x; }
-  Expression ball() { return voxel::Sphere{place_mm(), between(0.5, 4.0) * voxel_mm()}; }
+  Expression ball() { return voxel::Sphere{place_mm(), between(1.5, 5.0) * voxel_mm()}; }
   Expression slab() {
     const glm::dvec3 at_mm = place_mm(), reach = glm::dvec3(between(2, 20), between(2, 20), voxel_mm());
     return voxel::Box{at_mm - reach, at_mm + reach};
@@ -190,7 +190,7 @@ class Spoiler {
   }
   Spoiled lost_part() {
     const std::vector<brep::Component> pieces = brep::components(subject_.mesh);
-    const std::size_t lost = random_() % pieces.size();
+    const std::size_t lost = random_() % std::min<std::size_t>(pieces.size(), 8);  // the largest first
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < pieces.size(); ++i)
       if (i != lost) kept.insert(kept.end(), pieces[i].faces.begin(), pieces[i].faces.end());
