@@ -234,7 +234,15 @@ struct Evidence {
   double voxel_mm3 = 1.0;
   double unseen_mm3 = 0.0;  ///< half a voxel of cuts that were declared and not found
   VolumeSpread border;
+  bool witnessed = false;  ///< every place is judged by itself
 };
+
+/// Adds a comparison of totals: with a witness for information only, as it judges every place.
+void compare(Certificate& certificate, const Evidence& evidence, Comparison comparison,
+             Verdict worst_verdict = Verdict::Fail) {
+  comparison.judged = !evidence.witnessed;
+  add_comparison(certificate, std::move(comparison), worst_verdict);
+}
 
 /// Half a sample times the mesh's faces on the scan's border.
 VolumeSpread border_of(const brep::Solid& solid, const BoundInputs& inputs, const glm::dvec3& about_mm) {
@@ -358,10 +366,10 @@ void compare_inertia(Certificate& certificate, const Evidence& evidence, const b
       (bent_share + rough_share) * model.bent_without_sign.mm5 +
       evidence.mesh.volume_mm3 * std::pow(certificate.centroid_tolerance_mm.value_or(0.0), 2.0) +
       certificate.terms.back().value_mm3 * arm_mm * arm_mm + rounded_sums * largest;
-  add_comparison(certificate,
-                 {"inertia", "mm5", (*evidence.voxels.inertia_mm5)[0][0], inertia[0][0], most, tolerance,
-                  "second moment of the terms, V times the centroid's tolerance squared, 64 eps",
-                  "The inertia tensors differ by up to % in a component"});
+  compare(certificate, evidence,
+          {"inertia", "mm5", (*evidence.voxels.inertia_mm5)[0][0], inertia[0][0], most, tolerance,
+           "second moment of the terms, V times the centroid's tolerance squared, 64 eps",
+           "The inertia tensors differ by up to % in a component"});
 }
 
 struct DistanceBounds {
@@ -379,48 +387,39 @@ DistanceBounds distance_bounds(const Evidence& evidence) {
               layers_mm3 / model.area_mm2};
 }
 
-/// For information, where the places have been judged one by one.
-Comparison without_verdict(Comparison comparison) {
-  comparison.judged = false;
-  return comparison;
-}
-
 /// Compares area and distances: with a witness without a verdict, as it has judged every place of the
 /// surfaces. Looks for parts thinner than a voxel only if these leave a doubt.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
-                      const brep::Solid& solid, bool witnessed) {
+                      const brep::Solid& solid) {
   const brep::SurfaceTree& tree = solid.tree();
   Distances distances = surface_distances(octree, solid, tree);
   certificate.hausdorff_mm = distances.largest_mm();
   certificate.hausdorff95_mm = distances.percentile95_mm();
   if (!certificate.worst) certificate.worst = worst_of(distances, octree, tree);
-  if (witnessed) {
-    add_comparison(certificate, without_verdict(area_of(evidence, 0.0)));
-    return;
-  }
   const DistanceBounds bounds = distance_bounds(evidence);
   const double far_mm = lost * 0.5 * (glm::length(evidence.voxel_mm) + glm::length(evidence.sample_mm));
   Comparison area = area_of(evidence, 0.0);
-  if (!(area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
+  if (!evidence.witnessed &&
+      !(area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
         distances.mean_mm() <= bounds.mean_mm && distances.largest_mm() <= far_mm))
     area = area_of(evidence, leave_out_thin(distances, tree, octree.universe().lattice()));
   // Sheets thinner than a voxel lose their area before their volume shows it: never more than a doubt.
-  add_comparison(certificate, std::move(area), Verdict::Warn);
-  add_comparison(certificate,
-                 {.quantity = "hausdorff95",
-                  .unit = "mm",
-                  .difference = distances.percentile95_mm(),
-                  .tolerance = bounds.percentile95_mm,
-                  .formula = "half a voxel's diagonal + 0.1 s; in doubt, without parts thinner than a voxel",
-                  .statement = "Five per cent of one surface is % or more from the other"});
-  add_comparison(certificate,
-                 {.quantity = "mean distance",
-                  .unit = "mm",
-                  .difference = distances.mean_mm(),
-                  .tolerance = bounds.mean_mm,
-                  .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; in doubt, as above",
-                  .statement = "The surfaces are % apart on average"});
-  if (distances.largest_mm() > far_mm)
+  compare(certificate, evidence, std::move(area), Verdict::Warn);
+  compare(certificate, evidence,
+          {.quantity = "hausdorff95",
+           .unit = "mm",
+           .difference = distances.percentile95_mm(),
+           .tolerance = bounds.percentile95_mm,
+           .formula = "half a voxel's diagonal + 0.1 s; in doubt, without parts thinner than a voxel",
+           .statement = "Five per cent of one surface is % or more from the other"});
+  compare(certificate, evidence,
+          {.quantity = "mean distance",
+           .unit = "mm",
+           .difference = distances.mean_mm(),
+           .tolerance = bounds.mean_mm,
+           .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; in doubt, as above",
+           .statement = "The surfaces are % apart on average"});
+  if (!evidence.witnessed && distances.largest_mm() > far_mm)
     lower(certificate, Verdict::Warn, text_of(worst_of(distances, octree, tree)));
 }
 
@@ -498,10 +497,7 @@ void judge_extent(Certificate& certificate, const Evidence& evidence) {
                                                     " voxels thick on average, one is needed"};
 }
 
-void judge_volume(Certificate& certificate, const Evidence& evidence, bool witnessed) {
-  const auto compare = [&](Comparison comparison) {
-    add_comparison(certificate, witnessed ? without_verdict(std::move(comparison)) : std::move(comparison));
-  };
+void judge_volume(Certificate& certificate, const Evidence& evidence) {
   const voxel::Measures& voxels = evidence.voxels;
   const brep::Measures& mesh = evidence.mesh;
   if (mesh.volume_mm3 < 0.0)
@@ -509,7 +505,7 @@ void judge_volume(Certificate& certificate, const Evidence& evidence, bool witne
           "The mesh is inside out: its volume is " + voxel::rounded(mesh.volume_mm3) +
               " mm3. Reverse its triangles, or check the frame that it was read in.");
   // A sliver between voxels' centres may be empty for one kernel alone: a witness knows.
-  if (!witnessed && (voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
+  if (!evidence.witnessed && (voxels.voxel_count == 0) != (mesh.area_mm2 == 0.0)) {
     const bool lost_by_voxels = voxels.voxel_count == 0;
     lower(certificate, Verdict::Fail,
           lost_by_voxels ? "The voxel kernel's object is empty, the mesh kernel's is not."
@@ -522,14 +518,16 @@ void judge_volume(Certificate& certificate, const Evidence& evidence, bool witne
   add_comparison(certificate,
                  {"volume", "mm3", voxels.volume_mm3, mesh.volume_mm3, std::abs(certificate.difference_mm3),
                   certificate.tolerance_mm3, "sum of the terms"});
-  compare({.quantity = "symmetric difference",
+  compare(certificate, evidence,
+          {.quantity = "symmetric difference",
            .unit = "mm3",
            .difference = certificate.symmetric_difference_mm3,
            .tolerance = certificate.symmetric_difference_tolerance_mm3,
            .formula = "layers of voxels that may differ, and three standard deviations of their number",
            .statement = "Voxels of % are inside for one kernel only"});
   if (certificate.centroid_distance_mm && certificate.centroid_tolerance_mm)
-    compare({.quantity = "centroid",
+    compare(certificate, evidence,
+            {.quantity = "centroid",
              .unit = "mm",
              .difference = *certificate.centroid_distance_mm,
              .tolerance = certificate.centroid_tolerance_mm,
@@ -576,16 +574,16 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   certificate.symmetric_difference_mm3 = static_cast<double>(either.voxel_count()) * evidence.voxel_mm3;
   if (evidence.voxels.centroid_mm && evidence.mesh.centroid_mm)
     certificate.centroid_distance_mm = glm::length(*evidence.voxels.centroid_mm - *evidence.mesh.centroid_mm);
-  const bool witnessed = static_cast<bool>(inputs.witness);
-  if (witnessed)
+  evidence.witnessed = static_cast<bool>(inputs.witness);
+  if (evidence.witnessed)
     judge_by_witness(certificate, evidence,
                      judge_places(octree, digitised, solid, inputs.witness, {progress.stop, {}}));
-  judge_volume(certificate, evidence, witnessed);
+  judge_volume(certificate, evidence);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
     progress.at(0.5);
-    compare_surfaces(certificate, evidence, octree, solid, witnessed);
+    compare_surfaces(certificate, evidence, octree, solid);
     progress.at(0.9);
-    if (!witnessed) compare_inertia(certificate, evidence, solid);
+    compare_inertia(certificate, evidence, solid);
     if (inputs.voxels_are_samples) compare_topology(certificate, octree, solid);
   }
   judge_extent(certificate, evidence);

@@ -238,14 +238,15 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const glm::ivec3& from,
       continue;
     if (octree.contains(at) != inside) continue;
     ++count;
-    if (!witness(octree.universe().lattice().lps_mm(glm::dvec3(at))).voxel.allows(!inside)) return count;
+    const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(at)));
+    if (fault_of(reading, !inside, digitised.contains(at)) != Fault::None) return count;
   }
   return count;
 }
 
-/// Whether the loss of a piece would be seen: it holds a voxel's centre at which the mesh has one answer.
-/// Looked for beneath its triangles, up to two voxels deep.
-bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Lattice& lattice,
+/// Whether the loss of a piece would be seen: it holds a voxel's centre at which the mesh would fail without
+/// it. Looked for beneath its triangles, up to two voxels deep.
+bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Octree& octree,
              const Witness& witness) {
   constexpr std::size_t most_faces = 4096, most_tried = 64;
   if (piece.faces.size() > most_faces) return true;
@@ -255,6 +256,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
     for (const std::uint32_t corner : mesh.faces[face]) own.points_mm.push_back(mesh.points_mm[corner]);
     own.faces.push_back({first, first + 1, first + 2});
   }
+  const voxel::Lattice lattice = octree.universe().lattice();
   const glm::dvec3 voxel_mm = lattice.spacing_mm();
   const std::size_t stride = 1 + own.faces.size() / most_tried;
   for (std::size_t i = 0; i < own.faces.size(); i += stride)
@@ -265,20 +267,23 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       const double length = glm::length(across);
       if (!(length > 0.0)) continue;
       const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
-      const glm::dvec3 centre = lattice.lps_mm(glm::round(lattice.voxel(beneath)));
-      if (!witness(centre).mesh.allows(false) && brep::is_inside(centre, own)) return true;
+      const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
+      const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(voxel));
+      if (fault_of(witness(centre), octree.contains(voxel), false) != Fault::None &&
+          brep::is_inside(centre, own))
+        return true;
     }
   return false;
 }
 
 /// The largest piece of the mesh that could be lost unseen. A part that is lost or added otherwise leaves
 /// vertices where the witness has none.
-double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Lattice& lattice,
+double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Octree& octree,
                        const Witness& witness) {
   const std::vector<brep::Component> pieces = brep::components(solid);
   std::vector<double> lost_mm3(pieces.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
-    if (!is_seen(mesh, pieces[i], lattice, witness)) lost_mm3[i] = std::abs(pieces[i].volume_mm3);
+    if (!is_seen(mesh, pieces[i], octree, witness)) lost_mm3[i] = std::abs(pieces[i].volume_mm3);
   });
   return pieces.empty() ? 0.0 : *std::max_element(lost_mm3.begin(), lost_mm3.end());
 }
@@ -288,8 +293,8 @@ constexpr std::size_t tried_places = 1024;
 /// Triangles by which a shift is tried.
 constexpr std::size_t tried_triangles = 4096;
 
-double place_limit_mm3(const voxel::Octree& octree, const std::vector<voxel::VoxelFace>& boundary,
-                       const Witness& witness) {
+double place_limit_mm3(const voxel::Octree& octree, const voxel::Octree& digitised,
+                       const std::vector<voxel::VoxelFace>& boundary, const Witness& witness) {
   const std::vector<glm::ivec3> steps = steps_outward();
   std::mt19937_64 random(1);
   std::vector<glm::ivec3> from;
@@ -300,8 +305,9 @@ double place_limit_mm3(const voxel::Octree& octree, const std::vector<voxel::Vox
     if (i % 2 == 1) from.back()[face.axis] += face.side;
   }
   std::vector<std::size_t> counts(from.size(), 0);
-  tbb::parallel_for(std::size_t{0}, from.size(),
-                    [&](std::size_t i) { counts[i] = unseen_voxels(octree, from[i], steps, witness); });
+  tbb::parallel_for(std::size_t{0}, from.size(), [&](std::size_t i) {
+    counts[i] = unseen_voxels(octree, digitised, from[i], steps, witness);
+  });
   const std::size_t most = std::max<std::size_t>(*std::max_element(counts.begin(), counts.end()), 1);
   return static_cast<double>(std::bit_ceil(most)) * octree.universe().lattice().voxel_mm3();
 }
@@ -339,9 +345,10 @@ Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised,
   add_groups(failed_voxels(octree, digitised, voxels, witness, progress), lattice, places);
   add_stray_triangles(mesh, witness, progress, places);
   const glm::dvec3 voxel_mm = lattice.spacing_mm();
-  places.limit.volume_mm3 = piece_limit_mm3(solid, mesh, lattice, witness);
+  places.limit.volume_mm3 = piece_limit_mm3(solid, mesh, octree, witness);
   if (!boundary.empty())
-    places.limit.volume_mm3 = std::max(places.limit.volume_mm3, place_limit_mm3(octree, boundary, witness));
+    places.limit.volume_mm3 =
+        std::max(places.limit.volume_mm3, place_limit_mm3(octree, digitised, boundary, witness));
   if (!mesh.faces.empty())
     places.limit.shift_mm = shift_limit_mm(mesh, std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z}), witness);
   progress.at(1.0);
