@@ -225,9 +225,9 @@ std::vector<glm::ivec3> steps_outward() {
   return steps;
 }
 
-/// The number of voxels of one state, outward from a voxel, until one of them is certain in the voxel kernel:
+/// The number of voxels of one state, outward from a voxel, until one of them would fail in the other state:
 /// a smaller error of that shape would pass there.
-std::size_t unseen_voxels(const voxel::Octree& octree, const glm::ivec3& from,
+std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
                           const std::vector<glm::ivec3>& steps, const Witness& witness) {
   const bool inside = octree.contains(from);
   const int side = octree.universe().side();
