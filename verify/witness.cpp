@@ -66,13 +66,12 @@ Witness complement(Witness a) {
 /// Rounding of numbers and of a few sums of them: a share of the largest magnitude.
 constexpr double rounding = 1e-9;
 
-/// Corefinement may move an operand that touches another by three steps of 4e-6 of its extent
-/// (brep::Booleans), so that a plane of the plan lies this share of its coordinates away.
-constexpr double moved_by_corefinement = 12e-6;
+/// A vertex on a plane of the plan lies this share of its coordinates away after several Booleans and
+/// motions.
+constexpr double on_plane = 1e-8;
 
-/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h),
-/// and corefinement may move them by some thousandths of an edge.
-constexpr double kept_from_samples = 4e-3;
+/// The vertices of an isosurface keep a thousandth of an edge from its ends (convert/surface/isosurface.h).
+constexpr double kept_from_samples = 1e-3;
 
 /// A voxel's sample is rounded to an integer, and so is a window's bound.
 constexpr double rounded_samples = 1.0;
@@ -180,7 +179,7 @@ class WindowWitness {
 
   /// Where it is near, the surface has vertices on the edges between samples alone.
   int surfaces(const glm::dvec3& u) const {
-    constexpr double on_edge = kept_from_samples;
+    constexpr double on_edge = 1e-6;
     int whole = 0;
     for (int axis = 0; axis < 3; ++axis) whole += std::abs(u[axis] - std::round(u[axis])) < on_edge ? 1 : 0;
     return whole >= 2 ? 2 : 1;
@@ -287,7 +286,7 @@ class RegionWitness {
   }
 
  private:
-  double near_mm(double p_mm) const { return moved_by_corefinement * (reach_mm_ + p_mm); }
+  double near_mm(double p_mm) const { return on_plane * (reach_mm_ + p_mm); }
   std::size_t row_of(double y) const {
     const double share = high_ > low_ ? (y - low_) / (high_ - low_) : 0.0;
     return static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * static_cast<double>(rows_.size() - 1));
@@ -340,7 +339,7 @@ Witness witness_of_box(const voxel::Box& box) {
     bool inside = true;
     for (int axis = 0; axis < 3; ++axis)
       for (const double inner_mm : {p_mm[axis] - box.low_mm[axis], box.high_mm[axis] - p_mm[axis]}) {
-        const double near_mm = moved_by_corefinement * (std::abs(p_mm[axis]) + std::abs(box.low_mm[axis]));
+        const double near_mm = on_plane * (std::abs(p_mm[axis]) + std::abs(box.low_mm[axis]));
         sides += std::abs(inner_mm) <= near_mm ? 1 : 0;
         inside = inside && inner_mm >= -near_mm;
       }
@@ -351,7 +350,7 @@ Witness witness_of_box(const voxel::Box& box) {
 
 Witness witness_of_surface(brep::Solid solid) {
   return [solid = std::move(solid)](const glm::dvec3& p_mm) {
-    const double near_mm = moved_by_corefinement * (1.0 + glm::length(p_mm));
+    const double near_mm = on_plane * (1.0 + glm::length(p_mm));
     const bool near = !solid.empty() && solid.tree().distances_mm({p_mm}).front() <= near_mm;
     return Reading{near ? on_surface : untold, near ? on_surface : untold, near ? 2 : 0};
   };
@@ -369,6 +368,31 @@ Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   if (!still) return {};
   return [still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](
              const glm::dvec3& p_mm) { return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0))); };
+}
+
+Witness loosened(Witness tight, double by_mm) {
+  if (!tight) return {};
+  return [tight = std::move(tight), by_mm](const glm::dvec3& p_mm) -> Reading {
+    Reading all = tight(p_mm);
+    const auto widen = [](Word& word, const Word& other) {
+      const bool parted = word != other;
+      word = {word.in || other.in, word.out || other.out, word.near || other.near || parted};
+    };
+    for (int direction = 0; direction < 14; ++direction) {
+      // Along the axes and the diagonals of space.
+      const glm::dvec3 along =
+          direction < 6
+              ? (direction % 2 ? -1.0 : 1.0) *
+                    glm::dvec3(direction / 2 == 0, direction / 2 == 1, direction / 2 == 2)
+              : glm::dvec3((direction - 6) & 1, ((direction - 6) >> 1) & 1, (direction - 6) >> 2) * 2.0 - 1.0;
+      const Reading other = tight(p_mm + by_mm * along);
+      widen(all.voxel, other.voxel);
+      widen(all.mesh, other.mesh);
+    }
+    // A vertex that has been moved is no longer on an edge between samples.
+    if (all.mesh.near) all.surfaces = 2;
+    return all;
+  };
 }
 
 Witness witness_of_parts(Witness whole) {

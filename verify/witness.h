@@ -38,6 +38,8 @@ Witness both(Witness a, Witness b);
 Witness without(Witness a, Witness b);
 /// The object under a rigid motion or reflection, LPS to LPS.
 Witness carried(Witness still, const glm::dmat4& moved_from_still);
+/// The object whose surfaces may lie `by_mm` elsewhere, as corefinement moves operands that touch.
+Witness loosened(Witness tight, double by_mm);
 /// Some of the object's connected parts: a point inside may belong to none of them.
 Witness witness_of_parts(Witness whole);
 /// The object with some of its cavities filled: a point outside may lie in one of them.

@@ -62,6 +62,7 @@ struct BoundTerms {
   glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan it comes from; zero where it comes from none
   std::optional<voxel::Box> scan_box_mm;  ///< of the scan that it comes from, while it has not moved
   bool voxels_are_samples = false;
+  bool shifted = false;        ///< a Boolean on the way had to move an operand (brep::Booleans::findings)
   std::vector<Shown> windows;  ///< of all that it was made of: their bounds decide where its surface lies
 };
 
