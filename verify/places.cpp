@@ -115,7 +115,7 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
     if (progress.stop.stop_requested()) return;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const glm::dvec3 p_mm(lps_from_voxel * glm::dvec4(glm::dvec3(voxels[i]), 1.0));
-      faults[i] = fault_of(witness(p_mm), octree.contains(voxels[i]), digitised.contains(voxels[i]));
+      faults[i] = fault_of(witness(p_mm, 0.0), octree.contains(voxels[i]), digitised.contains(voxels[i]));
     }
   });
   progress.at(0.5);
@@ -190,14 +190,14 @@ void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, co
     return wrong;
   };
   const std::vector<std::uint8_t> stray_vertex = for_all(mesh.points_mm.size(), [&](std::size_t i) {
-    const Reading reading = witness(mesh.points_mm[i]);
+    const Reading reading = witness(mesh.points_mm[i], 0.0);
     return reading.mesh.near && reading.surfaces >= 2;
   });
   const std::vector<std::uint8_t> stray = for_all(mesh.faces.size(), [&](std::size_t i) {
     const auto& face = mesh.faces[i];
     return std::none_of(face.begin(), face.end(),
                         [&](std::uint32_t vertex) { return stray_vertex[vertex] != 0; }) &&
-           witness(facet_of(mesh, i).centroid_mm).mesh.near;
+           witness(facet_of(mesh, i).centroid_mm, 0.0).mesh.near;
   });
   progress.at(0.8);
   double largest_mm2 = 0.0;
@@ -238,7 +238,7 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digi
       continue;
     if (octree.contains(at) != inside) continue;
     ++count;
-    const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(at)));
+    const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(at)), 0.0);
     if (fault_of(reading, !inside, digitised.contains(at)) != Fault::None) return count;
   }
   return count;
@@ -269,7 +269,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
       const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
       const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(voxel));
-      if (fault_of(witness(centre), octree.contains(voxel), false) != Fault::None &&
+      if (fault_of(witness(centre, 0.0), octree.contains(voxel), false) != Fault::None &&
           brep::is_inside(centre, own))
         return true;
     }
@@ -324,8 +324,9 @@ std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_m
     for (int direction = 0; direction < 6 && seen_everywhere; ++direction) {
       glm::dvec3 by_mm(0.0);
       by_mm[direction / 2] = (direction % 2 == 0 ? 1.0 : -1.0) * voxels * voxel_mm;
-      seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(),
-                                    [&](const glm::dvec3& p_mm) { return !witness(p_mm + by_mm).mesh.near; });
+      seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
+        return !witness(p_mm + by_mm, 0.0).mesh.near;
+      });
     }
     if (seen_everywhere) return voxels * voxel_mm;
   }

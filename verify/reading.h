@@ -33,8 +33,8 @@ struct Reading {
   int surfaces = 0;
 };
 
-/// Answers for one object at a point, LPS millimetres. Empty: the object has no witness. Safe to call from
-/// several threads.
-using Witness = std::function<Reading(const glm::dvec3& p_mm)>;
+/// Answers for one object at a point, LPS millimetres, whose surfaces may lie `slack_mm` elsewhere. Empty:
+/// the object has no witness. Safe to call from several threads.
+using Witness = std::function<Reading(const glm::dvec3& p_mm, double slack_mm)>;
 
 }  // namespace octotomy::verify

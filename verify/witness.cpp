@@ -49,16 +49,16 @@ Word exclusive(const Word& a, const Word& b) {
 template <Word (*Rule)(const Word&, const Word&)>
 Witness joined(Witness a, Witness b) {
   if (!a || !b) return {};
-  return [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm) -> Reading {
-    const Reading x = a(p_mm), y = b(p_mm);
+  return [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
+    const Reading x = a(p_mm, slack_mm), y = b(p_mm, slack_mm);
     return {Rule(x.voxel, y.voxel), Rule(x.mesh, y.mesh), x.surfaces + y.surfaces};
   };
 }
 
 Witness complement(Witness a) {
   if (!a) return {};
-  return [a = std::move(a)](const glm::dvec3& p_mm) -> Reading {
-    const Reading x = a(p_mm);
+  return [a = std::move(a)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
+    const Reading x = a(p_mm, slack_mm);
     return {negated(x.voxel), negated(x.mesh), x.surfaces};
   };
 }
@@ -97,13 +97,17 @@ class WindowWitness {
         scan_from_lps_(glm::inverse(scan_->lattice.lps_from_voxel)),
         universe_from_lps_(glm::inverse(universe.lps_from_voxel)),
         scan_from_universe_(scan_from_lps_ * universe.lps_from_voxel),
-        side_(universe.side()) {}
+        side_(universe.side()) {
+    const glm::dvec3 spacing_mm = scan_->lattice.spacing_mm();
+    finest_mm_ = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+  }
 
-  Reading operator()(const glm::dvec3& p_mm) const {
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm) const {
     const glm::dvec3 u(scan_from_lps_ * glm::dvec4(p_mm, 1.0));
-    const Word mesh = mesh_word(u);
+    const double slack = slack_mm / finest_mm_;
+    const Word mesh = mesh_word(u, slack);
     return {voxel_word(glm::dvec3(universe_from_lps_ * glm::dvec4(p_mm, 1.0))), mesh,
-            mesh.near ? surfaces(u) : 0};
+            mesh.near ? surfaces(u, slack) : 0};
   }
 
  private:
@@ -167,19 +171,21 @@ class WindowWitness {
   }
 
   /// The mesh ends half a sample beyond the outermost ones, its triangles there within a sample.
-  Word mesh_word(const glm::dvec3& u) const {
+  Word mesh_word(const glm::dvec3& u, double slack) const {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
     const CellValue at = cell(u);
-    Word answer = word(at.value, at.above, at.below);
+    // In a cell f changes by its samples' range a sample along each axis at most.
+    const double moved = 3.0 * slack * (at.high - at.low);
+    Word answer = word(at.value, at.above + moved, at.below + moved);
     // A cell with samples below and above the window has outside parts that are no mean of like corners.
     if (answer == certainly_in && at.low < low_ && at.high > high_) answer = on_surface;
     return past > rounding && answer.in ? on_surface : answer;
   }
 
   /// Where it is near, the surface has vertices on the edges between samples alone.
-  int surfaces(const glm::dvec3& u) const {
-    constexpr double on_edge = 1e-6;
+  int surfaces(const glm::dvec3& u, double slack) const {
+    const double on_edge = 1e-6 + slack;
     int whole = 0;
     for (int axis = 0; axis < 3; ++axis) whole += std::abs(u[axis] - std::round(u[axis])) < on_edge ? 1 : 0;
     return whole >= 2 ? 2 : 1;
@@ -220,6 +226,7 @@ class WindowWitness {
   double low_, high_;
   glm::dmat4 scan_from_lps_, universe_from_lps_, scan_from_universe_;
   int side_;
+  double finest_mm_ = 1.0;
 };
 
 /// Right and up of a view's picture, from its name or its two angles.
@@ -259,14 +266,14 @@ class RegionWitness {
     rows_.resize(std::max<std::size_t>(edges_.size(), 1));
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       const auto [from, to] = std::minmax(edges_[i][0].y, edges_[i][1].y);
-      for (std::size_t row = row_of(from - near_mm(0.0)); row <= row_of(to + near_mm(0.0)); ++row)
+      for (std::size_t row = row_of(from - most_slack_mm); row <= row_of(to + most_slack_mm); ++row)
         rows_[row].push_back(i);
     }
   }
 
-  Reading operator()(const glm::dvec3& p_mm) const {
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm) const {
     const glm::dvec2 p(glm::dot(p_mm, axes_[0]), glm::dot(p_mm, axes_[1]));
-    const double near = near_mm(glm::length(p_mm));
+    const double near = near_mm(glm::length(p_mm)) + slack_mm;
     if (p.y < low_ - near || p.y > high_ + near) return {certainly_out, certainly_out};
     bool inside = false;
     int sides = 0;
@@ -286,6 +293,9 @@ class RegionWitness {
   }
 
  private:
+  /// An edge is looked for in the rows that it reaches with this much slack.
+  static constexpr double most_slack_mm = 0.25;
+
   double near_mm(double p_mm) const { return on_plane * (reach_mm_ + p_mm); }
   std::size_t row_of(double y) const {
     const double share = high_ > low_ ? (y - low_) / (high_ - low_) : 0.0;
@@ -323,10 +333,10 @@ Witness witness_of_window(std::shared_ptr<const voxel::Scene> scan, double low, 
 
 Witness witness_of_regions(const std::vector<DrawnRegion>& regions) {
   const auto readers = std::make_shared<const std::vector<RegionWitness>>(regions.begin(), regions.end());
-  return [readers](const glm::dvec3& p_mm) {
+  return [readers](const glm::dvec3& p_mm, double slack_mm) {
     Reading all{certainly_in, certainly_in, 0};
     for (const RegionWitness& reader : *readers) {
-      const Reading one = reader(p_mm);
+      const Reading one = reader(p_mm, slack_mm);
       all = {conjunction(all.voxel, one.voxel), conjunction(all.mesh, one.mesh), all.surfaces + one.surfaces};
     }
     return all;
@@ -334,12 +344,12 @@ Witness witness_of_regions(const std::vector<DrawnRegion>& regions) {
 }
 
 Witness witness_of_box(const voxel::Box& box) {
-  return [box](const glm::dvec3& p_mm) {
+  return [box](const glm::dvec3& p_mm, double slack_mm) {
     int sides = 0;
     bool inside = true;
     for (int axis = 0; axis < 3; ++axis)
       for (const double inner_mm : {p_mm[axis] - box.low_mm[axis], box.high_mm[axis] - p_mm[axis]}) {
-        const double near_mm = on_plane * (std::abs(p_mm[axis]) + std::abs(box.low_mm[axis]));
+        const double near_mm = on_plane * (std::abs(p_mm[axis]) + std::abs(box.low_mm[axis])) + slack_mm;
         sides += std::abs(inner_mm) <= near_mm ? 1 : 0;
         inside = inside && inner_mm >= -near_mm;
       }
@@ -349,8 +359,8 @@ Witness witness_of_box(const voxel::Box& box) {
 }
 
 Witness witness_of_surface(brep::Solid solid) {
-  return [solid = std::move(solid)](const glm::dvec3& p_mm) {
-    const double near_mm = on_plane * (1.0 + glm::length(p_mm));
+  return [solid = std::move(solid)](const glm::dvec3& p_mm, double slack_mm) {
+    const double near_mm = on_plane * (1.0 + glm::length(p_mm)) + slack_mm;
     const bool near = !solid.empty() && solid.tree().distances_mm({p_mm}).front() <= near_mm;
     return Reading{near ? on_surface : untold, near ? on_surface : untold, near ? 2 : 0};
   };
@@ -366,49 +376,33 @@ Witness without(Witness a, Witness b) {
 
 Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   if (!still) return {};
-  return [still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](
-             const glm::dvec3& p_mm) { return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0))); };
+  return [still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](const glm::dvec3& p_mm,
+                                                                                       double slack_mm) {
+    return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0)), slack_mm);
+  };
 }
 
 Witness loosened(Witness tight, double by_mm) {
   if (!tight) return {};
-  return [tight = std::move(tight), by_mm](const glm::dvec3& p_mm) -> Reading {
-    Reading all = tight(p_mm);
-    const auto widen = [](Word& word, const Word& other) {
-      const bool parted = word != other;
-      word = {word.in || other.in, word.out || other.out, word.near || other.near || parted};
-    };
-    for (int direction = 0; direction < 14; ++direction) {
-      // Along the axes and the diagonals of space.
-      const glm::dvec3 along =
-          direction < 6
-              ? (direction % 2 ? -1.0 : 1.0) *
-                    glm::dvec3(direction / 2 == 0, direction / 2 == 1, direction / 2 == 2)
-              : glm::dvec3((direction - 6) & 1, ((direction - 6) >> 1) & 1, (direction - 6) >> 2) * 2.0 - 1.0;
-      const Reading other = tight(p_mm + by_mm * along);
-      widen(all.voxel, other.voxel);
-      widen(all.mesh, other.mesh);
-    }
-    // A vertex that has been moved is no longer on an edge between samples.
-    if (all.mesh.near) all.surfaces = 2;
-    return all;
+  return [tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm) {
+    return tight(p_mm, slack_mm + by_mm);
   };
 }
 
 Witness witness_of_parts(Witness whole) {
   if (!whole) return {};
-  return [whole = std::move(whole)](const glm::dvec3& p_mm) -> Reading {
+  return [whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
     const auto part = [](const Word& word) { return word == certainly_in ? untold : word; };
-    const Reading reading = whole(p_mm);
+    const Reading reading = whole(p_mm, slack_mm);
     return {part(reading.voxel), part(reading.mesh), reading.surfaces};
   };
 }
 
 Witness witness_of_filled(Witness hollow) {
   if (!hollow) return {};
-  return [hollow = std::move(hollow)](const glm::dvec3& p_mm) -> Reading {
+  return [hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
     const auto filled = [](const Word& word) { return word == certainly_out ? untold : word; };
-    const Reading reading = hollow(p_mm);
+    const Reading reading = hollow(p_mm, slack_mm);
     return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
   };
 }
