@@ -431,10 +431,9 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
   certificate.worst = places.worst;
   const double voxels_mm3 = static_cast<double>(places.voxel_count) * evidence.voxel_mm3;
   const double face_mm2 = std::pow(evidence.voxel_mm3, 2.0 / 3.0);
-  const Verdict most =
-      places.voxel_count >= doubtful_voxels || places.stray_mm2 >= doubtful_voxels * face_mm2
-          ? Verdict::Fail
-          : Verdict::Warn;
+  const Verdict most = places.voxel_count >= doubtful_voxels || places.stray_mm2 >= doubtful_voxels * face_mm2
+                           ? Verdict::Fail
+                           : Verdict::Warn;
   add_comparison(certificate,
                  {.quantity = "contradicted voxels",
                   .unit = "mm3",

@@ -250,13 +250,14 @@ std::string terms_of(const verify::Certificate& certificate, const std::string& 
                   ". Tier " + escaped(verify::to_string(certificate.tier)) + ".");
   std::string limit;
   if (certificate.limit)
-    limit = element("p class=\"small\"",
-                    "Detection limit: an error of more than " + three_figures(certificate.limit->volume_mm3) +
-                        " mm\u00b3 in one place" +
-                        (certificate.limit->shift_mm ? ", or a shift of more than " +
-                                                           three_figures(*certificate.limit->shift_mm) + " mm,"
-                                                     : "") +
-                        " would have been seen.");
+    limit =
+        element("p class=\"small\"",
+                "Detection limit: an error of more than " + three_figures(certificate.limit->volume_mm3) +
+                    " mm\u00b3 in one place" +
+                    (certificate.limit->shift_mm
+                         ? ", or a shift of more than " + three_figures(*certificate.limit->shift_mm) + " mm,"
+                         : "") +
+                    " would have been seen.");
   const bool open = certificate.verdict == verify::Verdict::Fail;
   return std::string(open ? "<details open>" : "<details>") + "<summary>" +
          element("code", escaped(definition)) + "</summary>" + element("table", rows) + limit + lineage +

@@ -25,9 +25,7 @@ struct DepthImage {
   glm::ivec2 size_px{0};
   std::vector<Seen> pixels;
 
-  const Seen& at(int x, int y) const {
-    return pixels[pixel_index(size_px, x, y)];
-  }
+  const Seen& at(int x, int y) const { return pixels[pixel_index(size_px, x, y)]; }
 };
 
 /// An image of background.

@@ -43,7 +43,9 @@ TEST(MirrorStep, ThePlaneThatFitsIsSettledForBothKernels) {
   const Object &lens = evaluation.object("lens"), &twin = evaluation.object("twin");
   expect_certified(twin, lens.mesh.within->measures().volume_mm3, 0.02);
   EXPECT_LT(twin.mesh.details["rms_mm"].get<double>(), 0.1);
-  EXPECT_LT(glm::distance(*twin.mesh.within->measures().centroid_mm, *lens.mesh.within->measures().centroid_mm), 0.1);
+  EXPECT_LT(
+      glm::distance(*twin.mesh.within->measures().centroid_mm, *lens.mesh.within->measures().centroid_mm),
+      0.1);
   EXPECT_LT(glm::distance(*twin.voxel.measures.centroid_mm, *lens.voxel.measures.centroid_mm), 0.2);
 }
 

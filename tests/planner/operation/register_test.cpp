@@ -26,7 +26,9 @@ TEST(RegisterStep, AMovedObjectIsLaidBackOnItsOriginInBothKernels) {
                   R"(, {"id": "back", "do": "register", "object": "off", "onto": "egg", "overlap": 1})"));
   const Object &still = evaluation.object("egg"), &back = evaluation.object("back");
   expect_certified(back, still.mesh.within->measures().volume_mm3, 0.02);
-  EXPECT_LT(glm::distance(*back.mesh.within->measures().centroid_mm, *still.mesh.within->measures().centroid_mm), 0.05);
+  EXPECT_LT(
+      glm::distance(*back.mesh.within->measures().centroid_mm, *still.mesh.within->measures().centroid_mm),
+      0.05);
   EXPECT_LT(glm::distance(*back.voxel.measures.centroid_mm, *still.voxel.measures.centroid_mm), 0.2);
   EXPECT_LT(back.mesh.details["rms_mm"].get<double>(), 0.05);
   ASSERT_TRUE(back.moved);

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/operation/mask.h"
 #include "planner/report/report_page.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
-#include "planner/operation/mask.h"
 
 namespace octotomy::planner {
 namespace {

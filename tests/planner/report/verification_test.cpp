@@ -36,7 +36,8 @@ class VerificationPage : public testing::Test {
       if (object.certificate) {
         add(verification_.counts, *object.certificate);
         verification_.answer["certificates"].push_back(to_json(*object.certificate));
-        verify::keep_worse(verification_.worst, {*object.certificate, object.voxel.octree, object.mesh.within});
+        verify::keep_worse(verification_.worst,
+                           {*object.certificate, object.voxel.octree, object.mesh.within});
       }
     verification_.answer["counts"] = to_json(verification_.counts);
     verification_.not_covered = {"cut: a mask is certified with what it cuts"};

@@ -61,7 +61,6 @@ TEST(CuberilleFaces, DirectionsStepAlongTheirAxis) {
   EXPECT_EQ(step(Direction::PlusX), glm::ivec3(1, 0, 0));
   EXPECT_EQ(step(Direction::MinusY), glm::ivec3(0, -1, 0));
   EXPECT_EQ(step(Direction::PlusZ), glm::ivec3(0, 0, 1));
-
 }
 
 TEST(CuberilleFaces, ThatAreWrongAreRefusedWithTheFaceOrTheCharacter) {

@@ -52,8 +52,7 @@ TEST(RunLength, ThatIsWrongIsRefusedWithTheRunOrTheCharacter) {
   EXPECT_EQ(of("8:9,12:13"), "run length, character 4: expected a space, found ','");
   EXPECT_EQ(of("9:8"), "run length, run 1, 9:8: ends before it begins");
   EXPECT_EQ(of("8:9 9:12"), "run length, run 2, 9:12: does not come after its predecessor");
-  EXPECT_EQ(of("8:9 10:12"),
-            "run length, run 2, 10:12: continues its predecessor: merge the two runs");
+  EXPECT_EQ(of("8:9 10:12"), "run length, run 2, 10:12: continues its predecessor: merge the two runs");
   EXPECT_EQ(of("8:64"), "run length, run 1, 8:64: leaves the universe of 64 voxels");
   EXPECT_NE(of("8:99999999999999999999").find("character 3: a number of at most"), std::string::npos);
   EXPECT_NE(of("0:18446744073709551615").find("leaves the universe"), std::string::npos);
