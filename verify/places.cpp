@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Voxels. A kernel's answer at a voxel's centre must be one that the witness allows it. Where the witness
-// does not
-//   know the side, away from any surface, the kernels must agree.
+// 1 Voxels. A kernel's answer at a voxel's centre must be one that the witness allows it. Away from any
+//   surface, where the witness does not know the side, the kernels must agree.
 // 2 Triangles. A triangle's centroid must lie where the witness has a surface, each vertex where a surface
-// has a
-//   vertex of its own or two surfaces cross.
+//   has a vertex of its own or two surfaces cross.
 // 3 Groups. Voxels that fail, joined by faces, edges and corners; the largest is the worst place.
 // 4 Limit. Errors are made at random places of this object and judged as above: groups of voxels next to the
 //   boundary are removed and added, pieces of the mesh are lost, the whole is shifted along both directions
@@ -16,7 +14,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <random>
