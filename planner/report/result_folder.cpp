@@ -94,7 +94,10 @@ void write_list(const fs::path& folder) {
     text += name;
     text += '\n';
   }
-  write_text(folder / list_name, text);
+  // Whole or not at all: half a list would make somebody else's of what it does not name.
+  const fs::path part = folder / (std::string(list_name) + "-part");
+  write_text(part, text);
+  fs::rename(part, folder / list_name);
 }
 
 bool unchanged(const fs::path& path, const std::string& sum) {
