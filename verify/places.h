@@ -22,10 +22,10 @@ struct Places {
   DetectionLimit limit;
 };
 
-/// Compares the states of voxels' centres: all at which the two kernels differ and all beside the octree's
-/// boundary, and the triangles' centroids. `digitised` are the voxels whose centre lies inside of the mesh.
-/// Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: the witness once for each of these
-/// points, and some ten thousand times for the limit.
+/// Holds against the witness the voxels at which the two kernels differ, those beside the octree's boundary,
+/// and the solid's vertices and triangles' centroids. `digitised` are the voxels whose centre lies inside of
+/// the solid. Throws voxel::Stopped. Parallel; same answer on any thread count. Cost: one reading for each of
+/// these points; for the limit some ten thousand more, and a sort of the solid's pieces.
 Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress = {});
 

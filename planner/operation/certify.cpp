@@ -25,8 +25,8 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
       made.bound.shifted || std::any_of(made.findings.begin(), made.findings.end(), [](const auto& finding) {
         return finding.find("shifted: ") != std::string::npos;
       });
-  // Up to three steps of 4e-6 of the operands' extent; the prisms of regions reach over three times the
-  // universe.
+  // Corefinement moves an operand by up to three steps of 4e-6 of the operands' extent; the prisms of regions
+  // reach over three times the universe.
   if (made.bound.shifted)
     inputs.witness =
         verify::loosened(inputs.witness, 3.0 * 4e-6 * 4.0 * glm::length(world.high_mm - world.low_mm));
