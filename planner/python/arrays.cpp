@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/python/arrays.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace octotomy::planner::python {
+namespace {
+
+/// Refuses numbers that are not finite or not of `rows` (-1: any) by `columns`; 0 rows: one row without a
+/// dimension of its own.
+void check_shape(const Numbers& numbers, const char* what, int rows, int columns) {
+  const bool fits = rows == 0 ? numbers.ndim() == 1 && numbers.shape(0) == columns
+                              : numbers.ndim() == 2 && numbers.shape(1) == columns &&
+                                    (rows < 0 || numbers.shape(0) == rows);
+  const std::string shape = rows == 0  ? "(" + std::to_string(columns) + ",)"
+                            : rows < 0 ? "(n, " + std::to_string(columns) + ")"
+                                       : "(" + std::to_string(rows) + ", " + std::to_string(columns) + ")";
+  if (!fits) throw std::invalid_argument(std::string(what) + " must be an array of the shape " + shape);
+  for (py::ssize_t i = 0; i < numbers.size(); ++i)
+    if (!std::isfinite(numbers.data()[i]))
+      throw std::invalid_argument(std::string(what) + " has a number that is not finite");
+}
+
+}  // namespace
+
+glm::dvec3 vector_of(const Numbers& numbers, const char* what) {
+  check_shape(numbers, what, 0, 3);
+  return {numbers.at(0), numbers.at(1), numbers.at(2)};
+}
+
+std::vector<glm::dvec2> points_2d_of(const Numbers& numbers, const char* what) {
+  check_shape(numbers, what, -1, 2);
+  std::vector<glm::dvec2> points;
+  for (py::ssize_t i = 0; i < numbers.shape(0); ++i) points.emplace_back(numbers.at(i, 0), numbers.at(i, 1));
+  return points;
+}
+
+std::vector<glm::dvec3> points_3d_of(const Numbers& numbers, const char* what) {
+  check_shape(numbers, what, -1, 3);
+  std::vector<glm::dvec3> points;
+  for (py::ssize_t i = 0; i < numbers.shape(0); ++i)
+    points.emplace_back(numbers.at(i, 0), numbers.at(i, 1), numbers.at(i, 2));
+  return points;
+}
+
+glm::dmat4 matrix_of(const Numbers& numbers, const char* what) {
+  check_shape(numbers, what, 4, 4);
+  glm::dmat4 matrix(0.0);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) matrix[column][row] = numbers.at(row, column);
+  if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0)
+    throw std::invalid_argument(std::string(what) + " must end in the row 0, 0, 0, 1");
+  return matrix;
+}
+
+py::array array_of(const glm::dvec3& vector) {
+  return py::array_t<double>(3, &vector.x);
+}
+
+py::array array_of(const glm::dmat4& matrix) {
+  const glm::dmat4 rows = glm::transpose(matrix);
+  return py::array_t<double>({4, 4}, &rows[0][0]);
+}
+
+py::object python_of(const nlohmann::ordered_json& json) {
+  return py::module_::import("json").attr("loads")(json.dump());
+}
+
+}  // namespace octotomy::planner::python

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <vector>
+
+namespace octotomy::planner::python {
+
+namespace py = pybind11;
+
+/// An array that shows `first` and what follows, and keeps `owner` alive; nobody can write to it. Shape as
+/// NumPy has it, the fastest axis last.
+template <typename Number>
+py::array shown(const Number* first, std::vector<py::ssize_t> shape, py::handle owner) {
+  py::array array(py::dtype::of<Number>(), std::move(shape), first, owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Each throws std::invalid_argument naming `what` where the shape is another one or a number is not finite.
+glm::dvec3 vector_of(const Numbers& numbers, const char* what);
+std::vector<glm::dvec2> points_2d_of(const Numbers& numbers, const char* what);
+std::vector<glm::dvec3> points_3d_of(const Numbers& numbers, const char* what);
+/// Row by row, as NumPy and nibabel have it.
+glm::dmat4 matrix_of(const Numbers& numbers, const char* what);
+
+py::array array_of(const glm::dvec3& vector);
+py::array array_of(const glm::dmat4& matrix);
+
+/// JSON as dictionaries, lists and numbers.
+py::object python_of(const nlohmann::ordered_json& json);
+
+}  // namespace octotomy::planner::python

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Exceptions by the codes of the kernels' errors.
+#include <array>
+#include <string>
+
+#include "brep/mesh/error.h"
+#include "planner/python/module.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::python {
+namespace {
+
+namespace py = pybind11;
+
+/// By the codes' order: Input, Geometry, Cancelled, Resource. Never freed: they live as long as Python does.
+std::array<PyObject*, 4> of_code{};
+
+PyObject* new_error(py::module_& module, const char* name, const char* says, const py::object& bases) {
+  const std::string full = "octotomy." + std::string(name);
+  PyObject* error = PyErr_NewExceptionWithDoc(full.c_str(), says, bases.ptr(), nullptr);
+  if (error == nullptr) throw py::error_already_set();
+  module.add_object(name, py::handle(error));
+  return error;
+}
+
+template <typename Code>
+void raise(Code code, const char* message) {
+  PyErr_SetString(of_code.at(static_cast<std::size_t>(code)), message);
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    std::rethrow_exception(std::move(thrown));
+  } catch (const py::builtin_exception&) {
+    throw;
+  } catch (const voxel::Error& error) {
+    raise(error.code(), error.what());
+  } catch (const brep::Error& error) {
+    raise(error.code(), error.what());
+  } catch (const std::runtime_error& error) {  // the planner's refusals
+    raise(voxel::ErrorCode::Input, error.what());
+  }
+}
+
+}  // namespace
+
+void add_errors(py::module_& module) {
+  const py::handle runtime(PyExc_RuntimeError), value(PyExc_ValueError);
+  const py::object base = py::reinterpret_borrow<py::object>(
+      new_error(module, "Error", "What a kernel or the planner refuses, with place, cause and remedy.",
+                py::reinterpret_borrow<py::object>(runtime)));
+  of_code = {
+      new_error(module, "InputError", "Data or text from outside is wrong.", py::make_tuple(base, value)),
+      new_error(module, "GeometryError", "The data are sound, but the operation has no answer on them.",
+                base),
+      new_error(module, "CancelledError", "The work was stopped.", base),
+      new_error(module, "ResourceError", "Memory, disk, time or a child process gave out.", base)};
+  py::register_exception_translator(translate);
+}
+
+}  // namespace octotomy::planner::python

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Triangles and solids as arrays.
+#include <memory>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "brep/boolean/boolean.h"
+#include "brep/io/read_mesh.h"
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/solid.h"
+#include "convert/surface/isosurface.h"
+#include "planner/measure/result_json.h"
+#include "planner/python/arrays.h"
+#include "planner/python/module.h"
+#include "planner/python/waiting.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::planner::python {
+namespace {
+
+using brep::Solid;
+using brep::Triangles;
+using SharedTriangles = std::shared_ptr<Triangles>;
+using Faces = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+SharedTriangles triangles_of_arrays(const Numbers& vertices_mm, const Faces& faces) {
+  auto triangles = std::make_shared<Triangles>();
+  triangles->points_mm = points_3d_of(vertices_mm, "vertices_mm");
+  if (faces.ndim() != 2 || faces.shape(1) != 3)
+    throw std::invalid_argument("triangles must be an array of the shape (n, 3)");
+  const auto count = static_cast<std::int64_t>(triangles->points_mm.size());
+  triangles->faces.resize(static_cast<std::size_t>(faces.shape(0)));
+  for (py::ssize_t i = 0; i < faces.shape(0); ++i)
+    for (py::ssize_t corner = 0; corner < 3; ++corner) {
+      const std::int64_t point = faces.at(i, corner);
+      if (point < 0 || point >= count)
+        throw std::invalid_argument("triangle " + std::to_string(i) + " refers to vertex " +
+                                    std::to_string(point) + ", and there are " + std::to_string(count));
+      triangles->faces[static_cast<std::size_t>(i)][static_cast<std::size_t>(corner)] =
+          static_cast<std::uint32_t>(point);
+    }
+  return triangles;
+}
+
+py::array shown_points(const Triangles& triangles, const py::object& owner) {
+  return shown(triangles.points_mm.empty() ? nullptr : &triangles.points_mm.front().x,
+               {static_cast<py::ssize_t>(triangles.points_mm.size()), 3}, owner);
+}
+
+py::array shown_faces(const Triangles& triangles, const py::object& owner) {
+  return shown(triangles.faces.empty() ? nullptr : triangles.faces.front().data(),
+               {static_cast<py::ssize_t>(triangles.faces.size()), 3}, owner);
+}
+
+SharedTriangles isosurface(const voxel::Scene& scan, double low, double high) {
+  return without_lock([&](const std::stop_token& stop) {
+    return std::make_shared<Triangles>(convert::isosurface(scan, low, high, {stop, {}}));
+  });
+}
+
+Solid combined(const Solid& a, brep::Operation operation, const Solid& b) {
+  return without_lock(
+      [&](const std::stop_token& stop) { return brep::boolean(a, operation, b, stop).solid; });
+}
+
+void write(const Triangles& triangles, const std::filesystem::path& path) {
+  without_lock([&](const std::stop_token&) { brep::write_mesh(brep::mesh_of(triangles), path); });
+}
+
+}  // namespace
+
+void add_meshes(py::module_& module) {
+  py::class_<Triangles, SharedTriangles>(module, "Mesh",
+                                         "Triangles in LPS millimetres; nothing is promised of them.")
+      .def(
+          py::init(&triangles_of_arrays), py::arg("vertices_mm"), py::arg("triangles"),
+          "Copies vertices (n, 3) and the numbers of each triangle's vertices (m, 3), counter-clockwise seen "
+          "from outside.")
+      .def_property_readonly(
+          "vertices_mm",
+          [](const py::object& self) { return shown_points(self.cast<const Triangles&>(), self); },
+          "The vertices (n, 3), float64; not a copy, not writable.")
+      .def_property_readonly(
+          "triangles",
+          [](const py::object& self) { return shown_faces(self.cast<const Triangles&>(), self); },
+          "Numbers of vertices (m, 3), uint32; not a copy, not writable.")
+      .def(
+          "health",
+          [](const Triangles& triangles) {
+            return python_of(
+                to_json(without_lock([&](const std::stop_token&) { return brep::health(triangles); })));
+          },
+          "Whether it is closed, manifold, oriented and free of self-intersection, with findings.")
+      .def(
+          "solid",
+          [](const Triangles& triangles) {
+            return without_lock([&](const std::stop_token&) { return brep::solid_of(triangles); });
+          },
+          "The solid that it bounds. Raises GeometryError with the first defect and its place.")
+      .def("write", &write, py::arg("path"), "Writes .stl, .ply, .obj, .off, .vtp or .glb as the name ends.");
+
+  py::class_<Solid>(module, "Solid",
+                    "The inside of a closed surface, immutable. & (and), | (or), - (less) are mesh Booleans.")
+      .def_property_readonly(
+          "vertices_mm",
+          [](const py::object& self) { return shown_points(self.cast<const Solid&>().triangles(), self); },
+          "The vertices (n, 3), float64; not a copy, not writable.")
+      .def_property_readonly(
+          "triangles",
+          [](const py::object& self) { return shown_faces(self.cast<const Solid&>().triangles(), self); },
+          "Numbers of vertices (m, 3), uint32; not a copy, not writable.")
+      .def_property_readonly("volume_mm3", [](const Solid& solid) { return solid.size().volume_mm3; })
+      .def_property_readonly("area_mm2", [](const Solid& solid) { return solid.size().area_mm2; })
+      .def("__bool__", [](const Solid& solid) { return !solid.empty(); })
+      .def("__and__",
+           [](const Solid& a, const Solid& b) { return combined(a, brep::Operation::Intersection, b); })
+      .def("__or__", [](const Solid& a, const Solid& b) { return combined(a, brep::Operation::Union, b); })
+      .def("__sub__",
+           [](const Solid& a, const Solid& b) { return combined(a, brep::Operation::Difference, b); })
+      .def(
+          "moved",
+          [](const Solid& solid, const Numbers& moved_from_still) {
+            return brep::moved(solid, matrix_of(moved_from_still, "moved_from_still"));
+          },
+          py::arg("moved_from_still"), "The solid under a rigid motion of LPS mm.")
+      .def(
+          "measures",
+          [](const Solid& solid) {
+            return python_of(to_json(
+                without_lock([&](const std::stop_token&) { return brep::Measures(solid.measures()); })));
+          },
+          "Volume, area, centroid, extents and inertia.")
+      .def(
+          "write",
+          [](const Solid& solid, const std::filesystem::path& path) { write(solid.triangles(), path); },
+          py::arg("path"), "Writes .stl, .ply, .obj, .off, .vtp or .glb as the name ends.");
+
+  module.def(
+      "read_mesh",
+      [](const std::filesystem::path& path) {
+        return without_lock(
+            [&](const std::stop_token&) { return std::make_shared<Triangles>(brep::read_triangles(path)); });
+      },
+      py::arg("path"), "Reads .stl, .ply, .obj, .off, .vtk or .vtp.");
+  module.def("isosurface", &isosurface, py::arg("scan"), py::arg("low"), py::arg("high") = 32767.0,
+             "The surface on which a scan's samples enter low..high.");
+}
+
+}  // namespace octotomy::planner::python

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Scans as arrays.
+#include <cstring>
+#include <memory>
+#include <pybind11/operators.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+#include <string>
+
+#include "planner/measure/result_json.h"
+#include "planner/python/arrays.h"
+#include "planner/python/module.h"
+#include "planner/python/waiting.h"
+#include "planner/table/plan_universe.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/tree/grey_octree.h"
+
+namespace octotomy::planner::python {
+namespace {
+
+using voxel::Scene;
+
+const std::pair<const char*, voxel::Meaning> meanings[] = {
+    {"HU", voxel::Meaning::Hounsfield}, {"raw", voxel::Meaning::Raw}, {"label", voxel::Meaning::Label}};
+
+std::string meaning_of(const Scene& scene) {
+  for (const auto& [name, meaning] : meanings)
+    if (meaning == scene.meaning) return name;
+  return "raw";
+}
+
+/// The array's samples, copied: a scan owns its own.
+template <typename Sample>
+voxel::Samples<Sample> samples_of(const py::array& array) {
+  const auto dense = py::array_t<Sample, py::array::c_style>::ensure(array);
+  voxel::Samples<Sample> samples(static_cast<std::size_t>(dense.size()));
+  std::memcpy(samples.data(), dense.data(), samples.size() * sizeof(Sample));
+  return samples;
+}
+
+std::shared_ptr<Scene> scene_of(const py::array& array, const Numbers& lps_from_voxel,
+                                const std::string& meaning, const std::string& modality) {
+  if (array.ndim() != 3) throw std::invalid_argument("samples must be an array of the shape (z, y, x)");
+  auto scene = std::make_shared<Scene>();
+  scene->lattice.dims = {array.shape(2), array.shape(1), array.shape(0)};
+  scene->lattice.lps_from_voxel = matrix_of(lps_from_voxel, "lps_from_voxel");
+  if (py::isinstance<py::array_t<std::int16_t>>(array))
+    scene->samples = samples_of<std::int16_t>(array);
+  else if (py::isinstance<py::array_t<float>>(array))
+    scene->samples = samples_of<float>(array);
+  else
+    throw std::invalid_argument("samples must be of the type int16 or float32: use samples.astype()");
+  const auto* known = std::find_if(std::begin(meanings), std::end(meanings),
+                                   [&](const auto& m) { return m.first == meaning; });
+  if (known == std::end(meanings))
+    throw std::invalid_argument("meaning must be 'HU', 'raw' or 'label', not '" + meaning + "'");
+  scene->meaning = known->second;
+  scene->modality = modality;
+  scene->source = "an array";
+  voxel::check(*scene);
+  return scene;
+}
+
+py::array shown_samples(const py::object& self) {
+  const auto& scene = self.cast<const Scene&>();
+  const glm::ivec3 dims = scene.lattice.dims;
+  return std::visit(
+      [&](const auto& samples) {
+        return shown(samples.data(), {dims.z, dims.y, dims.x}, self);
+      },
+      scene.samples);
+}
+
+std::shared_ptr<Scene> read(const std::filesystem::path& path, const std::string& series,
+                            const std::optional<Numbers>& spacing_mm) {
+  voxel::ReadOptions options;
+  options.series = series;
+  if (spacing_mm) options.spacing_mm = vector_of(*spacing_mm, "spacing_mm");
+  return without_lock([&](const std::stop_token& stop) {
+    options.progress.stop = stop;
+    return std::make_shared<Scene>(voxel::read_scene(path, options));
+  });
+}
+
+}  // namespace
+
+void add_scans(py::module_& module) {
+  py::class_<voxel::Universe>(module, "Universe", "The cube of 2^depth voxels a side in which octrees live.")
+      .def(py::init([](int depth, const Numbers& lps_from_voxel) {
+             if (depth < 2 || depth > voxel::Universe::max_depth)
+               throw std::invalid_argument("depth must be 2 to 12");
+             return voxel::Universe{depth, matrix_of(lps_from_voxel, "lps_from_voxel")};
+           }),
+           py::arg("depth"), py::arg("lps_from_voxel"))
+      .def_readonly("depth", &voxel::Universe::depth)
+      .def_property_readonly("side", &voxel::Universe::side)
+      .def_property_readonly(
+          "lps_from_voxel", [](const voxel::Universe& universe) { return array_of(universe.lps_from_voxel); })
+      .def(py::self == py::self);
+
+  py::class_<voxel::GreyOctree>(module, "GreyOctree",
+                                "Samples at a universe's voxels, with the least and greatest of each block.")
+      .def_property_readonly("universe", &voxel::GreyOctree::universe)
+      .def_property_readonly("bytes", &voxel::GreyOctree::bytes_memory);
+
+  py::class_<Scene, std::shared_ptr<Scene>>(module, "Scan", "Samples on a lattice in LPS millimetres.")
+      .def(py::init(&scene_of), py::arg("samples"), py::arg("lps_from_voxel"), py::arg("meaning") = "HU",
+           py::arg("modality") = "CT",
+           "Copies an array of the shape (z, y, x), int16 or float32. lps_from_voxel maps (x, y, z).")
+      .def_property_readonly("samples", &shown_samples, "The samples (z, y, x); not a copy, not writable.")
+      .def_property_readonly("lps_from_voxel",
+                             [](const Scene& scene) { return array_of(scene.lattice.lps_from_voxel); })
+      .def_property_readonly("spacing_mm",
+                             [](const Scene& scene) { return array_of(scene.lattice.spacing_mm()); })
+      .def_property_readonly("meaning", &meaning_of)
+      .def_property_readonly("unit", [](const Scene& scene) { return voxel::unit(scene); })
+      .def_readonly("modality", &Scene::modality)
+      .def_readonly("source", &Scene::source)
+      .def_property_readonly("audit", [](const Scene& scene) { return python_of(to_json(scene.audit)); })
+      .def(
+          "universe",
+          [](const Scene& scene, std::optional<double> voxel_mm) {
+            return universe_of(scene.lattice, voxel_mm);
+          },
+          py::arg("voxel_mm") = py::none(),
+          "The universe of a plan on this scan; by default as fine as the scan, at most 512 voxels a side.")
+      .def(
+          "grey",
+          [](const Scene& scene, const std::optional<voxel::Universe>& universe) {
+            const voxel::Universe where = universe ? *universe : universe_of(scene.lattice, std::nullopt);
+            return without_lock([&](const std::stop_token&) { return voxel::grey_octree_of(where, scene); });
+          },
+          py::arg("universe") = py::none(), "The samples at the voxels of a universe.")
+      .def(
+          "write",
+          [](const Scene& scene, const std::filesystem::path& path) {
+            without_lock([&](const std::stop_token&) { voxel::write_scene(scene, path); });
+          },
+          py::arg("path"), "Writes .nrrd, .nii, .nii.gz or .mha as the name ends.");
+
+  module.def("read_scan", &read, py::arg("path"), py::arg("series") = "", py::arg("spacing_mm") = py::none(),
+             "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
+             "series by number, UID or part of its description.");
+}
+
+}  // namespace octotomy::planner::python
