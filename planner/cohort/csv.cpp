@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cohort/csv.h"
+
+#include <array>
+#include <charconv>
+
+#include "voxel/space/error.h"
+
+namespace octotomy::planner {
+namespace {
+
+[[noreturn]] void refuse(std::size_t row, const std::string& why) {
+  throw voxel::Error(voxel::ErrorCode::Input, "row " + std::to_string(row) + ": " + why);
+}
+
+}  // namespace
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) line += ',';
+    if (cells[i].find_first_of(",\"\r\n") == std::string::npos) {
+      line += cells[i];
+      continue;
+    }
+    line += '"';
+    for (const char symbol : cells[i]) line += symbol == '"' ? "\"\"" : std::string(1, symbol);
+    line += '"';
+  }
+  return line + '\n';
+}
+
+std::string csv_number(const std::optional<double>& number) {
+  if (!number) return {};
+  std::array<char, 32> text{};
+  const auto written = std::to_chars(text.data(), text.data() + text.size(), *number);
+  return {text.data(), written.ptr};
+}
+
+std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> row(1);
+  const auto end_row = [&] {
+    if (row.size() > 1 || !row.front().empty()) rows.push_back(std::move(row));
+    row.assign(1, {});
+  };
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // as spreadsheets begin UTF-8
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const char symbol = text[at];
+    if (symbol == ',') {
+      row.emplace_back();
+      ++at;
+    } else if (symbol == '\n' || symbol == '\r') {
+      end_row();
+      ++at;
+    } else if (symbol == '"' && row.back().empty()) {
+      std::string& cell = row.back();
+      for (++at;; ++at) {
+        if (at >= text.size()) refuse(rows.size() + 1, "a quote is not closed");
+        if (text[at] != '"') {
+          cell += text[at];
+        } else if (at + 1 < text.size() && text[at + 1] == '"') {
+          cell += text[at++];
+        } else {
+          break;
+        }
+      }
+      ++at;
+      if (at < text.size() && std::string_view(",\r\n").find(text[at]) == std::string_view::npos)
+        refuse(rows.size() + 1, "text follows a closed quote");
+    } else {
+      row.back() += symbol;
+      ++at;
+    }
+  }
+  end_row();
+  return rows;
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cohort/group.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "planner/cohort/csv.h"
+#include "planner/cohort/group_page.h"
+#include "planner/cohort/participant.h"
+#include "planner/cohort/plots.h"
+#include "planner/cohort/statistics.h"
+#include "planner/report/result_folder.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::vector<ResultRow> rows_in(const fs::path& out, const Subject& subject) {
+  const fs::path path = out / subject.folder() / "rows.csv";
+  try {
+    return parse_long_table(text_of(path));
+  } catch (const voxel::Error& error) {
+    throw voxel::Error(error.code(), path.string() + ": " + error.what());
+  }
+}
+
+/// Both kernels' answers of a column, mesh less voxel.
+std::vector<std::pair<double, double>> of_kernels(const CohortColumn& column) {
+  std::vector<std::pair<double, double>> answers;
+  for (const CohortValue& value : column.values)
+    if (value.voxel && value.mesh) answers.emplace_back(*value.voxel, *value.mesh);
+  return answers;
+}
+
+/// The same subjects' numbers of two observers, the other less this one.
+std::vector<std::pair<double, double>> of_observers(const CohortColumn& column, const CohortTable& other) {
+  std::map<std::uint32_t, double> others;
+  for (const CohortColumn& its : other.columns())
+    if (its.name() == column.name() && its.unit == column.unit)
+      for (const CohortValue& value : its.values) others[value.subject] = value.value;
+  std::vector<std::pair<double, double>> answers;
+  for (const CohortValue& value : column.values)
+    if (const auto found = others.find(value.subject); found != others.end())
+      answers.emplace_back(value.value, found->second);
+  return answers;
+}
+
+Json agreement_json(const Agreement& agreement) {
+  return {{"pairs", agreement.points.size()},
+          {"bias", agreement.bias},
+          {"limits_of_agreement", {agreement.low, agreement.high}}};
+}
+
+/// The numbers, plots and outliers of a column.
+GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& subjects,
+                       const std::optional<CohortTable>& other) {
+  GroupColumn made{column.name(), column.unit, {}, {}, {}};
+  std::vector<double> numbers;
+  for (const CohortValue& value : column.values) numbers.push_back(value.value);
+  const Spread spread = spread_of(numbers);
+  for (const CohortValue& value : column.values)
+    if (value.value < spread.lower_fence || value.value > spread.upper_fence)
+      made.outliers.push_back({value.subject, value.value});
+  made.plots.emplace_back("distribution", distribution_svg(column.name(), column.unit, numbers));
+  Json outliers = Json::array();
+  for (const auto& [subject, value] : made.outliers)
+    outliers.push_back({{"subject", subjects[subject].label}, {"value", value}});
+  made.summary = {{"measurement", column.measurement},
+                  {"quantity", column.quantity},
+                  {"unit", column.unit},
+                  {"subjects", spread.count},
+                  {"mean", spread.mean},
+                  {"sd", spread.sd},
+                  {"least", spread.least},
+                  {"median", spread.median},
+                  {"greatest", spread.greatest},
+                  {"outliers", outliers}};
+  const auto add = [&](const std::string& of, const std::string& title,
+                       const std::vector<std::pair<double, double>>& answers) {
+    if (answers.size() < 2) return;
+    const Agreement agreement = agreement_of(answers);
+    made.summary[of] = agreement_json(agreement);
+    made.plots.emplace_back(of, agreement_svg(column.name() + ": " + title, column.unit, agreement));
+  };
+  add("kernels", "mesh less voxel kernel", of_kernels(column));
+  if (other) add("observers", "other less this observer", of_observers(column, *other));
+  return made;
+}
+
+}  // namespace
+
+std::string wide_table(const std::vector<std::string>& labels, const CohortTable& table) {
+  std::vector<std::string> header{"subject"};
+  for (const CohortColumn& column : table.columns()) {
+    const std::string name = column.name();
+    for (const std::string& cell :
+         {name + "_" + column.unit, name + "_half_width_" + column.unit, name + "_verdict"})
+      header.push_back(cell);
+  }
+  std::string text = csv_line(header);
+  std::vector<std::size_t> next(table.columns().size(), 0);
+  for (std::uint32_t subject = 0; subject < labels.size(); ++subject) {
+    std::vector<std::string> cells{labels[subject]};
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const std::vector<CohortValue>& values = table.columns()[i].values;
+      const bool has = next[i] < values.size() && values[next[i]].subject == subject;
+      if (!has) {
+        cells.insert(cells.end(), 3, {});
+        continue;
+      }
+      const CohortValue& value = values[next[i]++];
+      cells.insert(cells.end(), {csv_number(value.value), csv_number(value.half_width), value.verdict});
+    }
+    text += csv_line(cells);
+  }
+  return text;
+}
+
+Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, const GroupOptions& options) {
+  ResultFolder folder(out / "group");
+  fs::create_directories(folder.path() / "plots");
+  std::ofstream rows_file(folder.path() / "measurements.csv", std::ios::binary);
+  std::ofstream subjects_file(folder.path() / "subjects.csv", std::ios::binary);
+  rows_file << long_header();
+  subjects_file << csv_line({"subject", "state", "reason", "seconds", "peak_mb"});
+  CohortTable table;
+  std::optional<CohortTable> other;
+  if (options.against) other.emplace();
+  std::vector<std::string> labels;
+  GroupPage page;
+  std::size_t done = 0, failed = 0;
+  for (std::uint32_t i = 0; i < subjects.size(); ++i) {
+    const Subject& subject = subjects[i];
+    if (i % 256 == 0) {
+      if (options.stop.stop_requested()) throw voxel::Stopped("stopped before the group was written");
+      if (options.progress)
+        options.progress("subjects", static_cast<double>(i) / static_cast<double>(subjects.size()));
+    }
+    const SubjectRecord record = subject_record(out, subject);
+    const bool is_done = record.state == SubjectRecord::State::Done;
+    ++(is_done ? done : failed);
+    labels.push_back(subject.label);
+    if (is_done) {
+      const std::vector<ResultRow> rows = rows_in(out, subject);
+      for (const ResultRow& row : rows) rows_file << long_line(row);
+      table.add(i, rows);
+      if (other && subject_record(*options.against, subject).state == SubjectRecord::State::Done)
+        other->add(i, rows_in(*options.against, subject));
+    }
+    subjects_file << csv_line({subject.label, to_string(record.state), is_done ? "" : record.reason,
+                               csv_number(record.seconds), csv_number(record.peak_mb)});
+    page.subjects.push_back(
+        {subject.label, is_done ? "" : record.reason, fs::exists(out / subject.folder() / "picture.png")});
+  }
+  if (!rows_file.flush() || !subjects_file.flush())
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       folder.path().string() + ": cannot be written: the disk may be full");
+
+  Json summary{{"octotomy", OCTOTOMY_VERSION},
+               {"subjects", subjects.size()},
+               {"done", done},
+               {"without_answer", failed},
+               {"measurements", Json::array()}};
+  for (const CohortColumn& column : table.columns()) {
+    page.columns.push_back(summarised(column, subjects, other));
+    summary["measurements"].push_back(page.columns.back().summary);
+    for (const auto& [kind, svg] : page.columns.back().plots)
+      write_text(folder.path() / "plots" / (column.name() + "_" + kind + ".svg"), svg);
+  }
+  write_text(folder.path() / "wide.csv", wide_table(labels, table));
+  write_text(folder.path() / "summary.json", summary.dump(2) + "\n");
+  write_text(folder.path() / "index.html", group_page(page));
+  folder.publish();
+  return summary;
+}
+
+}  // namespace octotomy::planner

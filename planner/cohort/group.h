@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "planner/cohort/statistics.h"
+#include "planner/cohort/subjects.h"
+
+namespace octotomy::planner {
+
+struct GroupOptions {
+  std::stop_token stop;
+  std::function<void(const std::string& doing, double fraction)> progress;
+  /// The same cohort by another observer: its derivatives' folder.
+  std::optional<std::filesystem::path> against;
+};
+
+/// Merges the subjects' answers into out/group: measurements.csv (long), wide.csv, subjects.csv (everyone,
+/// with the reason where there is no answer), summary.json, plots/*.svg, and index.html with everyone's
+/// picture. Returns summary.json. Reads a subject's folder once. Cost: linear; memory some 100 bytes a
+/// number. Throws voxel::Error, Input or Resource, and Stopped; an earlier group stays then.
+nlohmann::ordered_json merge_group(const std::vector<Subject>& subjects, const std::filesystem::path& out,
+                                   const GroupOptions& options = {});
+
+/// A row a subject, a column a number with its half-width and verdict.
+std::string wide_table(const std::vector<std::string>& labels, const CohortTable& table);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cohort/participant.h"
+
+#include <chrono>
+#include <fcntl.h>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "brep/mesh/error.h"
+#include "planner/cohort/result_rows.h"
+#include "planner/plan/evaluate.h"
+#include "planner/plan/sha256.h"
+#include "planner/report/report.h"
+#include "planner/report/result_folder.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr int picture_px = 240;
+
+/// A subject in the hands of one process; free again where that process ends, however it ends.
+class Claim {
+ public:
+  Claim(const fs::path& out, const Subject& subject) {
+    const fs::path locks = out / "code/locks";
+    fs::create_directories(locks);
+    const fs::path path = locks / subject.label;
+    file_ = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (file_ < 0) throw std::system_error(errno, std::generic_category(), path.string());
+    is_ours_ = flock(file_, LOCK_EX | LOCK_NB) == 0;
+  }
+  Claim(const Claim&) = delete;
+  Claim& operator=(const Claim&) = delete;
+  ~Claim() { close(file_); }
+  bool is_ours() const { return is_ours_; }
+
+ private:
+  int file_ = -1;
+  bool is_ours_ = false;
+};
+
+std::string key_of(const Plan& plan, const Subject& subject) {
+  std::string text = OCTOTOMY_VERSION "\n" + plan_sha256(Json::parse(plan.text)) + "\n";
+  for (const auto& [name, path] : subject.scans) text += name + " " + sha256_of_path(path) + "\n";
+  return sha256_of(text);
+}
+
+double peak_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+Json to_json(const SubjectRecord& record, const Subject& subject) {
+  Json scans = Json::object();
+  for (const auto& [name, path] : subject.scans) scans[name] = path.string();
+  return {{"octotomy", OCTOTOMY_VERSION},
+          {"subject", subject.label},
+          {"state", to_string(record.state)},
+          {"reason", record.reason.empty() ? Json(nullptr) : Json(record.reason)},
+          {"key", record.key},
+          {"scans", scans},
+          {"scan_bytes", record.scan_bytes},
+          {"seconds", record.seconds},
+          {"peak_mb", record.peak_mb}};
+}
+
+/// One small picture of what the plan ends with; none where it shows nothing.
+std::vector<std::uint8_t> picture_of(const Plan& plan, const Evaluation& evaluation) {
+  const FinalScene scene = final_scene(plan, evaluation);
+  PictureGroup group{"picture", "", scene.after, {}};
+  draw(group, {"30,10"}, scene.after, picture_px);
+  return group.pictures.empty() ? std::vector<std::uint8_t>{} : group.pictures.front().png;
+}
+
+void write_bytes(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
+  write_text(path, {bytes.begin(), bytes.end()});
+}
+
+/// Evaluates and writes into `folder`.
+void answer(const Plan& plan, const Subject& subject, const ParticipantOptions& options,
+            const fs::path& folder) {
+  Result result;
+  result.plan = plan;
+  for (auto& [name, scan] : result.plan.scans) scan.path = subject.scans.at(name);
+  result.evaluation = evaluate(result.plan, {options.stop, options.progress, true});
+  Json json;
+  if (options.reports) {
+    result.pictures = plan_pictures(result.plan, result.evaluation);
+    json = write_result(result, folder / "report", {options.stop, options.progress});
+  } else {
+    result.measurements = measurements_json(result.plan, result.evaluation);
+    json = result_json(result);
+  }
+  std::string rows = long_header();
+  for (const ResultRow& row : rows_of(json, subject.label)) rows += long_line(row);
+  write_text(folder / "rows.csv", rows);
+  write_text(folder / "result.json", json.dump() + "\n");
+  if (const std::vector<std::uint8_t> png = picture_of(result.plan, result.evaluation); !png.empty())
+    write_bytes(folder / "picture.png", png);
+}
+
+/// Why a subject failed: what the evaluation says. Resource errors and stops are none of the subject's.
+template <typename Work>
+std::string reason_of(const Work& work) {
+  try {
+    work();
+    return {};
+  } catch (const voxel::Error& error) {
+    if (error.code() == voxel::ErrorCode::Cancelled || error.code() == voxel::ErrorCode::Resource) throw;
+    return error.what();
+  } catch (const brep::Error& error) {
+    if (error.code() == brep::ErrorCode::Cancelled || error.code() == brep::ErrorCode::Resource) throw;
+    return error.what();
+  } catch (const std::system_error&) {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+std::string to_string(SubjectRecord::State state) {
+  switch (state) {
+    case SubjectRecord::State::Done:
+      return "done";
+    case SubjectRecord::State::Failed:
+      return "failed";
+    default:
+      return "missing";
+  }
+}
+
+SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
+  SubjectRecord record;
+  record.reason = "no result: its process was killed, or never ran";
+  std::ifstream file(out / subject.folder() / "subject.json");
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("state")) return record;
+  const std::string state = json.value("state", "");
+  if (state != "done" && state != "failed") return record;
+  record.state = state == "done" ? SubjectRecord::State::Done : SubjectRecord::State::Failed;
+  record.reason = json["reason"].is_string() ? json["reason"].get<std::string>() : "";
+  record.key = json.value("key", "");
+  record.seconds = json.value("seconds", 0.0);
+  record.peak_mb = json.value("peak_mb", 0.0);
+  record.scan_bytes = json.value("scan_bytes", std::uint64_t{0});
+  return record;
+}
+
+SubjectRecord run_participant(const Plan& plan, const Subject& subject, const fs::path& out,
+                              const ParticipantOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Claim claim(out, subject);
+  SubjectRecord record;
+  if (!claim.is_ours()) {
+    record.is_another_at_work = true;
+    return record;
+  }
+  record.scan_bytes = subject.scan_bytes();
+  record.reason = subject.trouble;
+  if (record.reason.empty()) record.reason = reason_of([&] { record.key = key_of(plan, subject); });
+  if (!options.again && record.reason.empty()) {
+    SubjectRecord earlier = subject_record(out, subject);
+    if (earlier.state == SubjectRecord::State::Done && earlier.key == record.key) {
+      earlier.was_kept = true;
+      return earlier;
+    }
+  }
+  ResultFolder folder(out / subject.folder());
+  if (record.reason.empty())
+    record.reason = reason_of([&] { answer(plan, subject, options, folder.path()); });
+  record.state = record.reason.empty() ? SubjectRecord::State::Done : SubjectRecord::State::Failed;
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record.peak_mb = peak_mb();
+  write_text(folder.path() / "subject.json", to_json(record, subject).dump(2) + "\n");
+  folder.publish();
+  return record;
+}
+
+}  // namespace octotomy::planner

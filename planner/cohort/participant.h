@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "planner/cohort/subjects.h"
+#include "planner/plan/plan.h"
+
+namespace octotomy::planner {
+
+/// What became of a subject, as its folder's subject.json tells it.
+struct SubjectRecord {
+  enum class State { Done, Failed, Missing };
+
+  State state = State::Missing;
+  std::string reason;  ///< of what is not done
+  std::string key;     ///< of the plan, the program's version and the scans: the same key, the same answer
+  double seconds = 0.0;
+  double peak_mb = 0.0;             ///< the process's largest memory
+  std::uint64_t scan_bytes = 0;     ///< of the scans' files
+  bool was_kept = false;            ///< an earlier run's answer to the same question stands
+  bool is_another_at_work = false;  ///< nothing was done, as another process has the subject in hand
+};
+
+std::string to_string(SubjectRecord::State state);
+
+struct ParticipantOptions {
+  std::stop_token stop;
+  std::function<void(const std::string& doing, double fraction)> progress;
+  bool again = false;    ///< evaluates what is done, too
+  bool reports = false;  ///< writes each subject's report and files as well
+};
+
+/// Evaluates the plan on a subject's scans into out/sub-LABEL: subject.json, rows.csv (the long table's
+/// rows), result.json and picture.png; with `reports` the whole result in report/. The folder appears whole
+/// or not at all, so a killed worker leaves the earlier one. A subject that is done under the same key is
+/// kept. A failure is an answer, too: its reason is written. Throws Stopped, and voxel::Error where the disk
+/// does not take the answer.
+SubjectRecord run_participant(const Plan& plan, const Subject& subject, const std::filesystem::path& out,
+                              const ParticipantOptions& options = {});
+
+/// The record of a subject's folder; Missing where there is none, or none that can be read.
+SubjectRecord subject_record(const std::filesystem::path& out, const Subject& subject);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octotomy::planner {
+
+/// A measured number of a subject.
+struct ResultRow {
+  std::string subject;
+  std::string measurement;  ///< the step's name
+  std::string object;
+  std::string quantity;  ///< "volume"
+  std::optional<double> value;
+  std::string unit;                   ///< "mm3"
+  std::optional<double> half_width;   ///< of the interval, in the same unit
+  std::optional<double> coverage;     ///< of the interval
+  std::optional<double> voxel, mesh;  ///< the kernels' own answers
+  std::string verdict;                ///< the gravest of its objects' certificates; empty: none
+  std::string version;                ///< of the program
+  std::string plan;
+  std::string plan_sha256;  ///< of the plan without its scans: the same for all of a cohort
+};
+
+/// The numbers of a result.json, in the order of the plan's measurements.
+std::vector<ResultRow> rows_of(const nlohmann::ordered_json& result, const std::string& subject);
+
+/// SHA-256 of a plan's document without its scans.
+std::string plan_sha256(const nlohmann::ordered_json& plan);
+
+/// The long table: a row a subject and number.
+std::string long_header();
+std::string long_line(const ResultRow& row);
+/// The inverse of both. Throws voxel::Error (Input) with the row's number.
+std::vector<ResultRow> parse_long_table(std::string_view text);
+
+}  // namespace octotomy::planner

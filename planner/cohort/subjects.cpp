@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cohort/subjects.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "planner/cohort/csv.h"
+#include "planner/table/nearest_name.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse(const std::string& message) {
+  throw voxel::Error(voxel::ErrorCode::Input, message);
+}
+
+/// The name without the extension of a scan; empty: it is no scan.
+std::string stem_of_scan(const std::string& name) {
+  static constexpr std::array<const char*, 6> extensions{".nii.gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd"};
+  for (const std::string extension : extensions)
+    if (name.size() > extension.size() && name.ends_with(extension))
+      return name.substr(0, name.size() - extension.size());
+  return {};
+}
+
+void check_label(const std::string& label, const std::string& where) {
+  const bool plain = std::all_of(label.begin(), label.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+  if (label.empty() || label.size() > 100 || !plain)
+    refuse(where + ": '" + label.substr(0, 100) +
+           "' is no label of a subject: use at most 100 letters, digits, _ and -");
+}
+
+std::string without_prefix(const std::string& label) {
+  return label.starts_with("sub-") ? label.substr(4) : label;
+}
+
+/// What a subject's folder holds for each of the plan's scans.
+Subject subject_of_folder(const std::string& label, const fs::path& folder, const Plan& plan) {
+  Subject subject{label, {}};
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && !stem_of_scan(entry.path().filename().string()).empty())
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const auto& [name, unused] : plan.scans) {
+    std::vector<fs::path> fitting;
+    for (const fs::path& file : files)
+      if (stem_of_scan(file.filename().string()).ends_with("_" + name)) fitting.push_back(file);
+    if (fitting.empty() && plan.scans.size() == 1) fitting = files;
+    if (fitting.size() == 1) {
+      subject.scans[name] = fitting.front();
+      continue;
+    }
+    subject.trouble =
+        folder.string() + (fitting.empty() ? ": no scan" : ": several scans") + " for the plan's '" + name +
+        "'" +
+        (fitting.empty() ? ""
+                         : ", " + fitting[0].filename().string() + " and " + fitting[1].filename().string()) +
+        ": name one by the ending _" + name + ", or name the scans in a .csv";
+  }
+  return subject;
+}
+
+std::vector<fs::path> folders_in(const fs::path& folder, const std::string& prefix) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.is_directory() && entry.path().filename().string().starts_with(prefix))
+      found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan) {
+  std::vector<Subject> subjects;
+  for (const fs::path& folder : folders_in(input, "sub-")) {
+    const std::string label = without_prefix(folder.filename().string());
+    check_label(label, input.string());
+    const std::vector<fs::path> sessions = folders_in(folder, "ses-");
+    for (const fs::path& session : sessions)
+      subjects.push_back(subject_of_folder(label + "_" + session.filename().string(), session, plan));
+    if (sessions.empty()) subjects.push_back(subject_of_folder(label, folder, plan));
+  }
+  if (subjects.empty())
+    refuse(input.string() +
+           ": has no subject: it should hold folders sub-LABEL, or be a .csv with the columns "
+           "participant_id and scan");
+  return subjects;
+}
+
+std::vector<Subject> subjects_of_table(const fs::path& input, const Plan& plan) {
+  std::ifstream file(input, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) refuse(input.string() + ": cannot be read");
+  std::vector<std::vector<std::string>> rows;
+  try {
+    rows = parse_csv(text);
+  } catch (const voxel::Error& error) {
+    refuse(input.string() + ": " + error.what());
+  }
+  if (rows.empty()) refuse(input.string() + ": is empty");
+  const std::vector<std::string>& header = rows.front();
+  const auto column = [&](const std::string& name) -> std::optional<std::size_t> {
+    const auto found = std::find(header.begin(), header.end(), name);
+    return found == header.end() ? std::nullopt : std::optional<std::size_t>(found - header.begin());
+  };
+  auto id = column("participant_id");
+  if (!id) id = column("subject");
+  if (!id) refuse(input.string() + ": has no column participant_id");
+  std::map<std::string, std::size_t> scan_columns;
+  for (const auto& [name, unused] : plan.scans) {
+    auto at = column(name);
+    if (!at && plan.scans.size() == 1) at = column("scan");
+    if (!at) refuse(input.string() + ": has no column '" + name + "' for the plan's scan");
+    scan_columns[name] = *at;
+  }
+  std::vector<Subject> subjects;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const std::string where = input.string() + ": row " + std::to_string(i + 1);
+    if (rows[i].size() != header.size())
+      refuse(where + " has " + std::to_string(rows[i].size()) + " cells, the header " +
+             std::to_string(header.size()));
+    Subject subject{without_prefix(rows[i][*id]), {}};
+    check_label(subject.label, where);
+    for (const auto& [name, at] : scan_columns) {
+      const fs::path path = rows[i][at];
+      if (path.empty()) subject.trouble = where + ": names no scan for the plan's '" + name + "'";
+      subject.scans[name] = fs::absolute(input.parent_path() / path).lexically_normal();
+    }
+    subjects.push_back(std::move(subject));
+  }
+  if (subjects.empty()) refuse(input.string() + ": has no row below its header");
+  return subjects;
+}
+
+}  // namespace
+
+std::uint64_t Subject::scan_bytes() const {
+  std::uint64_t bytes = 0;
+  std::error_code none;
+  for (const auto& [name, path] : scans) {
+    if (!fs::is_directory(path, none)) {
+      const std::uintmax_t size = fs::file_size(path, none);
+      bytes += none ? 0 : size;
+      continue;
+    }
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path, none))
+      if (entry.is_regular_file(none)) bytes += entry.file_size(none);
+  }
+  return bytes;
+}
+
+std::vector<Subject> find_subjects(const fs::path& input, const Plan& plan) {
+  std::vector<Subject> subjects =
+      fs::is_directory(input) ? subjects_of_folder(input, plan) : subjects_of_table(input, plan);
+  std::stable_sort(subjects.begin(), subjects.end(),
+                   [](const Subject& a, const Subject& b) { return a.label < b.label; });
+  const auto twice =
+      std::adjacent_find(subjects.begin(), subjects.end(),
+                         [](const Subject& a, const Subject& b) { return a.label == b.label; });
+  if (twice != subjects.end()) refuse(input.string() + ": names the subject '" + twice->label + "' twice");
+  return subjects;
+}
+
+std::vector<Subject> chosen_subjects(std::vector<Subject> subjects, const std::vector<std::string>& labels) {
+  if (labels.empty()) return subjects;
+  std::set<std::string> wanted;
+  std::vector<std::string> known;
+  for (const Subject& subject : subjects) known.push_back(subject.label);
+  for (const std::string& said : labels) {
+    const std::string label = without_prefix(said);
+    if (!std::binary_search(known.begin(), known.end(), label))
+      refuse("--participant-label: there is no subject '" + label + "'" + suggestion(label, known));
+    wanted.insert(label);
+  }
+  std::erase_if(subjects, [&](const Subject& subject) { return !wanted.contains(subject.label); });
+  return subjects;
+}
+
+}  // namespace octotomy::planner

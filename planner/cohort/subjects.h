@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "planner/plan/plan.h"
+
+namespace octotomy::planner {
+
+/// Someone of a cohort, at one time.
+struct Subject {
+  std::string label;  ///< "01", or "01_ses-2" where there are sessions; letters, digits, _ and -
+  std::map<std::string, std::filesystem::path> scans;  ///< by their names in the plan
+  std::string trouble = {};                            ///< why its scans are not known; empty: they are
+
+  std::string folder() const { return "sub-" + label; }
+  /// Bytes of its scans' files; folders count with what they hold.
+  std::uint64_t scan_bytes() const;
+};
+
+/// The subjects of a cohort, by label. `input` is
+/// - a BIDS folder: sub-LABEL, with ses-LABEL in it or not. A plan's scan NAME is the file of a subject that
+///   ends in _NAME before its extension, or the subject's only scan;
+/// - a .csv: a column participant_id (or subject), and a column a plan's scan; `scan` stands for a plan's
+///   only one. Paths are relative to the table.
+/// Throws voxel::Error (Input) with path and reason: no subjects, a label said twice or not of those letters,
+/// a missing column. A subject without its scans has its trouble told.
+std::vector<Subject> find_subjects(const std::filesystem::path& input, const Plan& plan);
+
+/// Those with one of these labels, "sub-" before them or not; all where there are no labels. Throws
+/// voxel::Error (Input) with the nearest label where one is not there.
+std::vector<Subject> chosen_subjects(std::vector<Subject> subjects, const std::vector<std::string>& labels);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""Cohorts: complete tables, whatever happens to the workers."""
+import csv
+import json
+import os
+import random
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+import octotomy
+
+PROGRAM = os.environ["OCTOTOMY_PROGRAM"]
+# More with OCTOTOMY_SUBJECTS=200 and OCTOTOMY_SIMULATED=100000.
+SUBJECTS = int(os.environ.get("OCTOTOMY_SUBJECTS", "8"))
+SIMULATED = int(os.environ.get("OCTOTOMY_SIMULATED", "2000"))
+
+
+def ball(path, radius, side=24):
+    """A ball's scan, its surface at 0 HU."""
+    at = np.mgrid[0:side, 0:side, 0:side] - (side - 1) / 2
+    distance = np.sqrt((at**2).sum(axis=0))
+    samples = np.clip((radius - distance) * 500, -1000, 1000).astype(np.int16)
+    octotomy.Scan(samples, np.diag([1, 1, 1, 1])).write(path)
+
+
+def octotomy_program(*arguments, check=True):
+    """Its status and, with --json, its answer."""
+    run = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=False)
+    if check and run.returncode != 0:
+        raise AssertionError(f"{arguments}: status {run.returncode}: {run.stderr}")
+    return run
+
+
+def rows(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+class Cohort(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.folder = Path(place.name)
+        plan = octotomy.Plan({"ct": "any.nrrd"}, name="ball")
+        plan.window("ball", scan="ct", low=0)
+        plan.measure("size", object="ball")
+        self.plan = self.folder / "ball.plan.json"
+        plan.write(self.plan)
+
+    def cohort(self, count=SUBJECTS):
+        """A table of balls; the radius tells them apart."""
+        lines = ["participant_id,scan"]
+        for i in range(count):
+            ball(self.folder / f"ball_{i}.nrrd", 4 + 5 * i / max(1, count - 1))
+            lines.append(f"sub-{i:04d},ball_{i}.nrrd")
+        table = self.folder / "scans.csv"
+        table.write_text("\n".join(lines) + "\n")
+        return table
+
+    def participants(self, table, out, *more, check=True):
+        return octotomy_program("cohort", table, self.folder / out, "participant", "--plan", self.plan, *more, check=check)
+
+    def group(self, table, out, *more):
+        octotomy_program("cohort", table, self.folder / out, "group", *more)
+        return self.folder / out / "group"
+
+    def assert_no_leftovers(self, out):
+        hidden = [path for path in (self.folder / out).rglob(".*") if path.name != ".octotomy-result"]
+        self.assertEqual(hidden, [])
+
+    def test_the_table_is_that_of_the_plans_themselves(self):
+        table = self.cohort(5)
+        self.participants(table, "out")
+        merged = rows(self.group(table, "out") / "measurements.csv")
+        self.assertEqual(len({row["subject"] for row in merged}), 5)
+        for i in range(5):
+            octotomy_program("run", self.plan, "--scan", f"ct={self.folder}/ball_{i}.nrrd", "-o", self.folder / f"sub-{i:04d}")
+            octotomy_program("table", self.folder / f"sub-{i:04d}", "-o", self.folder / "one.csv")
+            own = [{**row, "subject": f"{i:04d}"} for row in rows(self.folder / "one.csv")]
+            self.assertEqual(own, [row for row in merged if row["subject"] == f"{i:04d}"])
+            volume = next(row for row in own if row["quantity"] == "volume")
+            radius = 4 + 5 * i / 4
+            self.assertAlmostEqual(float(volume["value"]) / (4 / 3 * np.pi * radius**3), 1, delta=0.06)
+            self.assertEqual(volume["unit"], "mm3")
+            self.assertGreater(float(volume["half_width"]), 0)
+            self.assertIn(volume["verdict"], ("PASS", "WARN", "FAIL"))
+            self.assertEqual(len(volume["plan_sha256"]), 64)
+
+    def test_the_summary_is_that_of_its_numbers(self):
+        table = self.cohort(7)
+        self.participants(table, "out")
+        group = self.group(table, "out")
+        told = json.loads((group / "summary.json").read_text())
+        volume = next(each for each in told["measurements"] if each["quantity"] == "volume")
+        values = [float(row["value"]) for row in rows(group / "measurements.csv") if row["quantity"] == "volume"]
+        kernels = [(float(row["voxel"]), float(row["mesh"])) for row in rows(group / "measurements.csv")
+                   if row["quantity"] == "volume"]
+        self.assertAlmostEqual(volume["mean"], np.mean(values))
+        self.assertAlmostEqual(volume["sd"], np.std(values, ddof=1))
+        self.assertAlmostEqual(volume["median"], np.median(values))
+        differences = [mesh - voxel for voxel, mesh in kernels]
+        self.assertAlmostEqual(volume["kernels"]["bias"], np.mean(differences))
+        self.assertAlmostEqual(volume["kernels"]["limits_of_agreement"][1],
+                               np.mean(differences) + 1.96 * np.std(differences, ddof=1))
+        wide = rows(group / "wide.csv")
+        self.assertEqual([float(row["size.volume_mm3"]) for row in wide], values)
+        page = (group / "index.html").read_text()
+        for i in range(7):
+            self.assertIn(f"../sub-{i:04d}/picture.png", page)
+            self.assertTrue((group.parent / f"sub-{i:04d}/picture.png").exists())
+        self.assertGreater(len(list((group / "plots").glob("*.svg"))), 1)
+
+    def test_an_outlier_is_named(self):
+        table = self.cohort(12)
+        ball(self.folder / "ball_3.nrrd", 11.4)
+        for i in range(12):
+            if i != 3:
+                ball(self.folder / f"ball_{i}.nrrd", 5 + 0.01 * i)
+        self.participants(table, "out")
+        told = json.loads((self.group(table, "out") / "summary.json").read_text())
+        volume = next(each for each in told["measurements"] if each["quantity"] == "volume")
+        self.assertEqual([each["subject"] for each in volume["outliers"]], ["0003"])
+
+    def test_failures_are_listed_with_their_reason(self):
+        table = self.cohort(4)
+        (self.folder / "ball_1.nrrd").unlink()
+        (self.folder / "ball_2.nrrd").write_bytes(b"no scan")
+        run = self.participants(table, "out", check=False)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("0001: ", run.stderr)
+        group = self.group(table, "out")
+        told = {row["subject"]: row for row in rows(group / "subjects.csv")}
+        self.assertEqual([told[f"{i:04d}"]["state"] for i in range(4)], ["done", "failed", "failed", "done"])
+        self.assertIn("ball_1.nrrd", told["0001"]["reason"])
+        self.assertIn("ball_2.nrrd", told["0002"]["reason"])
+        self.assertEqual({row["subject"] for row in rows(group / "measurements.csv")}, {"0000", "0003"})
+        self.assertIn("ball_1.nrrd", (group / "index.html").read_text())
+
+    def test_one_that_never_ran_is_listed(self):
+        table = self.cohort(3)
+        self.participants(table, "out", "--participant-label", "0000", "sub-0002")
+        octotomy_program("cohort", table, self.folder / "out", "group", "--plan", self.plan)
+        told = [row["state"] for row in rows(self.folder / "out/group/subjects.csv")]
+        self.assertEqual(told, ["done", "missing", "done"])
+
+    def test_what_is_done_is_kept_until_scan_or_plan_changes(self):
+        table = self.cohort(3)
+        self.participants(table, "out")
+        before = (self.folder / "out/sub-0001/subject.json").read_bytes()
+        self.participants(table, "out")
+        self.assertEqual((self.folder / "out/sub-0001/subject.json").read_bytes(), before)
+        ball(self.folder / "ball_1.nrrd", 8.0)
+        self.participants(table, "out")
+        kept = {i: (self.folder / f"out/sub-000{i}/rows.csv").read_bytes() for i in range(3)}
+        self.assertNotEqual((self.folder / "out/sub-0001/subject.json").read_bytes(), before)
+        self.plan.write_text(self.plan.read_text().replace('"low": 0', '"low": 100'))
+        self.participants(table, "out")
+        for i in range(3):
+            self.assertNotEqual((self.folder / f"out/sub-000{i}/rows.csv").read_bytes(), kept[i])
+
+    def test_killed_workers_leave_a_table_that_can_be_completed(self):
+        table = self.cohort()
+        self.participants(table, "whole")
+        whole = (self.group(table, "whole") / "measurements.csv").read_bytes()
+        random.seed(5)
+        kills = 0
+        command = [PROGRAM, "cohort", str(table), str(self.folder / "out"), "participant", "--plan", str(self.plan)]
+        for _ in range(SUBJECTS):
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                       start_new_session=True)
+            time.sleep(random.uniform(0.02, 0.4))
+            if process.poll() is None:
+                kills += 1
+                os.killpg(process.pid, 9)
+            process.wait()
+        self.assertGreater(kills, 0)
+        self.participants(table, "out")
+        self.assertEqual((self.group(table, "out") / "measurements.csv").read_bytes(), whole)
+        self.assert_no_leftovers("out")
+
+    def test_twice_at_once_is_once(self):
+        table = self.cohort()
+        self.participants(table, "whole")
+        whole = (self.group(table, "whole") / "measurements.csv").read_bytes()
+        command = [PROGRAM, "cohort", str(table), str(self.folder / "out"), "participant", "--plan", str(self.plan)]
+        twins = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) for _ in range(3)]
+        for twin in twins:
+            _, errors = twin.communicate()
+            self.assertIn(twin.returncode, (0, 2), errors)
+        self.participants(table, "out")
+        self.assertEqual((self.group(table, "out") / "measurements.csv").read_bytes(), whole)
+        self.assert_no_leftovers("out")
+
+    @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed")
+    def test_gnu_parallel_makes_the_same_table(self):
+        table = self.cohort()
+        self.participants(table, "whole")
+        whole = (self.group(table, "whole") / "measurements.csv").read_bytes()
+        self.participants(table, "out", "--engine", "parallel", "--jobs", "2")
+        self.assertEqual((self.group(table, "out") / "measurements.csv").read_bytes(), whole)
+
+    @unittest.skipUnless(shutil.which("snakemake"), "Snakemake is not installed")
+    def test_the_snakefile_of_the_page_makes_the_same_table(self):
+        table = self.cohort()
+        self.participants(table, "whole")
+        whole = (self.group(table, "whole") / "measurements.csv").read_bytes()
+        page = (Path(__file__).parents[3] / "planner/cohort/README.md").read_text()
+        text = page.split("Snakemake:\n\n```\n")[1].split("```")[0]
+        text = text.replace("octotomy cohort", f"{PROGRAM} cohort").replace("le_fort_i.plan.json", "ball.plan.json")
+        (self.folder / "Snakefile").write_text(text)
+        lines = table.read_text().replace("sub-", "")
+        table.write_text(lines)
+        subprocess.run(["snakemake", "--cores", "2", "group"], cwd=self.folder, check=True, capture_output=True)
+        self.assertEqual((self.folder / "out/group/measurements.csv").read_bytes(), whole)
+
+    def test_a_bids_folder_with_sessions_is_read(self):
+        for subject, session in (("01", "1"), ("01", "2"), ("02", None)):
+            folder = self.folder / f"bids/sub-{subject}" / (f"ses-{session}" if session else "") / "ct"
+            folder.mkdir(parents=True)
+            name = f"sub-{subject}" + (f"_ses-{session}" if session else "")
+            ball(folder / f"{name}_ct.nii.gz", 6)
+            ball(folder / f"{name}_T1w.nii.gz", 8)
+        self.participants(self.folder / "bids", "out")
+        told = rows(self.group(self.folder / "bids", "out") / "subjects.csv")
+        self.assertEqual([(row["subject"], row["state"]) for row in told],
+                         [("01_ses-1", "done"), ("01_ses-2", "done"), ("02", "done")])
+
+    def test_two_observers_are_compared(self):
+        table = self.cohort(4)
+        self.participants(table, "one")
+        self.plan.write_text(self.plan.read_text().replace('"low": 0', '"low": 200'))
+        self.participants(table, "two")
+        told = json.loads((self.group(table, "one", "--plan", self.plan, "--against", self.folder / "two") /
+                           "summary.json").read_text())
+        volume = next(each for each in told["measurements"] if each["quantity"] == "volume")
+        first, second = ([float(row["value"]) for i in range(4)
+                          for row in rows(self.folder / f"{name}/sub-000{i}/rows.csv") if row["quantity"] == "volume"]
+                         for name in ("one", "two"))
+        self.assertEqual(volume["observers"]["pairs"], 4)
+        self.assertAlmostEqual(volume["observers"]["bias"], np.mean(np.subtract(second, first)))
+
+    def test_a_dry_run_learns_from_what_is_done(self):
+        table = self.cohort(6)
+        told = json.loads(self.participants(table, "out", "--dry-run", "--json").stdout)
+        self.assertIsNone(told["hours"])
+        self.assertFalse((self.folder / "out").exists())
+        self.participants(table, "out", "--participant-label", "0000", "0001", "0002")
+        told = json.loads(self.participants(table, "out", "--dry-run", "--json", "--jobs", "2").stdout)
+        self.assertEqual((told["to_do"], told["learnt_from"]), (3, 3))
+        records = [json.loads((self.folder / f"out/sub-000{i}/subject.json").read_text()) for i in range(3)]
+        self.assertGreater(told["hours"], 0)
+        self.assertLess(told["hours"], 10 * sum(record["seconds"] for record in records) / 3600)
+        self.assertGreater(told["peak_gb_a_job"], 0)
+
+    def test_inputs_that_are_no_cohort_are_refused(self):
+        table = self.cohort(2)
+        for text, word in (("scan\na.nrrd\n", "participant_id"), ("participant_id\n1\n", "column 'ct'"),
+                           ("participant_id,scan\n../x,a.nrrd\n", "no label"), ("participant_id,scan\n", "no row"),
+                           ("participant_id,scan\n1,a\n1,b\n", "twice"), ('participant_id,scan\n"1,a\n', "quote")):
+            table.write_text(text)
+            run = self.participants(table, "out", check=False)
+            self.assertEqual(run.returncode, 2, text)
+            self.assertIn(word, run.stderr)
+            self.assertEqual(run.stderr.count("\n"), 1)
+        table.write_text("participant_id,scan\n0001,ball_1.nrrd\n")
+        run = self.participants(table, "out", "--participant-label", "0002", check=False)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("did you mean '0001'", run.stderr)
+
+    def test_a_large_group_is_merged_in_little_memory(self):
+        """Subjects that differ from one real answer in their label."""
+        table = self.cohort(1)
+        self.participants(table, "one")
+        made = self.folder / "one/sub-0000"
+        text, record = (made / "rows.csv").read_text(), (made / "subject.json").read_text()
+        for i in range(SIMULATED):
+            folder = self.folder / f"many/sub-{i:06d}"
+            folder.mkdir(parents=True)
+            (folder / "rows.csv").write_text(text.replace("\n0000,", f"\n{i:06d},"))
+            (folder / "subject.json").write_text(record)
+        table.write_text("participant_id,scan\n" + "".join(f"{i:06d},ball_0.nrrd\n" for i in range(SIMULATED)))
+        start = time.monotonic()
+        process = subprocess.Popen([PROGRAM, "cohort", table, self.folder / "many", "group", "--plan", self.plan],
+                                   stdout=subprocess.DEVNULL)
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        group = self.folder / "many/group"
+        merged = rows(group / "measurements.csv")
+        self.assertEqual(len({row["subject"] for row in merged}), SIMULATED)
+        self.assertEqual(len(merged), SIMULATED * (text.count("\n") - 1))
+        self.assertEqual(json.loads((group / "summary.json").read_text())["done"], SIMULATED)
+        megabytes = used.ru_maxrss / 1024
+        self.assertLess(megabytes, 100 + 0.009 * SIMULATED)
+        print(f"{SIMULATED} subjects merged in {time.monotonic() - start:.1f} s, {megabytes:.0f} MB, "
+              f"{used.ru_utime + used.ru_stime:.1f} s of processor time")
+
+
+if __name__ == "__main__":
+    unittest.main()
