@@ -13,11 +13,11 @@ namespace octotomy::planner {
 
 /// What can be asked of a closed surface beyond its size.
 struct SurfaceQuestions {
-  std::vector<glm::dvec3> section;   ///< a point and a normal
-  std::vector<glm::dvec3> distance;  ///< two points
-  std::vector<glm::dvec3> angle;     ///< three points, the angle at the second
-  std::vector<glm::dvec3> along;     ///< two points
-  const brep::Mesh* to = nullptr;    ///< another surface: the least distance
+  std::vector<glm::dvec3> section = {};   ///< a point and a normal
+  std::vector<glm::dvec3> distance = {};  ///< two points
+  std::vector<glm::dvec3> angle = {};     ///< three points, the angle at the second
+  std::vector<glm::dvec3> along = {};     ///< two points
+  const brep::Mesh* to = nullptr;         ///< another surface: the least distance
   bool thickness = false, curvature = false;
 };
 

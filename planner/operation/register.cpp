@@ -32,7 +32,7 @@ struct Laid {
   glm::dmat4 onto_from_object{1.0};
   double rms_mm = 0.0;
   Json details = Json::object();
-  std::vector<std::string> findings;
+  std::vector<std::string> findings = {};
 };
 
 bool is_json(const std::filesystem::path& path) {
