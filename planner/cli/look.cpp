@@ -21,10 +21,7 @@ int look(Program& program, LookText& text) {
   text.options.read = read_options(program, text.in);
   Result result = first_look(text.scan, text.options);
   for (const voxel::Finding& finding : result.findings) warn(finding.detail);
-  for (const ScanRecord& scan : result.evaluation.scans)
-    for (const voxel::Finding& finding : scan.audit)
-      if (finding.verdict != voxel::Verdict::Pass)
-        warn(scan.path.string() + ": " + finding.check + ": " + finding.detail);
+  for (const ScanRecord& scan : result.evaluation.scans) program.note_scan(scan);
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
   const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
   std::vector<std::pair<std::string, std::string>> rows;

@@ -17,6 +17,7 @@ constexpr int picture_px = 400;
 Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
   Json entry{{"path", std::filesystem::absolute(scan).lexically_normal().string()}};
   if (!read.series.empty()) entry["series"] = read.series;
+  if (!read.slices.empty()) entry["slices"] = voxel::to_string(read.slices);
   if (read.spacing_mm) entry["spacing_mm"] = to_json(*read.spacing_mm);
   if (read.raw)
     entry["raw"] = {{"dims", {read.raw->dims.x, read.raw->dims.y, read.raw->dims.z}},
