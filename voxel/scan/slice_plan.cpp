@@ -48,6 +48,7 @@ class Layer {
 
   SlicePlan run() {
     plan_.size_px = stack_.first().size_px;
+    plan_.slice_count = stack_.slices.size();
     if (stack_.slices.size() == 1) {
       lay_one();
       return std::move(plan_);
@@ -87,7 +88,7 @@ class Layer {
     // The finest distance with company; an only slice squeezed between two others sets no step.
     std::vector<double> sorted = gaps_mm_;
     std::sort(sorted.begin(), sorted.end());
-    const std::size_t needed = std::max<std::size_t>(1, gaps_mm_.size() / 10);
+    const std::size_t needed = (gaps_mm_.size() + 4) / 5;
     double usual_mm = sorted.front();
     for (std::size_t i = 0; i + needed <= sorted.size(); ++i)
       if (are_equal(sorted[i], sorted[i + needed - 1])) {
@@ -322,8 +323,10 @@ class Layer {
 }  // namespace
 
 bool SlicePlan::is_copy() const {
-  return !leans && std::all_of(sources.begin(), sources.end(),
-                               [](const Source& source) { return source.below == source.above; });
+  if (leans || sources.size() != slice_count) return false;
+  for (std::size_t k = 0; k < sources.size(); ++k)
+    if (sources[k].below != k || sources[k].above != k) return false;
+  return true;
 }
 
 SlicePlan slice_plan(const DicomStack& stack, const std::filesystem::path& path,

@@ -22,7 +22,9 @@ struct SlicePlan {
   glm::ivec2 low_px{0};  ///< first pixel of the lattice, in pixels of the first slice
   glm::ivec2 size_px{0};
   std::vector<Hole> holes;
+  std::size_t slice_count = 0;  ///< of the stack
 
+  /// Whether slice k of the lattice is slice k of the stack, for all k.
   bool is_copy() const;
 };
 
@@ -32,7 +34,7 @@ constexpr double longest_unmeasured_mm() {
   return 5.0;
 }
 
-/// Lays a lattice through an ordered stack. Its step is the finest distance that at least a tenth of the
+/// Lays a lattice through an ordered stack. Its step is the finest distance that at least a fifth of the
 /// neighbours have. A gap of more than one and a half steps is a hole, unless at least three like it follow
 /// each other and the slices are numbered without a break: then the protocol has two distances. Findings:
 /// slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error, Input, if the lattice would have more

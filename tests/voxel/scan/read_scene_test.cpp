@@ -172,9 +172,10 @@ TEST(ReadDicom, MissesASliceThatIsCutShort) {
   fs::resize_file(folder / "series" / slice(5), fs::file_size(folder / "series" / slice(5)) - 1);
   const Scene read = read_scene(folder / "series");
   EXPECT_EQ(verdict(read, "missing_slices"), Verdict::Warn);
-  ASSERT_EQ(verdict(read, "stray_files"), Verdict::Warn);
-  EXPECT_NE(finding(read, "stray_files")->detail.find("cut short"), std::string::npos)
-      << finding(read, "stray_files")->detail;
+  ASSERT_EQ(verdict(read, "damaged_files"), Verdict::Fail);
+  EXPECT_NE(finding(read, "damaged_files")->detail.find("cut short"), std::string::npos)
+      << finding(read, "damaged_files")->detail;
+  EXPECT_EQ(finding(read, "damaged_files")->files, std::vector<std::string>{slice(5)});
 }
 
 TEST(ReadDicom, ResamplesUnevenSlices) {
@@ -200,6 +201,11 @@ TEST(ReadDicom, TellsACopyFromAnotherImageAtTheSamePlace) {
   const std::size_t uid = rival.find("2.25.", rival.find("1.2.840.10008.5.1.4.1.1.2", 200));
   ASSERT_NE(uid, std::string::npos);
   rival[uid + 7] = rival[uid + 7] == '1' ? '2' : '1';
+  write_bytes(folder / "series" / "copy.dcm", rival);
+  const Scene renamed = read_scene(folder / "series");
+  EXPECT_EQ(verdict(renamed, "duplicates"), Verdict::Warn);
+  EXPECT_NE(finding(renamed, "duplicates")->detail.find("under a new identifier"), std::string::npos);
+  rival.back() = static_cast<char>(rival.back() ^ 1);
   write_bytes(folder / "series" / "copy.dcm", rival);
   EXPECT_EQ(verdict(read_scene(folder / "series"), "duplicates"), Verdict::Fail);
 }

@@ -362,7 +362,7 @@ std::vector<SpoiledKind> of_places() {
        "missing_slices",
        warn,
        "gap of 6 mm after slice 5",
-       {"a01", "a03", "a05", "a08", "a10"},
+       {"a01", "a03", "a05", "a08", "a09", "a11"},
        both(removed({2, 6, 7}), [](Images& images) { images.erase(images.begin() + 7); })},
       {"two_distances_tilted",
        "slice_spacing",
@@ -379,7 +379,7 @@ std::vector<SpoiledKind> of_places() {
        "slice_spacing",
        warn,
        "uneven",
-       {},
+       names("a", 6, 10),
        [](Images& images) {
          each(images, [](SpoiledImage& image, int i) {
            image.place(-6, -5, 30 + (i < 6 ? 4.002 * i : 21.091 + 6.999 * (i - 6)));
@@ -700,11 +700,11 @@ void SpoiledKind::write(const std::filesystem::path& folder) const {
   std::filesystem::create_directories(folder);
   Images images = sound_series();
   spoil(images);
-  const auto put = [&](const std::string& name, const std::string& bytes) {
-    std::ofstream(folder / name, std::ios::binary) << bytes;
+  const auto put = [&](const std::string& file, const std::string& bytes) {
+    std::ofstream(folder / file, std::ios::binary) << bytes;
   };
   for (const SpoiledImage& image : images) put(image.name, image.bytes());
-  for (const auto& [name, bytes] : others) put(name, bytes);
+  for (const auto& [file, bytes] : others) put(file, bytes);
 }
 
 const std::vector<SpoiledKind>& spoiled_kinds() {

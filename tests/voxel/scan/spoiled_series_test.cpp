@@ -44,9 +44,11 @@ TEST_P(SpoiledSeries, IsNamedInTheAudit) {
   EXPECT_NE(line->detail.find(kind.says), std::string::npos) << line->detail;
   EXPECT_EQ(std::set<std::string>(line->files.begin(), line->files.end()),
             std::set<std::string>(kind.files.begin(), kind.files.end()));
-  for (const std::string& file : kind.files)
-    if (kind.files.size() <= 8) EXPECT_NE(line->detail.find(file), std::string::npos) << line->detail;
-  if (kind.verdict == Verdict::Pass) EXPECT_EQ(all, "");
+  for (std::size_t i = 0; i < kind.files.size() && kind.files.size() <= 8; ++i)
+    EXPECT_NE(line->detail.find(kind.files[i]), std::string::npos) << line->detail;
+  if (kind.verdict == Verdict::Pass) {
+    EXPECT_EQ(all, "");
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SpoiledSeries, testing::ValuesIn(tests::spoiled_kinds()),
