@@ -50,7 +50,7 @@ class SeriesReader {
     audit_contents(stack);
     if (!plan.is_copy())
       std::visit([&](auto& samples) { samples = resample(stack, plan, samples); }, scene_.samples);
-    place(stack, plan);
+    scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;
     audit_steps();
     if (scene_.modality == "CT") {
@@ -247,17 +247,6 @@ class SeriesReader {
       }
     });
     return samples;
-  }
-
-  void place(const Stack& stack, const Plan& plan) {
-    const glm::dvec3 row_mm = stack.along_row * stack.first().spacing_mm.x;
-    const glm::dvec3 column_mm = stack.along_column * stack.first().spacing_mm.y;
-    const glm::dvec3 first_mm = stack.first().first_mm + row_mm * static_cast<double>(plan.low_px.x) +
-                                column_mm * static_cast<double>(plan.low_px.y);
-    scene_.lattice.dims = {plan.size_px, static_cast<int>(plan.sources.size())};
-    scene_.lattice.lps_from_voxel =
-        glm::dmat4(glm::dvec4(row_mm, 0.0), glm::dvec4(column_mm, 0.0),
-                   glm::dvec4(stack.normal * plan.step_mm, 0.0), glm::dvec4(first_mm, 1.0));
   }
 
   fs::path path_;

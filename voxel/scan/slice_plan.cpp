@@ -329,6 +329,16 @@ bool SlicePlan::is_copy() const {
   return true;
 }
 
+Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan) {
+  const glm::dvec3 row_mm = stack.along_row * stack.first().spacing_mm.x;
+  const glm::dvec3 column_mm = stack.along_column * stack.first().spacing_mm.y;
+  const glm::dvec3 first_mm = stack.first().first_mm + row_mm * static_cast<double>(plan.low_px.x) +
+                              column_mm * static_cast<double>(plan.low_px.y);
+  return {{plan.size_px, static_cast<int>(plan.sources.size())},
+          glm::dmat4(glm::dvec4(row_mm, 0.0), glm::dvec4(column_mm, 0.0),
+                     glm::dvec4(stack.normal * plan.step_mm, 0.0), glm::dvec4(first_mm, 1.0))};
+}
+
 SlicePlan slice_plan(const DicomStack& stack, const std::filesystem::path& path,
                      std::vector<Finding>& audit) {
   return Layer(stack, path, audit).run();

@@ -28,6 +28,9 @@ struct SlicePlan {
   bool is_copy() const;
 };
 
+/// The lattice of a plan.
+Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan);
+
 /// Tissue that no slice measured is a failure from this length on, in mm: half the height of an orbit's floor
 /// or of a lower canine's crown, either of which would vanish without a trace.
 constexpr double longest_unmeasured_mm() {

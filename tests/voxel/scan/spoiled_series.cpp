@@ -375,11 +375,7 @@ std::vector<SpoiledKind> of_places() {
            image.place(-6, -5 + 0.2 * z, 30 + z);
          });
        }},
-      {"two_distances_squeezed_seam",
-       "slice_spacing",
-       warn,
-       "uneven",
-       names("a", 6, 10),
+      {"two_distances_squeezed_seam", "slice_spacing", warn, "uneven", names("a", 6, 10),
        [](Images& images) {
          each(images, [](SpoiledImage& image, int i) {
            image.place(-6, -5, 30 + (i < 6 ? 4.002 * i : 21.091 + 6.999 * (i - 6)));
