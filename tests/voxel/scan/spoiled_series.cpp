@@ -629,6 +629,8 @@ std::string SpoiledImage::bytes() const {
     if (value.size() % 2 != 0) value += vr == "UI" ? '\0' : ' ';
     if (big_endian && (vr == "US" || vr == "SS" || vr == "OW")) value = swapped(value);
     const auto length = static_cast<std::uint32_t>(value.size());
+    if (tag == 0x00180050 && !open_unknown.empty())
+      rest += tag_of(0x00110010) + "UN" + wide(0, 2) + wide(0xffffffff, 4) + open_unknown;
     rest += tag_of(tag);
     if (tag == 0x7fe00010 && !pixels_end.empty()) {
       // Pixels without a length, in two items after an empty offset table.

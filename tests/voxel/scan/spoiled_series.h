@@ -19,7 +19,8 @@ struct SpoiledImage {
   std::map<std::uint32_t, std::pair<std::string, std::string>> elements;
   std::string syntax = "1.2.840.10008.1.2.1";
   bool implicit = false, big_endian = false, has_preamble = true;
-  std::string pixels_end = {};  ///< with it, the pixels have no length: these bytes end them
+  std::string pixels_end = {};    ///< with it, the pixels have no length: these bytes end them
+  std::string open_unknown = {};  ///< items and end of an open sequence of unknown representation
   std::function<std::string(std::string)> damage = {};
 
   void text(std::uint32_t tag, const std::string& vr, const std::string& value) {
