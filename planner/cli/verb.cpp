@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "planner/cli/numbers.h"
+#include "voxel/filter/tissue.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -51,14 +52,33 @@ void Program::note_scan(const std::filesystem::path& path, const voxel::Scene& s
   note_scan(record);
 }
 
+void Program::note_tissues(const std::vector<std::string>& words) const {
+  for (const std::string& word : words) {
+    const std::string name = word.substr(word.find('=') + 1);
+    if (voxel::tissue(name) && std::find(tissues_->begin(), tissues_->end(), name) == tissues_->end())
+      tissues_->push_back(name);
+  }
+}
+
 void Program::say(const Json& answer, const std::string& text) const {
   for (const ScanRecord& scan : *scans_)
     for (const voxel::Finding& finding : scan.audit)
       if (finding.verdict != voxel::Verdict::Pass)
         warn(scan.path.string() + ": " + to_string(finding.verdict) + ", " + finding.check + ": " +
              finding.detail);
+  for (const std::string& name : *tissues_) {
+    const voxel::Tissue tissue = *voxel::tissue(name);
+    warn(voxel::described(tissue) + ": " + std::string(tissue.source));
+  }
   if (!json) return put(text);
   Json whole = answer;
+  for (const std::string& name : *tissues_) {
+    const voxel::Tissue tissue = *voxel::tissue(name);
+    whole["tissues"][name] = {{"low", tissue.low ? Json(*tissue.low) : Json(nullptr)},
+                              {"high", tissue.high ? Json(*tissue.high) : Json(nullptr)},
+                              {"unit", "HU"},
+                              {"source", std::string(tissue.source)}};
+  }
   if (!scans_->empty() && !whole.contains("audit") && !whole.contains("scans")) {
     whole["scans"] = Json::array();
     for (const ScanRecord& scan : *scans_) {

@@ -37,9 +37,11 @@ struct Program {
   /// Keeps the audit of a scan that the verb has read for say().
   void note_scan(const std::filesystem::path& path, const voxel::Scene& scene) const;
   void note_scan(const ScanRecord& scan) const;
+  /// Keeps the tissues among the words of the command line, also of NAME=TISSUE, for say().
+  void note_tissues(const std::vector<std::string>& words) const;
   /// Puts the answer on standard output: the JSON object, or the text for people. Warnings and failures of
   /// the noted scans' audits go to standard error, one line each, and their audits into the JSON as "scans"
-  /// if the answer holds no audit yet.
+  /// if the answer holds no audit yet; the noted tissues' bounds go the same ways, as "tissues".
   void say(const Json& answer, const std::string& text) const;
   /// A progress line on standard error where that is a terminal and people read.
   std::function<void(const std::string&, double)> progress() const;
@@ -47,6 +49,7 @@ struct Program {
   std::function<void(double)> progress(const std::string& doing) const;
 
  private:
+  std::shared_ptr<std::vector<std::string>> tissues_ = std::make_shared<std::vector<std::string>>();
   std::shared_ptr<std::vector<ScanRecord>> scans_ = std::make_shared<std::vector<ScanRecord>>();
 };
 

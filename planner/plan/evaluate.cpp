@@ -204,10 +204,14 @@ class Evaluator {
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
     take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
-    tell_interpolated(step, object);
+    const std::vector<std::string> interpolated = interpolated_parts(step, object);
+    object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
     if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) {
       const Stopwatch watch(result_.timings, "certify");
       certify(object, object.id + " = " + object.definition, {options_.stop, {}});
+      // The kernels cannot disagree over samples that both take from the same interpolation.
+      for (const std::string& part : interpolated)
+        verify::lower(*object.certificate, verify::Verdict::Warn, part);
     }
     if (object.ends_with_universe) {
       object.mesh.whole = object.mesh.within;
@@ -216,10 +220,10 @@ class Evaluator {
     result_.objects.add(std::move(object));
   }
 
-  /// Says of an object from a scan which part of it no image measured; of an object made of such an object,
-  /// that it is.
-  void tell_interpolated(const Step& step, Object& object) {
-    if (!object.voxel.measures.extents) return;
+  /// The parts of an object from a scan that no image measured; of an object made of such an object, that it
+  /// is.
+  std::vector<std::string> interpolated_parts(const Step& step, const Object& object) {
+    if (!object.voxel.measures.extents) return {};
     const voxel::Box& box = *object.voxel.measures.extents;
     const glm::dvec3 middle_mm = 0.5 * (box.low_mm + box.high_mm);
     std::vector<std::string> told;
@@ -242,9 +246,8 @@ class Evaluator {
     for (const std::string& name : objects_used(step.action))
       if (told.empty() && interpolated_.contains(name) && !object.is_tool)
         told.push_back("made of '" + name + "', a part of which is interpolated between images");
-    if (told.empty()) return;
-    interpolated_.insert(step.id);
-    object.findings.insert(object.findings.end(), told.begin(), told.end());
+    if (!told.empty()) interpolated_.insert(step.id);
+    return told;
   }
 
   /// The voxels of an answer that only the mesh kernel has.

@@ -6,6 +6,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
 #include "voxel/filter/otsu.h"
+#include "voxel/filter/tissue.h"
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::planner {
@@ -36,7 +37,8 @@ Thresholds thresholds_of(const voxel::Scene& scene) {
 
 Result first_look(const std::filesystem::path& scan, const LookOptions& options) {
   Result result;
-  double bone_low = options.bone_low.value_or(300.0), skin_low = options.skin_low.value_or(-300.0);
+  double bone_low = options.bone_low.value_or(*voxel::tissue("bone")->low),
+         skin_low = options.skin_low.value_or(*voxel::tissue("skin")->low);
   if (!options.bone_low || !options.skin_low) {
     const voxel::Scene scene = voxel::read_scene(scan, options.read);
     if (scene.meaning != voxel::Meaning::Hounsfield) {

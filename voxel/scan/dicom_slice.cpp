@@ -558,7 +558,9 @@ std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::file
   } catch (const DicomFile::NeedsMore&) {
     return NoSlice{"changed while it was read"};
   } catch (const Error& error) {
-    return NoSlice{error.what(), NoSlice::Kind::Damaged};
+    // Without DICOM's prefix, a file that cannot be walked through may be of any kind.
+    const bool has_prefix = bytes.size() >= 132 && bytes.compare(128, 4, "DICM") == 0;
+    return NoSlice{error.what(), has_prefix ? NoSlice::Kind::Damaged : NoSlice::Kind::Stray};
   }
 }
 

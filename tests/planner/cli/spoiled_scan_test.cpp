@@ -101,6 +101,9 @@ TEST_F(SpoiledScan, ReportsAndObjectsSayWhatIsInterpolated) {
   EXPECT_NE(ball.find("interpolated over 1 gap between the images of 'ct', up to 10 mm"), std::string::npos)
       << ball;
   EXPECT_NE(half.find("made of 'ball'"), std::string::npos) << half;
+  EXPECT_EQ(result["certificates"][0]["verdict"], "WARN");
+  EXPECT_NE(result["certificates"][0]["reasons"].dump().find("interpolated over 1 gap"), std::string::npos)
+      << result["certificates"][0];
   spoil("another_scanner");
   ASSERT_LE(run(verbs()[10]).status, 1);
   std::ifstream sound(folder_ / "result/result.json");

@@ -20,7 +20,7 @@ using Images = std::vector<SpoiledImage>;
 
 int hounsfield(int x, int y, int k) {
   const double r = std::hypot(x - 11.5, y - 9.5, 1.5 * (k - 5.5));
-  return r < 8.0 ? 40 + (x * 7 + y * 3 + k * 5) % 50 : -1000 + (x + 2 * y + k) % 8;
+  return r < 8.0 ? 400 + (x * 7 + y * 3 + k * 5) % 50 : -1000 + (x + 2 * y + k) % 8;
 }
 
 /// The ball's pixels in slice k, plus an offset, each times a factor.
