@@ -94,8 +94,6 @@ int convert(const Program& program, const ConvertText& text) {
   }
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
-  for (const voxel::Finding& finding : scene.audit)
-    if (finding.verdict != voxel::Verdict::Pass) warn(finding.check + ": " + finding.detail);
   program.say(json, lines({{"written", text.out.string()}, {"samples", dims_text(scene.lattice.dims)}}));
   return done;
 }

@@ -48,6 +48,8 @@ Json series_of(const std::filesystem::path& path, const voxel::Scene& scene) {
                     {"modality", entry.modality},
                     {"number", entry.number},
                     {"slices", entry.slices},
+                    {"choice", entry.choice},
+                    {"stack", entry.stack},
                     {"size_px", {entry.size_px.x, entry.size_px.y}},
                     {"uid", entry.uid}});
   return list;
@@ -69,9 +71,9 @@ int info_of_scan(const Program& program, const std::filesystem::path& path, cons
                                           (voxel::unit(scene) == "1" ? "" : " HU")}});
   if (json["series"].size() > 1)
     for (const Json& series : json["series"])
-      text += "  series " + std::to_string(series["series"].get<int>()) + ": '" +
+      text += "  series " + series["choice"].get<std::string>() + ": '" +
               series["description"].get<std::string>() + "', " + series["modality"].get<std::string>() +
-              ", " + std::to_string(series["slices"].get<int>()) + " slices\n";
+              (series["stack"] == "" ? "" : ", " + series["stack"].get<std::string>()) + ", " + std::to_string(series["slices"].get<int>()) + " slices\n";
   for (const voxel::Finding& finding : scene.audit)
     text += "  " + to_string(finding.verdict) + "  " + finding.check + ": " + finding.detail + "\n";
   program.say(json, text);

@@ -21,10 +21,11 @@ int look(Program& program, LookText& text) {
   text.options.read = read_options(program, text.in);
   Result result = first_look(text.scan, text.options);
   for (const voxel::Finding& finding : result.findings) warn(finding.detail);
-  for (const ScanRecord& scan : result.evaluation.scans)
-    for (const voxel::Finding& finding : scan.audit)
-      if (finding.verdict != voxel::Verdict::Pass)
-        warn(scan.path.string() + ": " + finding.check + ": " + finding.detail);
+  for (const ScanRecord& scan : result.evaluation.scans) program.note_scan(scan);
+  if (result.evaluation.scans.front().meaning == voxel::Meaning::Hounsfield) {
+    if (!text.options.bone_low) program.note_tissues({"bone"});
+    if (!text.options.skin_low) program.note_tissues({"skin"});
+  }
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
   const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
   std::vector<std::pair<std::string, std::string>> rows;

@@ -246,6 +246,8 @@ class OperationRun {
 /// One run of a verb that answers from files by itself.
 int answer_from_files(const Program& program, const Action& action, const OperationText& text) {
   Timings timings;
+  for (const auto& [field, words] : text.words)
+    if (field.starts_with("window")) program.note_tissues(words);
   const FileBench bench{timings, program.stop.get_token(), program.progress(),
                         [&](const fs::path& path) { return read_scan(program, path, text.scan, timings); }};
   return say(program, action.operation().on_files(action.value(), bench), timings);

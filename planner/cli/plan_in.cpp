@@ -29,18 +29,21 @@ Plan plan_of(const Program& program, const PlanIn& text) {
     found->second.path = std::filesystem::absolute(scan.substr(equals + 1)).lexically_normal();
   }
   if (const voxel::ReadOptions read = read_options(program, text.in);
-      !read.series.empty() || read.spacing_mm || read.raw) {
+      !read.series.empty() || !read.slices.empty() || read.spacing_mm || read.raw) {
     if (plan.scans.size() != 1)
       throw std::runtime_error(
-          "--series, --spacing and --raw are of one scan, the plan has several: say series, spacing_mm or "
-          "raw beside their paths in the plan");
+          "--series, --slices, --spacing and --raw are of one scan, the plan has several: say series, "
+          "slices, "
+          "spacing_mm or raw beside their paths in the plan");
     plan.scans.begin()->second.read = read;
   }
   return plan;
 }
 
-EvaluateOptions evaluate_options(Program& program) {
-  return {program.stop.get_token(), program.progress(), true};
+Evaluation evaluated(Program& program, const Plan& plan) {
+  Evaluation evaluation = evaluate(plan, {program.stop.get_token(), program.progress(), true});
+  for (const ScanRecord& scan : evaluation.scans) program.note_scan(scan);
+  return evaluation;
 }
 
 std::string verdict_text(const Evaluation& evaluation) {

@@ -14,7 +14,7 @@ int run(Program& program, const RunText& text) {
   Result result;
   result.plan = plan_of(program, text);
   need_result_folder(text.out, result_names(result.plan));
-  result.evaluation = evaluate(result.plan, evaluate_options(program));
+  result.evaluation = evaluated(program, result.plan);
   result.pictures = plan_pictures(result.plan, result.evaluation);
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
   const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});

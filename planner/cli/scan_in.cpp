@@ -17,6 +17,14 @@ glm::dvec3 spacing_of(const std::string& text) {
   return {(*mm)[0], (*mm)[1], (*mm)[2]};
 }
 
+std::vector<voxel::SliceRange> slices_of(const std::string& text) {
+  try {
+    return voxel::parse_slices(text);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--slices", error.what());
+  }
+}
+
 voxel::RawLayout layout_of(const ScanIn& in) {
   voxel::RawLayout layout;
   char rest = 0;
@@ -41,7 +49,12 @@ voxel::RawLayout layout_of(const ScanIn& in) {
 void add_scan_options(CLI::App& verb, ScanIn& in) {
   const std::string group = "scan";
   verb.add_option("--series", in.series,
-                  "Of a folder with several DICOM series: its number, UID or a part of its description")
+                  "Of a folder with several DICOM series: its number as octotomy info lists it (2, or 2.1 of "
+                  "several stacks in one series), its UID, or a part of its description or kernel")
+      ->group(group);
+  verb.add_option("--slices", in.slices,
+                  "FROM:TO of the DICOM series' images to keep, 1 the lowest along their normal, for example "
+                  "1:40 or 1:40,45:60")
       ->group(group);
   verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, of images and raw files, which do not say it")
       ->group(group);
@@ -64,6 +77,7 @@ CLI::Validator scan_path() {
 voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
   voxel::ReadOptions options;
   options.series = in.series;
+  if (!in.slices.empty()) options.slices = slices_of(in.slices);
   if (!in.spacing.empty()) options.spacing_mm = spacing_of(in.spacing);
   if (!in.raw.empty()) options.raw = layout_of(in);
   if (in.raw.empty() && (in.big_endian || in.offset != 0))
@@ -81,7 +95,9 @@ bool is_dicom(const voxel::Scene& scene) {
 voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
                        Timings& timings) {
   const Stopwatch watch(timings, "read");
-  return voxel::read_scene(path, read_options(program, in));
+  voxel::Scene scene = voxel::read_scene(path, read_options(program, in));
+  program.note_scan(path, scene);
+  return scene;
 }
 
 }  // namespace octotomy::planner::cli

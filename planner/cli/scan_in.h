@@ -9,13 +9,13 @@ namespace octotomy::planner::cli {
 
 /// The options about it, as text.
 struct ScanIn {
-  std::string series, spacing;
+  std::string series, slices, spacing;
   std::vector<std::string> raw;  ///< DIMS TYPE
   bool big_endian = false;
   std::uint64_t offset = 0;
 };
 
-/// Adds --series, --spacing, --raw, --big-endian and --offset to a verb's help.
+/// Adds --series, --slices, --spacing, --raw, --big-endian and --offset to a verb's help.
 void add_scan_options(CLI::App& verb, ScanIn& in);
 
 /// A path that is there, or a pattern of image files.

@@ -173,6 +173,7 @@ int segment(const Program& program, const SegmentText& text) {
   std::optional<SampleWindow> first;
   if (!text.windows.empty()) first = window_of(text.windows.front());
   Timings timings;
+  program.note_tissues(text.windows);
   const voxel::Scene scene = read_scan(program, text.scan, text.in, timings);
   for (const std::string& window : text.windows) need_hounsfield(window_of(window), scene);
   Json json{{"source", text.scan.string()}, {"unit", voxel::unit(scene)}};

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "planner/cli/numbers.h"
+#include "voxel/filter/tissue.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -38,8 +39,54 @@ CLI::App& Program::verb(const std::string& name, const std::string& does, const 
   return sub;
 }
 
+void Program::note_scan(const ScanRecord& scan) const {
+  scans_->push_back(scan);
+}
+
+void Program::note_scan(const std::filesystem::path& path, const voxel::Scene& scene) const {
+  ScanRecord record;
+  record.path = path;
+  record.lattice = scene.lattice;
+  record.audit = scene.audit;
+  record.holes = scene.holes;
+  note_scan(record);
+}
+
+void Program::note_tissues(const std::vector<std::string>& words) const {
+  for (const std::string& word : words) {
+    const std::string name = word.substr(word.find('=') + 1);
+    if (voxel::tissue(name) && std::find(tissues_->begin(), tissues_->end(), name) == tissues_->end())
+      tissues_->push_back(name);
+  }
+}
+
 void Program::say(const Json& answer, const std::string& text) const {
-  put(json ? answer.dump(2) + "\n" : text);
+  for (const ScanRecord& scan : *scans_)
+    for (const voxel::Finding& finding : scan.audit)
+      if (finding.verdict != voxel::Verdict::Pass)
+        warn(scan.path.string() + ": " + to_string(finding.verdict) + ", " + finding.check + ": " +
+             finding.detail);
+  for (const std::string& name : *tissues_) {
+    const voxel::Tissue tissue = *voxel::tissue(name);
+    warn(voxel::described(tissue) + ": " + std::string(tissue.source));
+  }
+  if (!json) return put(text);
+  Json whole = answer;
+  for (const std::string& name : *tissues_) {
+    const voxel::Tissue tissue = *voxel::tissue(name);
+    whole["tissues"][name] = {{"low", tissue.low ? Json(*tissue.low) : Json(nullptr)},
+                              {"high", tissue.high ? Json(*tissue.high) : Json(nullptr)},
+                              {"unit", "HU"},
+                              {"source", std::string(tissue.source)}};
+  }
+  if (!scans_->empty() && !whole.contains("audit") && !whole.contains("scans")) {
+    whole["scans"] = Json::array();
+    for (const ScanRecord& scan : *scans_) {
+      whole["scans"].push_back({{"path", scan.path.generic_string()}, {"audit", to_json(scan.audit)}});
+      if (!scan.holes.empty()) whole["scans"].back()["interpolated"] = to_json(scan.holes, scan.lattice);
+    }
+  }
+  put(whole.dump(2) + "\n");
 }
 
 std::function<void(const std::string&, double)> Program::progress() const {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -33,12 +34,23 @@ struct Program {
   /// Adds a verb with the options that every verb has. `example` ends its --help.
   CLI::App& verb(const std::string& name, const std::string& does, const std::string& example,
                  std::function<int()> action);
-  /// Puts the answer on standard output: the JSON object, or the text for people.
+  /// Keeps the audit of a scan that the verb has read for say().
+  void note_scan(const std::filesystem::path& path, const voxel::Scene& scene) const;
+  void note_scan(const ScanRecord& scan) const;
+  /// Keeps the tissues among the words of the command line, also of NAME=TISSUE, for say().
+  void note_tissues(const std::vector<std::string>& words) const;
+  /// Puts the answer on standard output: the JSON object, or the text for people. Warnings and failures of
+  /// the noted scans' audits go to standard error, one line each, and their audits into the JSON as "scans"
+  /// if the answer holds no audit yet; the noted tissues' bounds go the same ways, as "tissues".
   void say(const Json& answer, const std::string& text) const;
   /// A progress line on standard error where that is a terminal and people read.
   std::function<void(const std::string&, double)> progress() const;
   /// The same of one thing only, which the line calls `doing`.
   std::function<void(double)> progress(const std::string& doing) const;
+
+ private:
+  std::shared_ptr<std::vector<std::string>> tissues_ = std::make_shared<std::vector<std::string>>();
+  std::shared_ptr<std::vector<ScanRecord>> scans_ = std::make_shared<std::vector<ScanRecord>>();
 };
 
 /// One line on standard error.

@@ -20,9 +20,11 @@ brep::Operation operation_of(const std::string& word) {
 }
 
 /// All voxels that have a label.
-voxel::Octree labelled(const std::filesystem::path& path, Timings& timings, voxel::Lattice& lattice) {
+voxel::Octree labelled(const Program& program, const std::filesystem::path& path, Timings& timings,
+                       voxel::Lattice& lattice) {
   const Stopwatch watch(timings, "read");
   const voxel::Scene scene = voxel::read_scene(path);
+  program.note_scan(path, scene);
   lattice = scene.lattice;
   const voxel::Universe universe = voxel::universe_on(scene.lattice);
   const std::vector<voxel::Label> labels = voxel::labels(scene);
@@ -42,7 +44,8 @@ struct LabelMaps {
 LabelMaps of_label_maps(Program& program, const std::filesystem::path& a, brep::Operation operation,
                         const std::filesystem::path& b, Timings& timings) {
   voxel::Lattice lattice_a, lattice_b;
-  const voxel::Expression left = labelled(a, timings, lattice_a), right = labelled(b, timings, lattice_b);
+  const voxel::Expression left = labelled(program, a, timings, lattice_a),
+                          right = labelled(program, b, timings, lattice_b);
   if (!(lattice_a == lattice_b))
     throw std::runtime_error(
         a.string() + " and " + b.string() +

@@ -62,15 +62,47 @@ void drop_empty_ends(std::vector<voxel::SliceMask::Slice>& slices) {
   slices.erase(slices.begin(), slices.begin() + static_cast<std::ptrdiff_t>(leading));
 }
 
-Polygon refined_contour(const Polygon& points_mm, const Refinement& refinement, const std::string& where) {
+/// A contour's thinning or smoothing that does not make it cross itself. Nothing if it does.
+std::optional<Polygon> uncrossed(const brep::Contour& contour) {
+  if (brep::first_crossing(contour)) return std::nullopt;
+  return contour.points_mm;
+}
+
+struct Refined {
+  Polygon points_mm;
+  std::size_t harmonics = 0;  ///< more than asked for, where those made a crossing
+  bool is_left = false;       ///< nothing was done, as it would cross itself
+};
+
+/// Thins and smooths a contour. Where the harmonics asked for make it cross itself, twice as many, and so on
+/// up to a quarter of its points; where none helps, the contour stays as it is.
+Refined refined_contour(const Polygon& points_mm, const Refinement& refinement) {
   brep::Contour contour{points_mm};
   if (refinement.thin_mm > 0.0) contour = brep::thin(contour, refinement.thin_mm);
-  if (refinement.harmonics)
-    contour = brep::fourier_smooth(contour,
-                                   {.harmonics = *refinement.harmonics,
-                                    .points = std::max(contour.points_mm.size(), 4 * *refinement.harmonics)});
-  if (refinement.thin_mm > 0.0 || refinement.harmonics) check_crossing(contour, where);
-  return contour.points_mm;
+  if (!refinement.harmonics) {
+    if (refinement.thin_mm > 0.0 && brep::first_crossing(contour)) return {points_mm, 0, true};
+    return {contour.points_mm};
+  }
+  const std::size_t most = std::max(*refinement.harmonics, contour.points_mm.size() / 4);
+  for (std::size_t harmonics = *refinement.harmonics; harmonics <= most; harmonics *= 2)
+    if (std::optional<Polygon> smooth = uncrossed(brep::fourier_smooth(
+            contour, {.harmonics = harmonics, .points = std::max(contour.points_mm.size(), 4 * harmonics)})))
+      return {std::move(*smooth), harmonics == *refinement.harmonics ? 0 : harmonics};
+  return {points_mm, 0, true};
+}
+
+/// Says which contour is smoothed less than asked, or not at all.
+Polygon refined_at(const Polygon& polygon, const Refinement& refinement, const voxel::SliceMask::Slice& slice,
+                   std::vector<std::string>& findings) {
+  Refined done = refined_contour(polygon, refinement);
+  if (done.is_left)
+    findings.push_back(place_of(slice) + ": a contour of " + std::to_string(polygon.size()) +
+                       " points would come to cross itself and stays as it is");
+  else if (done.harmonics > 0)
+    findings.push_back(place_of(slice) + ": a contour of " + std::to_string(polygon.size()) +
+                       " points would cross itself with " + std::to_string(*refinement.harmonics) +
+                       " harmonics and has " + std::to_string(done.harmonics));
+  return std::move(done.points_mm);
 }
 
 /// One edit of a file: where it stands, and the contours of its slice.
@@ -189,14 +221,15 @@ voxel::SliceMask slice_contours(const voxel::Scene& scene, double low, double hi
   return mask;
 }
 
-voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement) {
+voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement,
+                         std::vector<std::string>& findings) {
   voxel::SliceMask result = mask;
   bool is_empty = true;
   for (voxel::SliceMask::Slice& slice : result.slices) {
     std::vector<brep::Contour> contours;
     for (const Polygon& polygon : slice.polygons_mm)
       if (std::abs(brep::signed_area_mm2({polygon})) >= refinement.least_area_mm2)
-        contours.push_back({refined_contour(polygon, refinement, place_of(slice))});
+        contours.push_back({refined_at(polygon, refinement, slice, findings)});
     try {
       if (refinement.offset_mm != 0.0) contours = brep::offset(contours, refinement.offset_mm);
     } catch (const std::invalid_argument& error) {

@@ -25,9 +25,11 @@ struct Refinement {
   double offset_mm = 0.0;                ///< out, or in below 0; contours that meet unite
 };
 
-/// Throws std::runtime_error naming the slice's position where contours come to cross themselves or nothing
-/// is left of all.
-voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement);
+/// A contour that thinning or smoothing makes cross itself takes twice the harmonics, and so on, or stays as
+/// it is; `findings` names each. Throws std::runtime_error naming the slice's position if contours cannot be
+/// moved, or if nothing is left of all.
+voxel::SliceMask refined(const voxel::SliceMask& mask, const Refinement& refinement,
+                         std::vector<std::string>& findings);
 
 /// The edits of a file, made in order:
 ///   { "edits": [ { "slice": 0, "contour": 2, "do": "move", "point": 5, "to_mm": [u, v] }, ... ] }

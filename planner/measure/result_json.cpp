@@ -65,10 +65,25 @@ Json to_json(const glm::dmat3& matrix) {
 
 Json to_json(const std::vector<voxel::Finding>& audit) {
   Json lines = Json::array();
-  for (const voxel::Finding& finding : audit)
+  for (const voxel::Finding& finding : audit) {
     lines.push_back(
         {{"check", finding.check}, {"verdict", to_string(finding.verdict)}, {"detail", finding.detail}});
+    if (!finding.files.empty()) lines.back()["files"] = finding.files;
+  }
   return lines;
+}
+
+Json to_json(const std::vector<voxel::Hole>& holes, const voxel::Lattice& lattice) {
+  Json list = Json::array();
+  for (const voxel::Hole& hole : holes) {
+    const std::optional<voxel::SliceRange> slices = voxel::slices_inside(lattice, hole);
+    list.push_back({{"normal", to_json(hole.normal)},
+                    {"low_mm", hole.low_mm},
+                    {"high_mm", hole.high_mm},
+                    {"length_mm", hole.length_mm()},
+                    {"slices", slices ? Json({slices->first, slices->last}) : Json(nullptr)}});
+  }
+  return list;
 }
 
 Json to_json(const voxel::Measures& measures) {
@@ -172,6 +187,7 @@ Json to_json(const ScanRecord& scan) {
             {"modality", scan.modality},
             {"unit", scan.unit},
             {"audit", to_json(scan.audit)}};
+  if (!scan.holes.empty()) json["interpolated"] = to_json(scan.holes, scan.lattice);
   if (!scan.made_by.empty()) json["made_by"] = scan.made_by;
   if (!scan.details.empty()) json["details"] = scan.details;
   return json;
@@ -202,6 +218,7 @@ Json scan_answer(const voxel::Scene& scene, const Timings& timings) {
   json["modality"] = scene.modality;
   json["unit"] = voxel::unit(scene);
   json["audit"] = to_json(scene.audit);
+  if (!scene.holes.empty()) json["interpolated"] = to_json(scene.holes, scene.lattice);
   return json;
 }
 

@@ -25,6 +25,8 @@ Json to_json(const std::optional<glm::dvec3>& value);
 Json to_json(const glm::dmat3& matrix);
 Json to_json(const glm::dmat4& matrix);
 Json to_json(const std::vector<voxel::Finding>& audit);
+/// The parts of a scan that are interpolated between images, with the slices of the lattice inside each.
+Json to_json(const std::vector<voxel::Hole>& holes, const voxel::Lattice& lattice);
 Json to_json(const voxel::Measures& measures);
 Json to_json(const brep::Measures& measures);
 Json to_json(const brep::Health& health);

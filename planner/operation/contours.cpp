@@ -41,11 +41,12 @@ voxel::SliceMask followed(const Contours& asked, const voxel::Scene& scene, Timi
   return slice_contours(scene, asked.window->low, asked.window->high_or_infinity());
 }
 
-voxel::SliceMask finished(const Contours& asked, const voxel::SliceMask& mask, Timings& timings) {
+voxel::SliceMask finished(const Contours& asked, const voxel::SliceMask& mask, Timings& timings,
+                          std::vector<std::string>& findings) {
   const Stopwatch watch(timings, "refine");
   Refinement refinement{asked.least_area_mm2, asked.thin_mm, std::nullopt, asked.by_mm};
   if (asked.harmonics) refinement.harmonics = static_cast<std::size_t>(*asked.harmonics);
-  voxel::SliceMask done = refined(mask, refinement);
+  voxel::SliceMask done = refined(mask, refinement, findings);
   if (!asked.edits.empty()) done = edited(done, asked.edits);
   voxel::check(done);
   return done;
@@ -83,8 +84,8 @@ Sizes sizes_of(const voxel::SliceMask& mask) {
 
 void write(const Contours& asked, const AnswerBench& bench, Exported& made) {
   made.path = output_path(asked.path).generic_string();
-  const voxel::SliceMask mask =
-      finished(asked, followed(asked, bench.samples(asked.scan.name), bench.timings), bench.timings);
+  const voxel::SliceMask mask = finished(
+      asked, followed(asked, bench.samples(asked.scan.name), bench.timings), bench.timings, made.findings);
   write_json(to_json(mask), output_file(bench.folder, made.path));
   const Sizes sizes = sizes_of(mask);
   made.written = true;
@@ -103,22 +104,25 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
   if (!is_json(file) && !asked.window)
     throw std::runtime_error(
         "--window: what are the contours of? for example --window 300: or --window skin");
+  std::vector<std::string> findings;
   const voxel::SliceMask mask = finished(
       asked, is_json(file) ? read_slices(file) : followed(asked, bench.read_scan(file), bench.timings),
-      bench.timings);
+      bench.timings, findings);
   write_json(to_json(mask), asked.out);
   if (!asked.codes.empty()) write_json(chain_codes(mask, asked.code_spacing_mm), asked.codes);
   const Sizes sizes = sizes_of(mask);
   return {{{"path", asked.out.string()},
            {"contours", sizes.contours},
            {"points", sizes.points},
-           {"slices", sizes.slices}},
+           {"slices", sizes.slices},
+           {"findings", findings}},
           {{"written", asked.out.string()},
            {"slices", grouped(static_cast<double>(mask.slices.size()), 0)},
            {"contours", grouped(static_cast<double>(sizes.contours), 0)},
            {"points", grouped(static_cast<double>(sizes.points), 0)},
            {"area of all", grouped(sizes.area_mm2, 1) + " mm\u00b2"},
-           {"length of all", grouped(sizes.perimeter_mm, 1) + " mm"}}};
+           {"length of all", grouped(sizes.perimeter_mm, 1) + " mm"}},
+          findings};
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "planner/file/region_file.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/table/plan_universe.h"
-#include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -64,9 +63,10 @@ class Bounds {
   voxel::Box box_{glm::dvec3(-far), glm::dvec3(far)};
 };
 
-voxel::Universe universe_of_file(const fs::path& path, const std::optional<double>& voxel_mm) {
+voxel::Universe universe_of_file(const fs::path& path, const std::optional<double>& voxel_mm,
+                                 const FileBench& bench) {
   if (is_octree(path)) return voxel::universe(voxel::read_octree(path));
-  return universe_of(voxel::read_scene(path).lattice, voxel_mm);
+  return universe_of(bench.read_scan(path).lattice, voxel_mm);
 }
 
 /// The universe about what regions and slices enclose.
@@ -98,11 +98,11 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
   std::optional<voxel::SliceMask> slices;
   std::optional<voxel::Expression> expression;
   std::optional<voxel::Universe> universe;
+  if (!asked.like.empty()) universe = universe_of_file(asked.like, asked.voxel_mm, bench);
   {
     const Stopwatch watch(bench.timings, "read");
     for (const std::string& region : asked.region_files) regions.regions.push_back(region_of(region));
     if (!asked.slices.empty()) slices = read_slices(asked.slices);
-    if (!asked.like.empty()) universe = universe_of_file(asked.like, asked.voxel_mm);
     if (!asked.edit.empty()) {
       const voxel::OctreeFile old = voxel::read_octree(asked.edit);
       const auto* octree = std::get_if<voxel::Octree>(&old.tree);

@@ -17,6 +17,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "voxel/filter/tissue.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -39,8 +40,9 @@ brep::Triangles cuberille_of(const voxel::Octree& octree, const Meshed& asked) {
 /// The object of a file that holds samples: bone where nothing else is asked for.
 SampleWindow window_of(const Meshed& asked, std::vector<std::string>& findings) {
   if (asked.window) return *asked.window;
-  findings.push_back("window: 300: (bone in HU), as no --window LOW:HIGH was given");
-  return {300.0, std::nullopt};
+  const voxel::Tissue bone = *voxel::tissue("bone");
+  findings.push_back("window: " + voxel::described(bone) + ", as no --window LOW:HIGH was given");
+  return {*bone.low, std::nullopt};
 }
 
 brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& window, const Meshed& asked,

@@ -21,10 +21,17 @@
 #include "voxel/filter/morphology.h"
 #include "voxel/filter/otsu.h"
 #include "voxel/filter/region_grow.h"
+#include "voxel/filter/tissue.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
+
+/// A window for people: a tissue with its numbers.
+std::string words_of(const SampleWindow& window) {
+  const std::optional<voxel::Tissue> tissue = voxel::tissue(window.tissue);
+  return tissue ? voxel::described(*tissue) : to_string(window);
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -66,7 +73,7 @@ class Segmenter {
  private:
   std::string name() const {
     if (segment_.label) return "label " + std::to_string(*segment_.label);
-    return segment_.window ? to_string(*segment_.window) : "grown";
+    return segment_.window ? words_of(*segment_.window) : "grown";
   }
 
   void become(voxel::Octree octree, Json step) {
@@ -169,7 +176,7 @@ Segment settle(const Segment& segment, const SettleBench& bench) {
 
 std::string definition(const Segment& segment, const Objects&) {
   std::string text = segment.scan.name;
-  if (segment.window) text += " in " + to_string(*segment.window);
+  if (segment.window) text += " in " + words_of(*segment.window);
   if (segment.label) text += ", label " + std::to_string(*segment.label);
   if (segment.tolerance) text += " grown within " + plain(*segment.tolerance);
   if (!segment.regions.empty()) text += ", within " + segment.regions.filename().string();

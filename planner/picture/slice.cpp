@@ -19,6 +19,9 @@
 namespace octotomy::planner {
 namespace {
 
+/// Columns of a curved picture of which no pixel size is said: a dental arch fills a screen's width.
+constexpr int least_curve_px = 800;
+
 namespace fs = std::filesystem;
 
 struct Slice {
@@ -156,7 +159,12 @@ CutSheet cut_of(const Slice& slice, const voxel::Lattice& lattice) {
     if (slice.up) options.up = *slice.up;
     options.height_mm = slice.height_mm;
     options.pixel_mm = pixel_mm;
-    return {"curved", std::nullopt, voxel::curved_sheet(options)};
+    voxel::Sheet sheet = voxel::curved_sheet(options);
+    if (!slice.pixel_mm && sheet.size_px().x < least_curve_px) {
+      options.pixel_mm *= static_cast<double>(sheet.size_px().x) / least_curve_px;
+      sheet = voxel::curved_sheet(options);
+    }
+    return {"curved", std::nullopt, std::move(sheet)};
   }
   if (!slice.oblique.empty()) {
     const voxel::View view = view_along(slice.oblique[1], slice.up);
@@ -430,8 +438,11 @@ Operation slice_operation() {
       .takes(field("colours", &Slice::colours, "Colours of the outlines, #RRGGBB, in their order.")
                  .repeated()
                  .called("colour"))
-      .takes(field("pixel_mm", &Slice::pixel_mm, "Edge of a pixel. Default: the scan's smallest spacing.")
-                 .greater_than(0.0))
+      .takes(
+          field("pixel_mm", &Slice::pixel_mm,
+                "Edge of a pixel. Default: the scan's smallest spacing; finer in a curved picture of fewer "
+                "than 800 columns.")
+              .greater_than(0.0))
       .takes(field("interpolate", &Slice::interpolate, "Between samples.")
                  .one_of({"nearest", "linear", "cubic"}))
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))

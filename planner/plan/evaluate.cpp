@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include "brep/boolean/boolean.h"
 #include "brep/mesh/error.h"
@@ -47,6 +48,7 @@ ScanRecord record_of(const std::string& name, const std::filesystem::path& path,
   record.unit = voxel::unit(scene);
   record.range = voxel::range(scene);
   record.audit = scene.audit;
+  record.holes = scene.holes;
   return record;
 }
 
@@ -202,15 +204,50 @@ class Evaluator {
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
     take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
+    const std::vector<std::string> interpolated = interpolated_parts(step, object);
+    object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
     if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) {
       const Stopwatch watch(result_.timings, "certify");
       certify(object, object.id + " = " + object.definition, {options_.stop, {}});
+      // The kernels cannot disagree over samples that both take from the same interpolation.
+      for (const std::string& part : interpolated)
+        verify::lower(*object.certificate, verify::Verdict::Warn, part);
     }
     if (object.ends_with_universe) {
       object.mesh.whole = object.mesh.within;
       object.witness = verify::both(object.witness, verify::witness_of_box(box_));
     }
     result_.objects.add(std::move(object));
+  }
+
+  /// The parts of an object from a scan that no image measured; of an object made of such an object, that it
+  /// is.
+  std::vector<std::string> interpolated_parts(const Step& step, const Object& object) {
+    if (!object.voxel.measures.extents) return {};
+    const voxel::Box& box = *object.voxel.measures.extents;
+    const glm::dvec3 middle_mm = 0.5 * (box.low_mm + box.high_mm);
+    std::vector<std::string> told;
+    for (const std::string& name : scans_used(step.action)) {
+      double length_mm = 0.0;
+      std::size_t count = 0;
+      for (const voxel::Hole& hole : scan_(name).scene().holes) {
+        const double reach_mm = glm::dot(0.5 * (box.high_mm - box.low_mm), glm::abs(hole.normal));
+        const double height_mm = glm::dot(middle_mm, hole.normal);
+        if (height_mm - reach_mm >= hole.high_mm || height_mm + reach_mm <= hole.low_mm) continue;
+        ++count;
+        length_mm = std::max(length_mm, hole.length_mm());
+      }
+      if (count > 0)
+        told.push_back("interpolated over " + std::to_string(count) + (count == 1 ? " gap" : " gaps") +
+                       " between the images of '" + name + "', up to " +
+                       plain(std::round(10.0 * length_mm) / 10.0) +
+                       " mm: both kernels read the same interpolated samples there");
+    }
+    for (const std::string& name : objects_used(step.action))
+      if (told.empty() && interpolated_.contains(name) && !object.is_tool)
+        told.push_back("made of '" + name + "', a part of which is interpolated between images");
+    if (!told.empty()) interpolated_.insert(step.id);
+    return told;
   }
 
   /// The voxels of an answer that only the mesh kernel has.
@@ -281,6 +318,7 @@ class Evaluator {
   const EvaluateOptions& options_;
   Evaluation result_;
   std::map<std::string, LoadedScan> loaded_;
+  std::set<std::string> interpolated_;  ///< objects with a part that no image measured
   std::map<std::string, std::size_t> uses_left_;
   const Scans scan_ = [this](const std::string& name) -> const LoadedScan& { return loaded_.at(name); };
   voxel::Box box_;  ///< of the universe

@@ -47,10 +47,19 @@ int whole_number(const Json& value, const std::string& where) {
   return static_cast<int>(number);
 }
 
+std::vector<voxel::SliceRange> slices_of(const Keys& scan) {
+  try {
+    return voxel::parse_slices(scan.text("slices"));
+  } catch (const std::invalid_argument& error) {
+    refuse(scan.at("slices"), error.what());
+  }
+}
+
 /// How a scan is read: its series, and what images and raw files do not say of themselves.
 voxel::ReadOptions read_options_of(const Keys& scan) {
   voxel::ReadOptions read;
   if (scan.find("series") != nullptr) read.series = scan.text("series");
+  if (scan.find("slices") != nullptr) read.slices = slices_of(scan);
   if (scan.find("spacing_mm") != nullptr) read.spacing_mm = scan.point("spacing_mm");
   if (const Json* value = scan.find("raw")) {
     const Keys keys(*value, scan.at("raw"), {"dims", "type", "big_endian", "offset"});
@@ -79,7 +88,7 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
     refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
   std::map<std::string, ScanSource> scans;
   for (const auto& [name, entry] : value.items()) {
-    const Keys keys(entry, "scans, " + name, {"path", "sha256", "series", "spacing_mm", "raw"});
+    const Keys keys(entry, "scans, " + name, {"path", "sha256", "series", "slices", "spacing_mm", "raw"});
     ScanSource source{keys.text("path"), std::nullopt, read_options_of(keys)};
     if (keys.find("sha256") != nullptr) {
       source.sha256 = keys.text("sha256");
@@ -220,6 +229,7 @@ Ordered plan_schema() {
                       {{"path", {{"type", "string"}, {"minLength", 1}}},
                        {"sha256", {{"type", {"string", "null"}}, {"pattern", "^[0-9a-fA-F]{64}$"}}},
                        {"series", {{"type", "string"}}},
+                       {"slices", {{"type", "string"}}},
                        {"spacing_mm", vector},
                        {"raw", raw}}},
                      {"required", {"path"}},

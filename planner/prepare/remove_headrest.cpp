@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The scan without solid parts that are not the patient.
+#include <cmath>
+
+#include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/headrest.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
@@ -15,6 +19,29 @@ struct RemoveHeadrest {
   std::optional<double> detach_mm;
   std::vector<glm::dvec3> keep_mm;
 };
+
+/// A board or a cradle is larger than this; less that hangs on the head is an ear or a strap's buckle.
+constexpr double least_support_mm3 = 1000.0;
+
+/// What still hangs on the patient by thin links and reaches away from it: its volume, and the radius that
+/// cuts it off. Nothing if no radius up to 10 mm does.
+std::optional<std::pair<double, double>> remains_of(const voxel::Scene& scene,
+                                                    voxel::HeadrestOptions options) {
+  const double cut_mm = options.detach_mm.value_or(0.0);
+  options.progress.report = {};
+  for (const double radius_mm : {3.0, 6.0, 10.0}) {
+    if (radius_mm <= cut_mm) continue;
+    options.detach_mm = radius_mm;
+    try {
+      const double found_mm3 = voxel::remove_headrest(scene, options).solid_mm3;
+      if (found_mm3 >= least_support_mm3) return std::pair{found_mm3, radius_mm};
+    } catch (const voxel::Error& error) {
+      if (error.code() != voxel::ErrorCode::Geometry) throw;
+      return std::nullopt;  // the patient is thinner than the ball
+    }
+  }
+  return std::nullopt;
+}
 
 MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
   voxel::HeadrestOptions options;
@@ -32,10 +59,20 @@ MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
                  {"volume_removed_mm3", removal.solid_mm3},
                  {"samples_removed", removal.voxels}},
                 std::move(removal.removed)};
-  if (removal.parts == 0)
+  const auto remains = remains_of(made.scene, options);
+  made.details["remains_mm3"] = remains ? Json(remains->first) : Json(nullptr);
+  if (remains) {
+    const std::string radius = plain(remains->second);
+    made.findings.push_back("about " + plain(std::round(remains->first / 100.0) / 10.0) +
+                            " cm\u00b3 hang on the patient by links thinner than a ball of " + radius +
+                            " mm and reach farther than " + plain(options.near_mm) +
+                            " mm: look whether it is a support; remove_headrest=" + plain(options.threshold) +
+                            "," + plain(options.near_mm) + "," + radius + " takes it out");
+  } else if (removal.parts == 0) {
     made.findings.emplace_back(
-        "nothing was removed: the patient is the only solid part; where the headrest touches the patient, "
-        "cut it off with remove_headrest=-300,25,3");
+        "nothing was removed: the patient is the only solid part, and no ball of up to 10 mm cuts anything "
+        "off; take out a support that lies closely against the head by a crop step or a mask");
+  }
   return made;
 }
 

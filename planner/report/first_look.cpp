@@ -6,6 +6,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
 #include "voxel/filter/otsu.h"
+#include "voxel/filter/tissue.h"
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::planner {
@@ -17,6 +18,7 @@ constexpr int picture_px = 400;
 Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
   Json entry{{"path", std::filesystem::absolute(scan).lexically_normal().string()}};
   if (!read.series.empty()) entry["series"] = read.series;
+  if (!read.slices.empty()) entry["slices"] = voxel::to_string(read.slices);
   if (read.spacing_mm) entry["spacing_mm"] = to_json(*read.spacing_mm);
   if (read.raw)
     entry["raw"] = {{"dims", {read.raw->dims.x, read.raw->dims.y, read.raw->dims.z}},
@@ -35,7 +37,8 @@ Thresholds thresholds_of(const voxel::Scene& scene) {
 
 Result first_look(const std::filesystem::path& scan, const LookOptions& options) {
   Result result;
-  double bone_low = options.bone_low.value_or(300.0), skin_low = options.skin_low.value_or(-300.0);
+  double bone_low = options.bone_low.value_or(*voxel::tissue("bone")->low),
+         skin_low = options.skin_low.value_or(*voxel::tissue("skin")->low);
   if (!options.bone_low || !options.skin_low) {
     const voxel::Scene scene = voxel::read_scene(scan, options.read);
     if (scene.meaning != voxel::Meaning::Hounsfield) {

@@ -116,6 +116,7 @@ struct ScanRecord {
   std::string unit;
   voxel::Range range;
   std::vector<voxel::Finding> audit;
+  std::vector<voxel::Hole> holes;
   std::string made_by = {};  ///< the step that made it, in words; empty: it was read
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what that step tells of it
 };

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 namespace octotomy::voxel {
 namespace {
 
 constexpr std::array<Tissue, 8> known{{
-    {"bone", 226.0, std::nullopt, "Materialise Mimics, predefined threshold sets: bone (CT)"},
+    {"bone", 300.0, std::nullopt,
+     "the least of craniofacial planning, so that thin cortical bone stays and spongy bone's rim goes; "
+     "Materialise Mimics' predefined set has 226"},
     {"cortical_bone", 662.0, std::nullopt,
      "Materialise Mimics, predefined threshold sets: compact bone, adult (CT), from 662; without its upper "
      "bound of 1988, which the petrous bone exceeds"},
@@ -36,6 +39,16 @@ std::optional<Tissue> tissue(std::string_view name) {
       std::find_if(known.begin(), known.end(), [&](const Tissue& each) { return each.name == name; });
   if (found == known.end()) return std::nullopt;
   return *found;
+}
+
+std::string described(const Tissue& tissue) {
+  char bounds[64];
+  if (tissue.low && tissue.high)
+    std::snprintf(bounds, sizeof bounds, " (%g to %g HU)", *tissue.low, *tissue.high);
+  else
+    std::snprintf(bounds, sizeof bounds, tissue.low ? " (from %g HU)" : " (to %g HU)",
+                  tissue.low ? *tissue.low : *tissue.high);
+  return std::string(tissue.name) + bounds;
 }
 
 }  // namespace octotomy::voxel

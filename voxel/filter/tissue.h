@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace octotomy::voxel {
@@ -21,5 +22,8 @@ std::span<const Tissue> tissues();
 
 /// The tissue of that name; none if the name is unknown.
 std::optional<Tissue> tissue(std::string_view name);
+
+/// Name and bounds for people: "bone (from 300 HU)", "fat (-190 to -30 HU)".
+std::string described(const Tissue& tissue);
 
 }  // namespace octotomy::voxel

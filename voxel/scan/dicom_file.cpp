@@ -44,6 +44,10 @@ bool is_wide(std::string_view vr) {
   return false;
 }
 
+bool begins_little_endian_item(std::string_view bytes) {
+  return bytes.starts_with(std::string_view("\xfe\xff\x00\xe0", 4));
+}
+
 std::string trimmed(std::string_view text) {
   constexpr std::string_view padding(" \t\r\n\0", 5);
   const std::size_t first = text.find_first_not_of(padding);
@@ -128,6 +132,15 @@ DicomFile::Head DicomFile::take_head() {
   return head;
 }
 
+/// The Extended Offset Table, (7fe0,0001), of eight bytes a frame (DICOM PS3.3, C.7.6.3).
+void DicomFile::take_extended_offsets() {
+  const auto found = values_.find(0x7fe00001);
+  if (found == values_.end()) return;
+  const auto start = static_cast<std::size_t>(found->second.data() - bytes_.data());
+  for (std::size_t i = 0; i + 8 <= found->second.size(); i += 8)
+    frame_offsets_.push_back(u32(start + i) | std::uint64_t{u32(start + i + 4)} << 32);
+}
+
 void DicomFile::take_fragments() {
   fragments_.emplace();
   bool is_offset_table = true;
@@ -141,6 +154,7 @@ void DicomFile::take_fragments() {
       for (std::size_t i = 0; i + 4 <= head.length; i += 4) frame_offsets_.push_back(u32(at_ + i));
     else
       fragments_->push_back({at_, head.length});
+    if (is_offset_table && frame_offsets_.empty()) take_extended_offsets();
     is_offset_table = false;
     at_ += head.length;
   }
@@ -149,8 +163,11 @@ void DicomFile::take_fragments() {
 }
 
 void DicomFile::walk() {
-  // The open sequences and items, those without a length, and whether VRs are explicit around each.
-  std::vector<bool> explicit_outside;
+  // The open sequences and items, those without a length, and the coding around each.
+  struct Coding {
+    bool explicit_vr, big_endian;
+  };
+  std::vector<Coding> outside;
   DicomTag open_tag = 0;       // of the outermost open sequence
   std::size_t open_start = 0;  // where its items begin
   bool in_meta = !is_item_ && (at_ > 0 || (left() >= 8 && u16(at_) == 2));
@@ -160,14 +177,14 @@ void DicomFile::walk() {
       leave_meta();
     }
     const Head head = take_head();
-    const bool is_top = explicit_outside.empty();
+    const bool is_top = outside.empty();
     if (head.tag == item_end_tag || head.tag == sequence_end_tag) {
       if (is_top && is_item_) return;
       if (is_top) continue;
-      explicit_ = explicit_outside.back();
-      explicit_outside.pop_back();
-      if (explicit_outside.empty())
-        values_.emplace(open_tag, bytes_.substr(open_start, at_ - 8 - open_start));
+      explicit_ = outside.back().explicit_vr;
+      big_endian_ = outside.back().big_endian;
+      outside.pop_back();
+      if (outside.empty()) values_.emplace(open_tag, bytes_.substr(open_start, at_ - 8 - open_start));
       continue;
     }
     const bool is_pixels = head.tag == pixels_tag && is_top && !is_item_;
@@ -178,8 +195,12 @@ void DicomFile::walk() {
         open_tag = head.tag;
         open_start = at_;
       }
-      explicit_outside.push_back(explicit_);
-      if (head.is_unknown) explicit_ = false;  // PS3.5, 6.2.2: unknown sequences are implicit inside
+      outside.push_back({explicit_, big_endian_});
+      // PS3.5, 6.2.2: unknown sequences are implicit and little-endian inside. Some writers keep their order.
+      if (head.is_unknown) {
+        explicit_ = false;
+        big_endian_ = big_endian_ && !begins_little_endian_item(bytes_.substr(at_));
+      }
       continue;
     }
     if (is_pixels && head.length <= file_bytes_ - at_) {
@@ -201,6 +222,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
   // An item's head is the same with implicit and explicit VRs.
   DicomFile marks(std::string_view(), explicit_vr, big_endian_);
   marks.bytes_ = value->second;
+  marks.big_endian_ = big_endian_ && !begins_little_endian_item(value->second);
   marks.file_bytes_ = marks.bytes_.size();
   while (marks.left() >= 8) {
     const Head head = marks.take_head();
@@ -208,7 +230,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
     if (head.tag != item_tag) throw Error(ErrorCode::Input, "a sequence is damaged: an item is missing");
     if (!head.is_open()) marks.require(head.length, head.tag);
     const std::size_t length = head.is_open() ? marks.left() : head.length;
-    found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, big_endian_));
+    found.push_back(DicomFile(marks.bytes_.substr(marks.at_, length), explicit_vr, marks.big_endian_));
     marks.at_ += head.is_open() ? found.back().at_ : length;
   }
   return found;

@@ -61,8 +61,11 @@ class DicomFile {
   std::optional<DicomExtent> raw_pixels() const { return raw_pixels_; }
   /// Fragments of compressed pixels without the offset table; none if the pixels are raw.
   const std::optional<std::vector<DicomExtent>>& fragments() const { return fragments_; }
-  /// The offset table: where each frame begins, counted from the first fragment's item; empty if absent.
-  const std::vector<std::uint32_t>& frame_offsets() const { return frame_offsets_; }
+  /// The offset table, basic or extended: where each frame begins, counted from the first fragment's item;
+  /// empty if absent.
+  const std::vector<std::uint64_t>& frame_offsets() const { return frame_offsets_; }
+  /// The bytes of a fragment.
+  std::string_view at(const DicomExtent& extent) const { return bytes_.substr(extent.at, extent.length); }
 
  private:
   struct Head {
@@ -79,6 +82,7 @@ class DicomFile {
   Head take_head();
   void leave_meta();
   void take_fragments();
+  void take_extended_offsets();
   void require(std::size_t length, DicomTag tag) const;
   void require_more() const;
   std::size_t left() const { return bytes_.size() - at_; }
@@ -97,7 +101,7 @@ class DicomFile {
   std::set<DicomTag> implicit_inside_;  ///< sequences of unknown representation
   std::optional<DicomExtent> raw_pixels_;
   std::optional<std::vector<DicomExtent>> fragments_;
-  std::vector<std::uint32_t> frame_offsets_;
+  std::vector<std::uint64_t> frame_offsets_;
 };
 
 }  // namespace octotomy::voxel

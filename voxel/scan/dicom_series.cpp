@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // Files to the stack of one series:
-//   1  read every file's header; count the files that hold no slice
-//   2  choose the series asked for, else that with most slices; leave out scout views
-//   3  keep the commonest size and orientation
-//   4  order the slices by position along their normal and drop repeated ones
+//   1  read every file's header; name the files that hold no slice
+//   2  choose the series or stack asked for, else the series with most slices; leave out scout views
+//   3  keep the commonest patient, study, modality and frame of reference, size and orientation
+//   4  if several stacks lie at one place, keep the largest
+//   5  order the slices by position along their normal and drop repeated ones
+//   6  keep the slices asked for and judge what they have in common
 #include "voxel/scan/dicom_series.h"
 
 #include <algorithm>
@@ -14,6 +16,8 @@
 #include <tbb/parallel_for.h>
 
 #include "voxel/scan/audit.h"
+#include "voxel/scan/dicom_stacks.h"
+#include "voxel/scan/stack_audit.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -25,16 +29,6 @@ namespace fs = std::filesystem;
 /// Slices closer than a tenth of the usual gap repeat one position.
 double repeat_tolerance_mm(double usual_gap_mm) {
   return 0.1 * usual_gap_mm;
-}
-
-/// Files give direction cosines with six decimals or more. Ten roundings are allowed: over the longest side
-/// in use, 4096 pixels, they shift a pixel by a twenty-fifth of its width.
-constexpr double cosine_tolerance() {
-  return 1e-5;
-}
-
-std::string slices(std::size_t count) {
-  return std::to_string(count) + (count == 1 ? " slice" : " slices");
 }
 
 /// The regular files of a folder and its subfolders, sorted.
@@ -57,23 +51,37 @@ class SeriesAssembler {
 
   std::vector<SeriesEntry> list() {
     std::vector<SeriesEntry> entries;
-    for (const std::vector<DicomSlice>& members : by_series(read_headers())) {
-      const DicomSlice& first = members.front();
-      entries.push_back({first.series_uid, first.series_description, first.modality, first.series_number,
-                         members.size(), first.size_px});
-    }
+    for (const Series& series : by_series(read_headers()))
+      for (std::size_t i = 0; i < series.stacks.size(); ++i) {
+        const DicomSlice& first = series.stacks[i].slices.front();
+        entries.push_back({first.series_uid, first.series_description, first.modality, first.series_number,
+                           series.stacks[i].slices.size(), first.size_px, series.choice(i),
+                           series.stacks[i].words});
+      }
     return entries;
   }
 
   DicomStack run() {
-    DicomStack stack = orient(without_localizers(choose(read_headers())));
+    DicomStack stack = orient(with_one_identity(without_localizers(choose(read_headers()))));
     order(stack);
+    keep_asked(stack);
+    audit_stack(stack, audit_);
     return stack;
   }
 
  private:
-  void find(const char* check, Verdict verdict, std::string detail) {
-    audit_.push_back({check, verdict, std::move(detail)});
+  struct Series {
+    std::vector<DicomSlice> members;
+    std::vector<DicomSubseries> stacks;
+    std::size_t number = 0;
+
+    std::string choice(std::size_t stack) const {
+      return std::to_string(number) + (stacks.size() == 1 ? "" : "." + std::to_string(stack + 1));
+    }
+  };
+
+  void find(const char* check, Verdict verdict, std::string detail, std::vector<std::string> files = {}) {
+    audit_.push_back({check, verdict, std::move(detail), std::move(files)});
   }
 
   std::vector<DicomSlice> read_headers() {
@@ -82,42 +90,74 @@ class SeriesAssembler {
     for_each_index(files.size(), options_.progress,
                    [&](std::size_t i) { headers[i] = read_dicom_slices(files[i]); });
     std::vector<DicomSlice> found;
-    std::size_t stray_count = 0;
-    std::string first_stray;
+    Skipped skipped;
     for (std::size_t i = 0; i < files.size(); ++i) {
+      const std::string name =
+          (fs::is_directory(path_) ? files[i].lexically_relative(path_) : files[i].filename()).string();
       if (auto* slices = std::get_if<std::vector<DicomSlice>>(&headers[i])) {
-        std::move(slices->begin(), slices->end(), std::back_inserter(found));
-      } else if (stray_count++ == 0) {
-        first_stray =
-            (fs::is_directory(path_) ? fs::relative(files[i], path_) : files[i].filename()).string() + " (" +
-            std::get<NoSlice>(headers[i]).reason + ")";
+        for (DicomSlice& slice : *slices) {
+          slice.name = name + (slices->size() == 1 ? "" : " frame " + std::to_string(slice.frame + 1));
+          found.push_back(std::move(slice));
+        }
+      } else {
+        const NoSlice& none = std::get<NoSlice>(headers[i]);
+        skipped[none.kind].names.push_back(name);
+        skipped[none.kind].reasons.push_back(name + " (" + none.reason + ")");
       }
     }
     if (found.empty() && !fs::is_directory(path_))
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
-    if (found.empty())
-      refuse(path_,
-             "no DICOM slice in the folder or below; " +
-                 (stray_count == 0 ? "it holds no files"
-                                   : std::to_string(stray_count) + " files, the first " + first_stray));
-    if (stray_count == 0)
-      find("stray_files", Verdict::Pass, "every file is a DICOM slice");
-    else
-      find("stray_files", Verdict::Warn,
-           std::to_string(stray_count) + (stray_count == 1 ? " file" : " files") +
-               " skipped that are no DICOM slices, the first " + first_stray);
+    if (found.empty()) refuse_empty(files.size(), skipped);
+    audit_skipped(skipped);
     return found;
   }
 
+  struct SkippedFiles {
+    std::vector<std::string> names, reasons;
+  };
+  using Skipped = std::map<NoSlice::Kind, SkippedFiles>;
+
+  [[noreturn]] void refuse_empty(std::size_t file_count, const Skipped& skipped) const {
+    // Damaged and unusable images say more than files that are no images at all.
+    for (const auto kind : {NoSlice::Kind::Damaged, NoSlice::Kind::Unusable, NoSlice::Kind::Stray})
+      if (const auto some = skipped.find(kind); some != skipped.end())
+        refuse(path_, "no DICOM slice in the folder or below; " + std::to_string(file_count) +
+                          (file_count == 1 ? " file, " : " files, among them ") +
+                          listed(some->second.reasons, 3));
+    refuse(path_, "no DICOM slice in the folder or below; it holds no files");
+  }
+
+  void audit_skipped(const Skipped& skipped) {
+    const auto tell = [&](const char* check, NoSlice::Kind kind, Verdict verdict, const char* passed,
+                          const char* what) {
+      const auto some = skipped.find(kind);
+      if (some == skipped.end()) return find(check, Verdict::Pass, passed);
+      const std::size_t count = some->second.names.size();
+      find(check, verdict,
+           std::to_string(count) + (count == 1 ? " file" : " files") + what + listed(some->second.reasons),
+           some->second.names);
+    };
+    tell("stray_files", NoSlice::Kind::Stray, Verdict::Warn, "every file is a DICOM image",
+         " skipped that are no DICOM slices: ");
+    tell("unusable_images", NoSlice::Kind::Unusable, Verdict::Warn, "none",
+         " skipped whose images have no place in a volume: ");
+    tell("damaged_files", NoSlice::Kind::Damaged, Verdict::Fail, "none",
+         " left out that are damaged; copy them again: ");
+  }
+
   /// Slices by series, most slices first; equal counts in the order of their identifiers.
-  static std::vector<std::vector<DicomSlice>> by_series(std::vector<DicomSlice> found) {
-    std::map<std::string, std::vector<DicomSlice>> series;
-    for (DicomSlice& slice : found) series[slice.series_uid].push_back(std::move(slice));
-    std::vector<std::vector<DicomSlice>> sorted;
-    for (auto& [uid, members] : series) sorted.push_back(std::move(members));
+  static std::vector<Series> by_series(std::vector<DicomSlice> found) {
+    std::map<std::string, Series> series;
+    for (DicomSlice& slice : found) series[slice.series_uid].members.push_back(std::move(slice));
+    std::vector<Series> sorted;
+    for (auto& [uid, one] : series) sorted.push_back(std::move(one));
     std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const auto& a, const auto& b) { return a.size() > b.size(); });
+                     [](const Series& a, const Series& b) { return a.members.size() > b.members.size(); });
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+      sorted[i].number = i + 1;
+      sorted[i].stacks = subseries_of(sorted[i].members);
+    }
     return sorted;
   }
 
@@ -126,37 +166,63 @@ class SeriesAssembler {
     return "'" + first.series_description + "' (" + first.modality + ", " + slices(members.size()) + ")";
   }
 
-  /// The series asked for, else that with most slices.
-  std::vector<DicomSlice> choose(std::vector<DicomSlice> found) {
-    std::vector<std::vector<DicomSlice>> series = by_series(std::move(found));
-    const std::size_t taken = options_.series.empty() ? 0 : asked(series);
-    if (series.size() == 1) {
-      find("series", Verdict::Pass, "one series: " + named(series.front()));
-      return std::move(series.front());
-    }
-    std::string others;
-    for (std::size_t i = 0; i < series.size(); ++i)
-      if (i != taken) others += (others.empty() ? "" : ", ") + std::to_string(i + 1) + " " + named(series[i]);
-    find("series", options_.series.empty() ? Verdict::Warn : Verdict::Pass,
-         std::to_string(series.size()) + " series: took " + std::to_string(taken + 1) + " " +
-             named(series[taken]) + ", left " + others +
-             (options_.series.empty() ? "; choose another by --series N" : ""));
-    return std::move(series[taken]);
+  /// "1 'Head' (CT, 40 slices); 2.1 'Head' (CT, 20 slices) kernel H60s".
+  static std::string choices(const std::vector<Series>& all) {
+    std::string list;
+    for (const Series& series : all)
+      for (std::size_t i = 0; i < series.stacks.size(); ++i)
+        list += (list.empty() ? "" : "; ") + series.choice(i) + " " + named(series.stacks[i].slices) +
+                (series.stacks[i].words.empty() ? "" : " " + series.stacks[i].words);
+    return list;
   }
 
-  /// The one series that the options' text names by number, identifier or description.
-  std::size_t asked(const std::vector<std::vector<DicomSlice>>& series) const {
+  /// The series or stack asked for, else the series with most slices.
+  std::vector<DicomSlice> choose(std::vector<DicomSlice> found) {
+    std::vector<Series> all = by_series(std::move(found));
+    choices_ = choices(all);
+    const Asked wanted = options_.series.empty() ? Asked{} : asked(all);
+    Series& taken = all[wanted.series];
+    if (wanted.stack) {
+      find("series", Verdict::Pass, "took " + taken.choice(*wanted.stack) + " of " + choices_);
+      return std::move(taken.stacks[*wanted.stack].slices);
+    }
+    if (all.size() == 1) {
+      find("series", Verdict::Pass, "one series: " + named(taken.members));
+      return std::move(taken.members);
+    }
+    std::string others;
+    for (const Series& series : all)
+      if (series.number != taken.number)
+        others += (others.empty() ? "" : ", ") + std::to_string(series.number) + " " + named(series.members);
+    find("series", options_.series.empty() ? Verdict::Warn : Verdict::Pass,
+         std::to_string(all.size()) + " series: took " + std::to_string(taken.number) + " " +
+             named(taken.members) + ", left " + others +
+             (options_.series.empty() ? "; choose another by --series N" : ""));
+    return std::move(taken.members);
+  }
+
+  struct Asked {
+    std::size_t series = 0;
+    std::optional<std::size_t> stack = {};
+  };
+
+  /// The one series or stack that the options' text names by number, identifier, description or attribute.
+  Asked asked(const std::vector<Series>& all) const {
     const std::string& wanted = options_.series;
-    std::vector<std::size_t> described;
-    std::string known;
-    for (std::size_t i = 0; i < series.size(); ++i) {
-      if (wanted == std::to_string(i + 1) || wanted == series[i].front().series_uid) return i;
-      if (series[i].front().series_description.find(wanted) != std::string::npos) described.push_back(i);
-      known += (known.empty() ? "" : ", ") + std::to_string(i + 1) + " " + named(series[i]);
+    std::vector<Asked> described, with_words;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const DicomSlice& first = all[i].members.front();
+      if (wanted == std::to_string(i + 1) || wanted == first.series_uid) return {i};
+      if (first.series_description.find(wanted) != std::string::npos) described.push_back({i});
+      for (std::size_t stack = 0; stack < all[i].stacks.size(); ++stack) {
+        if (all[i].stacks.size() > 1 && wanted == all[i].choice(stack)) return {i, stack};
+        if (all[i].stacks[stack].words.find(wanted) != std::string::npos) with_words.push_back({i, stack});
+      }
     }
     if (described.size() == 1) return described.front();
-    refuse(path_, (described.empty() ? "no series is '" : "several series are '") + wanted +
-                      "'; choose by number: " + known);
+    if (described.empty() && with_words.size() == 1) return with_words.front();
+    refuse(path_, (described.empty() && with_words.empty() ? "no series is '" : "several series are '") +
+                      wanted + "'; choose by number: " + choices_);
   }
 
   /// Some scanners put scout views into the series of the scan.
@@ -167,9 +233,14 @@ class SeriesAssembler {
       find("localizers", Verdict::Pass, "none");
     } else if (localizers == members.size()) {
       find("localizers", Verdict::Fail,
-           "every image is a localizer: this series is a scout view; choose another by --series N");
+           "every image is a localizer: this series is a scout view; choose another by --series N of " +
+               choices_);
     } else {
-      find("localizers", Verdict::Warn, slices(localizers) + " of scout views left out");
+      std::vector<std::string> names;
+      for (const DicomSlice& slice : members)
+        if (slice.is_localizer) names.push_back(slice.name);
+      find("localizers", Verdict::Warn, slices(localizers) + " of scout views left out: " + listed(names),
+           names);
       std::erase_if(members, [](const DicomSlice& slice) { return slice.is_localizer; });
     }
     return members;
@@ -191,41 +262,104 @@ class SeriesAssembler {
     auto& most = *std::max_element(kinds.begin(), kinds.end(),
                                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
     const std::string taken = named(most.front());
-    if (const std::size_t left = members.size() - most.size(); left == 0)
+    std::vector<std::string> left;
+    for (const auto& kind : kinds)
+      if (&kind != &most)
+        for (const DicomSlice& slice : kind) left.push_back(slice.name);
+    if (left.empty())
       find(check, Verdict::Pass, taken);
     else
       find(check, Verdict::Warn,
-           "mixed in one series: kept " + slices(most.size()) + " of " + taken + ", left " + slices(left));
+           "mixed in one series: kept " + slices(most.size()) + " of " + taken + ", left " +
+               slices(left.size()) + ": " + listed(left),
+           left);
     members = std::vector<DicomSlice>(std::move(most));
   }
 
+  /// Keeps the commonest patient, study, modality and frame of reference. An image without the attribute is
+  /// taken to be of the commonest.
+  std::vector<DicomSlice> with_one_identity(std::vector<DicomSlice> members) {
+    for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
+      if (dicom_traits[trait].role != TraitRole::Identity) continue;
+      std::map<std::string, std::size_t> counts;
+      for (const DicomSlice& slice : members)
+        if (!slice.traits[trait].empty()) ++counts[slice.traits[trait]];
+      if (counts.size() < 2) {
+        find(dicom_traits[trait].check, Verdict::Pass, "one in all slices");
+        continue;
+      }
+      const std::string commonest =
+          std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+            return a.second < b.second;
+          })->first;
+      const auto is_other = [&](const DicomSlice& slice) {
+        return !slice.traits[trait].empty() && slice.traits[trait] != commonest;
+      };
+      std::vector<std::string> left;
+      for (const DicomSlice& slice : members)
+        if (is_other(slice)) left.push_back(slice.name);
+      std::erase_if(members, is_other);
+      find(dicom_traits[trait].check, Verdict::Fail,
+           "one series holds " + std::string(dicom_traits[trait].effect) + ": kept " +
+               slices(members.size()) + ", left out " + slices(left.size()) + ": " + listed(left),
+           left);
+    }
+    return members;
+  }
+
+  /// Of several stacks at one place, keeps the largest.
+  void keep_one_stack(std::vector<DicomSlice>& members) {
+    std::vector<DicomSubseries> stacks = parted_at_one_place(std::move(members));
+    members = std::move(stacks.front().slices);
+    if (stacks.size() == 1) return find("stacks", Verdict::Pass, "no two stacks at one place");
+    std::string list = "took " + slices(members.size()) + ", " + stacks.front().words + "; left ";
+    std::vector<std::string> left;
+    for (std::size_t i = 1; i < stacks.size(); ++i) {
+      list += (i == 1 ? "" : "; ") + slices(stacks[i].slices.size()) + ", " + stacks[i].words;
+      for (const DicomSlice& slice : stacks[i].slices) left.push_back(slice.name);
+    }
+    find("stacks", Verdict::Fail,
+         std::to_string(stacks.size()) + " stacks of one series lie at one place: " + list + ": " +
+             listed(left) + "; choose by --series N of " + choices_,
+         left);
+  }
+
+  /// Keeps the slices that the options name.
+  void keep_asked(DicomStack& stack) {
+    if (options_.slices.empty()) return;
+    const auto count = static_cast<int>(stack.slices.size());
+    std::vector<bool> wanted(stack.slices.size(), false);
+    for (const SliceRange& range : options_.slices) {
+      if (range.first < 1 || range.last > count)
+        refuse(path_,
+               print("--slices %d:%d: the series has the slices 1:%d", range.first, range.last, count));
+      std::fill(wanted.begin() + range.first - 1, wanted.begin() + range.last, true);
+    }
+    std::vector<DicomSlice> kept;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i]) kept.push_back(std::move(stack.slices[i]));
+    stack.slices = std::move(kept);
+    find("chosen_slices", Verdict::Pass,
+         "kept " + std::to_string(stack.slices.size()) + " of " + std::to_string(count) +
+             " slices, as --slices " + to_string(options_.slices) + " asks");
+  }
+
   DicomStack orient(std::vector<DicomSlice> members) {
-    keep_commonest(
-        "size", members,
-        [](const DicomSlice& a, const DicomSlice& b) {
-          return a.size_px == b.size_px &&
-                 glm::all(glm::lessThan(glm::abs(a.spacing_mm - b.spacing_mm), 1e-5 * a.spacing_mm));
-        },
-        [](const DicomSlice& slice) {
-          return print("%d x %d pixels of %.6g x %.6g mm", slice.size_px.x, slice.size_px.y,
-                       slice.spacing_mm.x, slice.spacing_mm.y);
-        });
-    keep_commonest(
-        "orientation", members,
-        [](const DicomSlice& a, const DicomSlice& b) {
-          return glm::length(a.along_row - b.along_row) < cosine_tolerance() &&
-                 glm::length(a.along_column - b.along_column) < cosine_tolerance();
-        },
-        [](const DicomSlice& slice) {
-          const glm::dvec3 normal = glm::abs(glm::cross(slice.along_row, slice.along_column));
-          const char* plane = normal.z >= normal.x && normal.z >= normal.y ? "axial"
-                              : normal.y >= normal.x                       ? "coronal"
-                                                                           : "sagittal";
-          return print("%s slices, rows along (%.4g, %.4g, %.4g), columns along (%.4g, %.4g, %.4g) in LPS",
-                       plane, slice.along_row.x + 0.0, slice.along_row.y + 0.0, slice.along_row.z + 0.0,
-                       slice.along_column.x + 0.0, slice.along_column.y + 0.0, slice.along_column.z + 0.0);
-        });
+    keep_commonest("size", members, same_grid, [](const DicomSlice& slice) {
+      return print("%d x %d pixels of %.6g x %.6g mm", slice.size_px.x, slice.size_px.y, slice.spacing_mm.x,
+                   slice.spacing_mm.y);
+    });
+    keep_commonest("orientation", members, same_orientation, [](const DicomSlice& slice) {
+      const glm::dvec3 normal = glm::abs(glm::cross(slice.along_row, slice.along_column));
+      const char* plane = normal.z >= normal.x && normal.z >= normal.y ? "axial"
+                          : normal.y >= normal.x                       ? "coronal"
+                                                                       : "sagittal";
+      return print("%s slices, rows along (%.4g, %.4g, %.4g), columns along (%.4g, %.4g, %.4g) in LPS", plane,
+                   slice.along_row.x + 0.0, slice.along_row.y + 0.0, slice.along_row.z + 0.0,
+                   slice.along_column.x + 0.0, slice.along_column.y + 0.0, slice.along_column.z + 0.0);
+    });
     DicomStack stack;
+    keep_one_stack(members);
     stack.slices = std::move(members);
     make_perpendicular(stack);
     if (stack.first().spacing_at_detector)
@@ -273,9 +407,7 @@ class SeriesAssembler {
       usual_gap_mm = gaps[gaps.size() / 2];
     }
     std::vector<DicomSlice> kept;
-    std::size_t copy_count = 0;
-    std::size_t rival_count = 0;
-    std::string first_repeat;
+    std::vector<std::string> copies, renamed, rivals;
     for (DicomSlice& slice : stack.slices) {
       const bool repeats = !kept.empty() && glm::dot(slice.first_mm - kept.back().first_mm, stack.normal) <=
                                                 repeat_tolerance_mm(usual_gap_mm);
@@ -283,25 +415,40 @@ class SeriesAssembler {
         kept.push_back(std::move(slice));
         continue;
       }
-      if (copy_count + rival_count == 0) first_repeat = slice.path.filename().string();
-      ++(slice.instance_uid == kept.back().instance_uid ? copy_count : rival_count);
+      const bool same_uid = slice.instance_uid == kept.back().instance_uid;
+      const bool recoded = slice.pixels.transfer_syntax != kept.back().pixels.transfer_syntax;
+      if (same_pixels(slice, kept.back()) || (same_uid && recoded))
+        (same_uid ? copies : renamed).push_back(slice.name);
+      else
+        rivals.push_back(slice.name);
     }
     stack.slices = std::move(kept);
-    if (copy_count + rival_count == 0)
-      find("duplicates", Verdict::Pass, "every slice has its own position");
-    else if (rival_count == 0)
-      find("duplicates", Verdict::Warn,
-           slices(copy_count) + " stored twice and left out, the first " + first_repeat);
-    else
-      find("duplicates", Verdict::Fail,
-           slices(rival_count) +
-               " left out that are different images at positions already taken, the first " + first_repeat +
-               "; the series holds several scans: put each into a folder of its own");
+    audit_repeated(copies, renamed, rivals);
+  }
+
+  void audit_repeated(const std::vector<std::string>& copies, const std::vector<std::string>& renamed,
+                      const std::vector<std::string>& rivals) {
+    std::string told;
+    std::vector<std::string> all;
+    const auto tell = [&](const std::vector<std::string>& names, const char* what,
+                          const std::string& advice) {
+      if (names.empty()) return;
+      told += (told.empty() ? "" : "; ") + slices(names.size()) + what + listed(names) + advice;
+      all.insert(all.end(), names.begin(), names.end());
+    };
+    tell(rivals, " left out that are different images at positions already taken: ",
+         "; the series holds several scans: choose by --series N of " + choices_ +
+             ", or put each into a folder of its own");
+    tell(copies, " stored twice and left out: ", "");
+    tell(renamed, " with the pixels and place of another, under a new identifier, left out: ", "");
+    const Verdict verdict = !rivals.empty() ? Verdict::Fail : !all.empty() ? Verdict::Warn : Verdict::Pass;
+    find("duplicates", verdict, all.empty() ? "every slice has its own position" : told, all);
   }
 
   fs::path path_;
   const ReadOptions& options_;
   std::vector<Finding>& audit_;
+  std::string choices_;  ///< of all series and stacks, for findings and refusals
 };
 
 }  // namespace

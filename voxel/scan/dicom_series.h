@@ -30,8 +30,9 @@ struct DicomStack {
 };
 
 /// Reads the headers below a path, chooses the series that the options ask for, and keeps the slices that
-/// form a stack. The audit states which slices were left out and why: stray_files, series, localizers, size,
-/// orientation, pixel_spacing, duplicates. Throws as read_scene().
+/// form a stack. The audit names the files that were left out and why: stray_files, unusable_images,
+/// damaged_files, series, localizers, patient, study, modality, frame_of_reference, size, orientation,
+/// stacks, pixel_spacing, duplicates; then audit_stack()'s lines. Throws as read_scene().
 DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
                            std::vector<Finding>& audit);
 

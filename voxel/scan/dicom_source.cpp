@@ -8,6 +8,7 @@
 
 #include "voxel/scan/dicom_series.h"
 #include "voxel/scan/inflate.h"
+#include "voxel/scan/slice_plan.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -58,6 +59,8 @@ DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
   for (const DicomSlice& slice : stack.slices)
     source.images.push_back(
         {slice.class_uid, file_uid(slice.instance_uid), glm::dot(slice.first_mm, stack.normal)});
+  if (const SlicePlan plan = slice_plan(stack, path, ignored); plan.is_copy())
+    source.lattice = lattice_of(stack, plan);
   const std::string bytes = bytes_of(stack.first().path);
   const auto take = [&](const DicomFile& file) {
     for (const auto& [tag, vr] : shared_attributes)

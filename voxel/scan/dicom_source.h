@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct DicomSource {
   std::string modality;
   std::vector<Image> images;  ///< in order along the normal; each frame of a file is an image
   glm::dvec3 normal{0, 0, 1};
+  std::optional<Lattice> lattice = {};  ///< of the images as they lie; none if they form no lattice
 };
 
 /// The series that read_scene() reads with these options. Throws as read_scene().

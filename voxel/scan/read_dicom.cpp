@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // A stack of slices to a lattice:
-//   1  lay a lattice through the slices: its step is the smallest gap
+//   1  lay a lattice through the slices (slice_plan.h)
 //   2  decode the slices, rescaled
 //   3  interpolate linearly if slices leave the lattice: gantry tilt, uneven or missing slices
 //   4  judge by the air if the values are Hounsfield
@@ -12,14 +12,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <map>
+#include <numeric>
 #include <span>
 #include <tbb/parallel_for.h>
+#include <tuple>
 
 #include "voxel/scan/air_level.h"
 #include "voxel/scan/audit.h"
 #include "voxel/scan/dicom_series.h"
+#include "voxel/scan/slice_plan.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -29,36 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 using Stack = DicomStack;
 
-/// Some scanners write positions with two decimals, so that the difference of two positions errs by up to
-/// 0.01 mm. A shift of a hundredth of the step changes samples by less than interpolation would.
-double position_tolerance_mm(double step_mm) {
-  return std::max(0.01, 0.01 * step_mm);
-}
-
-/// A shift of d pixels changes a sample at a step edge by d times the step; a tenth is below the partial
-/// volume effect of any slice, and far above the rounding of positions.
-constexpr double aside_tolerance_px() {
-  return 0.1;
-}
-
-/// The lattice's place in the stack of slices.
-struct Plan {
-  struct Source {
-    std::size_t below = 0;
-    std::size_t above = 0;
-    double share_above = 0.0;
-  };
-  std::vector<Source> sources;  ///< of each slice of the lattice
-  double step_mm = 1.0;
-  bool leans = false;    ///< slices are shifted aside against each other
-  glm::ivec2 low_px{0};  ///< first pixel of the lattice, in pixels of the first slice
-  glm::ivec2 size_px{0};
-
-  bool is_copy() const {
-    return !leans && std::all_of(sources.begin(), sources.end(),
-                                 [](const Source& source) { return source.below == source.above; });
-  }
-};
+using Plan = SlicePlan;
 
 class SeriesReader {
  public:
@@ -68,15 +41,18 @@ class SeriesReader {
     options_.progress.at(0.0);
     const Stack stack = stack_of_series(path_, options_, scene_.audit);
     options_.progress.at(0.1);
-    const Plan plan = lay(stack);
+    const Plan plan = slice_plan(stack, path_, scene_.audit);
+    scene_.holes = plan.holes;
     if (!decode_as<std::int16_t>(stack)) decode_as<float>(stack);
     options_.progress.at(0.8);
     audit_rescale(stack);
     audit_padding(stack);
+    audit_contents(stack);
     if (!plan.is_copy())
       std::visit([&](auto& samples) { samples = resample(stack, plan, samples); }, scene_.samples);
-    place(stack, plan);
+    scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;
+    audit_steps();
     if (scene_.modality == "CT") {
       AirLevel air = air_level_of_ct(scene_);
       // The header declares the unit as unspecified, and no air contradicts it: not Hounsfield.
@@ -92,145 +68,8 @@ class SeriesReader {
   }
 
  private:
-  void find(const char* check, Verdict verdict, std::string detail) {
-    scene_.audit.push_back({check, verdict, std::move(detail)});
-  }
-
-  Plan lay(const Stack& stack) {
-    Plan plan;
-    plan.size_px = stack.first().size_px;
-    if (stack.slices.size() == 1) {
-      plan.sources.push_back({});
-      plan.step_mm = stack.first().thickness_mm.value_or(0.0);
-      const bool is_known = plan.step_mm > 0.0;
-      if (!is_known) plan.step_mm = 1.0;
-      find("slice_spacing", Verdict::Warn,
-           print("a single slice; its thickness of %g mm is %s", plan.step_mm,
-                 is_known ? "the header's" : "assumed, the header has none"));
-      return plan;
-    }
-    lay_along_normal(stack, plan);
-    lay_across(stack, plan);
-    return plan;
-  }
-
-  /// Sets the lattice's step and the slices that each of its slices is made from.
-  void lay_along_normal(const Stack& stack, Plan& plan) {
-    const std::size_t count = stack.slices.size();
-    std::vector<double> heights_mm;
-    for (const DicomSlice& slice : stack.slices) heights_mm.push_back(stack.height_mm(slice));
-    double least = std::numeric_limits<double>::infinity();
-    double most = 0.0;
-    for (std::size_t i = 1; i < count; ++i) {
-      least = std::min(least, heights_mm[i] - heights_mm[i - 1]);
-      most = std::max(most, heights_mm[i] - heights_mm[i - 1]);
-    }
-    // The mean of all small gaps is exact enough to count through a long stack.
-    double sum = 0.0;
-    int fine_count = 0;
-    for (std::size_t i = 1; i < count; ++i) {
-      if (const double gap = heights_mm[i] - heights_mm[i - 1]; gap < 1.5 * least) {
-        sum += gap;
-        ++fine_count;
-      }
-    }
-    const double total_mm = heights_mm.back();
-    const double steps = std::round(total_mm / (sum / fine_count));
-    if (steps > 2.0 * static_cast<double>(count))
-      refuse(path_,
-             print("the slices are too scattered for a volume: gaps from %.3g to %.3g mm between %zu slices; "
-                   "select the slices of one scan",
-                   least, most, count));
-    plan.step_mm = total_mm / steps;
-    const double tolerance_mm = position_tolerance_mm(plan.step_mm);
-    std::size_t below = 0;
-    for (std::size_t k = 0; k <= static_cast<std::size_t>(steps); ++k) {
-      const double height_mm = static_cast<double>(k) * plan.step_mm;
-      while (below + 2 < count && heights_mm[below + 1] <= height_mm) ++below;
-      const double gap_mm = heights_mm[below + 1] - heights_mm[below];
-      const double above_mm = height_mm - heights_mm[below];
-      if (above_mm <= tolerance_mm) {
-        plan.sources.push_back({below, below, 0.0});
-      } else if (gap_mm - above_mm <= tolerance_mm) {
-        plan.sources.push_back({below + 1, below + 1, 0.0});
-      } else {
-        plan.sources.push_back({below, below + 1, above_mm / gap_mm});
-      }
-    }
-    std::vector<bool> used(count, false);
-    for (const Plan::Source& source : plan.sources)
-      if (source.below == source.above) used[source.below] = true;
-    const auto uneven_count = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
-    report_spacing(plan, least, most, uneven_count, count, heights_mm);
-  }
-
-  void report_spacing(const Plan& plan, double least, double most, std::size_t uneven_count,
-                      std::size_t count, const std::vector<double>& heights_mm) {
-    if (uneven_count > 0) {
-      find("slice_spacing", Verdict::Warn,
-           print("uneven: gaps from %.4g to %.4g mm; %zu slices resampled to %zu, %.6g mm apart, by linear "
-                 "interpolation",
-                 least, most, count, plan.sources.size(), plan.step_mm));
-      return;
-    }
-    find("slice_spacing", Verdict::Pass,
-         print("%zu slices %.6g mm apart", plan.sources.size(), plan.step_mm));
-    if (plan.sources.size() == count) {
-      find("missing_slices", Verdict::Pass, "none");
-      return;
-    }
-    std::size_t widest = 1;
-    for (std::size_t i = 1; i < count; ++i)
-      if (heights_mm[i] - heights_mm[i - 1] > heights_mm[widest] - heights_mm[widest - 1]) widest = i;
-    find("missing_slices", Verdict::Warn,
-         print("%zu of %zu slices are missing and linearly interpolated; the widest gap, %.4g mm, follows "
-               "slice %zu from the start",
-               plan.sources.size() - count, plan.sources.size(), most, widest));
-  }
-
-  /// Sets the lattice's extent across the stack, wider than the slices if they lean.
-  void lay_across(const Stack& stack, Plan& plan) {
-    glm::dvec2 low_px(0.0);
-    glm::dvec2 high_px(0.0);
-    for (std::size_t i = 1; i < stack.slices.size(); ++i) {
-      const DicomSlice& slice = stack.slices[i];
-      const glm::dvec2 aside_px = stack.aside_px(slice);
-      low_px = glm::min(low_px, aside_px);
-      high_px = glm::max(high_px, aside_px);
-      const DicomSlice& before = stack.slices[i - 1];
-      const double aside_mm = glm::length((aside_px - stack.aside_px(before)) * stack.first().spacing_mm);
-      if (aside_mm > stack.height_mm(slice) - stack.height_mm(before))
-        refuse(slice.path,
-               print("lies %.4g mm to the side of the slice before it, more than any gantry tilt explains; "
-                     "move it to a folder of its own",
-                     aside_mm));
-    }
-    const DicomSlice& last = stack.slices.back();
-    const double lean_mm = glm::length(stack.aside_px(last) * stack.first().spacing_mm);
-    const double tilt_deg = std::atan2(lean_mm, stack.height_mm(last)) * 180.0 / std::numbers::pi;
-    const double tag_deg = std::abs(stack.first().tilt_deg.value_or(0.0));
-    const glm::dvec2 spread_px = high_px - low_px;
-    plan.leans = std::max(spread_px.x, spread_px.y) > aside_tolerance_px();
-    if (!plan.leans) {
-      // Files give the tag to half a degree or better.
-      if (tag_deg > 0.5)
-        find(
-            "gantry_tilt", Verdict::Warn,
-            print("the header names a tilt of %.3g degrees, but by their positions the slices stand straight "
-                  "above each other: the tilt is ignored",
-                  tag_deg));
-      else
-        find("gantry_tilt", Verdict::Pass, "slices stand straight above each other");
-      return;
-    }
-    plan.low_px = glm::ivec2(glm::floor(low_px + aside_tolerance_px()));
-    const glm::ivec2 high = glm::ivec2(glm::ceil(high_px - aside_tolerance_px()));
-    plan.size_px += high - plan.low_px;
-    find("gantry_tilt", Verdict::Warn,
-         print("slices lean by %.2f degrees (%.4g mm over the stack); straightened by linear interpolation "
-               "within slices, widened from %d x %d to %d x %d pixels and filled with the lowest value",
-               tilt_deg, lean_mm, stack.first().size_px.x, stack.first().size_px.y, plan.size_px.x,
-               plan.size_px.y));
+  void find(const char* check, Verdict verdict, std::string detail, std::vector<std::string> files = {}) {
+    scene_.audit.push_back({check, verdict, std::move(detail), std::move(files)});
   }
 
   template <typename Sample>
@@ -250,16 +89,41 @@ class SeriesReader {
   void audit_rescale(const Stack& stack) {
     const DicomSlice& first = stack.first();
     const bool is_ct = first.modality == "CT";
-    const auto differs = [&](const DicomSlice& slice) {
-      return slice.slope != first.slope || slice.intercept != first.intercept;
+    const auto named_if = [&](const auto& holds) {
+      std::vector<std::string> names;
+      for (const DicomSlice& slice : stack.slices)
+        if (holds(slice)) names.push_back(slice.name);
+      return names;
     };
-    const auto differing = std::count_if(stack.slices.begin(), stack.slices.end(), differs);
-    if (differing > 0)
-      find(
-          "rescale", Verdict::Warn,
-          print("slope and intercept change between slices (%td differ from the first); each slice's own are "
-                "applied",
-                differing));
+    const auto flat = named_if([](const DicomSlice& slice) { return slice.slope == 0.0; });
+    if (!flat.empty())
+      return find("rescale", Verdict::Fail,
+                  "RescaleSlope is 0 in " + slices(flat.size()) +
+                      ", which leaves one value: a slope of 1 is assumed: " + listed(flat),
+                  flat);
+    const auto falling = named_if([](const DicomSlice& slice) { return slice.slope.value_or(1.0) < 0.0; });
+    if (!falling.empty())
+      return find("rescale", Verdict::Fail,
+                  "RescaleSlope is below 0 in " + slices(falling.size()) +
+                      ": bright and dark are exchanged there: " + listed(falling),
+                  falling);
+    std::map<std::tuple<double, double, std::string>, std::vector<std::string>> kinds;
+    for (const DicomSlice& slice : stack.slices)
+      kinds[{slice.slope.value_or(1.0), slice.intercept.value_or(0.0), slice.rescale_type}].push_back(
+          slice.name);
+    const auto commonest = std::max_element(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) {
+      return a.second.size() < b.second.size();
+    });
+    std::vector<std::string> differing;
+    for (const auto& [kind, names] : kinds)
+      if (kind != commonest->first) differing.insert(differing.end(), names.begin(), names.end());
+    const auto half = named_if(
+        [&](const DicomSlice& slice) { return slice.slope.has_value() != slice.intercept.has_value(); });
+    if (!differing.empty())
+      find("rescale", Verdict::Warn,
+           "slope, intercept or unit change between slices (" + std::to_string(differing.size()) +
+               " differ from the others); each slice's own are applied: " + listed(differing),
+           differing);
     else if (!first.slope && !first.intercept)
       find("rescale", is_ct ? Verdict::Warn : Verdict::Pass,
            is_ct ? "RescaleSlope and RescaleIntercept are absent; stored values are not rescaled"
@@ -268,14 +132,59 @@ class SeriesReader {
       find("rescale", Verdict::Warn,
            print("slope %g, intercept %g applied; their unit is declared '%s', not HU",
                  first.slope.value_or(1.0), first.intercept.value_or(0.0), first.rescale_type.c_str()));
-    else if (is_ct && (!first.slope || !first.intercept))
+    else if (is_ct && !half.empty())
       find("rescale", Verdict::Warn,
-           "RescaleSlope or RescaleIntercept is absent; a slope of 1 or an intercept of 0 is assumed");
+           "RescaleSlope or RescaleIntercept is absent; a slope of 1 or an intercept of 0 is assumed: " +
+               listed(half),
+           half);
     else
       find("rescale", Verdict::Pass,
            print("slope %g, intercept %g applied", first.slope.value_or(1.0), first.intercept.value_or(0.0)));
-    if (first.inverted)
-      find("photometric", Verdict::Warn, "MONOCHROME1: viewers show it inverted; values are read as stored");
+  }
+
+  /// Slices without any contrast, and slices that repeat the one below pixel by pixel.
+  void audit_contents(const Stack& stack) {
+    const std::size_t area =
+        static_cast<std::size_t>(stack.first().size_px.x) * static_cast<std::size_t>(stack.first().size_px.y);
+    std::vector<char> blank(stack.slices.size(), 0), repeated(stack.slices.size(), 0);
+    std::visit(
+        [&](const auto& samples) {
+          tbb::parallel_for(std::size_t{0}, stack.slices.size(), [&](std::size_t i) {
+            const auto slice = samples.begin() + static_cast<std::ptrdiff_t>(i * area);
+            const auto end = slice + static_cast<std::ptrdiff_t>(area);
+            blank[i] = std::all_of(slice, end, [&](auto sample) { return sample == *slice; });
+            repeated[i] = i > 0 && std::equal(slice, end, slice - static_cast<std::ptrdiff_t>(area));
+          });
+        },
+        scene_.samples);
+    std::vector<std::string> blanks, repeats;
+    for (std::size_t i = 0; i < stack.slices.size(); ++i) {
+      if (blank[i] != 0) blanks.push_back(stack.slices[i].name);
+      if (blank[i] == 0 && repeated[i] != 0) repeats.push_back(stack.slices[i].name);
+    }
+    if (!blanks.empty() && blanks.size() < stack.slices.size())
+      find("blank_slices", Verdict::Warn, slices(blanks.size()) + " hold one value only: " + listed(blanks),
+           blanks);
+    if (!repeats.empty())
+      find("repeated_slices", Verdict::Warn,
+           slices(repeats.size()) +
+               " repeat the pixels of the slice below at another place: " + listed(repeats),
+           repeats);
+  }
+
+  /// The greatest common divisor of all differences of samples. Coarser steps than a unit come from 8-bit
+  /// storage or from lossy processing.
+  void audit_steps() {
+    const auto* samples = std::get_if<Int16Samples>(&scene_.samples);
+    if (samples == nullptr || scene_.modality != "CT") return;
+    int step = 0;
+    for (const std::int16_t sample : *samples)
+      if ((step = std::gcd(step, sample - samples->front())) == 1) break;
+    // Scanners measure to about a unit; four units are below the noise of any head protocol.
+    if (step > 4)
+      find("sample_steps", Verdict::Warn,
+           print("samples come in steps of %d: finer differences were lost before this file was written",
+                 step));
   }
 
   /// Pixels beyond the scanner's field of view hold a padding value, which is no measurement.
@@ -338,17 +247,6 @@ class SeriesReader {
       }
     });
     return samples;
-  }
-
-  void place(const Stack& stack, const Plan& plan) {
-    const glm::dvec3 row_mm = stack.along_row * stack.first().spacing_mm.x;
-    const glm::dvec3 column_mm = stack.along_column * stack.first().spacing_mm.y;
-    const glm::dvec3 first_mm = stack.first().first_mm + row_mm * static_cast<double>(plan.low_px.x) +
-                                column_mm * static_cast<double>(plan.low_px.y);
-    scene_.lattice.dims = {plan.size_px, static_cast<int>(plan.sources.size())};
-    scene_.lattice.lps_from_voxel =
-        glm::dmat4(glm::dvec4(row_mm, 0.0), glm::dvec4(column_mm, 0.0),
-                   glm::dvec4(stack.normal * plan.step_mm, 0.0), glm::dvec4(first_mm, 1.0));
   }
 
   fs::path path_;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/read_scene.h"
 
+#include <algorithm>
+#include <charconv>
 #include <stdexcept>
+#include <string_view>
 
 #include "voxel/scan/read_dicom.h"
 #include "voxel/scan/read_image_stack.h"
@@ -39,6 +42,37 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
 }
 
 }  // namespace
+
+std::vector<SliceRange> parse_slices(const std::string& text) {
+  std::vector<SliceRange> slices;
+  const auto number = [&](std::string_view part) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || end != part.data() + part.size() || value < 1)
+      throw std::invalid_argument("'" + text +
+                                  "' names no images: give FROM:TO counted from 1, for example "
+                                  "1:40 or 1:40,45:60");
+    return value;
+  };
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string_view part(text.data() + at, end - at);
+    const std::size_t colon = part.find(':');
+    const int first = number(part.substr(0, colon));
+    const int last = colon == std::string_view::npos ? first : number(part.substr(colon + 1));
+    if (last < first) throw std::invalid_argument("'" + text + "' ends before it begins: swap FROM and TO");
+    slices.push_back({first, last});
+    at = end + 1;
+  }
+  return slices;
+}
+
+std::string to_string(const std::vector<SliceRange>& slices) {
+  std::string text;
+  for (const SliceRange& range : slices)
+    text += (text.empty() ? "" : ",") + std::to_string(range.first) + ":" + std::to_string(range.last);
+  return text;
+}
 
 Scene read_scene(const fs::path& path, const ReadOptions& options) {
   Scene scene = read_any(path, options);

@@ -22,14 +22,24 @@ struct RawLayout {
 };
 
 struct ReadOptions {
-  /// The DICOM series: its number in list_series() (from 1), its UID, or a part of its description. Empty:
-  /// the series with most slices.
+  /// The DICOM series: its choice in list_series() ("2", or "2.1" of a series that holds several stacks), its
+  /// UID, or a part of its description or of the attributes that tell its stacks apart. Empty: the series
+  /// with most slices.
   std::string series;
+  /// Of the chosen DICOM series: the images to keep, counted from 1 at the lowest along the normal. Empty:
+  /// all.
+  std::vector<SliceRange> slices;
   /// Along x, y, z, for files that do not state it: image stacks and raw files.
   std::optional<glm::dvec3> spacing_mm;
   std::optional<RawLayout> raw;  ///< set: the path is a raw file
   Progress progress;
 };
+
+/// Reads "1:40" or "1:40,45:60" or "7", as images are counted by ReadOptions::slices. Throws
+/// std::invalid_argument with an example.
+std::vector<SliceRange> parse_slices(const std::string& text);
+/// The text that parse_slices() reads back.
+std::string to_string(const std::vector<SliceRange>& slices);
 
 /// Reads a scan: a folder or a file of DICOM; NIfTI, NRRD or MetaImage; a stack of images (a TIFF of several
 /// pages, a folder of images, or a pattern with * and ? in its last part); a raw file. Applies the file's
@@ -40,15 +50,18 @@ struct ReadOptions {
 /// or the decoder's own copy; twice if slices are resampled; bounded by a multiple of the file's size.
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// A DICOM series found in a folder.
+/// A DICOM series found in a folder, or one of several stacks in it.
 struct SeriesEntry {
   std::string uid, description, modality;
   int number = 0;  ///< the scanner's
   std::size_t slices = 0;
   glm::ivec2 size_px{0};
+  std::string choice = {};  ///< for ReadOptions::series
+  std::string stack = {};   ///< the attributes that tell it from the series' other stacks: "kernel H60s"
 };
-/// The series of a folder and its subfolders, most slices first; ReadOptions::series counts them in this
-/// order. Throws as read_scene() if there is none.
+/// The series of a folder and its subfolders, most slices first. A series in which several images lie at one
+/// place is listed by its stacks, which a kernel, an acquisition or a phase tells apart. Throws as
+/// read_scene() if there is none.
 std::vector<SeriesEntry> list_series(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

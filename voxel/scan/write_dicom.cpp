@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -19,6 +21,49 @@ namespace fs = std::filesystem;
 
 constexpr const char* ct_image_storage = "1.2.840.10008.5.1.4.1.1.2";
 constexpr const char* mr_image_storage = "1.2.840.10008.5.1.4.1.1.4";
+
+/// Sample = slope * stored + intercept.
+struct Rescale {
+  double slope = 1.0;
+  double intercept = 0.0;
+};
+
+/// A number as a decimal string of 16 characters holds it.
+double as_written(double number) {
+  return std::strtod(dicom_decimal(number).c_str(), nullptr);
+}
+
+/// Slope 1 and intercept 0 for integers in int16's range, else the finest power of two for which the range of
+/// samples fits 16 bits. Samples that are multiples of the slope, as halves are, then keep their values;
+/// others change by half a slope at most.
+Rescale rescale_of(const Scene& scene) {
+  const auto is_exact = [](double value) {
+    return value >= std::numeric_limits<std::int16_t>::min() &&
+           value <= std::numeric_limits<std::int16_t>::max() && value == std::trunc(value);
+  };
+  if (std::holds_alternative<Int16Samples>(scene.samples)) return {};
+  const auto& samples = std::get<FloatSamples>(scene.samples);
+  if (std::all_of(samples.begin(), samples.end(), is_exact)) return {};
+  if (!std::all_of(samples.begin(), samples.end(), [](float value) { return std::isfinite(value); }))
+    throw std::invalid_argument("a sample is not finite: DICOM stores numbers only");
+  const Range values = range(scene);
+  // One step is kept at either end for the rounding of the intercept.
+  double slope = std::exp2(std::ceil(std::log2(std::max(values.high - values.low, 1e-6) / 65533.0)));
+  slope = as_written(slope);
+  return {slope, as_written(std::round(0.5 * (values.low + values.high) / slope) * slope)};
+}
+
+/// Whether every point of a lattice is a point of another one, to a thousandth of its spacing.
+bool lies_on(const Lattice& lattice, const Lattice& other) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 last = glm::dvec3(lattice.dims - 1);
+    const glm::dvec3 p = other.voxel(
+        lattice.lps_mm({corner & 1 ? last.x : 0, corner & 2 ? last.y : 0, corner & 4 ? last.z : 0}));
+    if (glm::any(glm::greaterThan(glm::abs(p - glm::round(p)), glm::dvec3(1e-3)))) return false;
+  }
+  const glm::dvec3 spacing_mm = lattice.spacing_mm(), other_mm = other.spacing_mm();
+  return glm::all(glm::lessThan(glm::abs(spacing_mm - other_mm), 1e-3 * other_mm));
+}
 
 /// Writes the slices of one series.
 class SeriesWriter {
@@ -46,6 +91,10 @@ class SeriesWriter {
     digest_.add(options.series_description);
     if (options.source) digest_.add(options.source->series_uid);
     is_mr_ = scene.modality == "MR";
+    rescale_ = rescale_of(scene);
+    values_ = range(scene);
+    is_resampled_ =
+        options.source && !(options.source->lattice && lies_on(scene.lattice, *options.source->lattice));
   }
 
   /// Writes slice k to `path`; errors call the file `name`.
@@ -69,12 +118,7 @@ class SeriesWriter {
         [&](const auto& samples) {
           for (std::size_t i = 0; i < area; ++i) {
             const auto value = static_cast<double>(samples[static_cast<std::size_t>(k) * area + i]);
-            if (!(value >= std::numeric_limits<std::int16_t>::min() &&
-                  value <= std::numeric_limits<std::int16_t>::max() && value == std::trunc(value)))
-              throw std::invalid_argument("sample " + std::to_string(value) + " of slice " +
-                                          std::to_string(k) +
-                                          " is no integer in int16's range: round or rescale the scene");
-            slice[i] = static_cast<std::int16_t>(value);
+            slice[i] = static_cast<std::int16_t>(std::lround((value - rescale_.intercept) / rescale_.slope));
           }
         },
         scene_.samples);
@@ -112,7 +156,9 @@ class SeriesWriter {
     slice.put(0x00200011, "IS", std::to_string(source.series_number + 1000));
     const std::vector<DicomSource::Image> images = images_behind(source, scene_.lattice, k);
     if (images.empty()) return;
-    slice.put(0x00082111, "ST", "Resampled to a lattice where the source is not one");
+    slice.put(0x00082111, "ST",
+              is_resampled_ ? "Resampled to a lattice, which the source's images are not or which is another"
+                            : "On the source's own pixels, not resampled");
     put_source_images(slice, images);
     put_referenced_series(slice, source.series_uid, images);
   }
@@ -127,11 +173,21 @@ class SeriesWriter {
     slice.put(0x00200013, "IS", std::to_string(k + 1));
     slice.put(0x00200032, "DS", dicom_decimals(scene_.lattice.lps_mm({0.0, 0.0, k})));
     slice.put(0x00200037, "DS", dicom_decimals(along_row_) + "\\" + dicom_decimals(along_column_));
+    put_window(slice);
     slice.put(0x00280030, "DS", dicom_decimal(spacing_mm_.y) + "\\" + dicom_decimal(spacing_mm_.x));
-    if (is_mr_) return;
-    slice.put(0x00281052, "DS", "0");
-    slice.put(0x00281053, "DS", "1");
+    if (is_mr_ && rescale_.slope == 1.0) return;
+    slice.put(0x00281052, "DS", dicom_decimal(rescale_.intercept));
+    slice.put(0x00281053, "DS", dicom_decimal(rescale_.slope));
     slice.put(0x00281054, "LO", scene_.meaning == Meaning::Hounsfield ? "HU" : "US");
+  }
+
+  /// Black and white for viewers: bone and soft tissue, or all values.
+  void put_window(DicomAttributes& slice) const {
+    const bool is_hounsfield = scene_.meaning == Meaning::Hounsfield;
+    const double centre = is_hounsfield ? 500.0 : 0.5 * (values_.low + values_.high);
+    const double width = is_hounsfield ? 2000.0 : std::max(values_.high - values_.low, 1.0);
+    slice.put(0x00281050, "DS", dicom_decimal(centre));
+    slice.put(0x00281051, "DS", dicom_decimal(width));
   }
 
   void put_pixels(DicomAttributes& slice, const Int16Samples& samples) const {
@@ -154,6 +210,9 @@ class SeriesWriter {
   glm::dvec3 along_column_{0, 1, 0};
   double step_mm_ = 1.0;
   bool is_mr_ = false;
+  bool is_resampled_ = false;
+  Rescale rescale_;
+  Range values_;
   DicomDigest digest_;
 };
 

@@ -28,11 +28,13 @@ struct DicomOptions {
 
 /// Writes each slice as a file (slice_0001.dcm and so on) into a folder, as MR Image Storage if the scene's
 /// modality is MR and as CT otherwise. Makes the folder if it is absent. A lattice whose third axis is not
-/// perpendicular to the first two becomes a series with gantry tilt. Samples are written as int16 with slope
-/// 1, intercept 0; the rescale type of a CT says if it is not Hounsfield. Unique identifiers come from the
+/// perpendicular to the first two becomes a series with gantry tilt. Samples are written as int16: integers
+/// with slope 1 and intercept 0, others with the finest slope for which their range fits, a power of two; the
+/// rescale type of a CT says if it is not Hounsfield. Viewers get a window: level 500, width 2000 in
+/// Hounsfield units, else all values. Unique identifiers come from the
 /// content: the same scene and options give the same files, byte by byte. Throws Error, Input or Resource,
-/// with path and reason, also if a file of that name is there; std::invalid_argument if a sample is no
-/// integer in int16's range, the first two axes are not perpendicular or a text is too long.
+/// with path and reason, also if a file of that name is there; std::invalid_argument if a sample is not
+/// finite, the first two axes are not perpendicular or a text is too long.
 void write_dicom_series(const Scene& scene, const std::filesystem::path& folder,
                         const DicomOptions& options = {});
 

@@ -22,6 +22,21 @@ std::string unit(const Scene& scene) {
   return scene.meaning == Meaning::Hounsfield ? "HU" : "1";
 }
 
+std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole) {
+  const glm::dvec3 step_mm(lattice.lps_from_voxel[2]);
+  const double along_mm = glm::dot(step_mm, hole.normal);
+  // A lattice whose slices are turned by more than half a degree has no slice within the slab.
+  if (!(std::abs(along_mm) > 0.9999 * glm::length(step_mm))) return std::nullopt;
+  const double start_mm = glm::dot(glm::dvec3(lattice.lps_from_voxel[3]), hole.normal);
+  // A slice within a hundredth of a step of an image is that image.
+  double low = (hole.low_mm - start_mm) / along_mm, high = (hole.high_mm - start_mm) / along_mm;
+  if (low > high) std::swap(low, high);
+  const double first = std::max(std::floor(low + 0.01) + 1.0, 0.0);
+  const double last = std::min(std::ceil(high - 0.01) - 1.0, lattice.dims.z - 1.0);
+  if (!(first <= last)) return std::nullopt;
+  return SliceRange{static_cast<int>(first), static_cast<int>(last)};
+}
+
 void check(const Scene& scene) {
   const Lattice& lattice = scene.lattice;
   if (lattice.dims.x < 1 || lattice.dims.y < 1 || lattice.dims.z < 1)

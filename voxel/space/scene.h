@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -23,6 +24,17 @@ struct Finding {
   std::string check;
   Verdict verdict = Verdict::Pass;
   std::string detail;
+  std::vector<std::string> files = {};  ///< all that the finding is about, relative to the scan's folder
+};
+
+/// A slab between two neighbouring images that are further apart than the others. No image measured its
+/// inside: the samples there are interpolated. Stays true when a scene is cropped or resampled.
+struct Hole {
+  glm::dvec3 normal{0, 0, 1};  ///< of the images, a unit vector in LPS
+  double low_mm = 0.0;         ///< p . normal of the image below
+  double high_mm = 0.0;        ///< p . normal of the image above
+
+  double length_mm() const { return high_mm - low_mm; }
 };
 
 template <typename Sample>
@@ -38,7 +50,16 @@ struct Scene {
   std::string modality;  ///< DICOM's two letters ("CT", "MR"), empty if the file does not say
   std::string source;    ///< its origin, for people
   std::vector<Finding> audit;
+  std::vector<Hole> holes = {};  ///< from the lowest on
 };
+
+/// First and last slice of a lattice whose centres lie inside a hole.
+struct SliceRange {
+  int first = 0;
+  int last = 0;
+};
+/// None if no slice's centre lies inside the hole, or the lattice's slices are not the hole's.
+std::optional<SliceRange> slices_inside(const Lattice& lattice, const Hole& hole);
 
 /// Smallest and largest sample. Precondition: the scene is not empty.
 struct Range {

@@ -80,7 +80,17 @@ TEST_F(ScanVerbs, ATissueIsAWindowOfHounsfieldUnitsEverywhere) {
   const Json named = json("measure " + at("ball.nrrd") + " --window skin");
   EXPECT_EQ(named["window"], Json({-300.0, nullptr}));
   EXPECT_EQ(named["volume_mm3"], json("measure " + at("ball.nrrd") + " --window=-300:")["volume_mm3"]);
+  EXPECT_EQ(named["tissues"]["skin"]["low"], -300.0);
+  EXPECT_FALSE(json("measure " + at("ball.nrrd") + " --window=-300:").contains("tissues"));
   ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
+  // Bone is the same in every verb, said or by default, and its numbers stand beside each use.
+  EXPECT_EQ(json("measure " + at("ball.nrrd") + " --window bone")["window"], Json({300.0, nullptr}));
+  EXPECT_NE(run("mesh " + at("ball.nrrd") + " -o " + at("d.stl")).errors.find("bone (from 300 HU)"),
+            std::string::npos);
+  const tests::CommandAnswer segmented =
+      run("segment " + at("ball.nrrd") + " --window bone -o " + at("s.octree") + " --json");
+  EXPECT_EQ(Json::parse(segmented.out)["tissues"]["bone"]["low"], 300.0);
+  EXPECT_NE(segmented.errors.find("bone (from 300 HU)"), std::string::npos) << segmented.errors;
   for (const std::string& verb :
        {"octree " + at("ball.nrrd") + " --window bone -o " + at("a.octree"),
         "render " + at("ball.nrrd") + " --window bone -o " + at("a.png"),

@@ -76,6 +76,30 @@ TEST_F(CommandLine, ContoursMoveOutThinAndLeaveSmallOnesOut) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "e.json"));
 }
 
+TEST_F(CommandLine, AContourThatSmoothingWouldCrossKeepsMoreOfItsShape) {
+  // A comb of long teeth, which few harmonics fold, beside a square.
+  std::string comb = "[[0,0]";
+  for (int tooth = 0; tooth < 12; ++tooth) {
+    const std::string x = std::to_string(tooth), half = std::to_string(tooth) + ".1",
+                      next = std::to_string(tooth) + ".9";
+    comb += ",[" + half + ",30],[" + x + ".2,30],[" + x + ".3,1],[" + next + ",1]";
+  }
+  comb += ",[12,0]]";
+  write("c.json", R"({ "view": "inferior", "slices": [
+      { "position_mm": 0, "polygons_mm": [ )" +
+                      comb + R"(, [[20,0],[30,0],[30,10],[20,10]] ] },
+      { "position_mm": 2, "polygons_mm": [ [[20,0],[30,0],[30,10],[20,10]] ] } ] })");
+  const CommandAnswer answer =
+      run("contours " + at("c.json") + " --harmonics 3 -o " + at("d.json") + " --json");
+  ASSERT_EQ(answer.status, 0) << answer.errors;
+  const Json said = Json::parse(answer.out);
+  EXPECT_EQ(said["contours"], 3);
+  ASSERT_EQ(said["findings"].size(), 1u) << said["findings"];
+  EXPECT_NE(said["findings"][0].get<std::string>().find("the slice at 0"), std::string::npos)
+      << said["findings"];
+  EXPECT_NE(answer.errors.find("cross itself"), std::string::npos) << answer.errors;
+}
+
 TEST_F(CommandLine, ContoursAreEditedByHandAndRefusedWhereTheyCross) {
   write("c.json", R"({ "view": "inferior", "slices": [
       { "position_mm": 0, "polygons_mm": [ [[0,0],[10,0],[10,10],[0,10]], [[20,0],[30,0],[30,10],[20,10]] ] },

@@ -43,6 +43,51 @@ TEST(PreparedScan, AHeadrestIsTakenOutAndThePlansScanStays) {
   EXPECT_EQ(evaluation.scans[1].details["parts_removed"], 1);
 }
 
+TEST(PreparedScan, WarnsOfASupportThatHangsOnTheHeadAndTheAdviceTakesItOut) {
+  const TestFolder folder;
+  // A ball of 20 mm, a board of 4 mm behind it, and a bridge of 2 mm between them.
+  const auto field = [](bool has_board, bool has_bridge) {
+    voxel::Scene scene;
+    scene.lattice = voxel::axis_aligned_lattice({80, 90, 40}, {1, 1, 1}, {-39.5, -39.5, -19.5});
+    scene.meaning = voxel::Meaning::Hounsfield;
+    scene.modality = "CT";
+    voxel::Int16Samples samples;
+    for (int z = 0; z < 40; ++z)
+      for (int y = 0; y < 90; ++y)
+        for (int x = 0; x < 80; ++x) {
+          const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
+          const bool in_head = glm::length(p * glm::dvec3(1, 1, 0.5)) < 20;
+          const bool in_board = has_board && p.y > 26 && p.y < 30;
+          const bool in_bridge = has_bridge && std::abs(p.x) < 1 && p.y > 0 && p.y < 30;
+          samples.push_back(in_head || in_board || in_bridge ? 60 : -1000);
+        }
+    scene.samples = std::move(samples);
+    return scene;
+  };
+  const auto step = [&](const voxel::Scene& scene, const std::string& more) {
+    voxel::write_scene(scene, folder / "ct.nrrd");
+    return evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "n", "scans": {"ct": {"path": "ct.nrrd"}},
+      "steps": [{"id": "head", "do": "remove_headrest", "scan": "ct")" +
+                                   more + R"(},
+                {"id": "skin", "do": "window", "scan": "head", "low": 0}]})",
+                               folder.path()));
+  };
+  const Evaluation hanging = step(field(true, true), "");
+  EXPECT_EQ(hanging.scans[1].details["parts_removed"], 0);
+  EXPECT_NEAR(hanging.scans[1].details["remains_mm3"].get<double>(), 80 * 4 * 40, 1500);
+  ASSERT_FALSE(hanging.scans[1].audit.empty());
+  const std::string advice = hanging.scans[1].audit.back().detail;
+  ASSERT_NE(advice.find("remove_headrest=-300,25,3 takes it out"), std::string::npos) << advice;
+  const Evaluation followed = step(field(true, true), R"(, "detach_mm": 3)");
+  EXPECT_NEAR(followed.object("skin").voxel.measures.volume_mm3,
+              step(field(false, false), "").object("skin").voxel.measures.volume_mm3, 300);
+  EXPECT_TRUE(followed.scans[1].details["remains_mm3"].is_null());
+  // Nothing hangs on a head alone: the finding says so, and recommends nothing that does nothing.
+  const Evaluation alone = step(field(false, false), "");
+  EXPECT_TRUE(alone.scans[1].details["remains_mm3"].is_null());
+  EXPECT_NE(alone.scans[1].audit.back().detail.find("crop"), std::string::npos);
+}
+
 TEST(PreparedScan, NamesAndValuesThatCannotBeAreRefused) {
   const TestFolder folder;
   EXPECT_NE(

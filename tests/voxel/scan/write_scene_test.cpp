@@ -198,11 +198,63 @@ TEST(WriteDicomSeries, SaysWhereValuesAreNotHounsfield) {
   EXPECT_EQ(read_scene(folder / "raw").meaning, Meaning::Raw);
 }
 
+TEST(WriteDicomSeries, KeepsFractionsByASlope) {
+  const ScratchFolder folder;
+  const Scene halves = half_scene(oblique_lattice());
+  write_dicom_series(halves, folder / "halves");
+  EXPECT_EQ(read_scene(folder / "halves").samples, halves.samples) << "halves are multiples of the slope";
+  for (const double scale : {1e-3, 0.37, 1.0, 41.7}) {
+    Scene odd = halves;
+    for (float& sample : std::get<FloatSamples>(odd.samples))
+      sample = static_cast<float>(scale * std::sin(sample) - 0.3 * scale);
+    odd.meaning = Meaning::Raw;
+    const std::string name = "odd" + std::to_string(scale);
+    write_dicom_series(odd, folder / name);
+    const Scene read = read_scene(folder / name);
+    const Range values = range(odd);
+    const double slope_bound = 2.0 * (values.high - values.low) / 65533.0;
+    double worst = 0.0;
+    std::visit(
+        [&](const auto& samples) {
+          for (std::size_t i = 0; i < samples.size(); ++i)
+            worst = std::max(worst, std::abs(static_cast<double>(samples[i]) -
+                                             static_cast<double>(std::get<FloatSamples>(odd.samples)[i])));
+        },
+        read.samples);
+    EXPECT_LE(worst, 0.5 * slope_bound * 1.001) << scale;
+    EXPECT_GT(worst, 0.0) << "the test has seen rounding";
+  }
+}
+
+TEST(WriteDicomSeries, SaysResampledOnlyIfItIsAndGivesAWindow) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(axis_aligned_lattice({20, 16, 8}, {1, 1, 2}, {-10, -8, 5}));
+  write_dicom_series(scene, folder / "source");
+  DicomOptions options;
+  options.source = dicom_source(folder / "source");
+  ASSERT_TRUE(options.source->lattice);
+  EXPECT_EQ(*options.source->lattice, scene.lattice);
+  Scene cropped = linear_scene(axis_aligned_lattice({10, 8, 3}, {1, 1, 2}, {-7, -5, 9}));
+  cropped.modality = "CT";
+  write_dicom_series(cropped, folder / "cropped", options);
+  const std::string same = bytes_of(folder / "cropped" / fs::path("slice_0002.dcm"));
+  EXPECT_NE(same.find("not resampled"), std::string::npos);
+  const std::string window = std::string("\x28\0\x50\x10", 4) + "DS";
+  EXPECT_NE(same.find(window), std::string::npos);
+  Scene between = linear_scene(axis_aligned_lattice({10, 8, 3}, {1, 1, 2}, {-7, -5, 10}));
+  write_dicom_series(between, folder / "between", options);
+  const std::string other = bytes_of(folder / "between" / fs::path("slice_0002.dcm"));
+  EXPECT_NE(other.find("Resampled"), std::string::npos);
+  EXPECT_EQ(other.find("not resampled"), std::string::npos);
+}
+
 TEST(WriteDicomSeries, RefusesWhatItCannotHoldAndOverwritesNothing) {
   const ScratchFolder folder;
   const Scene scene = linear_scene(oblique_lattice());
-  EXPECT_THROW(write_dicom_series(half_scene(scene.lattice), folder / "halves"), std::invalid_argument);
-  EXPECT_FALSE(fs::exists(folder / "halves" / fs::path("slice_0001.dcm")));
+  Scene endless = half_scene(scene.lattice);
+  std::get<FloatSamples>(endless.samples)[7] = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(write_dicom_series(endless, folder / "endless"), std::invalid_argument);
+  EXPECT_FALSE(fs::exists(folder / "endless" / fs::path("slice_0001.dcm")));
   Scene skewed = scene;
   skewed.lattice.lps_from_voxel[1] += 0.2 * skewed.lattice.lps_from_voxel[0];
   EXPECT_THROW(write_dicom_series(skewed, folder / "skewed"), std::invalid_argument);

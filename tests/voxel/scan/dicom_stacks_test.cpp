@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/dicom_stacks.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/voxel/linear_scene.h"
+#include "tests/voxel/scan/spoiled_series.h"
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/scan/read_scene.h"
+
+namespace octotomy::voxel {
+namespace {
+
+using tests::ScratchFolder;
+using tests::verdict;
+
+/// Twelve images of kernel H30s and eleven of H60s at the same places, brighter by 76.
+void write_two_kernels(const std::filesystem::path& folder) {
+  for (const tests::SpoiledKind& kind : tests::spoiled_kinds())
+    if (kind.name == "two_kernels_at_each_place") return kind.write(folder);
+  FAIL() << "the kind is gone";
+}
+
+Scene read(const std::filesystem::path& folder, const std::string& series, const std::string& slices = "") {
+  ReadOptions options;
+  options.series = series;
+  if (!slices.empty()) options.slices = parse_slices(slices);
+  return read_scene(folder, options);
+}
+
+TEST(DicomStacks, OfOneSeriesAreListedAndChosenByNumberOrKernel) {
+  const ScratchFolder folder;
+  write_two_kernels(folder.path());
+  const std::vector<SeriesEntry> list = list_series(folder.path());
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[0].choice, "1.1");
+  EXPECT_EQ(list[0].stack, "kernel H30s");
+  EXPECT_EQ(list[0].slices, 12U);
+  EXPECT_EQ(list[1].choice, "1.2");
+  EXPECT_EQ(list[1].stack, "kernel H60s");
+  EXPECT_EQ(list[1].slices, 11U);
+  const Scene unasked = read_scene(folder.path());
+  EXPECT_EQ(unasked.lattice.dims.z, 12);
+  EXPECT_EQ(verdict(unasked, "stacks"), Verdict::Fail);
+  EXPECT_NE(tests::finding(unasked, "stacks")->detail.find("1.2 'Head' (CT, 11 slices) kernel H60s"),
+            std::string::npos)
+      << tests::finding(unasked, "stacks")->detail;
+  for (const std::string series : {"1.2", "H60s", "kernel H60s"}) {
+    const Scene scene = read(folder.path(), series);
+    EXPECT_EQ(scene.lattice.dims.z, 11) << series;
+    for (const char* check : {"series", "stacks", "duplicates"})
+      EXPECT_EQ(verdict(scene, check), Verdict::Pass);
+    EXPECT_EQ(std::get<Int16Samples>(scene.samples)[0], std::get<Int16Samples>(unasked.samples)[0] + 76)
+        << "the other kernel's pixels";
+  }
+  for (const char* wrong : {"1.3", "kernel", "H90"}) try {
+      read(folder.path(), wrong);
+      ADD_FAILURE() << wrong;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("1.2 'Head'"), std::string::npos) << error.what();
+    }
+}
+
+TEST(DicomStacks, SlicesAreChosenByTheirNumbersAlongTheNormal) {
+  const ScratchFolder folder;
+  write_two_kernels(folder.path());
+  const Scene whole = read(folder.path(), "1.1");
+  const Scene part = read(folder.path(), "1.1", "3:5,6");
+  EXPECT_EQ(part.lattice.dims.z, 4);
+  EXPECT_EQ(part.lattice.lps_mm({0, 0, 0}), whole.lattice.lps_mm({0, 0, 2}));
+  EXPECT_EQ(verdict(part, "chosen_slices"), Verdict::Pass);
+  EXPECT_EQ(verdict(part, "missing_slices"), Verdict::Pass);
+  EXPECT_THROW(read(folder.path(), "1.1", "10:13"), Error);
+  for (const char* wrong : {"", "0:3", "5:3", "a", "1:2,", "1:2:3", "-1"})
+    EXPECT_THROW(parse_slices(wrong), std::invalid_argument) << wrong;
+  EXPECT_EQ(to_string(parse_slices("1:40,45:60")), "1:40,45:60");
+}
+
+TEST(DicomStacks, AnImageThatNoAttributeTellsApartStaysWithItsRival) {
+  std::vector<DicomSlice> images(3);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    images[i].size_px = {4, 4};
+    images[i].spacing_mm = {1, 1};
+    images[i].instance_uid = std::to_string(i);
+    images[i].first_mm.z = i == 2 ? 2.0 : 0.0;
+  }
+  EXPECT_EQ(parted_at_one_place(images).size(), 1U);
+  images[1].traits[4] = "H60s";  // the kernel
+  ASSERT_STREQ(dicom_traits[4].check, "kernel");
+  const std::vector<DicomSubseries> parts = parted_at_one_place(images);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].slices.size(), 2U);
+  EXPECT_EQ(parts[1].words, "kernel H60s");
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

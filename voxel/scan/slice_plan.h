@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "voxel/scan/dicom_series.h"
+
+namespace octotomy::voxel {
+
+/// The place of a lattice in a stack of slices, and what each of its slices is made from.
+struct SlicePlan {
+  /// Two slices of the stack, interpolated linearly; below == above: a copy.
+  struct Source {
+    std::size_t below = 0;
+    std::size_t above = 0;
+    double share_above = 0.0;
+  };
+  std::vector<Source> sources;  ///< of each slice of the lattice
+  double step_mm = 1.0;
+  bool leans = false;    ///< slices are shifted aside against each other
+  glm::ivec2 low_px{0};  ///< first pixel of the lattice, in pixels of the first slice
+  glm::ivec2 size_px{0};
+  std::vector<Hole> holes;
+  std::size_t slice_count = 0;  ///< of the stack
+
+  /// Whether slice k of the lattice is slice k of the stack, for all k.
+  bool is_copy() const;
+};
+
+/// The lattice of a plan.
+Lattice lattice_of(const DicomStack& stack, const SlicePlan& plan);
+
+/// Tissue that no slice measured is a failure from this length on, in mm: half the height of an orbit's floor
+/// or of a lower canine's crown, either of which would vanish without a trace.
+constexpr double longest_unmeasured_mm() {
+  return 5.0;
+}
+
+/// Lays a lattice through an ordered stack. Its step is the finest distance that at least a fifth of the
+/// neighbours have. A gap of more than one and a half steps is a hole, unless at least three like it follow
+/// each other and the slices are numbered without a break: then the protocol has two distances. Findings:
+/// slice_spacing, missing_slices, gantry_tilt, sideways. Throws Error, Input, if the lattice would have more
+/// than four times as many slices as the stack, or a slice lies beside the others.
+SlicePlan slice_plan(const DicomStack& stack, const std::filesystem::path& path, std::vector<Finding>& audit);
+
+}  // namespace octotomy::voxel

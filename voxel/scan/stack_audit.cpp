@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/stack_audit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "voxel/scan/audit.h"
+
+namespace octotomy::voxel {
+
+namespace {
+
+class StackAudit {
+ public:
+  StackAudit(const DicomStack& stack, std::vector<Finding>& audit) : stack_(stack), audit_(audit) {}
+
+  void run() {
+    audit_traits();
+    audit_compression();
+    audit_photometric();
+    audit_pixel_format();
+    audit_thickness();
+    audit_spacing_tag();
+    audit_instance_order();
+    audit_acr_nema();
+  }
+
+ private:
+  using Values = std::map<std::string, std::vector<std::string>>;  ///< names of slices by value
+
+  void find(const char* check, Verdict verdict, std::string detail, std::vector<std::string> files = {}) {
+    audit_.push_back({check, verdict, std::move(detail), std::move(files)});
+  }
+
+  template <typename Value>
+  Values values_of(const Value& value) const {
+    Values values;
+    for (const DicomSlice& slice : stack_.slices) values[value(slice)].push_back(slice.name);
+    return values;
+  }
+
+  static Values::const_iterator commonest_of(const Values& values) {
+    return std::max_element(values.begin(), values.end(),
+                            [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  }
+
+  /// The slices with another value than the commonest.
+  static std::vector<std::string> fewer_of(const Values& values) {
+    std::vector<std::string> names;
+    for (auto value = values.begin(); value != values.end(); ++value)
+      if (value != commonest_of(values))
+        names.insert(names.end(), value->second.begin(), value->second.end());
+    return names;
+  }
+
+  /// "38 slices of 'H30s', 2 of 'H60s' (a.dcm, b.dcm)".
+  static std::string mixture_of(const Values& values) {
+    const auto shown = [](const std::string& value) { return value.empty() ? "none" : "'" + value + "'"; };
+    const auto commonest = commonest_of(values);
+    std::string text = slices(commonest->second.size()) + " of " + shown(commonest->first);
+    std::size_t told = 0;
+    for (auto value = values.begin(); value != values.end(); ++value)
+      if (value != commonest && ++told <= 4)
+        text.append(", ")
+            .append(std::to_string(value->second.size()))
+            .append(" of ")
+            .append(shown(value->first))
+            .append(" (")
+            .append(listed(value->second))
+            .append(")");
+    return told > 4 ? text + " and " + std::to_string(told - 4) + " more values" : text;
+  }
+
+  void audit_traits() {
+    std::string same;
+    for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
+      const DicomTrait& kind = dicom_traits[trait];
+      if (kind.role == TraitRole::Identity) continue;
+      const bool is_type = kind.check == std::string("image_type");
+      const Values values = values_of([&](const DicomSlice& slice) {
+        const std::string& value = slice.traits[trait];
+        // The first two of an image type's values say whether it was measured; others count orders.
+        return is_type ? value.substr(0, value.find('\\', value.find('\\') + 1)) : value;
+      });
+      if (values.size() == 1) {
+        if (kind.role == TraitRole::Stack && !is_type && !values.begin()->first.empty())
+          same += (same.empty() ? "" : ", ") + std::string(kind.words) + " " + values.begin()->first;
+        continue;
+      }
+      // Axial scanners count an acquisition a turn, and times run on: a value of nearly each slice's own.
+      const bool counts_on = 4 * values.size() > stack_.slices.size() && values.size() > 2 &&
+                             (kind.check == std::string("acquisition") || kind.check == std::string("phase"));
+      if (counts_on) continue;
+      const bool is_name = kind.check == std::string("patient_name");
+      find(
+          kind.check, Verdict::Warn,
+          (is_name ? slices(fewer_of(values).size()) + " with another name (" + listed(fewer_of(values)) + ")"
+                   : mixture_of(values)) +
+              ": " + kind.effect,
+          fewer_of(values));
+    }
+    find("uniform", Verdict::Pass, same.empty() ? "no attribute to compare" : "all slices: " + same);
+  }
+
+  void audit_compression() {
+    const Values values = values_of([](const DicomSlice& slice) { return slice.lossy; });
+    if (values.size() == 1 && values.begin()->first.empty())
+      return find("compression", Verdict::Pass, "lossless");
+    std::vector<std::string> names;
+    std::string how;
+    for (const auto& [value, members] : values) {
+      if (value.empty()) continue;
+      how += (how.empty() ? "" : "; ") + value;
+      names.insert(names.end(), members.begin(), members.end());
+    }
+    find("compression", Verdict::Warn,
+         slices(names.size()) + " lost values by compression (" + how +
+             "): surfaces and densities are only as good as that: " + listed(names),
+         names);
+  }
+
+  void audit_photometric() {
+    const Values values = values_of(
+        [](const DicomSlice& slice) { return std::string(slice.inverted ? "MONOCHROME1" : "MONOCHROME2"); });
+    if (values.size() == 1 && !stack_.first().inverted) return;
+    if (values.size() == 1)
+      return find("photometric", Verdict::Warn,
+                  "MONOCHROME1: viewers show it inverted; values are read as stored");
+    find(
+        "photometric", Verdict::Fail,
+        "bright and dark are exchanged between slices: " + mixture_of(values) + "; values are read as stored",
+        fewer_of(values));
+  }
+
+  void audit_pixel_format() {
+    const Values values = values_of([](const DicomSlice& slice) {
+      return print("%u of %u bits, %s", slice.pixels.stored, slice.pixels.allocated,
+                   slice.pixels.is_signed ? "signed" : "unsigned");
+    });
+    if (values.size() > 1)
+      find("pixel_format", Verdict::Warn,
+           "mixed: " + mixture_of(values) + "; each slice is decoded by its own header", fewer_of(values));
+  }
+
+  /// The commonest distance of neighbours, to a hundredth of a millimetre.
+  double usual_gap_mm() const {
+    std::map<long, std::size_t> counts;
+    for (std::size_t i = 1; i < stack_.slices.size(); ++i)
+      ++counts[std::lround(100.0 *
+                           (stack_.height_mm(stack_.slices[i]) - stack_.height_mm(stack_.slices[i - 1])))];
+    return 0.01 * static_cast<double>(
+                      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
+                        return a.second < b.second;
+                      })->first);
+  }
+
+  void audit_thickness() {
+    const Values values = values_of([](const DicomSlice& slice) {
+      return slice.thickness_mm ? print("%.6g mm", *slice.thickness_mm) : std::string();
+    });
+    if (values.size() > 1) {
+      find("slice_thickness", Verdict::Warn, "mixed: " + mixture_of(values), fewer_of(values));
+      return;
+    }
+    const std::optional<double> thickness_mm = stack_.first().thickness_mm;
+    if (stack_.slices.size() < 2 || !thickness_mm || *thickness_mm <= 0.0) return;
+    const double gap_mm = usual_gap_mm();
+    // Headers give both to two decimals or better.
+    const double tolerance_mm = 0.02 + 0.01 * gap_mm;
+    if (*thickness_mm < gap_mm - tolerance_mm)
+      find("slice_thickness", Verdict::Warn,
+           print("slices of %.4g mm lie %.4g mm apart: %.3g mm between them were not measured", *thickness_mm,
+                 gap_mm, gap_mm - *thickness_mm));
+    else if (*thickness_mm > gap_mm + tolerance_mm)
+      find("slice_thickness", Verdict::Warn,
+           print("slices of %.4g mm lie %.4g mm apart and overlap: details along the stack are no finer than "
+                 "%.4g mm",
+                 *thickness_mm, gap_mm, *thickness_mm));
+    else
+      find("slice_thickness", Verdict::Pass, print("%.4g mm, as the slices' distance", *thickness_mm));
+  }
+
+  void audit_spacing_tag() {
+    const std::optional<double> tag_mm = stack_.first().spacing_tag_mm;
+    if (stack_.slices.size() < 2 || !tag_mm || *tag_mm == 0.0) return;
+    const double gap_mm = usual_gap_mm();
+    const double cosine = std::cos(stack_.first().tilt_deg.value_or(0.0) * 3.14159265358979323846 / 180.0);
+    const auto is_near = [&](double mm) { return std::abs(std::abs(*tag_mm) - mm) <= 0.02 + 0.01 * mm; };
+    if (!is_near(gap_mm) && !is_near(gap_mm / cosine))
+      find("spacing_tag", Verdict::Warn,
+           print("SpacingBetweenSlices is %.4g mm, but by their positions the slices lie %.4g mm apart: the "
+                 "positions are used",
+                 *tag_mm, gap_mm));
+  }
+
+  /// Numbers that run against the positions of most slices: positions may be exchanged.
+  void audit_instance_order() {
+    std::vector<std::string> up, down;
+    for (std::size_t i = 1; i < stack_.slices.size(); ++i) {
+      const int step = stack_.slices[i].instance_number - stack_.slices[i - 1].instance_number;
+      if (step != 0) (step > 0 ? up : down).push_back(stack_.slices[i].name);
+    }
+    const std::vector<std::string>& fewer = up.size() < down.size() ? up : down;
+    if (fewer.empty()) return;
+    find("instance_order", Verdict::Warn,
+         "the numbers of " + slices(fewer.size()) +
+             " run against their positions, which are used: " + listed(fewer),
+         fewer);
+  }
+
+  void audit_acr_nema() {
+    if (stack_.first().position_of_acr_nema)
+      find("acr_nema", Verdict::Warn,
+           "positions and orientations are those of ACR-NEMA, (0020,0030) and (0020,0035), read as DICOM's: "
+           "check that left and right are not exchanged");
+  }
+
+  const DicomStack& stack_;
+  std::vector<Finding>& audit_;
+};
+
+}  // namespace
+
+void audit_stack(const DicomStack& stack, std::vector<Finding>& audit) {
+  StackAudit(stack, audit).run();
+}
+
+}  // namespace octotomy::voxel
