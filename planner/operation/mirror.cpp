@@ -113,7 +113,8 @@ FileAnswer on_files(const Mirror& asked, const FileBench& bench) {
     mirror.point_mm = asked.plane[0];
     mirror.normal = asked.plane[1];
   }
-  const brep::Mesh mesh = read_surface(asked.object.name, bench.timings);
+  std::vector<std::string> findings;
+  const brep::Mesh mesh = read_surface(asked.object.name, bench.timings, &findings);
   std::optional<brep::MirrorFit> found;
   if (!asked.exactly) {
     const Stopwatch watch(bench.timings, "fit");
@@ -122,7 +123,8 @@ FileAnswer on_files(const Mirror& asked, const FileBench& bench) {
   const brep::MirrorPlane plane = found ? found->plane : plane_of(mirror);
   if (!asked.out.empty()) write_surface(brep::mirrored(mesh, plane), asked.out, bench.timings);
   FileAnswer answer{fit_json(plane, found)};
-  if (found) answer.findings = found->findings;
+  if (found) findings.insert(findings.end(), found->findings.begin(), found->findings.end());
+  answer.findings = findings;
   answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
   answer.json["findings"] = answer.findings;
   const auto point = [](const glm::dvec3& p, int decimals) {

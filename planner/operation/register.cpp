@@ -155,8 +155,9 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   else if (!asked.landmarks.empty())
     laid = by_landmarks(asked.landmarks[0], asked.landmarks[1], asked.motion, bench.timings);
   if (!points_only && !asked.landmarks_only)
-    by_surfaces(read_surface(a, bench.timings), read_surface(b, bench.timings), asked,
-                !asked.landmarks.empty(), bench.progress("register"), bench.timings, laid);
+    by_surfaces(read_surface(a, bench.timings, &laid.findings),
+                read_surface(b, bench.timings, &laid.findings), asked, !asked.landmarks.empty(),
+                bench.progress("register"), bench.timings, laid);
   if (!asked.out.empty()) write_moved(asked, laid.onto_from_object, bench.timings);
   FileAnswer answer;
   answer.json = {{"transform", to_json(laid.onto_from_object)},
