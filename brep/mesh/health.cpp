@@ -5,6 +5,10 @@
 // exact predicates. Works on triangles rather than halfedges so that what is not manifold can be reported.
 #include "brep/mesh/health.h"
 
+// CGAL's boxes in parallel; no other part of it is.
+#ifndef CGAL_LINKED_WITH_TBB
+#define CGAL_LINKED_WITH_TBB
+#endif
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 #include <algorithm>
@@ -15,6 +19,7 @@
 #include <limits>
 #include <map>
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <tuple>
@@ -335,32 +340,20 @@ void test_intersections(const Triangles& triangles, const std::vector<std::uint8
   std::vector<const Box*> order(boxes.size());
   std::transform(boxes.begin(), boxes.end(), order.begin(), [](const Box& box) { return &box; });
 
-  // Test the candidates in batches, so that memory stays bounded where everything overlaps everything.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  constexpr std::size_t batch = std::size_t{1} << 20;
-  std::vector<Pair> candidates, meeting;
-  std::vector<std::uint8_t> meets;
+  tbb::enumerable_thread_specific<std::vector<Pair>> found;
   const MeetsElsewhere meets_elsewhere(triangles);
-  const auto test_batch = [&] {
-    meets.assign(candidates.size(), 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, candidates.size(), 1024), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i)
-        meets[i] = meets_elsewhere(candidates[i].first, candidates[i].second);
-    });
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (meets[i]) meeting.push_back(candidates[i]);
-    candidates.clear();
-  };
   // CGAL's cutoff below which boxes are scanned instead of divided; any value gives the same pairs.
   constexpr std::ptrdiff_t cutoff = 2000;
-  CGAL::box_self_intersection_d(
+  CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
       order.begin(), order.end(),
       [&](const Box* a, const Box* b) {
-        candidates.emplace_back(std::min(a->info(), b->info()), std::max(a->info(), b->info()));
-        if (candidates.size() == batch) test_batch();
+        const Pair pair(std::min(a->info(), b->info()), std::max(a->info(), b->info()));
+        if (meets_elsewhere(pair.first, pair.second)) found.local().push_back(pair);
       },
       cutoff);
-  test_batch();
+  std::vector<Pair> meeting;
+  for (const std::vector<Pair>& part : found) meeting.insert(meeting.end(), part.begin(), part.end());
 
   std::sort(meeting.begin(), meeting.end());
   health.intersections_tested = true;

@@ -14,6 +14,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
+#include "brep/mesh/halving.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -34,25 +36,6 @@ double solid_angle(const Corners& triangle, const glm::dvec3& p) {
   const double below = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
   const double above = glm::dot(a, glm::cross(b, c));
   return above == 0.0 && below == 0.0 ? 0.0 : 2.0 * std::atan2(above, below);
-}
-
-/// Nodes of a tree over so many triangles.
-std::uint32_t node_count(std::uint32_t triangles) {
-  // Halves differ by one at most, so that each level has two sizes only.
-  std::uint32_t nodes = 0;
-  std::uint64_t small = triangles, small_count = 1, large_count = 0;
-  while (small_count + large_count > 0) {
-    nodes += static_cast<std::uint32_t>(small_count + large_count);
-    if (small <= leaf_size) small_count = 0;
-    if (small + 1 <= leaf_size) large_count = 0;
-    // A half of `small` and one of `small + 1`, which is the larger by one where that is odd.
-    const std::uint64_t half = small / 2;
-    const std::uint64_t of_small = small_count, of_large = large_count;
-    small_count = small % 2 == 0 ? 2 * of_small + of_large : of_small;
-    large_count = small % 2 == 0 ? of_large : of_small + 2 * of_large;
-    small = half;
-  }
-  return nodes;
 }
 
 }  // namespace
@@ -84,7 +67,7 @@ struct WindingTree::Tree {
       }
     });
     triangles.resize(count);
-    nodes.resize(node_count(count));
+    nodes.resize(halving_nodes(count, leaf_size));
     build(corners, middles, order, 0, 0, count);
   }
 
@@ -105,7 +88,8 @@ struct WindingTree::Tree {
     }
     const glm::dvec3 extent = high - low;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::uint32_t half = begin + (end - begin) / 2, second = self + 1 + node_count(half - begin);
+    const std::uint32_t half = begin + (end - begin) / 2,
+                        second = self + 1 + halving_nodes(half - begin, leaf_size);
     std::nth_element(order.begin() + begin, order.begin() + half, order.begin() + end,
                      [&](std::uint32_t f, std::uint32_t g) {
                        return middles[f][axis] != middles[g][axis] ? middles[f][axis] < middles[g][axis]
