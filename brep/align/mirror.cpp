@@ -5,15 +5,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "brep/align/cloud_fit.h"
 #include "brep/align/forward_axis.h"
 #include "brep/align/register_surfaces.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 namespace {
+
+constexpr std::size_t trial_samples = 1000;
+constexpr int trial_rounds = 60;
 
 glm::dmat4 reflection(const MirrorPlane& plane) {
   glm::dmat4 matrix(1.0);
@@ -67,18 +72,25 @@ Spread spread_of(const Triangles& surface) {
   return spread;
 }
 
-MirrorFit fit_from(const Mesh& mesh, const MirrorPlane& start, const glm::dvec3& centre,
-                   const MirrorFitOptions& options) {
-  SurfaceFitOptions fit_options;
-  fit_options.start = glm::dmat4(1.0);
-  fit_options.overlap = options.overlap;
-  fit_options.stop = options.stop;
-  const SurfaceFit fit = register_surfaces(mirrored(mesh, start), mesh, fit_options);
-  const glm::dmat4 image_of = fit.fixed_from_moving * reflection(start);
+/// The samples' mirror image, whose normals look outward still.
+Cloud mirrored_cloud(Cloud cloud, const MirrorPlane& plane) {
+  const glm::dmat4 image_of = reflection(plane);
+  for (glm::dvec3& p : cloud.points_mm) p = glm::dvec3(image_of * glm::dvec4(p, 1.0));
+  for (glm::dvec3& n : cloud.normals) n = glm::dmat3(image_of) * n;
+  cloud.centre_mm = glm::dvec3(image_of * glm::dvec4(cloud.centre_mm, 1.0));
+  return cloud;
+}
 
+/// The plane half way between points and their images under a fit from `start`.
+MirrorFit plane_of(const SurfaceFit& fit, const MirrorPlane& start, const glm::dvec3& centre) {
+  const glm::dmat4 image_of = fit.fixed_from_moving * reflection(start);
   MirrorFit found;
   found.rms_mm = fit.rms_mm;
   found.kept_share = fit.kept_share;
+  found.rounds = fit.rounds;
+  found.converged = fit.converged;
+  found.last_step_mm = fit.last_step_mm;
+  found.rest_mm = fit.rest_mm;
   found.findings = fit.findings;
   // A reflection has -1 along its normal and 1 in the plane; a twist about the normal leaves that axis alone.
   const glm::dmat3 turn(image_of);
@@ -119,13 +131,34 @@ MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options) {
     starts.push_back(*options.start);
   else
     for (const glm::dvec3& axis : axes_of(spread.covariance)) starts.push_back({spread.centre_mm, axis});
-  std::optional<MirrorFit> best;
-  for (std::size_t k = 0; k < starts.size(); ++k) {
-    MirrorFit fit = fit_from(mesh, starts[k], spread.centre_mm, options);
-    if (!best || fit.rms_mm < best->rms_mm) best = std::move(fit);
-    if (options.progress) options.progress(static_cast<double>(k + 1) / static_cast<double>(starts.size()));
+  SurfaceFitOptions fit_options;
+  fit_options.overlap = options.overlap;
+  fit_options.max_rounds = options.max_rounds;
+  fit_options.rest_mm = options.rest_mm;
+  fit_options.stop = options.stop;
+  const OrientedSurface surface(mesh);
+  // The best start by few samples, then its plane by all.
+  MirrorPlane plane = starts.front();
+  if (starts.size() > 1) {
+    const Cloud few = cloud_of(mesh, trial_samples, "mirrored");
+    SurfaceFitOptions trial_options = fit_options;
+    trial_options.max_rounds = trial_rounds;
+    double least_mm = std::numeric_limits<double>::infinity();
+    for (const MirrorPlane& start : starts) {
+      const SurfaceFit trial =
+          fit_cloud(mirrored_cloud(few, start), surface, glm::dmat4(1.0), trial_options, false);
+      const double rms_mm =
+          trial.kept_share < 0.5 * options.overlap ? std::numeric_limits<double>::max() : trial.rms_mm;
+      if (!(rms_mm < least_mm)) continue;
+      least_mm = rms_mm;
+      plane = plane_of(trial, start, spread.centre_mm).plane;
+    }
   }
-  return std::move(*best);
+  if (options.progress) options.progress(0.5);
+  const Cloud all = cloud_of(mesh, fit_options.samples, "mirrored");
+  const SurfaceFit fit = fit_cloud(mirrored_cloud(all, plane), surface, glm::dmat4(1.0), fit_options);
+  if (options.progress) options.progress(1.0);
+  return plane_of(fit, plane, spread.centre_mm);
 }
 
 }  // namespace octotomy::brep

@@ -28,6 +28,8 @@ struct MirrorFitOptions {
   /// Share of the surface's area that has a counterpart on the other side, as in SurfaceFitOptions: what is
   /// missing or crooked on one side must be less than the rest.
   double overlap = 0.7;
+  int max_rounds = 100;                          ///< as in SurfaceFitOptions
+  std::optional<double> rest_mm = std::nullopt;  ///< as in SurfaceFitOptions
   std::stop_token stop = {};
   std::function<void(double)> progress = {};  ///< is called with 0..1
 };
@@ -40,12 +42,16 @@ struct MirrorFit {
   /// What is left of the motion that would lay the mirror image on the surface best: a plane's mirror image
   /// takes none, so both are near zero where there is a mid-plane.
   double twist_deg = 0.0, slide_mm = 0.0;
+  int rounds = 0;                            ///< of the last two refinements
+  bool converged = false;                    ///< they came to rest before the rounds ran out
+  double last_step_mm = 0.0, rest_mm = 0.0;  ///< as in SurfaceFit
   std::vector<std::string> findings;
 };
 
 /// The plane about which a surface is most nearly its own mirror image. Throws as register_surfaces(). Cost:
-/// that of one such fit from a start, three without. Source: Benz et al., "The symmetry of faces", VMV 2002:
-/// mirror about any plane, register, and take the plane half way between points and their images.
+/// that of one such fit, and without a start three short ones with fewer samples. Source: Benz et al., "The
+/// symmetry of faces", VMV 2002: mirror about any plane, register, and take the plane half way between points
+/// and their images.
 MirrorFit fit_mirror_plane(const Mesh& mesh, const MirrorFitOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -17,10 +17,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "brep/align/cloud_fit.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/move.h"
 #include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/sample_surface.h"
+#include "brep/mesh/short_text.h"
 
 namespace octotomy::brep {
 namespace {
@@ -38,10 +40,20 @@ constexpr double least_normal_cosine() {
   return 0.5;
 }
 
-/// The share of the samples' spread by which a round may still move them and count as at rest: 10 nm on a
-/// head of 100 mm, below what any number of samples of a scan determines, far above rounding.
+/// The share of the samples' spread by which a round may still move them and count as at rest where no length
+/// is given: 0.1 um on a head of 100 mm, below what any number of samples of a scan determines, far above
+/// rounding.
 constexpr double rest_share() {
-  return 1e-7;
+  return 1e-6;
+}
+
+/// Rounds after which a fit that comes back to where it was, or nearly stands, counts as at rest: samples at
+/// the trimming's edge then come and go in turn, and none of their choices is better than another.
+constexpr int cycle_rounds = 12;
+
+/// A fit has settled when its rms falls by less than this share in those rounds.
+constexpr double settled_share() {
+  return 1e-4;
 }
 
 /// Modes softer than this share of the stiffest are left alone: a step along one would be rounding divided by
@@ -61,46 +73,6 @@ double noise_limit_mm(double median_mm) {
 /// sample. The facets of a sphere of some thousand triangles reach 0.02, a face of a person 0.35.
 constexpr double sliding_stiffness() {
   return 0.05;
-}
-
-struct Cloud {
-  std::vector<glm::dvec3> points_mm, normals;
-  glm::dvec3 centre_mm{0.0};
-  double spread_mm = 0.0;  ///< root mean square distance from the centre
-  glm::dmat3 axes{1.0};    ///< columns, by falling spread, right-handed
-};
-
-/// So many samples, each for the same area.
-Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which) {
-  double area = 0.0;
-  for (const auto f : mesh.faces()) area += mesh.calc_face_area(f);
-  if (!(area > 0.0)) throw std::invalid_argument("register: the " + which + " surface has no area");
-  const SurfaceSamples samples = sample_surface(mesh, std::sqrt(2.0 * area / static_cast<double>(count)));
-  Cloud cloud;
-  const double whole = std::accumulate(samples.areas_mm2.begin(), samples.areas_mm2.end(), 0.0);
-  const double each = whole / static_cast<double>(count);
-  double passed = 0.0;
-  for (std::size_t i = 0; i < samples.points_mm.size(); ++i) {
-    passed += samples.areas_mm2[i];
-    if (passed <= (static_cast<double>(cloud.points_mm.size()) + 0.5) * each) continue;
-    cloud.points_mm.push_back(samples.points_mm[i]);
-    cloud.normals.push_back(samples.normals[i]);
-  }
-  const auto n = static_cast<double>(cloud.points_mm.size());
-  for (const glm::dvec3& p : cloud.points_mm) cloud.centre_mm += p / n;
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const glm::dvec3& p : cloud.points_mm) {
-    const Eigen::Vector3d d(p.x - cloud.centre_mm.x, p.y - cloud.centre_mm.y, p.z - cloud.centre_mm.z);
-    moments += d * d.transpose() / n;
-  }
-  cloud.spread_mm = std::sqrt(moments.trace());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
-  for (int k = 0; k < 2; ++k) {
-    const Eigen::Vector3d axis = solver.eigenvectors().col(2 - k);
-    cloud.axes[k] = {axis[0], axis[1], axis[2]};
-  }
-  cloud.axes[2] = glm::cross(cloud.axes[0], cloud.axes[1]);
-  return cloud;
 }
 
 glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p) {
@@ -147,13 +119,21 @@ struct Fit {
   double stiffness = 0.0;
   int rounds = 0;
   bool converged = false;
+  double last_step_mm = 0.0;  ///< by which the last round moved the samples, root mean square
+  double best_mm = std::numeric_limits<double>::infinity();  ///< least rms so far of the samples kept
+  glm::dmat4 best_motion{1.0};
+  int since_best = 0;  ///< rounds since it fell by more than a share of it
 };
 
 /// The samples under a motion, what they meet, and which of them count.
 class Refinement {
  public:
-  Refinement(const Cloud& moving, const OrientedSurface& fixed, double overlap, std::stop_token stop)
-      : moving_(moving), fixed_(fixed), overlap_(overlap), stop_(std::move(stop)) {}
+  Refinement(const Cloud& moving, const OrientedSurface& fixed, const SurfaceFitOptions& options)
+      : moving_(moving),
+        fixed_(fixed),
+        overlap_(options.overlap),
+        rest_mm_(options.rest_mm.value_or(rest_share() * moving.spread_mm)),
+        stop_(options.stop) {}
 
   Fit run(const glm::dmat4& start, int rounds) const {
     Fit fit;
@@ -174,6 +154,7 @@ class Refinement {
     std::nth_element(distances.begin(), middle, distances.end());
     fit.limit_mm = std::max(noise_limit_mm(*middle), rest_share() * moving_.spread_mm);
     fit.converged = false;
+    fit.best_mm = std::numeric_limits<double>::infinity();
     refine(fit, rounds);
     judge(fit);
     return fit;
@@ -234,6 +215,11 @@ class Refinement {
     const std::vector<Meeting> meetings = meet(fit.motion);
     const std::vector<std::size_t> chosen = kept(meetings, fit);
     if (chosen.size() < 6) return false;
+    if (is_cycling(fit, meetings, chosen)) {
+      fit.motion = fit.best_motion;
+      fit.converged = true;
+      return true;
+    }
     const glm::dvec3 centre = through(fit.motion, moving_.centre_mm);
     Matrix6 normal = Matrix6::Zero();
     Vector6 pull = Vector6::Zero();
@@ -258,8 +244,27 @@ class Refinement {
     glm::dmat4 change = glm::translate(glm::dmat4(1.0), centre + glm::dvec3(motion[3], motion[4], motion[5]));
     if (angle > 0.0) change = glm::rotate(change, angle, turn / angle);
     fit.motion = rigid(glm::translate(change, -centre) * fit.motion);
-    fit.converged = motion.norm() <= rest_share() * moving_.spread_mm;
+    fit.last_step_mm = motion.norm();
+    fit.converged = fit.last_step_mm <= rest_mm_;
     return true;
+  }
+
+  /// Keeps the best motion so far, and tells whether it has not been bettered for a while.
+  static bool is_cycling(Fit& fit, const std::vector<Meeting>& meetings,
+                         const std::vector<std::size_t>& chosen) {
+    double squares = 0.0;
+    for (const std::size_t i : chosen) squares += std::pow(meetings[i].foot.distance_mm, 2);
+    const double rms_mm = std::sqrt(squares / static_cast<double>(chosen.size()));
+    if (rms_mm < (1.0 - settled_share()) * fit.best_mm) {
+      fit.since_best = 0;
+    } else {
+      ++fit.since_best;
+    }
+    if (rms_mm < fit.best_mm) {
+      fit.best_mm = rms_mm;
+      fit.best_motion = fit.motion;
+    }
+    return fit.since_best >= cycle_rounds;
   }
 
   /// Gram and Schmidt once more, so that many rounds do not add up to a shear.
@@ -291,6 +296,7 @@ class Refinement {
   const Cloud& moving_;
   const OrientedSurface& fixed_;
   double overlap_;
+  double rest_mm_;
   std::stop_token stop_;
 };
 
@@ -303,7 +309,7 @@ void sort_by_score(std::vector<Fit>& fits) {
 glm::dmat4 search(const Mesh& moving, const Cloud& fixed, const OrientedSurface& surface,
                   const SurfaceFitOptions& options) {
   const Cloud cloud = cloud_of(moving, search_samples, "moving");
-  const Refinement refinement(cloud, surface, options.overlap, options.stop);
+  const Refinement refinement(cloud, surface, options);
   std::vector<Fit> fits = {refinement.run(glm::dmat4(1.0), search_rounds)};
   const std::vector<glm::dmat3> turns = icosahedral_turns();
   for (const glm::dmat3& turn : turns) {
@@ -323,11 +329,74 @@ void check(const SurfaceFitOptions& options) {
   if (!(options.overlap > 0.0 && options.overlap <= 1.0)) refuse("the overlap must be above 0 and at most 1");
   if (options.samples < 100) refuse("at least 100 samples are needed");
   if (options.max_rounds < 1) refuse("there must be at least one round");
+  if (options.rest_mm && !(*options.rest_mm > 0.0)) refuse("the length at rest must be above 0 mm");
   if (options.overlap * static_cast<double>(search_samples) < 6.0)
     refuse("the overlap keeps fewer than six samples: place landmarks instead");
 }
 
 }  // namespace
+
+/// So many samples, each for the same area.
+Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which) {
+  double area = 0.0;
+  for (const auto f : mesh.faces()) area += mesh.calc_face_area(f);
+  if (!(area > 0.0)) throw std::invalid_argument("register: the " + which + " surface has no area");
+  const SurfaceSamples samples = sample_surface(mesh, std::sqrt(2.0 * area / static_cast<double>(count)));
+  Cloud cloud;
+  const double whole = std::accumulate(samples.areas_mm2.begin(), samples.areas_mm2.end(), 0.0);
+  const double each = whole / static_cast<double>(count);
+  double passed = 0.0;
+  for (std::size_t i = 0; i < samples.points_mm.size(); ++i) {
+    passed += samples.areas_mm2[i];
+    if (passed <= (static_cast<double>(cloud.points_mm.size()) + 0.5) * each) continue;
+    cloud.points_mm.push_back(samples.points_mm[i]);
+    cloud.normals.push_back(samples.normals[i]);
+  }
+  const auto n = static_cast<double>(cloud.points_mm.size());
+  for (const glm::dvec3& p : cloud.points_mm) cloud.centre_mm += p / n;
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const glm::dvec3& p : cloud.points_mm) {
+    const Eigen::Vector3d d(p.x - cloud.centre_mm.x, p.y - cloud.centre_mm.y, p.z - cloud.centre_mm.z);
+    moments += d * d.transpose() / n;
+  }
+  cloud.spread_mm = std::sqrt(moments.trace());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector3d axis = solver.eigenvectors().col(2 - k);
+    cloud.axes[k] = {axis[0], axis[1], axis[2]};
+  }
+  cloud.axes[2] = glm::cross(cloud.axes[0], cloud.axes[1]);
+  return cloud;
+}
+
+SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm::dmat4& start,
+                     const SurfaceFitOptions& options, bool widens) {
+  check(options);
+  const Refinement refinement(cloud, fixed, options);
+  Fit fit = refinement.run(start, options.max_rounds);
+  if (widens) fit = refinement.widened(fit, options.max_rounds);
+  SurfaceFit answer;
+  answer.fixed_from_moving = fit.motion;
+  answer.rms_mm = fit.rms_mm;
+  answer.kept_share = static_cast<double>(fit.kept) / static_cast<double>(cloud.points_mm.size());
+  answer.rounds = fit.rounds;
+  answer.converged = fit.converged;
+  answer.last_step_mm = fit.last_step_mm;
+  answer.rest_mm = options.rest_mm.value_or(rest_share() * cloud.spread_mm);
+  answer.stiffness = fit.stiffness;
+  if (!fit.converged)
+    answer.findings.push_back("the motion still moved by " + short_text(fit.last_step_mm) +
+                              " mm a round after " + std::to_string(fit.rounds) +
+                              " rounds: start it nearer, by landmarks, or allow more by --rounds");
+  if (fit.stiffness < sliding_stiffness())
+    answer.findings.emplace_back(
+        "the surfaces slide on each other, as spheres and planes do: a part of the motion is open; add "
+        "landmarks");
+  if (answer.kept_share < 0.9 * options.overlap)
+    answer.findings.push_back("only " + short_text(100.0 * answer.kept_share) +
+                              " % of the surface found a counterpart, less than the overlap asked for");
+  return answer;
+}
 
 SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const SurfaceFitOptions& options) {
   check(options);
@@ -335,23 +404,7 @@ SurfaceFit register_surfaces(const Mesh& moving, const Mesh& fixed, const Surfac
   const Cloud fixed_cloud = cloud_of(fixed, options.samples, "fixed");
   const OrientedSurface surface(fixed);
   const glm::dmat4 start = options.start ? *options.start : search(moving, fixed_cloud, surface, options);
-  const Refinement refinement(cloud, surface, options.overlap, options.stop);
-  const Fit fit = refinement.widened(refinement.run(start, options.max_rounds), options.max_rounds);
-
-  SurfaceFit answer{
-      fit.motion, fit.rms_mm,    static_cast<double>(fit.kept) / static_cast<double>(cloud.points_mm.size()),
-      fit.rounds, fit.converged, fit.stiffness,
-      {}};
-  if (!fit.converged)
-    answer.findings.push_back("the motion still moved after " + std::to_string(fit.rounds) +
-                              " rounds: start it nearer, by landmarks, or allow more rounds");
-  if (fit.stiffness < sliding_stiffness())
-    answer.findings.emplace_back(
-        "the surfaces slide on each other, as spheres and planes do: a part of the motion is open; add "
-        "landmarks");
-  if (answer.kept_share < 0.9 * options.overlap)
-    answer.findings.push_back("only " + std::to_string(answer.kept_share) +
-                              " of the surface found a counterpart, less than the overlap asked for");
+  const SurfaceFit answer = fit_cloud(cloud, surface, start, options);
   if (options.progress) options.progress(1.0);
   return answer;
 }

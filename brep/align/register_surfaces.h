@@ -22,6 +22,10 @@ struct SurfaceFitOptions {
   double overlap = 0.7;
   std::size_t samples = 5000;  ///< of the moving surface, at least 100; the error falls with its root
   int max_rounds = 100;        ///< of each of the last two refinements, at least 1
+  /// A round that moves the samples by no more ends a refinement, above 0. Default: a millionth of their
+  /// spread. One ends too when the rms has not fallen by a 10 000th in 12 rounds: then the best motion of all
+  /// rounds is taken.
+  std::optional<double> rest_mm = std::nullopt;
   std::stop_token stop = {};
   std::function<void(double)> progress = {};  ///< is called with 0..1
 };
@@ -31,7 +35,9 @@ struct SurfaceFit {
   double rms_mm = 0.0;                ///< point to surface, of the samples kept
   double kept_share = 0.0;            ///< of the samples
   int rounds = 0;                     ///< of the last two refinements
-  bool converged = false;             ///< the last round moved nothing by more than rounding can tell
+  bool converged = false;             ///< it came to rest before the rounds ran out
+  double last_step_mm = 0.0;          ///< by which the last round moved the samples, root mean square
+  double rest_mm = 0.0;               ///< below which that counts as rest
   /// How far the worst determined motion moves the surface along itself for one unit of distance, as a share
   /// of the best determined one's: near zero where the surfaces slide, as spheres and planes do.
   double stiffness = 0.0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 spread samples over both surfaces; 2 find the foot of every sample and vertex on the other surface;
-// 3 weigh the distances by area, sorted where a percentile is asked for. Sums run in the order of the
-// samples.
+// 1 spread samples over both surfaces, the corners of small triangles among them; 2 find the foot of every
+// sample and vertex on the other surface; 3 weigh the distances by area, sorted where a percentile is asked
+// for. Sums run in the order of the samples.
 #include "brep/measure/difference.h"
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "brep/mesh/measure.h"
 #include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/sample_surface.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 namespace {
@@ -53,18 +54,53 @@ std::vector<double> signed_mm(const std::vector<SignedFoot>& feet) {
   return distances;
 }
 
-Distances distances_to(const Mesh& from, const OrientedSurface& to, double spacing) {
-  const SurfaceSamples samples = sample_surface(from, spacing);
-  std::vector<glm::dvec3> vertices;
-  for (const auto v : from.vertices()) {
-    const Mesh::Point& p = from.point(v);
-    vertices.emplace_back(p[0], p[1], p[2]);
+/// Triangles no longer than the spacing are stood for by their corners, a third of the area each; larger ones
+/// by samples of their own.
+struct Split {
+  Triangles large;                 ///< with the surface's points
+  std::vector<double> corner_mm2;  ///< of each of the surface's points
+  double reach_mm = 0.0;           ///< no point of a small triangle is further from its nearest corner
+};
+
+Split split_at(const Triangles& surface, double spacing) {
+  Split split;
+  split.corner_mm2.assign(surface.points_mm.size(), 0.0);
+  for (const auto& face : surface.faces) {
+    const glm::dvec3 &a = surface.points_mm[face[0]], &b = surface.points_mm[face[1]],
+                     &c = surface.points_mm[face[2]];
+    const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    if (longest > spacing) {
+      split.large.faces.push_back(face);
+      continue;
+    }
+    // The middle of an equilateral triangle is furthest.
+    split.reach_mm = std::max(split.reach_mm, longest / std::sqrt(3.0));
+    for (const std::uint32_t v : face)
+      split.corner_mm2[v] += 0.5 * glm::length(glm::cross(b - a, c - a)) / 3.0;
   }
+  return split;
+}
+
+Distances distances_to(const Triangles& from, const OrientedSurface& to, double spacing) {
+  Split split = split_at(from, spacing);
+  Distances found;
+  const std::vector<SignedFoot> corners = to.feet(from.points_mm);
+  found.vertex_mm = signed_mm(corners);
+  const auto add = [&](const SignedFoot& foot, double area_mm2) {
+    found.sample_mm.push_back(foot.distance_mm);
+    found.areas_mm2.push_back(area_mm2);
+    found.on_border_count += foot.on_border;
+  };
+  for (std::size_t v = 0; v < corners.size(); ++v)
+    if (split.corner_mm2[v] > 0.0) add(corners[v], split.corner_mm2[v]);
+  found.reach_mm = split.reach_mm;
+  if (split.large.faces.empty()) return found;
+  split.large.points_mm = from.points_mm;
+  const SurfaceSamples samples = sample_surface(split.large, spacing);
   const std::vector<SignedFoot> feet = to.feet(samples.points_mm);
-  const auto on_border =
-      std::count_if(feet.begin(), feet.end(), [](const SignedFoot& foot) { return foot.on_border; });
-  return {samples.areas_mm2, signed_mm(feet), signed_mm(to.feet(vertices)), samples.reach_mm,
-          static_cast<std::size_t>(on_border)};
+  for (std::size_t i = 0; i < feet.size(); ++i) add(feet[i], samples.areas_mm2[i]);
+  found.reach_mm = std::max(found.reach_mm, samples.reach_mm);
+  return found;
 }
 
 double percentile_mm(const Distances& distances, double share) {
@@ -136,8 +172,8 @@ Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& opt
   const double area_a = size_of(a).area_mm2, area_b = size_of(b).area_mm2;
   check(options, area_a, area_b);
   const double spacing = options.spacing_mm.value_or(spacing_mm(std::max(area_a, area_b)));
-  const Distances from_a = distances_to(a, OrientedSurface(b), spacing);
-  const Distances from_b = distances_to(b, OrientedSurface(a), spacing);
+  const Distances from_a = distances_to(triangles_of(a), OrientedSurface(b), spacing);
+  const Distances from_b = distances_to(triangles_of(b), OrientedSurface(a), spacing);
 
   Difference answer;
   answer.a_to_b = one_way(from_a, options.tolerances_mm);

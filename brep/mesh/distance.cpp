@@ -15,14 +15,17 @@
 #include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
+#include "brep/mesh/halving.h"
 #include "brep/mesh/orientation.h"
 
 namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
+constexpr std::uint32_t parallel_size = 8192;  // below it halves are built one after the other
 
 struct Corners {
   glm::dvec3 a, b, c;
@@ -145,38 +148,43 @@ struct SurfaceTree::Tree {
   std::vector<Node> nodes;
 
   explicit Tree(const Triangles& source) {
-    faces.resize(source.faces.size());
+    const auto count = static_cast<std::uint32_t>(source.faces.size());
+    if (count == 0) return;
+    faces.resize(count);
     std::iota(faces.begin(), faces.end(), 0u);
-    std::vector<Corners> unordered;
-    std::vector<glm::dvec3> centres;
-    for (const auto& f : source.faces) {
-      assert(std::max({f[0], f[1], f[2]}) < source.points_mm.size());
-      unordered.push_back({source.points_mm[f[0]], source.points_mm[f[1]], source.points_mm[f[2]]});
-      TreeBox box;
-      box.add(unordered.back());
-      centres.push_back(0.5 * box.low + 0.5 * box.high);
-    }
-    if (!faces.empty()) build(unordered, centres, 0, static_cast<std::uint32_t>(faces.size()));
-    for (const std::uint32_t f : faces) triangles.push_back(unordered[f]);
+    std::vector<Corners> unordered(count);
+    std::vector<glm::dvec3> centres(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        const auto& f = source.faces[i];
+        assert(std::max({f[0], f[1], f[2]}) < source.points_mm.size());
+        unordered[i] = {source.points_mm[f[0]], source.points_mm[f[1]], source.points_mm[f[2]]};
+        TreeBox box;
+        box.add(unordered[i]);
+        centres[i] = 0.5 * box.low + 0.5 * box.high;
+      }
+    });
+    triangles.resize(count);
+    nodes.resize(halving_nodes(count, leaf_size));
+    build(unordered, centres, 0, 0, count);
   }
 
   void build(const std::vector<Corners>& unordered, const std::vector<glm::dvec3>& centres,
-             std::uint32_t begin, std::uint32_t end) {
-    assert(begin < end && end <= faces.size());
-    const std::size_t self = nodes.size();
-    nodes.emplace_back();
-    TreeBox box;
-    glm::dvec3 low = centres[faces[begin]], high = low;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      box.add(unordered[faces[i]]);
-      low = glm::min(low, centres[faces[i]]);
-      high = glm::max(high, centres[faces[i]]);
-    }
-    nodes[self].box = box;
+             std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+    assert(begin < end && end <= faces.size() && self < nodes.size());
     if (end - begin <= leaf_size) {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        triangles[i] = unordered[faces[i]];
+        nodes[self].box.add(triangles[i]);
+      }
       nodes[self].first = begin;
       nodes[self].count = end - begin;
       return;
+    }
+    glm::dvec3 low = centres[faces[begin]], high = low;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      low = glm::min(low, centres[faces[i]]);
+      high = glm::max(high, centres[faces[i]]);
     }
     const glm::dvec3 extent = high - low;
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
@@ -186,9 +194,20 @@ struct SurfaceTree::Tree {
                        return centres[f][axis] != centres[g][axis] ? centres[f][axis] < centres[g][axis]
                                                                    : f < g;
                      });
-    build(unordered, centres, begin, middle);
-    nodes[self].first = static_cast<std::uint32_t>(nodes.size());
-    build(unordered, centres, middle, end);
+    const std::uint32_t second = self + 1 + halving_nodes(middle - begin, leaf_size);
+    const auto first_half = [&] { build(unordered, centres, self + 1, begin, middle); };
+    const auto second_half = [&] { build(unordered, centres, second, middle, end); };
+    if (end - begin > parallel_size) {
+      tbb::parallel_invoke(first_half, second_half);
+    } else {
+      first_half();
+      second_half();
+    }
+    nodes[self].first = second;
+    for (const std::uint32_t half : {self + 1, second}) {
+      nodes[self].box.low = glm::min(nodes[self].box.low, nodes[half].box.low);
+      nodes[self].box.high = glm::max(nodes[self].box.high, nodes[half].box.high);
+    }
   }
 
   /// `nearest_triangle` is where to look first, and becomes the one found: neighbours in a list of points are

@@ -5,6 +5,10 @@
 // exact predicates. Works on triangles rather than halfedges so that what is not manifold can be reported.
 #include "brep/mesh/health.h"
 
+// CGAL's boxes in parallel; no other part of it is.
+#ifndef CGAL_LINKED_WITH_TBB
+#define CGAL_LINKED_WITH_TBB
+#endif
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/box_intersection_d.h>
 #include <algorithm>
@@ -15,11 +19,14 @@
 #include <limits>
 #include <map>
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tuple>
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/distance.h"
+#include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
 
 namespace octotomy::brep {
@@ -52,14 +59,12 @@ struct Side {
 };
 
 std::vector<Side> sorted_sides(const Triangles& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.faces.size());
-  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f)
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = triangles.faces[f][k], to = triangles.faces[f][(k + 1) % 3];
-      sides.push_back({std::min(from, to), std::max(from, to), 3 * f + k, from < to});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+  std::vector<Side> sides(3 * triangles.faces.size());
+  for (std::uint32_t c = 0; c < sides.size(); ++c) {
+    const std::uint32_t from = triangles.faces[c / 3][c % 3], to = triangles.faces[c / 3][(c + 1) % 3];
+    sides[c] = {std::min(from, to), std::max(from, to), c, from < to};
+  }
+  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
   });
   return sides;
@@ -136,13 +141,50 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
   return shell;
 }
 
+/// Counts points that stand on others, and the boundary edges that end when those become one.
+void count_coincident(const Triangles& triangles, Health& health) {
+  std::vector<glm::dvec3> points_mm(triangles.points_mm.size(), glm::dvec3(0.0));
+  std::vector<std::uint8_t> used(points_mm.size(), 0);
+  std::vector<std::uint32_t> number(points_mm.size()), in_use;
+  for (const auto& face : triangles.faces)
+    for (const std::uint32_t v : face) used[v] = 1;
+  for (std::uint32_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    number[v] = static_cast<std::uint32_t>(in_use.size());
+    points_mm[in_use.size()] = triangles.points_mm[v];
+    in_use.push_back(v);
+  }
+  points_mm.resize(in_use.size());
+  const std::vector<std::uint32_t> first = first_equal_points(points_mm);
+  for (std::uint32_t i = 0; i < first.size(); ++i) health.coincident_points += first[i] != i;
+  if (health.coincident_points == 0 || health.boundary_edges == 0) return;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  edges.reserve(3 * triangles.faces.size());
+  for (const auto& face : triangles.faces)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = first[number[face[k]]], to = first[number[face[(k + 1) % 3]]];
+      if (from != to) edges.emplace_back(std::min(from, to), std::max(from, to));
+    }
+  tbb::parallel_sort(edges.begin(), edges.end());
+  std::size_t open = 0;
+  for (std::size_t i = 0, j; i < edges.size(); i = j) {
+    for (j = i + 1; j < edges.size() && edges[j] == edges[i];) ++j;
+    open += j - i == 1;
+  }
+  health.unwelded_edges = health.boundary_edges - std::min(open, health.boundary_edges);
+}
+
 /// Marks triangles without area, exactly.
 std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& health, Offenders& offenders) {
   std::vector<std::uint8_t> degenerate(triangles.faces.size(), 0);
-  for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
-    const auto& v = triangles.faces[f];
-    degenerate[f] = CGAL::collinear(exact(triangles.points_mm[v[0]]), exact(triangles.points_mm[v[1]]),
-                                    exact(triangles.points_mm[v[2]]));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, degenerate.size(), 4096), [&](const auto& range) {
+    for (std::size_t f = range.begin(); f != range.end(); ++f) {
+      const auto& v = triangles.faces[f];
+      degenerate[f] = CGAL::collinear(exact(triangles.points_mm[v[0]]), exact(triangles.points_mm[v[1]]),
+                                      exact(triangles.points_mm[v[2]]));
+    }
+  });
+  for (std::size_t f = 0; f < degenerate.size(); ++f) {
     if (degenerate[f] == 0) continue;
     ++health.degenerate_faces;
     Offenders::note(offenders.degenerate, static_cast<std::uint32_t>(f));
@@ -157,7 +199,7 @@ void count_duplicates(const Triangles& triangles, Health& health, Offenders& off
     faces.emplace_back(triangles.faces[f], f);
     std::sort(faces.back().first.begin(), faces.back().first.end());
   }
-  std::sort(faces.begin(), faces.end());
+  tbb::parallel_sort(faces.begin(), faces.end());
   std::size_t earlier = 0;
   for (std::size_t i = 1; i < faces.size(); ++i) {
     earlier = faces[i].first == faces[i - 1].first ? earlier + 1 : 0;
@@ -176,7 +218,7 @@ std::vector<std::uint8_t> mark_touching(const Triangles& triangles, const std::v
   corners.reserve(3 * shell.size());
   for (std::uint32_t f = 0; f < shell.size(); ++f)
     for (const std::uint32_t v : triangles.faces[f]) corners.push_back({triangles.points_mm[v], shell[f], v});
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+  tbb::parallel_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::tie(a.p_mm.x, a.p_mm.y, a.p_mm.z) < std::tie(b.p_mm.x, b.p_mm.y, b.p_mm.z);
   });
   assert(corners.size() == 3 * triangles.faces.size());
@@ -298,32 +340,20 @@ void test_intersections(const Triangles& triangles, const std::vector<std::uint8
   std::vector<const Box*> order(boxes.size());
   std::transform(boxes.begin(), boxes.end(), order.begin(), [](const Box& box) { return &box; });
 
-  // Test the candidates in batches, so that memory stays bounded where everything overlaps everything.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  constexpr std::size_t batch = std::size_t{1} << 20;
-  std::vector<Pair> candidates, meeting;
-  std::vector<std::uint8_t> meets;
+  tbb::enumerable_thread_specific<std::vector<Pair>> found;
   const MeetsElsewhere meets_elsewhere(triangles);
-  const auto test_batch = [&] {
-    meets.assign(candidates.size(), 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, candidates.size(), 1024), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i)
-        meets[i] = meets_elsewhere(candidates[i].first, candidates[i].second);
-    });
-    for (std::size_t i = 0; i < candidates.size(); ++i)
-      if (meets[i]) meeting.push_back(candidates[i]);
-    candidates.clear();
-  };
   // CGAL's cutoff below which boxes are scanned instead of divided; any value gives the same pairs.
   constexpr std::ptrdiff_t cutoff = 2000;
-  CGAL::box_self_intersection_d(
+  CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
       order.begin(), order.end(),
       [&](const Box* a, const Box* b) {
-        candidates.emplace_back(std::min(a->info(), b->info()), std::max(a->info(), b->info()));
-        if (candidates.size() == batch) test_batch();
+        const Pair pair(std::min(a->info(), b->info()), std::max(a->info(), b->info()));
+        if (meets_elsewhere(pair.first, pair.second)) found.local().push_back(pair);
       },
       cutoff);
-  test_batch();
+  std::vector<Pair> meeting;
+  for (const std::vector<Pair>& part : found) meeting.insert(meeting.end(), part.begin(), part.end());
 
   std::sort(meeting.begin(), meeting.end());
   health.intersections_tested = true;
@@ -355,6 +385,10 @@ void tell(const Triangles& triangles, Health& health, const Offenders& offenders
   if (health.faces == 0) add(Defect::NoTriangles, "no triangles");
   say(Defect::Open, health.boundary_edges, "edges with one triangle: the surface is open",
       offenders.boundary);
+  if (health.unwelded_edges > 0)
+    add(Defect::Open, "unwelded: " + std::to_string(health.unwelded_edges) + " of " +
+                          std::to_string(health.boundary_edges) + " open edges close when welded, as " +
+                          std::to_string(health.coincident_points) + " points stand where others do");
   say(Defect::NonmanifoldEdge, health.nonmanifold_edges, "edges with more than two triangles",
       offenders.nonmanifold_edge);
   say(Defect::NonmanifoldVertex, health.nonmanifold_vertices,
@@ -384,6 +418,7 @@ Health health(const Triangles& triangles, const HealthOptions& options) {
   Health health;
   Offenders offenders;
   const std::vector<std::uint32_t> shell = count_connections(triangles, health, offenders);
+  count_coincident(triangles, health);
   const std::vector<std::uint8_t> degenerate = mark_degenerate(triangles, health, offenders);
   count_duplicates(triangles, health, offenders);
 

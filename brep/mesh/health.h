@@ -38,6 +38,8 @@ struct Health {
   std::size_t shells = 0;                ///< triangles connected across edges
   long euler = 0;                        ///< V - E + F of the vertices in use
   std::size_t boundary_edges = 0;        ///< with one triangle
+  std::size_t coincident_points = 0;     ///< in use, where an earlier one in use stands
+  std::size_t unwelded_edges = 0;        ///< boundary edges that close when coincident points become one
   std::size_t nonmanifold_edges = 0;     ///< with more than two
   std::size_t nonmanifold_vertices = 0;  ///< where more than one fan of triangles meets
   std::size_t misoriented_edges = 0;     ///< with two triangles that run along it the same way

@@ -24,10 +24,6 @@ double angle_between(const glm::dvec3& u, const glm::dvec3& v) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
 
-std::size_t index(OpenMesh::BaseHandle handle) {
-  return static_cast<std::size_t>(handle.idx());
-}
-
 }  // namespace
 
 struct OrientedSurface::Surface {
@@ -43,28 +39,36 @@ struct OrientedSurface::Surface {
   std::vector<glm::dvec3> corner_normals;
   std::vector<std::uint8_t> corner_on_border;
 
-  explicit Surface(const Mesh& mesh)
-      : tree(mesh),
+  explicit Surface(const Mesh& mesh) : Surface(mesh, triangles_of(mesh)) {}
+
+  Surface(const Mesh& mesh, const Triangles& triangles)
+      : tree(triangles),
         faces(mesh.n_faces()),
         corner_normals(mesh.n_vertices(), glm::dvec3(0.0)),
         corner_on_border(mesh.n_vertices(), 0) {
-    const Triangles triangles = triangles_of(mesh);
-    for (const auto f : mesh.faces()) {
-      Face& face = faces[index(f)];
-      face.corners = triangles.faces[index(f)];
-      std::array<glm::dvec3, 3> p;
-      for (std::size_t k = 0; k < 3; ++k) p[k] = triangles.points_mm[face.corners[k]];
-      face.normal = unit(glm::cross(p[1] - p[0], p[2] - p[0]));
-      Mesh::HalfedgeHandle side = mesh.halfedge_handle(f);
-      for (std::size_t k = 0; k < 3; ++k, side = mesh.next_halfedge_handle(side)) {
-        const Mesh::FaceHandle beyond = mesh.opposite_face_handle(side);
-        face.across[k] = beyond.is_valid() ? static_cast<std::uint32_t>(beyond.idx()) : nothing;
-        const glm::dvec3 &here = p[k], &next = p[(k + 1) % 3], &last = p[(k + 2) % 3];
-        corner_normals[face.corners[k]] += angle_between(next - here, last - here) * face.normal;
-        if (beyond.is_valid()) continue;
-        corner_on_border[face.corners[k]] = corner_on_border[face.corners[(k + 1) % 3]] = 1;
+    std::vector<std::array<double, 3>> angles(faces.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 1024), [&](const auto& range) {
+      for (std::size_t f = range.begin(); f != range.end(); ++f) {
+        Face& face = faces[f];
+        face.corners = triangles.faces[f];
+        std::array<glm::dvec3, 3> p;
+        for (std::size_t k = 0; k < 3; ++k) p[k] = triangles.points_mm[face.corners[k]];
+        face.normal = unit(glm::cross(p[1] - p[0], p[2] - p[0]));
+        Mesh::HalfedgeHandle side = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
+        for (std::size_t k = 0; k < 3; ++k, side = mesh.next_halfedge_handle(side)) {
+          const Mesh::FaceHandle beyond = mesh.opposite_face_handle(side);
+          face.across[k] = beyond.is_valid() ? static_cast<std::uint32_t>(beyond.idx()) : nothing;
+          angles[f][k] = angle_between(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+        }
       }
-    }
+    });
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Face& face = faces[f];
+        corner_normals[face.corners[k]] += angles[f][k] * face.normal;
+        if (face.across[k] == nothing)
+          corner_on_border[face.corners[k]] = corner_on_border[face.corners[(k + 1) % 3]] = 1;
+      }
     for (glm::dvec3& normal : corner_normals) normal = unit(normal);
   }
 

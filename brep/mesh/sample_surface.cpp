@@ -6,15 +6,16 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "brep/mesh/triangles.h"
-
 namespace octotomy::brep {
 
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm) {
+  return sample_surface(triangles_of(mesh), spacing_mm);
+}
+
+SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm) {
   if (!(spacing_mm > 0.0))
     throw std::invalid_argument("sample_surface: the spacing must be positive, it is " +
                                 std::to_string(spacing_mm) + " mm");
-  const Triangles triangles = triangles_of(mesh);
   SurfaceSamples samples;
   for (const auto& face : triangles.faces) {
     const glm::dvec3 a = triangles.points_mm[face[0]], ab = triangles.points_mm[face[1]] - a,

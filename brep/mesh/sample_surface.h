@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 
@@ -20,5 +21,6 @@ struct SurfaceSamples {
 /// triangle. Triangles without area get none. Throws std::invalid_argument where the spacing is not positive.
 /// Cost: linear in the samples, 56 bytes each; at least one a triangle.
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
+SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm);
 
 }  // namespace octotomy::brep

@@ -11,36 +11,15 @@
 #include <glm/glm.hpp>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
+
+#include "brep/shape/kuhn_cells.h"
 
 namespace octotomy::brep {
 namespace {
 
-constexpr int side_bits = 20;
 constexpr std::size_t most_blocks = std::size_t{1} << 20;  // of eight cells each
-constexpr double nearest_end = 0x1p-10;  // of an edge: points nearer to its end could be one with others
-
-using Place = glm::ivec3;
-
-/// A place as a number that sorts by z, y, x.
-std::uint64_t key_of(const Place& p) {
-  assert(glm::all(glm::greaterThanEqual(p, Place(0))) && glm::all(glm::lessThan(p, Place(1 << side_bits))));
-  return (static_cast<std::uint64_t>(p.z) << 2 * side_bits) | (static_cast<std::uint64_t>(p.y) << side_bits) |
-         static_cast<std::uint64_t>(p.x);
-}
-Place place_of(std::uint64_t key) {
-  constexpr std::uint64_t mask = (std::uint64_t{1} << side_bits) - 1;
-  return {static_cast<int>(key & mask), static_cast<int>(key >> side_bits & mask),
-          static_cast<int>(key >> 2 * side_bits)};
-}
-
-/// Bit 0 is x: one of a cell's corners, or the way along an edge from its lower end.
-Place corner_place(int corner) {
-  assert(corner >= 0 && corner < 8);
-  return {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
-}
 
 /// Signed distance to the offset surface, negative within.
 class Field {
@@ -134,59 +113,6 @@ Corners corners_of(const std::vector<std::uint64_t>& blocks, const Field& field,
   return corners;
 }
 
-/// An edge of a tetrahedron whose ends lie on either side of the surface.
-struct Edge {
-  std::uint64_t from = 0;  // key of its lower end
-  int along = 0;           // corner of the cell above that end where it leads
-  bool operator==(const Edge&) const = default;
-  bool operator<(const Edge& other) const {
-    return std::tie(from, along) < std::tie(other.from, other.along);
-  }
-};
-
-/// Three edges for each triangle, outward.
-using EdgeTriangle = std::array<Edge, 3>;
-
-/// A tetrahedron of a cell: its corners, positively oriented.
-using Tetrahedron = std::array<int, 4>;
-constexpr std::array<Tetrahedron, 6> tetrahedra = {
-    {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
-
-Edge edge_between(const Place& cell, int p, int q) {
-  assert(((p & q) == p || (p & q) == q) && p != q);
-  const int low = p & q;  // one of the two, as the tetrahedra's edges only ascend
-  return {key_of(cell + corner_place(low)), (p | q) ^ low};
-}
-
-void add_triangles(const Place& cell, const std::array<double, 8>& values,
-                   std::vector<EdgeTriangle>& triangles) {
-  for (const Tetrahedron& t : tetrahedra) {
-    // The inside corners first, by an even exchange, so that the tetrahedron stays positive.
-    std::array<int, 4> in_order{};
-    int inside = 0, outside = 4;
-    for (const int corner : t)
-      in_order[static_cast<std::size_t>(values[static_cast<std::size_t>(corner)] < 0.0 ? inside++
-                                                                                       : --outside)] = corner;
-    if (inside == 0 || inside == 4) continue;
-    const auto place_in = [&](int corner) { return std::find(t.begin(), t.end(), corner) - t.begin(); };
-    int inversions = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j) inversions += place_in(in_order[i]) > place_in(in_order[j]);
-    auto [a, b, c, d] = in_order;
-    if (inversions % 2 == 1 && inside == 3) std::swap(a, b);
-    if (inversions % 2 == 1 && inside != 3) std::swap(c, d);
-    const auto edge = [&](int p, int q) { return edge_between(cell, p, q); };
-    if (inside == 1) {
-      triangles.push_back({edge(a, b), edge(a, c), edge(a, d)});
-    } else if (inside == 3) {
-      triangles.push_back({edge(d, a), edge(d, b), edge(d, c)});
-    } else {
-      triangles.push_back({edge(a, c), edge(a, d), edge(b, d)});
-      triangles.push_back({edge(a, c), edge(b, d), edge(b, c)});
-    }
-  }
-}
-
 std::vector<EdgeTriangle> triangles_in(const std::vector<std::uint64_t>& blocks, const Corners& corners) {
   std::vector<EdgeTriangle> triangles;
   for (const std::uint64_t block : blocks)
@@ -225,8 +151,8 @@ struct Root {
 };
 
 /// Where the surface passes each edge, within a thousandth of a cell.
-std::vector<glm::dvec3> points_on(const std::vector<Edge>& edges, const Corners& corners, const Field& field,
-                                  const Lattice& lattice) {
+std::vector<glm::dvec3> points_on(const std::vector<LatticeEdge>& edges, const Corners& corners,
+                                  const Field& field, const Lattice& lattice) {
   std::vector<Root> roots(edges.size());
   std::vector<std::size_t> open(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -283,18 +209,11 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
   const Corners corners = corners_of(blocks, field, lattice);
   options.progress.at(0.5);
   const std::vector<EdgeTriangle> triangles = triangles_in(blocks, corners);
-  std::vector<Edge> edges;
-  for (const EdgeTriangle& triangle : triangles) edges.insert(edges.end(), triangle.begin(), triangle.end());
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const std::vector<LatticeEdge> edges = edges_of(triangles);
   options.progress.at(0.6);
   Triangles surface;
   surface.points_mm = points_on(edges, corners, field, lattice);
-  const auto number = [&](const Edge& edge) {
-    assert(std::binary_search(edges.begin(), edges.end(), edge));
-    return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
-  };
-  for (const EdgeTriangle& t : triangles) surface.faces.push_back({number(t[0]), number(t[1]), number(t[2])});
+  surface.faces = numbered(triangles, edges);
   options.progress.at(1.0);
   return trusted_solid(std::move(surface), Proof::Construction);
 }

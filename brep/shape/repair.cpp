@@ -12,14 +12,22 @@
 #include <map>
 #include <numeric>
 #include <stdexcept>
+#include <tbb/parallel_sort.h>
+#include <tuple>
 #include <utility>
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/distance.h"
+#include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/flat_triangles.h"
+#include "brep/mesh/health.h"
+#include "brep/mesh/line_volume.h"
+#include "brep/mesh/measure.h"
 #include "brep/mesh/short_text.h"
+#include "brep/mesh/split_fans.h"
 #include "brep/mesh/triangle_places.h"
+#include "brep/shape/enclose.h"
 #include "brep/shape/fill_holes.h"
 #include "brep/shape/untangle.h"
 
@@ -28,6 +36,30 @@ namespace {
 
 constexpr std::uint32_t is_new = std::numeric_limits<std::uint32_t>::max();
 using Face = std::array<std::uint32_t, 3>;
+
+/// A closed shell whose volume is below this share of its area to the power of 1.5 holds nothing: a plate of
+/// 100 mm would be 30 nm thick, below what files of floats can say.
+constexpr double film_share() {
+  return 1e-8;
+}
+
+/// The share of the extent over which points are taken for one where a solid is asked for and equal points
+/// alone leave the surface open: sixteen times what rounding to floats makes of a point.
+constexpr double weld_share() {
+  return 0x1p-20;
+}
+
+/// Whether the mesh has the triangle the other way round, and nothing else about it.
+bool is_lone(const Face& face, const Mesh& mesh) {
+  const auto side = mesh.find_halfedge(Mesh::VertexHandle(static_cast<int>(face[1])),
+                                       Mesh::VertexHandle(static_cast<int>(face[0])));
+  if (!side.is_valid() || mesh.is_boundary(side)) return false;
+  const auto next = mesh.next_halfedge_handle(side), last = mesh.prev_halfedge_handle(side);
+  const auto is_border = [&](Mesh::HalfedgeHandle h) {
+    return mesh.is_boundary(mesh.opposite_halfedge_handle(h));
+  };
+  return is_border(side) && is_border(next) && is_border(last);
+}
 
 class Mender {
  public:
@@ -39,7 +71,12 @@ class Mender {
   void weld(double distance_mm) {
     auto& points = repair_.surface.points_mm;
     DisjointSets sets(points.size());
-    join_near(points, distance_mm, sets);
+    if (distance_mm > 0.0) {
+      join_near(points, distance_mm, sets);
+    } else {
+      const std::vector<std::uint32_t> first = first_equal_points(points);
+      for (std::uint32_t v = 0; v < first.size(); ++v) sets.join(first[v], v);
+    }
     std::vector<std::uint8_t> used(points.size(), 0);
     for (const Face& face : repair_.surface.faces)
       for (const std::uint32_t v : face) used[v] = 1;
@@ -72,31 +109,110 @@ class Mender {
   }
 
   void remove_duplicates() {
-    std::map<Face, std::size_t> first;
+    std::vector<std::pair<Face, std::uint32_t>> keys;
+    for (std::uint32_t f = 0; f < repair_.surface.faces.size(); ++f) {
+      keys.emplace_back(repair_.surface.faces[f], f);
+      std::sort(keys.back().first.begin(), keys.back().first.end());
+    }
+    tbb::parallel_sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> first(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      first[keys[i].second] =
+          i > 0 && keys[i].first == keys[i - 1].first ? first[keys[i - 1].second] : keys[i].second;
     keep_if([&](std::size_t f) {
-      Face key = repair_.surface.faces[f];
-      std::sort(key.begin(), key.end());
-      const auto [known, is_first] = first.try_emplace(key, f);
-      if (!is_first)
-        change("duplicates",
-               "triangle " + name(f) + " has the points of triangle " + name(known->second) + ": taken out",
-               centre(f));
-      return is_first;
+      if (first[f] == f) return true;
+      change("duplicates",
+             "triangle " + name(f) + " has the points of triangle " + name(first[f]) + ": taken out",
+             centre(f));
+      return false;
     });
   }
 
-  void orient() {
+  /// Whether it turned any.
+  bool orient() {
     std::vector<std::uint8_t> turned(repair_.surface.faces.size(), 0);
-    const std::vector<std::uint32_t> shell = wind_alike(turned);
-    place_shells(shell, turned);
+    const Across across = across_of(repair_.surface.faces);
+    const std::vector<std::uint32_t> shell = wind_alike(across, turned);
+    place_shells(across, shell, turned);
+    bool any = false;
     for (std::size_t f = 0; f < turned.size(); ++f) {
       if (!turned[f]) continue;
       change("orient", "triangle " + name(f) + " turned round", centre(f));
       std::swap(repair_.surface.faces[f][1], repair_.surface.faces[f][2]);
+      any = true;
     }
+    return any;
+  }
+
+  void remove_not_finite() {
+    const auto& points = repair_.surface.points_mm;
+    keep_if([&](std::size_t f) {
+      const Face& face = repair_.surface.faces[f];
+      if (std::all_of(face.begin(), face.end(),
+                      [&](std::uint32_t v) { return std::isfinite(glm::dot(points[v], glm::dvec3(1.0))); }))
+        return true;
+      change("flat", "triangle " + name(f) + " has a point that is not finite: taken out", {});
+      return false;
+    });
+    for (glm::dvec3& p : repair_.surface.points_mm)
+      if (!std::isfinite(glm::dot(p, glm::dvec3(1.0)))) p = glm::dvec3(0.0);
+  }
+
+  /// As mesh_of() takes it.
+  void split() {
+    SplitFans done = split_fans(repair_.surface);
+    for (const std::uint32_t f : done.left_out)
+      change("flat", "triangle " + name(f) + " repeats a point: taken out", centre(f));
+    for (const SplitEdge& edge : done.edges) change("fans", to_string(edge), edge.at_mm);
+    std::map<std::uint32_t, std::size_t> copies;
+    for (std::size_t v = repair_.surface.points_mm.size(); v < done.origin.size(); ++v)
+      ++copies[done.origin[v]];
+    for (const auto& [v, count] : copies)
+      change("fans",
+             std::to_string(count + 1) + " fans of triangles met at point " + std::to_string(v) +
+                 ": each further one got a copy of it",
+             repair_.surface.points_mm[v]);
+    std::vector<std::uint32_t> origin;
+    for (const std::uint32_t f : done.face_origin) origin.push_back(origin_[f]);
+    origin_ = std::move(origin);
+    repair_.surface = std::move(done.surface);
+  }
+
+  void enclose(const RepairOptions& options) {
+    const Enclosed made = brep::enclose(repair_.surface, {options.cell_mm, options.hull, options.progress});
+    repair_.surface = made.solid.triangles();
+    origin_.assign(repair_.surface.faces.size(), is_new);
+    repair_.enclosed_cell_mm = made.cell_mm;
+    repair_.left.clear();
+    change(
+        "solid",
+        "made anew of " + std::to_string(repair_.surface.faces.size()) +
+            " triangles about what the surface winds round, in cells of " + short_text(made.cell_mm) +
+            " mm; " + std::to_string(made.points_across_holes) + " points lie across holes" +
+            (made.cavities_filled > 0 ? ", " + std::to_string(made.cavities_filled) + " shells within filled"
+                                      : ""),
+        {});
+  }
+
+  const Triangles& surface() const { return repair_.surface; }
+  /// Whether a side of a triangle is not shared by just one other.
+  bool is_open() const {
+    const Across across = across_of(repair_.surface.faces);
+    return std::find(across.face.begin(), across.face.end(), is_new) != across.face.end();
+  }
+  double extent_mm() const {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const Face& face : repair_.surface.faces)
+      for (const std::uint32_t v : face) {
+        low = glm::min(low, repair_.surface.points_mm[v]);
+        high = glm::max(high, repair_.surface.points_mm[v]);
+      }
+    const glm::dvec3 extent = high - low;
+    return repair_.surface.faces.empty() ? 0.0 : std::max({extent.x, extent.y, extent.z});
   }
 
   void fill_holes(const std::optional<double>& longest_mm) {
+    if (!is_open()) return;
     with_mesh("holes", [&](Mesh& mesh) {
       repair_.surface = triangles_of(mesh);
       for (const Hole& hole : holes(mesh, longest_mm)) {
@@ -106,11 +222,34 @@ class Mender {
           left("holes", what + ", stays", hole.centre_mm);
           continue;
         }
+        if (hole.faces.size() == 1 && is_lone(hole.faces[0], mesh)) {
+          left("holes", "a triangle without neighbours stays", hole.centre_mm);
+          continue;
+        }
         change("holes", what + ", closed by " + std::to_string(hole.faces.size()) + " triangles",
                hole.centre_mm);
         repair_.surface.faces.insert(repair_.surface.faces.end(), hole.faces.begin(), hole.faces.end());
         origin_.insert(origin_.end(), hole.faces.size(), is_new);
       }
+    });
+  }
+
+  /// Triangles without neighbours, and closed shells that hold nothing: two sheets on each other.
+  void remove_films() {
+    const Across across = across_of(repair_.surface.faces);
+    std::vector<std::uint8_t> turned(repair_.surface.faces.size(), 0);
+    const std::vector<std::uint32_t> shell = wind_alike(across, turned);
+    const std::map<std::uint32_t, Shell> shells = shells_of(repair_.surface, across, shell, turned);
+    keep_if([&](std::size_t f) {
+      const Shell& own = shells.at(shell[f]);
+      const bool is_film =
+          own.is_closed && std::abs(own.volume_mm3) <= film_share() * std::pow(own.area_mm2, 1.5);
+      if (!is_film && own.faces.size() > 1) return true;
+      change("films",
+             "triangle " + name(f) + (is_film ? " of a shell that holds nothing" : " without neighbours") +
+                 ": taken out",
+             centre(f));
+      return false;
     });
   }
 
@@ -143,7 +282,9 @@ class Mender {
     repair_.changes.push_back({step, std::move(what), at});
   }
   void left(const char* step, std::string what, const glm::dvec3& at) {
-    repair_.left.push_back({step, std::move(what), at});
+    const auto same = [&](const Change& known) { return known.step == step && known.what == what; };
+    if (std::none_of(repair_.left.begin(), repair_.left.end(), same))
+      repair_.left.push_back({step, std::move(what), at});
   }
 
   /// Points in neighbouring cells of a lattice as wide as the distance are all that can be that near.
@@ -151,16 +292,14 @@ class Mender {
     using Cell = std::array<double, 3>;
     std::map<Cell, std::vector<std::uint32_t>> cells;
     const auto cell_of = [&](const glm::dvec3& p) {
-      // Equal points need no lattice; 0.0 and -0.0 are equal.
-      const glm::dvec3 c = distance_mm > 0.0 ? glm::floor(p / distance_mm) : p + 0.0;
+      const glm::dvec3 c = glm::floor(p / distance_mm);
       return Cell{c.x, c.y, c.z};
     };
     for (std::uint32_t v = 0; v < points.size(); ++v) cells[cell_of(points[v])].push_back(v);
-    const double reach = distance_mm > 0.0 ? 1.0 : 0.0;
     for (const auto& [cell, members] : cells)
-      for (double x = -reach; x <= reach; ++x)
-        for (double y = -reach; y <= reach; ++y)
-          for (double z = -reach; z <= reach; ++z) {
+      for (double x = -1.0; x <= 1.0; ++x)
+        for (double y = -1.0; y <= 1.0; ++y)
+          for (double z = -1.0; z <= 1.0; ++z) {
             const auto other = cells.find({cell[0] + x, cell[1] + y, cell[2] + z});
             if (other == cells.end() || other->first < cell) continue;
             for (const std::uint32_t v : members)
@@ -184,40 +323,59 @@ class Mender {
     origin_.resize(count);
   }
 
-  /// Floods across edges of two triangles; returns the shell of each, which triangles to turn is added to.
-  std::vector<std::uint32_t> wind_alike(std::vector<std::uint8_t>& turned) {
-    struct Use {
-      std::uint32_t face;
+  /// What lies across side k of triangle f, at 3 f + k, where just one other triangle does; `is_new`
+  /// elsewhere.
+  struct Across {
+    std::vector<std::uint32_t> face;
+    std::vector<std::uint8_t> same_way;  ///< the other runs along the side the same way
+  };
+  static Across across_of(const std::vector<Face>& faces) {
+    struct Side {
+      std::uint32_t low, high, corner;
       bool upward;
     };
-    const auto& faces = repair_.surface.faces;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Use>> edges;
-    for (std::uint32_t f = 0; f < faces.size(); ++f)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t from = faces[f][k], to = faces[f][(k + 1) % 3];
-        edges[{std::min(from, to), std::max(from, to)}].push_back({f, from < to});
-      }
-    std::vector<std::uint32_t> shell(faces.size(), is_new), flood;
+    std::vector<Side> sides(3 * faces.size());
+    for (std::uint32_t c = 0; c < sides.size(); ++c) {
+      const std::uint32_t from = faces[c / 3][c % 3], to = faces[c / 3][(c + 1) % 3];
+      sides[c] = {std::min(from, to), std::max(from, to), c, from < to};
+    }
+    tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+      return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
+    });
+    Across across{std::vector<std::uint32_t>(sides.size(), is_new),
+                  std::vector<std::uint8_t>(sides.size(), 0)};
+    for (std::size_t i = 0, j; i < sides.size(); i = j) {
+      for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;)
+        ++j;
+      if (j - i != 2) continue;
+      const std::uint32_t c = sides[i].corner, d = sides[i + 1].corner;
+      across.face[c] = d / 3;
+      across.face[d] = c / 3;
+      across.same_way[c] = across.same_way[d] = sides[i].upward == sides[i + 1].upward;
+    }
+    return across;
+  }
+
+  /// Floods across edges of two triangles; returns the shell of each, which triangles to turn is added to.
+  std::vector<std::uint32_t> wind_alike(const Across& across, std::vector<std::uint8_t>& turned) {
+    std::vector<std::uint32_t> shell(turned.size(), is_new), flood;
     std::size_t twisted = 0;
-    for (std::uint32_t seed = 0; seed < faces.size(); ++seed) {
+    for (std::uint32_t seed = 0; seed < turned.size(); ++seed) {
       if (shell[seed] != is_new) continue;
       shell[seed] = seed;
       flood.assign(1, seed);
       while (!flood.empty()) {
         const std::uint32_t f = flood.back();
         flood.pop_back();
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t from = faces[f][k], to = faces[f][(k + 1) % 3];
-          const auto& uses = edges[{std::min(from, to), std::max(from, to)}];
-          if (uses.size() != 2) continue;
-          const Use &own = uses[0].face == f ? uses[0] : uses[1],
-                    &other = uses[0].face == f ? uses[1] : uses[0];
-          const std::uint8_t wanted = (own.upward == other.upward) != (turned[f] != 0);
-          if (shell[other.face] == is_new) {
-            shell[other.face] = seed;
-            turned[other.face] = wanted;
-            flood.push_back(other.face);
-          } else if (turned[other.face] != wanted) {
+        for (std::uint32_t c = 3 * f; c < 3 * f + 3; ++c) {
+          const std::uint32_t other = across.face[c];
+          if (other == is_new) continue;
+          const std::uint8_t wanted = (across.same_way[c] != 0) != (turned[f] != 0);
+          if (shell[other] == is_new) {
+            shell[other] = seed;
+            turned[other] = wanted;
+            flood.push_back(other);
+          } else if (turned[other] != wanted) {
             ++twisted;
           }
         }
@@ -235,19 +393,26 @@ class Mender {
   struct Shell {
     std::vector<std::uint32_t> faces;
     std::size_t turns = 0;
-    double volume_mm3 = 0.0;
+    double volume_mm3 = 0.0, area_mm2 = 0.0;
     bool is_closed = true;
+    /// Its furthest points along each axis and against it that no other shell has a corner at.
+    std::array<std::optional<std::uint32_t>, 6> probes;
   };
 
   /// By the first triangle of each, wound alike.
-  static std::map<std::uint32_t, Shell> shells_of(const Triangles& wound,
+  static std::map<std::uint32_t, Shell> shells_of(const Triangles& wound, const Across& across,
                                                   const std::vector<std::uint32_t>& shell,
                                                   const std::vector<std::uint8_t>& turned) {
     std::map<std::uint32_t, Shell> shells;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
-    const auto edge = [&](const Face& face, std::size_t k) {
-      return std::pair(std::min(face[k], face[(k + 1) % 3]), std::max(face[k], face[(k + 1) % 3]));
-    };
+    // Of each place the shell that has corners there, or that several have.
+    const std::vector<std::uint32_t> place = first_equal_points(wound.points_mm);
+    constexpr std::uint32_t several = is_new - 1;
+    std::vector<std::uint32_t> owner(wound.points_mm.size(), is_new);
+    for (std::uint32_t f = 0; f < shell.size(); ++f)
+      for (const std::uint32_t v : wound.faces[f]) {
+        std::uint32_t& own = owner[place[v]];
+        own = own == is_new || own == shell[f] ? shell[f] : several;
+      }
     for (std::uint32_t f = 0; f < shell.size(); ++f) {
       Shell& own = shells[shell[f]];
       const Face& face = wound.faces[f];
@@ -256,32 +421,59 @@ class Mender {
       const glm::dvec3 p = wound.points_mm[face[0]] - tip, q = wound.points_mm[face[1]] - tip,
                        r = wound.points_mm[face[2]] - tip;
       own.volume_mm3 += glm::dot(p, glm::cross(q, r)) / 6.0;
+      own.area_mm2 += 0.5 * glm::length(glm::cross(q - p, r - p));
       own.turns += turned[f];
       own.faces.push_back(f);
-      for (std::size_t k = 0; k < 3; ++k) ++uses[edge(face, k)];
+      for (std::size_t k = 0; k < 3; ++k) {
+        own.is_closed &= across.face[3 * f + k] != is_new;
+        const std::uint32_t v = face[k];
+        if (owner[place[v]] != shell[f]) continue;
+        for (std::size_t way = 0; way < 6; ++way) {
+          const auto along = [&](std::uint32_t w) {
+            return (way < 3 ? 1.0 : -1.0) * wound.points_mm[w][static_cast<int>(way % 3)];
+          };
+          if (!own.probes[way] || along(v) > along(*own.probes[way])) own.probes[way] = v;
+        }
+      }
     }
-    for (auto& [first, own] : shells)
-      for (const std::uint32_t f : own.faces)
-        for (std::size_t k = 0; k < 3; ++k) own.is_closed &= uses.at(edge(wound.faces[f], k)) == 2;
     return shells;
   }
 
-  /// Turns closed shells outward, or inward within an odd number of others; of open ones, so that fewer of
-  /// their triangles have been turned.
-  void place_shells(const std::vector<std::uint32_t>& shell, std::vector<std::uint8_t>& turned) {
+  /// Other closed shells that have all of a shell's probes inside; those that cross it do not.
+  static std::size_t shells_around(std::uint32_t first, const Shell& own,
+                                   const std::map<std::uint32_t, Shell>& shells,
+                                   const std::vector<std::uint32_t>& shell, const Triangles& wound,
+                                   const SurfaceTree& tree) {
+    std::map<std::uint32_t, std::size_t> containing;
+    std::size_t probes = 0;
+    for (const auto& probe : own.probes) {
+      if (!probe) continue;
+      ++probes;
+      std::map<std::uint32_t, bool> within;
+      for (const Crossing& crossing : tree.crossings(wound.points_mm[*probe]))
+        if (shell[crossing.face] != first) within[shell[crossing.face]] ^= true;
+      for (const auto& [other, is_within] : within) containing[other] += is_within;
+    }
+    return static_cast<std::size_t>(
+        std::count_if(containing.begin(), containing.end(), [&](const auto& other) {
+          return other.second == probes && probes > 0 && shells.at(other.first).is_closed;
+        }));
+  }
+
+  /// Turns closed shells outward, or inward within an odd number of other closed ones; of open ones, so that
+  /// fewer of their triangles have been turned.
+  void place_shells(const Across& across, const std::vector<std::uint32_t>& shell,
+                    std::vector<std::uint8_t>& turned) {
     assert(turned.size() == repair_.surface.faces.size() && shell.size() == turned.size());
     Triangles wound = repair_.surface;
     for (std::size_t f = 0; f < turned.size(); ++f)
       if (turned[f]) std::swap(wound.faces[f][1], wound.faces[f][2]);
+    const std::map<std::uint32_t, Shell> shells = shells_of(wound, across, shell, turned);
     const SurfaceTree tree(wound);
-    for (const auto& [first, own] : shells_of(wound, shell, turned)) {
+    for (const auto& [first, own] : shells) {
       bool wrong = 2 * own.turns > own.faces.size();
-      if (own.is_closed) {
-        bool is_within = false;
-        for (const Crossing& crossing : tree.crossings(wound.points_mm[wound.faces[first][0]]))
-          if (shell[crossing.face] != first) is_within = !is_within;
-        wrong = (own.volume_mm3 < 0.0) != is_within;
-      }
+      if (own.is_closed)
+        wrong = (own.volume_mm3 < 0.0) != (shells_around(first, own, shells, shell, wound, tree) % 2 == 1);
       if (wrong)
         for (const std::uint32_t f : own.faces) turned[f] ^= 1u;
     }
@@ -289,14 +481,11 @@ class Mender {
 
   template <typename Run>
   void with_mesh(const char* step, const Run& run) {
-    Mesh mesh;
-    try {
-      mesh = mesh_of(repair_.surface);
-    } catch (const std::runtime_error& error) {
-      left(step, std::string("not tried: ") + error.what(), {});
-      return;
-    }
-    run(mesh);
+    split();
+    if (repair_.surface.faces.empty())
+      left(step, "not tried: no triangles are left", {});
+    else if (Mesh mesh = mesh_of(repair_.surface); true)
+      run(mesh);
   }
 
   /// Puts another surface in place and lists the triangles that are not in it.
@@ -343,11 +532,72 @@ void check(const Triangles& surface, const RepairOptions& options) {
     throw std::invalid_argument("repair: the distance to weld over must be 0 mm or more");
   if (options.longest_hole_mm && !(*options.longest_hole_mm > 0.0))
     throw std::invalid_argument("repair: the longest border of a hole must be above 0 mm");
+  if (!(options.max_volume_share > 0.0))
+    throw std::invalid_argument("repair: the largest share of the volume must be above 0");
   for (std::size_t f = 0; f < surface.faces.size(); ++f)
     for (const std::uint32_t v : surface.faces[f])
-      if (v >= surface.points_mm.size() || !std::isfinite(glm::dot(surface.points_mm[v], glm::dvec3(1.0))))
+      if (v >= surface.points_mm.size() ||
+          (!options.solid && !std::isfinite(glm::dot(surface.points_mm[v], glm::dvec3(1.0)))))
         throw Error(ErrorCode::Input, "repair: triangle " + std::to_string(f) +
-                                          " refers to no point, or to one that is not finite");
+                                          " refers to no point, or to one that is not finite; a solid can be "
+                                          "made without such triangles");
+}
+
+/// The volume inside, for comparing; lines through holes are left out.
+double volume_inside_mm3(const Triangles& surface) {
+  const LineVolumes volumes = line_volumes(surface, {});
+  const auto closed = static_cast<double>(volumes.lines - volumes.open_lines);
+  return closed > 0.0 ? volumes.all.a_mm3 * static_cast<double>(volumes.lines) / closed : 0.0;
+}
+
+void check_volume(double before_mm3, const Triangles& now, const RepairOptions& options, const char* step) {
+  const double now_mm3 = volume_inside_mm3(now);
+  if (std::abs(now_mm3 - before_mm3) <= options.max_volume_share * before_mm3) return;
+  throw Error(ErrorCode::Geometry,
+              std::string("repair: ") + step + " took the volume from " + short_text(before_mm3) + " to " +
+                  short_text(now_mm3) + " mm3, more than its share of " +
+                  short_text(options.max_volume_share) +
+                  ": allow a larger one, --max-volume-share, or mend with smaller cells, --cell");
+}
+
+/// In that order for a reason: orienting tells inside from outside where fans are split, splitting closes
+/// shells that orienting can then place, and what holes left open has an outside only when they are filled.
+void connect(Mender& mender, const RepairOptions& options) {
+  const bool solid = options.solid;
+  if (solid) mender.remove_not_finite();
+  if (options.weld_mm || solid) mender.weld(options.weld_mm.value_or(0.0));
+  if (solid && !options.weld_mm && mender.is_open()) mender.weld(weld_share() * mender.extent_mm());
+  if (options.remove_flat || solid) mender.remove_repeats();
+  if (options.remove_duplicates || solid) mender.remove_duplicates();
+  if (options.orient || solid) mender.orient();
+  if (options.remove_flat || solid) mender.flip_flat();
+  if (solid) mender.split();
+  if (solid) mender.remove_films();
+  if (options.fill_holes || solid) mender.fill_holes(options.longest_hole_mm);
+  if (solid) mender.remove_films();
+  if ((options.orient && options.fill_holes) || solid) mender.orient();
+}
+
+/// Triangles above which a solid is enclosed at once, without trying to keep the rest of the surface.
+constexpr std::size_t most_untangled = 100'000;
+
+void make_solid(Mender& mender, double before_mm3, const RepairOptions& options) {
+  Health now = health(mender.surface());
+  if (now.solid() && !options.hull) return;
+  const std::size_t triangles = mender.surface().faces.size();
+  if (!options.hull && !options.cell_mm && now.closed && triangles <= most_untangled &&
+      now.self_intersections <= triangles / 10) {
+    Mender tried = mender;
+    tried.remove_intersections();
+    tried.split();
+    tried.orient();
+    const double share = std::abs(volume_inside_mm3(tried.surface()) - before_mm3) / before_mm3;
+    if (share <= options.max_volume_share && health(tried.surface()).solid()) {
+      mender = std::move(tried);
+      return;
+    }
+  }
+  mender.enclose(options);
 }
 
 }  // namespace
@@ -355,16 +605,63 @@ void check(const Triangles& surface, const RepairOptions& options) {
 Repair repair(const Triangles& surface, const RepairOptions& options) {
   check(surface, options);
   Mender mender(surface);
-  if (options.weld_mm) mender.weld(*options.weld_mm);
-  if (options.remove_flat) mender.remove_repeats();
-  if (options.remove_duplicates) mender.remove_duplicates();
-  if (options.orient) mender.orient();
-  if (options.remove_flat) mender.flip_flat();
-  if (options.fill_holes) mender.fill_holes(options.longest_hole_mm);
-  // What holes left open has an outside only now.
-  if (options.orient && options.fill_holes) mender.orient();
-  if (options.remove_intersections) mender.remove_intersections();
+  connect(mender, options);
+  if (!options.remove_intersections && !options.solid) {
+    mender.split();
+    if (options.orient) mender.orient();
+    return mender.result();
+  }
+  options.progress.at(0.2);
+  const double before_mm3 = volume_inside_mm3(mender.surface());
+  if (options.solid) {
+    make_solid(mender, before_mm3, options);
+    if (!options.hull) check_volume(before_mm3, mender.surface(), options, "enclosing");
+  } else {
+    mender.remove_intersections();
+    check_volume(before_mm3, mender.surface(), options, "taking out intersections");
+  }
+  mender.split();
+  // Shells that met have their places only now; each turn may show another.
+  for (int turns = 0; (options.orient || options.solid) && turns < 3 && mender.orient(); ++turns) continue;
   return mender.result();
+}
+
+RepairEffect repair_effect(const Triangles& before, const Triangles& after) {
+  const auto finite_of = [](const Triangles& surface) {
+    Triangles finite{surface.points_mm, {}};
+    const auto is_finite = [](const glm::dvec3& p) { return std::isfinite(glm::dot(p, glm::dvec3(1.0))); };
+    for (const Face& face : surface.faces)
+      if (std::all_of(face.begin(), face.end(),
+                      [&](std::uint32_t v) { return is_finite(surface.points_mm[v]); }))
+        finite.faces.push_back(face);
+    return finite;
+  };
+  const Triangles was = finite_of(before), is = finite_of(after);
+  RepairEffect effect;
+  const LineVolumes volumes = line_volumes(was, {});
+  effect.volume_before_mm3 = volumes.all.a_mm3;
+  if (volumes.lines > 0)
+    effect.open_line_share = static_cast<double>(volumes.open_lines) / static_cast<double>(volumes.lines);
+  effect.volume_after_mm3 = line_volumes(is, {}).all.a_mm3;
+  effect.area_before_mm2 = size_of(was).area_mm2;
+  effect.area_after_mm2 = size_of(is).area_mm2;
+  const auto measure = [&](const Triangles& from, const Triangles& to) {
+    if (from.faces.empty() || to.faces.empty()) return;
+    std::vector<glm::dvec3> points;
+    for (const Face& face : from.faces) {
+      const glm::dvec3 &a = from.points_mm[face[0]], &b = from.points_mm[face[1]],
+                       &c = from.points_mm[face[2]];
+      points.insert(points.end(), {a, b, c, (a + b + c) / 3.0});
+    }
+    const std::vector<double> distances = SurfaceTree(to).distances_mm(points);
+    const auto largest = std::max_element(distances.begin(), distances.end());
+    if (*largest <= effect.largest_distance_mm) return;
+    effect.largest_distance_mm = *largest;
+    effect.largest_at_mm = points[static_cast<std::size_t>(largest - distances.begin())];
+  };
+  measure(was, is);
+  measure(is, was);
+  return effect;
 }
 
 }  // namespace octotomy::brep

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "brep/mesh/progress.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
@@ -25,27 +26,54 @@ struct RepairOptions {
   /// Takes out triangles that intersect and those about them and closes what is left by new ones: moves the
   /// surface there.
   bool remove_intersections = false;
+  /// Closed and free of self-intersection in any case: where the steps above, those of them too that were not
+  /// asked for, leave no solid, the surface is made anew by enclose(). Its cell and hull:
+  bool solid = false;
+  std::optional<double> cell_mm = std::nullopt;
+  bool hull = false;
+  /// Of the volume that taking out intersections and enclosing may gain or lose, above 0.
+  double max_volume_share = 0.05;
+  Progress progress = {};
 };
 
 /// One thing that was done, or what could not be done.
 struct Change {
-  std::string step;  ///< weld, duplicates, orient, flat, holes, intersections
+  std::string step;  ///< weld, duplicates, orient, flat, fans, holes, intersections, solid
   std::string what;  ///< triangles and points by their numbers in what came in
   glm::dvec3 at_mm{0.0};
 };
 
 struct Repair {
   Triangles surface;
-  std::vector<Change> changes;  ///< every one, in order
-  std::vector<Change> left;     ///< what was asked for and could not be done
+  std::vector<Change> changes;             ///< every one, in order
+  std::vector<Change> left;                ///< what was asked for and could not be done
+  std::optional<double> enclosed_cell_mm;  ///< where the surface was made anew, the lattice's cell
 };
 
 /// Repairs a surface as asked and lists each change. Never moves a point but to weld it to the first of its
-/// set or where intersections are taken out. Ask health() what is left to be wished for. Throws
-/// std::invalid_argument if an option is out of its range, Error (Input) if a triangle refers to
-/// no point or to one that is not finite. Cost: n log n, and most for triangles that intersect.
-/// Source: holes after Liepa, "Filling holes in meshes", SGP 2003; both holes and intersections as CGAL has
-/// them.
+/// set, where intersections are taken out or the surface is enclosed. Edges of three and more triangles, and
+/// points where several fans meet, are split as split_fans() does wherever a step or the result needs it.
+/// Orients last, until health() agrees. Triangles with points that are not finite are taken out where `solid`
+/// is asked for. Ask health() what is left to be wished for. Throws std::invalid_argument if an option is out
+/// of its range, Error (Input) if a triangle refers to no point or to one that is not finite, Error
+/// (Geometry) with both volumes if the volume changes by more than its share, or as enclose(); Stopped. Cost:
+/// n log n, and most for triangles that intersect: those are taken out of up to 100 000 triangles only, when
+/// `solid` can enclose instead. Source: holes after Liepa, "Filling holes in meshes", SGP 2003; both holes
+/// and intersections as CGAL has them.
 Repair repair(const Triangles& surface, const RepairOptions& options);
+
+/// How far one surface is from another that was made of it.
+struct RepairEffect {
+  double volume_before_mm3 = 0.0, volume_after_mm3 = 0.0;  ///< by line_volumes(), also of open surfaces
+  double open_line_share = 0.0;                            ///< of the lines that the volume before leaves out
+  double area_before_mm2 = 0.0, area_after_mm2 = 0.0;
+  /// Of corners and middles of triangles of either surface from the other.
+  double largest_distance_mm = 0.0;
+  glm::dvec3 largest_at_mm{0.0};
+};
+
+/// Precondition: both have triangles. Triangles with points that are not finite are left out. Cost: n log n,
+/// parallel.
+RepairEffect repair_effect(const Triangles& before, const Triangles& after);
 
 }  // namespace octotomy::brep

@@ -120,18 +120,20 @@ void check(const Tetrahedra& tetrahedra, const MaterialOptions& options) {
     throw std::invalid_argument("materials: the depth below the surface must be 0 or more");
 }
 
-/// Bins of equal width in Young's modulus; those that hold no element are left out.
+/// Bins of equal ratio of Young's modulus, so that soft elements are told apart as well as stiff ones; those
+/// that hold no element are left out.
 void gather(const MaterialOptions& options, ElementMaterials& result) {
   const auto ends = std::minmax_element(result.youngs_modulus_mpa.begin(), result.youngs_modulus_mpa.end());
   const double low = *ends.first;
-  const double width = (*ends.second - low) / options.bins;
+  assert(low > 0.0);  // at least least_mpa
+  const double width = std::log(*ends.second / low) / options.bins;
   struct Bin {
     double sum = 0.0;
     std::size_t count = 0;
   };
   std::map<int, Bin> bins;
   const auto bin_of = [&](double e) {
-    return width > 0.0 ? std::min(static_cast<int>((e - low) / width), options.bins - 1) : 0;
+    return width > 0.0 ? std::min(static_cast<int>(std::log(e / low) / width), options.bins - 1) : 0;
   };
   for (const double e : result.youngs_modulus_mpa) {
     Bin& bin = bins[bin_of(e)];
@@ -144,7 +146,11 @@ void gather(const MaterialOptions& options, ElementMaterials& result) {
     result.materials.push_back({"BONE" + std::to_string(result.materials.size() + 1),
                                 content.sum / static_cast<double>(content.count), options.poisson_ratio});
   }
-  for (const double e : result.youngs_modulus_mpa) result.material_of_tet.push_back(number.at(bin_of(e)));
+  for (const double e : result.youngs_modulus_mpa) {
+    result.material_of_tet.push_back(number.at(bin_of(e)));
+    const double ratio = result.materials[result.material_of_tet.back()].youngs_modulus_mpa / e;
+    result.worst_ratio = std::max({result.worst_ratio, ratio, 1.0 / ratio});
+  }
 }
 
 }  // namespace
@@ -206,12 +212,14 @@ ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Sc
   result.density_g_cm3.resize(count);
   result.youngs_modulus_mpa.resize(count);
   std::atomic<std::size_t> outside{0};
+  std::vector<std::uint8_t> is_outside(count, 0);
   std::optional<Depth> depth;
   if (options.surface_depth_mm > 0.0) depth.emplace(tetrahedra, options.surface_depth_mm);
   const auto sample = [&](std::size_t t) {
     const TetCorners p_mm = corners_mm(tetrahedra, t);
     const std::optional<double> mean = mean_over(p_mm, sampler, depth);
     if (!mean) ++outside;
+    is_outside[t] = mean ? 0 : 1;
     result.hu[t] = mean ? *mean : sampler.at(sampler.voxel(0.25 * (p_mm[0] + p_mm[1] + p_mm[2] + p_mm[3])));
     result.density_g_cm3[t] =
         std::max(0.0, calibration.intercept_g_cm3 + calibration.slope_g_cm3_per_hu * result.hu[t]);
@@ -227,6 +235,8 @@ ElementMaterials element_materials(const Tetrahedra& tetrahedra, const voxel::Sc
     result.findings.push_back(
         "NOT CALIBRATED: densities assume 0.0008 g/cm3 a HU, which no phantom confirms for this scanner. "
         "Stiffness may be wrong by a factor of two: give the calibration of the scan");
+  for (std::uint32_t t = 0; t < count; ++t)
+    if (is_outside[t]) result.outside.push_back(t);
   if (outside > 0)
     result.findings.push_back(std::to_string(outside) +
                               " elements lie outside the scan and have the nearest sample's stiffness");

@@ -46,7 +46,7 @@ struct MaterialOptions {
   std::string law = "morgan2003-femoral-neck";
   /// None: the scan is not calibrated. A default applies and a finding says so.
   std::optional<DensityCalibration> calibration;
-  int bins = 20;  ///< materials by stiffness, 1..1000; more is finer
+  int bins = 20;  ///< materials by stiffness, in steps of one ratio, 1..1000; more is finer
   double poisson_ratio = 0.3;
   /// The smallest Young's modulus of an element, MPa: that of marrow and of elements at the surface's edge
   /// could otherwise be zero or negative.
@@ -66,6 +66,8 @@ struct ElementMaterials {
   std::vector<double> youngs_modulus_mpa;
   std::vector<DeckMaterial> materials;  ///< one a bin that holds elements: their mean
   std::vector<std::uint32_t> material_of_tet;
+  double worst_ratio = 1.0;            ///< of an element's own stiffness to its material's, or the inverse
+  std::vector<std::uint32_t> outside;  ///< elements without a point in the scan, ascending
   std::vector<std::string> findings;
 };
 

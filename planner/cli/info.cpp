@@ -24,15 +24,18 @@ int info_of_mesh(const Program& program, const std::filesystem::path& path) {
   json["kind"] = "mesh";
   json["source"] = path.string();
   json.update(to_json(health));
-  std::string text = lines({{"mesh", path.string()},
-                            {"vertices", grouped(static_cast<double>(health.vertices), 0)},
-                            {"faces", grouped(static_cast<double>(health.faces), 0)},
-                            {"components", std::to_string(health.components)},
-                            {"euler", std::to_string(health.euler)},
-                            {"closed", health.closed ? "yes" : "no"},
-                            {"manifold", health.manifold ? "yes" : "no"},
-                            {"oriented", health.oriented ? "yes" : "no"},
-                            {"crossings", std::to_string(health.self_intersections)}});
+  std::string text =
+      lines({{"mesh", path.string()},
+             {"vertices", grouped(static_cast<double>(health.vertices), 0)},
+             {"faces", grouped(static_cast<double>(health.faces), 0)},
+             {"components", std::to_string(health.components)},
+             {"euler", std::to_string(health.euler)},
+             {"closed", health.closed ? "yes" : "no"},
+             {"manifold", health.manifold ? "yes" : "no"},
+             {"oriented", health.oriented ? "yes" : "no"},
+             {"crossings", std::to_string(health.self_intersections)},
+             {"open edges", grouped(static_cast<double>(health.boundary_edges), 0)},
+             {"coincident", grouped(static_cast<double>(health.coincident_points), 0) + " points"}});
   for (const std::string& finding : health.findings) text += "  " + finding + "\n";
   program.say(json, text);
   return done;

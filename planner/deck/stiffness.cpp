@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/deck/stiffness.h"
 
+#include <stdexcept>
+
+#include "planner/table/number_format.h"
+
 namespace octotomy::planner {
 
 std::vector<Field> stiffness_fields() {
@@ -46,6 +50,18 @@ std::vector<std::string> add_stiffness(const Stiffness& stiffness, const convert
     for (glm::dvec3& p_mm : still.nodes_mm) p_mm = glm::dvec3(scan_from_deck * glm::dvec4(p_mm, 1.0));
     made = convert::element_materials(still, scan, options);
   }
+  if (!made.outside.empty()) {
+    glm::dvec3 middle_mm(0.0);
+    for (const auto v : tetrahedra.tets[made.outside.front()]) middle_mm += 0.25 * tetrahedra.nodes_mm[v];
+    throw std::runtime_error("the scan does not cover the solid: " + std::to_string(made.outside.size()) +
+                             " of " + std::to_string(tetrahedra.tets.size()) +
+                             " elements lie outside it, the first at (" + plain(middle_mm.x) + ", " +
+                             plain(middle_mm.y) + ", " + plain(middle_mm.z) +
+                             ") mm: give the scan that the solid was made of");
+  }
+  deck.notes.push_back("stiffness: " + std::to_string(made.materials.size()) +
+                       " materials in steps of one ratio; an element's own is at most " +
+                       three_figures(made.worst_ratio) + " times its material's or that share of it");
   deck.materials = std::move(made.materials);
   deck.material_of_tet = std::move(made.material_of_tet);
   deck.fields = {{"HU", std::move(made.hu)},

@@ -4,6 +4,7 @@
 #include "brep/io/read_mesh.h"
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/split_fans.h"
 
 namespace octotomy::planner {
 
@@ -13,18 +14,23 @@ brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
   try {
     return brep::solid_of(triangles);
   } catch (const brep::Error& error) {
-    throw brep::Error(error.code(),
-                      path.string() + ": " + error.what() + "; mend it first, octotomy info tells all");
+    throw brep::Error(error.code(), path.string() + ": " + error.what() +
+                                        "; mend it first: octotomy repair " + path.filename().string() +
+                                        " --solid -o solid.ply");
   }
 }
 
-brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings) {
+brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
+                        std::vector<std::string>* findings) {
   const Stopwatch watch(timings, "read");
   const brep::Triangles triangles = brep::read_triangles(path);
   try {
-    return brep::mesh_of(triangles);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(path.string() + ": " + error.what());
+    const brep::JoinedSurface joined = brep::joined_surface(triangles);
+    for (const std::string& finding : joined.findings)
+      if (findings != nullptr) findings->push_back(path.filename().string() + ": " + finding);
+    return brep::mesh_of(joined.surface);
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(), path.string() + ": " + error.what());
   }
 }
 

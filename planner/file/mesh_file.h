@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "brep/mesh/solid.h"
 #include "planner/file/file_kind.h"
 #include "planner/table/stopwatch.h"
@@ -11,9 +14,11 @@ namespace octotomy::planner {
 /// brep::solid_of(), naming the path.
 brep::Solid read_solid(const std::filesystem::path& path, Timings& timings);
 
-/// A mesh that need not be closed; "read" in the timings. Throws std::runtime_error where its triangles
-/// cannot be joined.
-brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings);
+/// A mesh of any triangles with finite points, closed or not, joined as brep::joined_surface() does; "read"
+/// in the timings. What was done to join them is appended to the findings, if there are any. Throws
+/// std::runtime_error, naming the path.
+brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
+                        std::vector<std::string>* findings = nullptr);
 
 /// Writes a mesh by brep::write_mesh(); "write" in the timings.
 void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings);

@@ -114,10 +114,18 @@ Json to_json(const brep::Measures& measures) {
 }
 
 Json to_json(const brep::Health& health) {
-  return {{"vertices", health.vertices},     {"faces", health.faces},
-          {"closed", health.closed},         {"manifold", health.manifold},
-          {"oriented", health.oriented},     {"self_intersections", health.self_intersections},
-          {"components", health.components}, {"euler", health.euler},
+  return {{"vertices", health.vertices},
+          {"faces", health.faces},
+          {"closed", health.closed},
+          {"manifold", health.manifold},
+          {"oriented", health.oriented},
+          {"self_intersections", health.self_intersections},
+          {"components", health.components},
+          {"euler", health.euler},
+          {"open_edges", health.boundary_edges},
+          {"open_edges_closed_by_welding", health.unwelded_edges},
+          {"edges_of_three_and_more", health.nonmanifold_edges},
+          {"coincident_points", health.coincident_points},
           {"findings", health.findings}};
 }
 

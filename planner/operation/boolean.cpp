@@ -38,6 +38,12 @@ Json proven(const FileBench& bench, const brep::Solid& a, brep::Operation operat
           {"rounded_points", exact.points}};
 }
 
+bool boxes_meet(const brep::Solid& a, const brep::Solid& b) {
+  const brep::Size &p = a.size(), &q = b.size();
+  return glm::all(glm::lessThanEqual(p.low_mm, q.high_mm)) &&
+         glm::all(glm::lessThanEqual(q.low_mm, p.high_mm));
+}
+
 FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
   need_mesh_extension(asked.out);
   need_folder_of(asked.out);
@@ -57,10 +63,19 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
       proof = proven(bench, operands[0], operation, operands[1], result);
     else
       result = brep::boolean(operands, operation, bench.stop);
+    // What rounded points make nothing of may only be thinner than their rounding.
+    if (!asked.exact && result.solid.empty() && operands.size() == 2 &&
+        boxes_meet(operands[0], operands[1])) {
+      proof = proven(bench, operands[0], operation, operands[1], result);
+      if (!result.solid.empty())
+        result.findings.push_back("thinner than the rounding of points, so made with exact numbers: " +
+                                  three_figures(result.solid.size().volume_mm3) + " mm3");
+    }
   }
   if (result.solid.empty())
     throw std::runtime_error("the " + asked.operation + " of " + asked.a.name + " and " + asked.b.name +
-                             " is empty: there is no surface to write");
+                             " is empty" + (proof.is_null() ? "" : ", as exact numbers prove") +
+                             ": there is no surface to write");
   const brep::Health health = brep::health(result.solid);
   const brep::Measures& measures = result.solid.measures();
   write_surface(result.solid, asked.out, bench.timings);

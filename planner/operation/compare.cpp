@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How far two objects' surfaces lie apart, both ways, and how much they have in common.
-#include "brep/boolean/boolean.h"
 #include "brep/io/write_mesh.h"
 #include "brep/measure/difference.h"
-#include "brep/mesh/error.h"
-#include "brep/mesh/measure.h"
+#include "brep/mesh/line_volume.h"
 #include "planner/file/mesh_file.h"
 #include "planner/measure/distance_histogram.h"
 #include "planner/measure/result_json.h"
@@ -38,46 +36,55 @@ Json to_json(const brep::OneWay& way, const std::vector<double>& tolerances) {
           {"bands", bands}};
 }
 
-/// Twice the common volume by the sum of both; none with a finding where there is no such volume.
-std::optional<double> dice(const brep::Mesh& a, const brep::Mesh& b, const std::stop_token& stop,
-                           std::vector<std::string>& findings) {
-  std::string doing;
-  const auto solid = [&](const brep::Mesh& mesh, const char* name) {
-    doing = std::string(name) + " ";
-    return brep::solid_of(mesh);
-  };
-  try {
-    const brep::Solid solid_a = solid(a, "A"), solid_b = solid(b, "B");
-    doing.clear();
-    const brep::BooleanResult common = brep::boolean(solid_a, brep::Operation::Intersection, solid_b, stop);
-    findings.insert(findings.end(), common.findings.begin(), common.findings.end());
-    return 2.0 * brep::volume_mm3(common.solid) / (brep::volume_mm3(solid_a) + brep::volume_mm3(solid_b));
-  } catch (const brep::Error& error) {
-    if (error.code() != brep::ErrorCode::Geometry) throw;
-    findings.push_back("no Dice: " + doing + error.what());
-    return std::nullopt;
-  }
+/// Twice the common volume by the sum of both.
+struct Dice {
+  double value = 0.0, half_width = 0.0;
+  std::size_t lines = 0;
+};
+
+/// Lines through holes are left out; above this share of them there is no inside to speak of.
+constexpr double most_open_lines() {
+  return 0.01;
 }
 
-Json definitions(const brep::Difference& difference) {
+/// None with a finding where the surfaces have no inside.
+std::optional<Dice> dice(const brep::Mesh& a, const brep::Mesh& b, std::vector<std::string>& findings) {
+  const brep::LineVolumes volumes = brep::line_volumes(brep::triangles_of(a), brep::triangles_of(b));
+  const auto of = [](const brep::LineVolume& v) { return 2.0 * v.common_mm3 / (v.a_mm3 + v.b_mm3); };
+  const double open =
+      volumes.lines == 0 ? 1.0 : static_cast<double>(volumes.open_lines) / static_cast<double>(volumes.lines);
+  const auto& [even, odd] = volumes.halves;
+  if (open > most_open_lines() || !(even.a_mm3 + even.b_mm3 > 0.0) || !(odd.a_mm3 + odd.b_mm3 > 0.0)) {
+    findings.push_back("no Dice: " + three_figures(100.0 * open) +
+                       " % of the lines through the surfaces pass holes or contrary triangles, or nothing is "
+                       "enclosed");
+    return std::nullopt;
+  }
+  if (volumes.open_lines > 0)
+    findings.push_back("Dice leaves out " + three_figures(100.0 * open) +
+                       " % of the lines, which pass holes or contrary triangles");
+  return Dice{of(volumes.all), std::abs(of(even) - of(odd)), volumes.lines};
+}
+
+Json definitions(const brep::Difference& difference, const std::optional<Dice>& dice) {
   return {
       {"hausdorff_mm", "largest distance of a point of either surface to the other's nearest triangle, at " +
                            std::to_string(difference.sample_count) + " samples and all vertices"},
       {"hausdorff95_mm", "larger of the two directed, area-weighted 95th percentiles, point to triangle"},
       {"mean_mm", "area-weighted mean of absolute distances, point to triangle, over both surfaces"},
       {"signed", "positive where A lies outside B (a_to_b), or B outside A (b_to_a)"},
-      {"dice", "twice the intersection's volume by the sum of both volumes, by mesh Boolean"}};
+      {"dice", "twice the common volume by the sum of both volumes, by their lengths on " +
+                   std::to_string(dice ? dice->lines : 0) + " parallel lines"}};
 }
 
 /// Both surfaces held against each other.
 struct Compared {
   brep::Difference difference;
-  std::optional<double> dice;
+  std::optional<Dice> dice;
   std::vector<std::string> findings;
 };
 
-Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b, const std::stop_token& stop,
-                  Timings& timings) {
+Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b, Timings& timings) {
   Compared made;
   {
     const Stopwatch watch(timings, "distances");
@@ -89,7 +96,7 @@ Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b
   }
   if (!asked.no_dice) {
     const Stopwatch watch(timings, "dice");
-    made.dice = dice(a, b, stop, made.findings);
+    made.dice = dice(a, b, made.findings);
   }
   if (made.difference.on_border_count > 0)
     made.findings.push_back(std::to_string(made.difference.on_border_count) + " of " +
@@ -104,8 +111,9 @@ Json to_json(const Compare& asked, const Compared& made) {
           {"hausdorff95_mm", difference.hausdorff95_mm},
           {"mean_mm", difference.mean_mm},
           {"rms_mm", difference.rms_mm},
-          {"dice", made.dice ? Json(*made.dice) : Json(nullptr)},
-          {"definition", definitions(difference)},
+          {"dice", made.dice ? Json(made.dice->value) : Json(nullptr)},
+          {"dice_half_width", made.dice ? Json(made.dice->half_width) : Json(nullptr)},
+          {"definition", definitions(difference, made.dice)},
           {"a_to_b", to_json(difference.a_to_b, asked.tolerances_mm)},
           {"b_to_a", to_json(difference.b_to_a, asked.tolerances_mm)},
           {"hausdorff_short_by_mm", difference.hausdorff_short_by_mm},
@@ -127,7 +135,7 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
     return json;
   }
   const Compared made = compared(asked, *bench.objects.at(asked.a.name).mesh.within,
-                                 *bench.objects.at(asked.b.name).mesh.within, bench.stop, bench.timings);
+                                 *bench.objects.at(asked.b.name).mesh.within, bench.timings);
   json.update(to_json(asked, made));
   json["findings"] = made.findings;
   return json;
@@ -157,9 +165,11 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
       throw std::runtime_error(asked.picture.string() + ": the histogram is drawn as .png");
     need_folder_of(asked.picture);
   }
-  const brep::Mesh a = read_surface(asked.a.name, bench.timings),
-                   b = read_surface(asked.b.name, bench.timings);
-  const Compared made = compared(asked, a, b, bench.stop, bench.timings);
+  std::vector<std::string> joined;
+  const brep::Mesh a = read_surface(asked.a.name, bench.timings, &joined),
+                   b = read_surface(asked.b.name, bench.timings, &joined);
+  Compared made = compared(asked, a, b, bench.timings);
+  made.findings.insert(made.findings.begin(), joined.begin(), joined.end());
   const double range_mm = asked.range_mm.value_or(made.difference.hausdorff95_mm);
   if (!asked.out.empty()) {
     const Stopwatch watch(bench.timings, "write");
@@ -179,7 +189,7 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
   answer.rows = {{"mean", grouped(made.difference.mean_mm, 3) + " mm"},
                  {"Hausdorff 95", grouped(made.difference.hausdorff95_mm, 3) + " mm"},
                  {"Hausdorff", grouped(made.difference.hausdorff_mm, 3) + " mm"},
-                 {"Dice", made.dice ? grouped(*made.dice, 5) : "none"}};
+                 {"Dice", made.dice ? grouped(made.dice->value, 5) : "none"}};
   return answer;
 }
 
@@ -195,8 +205,7 @@ Operation compare_operation() {
                    "Distance of the samples. Default: 200 000 samples a surface.")
                  .greater_than(0.0))
       .takes(field("bins", &Compare::bins, "Of the histogram.").from(1).to(10000))
-      .takes(field("no_dice", &Compare::no_dice,
-                   "Leaves out the common volume, the dearest part for large meshes."))
+      .takes(field("no_dice", &Compare::no_dice, "Leaves out the common volume."))
       .verb_takes(field("out", &Compare::out,
                         "A coloured by its distance to B, red outside, blue inside: .ply, .vtp or .glb."))
       .verb_takes(

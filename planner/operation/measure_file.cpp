@@ -72,6 +72,24 @@ Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const File
   return json;
 }
 
+/// What triangles have that enclose nothing: an area and a place.
+FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& health) {
+  if (health.faces == 0) throw std::runtime_error("there are no triangles to measure");
+  const brep::Size size = brep::size_of(triangles);
+  Json json{{"kind", "mesh"}};
+  for (const char* key : {"volume_mm3", "volume_partial_mm3", "centroid_mm", "inertia_mm5"})
+    json[key] = nullptr;
+  json["volume_estimator"] = "none: the surface is not closed";
+  json["area_mm2"] = size.area_mm2;
+  json["area_estimator"] = "triangles";
+  json["extents_mm"] = Json::array({to_json(size.low_mm), to_json(size.high_mm)});
+  json["components"] = health.components;
+  json["euler"] = health.euler;
+  json["findings"] = {"volume_mm3: none, as the surface is not closed, oriented and manifold: " +
+                      health.findings.front() + "; octotomy repair --solid closes it"};
+  return said(std::move(json));
+}
+
 FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
   brep::Triangles triangles;
@@ -81,11 +99,13 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   }
   auto watch = std::make_unique<Stopwatch>(timings, "measure");
   const brep::Health health = brep::health(triangles, {false});
-  if (!health.closed || !health.manifold || !health.oriented)
-    throw std::runtime_error(
-        file.string() + ": is not a closed, oriented surface (" +
-        (health.findings.empty() ? std::string("no triangles") : health.findings.front()) +
-        "), so it has no volume: mend it first, octotomy info tells all");
+  if (!health.closed || !health.manifold || !health.oriented) {
+    if (asked.asks_surface() || !asked.out.empty())
+      throw std::runtime_error(
+          file.string() + ": is not a closed, oriented surface (" + health.findings.front() +
+          "), which sections, walls and curvature are asked of: mend it first, octotomy repair --solid");
+    return measure_open(triangles, health);
+  }
   const brep::Solid solid = brep::trusted_solid(triangles, brep::Proof::Connection);
   const brep::Measures& measures = solid.measures();
   watch.reset();

@@ -5,6 +5,7 @@
 
 #include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
+#include "planner/operation/fit_rows.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -18,6 +19,8 @@ struct Mirror {
   std::optional<glm::dvec3> point_mm, normal;
   bool fit = false;
   double overlap = brep::MirrorFitOptions{}.overlap;
+  int rounds = brep::MirrorFitOptions{}.max_rounds;
+  std::optional<double> rest_mm;
   // Of the verb.
   std::vector<glm::dvec3> plane;
   bool exactly = false;
@@ -34,6 +37,8 @@ brep::MirrorFit fit(const brep::Mesh& mesh, const Mirror& mirror, const voxel::P
   brep::MirrorFitOptions options;
   if (mirror.point_mm && mirror.normal) options.start = plane_of(mirror);
   options.overlap = mirror.overlap;
+  options.max_rounds = mirror.rounds;
+  options.rest_mm = mirror.rest_mm;
   options.stop = progress.stop;
   options.progress = progress.report;
   return brep::fit_mirror_plane(mesh, options);
@@ -47,6 +52,10 @@ Json fit_json(const brep::MirrorPlane& plane, const std::optional<brep::MirrorFi
   return {{"plane", {{"point_mm", to_json(plane.point_mm)}, {"normal", to_json(plane.normal)}}},
           {"rms_mm", of_fit(&brep::MirrorFit::rms_mm)},
           {"kept_share", of_fit(&brep::MirrorFit::kept_share)},
+          {"rounds", found ? Json(found->rounds) : Json(nullptr)},
+          {"converged", found ? Json(found->converged) : Json(nullptr)},
+          {"last_step_mm", of_fit(&brep::MirrorFit::last_step_mm)},
+          {"rest_mm", of_fit(&brep::MirrorFit::rest_mm)},
           {"twist_deg", of_fit(&brep::MirrorFit::twist_deg)},
           {"slide_mm", of_fit(&brep::MirrorFit::slide_mm)}};
 }
@@ -113,7 +122,8 @@ FileAnswer on_files(const Mirror& asked, const FileBench& bench) {
     mirror.point_mm = asked.plane[0];
     mirror.normal = asked.plane[1];
   }
-  const brep::Mesh mesh = read_surface(asked.object.name, bench.timings);
+  std::vector<std::string> findings;
+  const brep::Mesh mesh = read_surface(asked.object.name, bench.timings, &findings);
   std::optional<brep::MirrorFit> found;
   if (!asked.exactly) {
     const Stopwatch watch(bench.timings, "fit");
@@ -122,16 +132,23 @@ FileAnswer on_files(const Mirror& asked, const FileBench& bench) {
   const brep::MirrorPlane plane = found ? found->plane : plane_of(mirror);
   if (!asked.out.empty()) write_surface(brep::mirrored(mesh, plane), asked.out, bench.timings);
   FileAnswer answer{fit_json(plane, found)};
-  if (found) answer.findings = found->findings;
+  if (found) findings.insert(findings.end(), found->findings.begin(), found->findings.end());
+  answer.findings = findings;
   answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
   answer.json["findings"] = answer.findings;
   const auto point = [](const glm::dvec3& p, int decimals) {
     return grouped(p.x, decimals) + ", " + grouped(p.y, decimals) + ", " + grouped(p.z, decimals);
   };
-  answer.rows = {{"through", point(plane.point_mm, 2) + " mm"},
-                 {"normal", point(plane.normal, 4)},
-                 {"rms", found ? grouped(found->rms_mm, 3) + " mm" : "not fitted"},
-                 {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
+  answer.rows = {
+      {"through", point(plane.point_mm, 2) + " mm"},
+      {"normal", point(plane.normal, 4)},
+      {"rms", found ? grouped(found->rms_mm, 3) + " mm" : "not fitted"},
+      {"rounds",
+       found ? rounds_text(found->rounds, found->converged, found->last_step_mm, found->rest_mm) : "none"},
+      {"twist",
+       found ? three_figures(found->twist_deg) + "\u00b0, slide " + three_figures(found->slide_mm) + " mm"
+             : "none"},
+      {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
   return answer;
 }
 
@@ -152,6 +169,11 @@ Operation mirror_operation() {
       .takes(field("overlap", &Mirror::overlap, "Share of the surface that has a counterpart, of a fit.")
                  .from(0.0)
                  .to(1.0))
+      .takes(field("rounds", &Mirror::rounds, "Of a fit's two refinements, each at most.").from(1).to(100000))
+      .takes(
+          field("rest_mm", &Mirror::rest_mm,
+                "A round that moves the samples by no more ends a fit. Default: a millionth of their spread.")
+              .greater_than(0.0))
       .verb_takes(
           field("plane", &Mirror::plane,
                 "A point X,Y,Z and a normal X,Y,Z near the plane; else the surface's own axes are tried.")

@@ -2,12 +2,15 @@
 // An object laid on another one by a rigid motion, which is found by surfaces, named landmarks or both. The
 // motion is settled first, so that both kernels move by the same one.
 #include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
 
 #include "brep/align/register_landmarks.h"
 #include "brep/align/register_surfaces.h"
 #include "planner/file/landmarks_file.h"
 #include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
+#include "planner/operation/fit_rows.h"
 #include "planner/operation/move.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
@@ -23,6 +26,8 @@ struct Register {
   std::string motion = "rigid";
   double overlap = brep::SurfaceFitOptions{}.overlap;
   int samples = static_cast<int>(brep::SurfaceFitOptions{}.samples);
+  int rounds = brep::SurfaceFitOptions{}.max_rounds;
+  std::optional<double> rest_mm;
   std::filesystem::path out;         ///< of the verb
   glm::dmat4 onto_from_object{1.0};  ///< settled
 };
@@ -34,6 +39,24 @@ struct Laid {
   Json details = Json::object();
   std::vector<std::string> findings = {};
 };
+
+/// The turn of a motion, its scale aside.
+struct Turn {
+  double degrees = 0.0;
+  glm::dvec3 axis{0, 0, 1};
+};
+Turn turn_of(const glm::dmat4& motion) {
+  glm::dmat3 m(motion);
+  for (int k = 0; k < 3; ++k) m[k] = glm::normalize(m[k]);
+  // Twice the sine along the axis; near a half turn the quaternion keeps digits that it has not.
+  const glm::dquat q = glm::normalize(glm::quat_cast(m));
+  const glm::dvec3 v = q.w < 0.0 ? -glm::dvec3(q.x, q.y, q.z) : glm::dvec3(q.x, q.y, q.z);
+  const double sine = glm::length(v);
+  Turn turn;
+  turn.degrees = glm::degrees(2.0 * std::atan2(sine, std::abs(q.w)));
+  if (sine > 0.0) turn.axis = v / sine;
+  return turn;
+}
 
 bool is_json(const std::filesystem::path& path) {
   return path.extension() == ".json";
@@ -70,13 +93,20 @@ void by_surfaces(const brep::Mesh& moving, const brep::Mesh& fixed, const Regist
   if (is_laid) options.start = laid.onto_from_object;
   options.overlap = asked.overlap;
   options.samples = static_cast<std::size_t>(asked.samples);
+  options.max_rounds = asked.rounds;
+  options.rest_mm = asked.rest_mm;
   options.stop = progress.stop;
   options.progress = progress.report;
   try {
     const brep::SurfaceFit fit = brep::register_surfaces(moving, fixed, options);
-    laid.details["surfaces"] = {{"rms_mm", fit.rms_mm},       {"kept_share", fit.kept_share},
-                                {"rounds", fit.rounds},       {"converged", fit.converged},
-                                {"stiffness", fit.stiffness}, {"start", is_laid ? "landmarks" : "search"}};
+    laid.details["surfaces"] = {{"rms_mm", fit.rms_mm},
+                                {"kept_share", fit.kept_share},
+                                {"rounds", fit.rounds},
+                                {"converged", fit.converged},
+                                {"stiffness", fit.stiffness},
+                                {"start", is_laid ? "landmarks" : "search"},
+                                {"last_step_mm", fit.last_step_mm},
+                                {"rest_mm", fit.rest_mm}};
     laid.onto_from_object = fit.fixed_from_moving;
     laid.rms_mm = fit.rms_mm;
     laid.findings.insert(laid.findings.end(), fit.findings.begin(), fit.findings.end());
@@ -155,8 +185,9 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   else if (!asked.landmarks.empty())
     laid = by_landmarks(asked.landmarks[0], asked.landmarks[1], asked.motion, bench.timings);
   if (!points_only && !asked.landmarks_only)
-    by_surfaces(read_surface(a, bench.timings), read_surface(b, bench.timings), asked,
-                !asked.landmarks.empty(), bench.progress("register"), bench.timings, laid);
+    by_surfaces(read_surface(a, bench.timings, &laid.findings),
+                read_surface(b, bench.timings, &laid.findings), asked, !asked.landmarks.empty(),
+                bench.progress("register"), bench.timings, laid);
   if (!asked.out.empty()) write_moved(asked, laid.onto_from_object, bench.timings);
   FileAnswer answer;
   answer.json = {{"transform", to_json(laid.onto_from_object)},
@@ -167,10 +198,19 @@ FileAnswer on_files(const Register& asked, const FileBench& bench) {
   answer.json["findings"] = laid.findings;
   answer.findings = laid.findings;
   const glm::dvec3 shift(laid.onto_from_object[3]);
+  const Turn turn = turn_of(laid.onto_from_object);
+  answer.json["rotation"] = {{"degrees", turn.degrees}, {"axis", to_json(turn.axis)}};
   answer.rows = {
       {"rms", grouped(laid.rms_mm, 3) + " mm"},
+      {"rotation", grouped(turn.degrees, 3) + "\u00b0 about (" + grouped(turn.axis.x, 4) + ", " +
+                       grouped(turn.axis.y, 4) + ", " + grouped(turn.axis.z, 4) + ")"},
       {"translation", grouped(shift.x, 2) + ", " + grouped(shift.y, 2) + ", " + grouped(shift.z, 2) + " mm"},
       {"written", asked.out.empty() ? "nothing, see -o" : asked.out.string()}};
+  if (laid.details.contains("surfaces")) {
+    const Json& fit = laid.details["surfaces"];
+    answer.rows.insert(answer.rows.begin() + 1, {"rounds", rounds_text(fit["rounds"], fit["converged"],
+                                                                       fit["last_step_mm"], fit["rest_mm"])});
+  }
   return answer;
 }
 
@@ -200,6 +240,14 @@ Operation register_operation() {
       .takes(field("samples", &Register::samples, "Points of the moving surface that are compared.")
                  .from(100)
                  .to(1000000))
+      .takes(field("rounds", &Register::rounds, "Of each of the last two refinements at most.")
+                 .from(1)
+                 .to(100000))
+      .takes(
+          field("rest_mm", &Register::rest_mm,
+                "A round that moves the samples by no more ends a refinement. Default: a millionth of their "
+                "spread.")
+              .greater_than(0.0))
       .verb_takes(field("out", &Register::out, "A moved to B: a .stl, .ply, .obj, .off, .vtp or .glb file."))
       .example(R"({"id": "laid", "do": "register", "object": "maxilla", "onto": "skull", "overlap": 0.9})")
       .on_files("octotomy register before.stl after.stl -o moved.stl --json", on_files)

@@ -5,6 +5,7 @@
 
 #include "planner/file/file_kind.h"
 #include "planner/picture/colour.h"
+#include "planner/picture/mesh_voxels.h"
 #include "planner/table/plan_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/tree/octree_file.h"
@@ -30,7 +31,7 @@ std::string name_of(const std::filesystem::path& path) {
 /// What a file holds, as it is to be drawn.
 voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render& render,
                                  const std::optional<voxel::Universe>& universe, const FileBench& bench) {
-  if (is_mesh(path)) throw std::runtime_error(path.string() + ": meshes are not drawn; voxelise it first");
+  if (is_mesh(path)) return {name_of(path), voxels_of_mesh(path, universe, render.voxel_mm, bench)};
   Timings& timings = bench.timings;
   voxel::DrawnObject object{name_of(path), voxel::Octree::empty({})};
   if (is_octree(path)) {

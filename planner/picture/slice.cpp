@@ -9,6 +9,7 @@
 #include "planner/file/output_path.h"
 #include "planner/measure/result_json.h"
 #include "planner/picture/colour.h"
+#include "planner/picture/mesh_voxels.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
@@ -67,6 +68,18 @@ Subject subject_of(const fs::path& path, Timings& timings) {
   } else {
     subject.samples = voxel::at_least_half(std::get<voxel::PartialOctree>(file.tree));
   }
+  return subject;
+}
+
+double finest_mm(const voxel::Lattice& lattice) {
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();
+  return std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
+}
+
+/// A mesh's inside, in voxels of a pixel's width where that is given.
+Subject subject_of_mesh(const fs::path& path, const Slice& slice, const FileBench& bench) {
+  Subject subject{voxels_of_mesh(path, std::nullopt, slice.pixel_mm, bench), {}, "1"};
+  subject.lattice = std::get<voxel::Octree>(subject.samples).universe().lattice();
   return subject;
 }
 
@@ -138,8 +151,7 @@ std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
 }
 
 CutSheet cut_of(const Slice& slice, const voxel::Lattice& lattice) {
-  const glm::dvec3 spacing_mm = lattice.spacing_mm();
-  const double pixel_mm = slice.pixel_mm.value_or(std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z}));
+  const double pixel_mm = slice.pixel_mm.value_or(finest_mm(lattice));
   struct Named {
     const char* plane;
     const char* view;
@@ -365,13 +377,18 @@ FileAnswer on_files(const Slice& asked, const FileBench& bench) {
   Slice slice = asked;
   if (!asked.curve.empty()) slice.curve_mm = curve_points(asked.curve);
   const fs::path file = asked.scan.name;
-  if (is_mesh(file))
-    throw std::runtime_error(file.string() + ": is a mesh: octotomy voxelise makes an octree of one");
   std::optional<voxel::Scene> scene;
-  if (!is_octree(file)) scene = bench.read_scan(file);
-  const Subject subject = scene ? subject_of(*scene, slice) : subject_of(file, bench.timings);
+  if (!is_octree(file) && !is_mesh(file)) scene = bench.read_scan(file);
+  const Subject subject = scene           ? subject_of(*scene, slice)
+                          : is_mesh(file) ? subject_of_mesh(file, slice, bench)
+                                          : subject_of(file, bench.timings);
   std::vector<Outlined> objects;
   for (const ObjectName& name : asked.objects) {
+    if (is_mesh(name.name)) {
+      objects.push_back(
+          {name.name, voxels_of_mesh(name.name, std::nullopt, finest_mm(subject.lattice), bench)});
+      continue;
+    }
     const voxel::OctreeFile outlined = read_timed(name.name, bench.timings);
     const auto* octree = std::get_if<voxel::Octree>(&outlined.tree);
     if (octree == nullptr)
@@ -404,7 +421,7 @@ Operation slice_operation() {
   return Describe<Slice>("slice",
                          "Draws a plane or a curved sheet of a scan in true scale, with octrees' outlines.",
                          Makes::File)
-      .takes(field("scan", &Slice::scan, "The scan; of the verb also an .octree file.")
+      .takes(field("scan", &Slice::scan, "The scan; of the verb also an .octree file or a mesh.")
                  .required()
                  .positional("file"))
       .takes(field("path", &Slice::path, "The .png, .jpg or .webp file within the result's folder.")
@@ -431,10 +448,10 @@ Operation slice_operation() {
                  .to(2)
                  .comma_separated()
                  .for_example("CENTRE,WIDTH as 500,2000"))
-      .takes(
-          field("objects", &Slice::objects, "Objects whose outlines are drawn; of the verb binary octrees.")
-              .repeated()
-              .called("octree"))
+      .takes(field("objects", &Slice::objects,
+                   "Objects whose outlines are drawn; of the verb binary octrees and meshes.")
+                 .repeated()
+                 .called("octree"))
       .takes(field("colours", &Slice::colours, "Colours of the outlines, #RRGGBB, in their order.")
                  .repeated()
                  .called("colour"))

@@ -93,12 +93,13 @@ TEST(Materials, BinsGatherNeighboursInStiffnessAndKeepTheMean) {
   for (std::size_t i = 0; i < t.tets.size(); ++i) {
     exact += m.youngs_modulus_mpa[i];
     binned += m.materials[m.material_of_tet[i]].youngs_modulus_mpa;
-    worst = std::max(
-        worst, std::abs(m.youngs_modulus_mpa[i] - m.materials[m.material_of_tet[i]].youngs_modulus_mpa));
+    const double ratio = m.youngs_modulus_mpa[i] / m.materials[m.material_of_tet[i]].youngs_modulus_mpa;
+    worst = std::max({worst, ratio, 1.0 / ratio});
   }
   EXPECT_NEAR(binned / exact, 1.0, 1e-12);
   const auto [low, high] = std::minmax_element(m.youngs_modulus_mpa.begin(), m.youngs_modulus_mpa.end());
-  EXPECT_LE(worst, (*high - *low) / 5.0);
+  EXPECT_LE(worst, std::pow(*high / *low, 1.0 / 5.0));
+  EXPECT_DOUBLE_EQ(m.worst_ratio, worst);
   EXPECT_TRUE(m.findings.empty());
 }
 
@@ -109,6 +110,7 @@ TEST(Materials, AnUncalibratedScanAndElementsOutsideItAreSaid) {
   ASSERT_EQ(m.findings.size(), 2U);
   EXPECT_NE(m.findings[0].find("NOT CALIBRATED"), std::string::npos);
   EXPECT_NE(m.findings[1].find("outside the scan"), std::string::npos);
+  EXPECT_FALSE(m.outside.empty());
   for (const double hu : m.hu) EXPECT_NEAR(hu, 500.0, 1e-9);
 }
 

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 deal triangles out to slabs of rows; 2 for each row that a triangle passes, list the lines between its
+// two sides there with the place where they cross it; 3 follow each line and sum the lengths inside. Where a
+// row meets a side is computed from the side's lower end whichever triangle asks, and the sign of a crossing
+// follows from the direction of that side, so that lines through a closed surface always leave it as often as
+// they enter.
+#include "brep/mesh/line_volume.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tbb/parallel_for.h>
+#include <tuple>
+#include <vector>
+
+namespace octotomy::brep {
+namespace {
+
+constexpr std::int64_t rows_a_slab = 8;
+
+struct Hit {
+  std::int64_t line;  // row * columns + column
+  double x;
+  int enters;  // 1 or -1
+  int surface;
+};
+
+struct Lines {
+  double low_y = 0.0, low_z = 0.0, spacing = 1.0;
+  std::int64_t columns = 0, rows = 0;
+  double y(std::int64_t column) const { return low_y + spacing * static_cast<double>(column); }
+  double z(std::int64_t row) const { return low_z + spacing * static_cast<double>(row); }
+  /// The first number at or above a coordinate.
+  static std::int64_t first(double at, double low, double spacing, std::int64_t count) {
+    const double number = std::ceil((at - low) / spacing);
+    auto k = static_cast<std::int64_t>(std::clamp(number, 0.0, static_cast<double>(count)));
+    while (k > 0 && low + spacing * static_cast<double>(k - 1) >= at) --k;
+    while (k < count && low + spacing * static_cast<double>(k) < at) ++k;
+    return k;
+  }
+};
+
+Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const Triangles* surface : {&a, &b})
+    for (const auto& face : surface->faces)
+      for (const std::uint32_t v : face) {
+        low = glm::min(low, surface->points_mm[v]);
+        high = glm::max(high, surface->points_mm[v]);
+      }
+  const glm::dvec3 extent = high - low;
+  Lines lines;
+  if (!(extent.y > 0.0 && extent.z > 0.0)) return lines;
+  lines.spacing = std::sqrt(extent.y * extent.z / static_cast<double>(count));
+  lines.spacing = std::max(lines.spacing, std::max(extent.y, extent.z) / static_cast<double>(count));
+  // Anything but a simple fraction, so that planes of round coordinates are cut inside.
+  lines.low_y = low.y + 0.4159265358 * lines.spacing;
+  lines.low_z = low.z + 0.5182818284 * lines.spacing;
+  lines.columns = static_cast<std::int64_t>(extent.y / lines.spacing) + 1;
+  lines.rows = static_cast<std::int64_t>(extent.z / lines.spacing) + 1;
+  return lines;
+}
+
+/// Where a row at z meets a side, and whether the side runs upward there; false where it does not meet it.
+struct Meeting {
+  double y = 0.0, x = 0.0;
+  bool upward = false;
+};
+bool meets(const glm::dvec3& from, const glm::dvec3& to, double z, Meeting& meeting) {
+  if ((from.z <= z) == (to.z <= z)) return false;
+  meeting.upward = from.z <= z;
+  const glm::dvec3 &low = meeting.upward ? from : to, &high = meeting.upward ? to : from;
+  const double share = (z - low.z) / (high.z - low.z);
+  meeting.y = low.y + share * (high.y - low.y);
+  meeting.x = low.x + share * (high.x - low.x);
+  return true;
+}
+
+void add_hits(const std::array<glm::dvec3, 3>& t, int surface, const Lines& lines, std::int64_t row,
+              std::vector<Hit>& hits) {
+  const double z = lines.z(row);
+  std::array<Meeting, 3> met;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (meets(t[k], t[(k + 1) % 3], z, met[count])) ++count;
+  assert(count == 0 || count == 2);
+  if (count < 2) return;
+  if (met[1].y < met[0].y) std::swap(met[0], met[1]);
+  const std::int64_t begin = Lines::first(met[0].y, lines.low_y, lines.spacing, lines.columns);
+  const std::int64_t end = Lines::first(met[1].y, lines.low_y, lines.spacing, lines.columns);
+  for (std::int64_t column = begin; column < end; ++column) {
+    const double share = (lines.y(column) - met[0].y) / (met[1].y - met[0].y);
+    // Counter-clockwise in the plane of y and z, whose left side runs down, faces +x: there the line leaves.
+    hits.push_back({row * lines.columns + column, met[0].x + share * (met[1].x - met[0].x),
+                    met[0].upward ? 1 : -1, surface});
+  }
+}
+
+struct Sums {
+  std::array<LineVolume, 2> halves;  // lengths
+  std::size_t lines = 0, open_lines = 0;
+};
+
+/// The lengths along one line, from its hits by rising x.
+void follow(const Hit* begin, const Hit* end, const Lines& lines, Sums& sums) {
+  ++sums.lines;
+  std::array<int, 2> winding{};
+  for (const Hit* hit = begin; hit != end; ++hit)
+    winding[static_cast<std::size_t>(hit->surface)] += hit->enters;
+  if (winding[0] != 0 || winding[1] != 0) {
+    ++sums.open_lines;
+    return;
+  }
+  const std::int64_t row = begin->line / lines.columns, column = begin->line % lines.columns;
+  LineVolume& own = sums.halves[static_cast<std::size_t>((row + column) & 1)];
+  for (const Hit* hit = begin; hit != end; ++hit) {
+    winding[static_cast<std::size_t>(hit->surface)] += hit->enters;
+    if (hit + 1 == end) break;
+    const double length = hit[1].x - hit->x;
+    if (winding[0] != 0) own.a_mm3 += length;
+    if (winding[1] != 0) own.b_mm3 += length;
+    if (winding[0] != 0 && winding[1] != 0) own.common_mm3 += length;
+  }
+}
+
+/// The triangles, by their numbers in a after b, that pass the rows of each slab.
+std::vector<std::vector<std::uint32_t>> deal(const Triangles& a, const Triangles& b, const Lines& lines) {
+  std::vector<std::vector<std::uint32_t>> slabs(
+      static_cast<std::size_t>((lines.rows + rows_a_slab - 1) / rows_a_slab));
+  std::uint32_t number = 0;
+  for (const Triangles* surface : {&a, &b})
+    for (const auto& face : surface->faces) {
+      const double p = surface->points_mm[face[0]].z, q = surface->points_mm[face[1]].z,
+                   r = surface->points_mm[face[2]].z;
+      const std::int64_t first =
+          Lines::first(std::min({p, q, r}), lines.low_z, lines.spacing, lines.rows) / rows_a_slab;
+      const std::int64_t end = Lines::first(std::max({p, q, r}), lines.low_z, lines.spacing, lines.rows);
+      for (std::int64_t slab = first; slab * rows_a_slab < end; ++slab)
+        slabs[static_cast<std::size_t>(slab)].push_back(number);
+      ++number;
+    }
+  return slabs;
+}
+
+}  // namespace
+
+LineVolumes line_volumes(const Triangles& a, const Triangles& b, std::size_t count) {
+  const Lines lines = lines_over(a, b, std::max<std::size_t>(count, 1));
+  const std::vector<std::vector<std::uint32_t>> slabs = deal(a, b, lines);
+  std::vector<Sums> sums(slabs.size());
+  tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
+    std::vector<Hit> hits;
+    const auto slab = static_cast<std::int64_t>(s);
+    for (const std::uint32_t number : slabs[s]) {
+      const bool of_b = number >= a.faces.size();
+      const Triangles& surface = of_b ? b : a;
+      const auto& face = surface.faces[of_b ? number - a.faces.size() : number];
+      const std::array<glm::dvec3, 3> t = {surface.points_mm[face[0]], surface.points_mm[face[1]],
+                                           surface.points_mm[face[2]]};
+      const double low = std::min({t[0].z, t[1].z, t[2].z}), high = std::max({t[0].z, t[1].z, t[2].z});
+      const std::int64_t begin =
+          std::max(slab * rows_a_slab, Lines::first(low, lines.low_z, lines.spacing, lines.rows));
+      const std::int64_t end =
+          std::min((slab + 1) * rows_a_slab, Lines::first(high, lines.low_z, lines.spacing, lines.rows));
+      for (std::int64_t row = begin; row < end; ++row) add_hits(t, of_b ? 1 : 0, lines, row, hits);
+    }
+    std::sort(hits.begin(), hits.end(), [](const Hit& p, const Hit& q) {
+      return std::tie(p.line, p.x, p.surface, p.enters) < std::tie(q.line, q.x, q.surface, q.enters);
+    });
+    for (std::size_t i = 0, j; i < hits.size(); i = j) {
+      for (j = i; j < hits.size() && hits[j].line == hits[i].line;) ++j;
+      follow(hits.data() + i, hits.data() + j, lines, sums[s]);
+    }
+  });
+  LineVolumes volumes;
+  const double each_mm2 = lines.spacing * lines.spacing;
+  for (const Sums& part : sums) {
+    volumes.lines += part.lines;
+    volumes.open_lines += part.open_lines;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const LineVolume& own = part.halves[k];
+      volumes.halves[k].a_mm3 += 2.0 * each_mm2 * own.a_mm3;
+      volumes.halves[k].b_mm3 += 2.0 * each_mm2 * own.b_mm3;
+      volumes.halves[k].common_mm3 += 2.0 * each_mm2 * own.common_mm3;
+    }
+  }
+  const auto& [even, odd] = volumes.halves;
+  volumes.all = {0.5 * (even.a_mm3 + odd.a_mm3), 0.5 * (even.b_mm3 + odd.b_mm3),
+                 0.5 * (even.common_mm3 + odd.common_mm3)};
+  return volumes;
+}
+
+}  // namespace octotomy::brep

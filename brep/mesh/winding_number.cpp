@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 halve the triangles at the median centre along the longest axis; 2 sum the moments of each half from its
+// own; 3 for a point, descend where it is within `nearness` radii of a cluster, else take the moments.
+// Departure from the source: no third order, as only the level of a half is looked for.
+#include "brep/mesh/winding_number.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include "brep/mesh/halving.h"
+
+namespace octotomy::brep {
+namespace {
+
+constexpr std::uint32_t leaf_size = 8;
+constexpr std::uint32_t parallel_size = 8192;
+
+/// A cluster counts by its moments from this many of its radii on; the source's accuracy scale.
+constexpr double nearness() {
+  return 2.0;
+}
+
+using Corners = std::array<glm::dvec3, 3>;
+
+/// 4 pi times the share of the sphere about p that the triangle covers, positive seen from behind.
+double solid_angle(const Corners& triangle, const glm::dvec3& p) {
+  const glm::dvec3 a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
+  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+  const double below = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  const double above = glm::dot(a, glm::cross(b, c));
+  return above == 0.0 && below == 0.0 ? 0.0 : 2.0 * std::atan2(above, below);
+}
+
+}  // namespace
+
+struct WindingTree::Tree {
+  /// A leaf holds `count` triangles from `first`; an inner node's children are the next one and `first`.
+  struct Node {
+    glm::dvec3 centre_mm{0.0};
+    double radius_mm = 0.0;  ///< of a ball about the centre that holds all corners
+    double area_mm2 = 0.0;
+    glm::dvec3 normal{0.0};  ///< sum of area vectors
+    glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
+    std::uint32_t first = 0, count = 0;
+  };
+  std::vector<Corners> triangles;  ///< in the order of the leaves
+  std::vector<Node> nodes;
+
+  explicit Tree(const Triangles& surface) {
+    const auto count = static_cast<std::uint32_t>(surface.faces.size());
+    if (count == 0) return;
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::vector<Corners> corners(count);
+    std::vector<glm::dvec3> middles(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+      for (std::size_t f = range.begin(); f != range.end(); ++f) {
+        for (std::size_t k = 0; k < 3; ++k) corners[f][k] = surface.points_mm[surface.faces[f][k]];
+        middles[f] = (corners[f][0] + corners[f][1] + corners[f][2]) / 3.0;
+      }
+    });
+    triangles.resize(count);
+    nodes.resize(halving_nodes(count, leaf_size));
+    build(corners, middles, order, 0, 0, count);
+  }
+
+  void build(const std::vector<Corners>& corners, const std::vector<glm::dvec3>& middles,
+             std::vector<std::uint32_t>& order, std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+    assert(begin < end && self < nodes.size());
+    if (end - begin <= leaf_size) {
+      for (std::uint32_t i = begin; i < end; ++i) triangles[i] = corners[order[i]];
+      nodes[self].first = begin;
+      nodes[self].count = end - begin;
+      sum_leaf(nodes[self]);
+      return;
+    }
+    glm::dvec3 low = middles[order[begin]], high = low;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      low = glm::min(low, middles[order[i]]);
+      high = glm::max(high, middles[order[i]]);
+    }
+    const glm::dvec3 extent = high - low;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::uint32_t half = begin + (end - begin) / 2,
+                        second = self + 1 + halving_nodes(half - begin, leaf_size);
+    std::nth_element(order.begin() + begin, order.begin() + half, order.begin() + end,
+                     [&](std::uint32_t f, std::uint32_t g) {
+                       return middles[f][axis] != middles[g][axis] ? middles[f][axis] < middles[g][axis]
+                                                                   : f < g;
+                     });
+    const auto first_half = [&] { build(corners, middles, order, self + 1, begin, half); };
+    const auto second_half = [&] { build(corners, middles, order, second, half, end); };
+    if (end - begin > parallel_size) {
+      tbb::parallel_invoke(first_half, second_half);
+    } else {
+      first_half();
+      second_half();
+    }
+    nodes[self].first = second;
+    sum_halves(nodes[self], nodes[self + 1], nodes[second]);
+  }
+
+  void sum_leaf(Node& node) const {
+    glm::dvec3 middle_sum(0.0), plain_sum(0.0);
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const Corners& t = triangles[i];
+      const glm::dvec3 area = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]), middle = (t[0] + t[1] + t[2]) / 3.0;
+      node.area_mm2 += glm::length(area);
+      middle_sum += glm::length(area) * middle;
+      plain_sum += middle;
+      node.normal += area;
+    }
+    node.centre_mm = node.area_mm2 > 0.0 ? middle_sum / node.area_mm2 : plain_sum / double(node.count);
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const Corners& t = triangles[i];
+      const glm::dvec3 area = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]), middle = (t[0] + t[1] + t[2]) / 3.0;
+      node.moment += glm::outerProduct(area, middle - node.centre_mm);
+      for (const glm::dvec3& p : t)
+        node.radius_mm = std::max(node.radius_mm, glm::distance(p, node.centre_mm));
+    }
+  }
+
+  static void sum_halves(Node& node, const Node& a, const Node& b) {
+    node.area_mm2 = a.area_mm2 + b.area_mm2;
+    node.normal = a.normal + b.normal;
+    node.centre_mm = node.area_mm2 > 0.0
+                         ? (a.area_mm2 * a.centre_mm + b.area_mm2 * b.centre_mm) / node.area_mm2
+                         : 0.5 * (a.centre_mm + b.centre_mm);
+    for (const Node* half : {&a, &b}) {
+      node.moment += half->moment + glm::outerProduct(half->normal, half->centre_mm - node.centre_mm);
+      node.radius_mm =
+          std::max(node.radius_mm, half->radius_mm + glm::distance(half->centre_mm, node.centre_mm));
+    }
+  }
+
+  double at(const glm::dvec3& p) const {
+    if (nodes.empty()) return 0.0;
+    double sum = 0.0;
+    std::array<std::uint32_t, 64> waiting;
+    std::size_t top = 0;
+    waiting[top++] = 0;
+    while (top > 0) {
+      const std::uint32_t index = waiting[--top];
+      const Node& node = nodes[index];
+      const glm::dvec3 r = node.centre_mm - p;
+      const double r2 = glm::dot(r, r), reach = nearness() * node.radius_mm;
+      if (r2 > reach * reach) {
+        // The gradient of 1 / (4 pi r) and its derivative, on the area vectors and their first moment.
+        const double r1 = std::sqrt(r2), r3 = r2 * r1;
+        const double trace = node.moment[0][0] + node.moment[1][1] + node.moment[2][2];
+        sum += glm::dot(node.normal, r) / r3 + trace / r3 - 3.0 * glm::dot(r, node.moment * r) / (r3 * r2);
+      } else if (node.count > 0) {
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+          sum += solid_angle(triangles[i], p);
+      } else {
+        assert(top + 2 <= waiting.size());
+        waiting[top++] = node.first;
+        waiting[top++] = index + 1;
+      }
+    }
+    return sum / (4.0 * std::numbers::pi);
+  }
+};
+
+WindingTree::WindingTree(const Triangles& surface) : tree_(std::make_unique<Tree>(surface)) {}
+WindingTree::~WindingTree() = default;
+WindingTree::WindingTree(WindingTree&&) noexcept = default;
+WindingTree& WindingTree::operator=(WindingTree&&) noexcept = default;
+
+std::vector<double> WindingTree::at(const std::vector<glm::dvec3>& points_mm) const {
+  std::vector<double> numbers(points_mm.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_mm.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) numbers[i] = tree_->at(points_mm[i]);
+  });
+  return numbers;
+}
+
+}  // namespace octotomy::brep

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "brep/mesh/triangles.h"
+
+namespace octotomy::brep {
+
+/// How often a surface of any triangles winds about points in LPS millimetres: 1 inside a closed surface, 0
+/// outside, in between near holes. Triangles far from a point count by the first two moments of their
+/// clusters: off by under 0.01 where sheets do not lie nearer to each other than their triangles are long.
+class WindingTree {
+ public:
+  /// Precondition: triangles refer to finite points. Cost: n log n, about 150 bytes a triangle; parallel.
+  explicit WindingTree(const Triangles& surface);
+  ~WindingTree();
+  WindingTree(WindingTree&&) noexcept;
+  WindingTree& operator=(WindingTree&&) noexcept;
+
+  /// The same bits on any number of threads. Cost: about log n a point, some 3 us at 500k triangles;
+  /// parallel. Source: Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and
+  /// clouds", SIGGRAPH 2018, with its second order; single triangles after Van Oosterom and Strackee, 1983.
+  std::vector<double> at(const std::vector<glm::dvec3>& points_mm) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<const Tree> tree_;
+};
+
+}  // namespace octotomy::brep

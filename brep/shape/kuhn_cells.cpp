@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/shape/kuhn_cells.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <utility>
+
+namespace octotomy::brep {
+namespace {
+
+/// A tetrahedron of a cell: its corners, positively oriented.
+using Tetrahedron = std::array<int, 4>;
+constexpr std::array<Tetrahedron, 6> tetrahedra = {
+    {{0, 1, 3, 7}, {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 6, 4, 7}}};
+
+LatticeEdge edge_between(const Place& cell, int p, int q) {
+  assert(((p & q) == p || (p & q) == q) && p != q);
+  const int low = p & q;  // one of the two, as the tetrahedra's edges only ascend
+  return {key_of(cell + corner_place(low)), (p | q) ^ low};
+}
+
+}  // namespace
+
+void add_triangles(const Place& cell, const std::array<double, 8>& values,
+                   std::vector<EdgeTriangle>& triangles) {
+  for (const Tetrahedron& t : tetrahedra) {
+    // The inside corners first, by an even exchange, so that the tetrahedron stays positive.
+    std::array<int, 4> in_order{};
+    int inside = 0, outside = 4;
+    for (const int corner : t)
+      in_order[static_cast<std::size_t>(values[static_cast<std::size_t>(corner)] < 0.0 ? inside++
+                                                                                       : --outside)] = corner;
+    if (inside == 0 || inside == 4) continue;
+    const auto place_in = [&](int corner) { return std::find(t.begin(), t.end(), corner) - t.begin(); };
+    int inversions = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j) inversions += place_in(in_order[i]) > place_in(in_order[j]);
+    auto [a, b, c, d] = in_order;
+    if (inversions % 2 == 1 && inside == 3) std::swap(a, b);
+    if (inversions % 2 == 1 && inside != 3) std::swap(c, d);
+    const auto edge = [&](int p, int q) { return edge_between(cell, p, q); };
+    if (inside == 1) {
+      triangles.push_back({edge(a, b), edge(a, c), edge(a, d)});
+    } else if (inside == 3) {
+      triangles.push_back({edge(d, a), edge(d, b), edge(d, c)});
+    } else {
+      triangles.push_back({edge(a, c), edge(a, d), edge(b, d)});
+      triangles.push_back({edge(a, c), edge(b, d), edge(b, c)});
+    }
+  }
+}
+
+std::vector<LatticeEdge> edges_of(const std::vector<EdgeTriangle>& triangles) {
+  std::vector<LatticeEdge> edges;
+  edges.reserve(3 * triangles.size());
+  for (const EdgeTriangle& triangle : triangles) edges.insert(edges.end(), triangle.begin(), triangle.end());
+  tbb::parallel_sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+std::vector<std::array<std::uint32_t, 3>> numbered(const std::vector<EdgeTriangle>& triangles,
+                                                   const std::vector<LatticeEdge>& edges) {
+  std::vector<std::array<std::uint32_t, 3>> faces(triangles.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 1024), [&](const auto& range) {
+    for (std::size_t f = range.begin(); f != range.end(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto found = std::lower_bound(edges.begin(), edges.end(), triangles[f][k]);
+        assert(found != edges.end() && *found == triangles[f][k]);
+        faces[f][k] = static_cast<std::uint32_t>(found - edges.begin());
+      }
+  });
+  return faces;
+}
+
+}  // namespace octotomy::brep
