@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -308,16 +309,26 @@ class RegionWitness {
   double low_ = std::numeric_limits<double>::infinity(), high_ = -low_, reach_mm_ = 0.0;
 };
 
-Witness of_tree(const ExpressionTree& tree, const std::vector<Witness>& leaves) {
+Reading negated(const Reading& a) {
+  return {negated(a.voxel), negated(a.mesh), a.surfaces};
+}
+
+Reading joined(Word (*rule)(const Word&, const Word&), const Reading& a, const Reading& b) {
+  return {rule(a.voxel, b.voxel), rule(a.mesh, b.mesh), a.surfaces + b.surfaces};
+}
+
+/// A tree's reading from those of its leaves. Recursion is as deep as the text's parentheses, not as long as
+/// a row of operands.
+Reading reading_of(const ExpressionTree& tree, const std::vector<Reading>& leaves) {
   if (tree.parts.empty()) return leaves[static_cast<std::size_t>(tree.leaf)];
-  Witness made = of_tree(tree.parts.front(), leaves);
-  if (tree.symbol == '~') return complement(std::move(made));
+  Reading made = reading_of(tree.parts.front(), leaves);
+  if (tree.symbol == '~') return negated(made);
   for (std::size_t i = 1; i < tree.parts.size(); ++i) {
-    Witness next = of_tree(tree.parts[i], leaves);
-    if (tree.symbol == '&') made = both(std::move(made), std::move(next));
-    if (tree.symbol == '-') made = without(std::move(made), std::move(next));
-    if (tree.symbol == '^') made = joined<exclusive>(std::move(made), std::move(next));
-    if (tree.symbol == '|') made = complement(both(complement(std::move(made)), complement(std::move(next))));
+    const Reading next = reading_of(tree.parts[i], leaves);
+    if (tree.symbol == '&') made = joined(conjunction, made, next);
+    if (tree.symbol == '-') made = joined(conjunction, made, negated(next));
+    if (tree.symbol == '^') made = joined(exclusive, made, next);
+    if (tree.symbol == '|') made = negated(joined(conjunction, negated(made), negated(next)));
   }
   return made;
 }
@@ -410,13 +421,18 @@ Witness witness_of_filled(Witness hollow) {
 Witness witness_of_expression(std::string_view text,
                               const std::function<Witness(const std::string&)>& lookup) {
   std::vector<std::string> names;
-  const ExpressionTree tree = expression_tree_of(text, names);
+  const auto tree = std::make_shared<const ExpressionTree>(expression_tree_of(text, names));
   std::vector<Witness> leaves;
   for (const std::string& name : names) {
     leaves.push_back(lookup(name));
     if (!leaves.back()) return {};
   }
-  return of_tree(tree, leaves);
+  return [tree, leaves = std::move(leaves)](const glm::dvec3& p_mm, double slack_mm) {
+    std::vector<Reading> readings;
+    readings.reserve(leaves.size());
+    for (const Witness& leaf : leaves) readings.push_back(leaf(p_mm, slack_mm));
+    return reading_of(*tree, readings);
+  };
 }
 
 }  // namespace octotomy::verify

@@ -185,8 +185,11 @@ Triangles read_off(std::string_view bytes) {
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
   std::error_code error;
+  // A pipe or a device may never end.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw Error(ErrorCode::Input, "is no regular file: copy it into one first");
+  std::ifstream file(path, std::ios::binary);
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!file || error) throw Error(ErrorCode::Input, "cannot be read; check its name and rights");
   std::string bytes(size, '\0');

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "voxel/space/regular_file.h"
+
 // The text form of CalculiX's result: a block begins " -4  DISP", its lines are " -1", the node in 10
 // characters and three values in 12 each, without space between them, and it ends " -3". Source: CalculiX
 // GraphiX manual, "Result format".
@@ -27,6 +29,7 @@ constexpr std::size_t value_width = 12;
 }
 
 std::ifstream opened(const std::filesystem::path& path) {
+  voxel::need_regular_file(path);
   std::ifstream in(path);
   if (!in) refuse(path, "cannot be read");
   return in;

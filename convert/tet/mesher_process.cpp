@@ -247,6 +247,7 @@ void write_request(const MemoryFile& file, Sent& sent, const std::string& switch
     throw std::invalid_argument("tetrahedralise: switches '" + switches + "' are too long");
   std::copy(switches.begin(), switches.end(), request.switches.begin());
   request.memory_limit_bytes = limits.memory_bytes;
+  request.parent = ::getpid();
   // The wall clock decides. The limit of processor time ends the child if this process is gone by then.
   request.cpu_limit_seconds =
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(limits.time).count() + 2);

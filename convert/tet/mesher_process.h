@@ -32,6 +32,7 @@ struct MesherRequest {
   std::array<double, 3> spacing_mm{};
   std::uint64_t memory_limit_bytes = 0;
   std::uint64_t cpu_limit_seconds = 0;
+  std::int64_t parent = 0;  ///< the process that asks; the child ends with it
 };
 struct MesherAnswer {
   std::uint64_t version = MesherRequest::this_version;

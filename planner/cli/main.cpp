@@ -3,14 +3,17 @@
 // The program: reads the command line, runs the chosen verb and turns what it throws into an exit status:
 // 2 for what the user can mend, 3 for time, memory and disk.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
@@ -18,6 +21,7 @@
 #include <system_error>
 #include <tbb/global_control.h>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 #include "brep/mesh/error.h"
@@ -26,42 +30,73 @@
 #include "planner/cli/verb.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
+#include "voxel/space/memory_need.h"
+#include "voxel/space/unfinished_folder.h"
 
 namespace {
 
 using octotomy::planner::cli::Program;
 namespace cli = octotomy::planner::cli;
 
-std::atomic<bool> interrupted{false};
+std::atomic<int> interrupts{0};
 
-/// Asks the verb to stop when its time is over or the user interrupts; ends with its scope.
+/// Says why and ends the process without the verb, whose threads may still work: what they have not finished
+/// is removed, and the processes that they started end with this one.
+[[noreturn]] void end_now(const char* why) {
+  octotomy::voxel::remove_unfinished();
+  if (::isatty(STDERR_FILENO) != 0) std::fputs("\r\x1b[2K", stderr);
+  cli::warn(why);
+  std::_Exit(cli::out_of_resources);
+}
+
+/// A thread met an error that nobody could take: out of memory, or no further thread could be started.
+[[noreturn]] void end_in_thread() {
+  octotomy::voxel::remove_unfinished();
+  cli::warn(
+      "out of memory or of threads: nothing was written; use larger voxels, fewer --threads, or raise "
+      "--memory");
+  std::_Exit(cli::out_of_resources);
+}
+
+/// Asks the verb to stop when its time is over or the user interrupts, and ends the process where the verb
+/// does not heed it, or a second interrupt comes. Ends with its scope.
 class Watch {
  public:
   explicit Watch(Program& program)
-      : thread_([this, &program](const std::stop_token& over) {
-          const auto start = std::chrono::steady_clock::now();
-          std::unique_lock lock(mutex_);
-          while (!wake_.wait_for(lock, over, std::chrono::milliseconds(50), [] { return false; }) &&
-                 !over.stop_requested()) {
-            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-            const bool late = program.time_limit_s && spent.count() > *program.time_limit_s;
-            if (late || interrupted) program.stop.request_stop();
-          }
-        }) {}
+      : thread_([&program](const std::stop_token& over) { run(program, over); }) {}
 
  private:
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
+  using Clock = std::chrono::steady_clock;
+  /// A verb that looks at its stop token ends by itself within this; the message is then its own.
+  static constexpr std::chrono::milliseconds grace{150};
+  static constexpr std::chrono::milliseconds look_every{5};
+
+  static void run(Program& program, const std::stop_token& over) {
+    const Clock::time_point start = Clock::now();
+    std::optional<Clock::time_point> asked;
+    while (!over.stop_requested()) {
+      std::this_thread::sleep_for(look_every);
+      const bool late = program.time_limit_s &&
+                        std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s;
+      if (interrupts > 1) end_now("interrupted twice: ended at once, what was unfinished is removed");
+      if (!late && interrupts == 0) continue;
+      program.stop.request_stop();
+      if (!asked) asked = Clock::now();
+      if (Clock::now() < *asked + grace) continue;
+      // A verb that has its answer may give it, unless it is interrupted: its reader may never read.
+      if (has_last_word(cli::Speaker::Watch))
+        end_now(interrupts > 0 ? "interrupted: nothing was written" : "out of time: nothing was written");
+      if (interrupts > 0) end_now("interrupted while the answer was written");
+    }
+  }
+
   std::jthread thread_;
 };
 
 /// An error's text on one line: what, where, what to try.
 int refuse(const std::string& text, int status) {
-  std::string line = text;
-  for (char& symbol : line)
-    if (symbol == '\n') symbol = ' ';
-  while (!line.empty() && line.back() == ' ') line.pop_back();
-  cli::warn(line);
+  while (!has_last_word(cli::Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
+  cli::warn(text);
   return status;
 }
 
@@ -77,6 +112,8 @@ int run_chosen(Program& program) {
     if (program.threads)
       threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                       static_cast<std::size_t>(*program.threads));
+    if (program.memory_gb)
+      octotomy::voxel::limit_memory(static_cast<std::uint64_t>(std::min(*program.memory_gb, 1e9) * 1e9));
     const Watch watch(program);
     return program.chosen();
   } catch (const CLI::ParseError& error) {
@@ -87,7 +124,8 @@ int run_chosen(Program& program) {
     return refuse(error.what(), status_of(error.code()));
   } catch (const std::bad_alloc&) {
     return refuse(
-        "out of memory: nothing was written; use larger voxels (universe, voxel_mm) or a smaller scan",
+        "out of memory: nothing was written; use larger voxels (universe, voxel_mm), a smaller scan, or "
+        "raise --memory",
         cli::out_of_resources);
   } catch (const std::system_error& error) {
     return refuse(error.what(), status_of(octotomy::voxel::code_of_errno(error.code().value())));
@@ -103,6 +141,15 @@ std::string unknown_verb(CLI::App& app, const std::string& word) {
   const std::optional<std::string> nearest = octotomy::planner::nearest_name(word, verbs);
   return "there is no verb '" + word + "'" + (nearest ? ", did you mean '" + *nearest + "'?" : "") +
          "; see octotomy --help";
+}
+
+/// Help and version go to standard output, which may be full.
+int say_help(const CLI::App& app, const CLI::ParseError& error) {
+  app.exit(error);
+  std::cout.flush();
+  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return cli::done;
+  return refuse("standard output: " + std::generic_category().message(errno),
+                status_of(octotomy::voxel::code_of_errno(errno)));
 }
 
 int parse_and_run(int count, char** arguments) {
@@ -134,7 +181,7 @@ int parse_and_run(int count, char** arguments) {
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) return say_help(app, error);
     if (count > 1 && arguments[1][0] != '-' && app.get_subcommands().empty())
       return refuse(unknown_verb(app, arguments[1]), cli::bad_input);
     return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
@@ -149,8 +196,9 @@ int parse_and_run(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
+  std::signal(SIGINT, [](int) { ++interrupts; });
+  std::signal(SIGTERM, [](int) { ++interrupts; });
+  std::set_terminate([] { end_in_thread(); });
   try {
     return parse_and_run(count, arguments);
   } catch (const std::bad_alloc&) {

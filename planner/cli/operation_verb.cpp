@@ -22,6 +22,7 @@
 #include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
 #include "planner/table/field_json.h"
+#include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 
@@ -194,10 +195,9 @@ class OperationRun {
   }
 
   int write_voxels(const Object& made) {
-    const voxel::OctreeFile file{
-        made.voxel.octree, text_.out.stem().string(),
-        Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"operation", made.definition}}
-            .dump()};
+    const voxel::OctreeFile file{made.voxel.octree, text_.out.stem().string(),
+                                 json_text(Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
+                                                {"operation", made.definition}})};
     Json more = Json::object();
     if (made.certificate) more["certificate"] = to_json(*made.certificate);
     say(program_, octree_written(file, text_.out, program_.stop.get_token(), timings_, made.findings, more),

@@ -3,6 +3,7 @@
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
 #include "planner/table/field_json.h"
+#include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
 #include "voxel/scan/volume_header.h"
@@ -67,7 +68,7 @@ void write_removed(const PrepareText& text, const voxel::GreyOctree& removed, Ti
   const Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
                   {"scan", text.in.filename().string()},
                   {"holds", "samples taken out by remove_headrest; restore puts them back"}};
-  voxel::write_octree({removed, text.removed.stem().string(), made.dump()}, text.removed);
+  voxel::write_octree({removed, text.removed.stem().string(), json_text(made)}, text.removed);
 }
 
 int prepare(const Program& program, const PrepareText& text) {

@@ -121,7 +121,7 @@ void write_segments(const Program& program, const SegmentText& text, const voxel
     const Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
                     {"scan", text.scan.filename().string()},
                     {"steps", segments.front().made.steps}};
-    const voxel::OctreeFile file{segments.front().made.octree, segments.front().name, made.dump()};
+    const voxel::OctreeFile file{segments.front().made.octree, segments.front().name, json_text(made)};
     const Stopwatch watch(timings, "write");
     voxel::write_octree(file, text.out);
     json.update(octree_answer(file, fs::file_size(text.out), timings));

@@ -2,19 +2,32 @@
 #include "planner/cli/verb.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <system_error>
+#include <thread>
 #include <unistd.h>
 
 #include "planner/cli/numbers.h"
 #include "voxel/filter/tissue.h"
+#include "planner/table/json_file.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
+std::atomic<Speaker> last_speaker{Speaker::None};
+
+/// Controls other than the ends of lines: names and texts of files reach a terminal, which would obey them.
+bool is_control(char symbol) {
+  return static_cast<unsigned char>(symbol) < ' ' || symbol == 0x7f;
+}
+
 /// Writes all of it, or throws; a reader that has gone away wants no more, which is no error.
 void put(const std::string& text) {
+  // The watch has said how the program ends, which it does at any moment.
+  while (!has_last_word(Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
   errno = 0;
   const bool written =
       std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
@@ -34,6 +47,9 @@ CLI::App& Program::verb(const std::string& name, const std::string& does, const 
                  "Give up after so many seconds, with exit status 3 and nothing written")
       ->check(above_zero())
       ->type_name("S");
+  sub.add_option("--memory", memory_gb, "Take at most so many GB of memory, else exit status 3")
+      ->check(above_zero())
+      ->type_name("GB");
   sub.footer("Example:\n  " + example);
   sub.callback([this, act = std::move(action)] { chosen = act; });
   return sub;
@@ -70,7 +86,12 @@ void Program::say(const Json& answer, const std::string& text) const {
     const voxel::Tissue tissue = *voxel::tissue(name);
     warn(voxel::described(tissue) + ": " + std::string(tissue.source));
   }
-  if (!json) return put(text);
+  if (!json) {
+    std::string plain = text;
+    std::replace_if(
+        plain.begin(), plain.end(), [](char symbol) { return symbol != '\n' && is_control(symbol); }, '?');
+    return put(plain);
+  }
   Json whole = answer;
   for (const std::string& name : *tissues_) {
     const voxel::Tissue tissue = *voxel::tissue(name);
@@ -86,14 +107,14 @@ void Program::say(const Json& answer, const std::string& text) const {
       if (!scan.holes.empty()) whole["scans"].back()["interpolated"] = to_json(scan.holes, scan.lattice);
     }
   }
-  put(whole.dump(2) + "\n");
+  put(json_text(whole, 2) + "\n");
 }
 
 std::function<void(const std::string&, double)> Program::progress() const {
   if (json || ::isatty(STDERR_FILENO) == 0) return {};
   return [](const std::string& doing, double fraction) {
     // Erase the line, so that a shorter text leaves nothing of a longer one.
-    std::fprintf(stderr, "\r\x1b[2K%3d %%  %s", static_cast<int>(100.0 * fraction), doing.c_str());
+    std::fprintf(stderr, "\r\x1b[2K%3d %%  %s", static_cast<int>(100.0 * fraction), line_of(doing).c_str());
     if (fraction >= 1.0) std::fputs("\r\x1b[2K", stderr);
     std::fflush(stderr);
   };
@@ -106,7 +127,27 @@ std::function<void(double)> Program::progress(const std::string& doing) const {
 }
 
 void warn(const std::string& line) {
-  std::fprintf(stderr, "octotomy: %s\n", line.c_str());
+  std::fprintf(stderr, "octotomy: %s\n", line_of(line).c_str());
+}
+
+std::string line_of(const std::string& text) {
+  constexpr std::size_t most = 1000;  // bytes; a page at most, and never a whole file
+  constexpr const char* cut = " ... ";
+  std::string line = text;
+  while (!line.empty() && (line.back() == ' ' || line.back() == '\n')) line.pop_back();
+  for (char& symbol : line)
+    if (is_control(symbol)) symbol = symbol == '\n' || symbol == '\t' ? ' ' : '?';
+  if (line.size() <= most) return line;
+  // The beginning names the place, the end says what to do. No character is cut in two.
+  std::size_t first = most / 2, last = line.size() - most / 2 + 5;
+  while (first > 0 && (static_cast<unsigned char>(line[first]) & 0xc0) == 0x80) --first;
+  while (last < line.size() && (static_cast<unsigned char>(line[last]) & 0xc0) == 0x80) ++last;
+  return line.substr(0, first) + cut + line.substr(last);
+}
+
+bool has_last_word(Speaker speaker) {
+  Speaker before = Speaker::None;
+  return last_speaker.compare_exchange_strong(before, speaker) || before == speaker;
 }
 
 std::string dims_text(const glm::ivec3& dims) {

@@ -28,6 +28,7 @@ struct Program {
   bool json = false;
   std::optional<int> threads;
   std::optional<double> time_limit_s;
+  std::optional<double> memory_gb;
   std::stop_source stop;
   std::function<int()> chosen;  ///< what the verb on the command line does; its answer is the exit status
 
@@ -53,8 +54,16 @@ struct Program {
   std::shared_ptr<std::vector<ScanRecord>> scans_ = std::make_shared<std::vector<ScanRecord>>();
 };
 
-/// One line on standard error.
+/// One line on standard error, as line_of() makes it.
 void warn(const std::string& line);
+
+/// A text as one line for a terminal: without control characters, at most 1000 bytes.
+std::string line_of(const std::string& text);
+
+/// How the program ends is said once: by the verb, or by the watch over it. True for the first that asks,
+/// and for the same one again.
+enum class Speaker { None, Verb, Watch };
+bool has_last_word(Speaker speaker);
 
 void add_info(Program& program);
 void add_convert(Program& program);

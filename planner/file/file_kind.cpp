@@ -2,17 +2,22 @@
 #include "planner/file/file_kind.h"
 
 #include <algorithm>
+#include <climits>
 #include <initializer_list>
 #include <stdexcept>
 #include <string>
-#include <unistd.h>
+#include <sys/statvfs.h>
 
 #include "voxel/space/file_text.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A file's name is longer while it is written: by a process's number and ".part".
+constexpr std::size_t longest_name = NAME_MAX - 20;
 
 bool has_extension(const fs::path& path, std::initializer_list<const char*> known) {
   const std::string extension = voxel::extension_of(path);
@@ -30,13 +35,25 @@ bool is_octree(const fs::path& path) {
 }
 
 void need_folder_of(const fs::path& out) {
-  const fs::path folder = fs::absolute(out).lexically_normal().parent_path();
+  const auto refuse = [&](const std::string& why) { throw std::runtime_error(out.string() + ": " + why); };
+  const fs::path file = voxel::behind_links(fs::absolute(out).lexically_normal());
+  const fs::path folder = file.parent_path();
   if (!fs::is_directory(folder))
-    throw std::runtime_error(out.string() + ": there is no folder " + folder.string() +
-                             ": make it, or choose another -o");
-  if (::access(folder.c_str(), W_OK) != 0)
-    throw std::runtime_error(out.string() + ": " + folder.string() +
-                             " cannot be written to: choose another -o");
+    refuse("there is no folder " + folder.string() + ": make it, or choose another -o");
+  if (file.filename().native().size() > longest_name || file.native().size() + longest_name > PATH_MAX)
+    refuse("is too long a name: choose a shorter -o");
+  const fs::file_status status = fs::symlink_status(file);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+    refuse("is a pipe or device and is not replaced: choose another -o");
+  try {
+    const voxel::StagedFiles trial(folder);
+  } catch (const voxel::Error& error) {
+    throw voxel::Error(error.code(), out.string() + ": " + error.what());
+  }
+  struct statvfs disk {};
+  if (::statvfs(folder.c_str(), &disk) == 0 && disk.f_blocks > 0 && disk.f_bavail == 0)
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       out.string() + ": the disk is full: make room, or choose another -o");
 }
 
 void need_mesh_extension(const fs::path& path) {

@@ -11,7 +11,8 @@ bool is_mesh(const std::filesystem::path& path);
 /// Whether a path is an octree's by its extension.
 bool is_octree(const std::filesystem::path& path);
 
-/// Throws std::runtime_error where a file cannot be made at `out`: before the work, so that none is lost.
+/// Throws std::runtime_error or voxel::Error where a file cannot be made at `out`: before the work, so that
+/// none is lost. Tries it with a hidden folder beside the file.
 void need_folder_of(const std::filesystem::path& out);
 
 /// Throws std::runtime_error where no mesh is written with the path's extension.

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "planner/table/nearest_name.h"
+#include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
 namespace {
@@ -68,6 +69,7 @@ std::vector<brep::Landmark> slicer_landmarks(const Json& markups) {
 }  // namespace
 
 std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
+  voxel::need_regular_file(path);
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   try {

@@ -2,9 +2,9 @@
 #include "planner/file/mesh_file.h"
 
 #include "brep/io/read_mesh.h"
-#include "brep/io/write_mesh.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/split_fans.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 
@@ -34,9 +34,19 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
   }
 }
 
-void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings) {
+void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings,
+                   const brep::VertexData& data) {
   const Stopwatch watch(timings, "write");
-  brep::write_mesh(mesh, out);
+  voxel::StagedFiles staged(out.parent_path());
+  const std::filesystem::path file = staged.folder() / out.filename();
+  try {
+    brep::write_mesh(mesh, file, data);
+  } catch (const brep::Error& error) {
+    std::string reason = error.what();  // begins with the hidden name
+    if (reason.starts_with(file.string())) reason.replace(0, file.string().size(), out.string());
+    throw brep::Error(error.code(), reason);
+  }
+  staged.commit();
 }
 
 }  // namespace octotomy::planner

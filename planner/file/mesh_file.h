@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "brep/io/write_mesh.h"
 #include "brep/mesh/solid.h"
 #include "planner/file/file_kind.h"
 #include "planner/table/stopwatch.h"
@@ -20,7 +21,9 @@ brep::Solid read_solid(const std::filesystem::path& path, Timings& timings);
 brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
                         std::vector<std::string>* findings = nullptr);
 
-/// Writes a mesh by brep::write_mesh(); "write" in the timings.
-void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings);
+/// Writes a mesh by brep::write_mesh() and replaces what `out` means, as voxel::StagedFiles; "write" in the
+/// timings.
+void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings,
+                   const brep::VertexData& data = {});
 
 }  // namespace octotomy::planner

@@ -10,6 +10,9 @@ namespace octotomy::planner {
 void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
                        const Place& place) {
   const std::string name = output_path(path).generic_string();
+  if (std::any_of(name.begin(), name.end(),
+                  [](unsigned char symbol) { return symbol < ' ' || symbol == 0x7f; }))
+    place.refuse("a path has no control characters: choose another name");
   if (std::none_of(extensions.begin(), extensions.end(),
                    [&](const std::string& known) { return name.ends_with(known); }))
     place.refuse("nothing can be written as '" + name + "'" +

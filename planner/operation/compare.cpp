@@ -142,7 +142,7 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
 }
 
 void write_coloured(const Compare& asked, const brep::Mesh& a, const brep::Difference& difference,
-                    double range_mm) {
+                    double range_mm, Timings& timings) {
   brep::VertexData data;
   for (const double distance : difference.vertex_mm)
     data.colours.push_back(distance_colour(distance, range_mm));
@@ -150,7 +150,7 @@ void write_coloured(const Compare& asked, const brep::Mesh& a, const brep::Diffe
     data.scalar_name = "distance_mm";
     data.scalars = difference.vertex_mm;
   }
-  brep::write_mesh(a, asked.out, data);
+  write_surface(a, asked.out, timings, data);
 }
 
 FileAnswer on_files(const Compare& asked, const FileBench& bench) {
@@ -171,10 +171,7 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
   Compared made = compared(asked, a, b, bench.timings);
   made.findings.insert(made.findings.begin(), joined.begin(), joined.end());
   const double range_mm = asked.range_mm.value_or(made.difference.hausdorff95_mm);
-  if (!asked.out.empty()) {
-    const Stopwatch watch(bench.timings, "write");
-    write_coloured(asked, a, made.difference, range_mm);
-  }
+  if (!asked.out.empty()) write_coloured(asked, a, made.difference, range_mm, bench.timings);
   if (!asked.picture.empty()) {
     const Stopwatch watch(bench.timings, "picture");
     const HistogramPicture picture = draw_histogram(made.difference, range_mm);

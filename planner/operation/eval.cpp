@@ -6,6 +6,7 @@
 
 #include "planner/file/file_kind.h"
 #include "planner/measure/octree_summary.h"
+#include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/operation.h"
 #include "voxel/measure/measure.h"
@@ -222,7 +223,7 @@ FileAnswer on_files(const Eval& asked, const FileBench& bench) {
   for (const std::string& name : used) made["let"][name] = fs::path(lets.at(name)).filename().string();
   for (const auto& [name, window] : windows) made["window"][name] = window;
   for (const auto& [name, motion] : motions) made["motion"][name] = motion;
-  result.metadata = made.dump();
+  result.metadata = json_text(made);
   return octree_written(result, asked.out, bench.stop, timings, findings, more);
 }
 

@@ -8,6 +8,7 @@
 #include "planner/file/octree_in.h"
 #include "planner/file/region_file.h"
 #include "planner/measure/octree_summary.h"
+#include "planner/table/json_file.h"
 #include "planner/table/plan_universe.h"
 #include "voxel/solid/combine.h"
 
@@ -129,7 +130,7 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
   Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"regions", asked.region_files}};
   if (slices) made["slices"] = asked.slices.filename().string();
   if (!asked.edit.empty()) made["edited"] = asked.edit.filename().string();
-  file.metadata = made.dump();
+  file.metadata = json_text(made);
   return octree_written(file, asked.out, bench.stop, bench.timings, findings);
 }
 

@@ -63,11 +63,10 @@ Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const File
                                other ? &*other : nullptr, asked.thickness, asked.curvature},
                               solid, bench.progress("thickness"), bench.timings, shown);
   if (out.empty()) return json;
-  const Stopwatch watch(bench.timings, "write");
   brep::VertexData data;
   data.scalar_name = shown.name;
   data.scalars = std::move(shown.values);
-  brep::write_mesh(solid, out, data);
+  write_surface(solid, out, bench.timings, data);
   json["path"] = out.string();
   return json;
 }
@@ -91,6 +90,7 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
 }
 
 FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
+  if (!asked.out.empty()) need_folder_of(asked.out);
   Timings& timings = bench.timings;
   brep::Triangles triangles;
   {

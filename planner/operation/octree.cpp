@@ -10,10 +10,12 @@
 #include "planner/file/octree_in.h"
 #include "planner/file/representation.h"
 #include "planner/measure/octree_summary.h"
+#include "planner/table/json_file.h"
 #include "planner/table/operation.h"
 #include "planner/table/plan_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
@@ -49,6 +51,7 @@ voxel::Octree windowed(const voxel::GreyOctree& grey, const SampleWindow& window
 }
 
 std::string content_of(const fs::path& path) {
+  voxel::need_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
   std::string content(std::istreambuf_iterator<char>(stream), {});
   if (!stream && !stream.eof()) throw std::runtime_error(path.string() + ": cannot be read");
@@ -105,8 +108,8 @@ voxel::OctreeFile from_scan(const FileBench& bench, const Build& asked) {
             {"modality", scene.modality}};
   if (window) made["window"] = {window->low, window->high ? Json(*window->high) : Json(nullptr)};
   const std::string name = asked.in().stem().string();
-  if (!window) return {grey, name, made.dump()};
-  return {windowed(grey, *window), name, made.dump()};
+  if (!window) return {grey, name, json_text(made)};
+  return {windowed(grey, *window), name, json_text(made)};
 }
 
 FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::OctreeFile& file) {

@@ -10,6 +10,7 @@
 #include "planner/file/octree_in.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
+#include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/label_map.h"
@@ -110,11 +111,10 @@ FileAnswer write_octree(const FileBench& bench, const Voxelise& asked, const Sub
                         const std::vector<std::string>& findings) {
   const voxel::Universe universe = universe_of(asked, {subject}, bench.timings);
   voxel::OctreeFile file{voxelised(bench, asked, subject, universe), subject.path.stem().string(), ""};
-  file.metadata = Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
-                       {"mesh", subject.path.filename().string()},
-                       {"digitise", asked.digitise},
-                       {"method", subject.health.solid() ? "parity" : "winding number"}}
-                      .dump();
+  file.metadata = json_text(Json{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
+                                 {"mesh", subject.path.filename().string()},
+                                 {"digitise", asked.digitise},
+                                 {"method", subject.health.solid() ? "parity" : "winding number"}});
   return octree_written(file, asked.out, bench.stop, bench.timings, findings);
 }
 

@@ -23,6 +23,7 @@
 #include "verify/witness.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_scene.h"
+#include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
 namespace {
@@ -119,6 +120,7 @@ class Evaluator {
     if (!std::filesystem::exists(path) && voxel::image_files(path).empty())
       throw std::runtime_error("scan '" + name + "': " + path.string() +
                                ": no such file or folder; correct the plan or use --scan " + name + "=PATH");
+    if (!std::filesystem::is_directory(path)) voxel::need_regular_file(path);
     sha256 = sha256_of_path(path);
     if (source.sha256 && *source.sha256 != sha256)
       throw std::runtime_error("scan '" + name + "': " + path.string() + " has SHA-256 " + sha256 +

@@ -15,6 +15,7 @@
 #include "planner/plan/plan_keys.h"
 #include "planner/table/field_json.h"
 #include "planner/table/nearest_name.h"
+#include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
 namespace {
@@ -193,6 +194,7 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
 }
 
 Plan read_plan(const std::filesystem::path& path) {
+  voxel::need_regular_file(path);
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path))
     throw std::runtime_error(path.string() + ": cannot be opened as a plan: check the path");

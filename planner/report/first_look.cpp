@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "planner/measure/result_json.h"
+#include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "voxel/filter/otsu.h"
 #include "voxel/filter/tissue.h"
@@ -64,7 +65,9 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
   plan["steps"].push_back({{"id", "skin"}, {"do", "window"}, {"scan", "scan"}, {"low", skin_low}});
   plan["steps"].push_back({{"id", "bone_size"}, {"do", "measure"}, {"object", "bone"}});
   plan["steps"].push_back({{"id", "skin_size"}, {"do", "measure"}, {"object", "skin"}});
-  result.plan = parse_plan(plan.dump(2), std::filesystem::current_path());
+  result.plan = parse_plan(json_text(plan, 2), std::filesystem::current_path());
+  // A name need not be UTF-8, as JSON must.
+  result.plan.scans.at("scan").path = scan;
   result.evaluation = evaluate(result.plan, options.evaluation);
 
   {

@@ -14,6 +14,7 @@
 #include "planner/plan/plan.h"
 #include "planner/plan/random_plan.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/json_file.h"
 #include "verify/exact_agreement.h"
 #include "verify/random_expression.h"
 #include "voxel/filter/label_map.h"
@@ -168,7 +169,7 @@ void write_plan(const ExactQuestion& question, const std::filesystem::path& fold
     json["steps"].push_back({{"id", name}, {"do", "window"}, {"scan", name}, {"low", 0.5}});
   }
   json["steps"].push_back({{"id", "result"}, {"do", "combine"}, {"expression", expression}});
-  write_text(folder / "disagreement.plan.json", json.dump(2));
+  write_text(folder / "disagreement.plan.json", json_text(json, 2));
 }
 
 /// A random plan's evaluation, or why there is none.

@@ -7,6 +7,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/report/report_page.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/json_file.h"
 #include "voxel/filter/components.h"
 
 namespace octotomy::planner {
@@ -152,7 +153,7 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     write_text(output.path() / "report.html", report_html(result));
   }
   Json json = result_json(result);
-  write_text(output.path() / "result.json", json.dump(2) + "\n");
+  write_text(output.path() / "result.json", json_text(json, 2) + "\n");
   output.publish();
   return json;
 }

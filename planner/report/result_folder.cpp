@@ -12,7 +12,9 @@
 #include "planner/report/result_folder.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <fcntl.h>
 #include <fstream>
@@ -22,7 +24,6 @@
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
-#include <utility>
 
 #include "planner/plan/sha256.h"
 #include "voxel/space/error.h"
@@ -110,8 +111,15 @@ bool lies_in(const fs::path& inner, const fs::path& outer) {
 }
 
 void need_writable(const fs::path& folder, const fs::path& named) {
-  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+  try {
+    if (::access(folder.c_str(), W_OK | X_OK) == 0)
+      voxel::UnfinishedFolder(folder, ".octotomy-");
+    else
+      throw voxel::Error(ErrorCode::Input, "");
+  } catch (const voxel::Error& error) {
+    if (error.code() == ErrorCode::Resource) throw;
     refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
+  }
 }
 
 dev_t device_of(const fs::path& path) {
@@ -157,6 +165,9 @@ List need_place(const fs::path& place, const fs::path& named, const std::vector<
         named.string() +
         ": is the working folder or holds it, and a result replaces its folder: choose a folder in it, as -o "
         "report");
+  constexpr std::size_t longest_beside = 20;  // "." before it, ".octotomy-" with six letters and "~" after
+  if (place.filename().native().size() + longest_beside > NAME_MAX)
+    refuse(named.string() + ": is too long a name: choose a shorter -o");
   if (!is_there(place)) {
     fs::path above = place.parent_path();
     while (!is_there(above)) above = above.parent_path();
@@ -288,15 +299,28 @@ void discard_leftovers(const fs::path& place) {
     if (!name.starts_with(prefix) || !fs::is_directory(entry.symlink_status())) continue;
     const bool earlier = name.ends_with(steps_suffix);
     if (earlier) name.resize(name.size() - std::string_view(steps_suffix).size());
-    if (name.find_first_not_of("0123456789-", prefix.size()) != std::string::npos) continue;
+    if (!earlier && name.ends_with('~')) name.pop_back();
+    const std::string letters = name.substr(prefix.size());
+    if (letters.size() != 6 || !std::all_of(letters.begin(), letters.end(),
+                                            [](unsigned char letter) { return std::isalnum(letter) != 0; }))
+      continue;
     if (!earlier || !rename_to_new(entry.path(), place)) found.push_back(entry.path());
   }
-  for (const fs::path& hidden : found) {
-    const int file = ::open(hidden.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file < 0) continue;
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) discard(hidden, place, false);
-    ::close(file);
-  }
+  for (const fs::path& hidden : found)
+    voxel::if_abandoned(
+        hidden,
+        [](const fs::path& folder, void* place_of_it) {
+          discard(folder, *static_cast<const fs::path*>(place_of_it), false);
+        },
+        const_cast<fs::path*>(&place));
+}
+
+/// The permissions of a folder that is made in `folder` as any other.
+void take_usual_mode(const fs::path& folder) {
+  const fs::path probe = folder / "probe";
+  fs::create_directory(probe);
+  keep_mode(probe, folder);
+  fs::remove(probe);
 }
 
 }  // namespace
@@ -312,56 +336,48 @@ ResultFolder::ResultFolder(const fs::path& folder, const std::vector<fs::path>& 
   const PlaceLock held(final_.parent_path());
   discard_leftovers(final_);
   need_place(final_, folder, names);
-  for (int number = 0;; ++number) {
-    staged_ = final_.parent_path() /
-              (hidden_prefix(final_).string() + std::to_string(::getpid()) + "-" + std::to_string(number));
-    if (fs::create_directory(staged_)) break;
-  }
-  lock_ = ::open(staged_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ >= 0) ::flock(lock_, LOCK_EX);
+  staged_ = std::make_unique<voxel::UnfinishedFolder>(final_.parent_path(), hidden_prefix(final_).string());
+  take_usual_mode(path());
 }
 
-ResultFolder::~ResultFolder() {
-  std::error_code ignored;
-  if (!staged_.empty()) fs::remove_all(staged_, ignored);
-  if (lock_ >= 0) ::close(lock_);
-}
-
-void ResultFolder::keep_beside(const std::string& reason) {
+void ResultFolder::keep_beside(const std::string& reason, const fs::path& hidden) {
   for (int number = 1;; ++number) {
     const fs::path kept = final_.string() + ".new" + (number == 1 ? "" : std::to_string(number));
     if (is_there(kept)) continue;
-    if (!rename_to_new(staged_, kept))
-      throw fs::filesystem_error("cannot keep", staged_, kept, {errno, std::generic_category()});
-    staged_.clear();
+    const fs::path from = staged_->is_kept() ? hidden : path();
+    if (!rename_to_new(from, kept))
+      throw fs::filesystem_error("cannot keep", from, kept, {errno, std::generic_category()});
+    if (!staged_->is_kept()) staged_->keep();
     refuse(reason + ". The new result is complete in " + kept.string());
   }
 }
 
 void ResultFolder::publish() {
-  write_list(staged_);
+  write_list(path());
   const PlaceLock held(final_.parent_path());
   const bool replaces = is_there(final_) && !(fs::is_directory(final_) && fs::is_empty(final_));
   try {
     const List earlier = need_place(final_, final_, {});
-    if (replaces) take_over(final_, earlier, staged_, final_);
+    if (replaces) take_over(final_, earlier, path(), final_);
   } catch (const std::exception& error) {
     keep_beside(error.what());
   }
-  if (!replaces) {
-    keep_mode(final_, staged_);
-    // Takes the place of an empty folder, never that of a file or of a folder with something in it.
-    if (::rename(staged_.c_str(), final_.c_str()) != 0)
-      keep_beside(final_.string() + ": " + std::generic_category().message(errno));
-    staged_.clear();
-    return;
+  if (!replaces) keep_mode(final_, path());
+  fs::path old;
+  {
+    const voxel::NamesChange change;
+    // From the exchange on, the hidden folder holds other people's files: no ending may remove it.
+    old = staged_->keep();
+    // An empty folder is replaced, never a file or a folder with something in it.
+    const bool done = replaces
+                          ? ::renameat2(AT_FDCWD, old.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0
+                          : ::rename(old.c_str(), final_.c_str()) == 0;
+    if (!done && replaces && (errno == EINVAL || errno == ENOSYS))
+      exchange_in_steps(old, final_);
+    else if (!done)
+      keep_beside(final_.string() + ": " + std::generic_category().message(errno), old);
   }
-  if (::renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) != 0) {
-    if (errno != EINVAL && errno != ENOSYS)
-      keep_beside(final_.string() + ": " + std::generic_category().message(errno));
-    exchange_in_steps(staged_, final_);
-  }
-  const fs::path old = std::exchange(staged_, {});
+  if (!replaces) return;
   try {
     discard(old, final_, true);
   } catch (const std::exception&) {

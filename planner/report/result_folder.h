@@ -2,8 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::planner {
 
@@ -29,11 +32,9 @@ class ResultFolder {
                         const std::vector<std::filesystem::path>& names = {});
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
-  /// Removes what was written, unless it was published.
-  ~ResultFolder();
 
   /// The folder to write into until publish(); exists.
-  const std::filesystem::path& path() const { return staged_; }
+  const std::filesystem::path& path() const { return staged_->path(); }
   /// Puts the result in its place. A process that is killed before or within leaves the earlier result whole
   /// under its name; after, the new one. Throws voxel::Error (Input) if a file of the place was changed or
   /// put in the way during the work; the result then stays complete beside it, under the name in the message.
@@ -41,11 +42,11 @@ class ResultFolder {
   void publish();
 
  private:
-  [[noreturn]] void keep_beside(const std::string& reason);
+  /// `hidden` is where the staged files are once they were kept.
+  [[noreturn]] void keep_beside(const std::string& reason, const std::filesystem::path& hidden = {});
 
-  std::filesystem::path final_;   ///< absolute, without links at its end
-  std::filesystem::path staged_;  ///< beside it
-  int lock_ = -1;                 ///< on the staged folder: its owner lives
+  std::filesystem::path final_;                      ///< absolute, without links at its end
+  std::unique_ptr<voxel::UnfinishedFolder> staged_;  ///< beside it
 };
 
 /// Writes text as a file. Throws std::filesystem::filesystem_error with path and the system's reason.

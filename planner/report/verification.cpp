@@ -15,6 +15,7 @@
 #include "planner/report/difference_pictures.h"
 #include "planner/report/html.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "voxel/view/surface_scalar.h"
 
@@ -306,7 +307,7 @@ std::string verification_html(const Verification& verification) {
 void write_verification(const Verification& verification, const std::filesystem::path& folder) {
   ResultFolder result(folder, {"report.html", "result.json"});
   write_text(result.path() / "report.html", verification_html(verification));
-  write_text(result.path() / "result.json", verification.answer.dump(2) + "\n");
+  write_text(result.path() / "result.json", json_text(verification.answer, 2) + "\n");
   result.publish();
 }
 

@@ -9,6 +9,7 @@
 
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
+#include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
@@ -26,6 +27,7 @@ std::string type_of(const Json& value) {
 }
 
 Json read_json(const std::filesystem::path& path) {
+  voxel::need_regular_file(path);
   std::ifstream stream(path);
   if (!stream) refuse(path.string(), "cannot be opened");
   try {
@@ -39,7 +41,7 @@ void write_json(const nlohmann::ordered_json& json, const std::filesystem::path&
   voxel::StagedFiles staging(std::filesystem::absolute(path).parent_path());
   errno = 0;
   std::ofstream stream(staging.folder() / path.filename());
-  stream << json.dump() << '\n';
+  stream << json_text(json) << '\n';
   stream.close();
   if (!stream) throw voxel::Error(voxel::code_of_errno(errno), path.string() + ": cannot be written");
   staging.commit(path.filename());

@@ -19,6 +19,12 @@ std::string type_of(const nlohmann::json& value);
 
 nlohmann::json read_json(const std::filesystem::path& path);
 
+/// JSON as text. Bytes that are no UTF-8, as in names of files, become U+FFFD. An indent of -1: on one line.
+template <typename AnyJson>
+std::string json_text(const AnyJson& json, int indent = -1) {
+  return json.dump(indent, ' ', false, AnyJson::error_handler_t::replace);
+}
+
 /// Written beside and renamed into place.
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 

@@ -41,15 +41,17 @@ void Scope::bind(const std::string& where, const std::string& id, const Operatio
 }
 
 void Scope::need_object(const std::string& where, const std::string& name) const {
-  if (contains(objects_, name)) return;
   const auto found = operations_.find(name);
+  if (found != operations_.end() && found->second->makes == Makes::Object) return;
   if (found != operations_.end())
     Place{where}.refuse("'" + name + "' is a " + found->second->name + " step, not an object");
   Place{where}.refuse("no earlier step is called '" + name + "'" + suggestion(name, objects_));
 }
 
 void Scope::need_scan(const std::string& where, const std::string& name) const {
-  if (!contains(scans_, name))
+  const auto found = operations_.find(name);
+  const bool is_made = found != operations_.end() && found->second->makes == Makes::Scan;
+  if (!is_made && !contains(scans_, name))
     Place{where}.refuse("no scan is called '" + name + "'" + suggestion(name, scans_));
 }
 

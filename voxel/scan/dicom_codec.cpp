@@ -12,6 +12,7 @@
 #include "voxel/scan/dicom_codec_wire.h"
 #include "voxel/space/error.h"
 #include "voxel/space/helper_file.h"
+#include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::voxel {
 
@@ -37,7 +38,8 @@ class CodecProcess {
     for (const int spoken : {STDOUT_FILENO, STDERR_FILENO})
       posix_spawn_file_actions_addopen(&actions, spoken, "/dev/null", O_WRONLY, 0);
     std::string name = path;
-    char* arguments[] = {name.data(), nullptr};
+    std::string folder = folder_.path().string();
+    char* arguments[] = {name.data(), folder.data(), nullptr};
     const int error = posix_spawn(&process_, path.c_str(), &actions, nullptr, arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
     close(sockets[1]);
@@ -51,8 +53,6 @@ class CodecProcess {
     close(socket_);
     kill(process_, SIGKILL);
     waitpid(process_, nullptr, 0);
-    std::error_code ignored;
-    std::filesystem::remove_all(codec_folder(process_), ignored);
   }
   CodecProcess(const CodecProcess&) = delete;
   CodecProcess& operator=(const CodecProcess&) = delete;
@@ -86,6 +86,7 @@ class CodecProcess {
   }
 
  private:
+  UnfinishedFolder folder_{std::filesystem::temp_directory_path(), "octotomy-codec-"};
   int socket_ = -1;
   pid_t process_ = -1;
 };

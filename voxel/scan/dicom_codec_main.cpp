@@ -10,7 +10,6 @@
 #include <gdcmTrace.h>
 #include <string>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -93,16 +92,17 @@ bool answer_next() {
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
   set_limits();
   gdcm::Trace::DebugOff();
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
   // One of GDCM's codecs works on temporary files and leaves them behind when it fails.
-  const std::filesystem::path folder = octotomy::voxel::codec_folder(getpid());
-  const bool has_folder = mkdir(folder.c_str(), 0700) == 0 && setenv("TMPDIR", folder.c_str(), 1) == 0;
+  if (count != 2 || setenv("TMPDIR", arguments[1], 1) != 0) return 1;
   while (answer_next()) {
   }
   std::error_code ignored;
-  if (has_folder) std::filesystem::remove_all(folder, ignored);
+  for (const auto& entry : std::filesystem::directory_iterator(arguments[1], ignored))
+    unlink(entry.path().c_str());
+  rmdir(arguments[1]);
 }

@@ -11,7 +11,9 @@
 
 // The messages between decompress() and its process over a socket. A request is a FrameHead, the transfer
 // syntax, and for each fragment its length as std::uint64_t and its bytes. The answer is the length of the
-// pixels as std::uint64_t, zero on failure, and the pixels. Both ends are built together.
+// pixels as std::uint64_t, zero on failure, and the pixels. The process's one argument is an empty folder for
+// its temporary files, which the other end removes, or the process where the other end is gone. Both ends are
+// built together.
 
 namespace octotomy::voxel {
 
@@ -25,12 +27,6 @@ struct FrameHead {
   std::uint32_t syntax_length = 0;
   std::uint32_t fragment_count = 0;
 };
-
-/// The folder for the temporary files of a codec process. The process makes and removes it; after a crash
-/// decompress() removes it.
-inline std::filesystem::path codec_folder(pid_t process) {
-  return std::filesystem::temp_directory_path() / ("octotomy-codec-" + std::to_string(process));
-}
 
 /// False if the other end is gone or the socket's time limit has passed.
 inline bool send_all(int socket, const void* bytes, std::size_t count) {

@@ -23,6 +23,7 @@
 #include "voxel/scan/dicom_series.h"
 #include "voxel/scan/slice_plan.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/memory_need.h"
 
 namespace octotomy::voxel {
 
@@ -76,6 +77,7 @@ class SeriesReader {
   bool decode_as(const Stack& stack) {
     const glm::ivec2 size_px = stack.first().size_px;
     const std::size_t area = static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
+    need_memory(path_, area * stack.slices.size(), sizeof(Sample));
     Samples<Sample> samples(area * stack.slices.size());
     std::vector<char> fits(stack.slices.size(), 0);
     for_each_index(stack.slices.size(), options_.progress, [&](std::size_t i) {

@@ -6,6 +6,7 @@
 
 #include "voxel/scan/audit.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/memory_need.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -51,6 +52,7 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
     refuse(path, "holds " + std::to_string(held) + " bytes, but the raw layout takes " +
                      std::to_string(layout.offset) + " + " + std::to_string(bytes) +
                      ": check dims, type and offset");
+  need_memory(path, bytes / bytes_of(layout.type), 2 * bytes_of(layout.type));
   Scene scene;
   scene.source = path.string();
   scene.lattice = lattice_without_frame(path, layout.dims, options);

@@ -11,7 +11,7 @@
 #include "voxel/scan/read_nifti2.h"
 #include "voxel/scan/read_raw.h"
 #include "voxel/scan/scene_itk.h"
-#include "voxel/space/file_text.h"
+#include "voxel/space/regular_file.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Scene read_any(const fs::path& path, const ReadOptions& options) {
+  if (!fs::is_directory(path)) need_regular_file(path);
   if (options.raw) return read_raw(path, options);
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

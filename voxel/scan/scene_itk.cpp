@@ -25,6 +25,7 @@
 #include "voxel/scan/audit.h"
 #include "voxel/scan/stored_samples.h"
 #include "voxel/space/file_text.h"
+#include "voxel/space/memory_need.h"
 #include "voxel/space/quiet_errors.h"
 
 namespace octotomy::voxel {
@@ -317,6 +318,7 @@ Scene read_volume_file(const fs::path& path, VolumeFormat format) {
   take_exact_geometry(header, scene);
   const std::uintmax_t sample_bytes = header.sample_bytes > 0 ? header.sample_bytes : io->GetComponentSize();
   require_samples(path, format, header, scene.lattice.sample_count() * sample_bytes);
+  need_memory(path, scene.lattice.sample_count(), sample_bytes + sizeof(std::int16_t));
   itk::ImageIORegion region(io->GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis)
     region.SetSize(axis, io->GetDimensions(axis));

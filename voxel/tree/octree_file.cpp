@@ -21,6 +21,7 @@
 #include <zstd.h>
 
 #include "voxel/space/error.h"
+#include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/tree/packed_treecode.h"
 
@@ -505,6 +506,7 @@ void write_octree(const OctreeFile& file, const std::filesystem::path& path) {
 }
 
 OctreeFile read_octree(const std::filesystem::path& path) {
+  need_regular_file(path);
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   std::error_code error;

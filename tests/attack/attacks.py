@@ -1,0 +1,335 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""What strangers and accidents do to the program, case by case; prints the cases that get through.
+
+  tests/attack/attacks.py build/release [--only WORD]
+"""
+import argparse
+import json
+import os
+import signal
+import stat
+import sys
+from pathlib import Path
+
+from subject import PLAN, Subject
+
+CASES = []
+TEXT_LIMIT = 1100  # bytes of a message
+
+
+def case(work):
+    CASES.append(work)
+    return work
+
+
+def refused(ended, *words, status=2):
+    """Why this is no refusal: the status, nothing on standard output, one bounded line that has the words."""
+    if ended.status != status:
+        return f"wanted status {status}: {ended}"
+    if ended.out:
+        return f"said {ended.out[:100]!r} on standard output"
+    lines = [line for line in ended.errors.splitlines() if line]
+    if len(lines) != 1 or not lines[0].startswith("octotomy: ") or len(lines[0].encode()) > TEXT_LIMIT:
+        return f"not one bounded line: {len(lines)} lines, {len(ended.errors)} bytes: {ended.errors[:200]!r}"
+    for word in words:
+        if word not in lines[0]:
+            return f"no word of {word!r}: {lines[0]!r}"
+    return control_in(ended)
+
+
+def control_in(ended):
+    for text in (ended.out, ended.errors):
+        if found := [symbol for symbol in text if (ord(symbol) < 32 and symbol not in "\n") or ord(symbol) == 127]:
+            return f"sends {found[0]!r} to the terminal"
+    return ""
+
+
+def done(ended):
+    return "" if ended.status == 0 else str(ended)
+
+
+WRITERS = (
+    ("mesh", "IN.nrrd", "--window", "300:", "-o", "OUT.stl"), ("convert", "IN.nrrd", "-o", "OUT.nrrd"),
+    ("convert", "IN.nrrd", "-o", "OUT.nii.gz"), ("octree", "IN.nrrd", "--window", "300:", "-o", "OUT.octree"),
+    ("tet", "IN.stl", "-o", "OUT.inp"), ("smooth", "IN.stl", "-o", "OUT.ply"),
+    ("offset", "IN.stl", "--by", "1", "-o", "OUT.stl"), ("shell", "IN.stl", "--thickness", "2", "-o", "OUT.stl"),
+    ("decimate", "IN.stl", "--faces", "100", "-o", "OUT.stl"), ("repair", "IN.stl", "--orient", "-o", "OUT.stl"),
+    ("mirror", "IN.stl", "-o", "OUT.stl"), ("compare", "IN.stl", "IN.stl", "-o", "OUT.glb"),
+    ("boolean", "IN.stl", "union", "IN.stl", "-o", "OUT.stl"),
+    ("voxelise", "IN.stl", "--voxel", "2", "-o", "OUT.octree"),
+    ("eval", "a", "--let", "a=IN.octree", "-o", "OUT.octree"),
+    ("render", "IN.nrrd", "--window", "300:", "-o", "OUT.png"), ("slice", "IN.nrrd", "-o", "OUT.png"),
+    ("prepare", "IN.nrrd", "--step", "gaussian=1", "-o", "OUT.nrrd"),
+    ("segment", "IN.nrrd", "--window", "300:", "-o", "OUT.octree"),
+    ("measure", "IN.stl", "--thickness", "-o", "OUT.ply"))
+
+
+def words_of(writer, source, out):
+    """A writer's command line: its input and the name of its output without extension, of which OUT stands for."""
+    return [word.replace("IN.", source + ".") if not word.startswith("OUT") else out + word[3:] for word in writer]
+
+
+@case
+def bad_outputs_are_refused_before_the_work(subject):
+    """The input is broken as well: whoever speaks of it has begun to work."""
+    for kind in ("nrrd", "stl", "octree"):
+        subject.write(f"broken.{kind}", b"\0broken")
+    os.mkfifo(subject.folder / "pipe")
+    found = []
+    for writer in WRITERS:
+        extension = writer[-1][3:]
+        pipe = subject.folder / f"pipe{extension}"
+        if not pipe.exists():
+            os.mkfifo(pipe)
+        for out in ("nowhere/x", "a" * 250 + "b", "/proc/x", "pipe"):
+            ended = subject.run(*words_of(writer, "broken", out), most_s=20)
+            if why := refused(ended, out[:20]):
+                found.append(f"{writer[0]} to {out[:20]}{extension}: {why}")
+    for verb in (("run", "PLAN", "-o"), ("look", "broken.nrrd", "-o"), ("verify", "PLAN", "--report")):
+        subject.write("broken.json", json.dumps(dict(PLAN, scans={"ct": {"path": "broken.nrrd"}})))
+        for out in ("/proc/x", "a" * 250 + "b", "pipe", "pipe/x"):
+            ended = subject.run(*[word.replace("PLAN", "broken.json") for word in verb], out, most_s=20)
+            if why := refused(ended, out[:20]):
+                found.append(f"{verb[0]} to {out[:20]}: {why}")
+    return found
+
+
+@case
+def links_are_followed_and_modes_kept(subject):
+    found = []
+    for writer in WRITERS:
+        extension = writer[-1][3:]
+        away = subject.folder / "away"
+        away.mkdir(exist_ok=True)
+        target, link = away / f"target{extension}", subject.folder / f"link{extension}"
+        target.write_text("older")
+        target.chmod(0o640)
+        link.unlink(missing_ok=True)
+        link.symlink_to(f"away/target{extension}")
+        source = "head" if writer[1] == "IN.nrrd" else "ball"
+        ended = subject.run(*words_of(writer, source, "link"))
+        if ended.status != 0:
+            found.append(f"{writer[0]}: {ended}")
+        elif not link.is_symlink() or target.read_bytes() == b"older":
+            found.append(f"{writer[0]}: the link was replaced, not what it leads to")
+        elif stat.S_IMODE(target.stat().st_mode) != 0o640:
+            found.append(f"{writer[0]}: the mode became {stat.S_IMODE(target.stat().st_mode):o}")
+    return found
+
+
+@case
+def scans_and_plans_are_regular_files(subject):
+    found = []
+    for kind in (".nrrd", ".nii", ".nii.gz", ".mha", ".dcm", ".tif", ".png", ".stl", ".ply", ".vtp", ".octree", ".raw"):
+        pipe = subject.folder / f"waits{kind}"
+        os.mkfifo(pipe)
+        more = ("--raw", "4x4x4", "int16", "--spacing", "1,1,1") if kind == ".raw" else ()
+        if why := refused(subject.run("info", pipe.name, *more, most_s=10), "waits"):
+            found.append(f"info of a pipe {kind}: {why}")
+    os.mkfifo(subject.folder / "waits.json")
+    subject.write("waiting.json", json.dumps(dict(PLAN, scans={"ct": {"path": "waits.nrrd"}})))
+    for arguments in (("run", "waits.json", "-o", "x"), ("run", "/dev/zero", "-o", "x"), ("info", "/dev/zero"),
+                      ("run", "waiting.json", "-o", "x"), ("info", "/dev/null"), ("run", ".", "-o", "x"),
+                      ("run", "plan.json", "--scan", "ct=/dev/zero", "-o", "x"),
+                      ("mask", "--region", "anterior:waits.json", "-o", "m.octree"),
+                      ("render", "head.nrrd", "--shading", "composite", "--transfer", "waits.json", "-o", "p.png"),
+                      ("register", "ball.stl", "ball.stl", "--landmarks", "waits.json", "waits.json"),
+                      ("warp", "ball.stl", "--result", "waits.json", "-o", "w.stl")):
+        if why := refused(subject.run(*arguments, most_s=10)):
+            found.append(f"{' '.join(arguments)}: {why}")
+    (subject.folder / "slices").mkdir()
+    os.mkfifo(subject.folder / "slices/one.dcm")
+    if why := refused(subject.run("info", "slices", most_s=10)):
+        found.append(f"a folder with a pipe: {why}")
+    return found
+
+
+@case
+def a_full_standard_output_is_status_three(subject):
+    found = []
+    for arguments in (("--help",), ("--version",), ("schema",), ("info", "head.nrrd"), ("info", "head.nrrd", "--json"),
+                      ("mesh", "--help"), ("--manual", "man"), ("measure", "head.nrrd", "--window", "300:")):
+        with open("/dev/full", "wb") as full:
+            ended = subject.run(*arguments, out=full)
+        if why := refused(ended, "standard output", status=3):
+            found.append(f"{' '.join(arguments)}: {why}")
+    return found
+
+
+@case
+def names_that_are_not_utf8_work(subject):
+    found = []
+    name = b"caf\xe9 \x1b[31m\n"
+    scan, mesh = name + b".nrrd", name + b".stl"
+    (Path(os.fsencode(subject.folder).decode(errors="surrogateescape")) / os.fsdecode(scan)).write_bytes(
+        (subject.folder / "head.nrrd").read_bytes())
+    for arguments in (("info", scan), ("info", scan, "--json"), ("mesh", scan, "--window", "300:", "-o", mesh),
+                      ("mesh", scan, "--window", "300:", "-o", mesh, "--json"), ("info", mesh), ("info", mesh, "--json"),
+                      ("octree", scan, "--window", "300:", "-o", name + b".octree", "--json"),
+                      ("look", scan, "-o", name + b"looked", "--json"),
+                      ("run", "plan.json", "--scan", b"ct=" + scan, "-o", name + b"out", "--json")):
+        ended = subject.run(*arguments)
+        why = done(ended) or control_in(ended)
+        if not why and "--json" in arguments:
+            json.loads(ended.out)
+        if why:
+            found.append(f"{arguments}: {why}")
+    return found
+
+
+@case
+def messages_are_one_bounded_line_without_controls(subject):
+    found = []
+    long = "x" * 200000
+    evil = "\x1b]0;owned\x07\x1b[2J\r\n\0"
+    plans = {
+        "a key": dict(PLAN, **{long: 1}), "an evil key": dict(PLAN, **{evil: 1}), "a name": dict(PLAN, name=7),
+        "an id": dict(PLAN, steps=[{"id": evil, "do": "window", "scan": "ct", "low": 300}]),
+        "a verb": dict(PLAN, steps=[{"id": "a", "do": long, "scan": "ct"}]),
+        "an expression": dict(PLAN, steps=PLAN["steps"][:1] + [{"id": "b", "do": "combine", "expression": evil}]),
+        "a long expression": dict(PLAN, steps=PLAN["steps"][:1] + [{"id": "b", "do": "combine", "expression": long}]),
+        "a path": dict(PLAN, scans={"ct": {"path": "head.nrrd\0.txt"}}),
+        "an export": dict(PLAN, steps=PLAN["steps"][:1] + [
+            {"id": "e", "do": "export", "object": "skull", "path": evil + ".stl"}]),
+        "an export with NUL": dict(PLAN, steps=PLAN["steps"][:1] + [
+            {"id": "e", "do": "export", "object": "skull", "path": "a\0b.stl"}]),
+        "a long export": dict(PLAN, steps=PLAN["steps"][:1] + [
+            {"id": "e", "do": "export", "object": "skull", "path": "a" * 300 + ".stl"}]),
+        "an export on the report": dict(PLAN, steps=PLAN["steps"][:1] + [
+            {"id": "e", "do": "export", "object": "skull", "path": ".octotomy-result"}])}
+    for what, plan in plans.items():
+        subject.write("evil.json", json.dumps(plan))
+        if why := refused(subject.run("run", "evil.json", "-o", "evil")):
+            found.append(f"{what}: {why}")
+    for arguments in (("info", long), ("info", evil.replace("\0", "")), ("mesh", "head.nrrd", "--window", long),
+                      ("eval", long, "--let", "a=ball.octree", "-o", "e.octree"), (evil.replace("\0", ""),),
+                      ("render", "head.nrrd", "--view", evil.replace("\0", ""), "-o", "p.png")):
+        if why := refused(subject.run(*(argument[:100000] for argument in arguments))):
+            found.append(f"{arguments[0][:20]}: {why}")
+    return found
+
+
+@case
+def numbers_at_their_ends_do_not_crash(subject):
+    found = []
+    points = [{"sample": -500, "colour": "#cc7a29", "per_mm": 0.0}, {"sample": 100, "colour": "#cc7a29", "per_mm": 0.1}]
+    for key in ("sample", "per_mm"):
+        for value in (1e308, -1e308, 1e-308):
+            transfer = {"octotomy_transfer": 1, "points": [dict(points[0]), dict(points[1], **{key: value})]}
+            subject.write("transfer.json", json.dumps(transfer))
+            ended = subject.run("render", "head.nrrd", "--shading", "composite", "--transfer", "transfer.json",
+                                "--size", "32x32", "-o", "p.png")
+            if ended.status not in (0, 2):
+                found.append(f"transfer {key} {value}: {ended}")
+    numbers = ("1e308", "-1e308", "1e-308", "nan", "inf", "9223372036854775808", "-0", "1e400", "2147483648")
+    for arguments in (("mesh", "head.nrrd", "--window", "N:", "-o", "m.stl"), ("offset", "ball.stl", "--by", "N", "-o", "m.stl"),
+                      ("shell", "ball.stl", "--thickness", "N", "-o", "m.stl"),
+                      ("voxelise", "ball.stl", "--voxel", "N", "-o", "m.octree"),
+                      ("decimate", "ball.stl", "--faces", "N", "-o", "m.stl"),
+                      ("phantom", "sphere", "--radius", "N", "-o", "m.octree"),
+                      ("phantom", "sphere", "--voxels", "N", "-o", "m.octree"),
+                      ("phantom", "head", "--voxel", "N", "-o", "m.nrrd"),
+                      ("render", "head.nrrd", "--window", "300:", "--view", "N,N", "--size", "32x32", "-o", "p.png"),
+                      ("measure", "ball.stl", "--section", "N,0,0", "0,0,N"),
+                      ("saw", "ball.stl", "--line", "N,0,0", "1,N,0", "--direction", "0,0,1", "--depth", "N", "-o", "m.stl"),
+                      ("tet", "ball.stl", "--max-edge", "N", "-o", "m.inp"),
+                      ("info", "head.nrrd", "--memory", "N")):
+        for number in numbers:
+            ended = subject.run(*(word.replace("N", number) for word in arguments), "--json", "--time-limit",
+                                "10", most_s=30)
+            if ended.status not in (0, 2, 3):
+                found.append(f"{' '.join(arguments)} with {number}: {ended}")
+            if ended.status == 0 and any(word in ended.out for word in ("nan", "inf,", "NaN", "Infinity")):
+                found.append(f"{' '.join(arguments)} with {number}: says a number that is not finite")
+    return found
+
+
+@case
+def long_and_deep_expressions_neither_crash_nor_hang(subject):
+    found = []
+    expressions = {"long": " | ".join(["a"] * 50000), "mixed": " - ".join(["a", "b"] * 25000),
+                   "deep": "(" * 100000 + "a" + ")" * 100000, "waves": "~" * 100000 + "a",
+                   "operands": "|".join(f"move(a, m{i % 7})" for i in range(5000))}
+    for name, expression in expressions.items():
+        steps = PLAN["steps"][:1] + [{"id": "a", "do": "combine", "expression": "skull"},
+                                     {"id": "b", "do": "combine", "expression": "skull"},
+                                     {"id": "c", "do": "combine", "expression": expression}]
+        subject.write("long.json", json.dumps(dict(PLAN, steps=steps)))
+        ended = subject.run("run", "long.json", "-o", "long", most_s=120)
+        if ended.status not in (0, 2):
+            found.append(f"{name} in a plan: {ended}")
+        subject.write("deep.json", "[" * 100000)
+        if expression.count("(") <= 1 and name != "operands":
+            argument = expression[:120000].rstrip(" |-ab") or "a"
+            ended = subject.run("eval", argument, "--let", "a=ball.octree", "--let", "b=ball.octree", "-o", "e.octree")
+            if ended.status not in (0, 2):
+                found.append(f"{name} of eval: {ended}")
+    for arguments in (("run", "deep.json", "-o", "d"), ("mask", "--region", "anterior:deep.json", "-o", "m.octree"),
+                      ("render", "head.nrrd", "--shading", "composite", "--transfer", "deep.json", "-o", "p.png"),
+                      ("register", "ball.stl", "ball.stl", "--landmarks", "deep.json", "deep.json")):
+        if why := refused(subject.run(*arguments)):
+            found.append(f"{arguments[0]}: {why}")
+    return found
+
+
+@case
+def a_limit_on_memory_is_respected(subject):
+    subject.write("big.raw", b"")
+    os.truncate(subject.folder / "big.raw", 1 << 30)
+    ended = subject.run("measure", "big.raw", "--raw", "1024x1024x512", "int16", "--spacing", "1,1,1", "--window", "1:",
+                        "--memory", "1", most_s=60)
+    found = [refused(ended, "1 GB" if "1 GB" in ended.errors else "GB", "--memory", status=3)]
+    if ended.seconds > 5.0:
+        found.append(f"took {ended.seconds:.1f} s to see that")
+    ended = subject.run("look", "head.nrrd", "-o", "small", "--memory", "0.12", most_s=60)
+    if ended.status != 0:
+        found.append(refused(ended, "--memory", status=3))
+    return [why for why in found if why]
+
+
+@case
+def a_second_signal_ends_at_once(subject):
+    """A reader that never reads holds the answer up; so does a device plan."""
+    import subprocess
+    import time
+    found = []
+    read, write = os.pipe()
+    process = subprocess.Popen([subject.program, "schema"], cwd=subject.folder, stdout=write, stderr=subprocess.PIPE)
+    time.sleep(1.0)
+    if process.poll() is None:
+        process.send_signal(signal.SIGTERM)
+        time.sleep(0.02)
+        process.send_signal(signal.SIGTERM)
+    try:
+        process.wait(timeout=5.0)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        found.append("a full pipe holds it for ever")
+    os.close(read)
+    os.close(write)
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", help="the build folder that holds octotomy")
+    parser.add_argument("--only", default="", help="cases whose name has this word")
+    asked = parser.parse_args()
+    faults = 0
+    for work in CASES:
+        if asked.only not in work.__name__:
+            continue
+        with Subject(asked.build) as subject:
+            found = work(subject) or []
+        faults += len(found)
+        print(f"{work.__name__.replace('_', ' ')}: {'held' if not found else str(len(found)) + ' got through'}")
+        for why in found:
+            print("  " + why[:600].encode(errors="replace").decode())
+        sys.stdout.flush()
+    print(f"{faults} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

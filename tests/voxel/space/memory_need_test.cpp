@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/space/memory_need.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+#include <new>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+#include "voxel/space/error.h"
+
+namespace octotomy::voxel {
+namespace {
+
+TEST(NeedMemory, RefusesWithBothFiguresWhatDoesNotFit) {
+  EXPECT_NO_THROW(need_memory("small.nrrd", 1000, 2));
+  try {
+    need_memory("large.nrrd", std::uint64_t{1} << 50, 2);
+    FAIL() << "two million gigabytes fit";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Resource);
+    const std::string text = error.what();
+    EXPECT_NE(text.find("large.nrrd: "), std::string::npos);
+    EXPECT_NE(text.find("GB of memory, "), std::string::npos);
+    EXPECT_NE(text.find("--memory"), std::string::npos);
+  }
+  EXPECT_THROW(need_memory("absurd.nrrd", std::numeric_limits<std::uint64_t>::max(), 2), Error);
+}
+
+TEST(LimitMemory, BoundsWhatIsFreeAndWhatIsGiven) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's shadow takes terabytes of data";
+#endif
+  const pid_t child = ::fork();
+  if (child == 0) {
+    limit_memory(std::uint64_t{512} << 20);
+    if (free_memory() > std::uint64_t{512} << 20) ::_exit(1);
+    try {
+      const std::vector<char> many(std::size_t{1} << 30, 'x');
+      ::_exit(many[12345] == 'x' ? 2 : 3);
+    } catch (const std::bad_alloc&) {
+      ::_exit(0);
+    }
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/space/staged_files.h"
+
+#include <csignal>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/file_bytes.h"
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::voxel {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+void publish(const fs::path& folder, const std::string& name, const std::string& text) {
+  StagedFiles staged(folder);
+  write(staged.folder() / name, text);
+  staged.commit();
+}
+
+std::ptrdiff_t entries(const fs::path& folder) {
+  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+}
+
+TEST(StagedFiles, AreNotThereBeforeTheyAreCommittedAndLeaveNothing) {
+  const tests::ScratchFolder folder;
+  {
+    const StagedFiles staged(folder.path());
+    write(staged.folder() / "a", "new");
+    EXPECT_FALSE(fs::exists(folder / "a"));
+  }
+  EXPECT_EQ(entries(folder.path()), 0);
+  publish(folder.path(), "a", "new");
+  EXPECT_EQ(tests::bytes_of(folder / "a"), "new");
+  EXPECT_EQ(entries(folder.path()), 1);
+}
+
+TEST(StagedFiles, FollowALinkAndKeepPermissions) {
+  const tests::ScratchFolder folder;
+  fs::create_directory(folder / "away");
+  write(folder / "away/target", "old");
+  fs::permissions(folder / "away/target", fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("away/target", folder / "a");
+  publish(folder.path(), "a", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "a"));
+  EXPECT_EQ(tests::bytes_of(folder / "away/target"), "new");
+  EXPECT_EQ(fs::status(folder / "away/target").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("away/not_yet", folder / "b");
+  publish(folder.path(), "b", "new");
+  EXPECT_EQ(tests::bytes_of(folder / "away/not_yet"), "new");
+  fs::create_symlink("round", folder / "round");
+  EXPECT_THROW(publish(folder.path(), "round", "new"), Error);
+}
+
+TEST(StagedFiles, FollowALinkToAnotherDisk) {
+  struct stat here {
+  }, there{};
+  const tests::ScratchFolder folder;
+  if (::stat("/dev/shm", &there) != 0 || ::stat(folder.path().c_str(), &here) != 0 ||
+      here.st_dev == there.st_dev || ::access("/dev/shm", W_OK) != 0)
+    GTEST_SKIP() << "no other disk at /dev/shm";
+  const fs::path target = "/dev/shm/octotomy-staged-" + std::to_string(::getpid());
+  fs::create_symlink(target, folder / "a");
+  publish(folder.path(), "a", "new");
+  EXPECT_EQ(tests::bytes_of(target), "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "a"));
+  fs::remove(target);
+}
+
+TEST(StagedFiles, ReplaceNeitherPipesNorFolders) {
+  const tests::ScratchFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_directory(folder / "folder");
+  write(folder / "other", "old");
+  for (const char* name : {"pipe", "folder"}) {
+    try {
+      StagedFiles staged(folder.path());
+      write(staged.folder() / "other", "new");
+      write(staged.folder() / name, "new");
+      staged.commit();
+      FAIL() << name << " was replaced";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::Input);
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+    }
+    EXPECT_EQ(tests::bytes_of(folder / "other"), "old") << "all are replaced, or none";
+  }
+  EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+}
+
+/// Runs `work` in a process of its own that then waits for its end; returns when it has worked.
+template <typename Work>
+pid_t after_work(const Work& work) {
+  int ready[2];
+  EXPECT_EQ(::pipe(ready), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    work([&] {
+      EXPECT_EQ(::write(ready[1], "x", 1), 1);
+      for (;;) ::pause();
+    });
+    ::_exit(0);
+  }
+  char done = 0;
+  EXPECT_EQ(::read(ready[0], &done, 1), 1);
+  ::close(ready[0]);
+  ::close(ready[1]);
+  return child;
+}
+
+void kill_now(pid_t child) {
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+}
+
+TEST(StagedFiles, WhatAKilledProcessLeftIsRemovedAndWhatALivingOneHasIsNot) {
+  const tests::ScratchFolder folder;
+  const auto stage = [&](const auto& wait) {
+    const StagedFiles staged(folder.path());
+    write(staged.folder() / "a", "half");
+    wait();
+  };
+  const pid_t living = after_work(stage);
+  const pid_t killed = after_work(stage);
+  EXPECT_EQ(entries(folder.path()), 2);
+  kill_now(killed);
+  fs::create_directory(folder / ".octotomy-notice");  // the name, not the rights, of a hidden folder
+  publish(folder.path(), "a", "new");
+  EXPECT_EQ(entries(folder.path()), 3) << "the file, the living one's folder and somebody's notes";
+  kill_now(living);
+  publish(folder.path(), "a", "new");
+  EXPECT_EQ(entries(folder.path()), 2);
+}
+
+TEST(UnfinishedFolder, AnEndingWithoutDestructorsRemovesAll) {
+  const tests::ScratchFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const UnfinishedFolder one(folder.path(), ".octotomy-");
+    UnfinishedFolder given(folder.path(), "given-");
+    write(one.path() / "a", "half");
+    const fs::path kept = given.keep();
+    remove_unfinished();
+    ::_exit(fs::exists(one.path()) ? 1 : 0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(entries(folder.path()), 1) << "what was given away stays";
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

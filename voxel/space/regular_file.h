@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "voxel/space/file_text.h"
+
+namespace octotomy::voxel {
+
+/// Throws Error (Input) where `path` exists and is no regular file: reading a pipe or a device may wait for
+/// ever or never end. A missing file is left to its reader, which knows what it is for.
+inline void need_regular_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    refuse(path, std::filesystem::is_directory(status) ? "is a folder: give a file"
+                                                       : "is a pipe or device: copy it into a file first");
+}
+
+}  // namespace octotomy::voxel

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// Owners hold a lock on their folder. A folder is made, then locked; between the two a cleaner may take the
+// lock and remove it, so the owner looks again once it has the lock, and makes another one.
+#include "voxel/space/unfinished_folder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <fcntl.h>
+#include <string>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include "voxel/space/error.h"
+
+namespace octotomy::voxel {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t letter_count = 6;
+/// A folder is renamed before it is emptied, so that no thread writes into it meanwhile.
+constexpr const char* leaving = "~";
+
+/// The folders of this process; never destroyed, since threads may outlive main().
+struct Folders {
+  std::mutex mutex;
+  std::vector<fs::path> paths;
+};
+Folders& folders() {
+  static auto* all = new Folders;
+  return *all;
+}
+
+std::timed_mutex& names_mutex() {
+  static auto* mutex = new std::timed_mutex;
+  return *mutex;
+}
+
+void forget(const fs::path& path) {
+  const std::lock_guard held(folders().mutex);
+  std::erase(folders().paths, path);
+}
+
+void remove_folder(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path gone = path.string() + leaving;
+  fs::rename(path, gone, ignored);
+  fs::remove_all(ignored ? path : gone, ignored);
+}
+
+/// The locked folder's descriptor; -1 if it was removed meanwhile or there are no locks.
+int locked(const fs::path& path, int how) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (file < 0) return -1;
+  if (::flock(file, how) == 0) return file;
+  ::close(file);
+  return -1;
+}
+
+}  // namespace
+
+UnfinishedFolder::UnfinishedFolder(const fs::path& beside, const std::string& prefix) {
+  for (;;) {
+    std::string name = (beside / (prefix + std::string(letter_count, 'X'))).string();
+    {
+      const std::lock_guard held(folders().mutex);
+      if (mkdtemp(name.data()) == nullptr)
+        throw Error(code_of_errno(errno),
+                    beside.string() + ": cannot be written to: " + std::generic_category().message(errno) +
+                        "; choose a folder that exists and is yours");
+      folders().paths.emplace_back(name);
+    }
+    path_ = name;
+    lock_ = locked(path_, LOCK_EX);
+    struct stat of_folder {};
+    if (::lstat(path_.c_str(), &of_folder) == 0) return;
+    forget(path_);
+    if (lock_ >= 0) ::close(lock_);
+  }
+}
+
+UnfinishedFolder::~UnfinishedFolder() {
+  if (!path_.empty()) {
+    remove_folder(path_);
+    forget(path_);
+  }
+  if (lock_ >= 0) ::close(lock_);
+}
+
+fs::path UnfinishedFolder::keep() {
+  forget(path_);
+  return std::exchange(path_, {});
+}
+
+bool if_abandoned(const fs::path& folder, void (*work)(const fs::path&, void*), void* argument) {
+  const int file = locked(folder, LOCK_EX | LOCK_NB);
+  if (file < 0) return false;
+  work(folder, argument);
+  ::close(file);
+  return true;
+}
+
+void remove_abandoned(const fs::path& beside, const std::string& prefix) {
+  std::error_code error;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator entry(beside, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    std::string name = entry->path().filename().string();
+    if (name.ends_with(leaving)) name.pop_back();
+    if (name.size() != prefix.size() + letter_count || !name.starts_with(prefix)) continue;
+    struct stat of_folder {};
+    if (::lstat(entry->path().c_str(), &of_folder) == 0 && S_ISDIR(of_folder.st_mode) &&
+        (of_folder.st_mode & 07777) == 0700 && of_folder.st_uid == ::geteuid())
+      found.push_back(entry->path());
+  }
+  for (const fs::path& folder : found)
+    if_abandoned(
+        folder, [](const fs::path& path, void*) { fs::remove_all(path); }, nullptr);
+}
+
+NamesChange::NamesChange() : held_(names_mutex()) {}
+
+void remove_unfinished() noexcept {
+  const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
+  static_cast<void>(settled);  // never unlocked: no name changes after this
+  folders().mutex.lock();      // never unlocked: no folder is made after this
+  for (const fs::path& path : folders().paths) {
+    try {
+      remove_folder(path);
+    } catch (...) {  // what is left is hidden, and the next run removes it
+      continue;
+    }
+  }
+}
+
+}  // namespace octotomy::voxel
