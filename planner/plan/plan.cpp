@@ -178,8 +178,10 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   }
   const Json& steps = top.need("steps");
   if (!steps.is_array() || steps.empty()) refuse("steps", "must be a list of at least one step");
-  Scope scope(names_of(plan.scans));
+  Scope scope(names_of(plan.scans), folder);
   for (const Json& step : steps) plan.steps.push_back(step_of(step, plan.steps.size(), scope));
+  plan.landmarks = scope.landmarks();
+  plan.lps_from_head = scope.lps_from_head();
   return plan;
 }
 
