@@ -64,6 +64,17 @@ std::string troff_footer(const CLI::App& app) {
   return app.get_footer().empty() ? "" : ".PP\n.nf\n" + troff(app.get_footer()) + "\n.fi\n";
 }
 
+/// A verb's section; a group's are those of its verbs.
+std::string troff_verb(const CLI::App& verb, const std::string& name) {
+  if (verb.get_subcommands([](const CLI::App*) { return true; }).empty())
+    return ".SS " + troff(name) + "\n" + troff(verb.get_description()) + "\n" + troff_options(verb) +
+           troff_footer(verb);
+  std::string text;
+  for (const CLI::App* within : shown_verbs(verb))
+    text += troff_verb(*within, name + " " + within->get_name());
+  return text;
+}
+
 std::string man_page(const CLI::App& app) {
   std::string text =
       ".TH OCTOTOMY 1 \"\" \"Octotomy " OCTOTOMY_VERSION
@@ -71,14 +82,15 @@ std::string man_page(const CLI::App& app) {
       "kernels that check each other\n.SH SYNOPSIS\n.B octotomy\n\\fIVERB\\fR [\\fIOPTION\\fR]...\n"
       ".SH DESCRIPTION\n";
   text += troff(app.get_description()) + "\n" + troff_options(app) + ".SH VERBS\n";
-  for (const CLI::App* verb : shown_verbs(app))
-    text += ".SS " + troff(verb->get_name()) + "\n" + troff(verb->get_description()) + "\n" +
-            troff_options(*verb) + troff_footer(*verb);
+  for (const CLI::App* verb : shown_verbs(app)) text += troff_verb(*verb, verb->get_name());
   return text + ".SH EXAMPLES\n" + troff_footer(app);
 }
 
-std::string joined_names(const Options& options) {
+/// What may follow a verb: the verbs of a group, and options.
+std::string joined_names(const CLI::App& app, const Options& options) {
   std::string text;
+  for (const CLI::App* verb : app.get_parent() == nullptr ? Verbs() : shown_verbs(app))
+    text += (text.empty() ? "" : " ") + verb->get_name();
   for (const CLI::Option* option : options)
     for (const std::string& name : names_of(*option)) text += (text.empty() ? "" : " ") + name;
   return text;
@@ -89,14 +101,14 @@ std::string bash_completion(const CLI::App& app) {
   std::string cases;
   for (const CLI::App* verb : shown_verbs(app)) {
     verbs += (verbs.empty() ? "" : " ") + verb->get_name();
-    cases += "    " + verb->get_name() + ") words='" + joined_names(shown_options(*verb)) + "' ;;\n";
+    cases += "    " + verb->get_name() + ") words='" + joined_names(*verb, shown_options(*verb)) + "' ;;\n";
   }
   return "# bash completion for octotomy\n_octotomy() {\n"
          "  local word=${COMP_WORDS[COMP_CWORD]} words\n"
          "  COMPREPLY=()\n"
          "  if [ \"$COMP_CWORD\" -gt 1 ] && [[ $word != -* ]]; then return; fi\n"
          "  case ${COMP_WORDS[1]} in\n" +
-         cases + "    *) words='" + verbs + " " + joined_names(shown_options(app)) +
+         cases + "    *) words='" + verbs + " " + joined_names(app, shown_options(app)) +
          "' ;;\n  esac\n"
          "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
          "}\ncomplete -o default -F _octotomy octotomy\n";

@@ -40,8 +40,12 @@ Plan plan_of(const Program& program, const PlanIn& text) {
   return plan;
 }
 
-Evaluation evaluated(Program& program, const Plan& plan) {
-  Evaluation evaluation = evaluate(plan, {program.stop.get_token(), program.progress(), true});
+EvaluateOptions evaluate_options(Program& program) {
+  return {program.stop.get_token(), program.progress()};
+}
+
+Evaluation evaluated(Program& program, const Plan& plan, const EvaluateOptions& options) {
+  Evaluation evaluation = evaluate(plan, options);
   for (const ScanRecord& scan : evaluation.scans) program.note_scan(scan);
   return evaluation;
 }

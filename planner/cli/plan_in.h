@@ -25,8 +25,11 @@ void add_plan_options(CLI::App& verb, PlanIn& text);
 /// Throws as read_plan(), and std::runtime_error where --scan names none of the plan's scans.
 Plan plan_of(const Program& program, const PlanIn& text);
 
-/// The plan evaluated with certificates, progress and stop as the program has them; its scans are noted.
-Evaluation evaluated(Program& program, const Plan& plan);
+/// Progress and stop as the program has them, certificates wanted.
+EvaluateOptions evaluate_options(Program& program);
+
+/// The plan evaluated; its scans are noted.
+Evaluation evaluated(Program& program, const Plan& plan, const EvaluateOptions& options);
 
 /// A line an object for people: its verdict with both answers. Findings go to standard error.
 std::string verdict_text(const Evaluation& evaluation);

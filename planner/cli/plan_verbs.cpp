@@ -1,20 +1,71 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/plan_document.h"
 #include "planner/cli/plan_in.h"
+#include "planner/cli/procedure_verb.h"
+#include "planner/file/file_kind.h"
+#include "planner/file/output_path.h"
+#include "planner/report/preview.h"
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {
 namespace {
 
 struct RunText : PlanIn {
   std::filesystem::path out;
+  bool without_certificates = false;
 };
+
+struct PreviewText : PlanIn {
+  std::string step;
+  std::filesystem::path out;
+  PreviewOptions options;
+};
+
+int preview_step(Program& program, PreviewText& text) {
+  for (const std::string& view : text.options.views) voxel::parse_view(view);
+  if (text.out.extension() != ".png")
+    throw std::runtime_error(text.out.string() + ": a preview is a .png file");
+  need_folder_of(text.out);
+  text.options.evaluation = evaluate_options(program);
+  Preview made = preview(plan_of(program, text), text.step, text.options);
+  {
+    const Stopwatch watch(made.evaluation.timings, "write");
+    write_whole(text.out, {made.png.begin(), made.png.end()});
+  }
+  Json json = answer(made.evaluation.timings);
+  json["path"] = text.out.string();
+  json["step"] = text.step;
+  json["views"] = Json::array();
+  for (const ScenePicture& frame : made.frames)
+    json["views"].push_back({{"view", frame.view},
+                             {"centre_mm", {frame.centre_mm.x, frame.centre_mm.y}},
+                             {"width_mm", frame.width_mm},
+                             {"size_px", frame.size_px}});
+  json["objects"] = Json::array();
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Object& object : made.evaluation.objects) {
+    json["objects"].push_back(
+        {{"id", object.id}, {"volume_mm3", object.voxel.measures.volume_mm3}, {"findings", object.findings}});
+    rows.emplace_back(object.id, grouped(object.voxel.measures.volume_mm3, 0) + " mm\u00b3");
+    for (const std::string& finding : object.findings) warn(object.id + ": " + finding);
+  }
+  rows.emplace_back("written", text.out.string());
+  program.say(json, lines(rows));
+  return done;
+}
 
 int run(Program& program, const RunText& text) {
   Result result;
   result.plan = plan_of(program, text);
   need_result_folder(text.out, result_names(result.plan));
-  result.evaluation = evaluated(program, result.plan);
+  EvaluateOptions options = evaluate_options(program);
+  options.certify = !text.without_certificates;
+  result.evaluation = evaluated(program, result.plan, options);
+  if (text.without_certificates)
+    result.findings.push_back({"certificates", voxel::Verdict::Warn,
+                               "left out as asked (--no-certificates): no number here is checked"});
   result.pictures = plan_pictures(result.plan, result.evaluation);
   if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
   const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
@@ -44,6 +95,26 @@ void add_plan_verbs(Program& program) {
   verb.add_option("-o,--out", text->out,
                   "The result's folder: new, empty, or an earlier result; files that you put there stay")
       ->required();
+  verb.add_flag("--no-certificates", text->without_certificates,
+                "Make the objects in both kernels and compare them not: faster, and no number is checked");
+  const auto seen = std::make_shared<PreviewText>();
+  CLI::App& draws =
+      program.verb("preview", "Draws one step of a plan, without certificates",
+                   "octotomy preview planner/le_fort_i.plan.json cut --scan ct=head.nrrd -o cut.png",
+                   [&program, seen] { return preview_step(program, *seen); });
+  draws.add_option("plan", seen->plan, "A .plan.json")->required()->check(CLI::ExistingFile);
+  draws.add_option("step", seen->step, "The step's id")->required();
+  add_plan_options(draws, *seen);
+  draws.add_option("-o,--out", seen->out, "A .png file: the views side by side")->required();
+  draws
+      .add_option("--view", seen->options.views,
+                  "A view, or several: anterior, left, ..., AZ,EL; default: anterior left 35,15")
+      ->type_name("VIEW");
+  draws.add_option("--size", seen->options.size_px, "Pixels of each view's square; default 480")
+      ->check(CLI::Range(16, 4096))
+      ->type_name("PX");
+  add_plan_document(program);
+  add_procedure(program);
 }
 
 }  // namespace octotomy::planner::cli

@@ -38,7 +38,11 @@ void put(const std::string& text) {
 
 CLI::App& Program::verb(const std::string& name, const std::string& does, const std::string& example,
                         std::function<int()> action) {
-  CLI::App& sub = *app.add_subcommand(name, does);
+  // "plan diff" is the verb diff of the group plan.
+  CLI::App* parent = &app;
+  const auto blank = name.find(' ');
+  if (blank != std::string::npos) parent = app.get_subcommand(name.substr(0, blank));
+  CLI::App& sub = *parent->add_subcommand(name.substr(blank == std::string::npos ? 0 : blank + 1), does);
   sub.add_flag("--json", json, "One JSON object on standard output, nothing else there");
   sub.add_option("--threads", threads, "Threads to use; the answer is the same on any number")
       ->check(CLI::Range(1, 1024))

@@ -17,7 +17,7 @@ const std::vector<Suite>& suites() {
 SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   Result result;
   result.plan = plan_of(program, text);
-  result.evaluation = evaluated(program, result.plan);
+  result.evaluation = evaluated(program, result.plan, evaluate_options(program));
   SuiteAnswer answer;
   answer.timings = result.evaluation.timings;
   answer.certificates = result_json(result)["certificates"];

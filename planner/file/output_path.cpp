@@ -2,8 +2,12 @@
 #include "planner/file/output_path.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <fstream>
 
 #include "planner/table/nearest_name.h"
+#include "voxel/space/error.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 
@@ -31,6 +35,16 @@ std::filesystem::path output_file(const std::filesystem::path& folder, const std
 
 std::filesystem::path output_path(const std::filesystem::path& path) {
   return path.lexically_normal().generic_string();
+}
+
+void write_whole(const std::filesystem::path& path, const std::string& bytes) {
+  voxel::StagedFiles staged(std::filesystem::absolute(path).parent_path());
+  errno = 0;
+  std::ofstream file(staged.folder() / path.filename(), std::ios::binary);
+  file << bytes;
+  file.close();
+  if (!file) throw voxel::Error(voxel::code_of_errno(errno), path.string() + ": cannot be written");
+  staged.commit();
 }
 
 }  // namespace octotomy::planner

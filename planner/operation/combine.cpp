@@ -4,6 +4,7 @@
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
 #include "verify/witness.h"
+#include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
 
 namespace octotomy::planner {
@@ -54,8 +55,29 @@ void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
   made.lineage = "corefinement of meshes";
 }
 
+/// Says where a mask holds nothing of an object that it is to cut, or all of it.
+void tell_idle_masks(const std::vector<std::string>& names, const BoundBench& bench, Object& made) {
+  for (const std::string& tool : names) {
+    if (!bench.objects.at(tool).is_tool) continue;
+    const voxel::Expression mask(*bench.objects.at(tool).voxel.symbol);
+    for (const std::string& name : names) {
+      const Object& object = bench.objects.at(name);
+      if (object.is_tool || object.voxel.octree.is_empty()) continue;
+      const voxel::Expression bone(object.voxel.octree);
+      if (voxel::combine(bench.universe, bone & mask).is_empty())
+        made.findings.push_back("the mask '" + tool + "' holds nothing of '" + name +
+                                "' and cuts nothing: look at it by octotomy preview, and redraw its regions");
+      else if (voxel::combine(bench.universe, bone - mask).is_empty())
+        made.findings.push_back("the mask '" + tool + "' holds all of '" + name + "' and cuts nothing");
+    }
+  }
+}
+
 void bound(const Combine& combine, const BoundBench& bench, Object& made) {
   const std::vector<std::string> names = uses(combine);
+  tell_idle_masks(names, bench, made);
+  if (made.voxel.octree.is_empty())
+    made.findings.push_back("it is empty: no voxel is in '" + combine.expression + "'");
   made.shown = shown_in_common(bench.objects, names);
   for (const std::string& name : names) inherit(bench.objects.at(name), made);
   made.witness = verify::witness_of_expression(

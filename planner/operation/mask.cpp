@@ -2,6 +2,7 @@
 #include "planner/operation/mask.h"
 
 #include "brep/boolean/boolean.h"
+#include "brep/mesh/move.h"
 #include "brep/shape/prism.h"
 #include "planner/file/region_file.h"
 #include "planner/operation/mask_file.h"
@@ -36,6 +37,12 @@ brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const
           middle_mm + 1.6 * size_mm};
 }
 
+/// The motion from views of the scan to views of the head as it is held; none where they are the same.
+std::optional<glm::dmat4> held(const Objects& objects) {
+  if (objects.lps_from_head == glm::dmat3(1.0)) return std::nullopt;
+  return glm::dmat4(objects.lps_from_head);
+}
+
 void check(const Mask& mask, const Place& place) {
   if (place.scope == nullptr) return;
   if (mask.regions.empty() && mask.slices.empty()) place.refuse("'regions' is missing: add it, or 'slices'");
@@ -66,6 +73,8 @@ std::string definition(const Mask& mask, const Objects&) {
 
 void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
   if (!mask.regions.empty()) made.symbol = voxel::Expression(mask_of(mask));
+  if (const auto turned = held(bench.objects); turned && made.symbol)
+    made.symbol = moved(*made.symbol, *turned);
   if (!mask.slices.empty()) {
     const voxel::Expression slices = read_slices(bench.folder / mask.slices);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
@@ -89,16 +98,19 @@ void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
   for (std::size_t i = 1; i < mask.regions.size(); ++i)
     solid = brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop)
                 .solid;
-  made.whole = solid;
+  const auto turned = held(bench.objects);
+  made.whole = turned ? brep::moved(solid, *turned) : solid;
   made.lineage = "prisms of the regions";
 }
 
-void bound(const Mask& mask, const BoundBench&, Object& made) {
+void bound(const Mask& mask, const BoundBench& bench, Object& made) {
   if (mask.regions.empty()) return;
-  made.bound.planes = planes_of(mask_of(mask));
+  const auto turned = held(bench.objects);
+  if (!turned) made.bound.planes = planes_of(mask_of(mask));
   std::vector<verify::DrawnRegion> drawn;
   for (const Mask::Region& region : mask.regions) drawn.push_back({region.view, region.polygons_mm});
   made.witness = verify::witness_of_regions(drawn);
+  if (turned) made.witness = verify::carried(made.witness, *turned);
   if (made.mesh.whole) made.walls = {{made.id, *made.mesh.whole}};
 }
 
@@ -137,6 +149,7 @@ Operation mask_operation() {
         {"view": "anterior", "polygons_mm": [[[-40, -60], [40, -60], [40, -25], [-40, -25]]]},
         {"view": "left", "polygons_mm": [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]]}]})")
       .tool()
+      .of_head()
       .check(check)
       .object(definition, voxels, triangles, bound);
 }

@@ -59,7 +59,8 @@ Digitised digitised_of(const AnswerBench& bench, const Object& object) {
 
 Json points_json(const Measure& asked, const AnswerBench& bench) {
   const Digitised digitised = digitised_of(bench);
-  const std::vector<glm::dvec3>& p = asked.points_mm;
+  std::vector<glm::dvec3> p;
+  for (const Mark& mark : asked.points_mm) p.push_back(mark_mm(mark, bench.objects));
   Json json{{"points_mm", Json::array()}};
   for (const glm::dvec3& point : p) json["points_mm"].push_back(to_json(point));
   if (p.size() == 2) {
@@ -175,7 +176,8 @@ Operation measure_operation() {
               .positional("file"))
       .takes(field("to", &Measure::to, "A second object: the gap between the two is wanted instead."))
       .takes(field("points_mm", &Measure::points_mm,
-                   "Two points, for their distance, or three, for the angle at the second.")
+                   "Two points [x, y, z] or landmarks, for their distance, or three, for the angle at the "
+                   "second.")
                  .in_plans_only())
       .takes(field("section", &Measure::section,
                    "A point and a normal: area and perimeter of the surface where that plane cuts it.")

@@ -9,7 +9,7 @@ namespace octotomy::planner {
 /// The size of an object, the gap between two, the distance of two points or the angle of three.
 struct Measure {
   std::optional<ObjectName> object, to;
-  std::vector<glm::dvec3> points_mm;
+  std::vector<Mark> points_mm;
   std::vector<glm::dvec3> section, along;
   bool thickness = false, curvature = false;
   // Of the verb.

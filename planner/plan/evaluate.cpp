@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "brep/boolean/boolean.h"
@@ -18,6 +19,7 @@
 #include "convert/voxel/voxelise.h"
 #include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
+#include "planner/plan/dependence.h"
 #include "planner/plan/sha256.h"
 #include "planner/table/number_format.h"
 #include "verify/witness.h"
@@ -64,18 +66,27 @@ bool was_stopped(const std::exception& error) {
 /// One evaluation in progress.
 class Evaluator {
  public:
-  Evaluator(const Plan& plan, const EvaluateOptions& options) : plan_(plan), options_(options) {}
+  Evaluator(const Plan& plan, const EvaluateOptions& options) : plan_(plan), options_(options) {
+    if (plan.lps_from_head) result_.objects.lps_from_head = *plan.lps_from_head;
+    std::vector<std::string> wanted = options.wanted;
+    if (wanted.empty())
+      for (const Step& step : plan.steps) wanted.push_back(step.id);
+    wanted_ = needed_for(plan, wanted);
+    with_mesh_ = options.meshes ? wanted_ : needing_meshes(plan, wanted_);
+  }
 
   Evaluation run() {
     read_scans();
+    if (options_.cache != nullptr)
+      keys_ = step_keys(plan_, common_key(), [this](const std::string& scan) { return scan_keys_.at(scan); });
     std::size_t done = 0;
     for (const Step& step : plan_.steps) {
       report(verb(step) + " " + step.id,
              static_cast<double>(done++) / static_cast<double>(plan_.steps.size()));
       const Makes makes = step.action.operation().makes;
-      if (makes != Makes::Object && makes != Makes::Scan) continue;
+      if ((makes != Makes::Object && makes != Makes::Scan) || !wanted_.contains(step.id)) continue;
       try {
-        makes == Makes::Scan ? make_scan(step) : make(step);
+        if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
       } catch (const Stopped&) {
         throw;
       } catch (const voxel::Error& error) {
@@ -107,10 +118,15 @@ class Evaluator {
   /// are counted, too.
   std::vector<std::string> scans_in_use() {
     std::vector<std::string> names;
+    std::string first;  // of all steps, wanted or not
     for (const Step& step : plan_.steps)
-      for (const std::string& scan : scans_used(step.action))
+      for (const std::string& scan : scans_used(step.action)) {
+        if (first.empty() && plan_.scans.contains(scan)) first = scan;
+        if (!wanted_.contains(step.id)) continue;
         if (uses_left_[scan]++ == 0 && plan_.scans.contains(scan)) names.push_back(scan);
-    if (names.empty()) names.push_back(plan_.scans.begin()->first);
+      }
+    if (first.empty()) first = plan_.scans.begin()->first;
+    if (std::find(names.begin(), names.end(), first) == names.end()) names.insert(names.begin(), first);
     return names;
   }
 
@@ -121,7 +137,7 @@ class Evaluator {
       throw std::runtime_error("scan '" + name + "': " + path.string() +
                                ": no such file or folder; correct the plan or use --scan " + name + "=PATH");
     if (!std::filesystem::is_directory(path)) voxel::need_regular_file(path);
-    sha256 = sha256_of_path(path);
+    sha256 = sum_of(path);
     if (source.sha256 && *source.sha256 != sha256)
       throw std::runtime_error("scan '" + name + "': " + path.string() + " has SHA-256 " + sha256 +
                                ", the plan wants " + *source.sha256 + ": it is another scan");
@@ -137,17 +153,88 @@ class Evaluator {
       report("read " + name, 0.0);
       const ScanSource& source = plan_.scans.at(name);
       std::string sha256;
+      if (take_cached_scan(name, source)) continue;
       voxel::Scene scene = read(name, source, sha256);
-      if (result_.scans.empty()) {
-        result_.universe = universe_of(scene.lattice, plan_.voxel_mm);
-        box_ = voxel::bounds(result_.universe.lattice());
-        world_ = brep::solid_of(prism_of(box_));
-        expressions_ = std::make_unique<verify::MeshExpressions>(world_);
-      }
+      if (result_.scans.empty()) set_universe(scene.lattice);
       result_.scans.push_back(record_of(name, source.path, scene));
       result_.scans.back().sha256 = std::move(sha256);
       load(name, std::move(scene));
+      if (options_.cache != nullptr)
+        options_.cache->keep(scan_keys_[name] = scan_key(name, source),
+                             {loaded_.at(name), result_.scans.back()});
     }
+  }
+
+  void set_universe(const voxel::Lattice& first_scan) {
+    result_.universe = universe_of(first_scan, plan_.voxel_mm);
+    box_ = voxel::bounds(result_.universe.lattice());
+    world_ = brep::solid_of(prism_of(box_));
+    expressions_ = std::make_unique<verify::MeshExpressions>(world_);
+  }
+
+  std::string sum_of(const std::filesystem::path& path) const {
+    if (options_.cache == nullptr) return sha256_of_path(path);
+    const std::string state = state_of_path(path);
+    if (const auto known = options_.cache->sum(state)) return *known;
+    std::string sum = sha256_of_path(path);
+    options_.cache->keep_sum(state, sum);
+    return sum;
+  }
+
+  /// What a loaded scan depends on: its files, how they are read, and the universe, which the plan's voxels
+  /// and its first scan fix.
+  std::string scan_key(const std::string& name, const ScanSource& source) const {
+    nlohmann::ordered_json says{{"name", name},
+                                {"sum", sum_of(scan_path(plan_, source))},
+                                {"path", source.path.string()},
+                                {"series", source.read.series},
+                                {"voxel_mm", plan_.voxel_mm.value_or(0.0)}};
+    for (const voxel::SliceRange& range : source.read.slices)
+      says["slices"].push_back({range.first, range.last});
+    if (source.read.spacing_mm)
+      for (int axis = 0; axis < 3; ++axis) says["spacing_mm"].push_back((*source.read.spacing_mm)[axis]);
+    if (const auto& raw = source.read.raw)
+      says["raw"] = {raw->dims.x,     raw->dims.y, raw->dims.z, static_cast<int>(raw->type),
+                     raw->big_endian, raw->offset};
+    for (const auto& [first, key] : scan_keys_)
+      if (first == result_.scans.front().name && first != name) says["first"] = key;
+    return sha256_of(says.dump());
+  }
+
+  bool take_cached_scan(const std::string& name, const ScanSource& source) {
+    if (options_.cache == nullptr || !std::filesystem::exists(scan_path(plan_, source))) return false;
+    const std::string key = scan_key(name, source);
+    const auto known = options_.cache->scan(key);
+    if (known == nullptr || (source.sha256 && *source.sha256 != known->record.sha256)) return false;
+    if (result_.scans.empty()) set_universe(known->loaded.scene().lattice);
+    scan_keys_[name] = key;
+    result_.scans.push_back(known->record);
+    loaded_.insert_or_assign(name, known->loaded);
+    return true;
+  }
+
+  /// What every answer depends on beside its own step.
+  std::string common_key() const {
+    return scan_keys_.at(result_.scans.front().name) + (options_.certify ? " certified" : "");
+  }
+
+  /// The answer's key tells apart whether the mesh kernel answered.
+  std::string key_of(const Step& step) const {
+    return keys_.at(step.id) + (with_mesh_.contains(step.id) ? "" : " voxels");
+  }
+
+  bool take_cached(const Step& step) {
+    if (options_.cache == nullptr) return false;
+    if (step.action.operation().makes == Makes::Object) {
+      const auto known = options_.cache->object(key_of(step));
+      if (known != nullptr) result_.objects.add(*known);
+      return known != nullptr;
+    }
+    const auto known = options_.cache->scan(keys_.at(step.id));
+    if (known == nullptr) return false;
+    result_.scans.push_back(known->record);
+    loaded_.insert_or_assign(step.id, known->loaded);
+    return true;
   }
 
   void load(const std::string& name, voxel::Scene scene) {
@@ -175,7 +262,10 @@ class Evaluator {
     for (const std::string& finding : made.findings)
       record.audit.push_back({operation.name, voxel::Verdict::Warn, finding});
     result_.scans.push_back(std::move(record));
-    if (uses_left_.contains(step.id)) load(step.id, std::move(made.scene));
+    if (!uses_left_.contains(step.id)) return;
+    load(step.id, std::move(made.scene));
+    if (options_.cache != nullptr)
+      options_.cache->keep(keys_.at(step.id), {loaded_.at(step.id), result_.scans.back()});
   }
 
   /// Makes an object in both kernels and certifies it.
@@ -200,15 +290,16 @@ class Evaluator {
           value,
           {result_.universe, result_.objects, scan_, result_.timings, {options_.stop, {}}, plan_.folder},
           object.voxel);
-    make_mesh(step, value, object);
+    if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
     object.mesh.details.update(told);
     if (!operation.voxel) voxelise(object);
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
     take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
     const std::vector<std::string> interpolated = interpolated_parts(step, object);
+    object.is_interpolated = !interpolated.empty();
     object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
-    if (object.mesh.within && options_.certify && !object.is_tool && operation.voxel) {
+    if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
       const Stopwatch watch(result_.timings, "certify");
       certify(object, object.id + " = " + object.definition, {options_.stop, {}});
       // The kernels cannot disagree over samples that both take from the same interpolation.
@@ -219,6 +310,7 @@ class Evaluator {
       object.mesh.whole = object.mesh.within;
       object.witness = verify::both(object.witness, verify::witness_of_box(box_));
     }
+    if (options_.cache != nullptr) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));
   }
 
@@ -246,9 +338,8 @@ class Evaluator {
                        " mm: both kernels read the same interpolated samples there");
     }
     for (const std::string& name : objects_used(step.action))
-      if (told.empty() && interpolated_.contains(name) && !object.is_tool)
+      if (told.empty() && result_.objects.at(name).is_interpolated && !object.is_tool)
         told.push_back("made of '" + name + "', a part of which is interpolated between images");
-    if (!told.empty()) interpolated_.insert(step.id);
     return told;
   }
 
@@ -320,8 +411,10 @@ class Evaluator {
   const EvaluateOptions& options_;
   Evaluation result_;
   std::map<std::string, LoadedScan> loaded_;
-  std::set<std::string> interpolated_;  ///< objects with a part that no image measured
   std::map<std::string, std::size_t> uses_left_;
+  std::set<std::string> wanted_, with_mesh_;      ///< steps
+  std::map<std::string, std::string> scan_keys_;  ///< of the plan's scans, where there is a cache
+  std::map<std::string, std::string> keys_;       ///< of the steps, where there is a cache
   const Scans scan_ = [this](const std::string& name) -> const LoadedScan& { return loaded_.at(name); };
   voxel::Box box_;  ///< of the universe
   brep::Solid world_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/plan/object_cache.h"
 #include "planner/plan/plan.h"
 #include "planner/table/bench.h"
 #include "planner/table/object.h"
@@ -35,6 +36,13 @@ struct EvaluateOptions {
   /// Called with what is being done and the fraction of the steps done, 0..1.
   std::function<void(const std::string& doing, double fraction)> progress;
   bool certify = true;
+  /// Without them the mesh kernel answers only where voxels cannot be had without it (needing_meshes()), and
+  /// nothing is certified.
+  bool meshes = true;
+  /// The steps that are wanted; those that they need are evaluated, and no others. Empty: all.
+  std::vector<std::string> wanted = {};
+  /// Answers of earlier evaluations, which are not made again, and to which new ones are added; may be null.
+  ObjectCache* cache = nullptr;
 };
 
 /// Evaluates every step that makes an object or a scan, objects in the voxel kernel and in the mesh kernel,

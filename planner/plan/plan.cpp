@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/plan/migration.h"
 #include "planner/plan/plan_keys.h"
 #include "planner/table/field_json.h"
 #include "planner/table/nearest_name.h"
@@ -170,11 +171,10 @@ Ordered step_schema(const Operation& operation) {
 }  // namespace
 
 Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
-  const Json root = strict_json(json);
+  Json root = strict_json(json);
+  if (root.is_object()) migrate(root, migrations());
   const Keys top(root, "", {"octotomy_plan", "name", "scans", "universe", "steps"});
-  const Json& version = top.need("octotomy_plan");
-  if (!version.is_number_integer() || version.get<std::int64_t>() != 1)
-    refuse("octotomy_plan", "must be 1, the only version of plans there is");
+  top.need("octotomy_plan");
   Plan plan;
   plan.text = json;
   plan.folder = folder;
@@ -188,8 +188,10 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   }
   const Json& steps = top.need("steps");
   if (!steps.is_array() || steps.empty()) refuse("steps", "must be a list of at least one step");
-  Scope scope(names_of(plan.scans));
+  Scope scope(names_of(plan.scans), folder);
   for (const Json& step : steps) plan.steps.push_back(step_of(step, plan.steps.size(), scope));
+  plan.landmarks = scope.landmarks();
+  plan.lps_from_head = scope.lps_from_head();
   return plan;
 }
 
@@ -252,7 +254,7 @@ Ordered plan_schema() {
           {"description", "Ordered steps on scans. Lengths are in mm, angles in degrees, coordinates LPS."},
           {"type", "object"},
           {"properties",
-           {{"octotomy_plan", {{"const", 1}}},
+           {{"octotomy_plan", {{"const", plan_version}}},
             {"name", {{"type", "string"}, {"minLength", 1}}},
             {"scans", {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", scan}}},
             {"universe",

@@ -35,6 +35,9 @@ struct Plan {
   std::optional<double>
       voxel_mm;  ///< edge of the universe's voxels; none: as fine as the scan, at most 512 a side
   std::vector<Step> steps;
+  std::vector<NamedPoint> landmarks;  ///< that its steps name
+  /// How a step holds the head (Scope); none: as the scan does.
+  std::optional<glm::dmat3> lps_from_head;
 };
 
 /// Reads a plan. Keys, steps and names that are not known, and keys said twice, are refused with the nearest

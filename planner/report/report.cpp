@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "planner/anatomy/head_directions.h"
+#include "planner/anatomy/movement.h"
 #include "planner/measure/result_json.h"
 #include "planner/report/report_page.h"
 #include "planner/report/result_folder.h"
@@ -102,10 +104,10 @@ std::vector<PictureGroup> plan_pictures(const Plan& plan, Evaluation& evaluation
   std::vector<PictureGroup> groups;
   if (scene.moves) {
     groups.push_back({"before", "Before", scene.before, {}});
-    draw(groups.back(), {"left", "35,15"}, framed, picture_px);
+    draw(groups.back(), {"left", "35,15"}, framed, picture_px, evaluation.objects.lps_from_head);
   }
   groups.push_back({"after", scene.moves ? "Views after" : "Views", scene.after, {}});
-  draw(groups.back(), all_views(), framed, picture_px);
+  draw(groups.back(), all_views(), framed, picture_px, evaluation.objects.lps_from_head);
   return groups;
 }
 
@@ -120,6 +122,12 @@ Json result_json(const Result& result) {
   for (const char* key : {"scans", "objects", "components", "exports"}) json[key] = Json::array();
   for (const ScanRecord& scan : evaluation.scans) json["scans"].push_back(to_json(scan));
   for (const Object& object : evaluation.objects) json["objects"].push_back(to_json(object));
+  json["landmarks"] = Json::array();
+  for (const NamedPoint& landmark : result.plan.landmarks)
+    json["landmarks"].push_back({{"name", landmark.name}, {"point_mm", to_json(landmark.p_mm)}});
+  json["lps_from_head"] = to_json(evaluation.objects.lps_from_head);
+  json["movements"] = result.movements;
+  json["movement_words"] = movement_words;
   json["measurements"] = result.measurements;
   json["certificates"] = certificates_json(evaluation);
   json["counts"] = to_json(verdict_counts(evaluation));
@@ -144,6 +152,7 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
   {
     const Stopwatch watch(result.evaluation.timings, "measure");
     result.measurements = measurements_json(result.plan, result.evaluation);
+    result.movements = movements_json(result.evaluation.objects, result.plan.landmarks);
   }
   result.exported =
       write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);

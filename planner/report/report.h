@@ -28,6 +28,7 @@ struct Result {
   std::vector<Exported> exported;
   std::vector<Parts> parts;
   nlohmann::ordered_json measurements = nlohmann::ordered_json::array();  ///< measurements_json()
+  nlohmann::ordered_json movements = nlohmann::ordered_json::array();     ///< movements_json()
   std::vector<voxel::Finding> findings;  ///< on the plan as a whole, beside those of its parts
 };
 

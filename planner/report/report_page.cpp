@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "planner/anatomy/head_directions.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/mask.h"
 #include "planner/picture/colour.h"
@@ -236,6 +237,48 @@ std::string measurements(const Result& result) {
   return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements);
 }
 
+/// A point's displacement as cells, signed along the head's directions.
+std::string displacement_cells(const Json& row) {
+  const auto signed_mm = [&](const char* key) {
+    const double mm = row.at(key).get<double>();
+    return figure_cell((mm > 0.005 ? "+" : "") + grouped(std::abs(mm) < 0.005 ? 0.0 : mm, 2));
+  };
+  return signed_mm("forward_mm") + signed_mm("up_mm") + signed_mm("left_mm");
+}
+
+/// A row for each moved piece, one for each landmark on it and each point that was to be moved.
+std::string movements(const Result& result) {
+  if (result.movements.empty()) return "";
+  std::string rows =
+      "<tr><th>Piece or point</th><th class=\"n\">forward, mm</th><th class=\"n\">up, mm</th><th "
+      "class=\"n\">left, mm</th><th>In words</th></tr>";
+  for (const Json& moved : result.movements) {
+    const Json& centroid = moved.at("centroid");
+    rows += "<tr class=\"lead\">" + cell(element("b", escaped(moved.at("object").get<std::string>()))) +
+            (centroid.is_null() ? cell("") + cell("") + cell("") : displacement_cells(centroid)) +
+            cell(escaped(moved.at("words").get<std::string>())) + "</tr>";
+    for (const Json& landmark : moved.at("landmarks"))
+      rows +=
+          "<tr>" + cell(escaped(landmark.at("name").get<std::string>())) + displacement_cells(landmark) +
+          cell(escaped(landmark.at("words").get<std::string>()) +
+               (landmark.contains("since_scan")
+                    ? ", since the scan " + escaped(landmark.at("since_scan").at("words").get<std::string>())
+                    : "")) +
+          "</tr>";
+    if (moved.contains("points"))
+      for (const Json& point : moved.at("points"))
+        rows += "<tr>" + cell(escaped(point.at("name").get<std::string>()) + ", wanted") +
+                displacement_cells(point) +
+                cell("wanted " + escaped(point.at("wanted").get<std::string>()) + ", came within " +
+                     grouped(point.at("residual_mm").get<double>(), 2) + " mm") +
+                "</tr>";
+  }
+  return element("h2", "Movements") + element("table", rows) +
+         element("p class=\"soft small\"", std::string(movement_words) +
+                                               " A piece's own row is its centroid; landmarks are those "
+                                               "within 3 mm of it.");
+}
+
 std::string terms_of(const verify::Certificate& certificate, const std::string& definition) {
   std::string rows =
       "<tr><th>Source of difference that theory allows</th><th>Formula</th><th "
@@ -413,9 +456,9 @@ std::string footer(const Result& result) {
 
 std::string report_html(const Result& result) {
   return html_page(result.plan.name, heading(result) + tiles(result) + findings(result) + pictures(result) +
-                                         measurements(result) + certificates(result) + parts_table(result) +
-                                         scans(result) + exports(result) + plan_text(result) +
-                                         footer(result));
+                                         movements(result) + measurements(result) + certificates(result) +
+                                         parts_table(result) + scans(result) + exports(result) +
+                                         plan_text(result) + footer(result));
 }
 
 }  // namespace octotomy::planner

@@ -130,20 +130,30 @@ FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
   return scene;
 }
 
+DrawnView draw_view(const std::vector<voxel::DrawnObject>& objects,
+                    const std::vector<voxel::DrawnObject>& framed, const std::string& view,
+                    const glm::dmat3& lps_from_head, int size_px) {
+  DrawnView drawn;
+  drawn.frame.view = view;
+  drawn.frame.axes = voxel::parse_view(view);
+  if (lps_from_head != glm::dmat3(1.0))
+    for (glm::dvec3* axis : {&drawn.frame.axes.look, &drawn.frame.axes.up, &drawn.frame.axes.right})
+      *axis = lps_from_head * *axis;
+  const Frame frame = frame_of(framed, drawn.frame.axes);
+  drawn.frame.centre_mm = frame.centre_mm;
+  drawn.frame.width_mm = frame.width_mm;
+  drawn.frame.size_px = size_px;
+  drawn.pixels = voxel::render(objects, options_of(drawn.frame.axes, frame, size_px));
+  return drawn;
+}
+
 void draw(PictureGroup& group, const std::vector<std::string>& views,
-          const std::vector<voxel::DrawnObject>& framed, int size_px) {
+          const std::vector<voxel::DrawnObject>& framed, int size_px, const glm::dmat3& lps_from_head) {
   if (group.objects.empty()) return;
   for (const std::string& name : views) {
-    ScenePicture picture;
-    picture.view = name;
-    picture.axes = voxel::parse_view(name);
-    const Frame frame = frame_of(framed, picture.axes);
-    picture.centre_mm = frame.centre_mm;
-    picture.width_mm = frame.width_mm;
-    picture.size_px = size_px;
-    const voxel::Picture pixels = voxel::render(group.objects, options_of(picture.axes, frame, size_px));
-    picture.png = voxel::encode_image("png", pixels.size_px, pixels.rgb);
-    group.pictures.push_back(std::move(picture));
+    DrawnView view = draw_view(group.objects, framed, name, lps_from_head, size_px);
+    view.frame.png = voxel::encode_image("png", view.pixels.size_px, view.pixels.rgb);
+    group.pictures.push_back(std::move(view.frame));
   }
 }
 

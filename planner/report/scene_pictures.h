@@ -40,10 +40,21 @@ struct FinalScene {
 /// `before`.
 FinalScene final_scene(const Plan& plan, const Evaluation& evaluation);
 
+/// A picture before it is encoded, and its frame.
+struct DrawnView {
+  ScenePicture frame;  ///< without its png
+  voxel::Picture pixels;
+};
+/// Draws objects in a view of the head as it is held, framed by what is seen of `framed`.
+DrawnView draw_view(const std::vector<voxel::DrawnObject>& objects,
+                    const std::vector<voxel::DrawnObject>& framed, const std::string& view,
+                    const glm::dmat3& lps_from_head, int size_px);
+
 /// Draws the group's objects from every view; all pictures of all groups that share `framed` are of one scale
 /// and centre a view. Nothing is drawn where there are no objects.
 void draw(PictureGroup& group, const std::vector<std::string>& views,
-          const std::vector<voxel::DrawnObject>& framed, int size_px);
+          const std::vector<voxel::DrawnObject>& framed, int size_px,
+          const glm::dmat3& lps_from_head = glm::dmat3(1.0));
 
 /// The six views along the axes and, last, two oblique ones.
 std::vector<std::string> all_views();

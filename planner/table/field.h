@@ -29,6 +29,15 @@ struct Site {
   glm::dvec3 point_mm{0.0};
   std::string object;  ///< empty: the point
 };
+/// A point: typed in LPS millimetres, or a landmark of the plan. The landmark lies as in the scan, or, as
+/// "ans@advanced", as it moved along with an object.
+struct Mark {
+  glm::dvec3 p_mm{0.0};  ///< of a landmark: in the scan
+  std::string landmark;  ///< empty: typed
+  std::string object;    ///< empty: as in the scan
+
+  bool operator==(const Mark&) const = default;
+};
 /// Closed polygons in the millimetres (u, v) of a view.
 using Polygons = std::vector<std::vector<glm::dvec2>>;
 /// Pairs of names of objects.
@@ -45,12 +54,12 @@ struct Records {
 };
 
 /// Where a field's value lies in an operation. The alternative is the field's type.
-using Slot = std::variant<bool*, int*, double*, std::string*, std::filesystem::path*, glm::dvec3*,
-                          ObjectName*, ScanName*, Site*, std::optional<double>*, std::optional<int>*,
-                          std::optional<std::string>*, std::optional<glm::dvec3>*, std::optional<ObjectName>*,
-                          SampleWindow*, std::optional<SampleWindow>*, std::vector<double>*,
-                          std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*,
-                          std::vector<ObjectName>*, Polygons*, NamePairs*, Records>;
+using Slot = std::variant<
+    bool*, int*, double*, std::string*, std::filesystem::path*, glm::dvec3*, ObjectName*, ScanName*, Site*,
+    std::optional<double>*, std::optional<int>*, std::optional<std::string>*, std::optional<glm::dvec3>*,
+    std::optional<ObjectName>*, SampleWindow*, std::optional<SampleWindow>*, std::vector<double>*,
+    std::vector<int>*, std::vector<std::string>*, std::vector<glm::dvec3>*, std::vector<ObjectName>*, Mark*,
+    std::optional<Mark>*, std::vector<Mark>*, std::optional<glm::dmat4>*, Polygons*, NamePairs*, Records>;
 
 /// One field of an operation or of a record within it.
 struct Field {

@@ -76,6 +76,21 @@ class Reader {
     value->object = text(json_, place_);
     place_.need_object(value->object);
   }
+  void read(Mark* value) const { *value = mark(json_, place_); }
+  void read(std::vector<Mark>* value) const {
+    each("points [x, y, z] or names of landmarks",
+         [&](const Json& entry, const Place& at) { value->push_back(mark(entry, at)); });
+  }
+  void read(glm::dmat4* value) const {
+    const auto refuse = [&] { place_.refuse("must be four rows of four numbers, as register tells them"); };
+    if (!json_.is_array() || json_.size() != 4) refuse();
+    for (int row = 0; row < 4; ++row) {
+      const Json& numbers = json_[static_cast<std::size_t>(row)];
+      if (!numbers.is_array() || numbers.size() != 4) refuse();
+      for (int column = 0; column < 4; ++column)
+        (*value)[column][row] = number_of(numbers[static_cast<std::size_t>(column)], place_.where);
+    }
+  }
   void read(SampleWindow* value) const {
     const std::string said = text(json_, place_);
     try {
@@ -168,6 +183,20 @@ class Reader {
     return {number_of(json[0], place.where), number_of(json[1], place.where),
             number_of(json[2], place.where)};
   }
+  static Mark mark(const Json& json, const Place& place) {
+    if (json.is_array()) return {point(json, place), "", ""};
+    if (!json.is_string()) place.refuse("must be three numbers [x, y, z] or the name of a landmark");
+    const std::string said = text(json, place);
+    if (place.scope == nullptr) place.refuse("'" + said + "' names a landmark of a plan: give X,Y,Z");
+    Mark mark;
+    const std::size_t at = said.find('@');
+    mark.landmark = said.substr(0, at);
+    mark.p_mm = place.scope->landmark_mm(place.where, mark.landmark);
+    if (at == std::string::npos) return mark;
+    mark.object = said.substr(at + 1);
+    place.need_object(mark.object);
+    return mark;
+  }
   template <typename Act>
   void each(const std::string& of, const Act& act) const {
     if (!json_.is_array()) place_.refuse("must be a list of " + of + for_example(field_));
@@ -206,6 +235,16 @@ struct Printer {
   Ordered operator()(const ScanName* value) const { return (*this)(&value->name); }
   Ordered operator()(const Site* value) const {
     return value->object.empty() ? json_of(value->point_mm) : Ordered(value->object);
+  }
+  Ordered operator()(const Mark* value) const {
+    if (value->landmark.empty()) return json_of(value->p_mm);
+    return value->landmark + (value->object.empty() ? "" : "@" + value->object);
+  }
+  Ordered operator()(const glm::dmat4* value) const {
+    Ordered rows = Ordered::array();
+    for (int row = 0; row < 4; ++row)
+      rows.push_back({(*value)[0][row], (*value)[1][row], (*value)[2][row], (*value)[3][row]});
+    return rows;
   }
   Ordered operator()(const SampleWindow* value) const { return to_string(*value); }
   template <typename Value>
@@ -264,6 +303,11 @@ struct Schema {
   Ordered operator()(const SampleWindow*) const { return {{"type", "string"}, {"minLength", 1}}; }
   Ordered operator()(const Site*) const {
     return {{"oneOf", {Ordered(vector_schema), {{"type", "string"}, {"minLength", 1}}}}};
+  }
+  Ordered operator()(const Mark*) const { return (*this)(static_cast<const Site*>(nullptr)); }
+  Ordered operator()(const glm::dmat4*) const {
+    const Ordered row{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}};
+    return {{"type", "array"}, {"items", row}, {"minItems", 4}, {"maxItems", 4}};
   }
   template <typename Value>
   Ordered operator()(const std::optional<Value>*) const {
@@ -339,6 +383,7 @@ struct Word {
   Json operator()(const Site*) const {
     return word.find(',') == std::string::npos ? Json(word) : point_in(word);
   }
+  Json operator()(const Mark*) const { return (*this)(static_cast<const Site*>(nullptr)); }
   template <typename Value>
   Json operator()(const std::optional<Value>*) const {
     return (*this)(static_cast<const Value*>(nullptr));
@@ -357,6 +402,7 @@ struct Form {
   std::string operator()(const int*) const { return "N"; }
   std::string operator()(const double*) const { return "NUMBER"; }
   std::string operator()(const glm::dvec3*) const { return "X,Y,Z"; }
+  std::string operator()(const Mark*) const { return "X,Y,Z"; }
   std::string operator()(const ObjectName*) const { return "FILE"; }
   std::string operator()(const ScanName*) const { return "SCAN"; }
   std::string operator()(const SampleWindow*) const { return "LOW:HIGH"; }

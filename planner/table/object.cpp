@@ -30,6 +30,18 @@ const Object& Objects::add(Object object) {
   return objects_.emplace_back(std::move(object));
 }
 
+glm::dmat4 moved_since_made(const Objects& objects, const std::string& object) {
+  glm::dmat4 motion(1.0);
+  for (const Object* at = &objects.at(object); at->moved; at = &objects.at(at->moved->object))
+    motion = motion * at->moved->motion;
+  return motion;
+}
+
+glm::dvec3 mark_mm(const Mark& mark, const Objects& objects) {
+  if (mark.object.empty()) return mark.p_mm;
+  return glm::dvec3(moved_since_made(objects, mark.object) * glm::dvec4(mark.p_mm, 1.0));
+}
+
 const brep::Solid& SettleBench::object(const std::string& name) const {
   const std::optional<brep::Solid>& mesh = objects.at(name).mesh.whole;
   if (!mesh) throw std::runtime_error("'" + name + "' has no mesh, to which something is to be fitted");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "brep/mesh/solid.h"
+#include "planner/table/field.h"
 #include "verify/certificate.h"
 #include "verify/reading.h"
 #include "voxel/measure/measure.h"
@@ -82,6 +83,7 @@ struct Object {
   std::string kind;        ///< the operation's name
   std::string definition;  ///< in words: "skull & cut"
   bool is_tool = false;    ///< only helps to make others, as a mask
+  bool is_interpolated = false;  ///< a part of it comes from samples between images
   VoxelSide voxel;
   MeshSide mesh;
   BoundTerms bound;
@@ -94,6 +96,8 @@ struct Object {
   struct Moved {
     std::string object;  ///< that was moved
     glm::dmat4 motion{1.0};
+    /// What is told of the motion: how it was found, residuals of points.
+    nlohmann::ordered_json details = nlohmann::ordered_json::object();
   };
   std::optional<Moved> moved;
   std::vector<CutWall> walls;  ///< of the masks that it was made with, where they have a mesh
@@ -117,9 +121,17 @@ class Objects {
   /// For tests that spoil an object.
   Object& change(std::size_t index) { return objects_[index]; }
 
+  /// How the head is held: columns are the directions left, back and up of the head, LPS.
+  glm::dmat3 lps_from_head{1.0};
+
  private:
   std::deque<Object> objects_;
   std::map<std::string, std::size_t> index_;
 };
+
+/// The motion of all the steps that moved an object since it was made, LPS to LPS.
+glm::dmat4 moved_since_made(const Objects& objects, const std::string& object);
+/// Where a mark lies: a landmark that goes with an object moves along with that object's motions.
+glm::dvec3 mark_mm(const Mark& mark, const Objects& objects);
 
 }  // namespace octotomy::planner

@@ -6,6 +6,19 @@
 namespace octotomy::planner {
 namespace {
 
+void collect_marks(const std::vector<Field>& fields, void* owner, std::vector<Mark>& marks) {
+  for (const Field& field : fields) {
+    const Slot slot = field.slot(owner);
+    if (const auto* mark = std::get_if<Mark*>(&slot)) marks.push_back(**mark);
+    if (const auto* mark = std::get_if<std::optional<Mark>*>(&slot); mark != nullptr && **mark)
+      marks.push_back(***mark);
+    if (const auto* list = std::get_if<std::vector<Mark>*>(&slot))
+      marks.insert(marks.end(), (*list)->begin(), (*list)->end());
+    if (const auto* records = std::get_if<Records>(&slot))
+      for (std::size_t i = 0; i < records->count; ++i) collect_marks(field.fields, records->at(i), marks);
+  }
+}
+
 /// Collects the names in fields of one type.
 template <typename Name>
 void collect(const std::vector<Field>& fields, void* owner, std::vector<std::string>& names) {
@@ -38,6 +51,9 @@ const Operation* find_operation(const std::string& name) {
 std::vector<std::string> objects_used(const Action& action) {
   std::vector<std::string> names;
   collect<ObjectName>(action.operation().fields, const_cast<void*>(action.value()), names);
+  for (const Mark& mark : marks_used(action))
+    if (!mark.object.empty() && std::find(names.begin(), names.end(), mark.object) == names.end())
+      names.push_back(mark.object);
   if (action.operation().uses)
     for (const std::string& name : action.operation().uses(action.value()))
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -51,6 +67,12 @@ std::filesystem::path path_written(const Action& action) {
           std::holds_alternative<std::filesystem::path*>(slot))
         return std::get<std::filesystem::path*>(slot)->lexically_normal();
   return {};
+}
+
+std::vector<Mark> marks_used(const Action& action) {
+  std::vector<Mark> marks;
+  collect_marks(action.operation().fields, const_cast<void*>(action.value()), marks);
+  return marks;
 }
 
 std::vector<std::string> scans_used(const Action& action) {

@@ -19,9 +19,9 @@
 // stands beside the entry that it builds, which makes the header long.
 namespace octotomy::planner {
 
-/// What a step leaves behind: an object or a scan that later steps use, numbers, or a file in the result's
-/// folder.
-enum class Makes { Object, Scan, Measurement, File };
+/// What a step leaves behind: an object or a scan that later steps use, numbers, a file in the result's
+/// folder, or names and directions, which it binds in the document's scope when it is checked.
+enum class Makes { Object, Scan, Measurement, File, Names };
 
 /// An entry of the table. Its functions take the operation's value behind a pointer; Describe binds them.
 struct Operation {
@@ -67,6 +67,8 @@ struct Operation {
   bool reads_scans = false;
   /// An object that only helps to make others, as a mask: it has no certificate of its own.
   bool is_tool = false;
+  /// Its answer depends on how the head is held: on views or on words as "forward".
+  bool is_of_head = false;
 };
 
 /// Builds an entry from functions of the operation's own type.
@@ -93,6 +95,7 @@ class Describe {
     return entry_.verb_fields.push_back(std::move(field)), std::move(*this);
   }
   Describe&& reads_scans() && { return entry_.reads_scans = true, std::move(*this); }
+  Describe&& of_head() && { return entry_.is_of_head = true, std::move(*this); }
   Describe&& tool() && { return entry_.is_tool = true, std::move(*this); }
   Describe&& check(void (*part)(const Value&, const Place&)) && { return bind(entry_.check, part); }
   using Definition = std::string (*)(const Value&, const Objects&);
@@ -168,6 +171,8 @@ const Operation* find_operation(const std::string& name);
 std::vector<std::string> objects_used(const Action& action);
 /// The file that an action writes, as its field says it; empty where it writes none.
 std::filesystem::path path_written(const Action& action);
+/// The marks of an action's fields, in their order.
+std::vector<Mark> marks_used(const Action& action);
 /// The scans that an action uses.
 std::vector<std::string> scans_used(const Action& action);
 

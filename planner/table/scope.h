@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
+#include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,11 +12,18 @@ namespace octotomy::planner {
 
 struct Operation;
 
+/// A named point of the document, LPS millimetres, as it lies in the scan.
+struct NamedPoint {
+  std::string name;
+  glm::dvec3 p_mm{0.0};
+};
+
 /// The names that a document has bound so far.
 class Scope {
  public:
-  /// `scans` are the names of the document's scans.
-  explicit Scope(std::vector<std::string> scans = {}) : scans_(std::move(scans)) {}
+  /// `scans` are the names of the document's scans; files that it names lie in `folder`.
+  explicit Scope(std::vector<std::string> scans = {}, std::filesystem::path folder = {})
+      : scans_(std::move(scans)), folder_(std::move(folder)) {}
 
   /// Binds a step's id. Throws std::runtime_error where it is no identifier or is taken; `where` names the
   /// step in the refusal.
@@ -27,8 +37,23 @@ class Scope {
   /// The operation that made an object. Precondition: need_object() passes.
   const Operation& maker_of(const std::string& name) const { return *operations_.at(name); }
 
+  /// Binds a landmark. Throws std::runtime_error where its name is taken, empty or holds an '@'.
+  void bind_landmark(const std::string& where, const NamedPoint& landmark);
+  /// Throws std::runtime_error, with the nearest name there is, where no earlier step has this landmark.
+  glm::dvec3 landmark_mm(const std::string& where, const std::string& name) const;
+  const std::vector<NamedPoint>& landmarks() const { return landmarks_; }
+  /// Sets how the head is held: columns are the directions left, back and up of the head, LPS. Throws
+  /// std::runtime_error where an earlier step has set it.
+  void hold_head(const std::string& where, const glm::dmat3& lps_from_head);
+  /// None where no step holds the head: its directions are then the scan's.
+  const std::optional<glm::dmat3>& lps_from_head() const { return lps_from_head_; }
+  const std::filesystem::path& folder() const { return folder_; }
+
  private:
   std::vector<std::string> scans_, objects_, paths_;
+  std::filesystem::path folder_;
+  std::vector<NamedPoint> landmarks_;
+  std::optional<glm::dmat3> lps_from_head_;
   std::map<std::string, const Operation*> operations_;
 };
 

@@ -67,6 +67,7 @@ TEST(Operation, EveryFieldSaysWhatItIsInOneSentence) {
                               ? (operation.voxel || operation.mesh) && operation.bound
                           : operation.makes == Makes::Scan        ? static_cast<bool>(operation.scan)
                           : operation.makes == Makes::Measurement ? static_cast<bool>(operation.measure)
+                          : operation.makes == Makes::Names       ? static_cast<bool>(operation.check)
                                                                   : operation.write || operation.on_files;
     EXPECT_TRUE(is_whole) << operation.name;
   }

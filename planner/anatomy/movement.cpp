@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/anatomy/movement.h"
+
+#include <nlohmann/json.hpp>
+
+#include "planner/anatomy/head_directions.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double reach_mm = 3.0;
+
+glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
+  return glm::dvec3(motion * glm::dvec4(p_mm, 1.0));
+}
+
+bool lies_on(const voxel::Octree& object, const glm::dvec3& p_mm) {
+  return !voxel::combine(object.universe(),
+                         voxel::Expression(object) & voxel::Expression(voxel::Sphere{p_mm, reach_mm}))
+              .is_empty();
+}
+
+Json point_json(const glm::dvec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+/// The displacement along the head's directions, and in words.
+Json displacement_json(const glm::dvec3& by_mm, const glm::dmat3& lps_from_head) {
+  const Displacement along = displacement_of(by_mm, lps_from_head);
+  return {{"forward_mm", along.forward_mm},
+          {"left_mm", along.left_mm},
+          {"up_mm", along.up_mm},
+          {"words", in_words(along)}};
+}
+
+Json movement_json(const Object& object, const Objects& objects, const std::vector<NamedPoint>& landmarks) {
+  const glm::dmat3& head = objects.lps_from_head;
+  const glm::dmat4& motion = object.moved->motion;
+  const Object& still = objects.at(object.moved->object);
+  const glm::dmat4 before = moved_since_made(objects, still.id);
+  const Turns turns = turns_of(glm::dmat3(motion), head);
+  Json json{{"object", object.id},      {"from", still.id},           {"pitch_deg", turns.pitch_deg},
+            {"yaw_deg", turns.yaw_deg}, {"roll_deg", turns.roll_deg}, {"words", in_words(turns)},
+            {"centroid", nullptr},      {"landmarks", Json::array()}};
+  if (const std::optional<glm::dvec3>& centre = still.voxel.measures.centroid_mm) {
+    json["centroid"] = displacement_json(carried(motion, *centre) - *centre, head);
+    json["words"] = json["centroid"]["words"].get<std::string>() + "; " + in_words(turns);
+  }
+  for (const NamedPoint& landmark : landmarks) {
+    const glm::dvec3 from_mm = carried(before, landmark.p_mm), to_mm = carried(motion, from_mm);
+    if (!lies_on(still.voxel.octree, from_mm)) continue;
+    Json row{{"name", landmark.name}};
+    row.update(displacement_json(to_mm - from_mm, head));
+    row["to_mm"] = point_json(to_mm);
+    if (still.moved) row["since_scan"] = displacement_json(to_mm - landmark.p_mm, head);
+    json["landmarks"].push_back(std::move(row));
+  }
+  json.update(object.moved->details);
+  return json;
+}
+
+}  // namespace
+
+Json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
+  Json all = Json::array();
+  for (const Object& object : objects)
+    if (object.moved) all.push_back(movement_json(object, objects, landmarks));
+  return all;
+}
+
+}  // namespace octotomy::planner

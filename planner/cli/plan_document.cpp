@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/plan_document.h"
+
+#include "planner/file/file_kind.h"
+#include "planner/file/output_path.h"
+#include "planner/plan/difference.h"
+#include "planner/plan/history.h"
+#include "planner/plan/merge.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Paths {
+  fs::path base, a, b, out;
+};
+
+void add_plan(CLI::App& verb, const std::string& name, fs::path& path, const std::string& says) {
+  verb.add_option(name, path, says)->required()->check(CLI::ExistingFile);
+}
+
+int diff(const Program& program, const Paths& paths) {
+  const PlanDifference found = difference(read_plan(paths.a), read_plan(paths.b));
+  Json json = answer({});
+  json["a"] = paths.a.string();
+  json["b"] = paths.b.string();
+  json.update(to_json(found));
+  program.say(json, text_of(found));
+  return done;
+}
+
+int merge_plans(const Program& program, const Paths& paths) {
+  need_folder_of(paths.out);
+  const Merged merged = merge(read_plan(paths.base), read_plan(paths.a), read_plan(paths.b));
+  Json json = answer({});
+  json["path"] = merged.conflicts.empty() ? Json(paths.out.string()) : Json(nullptr);
+  json["conflicts"] = Json::array();
+  std::string conflicts;
+  for (const MergeConflict& conflict : merged.conflicts) {
+    json["conflicts"].push_back({{"step", conflict.step.empty() ? Json(nullptr) : Json(conflict.step)},
+                                 {"field", conflict.field.empty() ? Json(nullptr) : Json(conflict.field)},
+                                 {"base", conflict.base},
+                                 {"a", conflict.a},
+                                 {"b", conflict.b}});
+    conflicts += (conflicts.empty() ? "" : "; ") + conflict.text();
+  }
+  if (!merged.conflicts.empty()) {
+    if (program.json) program.say(json, "");
+    warn("nothing was written, as both plans changed the same: " + conflicts +
+         "; make one of them agree and merge again");
+    return bad_input;
+  }
+  write_whole(paths.out, merged.text);
+  const PlanDifference from_base = difference(read_plan(paths.base), read_plan(paths.out));
+  json["changes"] = to_json(from_base);
+  program.say(json, "written: " + paths.out.string() + "\n" + text_of(from_base));
+  return done;
+}
+
+struct HistoryText {
+  fs::path plan;
+  bool undo = false, redo = false;
+  std::string go_to, branch, name;
+  int most = 20;
+};
+
+void show_history(const Program& program, PlanHistory& history, const HistoryText& text) {
+  Json json = answer({});
+  json["path"] = PlanHistory::path_of(text.plan).string();
+  json["current"] = history.current();
+  json["branch"] = history.branch();
+  json["count"] = history.edit_count();
+  json["branches"] = Json::array();
+  for (const auto& [name, tip] : history.branches())
+    json["branches"].push_back({{"name", name}, {"tip", tip}});
+  json["edits"] = Json::array();
+  std::string shown =
+      "branch " + history.branch() + ", " + std::to_string(history.edit_count()) + " states\n";
+  for (const PlanEdit& edit : history.newest(text.most)) {
+    json["edits"].push_back({{"id", edit.id},
+                             {"parent", edit.parent ? Json(*edit.parent) : Json(nullptr)},
+                             {"what", edit.what},
+                             {"made_at", edit.made_at},
+                             {"names", edit.names}});
+    shown += (edit.id == history.current() ? "> " : "  ") + std::to_string(edit.id) + "  " + edit.made_at +
+             "  " + edit.what;
+    for (const std::string& name : edit.names) shown += "  [" + name + "]";
+    shown += "\n";
+  }
+  program.say(json, shown);
+}
+
+int history_of(const Program& program, const HistoryText& text) {
+  if (int{text.undo} + int{text.redo} + int{!text.go_to.empty()} > 1)
+    throw std::runtime_error("--undo, --redo and --go-to each choose a state: give one of them");
+  read_plan(text.plan);
+  PlanHistory history(text.plan);
+  if (text.undo && !history.undo())
+    throw std::runtime_error("this is the first state: there is none to undo");
+  if (text.redo && !history.redo())
+    throw std::runtime_error("no state was undone on branch '" + history.branch() + "'");
+  if (!text.go_to.empty()) history.go_to(text.go_to);
+  if (!text.branch.empty()) history.begin_branch(text.branch);
+  if (!text.name.empty()) history.name_version(text.name);
+  show_history(program, history, text);
+  return done;
+}
+
+void add_history(Program& program) {
+  const auto text = std::make_shared<HistoryText>();
+  CLI::App& verb = program.verb(
+      "plan history",
+      "The states of a plan: each call records what an editor changed, and may go to another one",
+      "octotomy plan history my.plan.json --name approved\n  octotomy plan history my.plan.json --undo",
+      [&program, text] { return history_of(program, *text); });
+  add_plan(verb, "plan", text->plan, "A .plan.json; its history is the file beside it that ends in .history");
+  verb.add_flag("--undo", text->undo, "Make the state before this one current, in the file, too");
+  verb.add_flag("--redo", text->redo, "Make the state current that was undone");
+  verb.add_option("--go-to", text->go_to, "Make a state current: its number, a version or a branch")
+      ->type_name("STATE");
+  verb.add_option("--branch", text->branch, "Begin a branch here")->type_name("NAME");
+  verb.add_option("--name", text->name, "Name the current state")->type_name("NAME");
+  verb.add_option("--most", text->most, "States that are listed, newest first; default 20")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+}
+
+}  // namespace
+
+void add_plan_document(Program& program) {
+  program.app.add_subcommand("plan", "Compares, merges and remembers plans")->require_subcommand(1);
+  const auto paths = std::make_shared<Paths>();
+  CLI::App& compared =
+      program.verb("plan diff", "What differs between two plans, step by step and field by field",
+                   "octotomy plan diff before.plan.json after.plan.json",
+                   [&program, paths] { return diff(program, *paths); });
+  add_plan(compared, "a", paths->a, "A .plan.json");
+  add_plan(compared, "b", paths->b, "Another .plan.json");
+  CLI::App& merged = program.verb(
+      "plan merge",
+      "Merges what two plans changed of one that both come from; conflicts are named, exit status 2",
+      "octotomy plan merge base.plan.json mine.plan.json theirs.plan.json -o merged.plan.json",
+      [&program, paths] { return merge_plans(program, *paths); });
+  add_plan(merged, "base", paths->base, "The .plan.json that both come from");
+  add_plan(merged, "a", paths->a, "A .plan.json that was made of it");
+  add_plan(merged, "b", paths->b, "Another .plan.json that was made of it");
+  merged.add_option("-o,--out", paths->out, "The merged .plan.json; relative paths in it stay as they are")
+      ->required();
+  add_history(program);
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/cli/procedure_verb.h"
+
+#include "planner/cli/numbers.h"
+#include "planner/cli/scan_in.h"
+#include "planner/file/file_kind.h"
+#include "planner/file/landmarks_file.h"
+#include "planner/file/output_path.h"
+#include "planner/procedure/procedure.h"
+#include "planner/table/number_format.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ProcedureText {
+  std::string name;
+  fs::path scan, landmarks, out;
+  std::vector<std::string> values;
+  double voxel_mm = 1.0;
+};
+
+/// What a procedure takes, or the names of all.
+int explain(const Program& program, const ProcedureText& text) {
+  Json json = answer({});
+  if (text.name.empty()) {
+    std::vector<std::pair<std::string, std::string>> rows;
+    json["procedures"] = Json::array();
+    for (const std::string& name : procedures()) {
+      const Procedure procedure = read_procedure(name);
+      json["procedures"].push_back({{"name", name}, {"says", procedure.says}});
+      rows.emplace_back(name, procedure.says);
+    }
+    program.say(json, lines(rows));
+    return done;
+  }
+  const Procedure procedure = read_procedure(text.name);
+  json["name"] = procedure.name;
+  json["says"] = procedure.says;
+  json["landmarks"] = json["values"] = Json::array();
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const ProcedureLandmark& landmark : procedure.landmarks) {
+    json["landmarks"].push_back({{"name", landmark.name}, {"says", landmark.says}});
+    rows.emplace_back(landmark.name, landmark.says);
+  }
+  for (const ProcedureValue& value : procedure.values) {
+    json["values"].push_back({{"name", value.name},
+                              {"says", value.says},
+                              {"preset", value.preset},
+                              {"least", value.least},
+                              {"most", value.most}});
+    rows.emplace_back("--set " + value.name + "=" + plain(value.preset), value.says);
+  }
+  program.say(json, procedure.says + "\n" + lines(rows));
+  return done;
+}
+
+ProcedureInput input_of(const ProcedureText& text) {
+  if (text.scan.empty() || text.landmarks.empty() || text.out.empty())
+    throw std::runtime_error(
+        "to plan it, give --scan, --landmarks and -o; without all three it is explained");
+  need_folder_of(text.out);
+  ProcedureInput input;
+  input.scan = {{"path", fs::absolute(text.scan).lexically_normal().string()}};
+  input.landmarks = read_landmarks(text.landmarks);
+  input.voxel_mm = text.voxel_mm;
+  input.folder = fs::absolute(text.out).parent_path();
+  for (const std::string& value : text.values) {
+    const auto equals = value.find('=');
+    char* end = nullptr;
+    const double number = equals == std::string::npos ? 0.0 : std::strtod(value.c_str() + equals + 1, &end);
+    if (equals == std::string::npos || *end != '\0' || end == value.c_str() + equals + 1)
+      throw std::runtime_error("--set '" + value + "' must be NAME=NUMBER, for example forward_mm=6");
+    input.values[value.substr(0, equals)] = number;
+  }
+  return input;
+}
+
+int procedure(const Program& program, const ProcedureText& text) {
+  if (text.scan.empty() && text.landmarks.empty() && text.out.empty()) return explain(program, text);
+  if (text.name.empty()) throw std::runtime_error("name the procedure: octotomy procedure lists them");
+  const Json plan = plan_of(read_procedure(text.name), input_of(text));
+  write_whole(text.out, plan.dump(2) + "\n");
+  Json json = answer({});
+  json["path"] = text.out.string();
+  json["plan"] = plan;
+  program.say(json, "written: " + text.out.string() + "; octotomy run " + text.out.string() + " -o FOLDER\n");
+  return done;
+}
+
+}  // namespace
+
+void add_procedure(Program& program) {
+  const auto text = std::make_shared<ProcedureText>();
+  CLI::App& verb = program.verb(
+      "procedure",
+      "Plans an operation by its name, from landmarks and a few values; alone it lists what there is",
+      "octotomy procedure le_fort_i\n"
+      "  octotomy procedure le_fort_i --scan head.nrrd --landmarks marks.mrk.json --set forward_mm=6 "
+      "--set up_mm=2 -o my.plan.json",
+      [&program, text] { return procedure(program, *text); });
+  verb.add_option("name", text->name, "The procedure, or a .json file of one");
+  verb.add_option("--scan", text->scan, "The scan")->check(scan_path());
+  verb.add_option("--landmarks", text->landmarks, "Named points: JSON, or 3D Slicer's .mrk.json")
+      ->check(CLI::ExistingFile);
+  verb.add_option("--set", text->values, "NAME=NUMBER, repeated: a value of the procedure")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("NAME=NUMBER");
+  verb.add_option("--voxel", text->voxel_mm, "Edge of the plan's voxels, mm; default 1")->check(above_zero());
+  verb.add_option("-o,--out", text->out, "The .plan.json, which stands alone and may be edited");
+}
+
+}  // namespace octotomy::planner::cli

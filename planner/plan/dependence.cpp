@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/dependence.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "planner/plan/sha256.h"
+#include "planner/table/field_json.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The objects and made scans that a step uses, by their steps.
+std::vector<std::string> inputs_of(const Step& step) {
+  std::vector<std::string> inputs = objects_used(step.action);
+  const std::vector<std::string> scans = scans_used(step.action);
+  inputs.insert(inputs.end(), scans.begin(), scans.end());
+  return inputs;
+}
+
+/// The files that a step reads, as its fields name them.
+std::vector<std::filesystem::path> files_read(const Step& step) {
+  std::vector<std::filesystem::path> files;
+  if (step.action.operation().makes == Makes::File) return files;
+  for (const Field& field : step.action.operation().fields) {
+    const Slot slot = field.slot(const_cast<void*>(step.action.value()));
+    if (const auto* path = std::get_if<std::filesystem::path*>(&slot); path != nullptr && !(*path)->empty())
+      files.push_back(**path);
+    if (const auto* list = std::get_if<std::vector<std::string>*>(&slot); list != nullptr && field.is_input)
+      files.insert(files.end(), (*list)->begin(), (*list)->end());
+  }
+  return files;
+}
+
+Json numbers(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string>& ids) {
+  std::set<std::string> needed(ids.begin(), ids.end());
+  for (const std::string& id : ids)
+    if (std::none_of(plan.steps.begin(), plan.steps.end(), [&](const Step& step) { return step.id == id; }))
+      throw std::invalid_argument("the plan has no step called '" + id + "'");
+  // Steps use earlier ones only: one pass from the last to the first finds all.
+  for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
+    if (needed.contains(step->id))
+      for (const std::string& input : inputs_of(*step))
+        if (!plan.scans.contains(input)) needed.insert(input);
+  return needed;
+}
+
+std::set<std::string> needing_meshes(const Plan& plan, const std::set<std::string>& steps) {
+  std::set<std::string> needing;
+  for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step) {
+    if (!steps.contains(step->id)) continue;
+    const Operation& operation = step->action.operation();
+    const bool by_mesh_alone = operation.makes == Makes::Object && !operation.voxel;
+    if (by_mesh_alone) needing.insert(step->id);
+    if (by_mesh_alone || operation.settle || needing.contains(step->id))
+      for (const std::string& input : objects_used(step->action)) needing.insert(input);
+  }
+  return needing;
+}
+
+std::map<std::string, std::string> step_keys(
+    const Plan& plan, const std::string& common,
+    const std::function<std::string(const std::string& scan)>& scan_key) {
+  std::map<std::string, std::string> keys;
+  for (const Step& step : plan.steps) {
+    const Operation& operation = step.action.operation();
+    Json says{{"octotomy", OCTOTOMY_VERSION}, {"common", common}, {"id", step.id}, {"do", operation.name}};
+    says["fields"] = print_fields(operation.fields, const_cast<void*>(step.action.value()));
+    for (const std::string& input : inputs_of(step)) {
+      const auto made = keys.find(input);
+      says["inputs"].push_back({input, made != keys.end() ? made->second : scan_key(input)});
+    }
+    for (const Mark& mark : marks_used(step.action)) says["marks"].push_back(numbers(mark.p_mm));
+    if (operation.is_of_head && plan.lps_from_head)
+      for (int axis = 0; axis < 3; ++axis) says["head"].push_back(numbers((*plan.lps_from_head)[axis]));
+    for (const std::filesystem::path& file : files_read(step)) {
+      std::error_code none;
+      if (std::filesystem::exists(plan.folder / file, none))
+        says["files"].push_back(sha256_of_path(plan.folder / file));
+    }
+    keys.emplace(step.id, sha256_of(says.dump()));
+  }
+  return keys;
+}
+
+}  // namespace octotomy::planner

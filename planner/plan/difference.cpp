@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/difference.h"
+
+#include <algorithm>
+
+#include "planner/table/field_json.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string at(const std::string& place, const std::string& key) {
+  return place.empty() ? key : place + ", " + key;
+}
+
+void compare(const Json& from, const Json& to, const std::string& place, std::vector<FieldChange>& changes) {
+  if (from == to) return;
+  if (from.is_object() && to.is_object()) {
+    for (const auto& [key, value] : from.items())
+      compare(value, to.contains(key) ? to[key] : Json(), at(place, key), changes);
+    for (const auto& [key, value] : to.items())
+      if (!from.contains(key)) compare(Json(), value, at(place, key), changes);
+    return;
+  }
+  const bool records = from.is_array() && to.is_array() && from.size() == to.size() && !from.empty() &&
+                       from.front().is_object();
+  if (!records) return changes.push_back({place, from, to});
+  for (std::size_t i = 0; i < from.size(); ++i)
+    compare(from[i], to[i], place + "[" + std::to_string(i) + "]", changes);
+}
+
+/// What a plan says beside its steps.
+Json document_of(const Plan& plan) {
+  Json document = Json::parse(plan.text);
+  document.erase("steps");
+  for (auto& [name, scan] : document["scans"].items())
+    for (auto entry = scan.begin(); entry != scan.end();)
+      entry = entry->is_null() ? scan.erase(entry) : entry + 1;
+  return document;
+}
+
+Json fields_of(const Step& step) {
+  Json fields{{"do", verb(step)}};
+  fields.update(print_fields(step.action.operation().fields, const_cast<void*>(step.action.value())));
+  return fields;
+}
+
+const Step* find(const Plan& plan, const std::string& id) {
+  for (const Step& step : plan.steps)
+    if (step.id == id) return &step;
+  return nullptr;
+}
+
+std::vector<std::string> ids_in_both(const Plan& plan, const Plan& other) {
+  std::vector<std::string> ids;
+  for (const Step& step : plan.steps)
+    if (find(other, step.id) != nullptr) ids.push_back(step.id);
+  return ids;
+}
+
+}  // namespace
+
+PlanDifference difference(const Plan& from, const Plan& to) {
+  PlanDifference found;
+  compare(document_of(from), document_of(to), "", found.document);
+  for (const Step& step : from.steps) {
+    const Step* same = find(to, step.id);
+    if (same == nullptr) {
+      found.removed.push_back(step.id);
+      continue;
+    }
+    StepChange change{step.id, {}};
+    compare(fields_of(step), fields_of(*same), "", change.fields);
+    if (!change.fields.empty()) found.changed.push_back(std::move(change));
+  }
+  for (const Step& step : to.steps)
+    if (find(from, step.id) == nullptr) found.added.push_back(step.id);
+  const std::vector<std::string> before = ids_in_both(from, to), after = ids_in_both(to, from);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const auto place = std::find(before.begin(), before.end(), after[i]);
+    const std::string earlier = place == before.begin() ? "" : *(place - 1);
+    if (earlier != (i == 0 ? "" : after[i - 1])) found.reordered.push_back(after[i]);
+  }
+  return found;
+}
+
+Json to_json(const PlanDifference& difference) {
+  const auto fields = [](const std::vector<FieldChange>& changes) {
+    Json list = Json::array();
+    for (const FieldChange& change : changes)
+      list.push_back({{"field", change.field}, {"from", change.from}, {"to", change.to}});
+    return list;
+  };
+  Json changed = Json::array();
+  for (const StepChange& change : difference.changed)
+    changed.push_back({{"id", change.id}, {"fields", fields(change.fields)}});
+  return {{"same", difference.is_empty()},
+          {"document", fields(difference.document)},
+          {"added", difference.added},
+          {"removed", difference.removed},
+          {"changed", changed},
+          {"reordered", difference.reordered}};
+}
+
+std::string text_of(const PlanDifference& difference) {
+  std::string text;
+  const auto changes = [&](const std::string& of, const std::vector<FieldChange>& fields) {
+    for (const FieldChange& change : fields)
+      text += "~ " + of + change.field + ": " + change.from.dump() + " -> " + change.to.dump() + "\n";
+  };
+  changes("", difference.document);
+  for (const std::string& id : difference.removed) text += "- step '" + id + "'\n";
+  for (const StepChange& change : difference.changed) changes("step '" + change.id + "', ", change.fields);
+  for (const std::string& id : difference.added) text += "+ step '" + id + "'\n";
+  for (const std::string& id : difference.reordered) text += "~ step '" + id + "' has another place\n";
+  return text.empty() ? "the plans are the same\n" : text;
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// A text is kept as what it changed of its parent's: lengths of the beginning and the end that stay, and the
+// bytes between; every 64th whole, so that none takes more than 64 reads. A change of state is
+//   1 one transaction of the database: the edit and the current state; 2 the plan's file, written beside and
+//   renamed; 3 a note of the sum of what step 2 wrote.
+// Whoever opens it compares the file's sum with that note: the same and not the current state's means that
+// step 2 was not reached, and is done then; another one means that another program wrote the file.
+#include "planner/plan/history.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sqlite3.h>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "planner/plan/sha256.h"
+#include "planner/table/nearest_name.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int layout = 1;
+constexpr int whole_every = 64;
+constexpr int busy_ms = 5000;
+
+constexpr const char* tables = R"(
+  CREATE TABLE edits (id INTEGER PRIMARY KEY, parent INTEGER REFERENCES edits, what TEXT NOT NULL,
+    made_at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now')), sum TEXT NOT NULL,
+    depth INTEGER NOT NULL, head INTEGER NOT NULL, tail INTEGER NOT NULL, middle BLOB NOT NULL);
+  CREATE TABLE branches (name TEXT PRIMARY KEY, tip INTEGER NOT NULL REFERENCES edits) WITHOUT ROWID;
+  CREATE TABLE versions (name TEXT PRIMARY KEY, edit INTEGER NOT NULL REFERENCES edits) WITHOUT ROWID;
+  CREATE TABLE state (current INTEGER NOT NULL, branch TEXT NOT NULL, written TEXT NOT NULL);
+)";
+
+[[noreturn]] void fail(sqlite3* database, const fs::path& path) {
+  const int code = sqlite3_errcode(database) & 0xff;
+  const std::string what = path.string() + ": " + sqlite3_errmsg(database);
+  if (code == SQLITE_FULL || code == SQLITE_IOERR || code == SQLITE_NOMEM)
+    throw voxel::Error(voxel::ErrorCode::Resource, what);
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
+    throw std::runtime_error(path.string() +
+                             ": is no history of a plan: move it away, and a new one is begun");
+  if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+    throw std::runtime_error(path.string() + ": another program is writing this plan's history: try again");
+  throw std::runtime_error(what);
+}
+
+struct Bytes {
+  std::string bytes;
+};
+
+/// A statement with its values; steps through rows.
+class Query {
+ public:
+  Query(sqlite3* database, const fs::path& path, const char* text) : database_(database), path_(path) {
+    if (sqlite3_prepare_v2(database, text, -1, &statement_, nullptr) != SQLITE_OK) fail(database, path);
+  }
+  ~Query() { sqlite3_finalize(statement_); }
+  Query(const Query&) = delete;
+  Query& operator=(const Query&) = delete;
+  Query(Query&& other) noexcept
+      : database_(other.database_),
+        path_(other.path_),
+        statement_(std::exchange(other.statement_, nullptr)),
+        bound_(other.bound_) {}
+
+  /// Binds the next value.
+  void with(std::int64_t value) { sqlite3_bind_int64(statement_, ++bound_, value); }
+  void with(const std::string& text) {
+    sqlite3_bind_text(statement_, ++bound_, text.data(), static_cast<int>(text.size()), SQLITE_TRANSIENT);
+  }
+  void with(const std::optional<std::int64_t>& value) {
+    if (value) return with(*value);
+    sqlite3_bind_null(statement_, ++bound_);
+  }
+  void with(const Bytes& bytes) {
+    sqlite3_bind_blob(statement_, ++bound_, bytes.bytes.data(), static_cast<int>(bytes.bytes.size()),
+                      SQLITE_TRANSIENT);
+  }
+  /// Whether there is one more row.
+  bool next() {
+    const int code = sqlite3_step(statement_);
+    if (code == SQLITE_ROW) return true;
+    if (code != SQLITE_DONE) fail(database_, path_);
+    return false;
+  }
+  std::int64_t number(int column) { return sqlite3_column_int64(statement_, column); }
+  bool is_null(int column) { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
+  std::string text(int column) {
+    const void* bytes = sqlite3_column_blob(statement_, column);
+    const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
+    return bytes == nullptr ? "" : std::string(static_cast<const char*>(bytes), size);
+  }
+
+ private:
+  sqlite3* database_;
+  const fs::path& path_;
+  sqlite3_stmt* statement_ = nullptr;
+  int bound_ = 0;
+};
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error(path.string() + ": cannot be read");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+class PlanHistory::Database {
+ public:
+  explicit Database(const fs::path& plan) : plan_(fs::absolute(plan)), path_(path_of(plan_)) {
+    const int code = sqlite3_open_v2(
+        path_.c_str(), &database_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
+    if (code != SQLITE_OK) refuse_open();
+    try {
+      sqlite3_busy_timeout(database_, busy_ms);
+      run("PRAGMA journal_mode = WAL");
+      run("PRAGMA synchronous = FULL");
+      open();
+    } catch (...) {
+      sqlite3_close(database_);
+      throw;
+    }
+  }
+  ~Database() { sqlite3_close(database_); }
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  std::int64_t record(const std::string& text, const std::string& what) {
+    if (sha256_of(text) == sum_of(current_)) return current_;
+    change([&] {
+      add(text, what, current_);
+      query("UPDATE branches SET tip = ? WHERE name = ?", current_, branch_).next();
+    });
+    return current_;
+  }
+  bool undo() {
+    const std::optional<std::int64_t> parent = parent_of(current_);
+    if (parent) change([&] { current_ = *parent; });
+    return parent.has_value();
+  }
+  bool redo() {
+    // The way from the branch's end down to the current state; its last step up is the one that was undone.
+    std::optional<std::int64_t> at = tip_of(branch_), above;
+    while (at && *at > current_) above = at, at = parent_of(*at);
+    if (!at || *at != current_ || !above) return false;
+    change([&] { current_ = *above; });
+    return true;
+  }
+  void go_to(const std::string& where) {
+    const std::vector<std::pair<std::string, std::int64_t>> ends = branches();
+    for (const auto& [name, tip] : ends)
+      if (name == where) return change([&, to = tip] { branch_ = where, current_ = to; });
+    Query version = query("SELECT edit FROM versions WHERE name = ?", where);
+    std::optional<std::int64_t> to;
+    if (version.next()) to = version.number(0);
+    const bool is_number =
+        !where.empty() && where.size() < 19 &&
+        std::all_of(where.begin(), where.end(), [](unsigned char c) { return std::isdigit(c); });
+    if (!to && is_number && has_edit(std::stoll(where))) to = std::stoll(where);
+    if (!to) {
+      std::vector<std::string> known;
+      for (const auto& [name, tip] : ends) known.push_back(name);
+      Query names = query("SELECT name FROM versions ORDER BY name");
+      while (names.next()) known.push_back(names.text(0));
+      throw std::runtime_error("the history has no state, version or branch '" + where + "'" +
+                               suggestion(where, known));
+    }
+    change([&] { current_ = *to; });
+  }
+  void begin_branch(const std::string& name) {
+    need_new_name(name);
+    change([&] {
+      query("INSERT INTO branches VALUES (?, ?)", name, current_).next();
+      branch_ = name;
+    });
+  }
+  void name_version(const std::string& name) {
+    need_new_name(name);
+    change([&] { query("INSERT INTO versions VALUES (?, ?)", name, current_).next(); });
+  }
+
+  std::int64_t current() const { return current_; }
+  const std::string& branch() const { return branch_; }
+  std::string text_of(std::int64_t edit) {
+    std::vector<std::tuple<std::size_t, std::size_t, std::string>> changes;
+    for (std::optional<std::int64_t> at = edit; at;) {
+      Query row = query("SELECT parent, depth, head, tail, middle FROM edits WHERE id = ?", *at);
+      if (!row.next()) throw std::runtime_error("the history has no state " + std::to_string(edit));
+      changes.emplace_back(static_cast<std::size_t>(row.number(2)), static_cast<std::size_t>(row.number(3)),
+                           row.text(4));
+      if (row.number(1) == 0) break;
+      at = row.number(0);
+    }
+    std::string text;
+    for (auto change = changes.rbegin(); change != changes.rend(); ++change) {
+      const auto& [head, tail, middle] = *change;
+      text = text.substr(0, head) + middle + text.substr(text.size() - tail);
+    }
+    return text;
+  }
+  std::int64_t edit_count() {
+    Query count = query("SELECT max(id) FROM edits");
+    count.next();
+    return count.number(0);
+  }
+  std::vector<PlanEdit> newest(std::int64_t most) {
+    std::vector<PlanEdit> edits;
+    Query row = query("SELECT id, parent, what, made_at FROM edits ORDER BY id DESC LIMIT ?", most);
+    while (row.next()) {
+      edits.push_back({row.number(0),
+                       row.is_null(1) ? std::nullopt : std::optional(row.number(1)),
+                       row.text(2),
+                       row.text(3),
+                       {}});
+      Query names = query("SELECT name FROM versions WHERE edit = ? ORDER BY name", edits.back().id);
+      while (names.next()) edits.back().names.push_back(names.text(0));
+    }
+    return edits;
+  }
+  std::vector<std::pair<std::string, std::int64_t>> branches() {
+    std::vector<std::pair<std::string, std::int64_t>> found;
+    Query row = query("SELECT name, tip FROM branches ORDER BY name");
+    while (row.next()) found.emplace_back(row.text(0), row.number(1));
+    return found;
+  }
+
+ private:
+  [[noreturn]] void refuse_open() {
+    const std::string why = database_ == nullptr ? "out of memory" : sqlite3_errmsg(database_);
+    sqlite3_close(database_);
+    throw std::runtime_error(path_.string() + ": cannot be opened as the plan's history: " + why);
+  }
+
+  template <typename... Values>
+  Query query(const char* text, const Values&... values) {
+    Query made(database_, path_, text);
+    (made.with(values), ...);
+    return made;
+  }
+  void run(const char* text) {
+    if (sqlite3_exec(database_, text, nullptr, nullptr, nullptr) != SQLITE_OK) fail(database_, path_);
+  }
+
+  /// Runs a function while no other program writes: all of it, or nothing, is in the database afterwards.
+  template <typename Act>
+  void locked(const Act& act) {
+    run("BEGIN IMMEDIATE");
+    try {
+      act();
+      run("COMMIT");
+    } catch (...) {
+      sqlite3_exec(database_, "ROLLBACK", nullptr, nullptr, nullptr);
+      throw;
+    }
+  }
+
+  void open() {
+    locked([&] {
+      const std::string text = read_text(plan_), sum = sha256_of(text);
+      const int found = version();
+      if (found > layout)
+        throw std::runtime_error(path_.string() + ": a newer program wrote this history: install that");
+      if (found == 0) begin(text);
+      read_state();
+      if (sum == sum_of(current_)) return;
+      if (sum == written_) return write_file();
+      add(text, "changed outside", current_);
+      written_ = sum;
+      query("UPDATE branches SET tip = ? WHERE name = ?", current_, branch_).next();
+      query("UPDATE state SET current = ?, written = ?", current_, written_).next();
+    });
+  }
+  int version() {
+    Query row = query("PRAGMA user_version");
+    row.next();
+    return static_cast<int>(row.number(0));
+  }
+  void begin(const std::string& text) {
+    run(tables);
+    run("PRAGMA user_version = 1");
+    add(text, "begun", std::nullopt);
+    query("INSERT INTO branches VALUES ('main', ?)", current_).next();
+    query("INSERT INTO state VALUES (?, 'main', ?)", current_, sha256_of(text)).next();
+  }
+  void read_state() {
+    Query row = query("SELECT current, branch, written FROM state");
+    if (!row.next()) throw std::runtime_error(path_.string() + ": the history has no state: move it away");
+    current_ = row.number(0);
+    branch_ = row.text(1);
+    written_ = row.text(2);
+  }
+
+  /// Runs a change of state as steps 1 to 3. Throws where another writer came first.
+  template <typename Change>
+  void change(const Change& make) {
+    const std::int64_t current = current_;
+    const std::string branch = branch_;
+    try {
+      locked([&] {
+        need_no_other_writer();
+        make();
+        query("UPDATE state SET current = ?, branch = ?", current_, branch_).next();
+      });
+    } catch (...) {
+      current_ = current;
+      branch_ = branch;
+      throw;
+    }
+    locked([&] { write_file(); });
+  }
+  void need_no_other_writer() {
+    Query state = query("SELECT current, branch, written FROM state");
+    state.next();
+    const std::string again = ": open it again and repeat the change";
+    if (state.number(0) != current_ || state.text(1) != branch_)
+      throw std::runtime_error(plan_.string() + ": another program changed this plan, which is now at edit " +
+                               std::to_string(state.number(0)) + again);
+    const std::string sum = sha256_of(read_text(plan_));
+    if (sum != state.text(2) && sum != sum_of(current_))
+      throw std::runtime_error(plan_.string() + ": another program wrote this file" + again);
+  }
+  /// Precondition: locked, so that one program at a time uses the name beside the file.
+  void write_file() {
+    const std::string text = text_of(current_), sum = sha256_of(text);
+    if (sum == written_ && sha256_of(read_text(plan_)) == sum) return;
+    const fs::path beside = plan_.string() + ".writing";
+    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+    file << text;
+    file.close();
+    std::error_code error;
+    if (file) fs::rename(beside, plan_, error);
+    if (!file || error)
+      throw voxel::Error(voxel::ErrorCode::Resource, plan_.string() + ": cannot be written");
+    written_ = sum;
+    query("UPDATE state SET written = ?", written_).next();
+  }
+
+  /// Adds an edit and makes it current.
+  void add(const std::string& text, const std::string& what, std::optional<std::int64_t> parent) {
+    std::int64_t depth = 0;
+    std::size_t head = 0, tail = 0;
+    if (parent) {
+      Query row = query("SELECT depth FROM edits WHERE id = ?", *parent);
+      row.next();
+      depth = (row.number(0) + 1) % whole_every;
+    }
+    if (depth > 0) {
+      const std::string old = text_of(*parent);
+      const std::size_t least = std::min(old.size(), text.size());
+      while (head < least && old[head] == text[head]) ++head;
+      while (tail < least - head && old[old.size() - 1 - tail] == text[text.size() - 1 - tail]) ++tail;
+    }
+    query("INSERT INTO edits (parent, what, sum, depth, head, tail, middle) VALUES (?, ?, ?, ?, ?, ?, ?)",
+          parent, what, sha256_of(text), depth, static_cast<std::int64_t>(head),
+          static_cast<std::int64_t>(tail), Bytes{text.substr(head, text.size() - tail - head)})
+        .next();
+    current_ = sqlite3_last_insert_rowid(database_);
+  }
+  std::optional<std::int64_t> parent_of(std::int64_t edit) {
+    Query row = query("SELECT parent FROM edits WHERE id = ?", edit);
+    return row.next() && !row.is_null(0) ? std::optional(row.number(0)) : std::nullopt;
+  }
+  std::optional<std::int64_t> tip_of(const std::string& branch) {
+    Query row = query("SELECT tip FROM branches WHERE name = ?", branch);
+    return row.next() ? std::optional(row.number(0)) : std::nullopt;
+  }
+  std::string sum_of(std::int64_t edit) {
+    Query row = query("SELECT sum FROM edits WHERE id = ?", edit);
+    return row.next() ? row.text(0) : "";
+  }
+  bool has_edit(std::int64_t edit) { return query("SELECT 1 FROM edits WHERE id = ?", edit).next(); }
+  void need_new_name(const std::string& name) {
+    const bool is_taken = query("SELECT 1 FROM branches WHERE name = ?", name).next() ||
+                          query("SELECT 1 FROM versions WHERE name = ?", name).next();
+    if (is_taken) throw std::runtime_error("the name '" + name + "' is taken: choose another");
+    if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0])))
+      throw std::runtime_error("the name '" + name + "' must not begin with a digit, as states' numbers do");
+  }
+
+  fs::path plan_, path_;
+  sqlite3* database_ = nullptr;
+  std::int64_t current_ = 0;
+  std::string branch_, written_;
+};
+
+PlanHistory::PlanHistory(const fs::path& plan) : database_(std::make_unique<Database>(plan)) {}
+PlanHistory::~PlanHistory() = default;
+
+fs::path PlanHistory::path_of(const fs::path& plan) {
+  return plan.string() + ".history";
+}
+
+std::int64_t PlanHistory::record(const std::string& text, const std::string& what) {
+  return database_->record(text, what);
+}
+bool PlanHistory::undo() {
+  return database_->undo();
+}
+bool PlanHistory::redo() {
+  return database_->redo();
+}
+void PlanHistory::go_to(const std::string& where) {
+  database_->go_to(where);
+}
+void PlanHistory::begin_branch(const std::string& name) {
+  database_->begin_branch(name);
+}
+void PlanHistory::name_version(const std::string& name) {
+  database_->name_version(name);
+}
+std::int64_t PlanHistory::current() const {
+  return database_->current();
+}
+std::string PlanHistory::branch() const {
+  return database_->branch();
+}
+std::string PlanHistory::text() const {
+  return database_->text_of(database_->current());
+}
+std::string PlanHistory::text_of(std::int64_t edit) const {
+  return database_->text_of(edit);
+}
+std::int64_t PlanHistory::edit_count() const {
+  return database_->edit_count();
+}
+std::vector<PlanEdit> PlanHistory::newest(std::int64_t most) const {
+  return database_->newest(most);
+}
+std::vector<std::pair<std::string, std::int64_t>> PlanHistory::branches() const {
+  return database_->branches();
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace octotomy::planner {
+
+/// One state of a plan's text.
+struct PlanEdit {
+  std::int64_t id = 0;
+  std::optional<std::int64_t> parent;  ///< none: the first
+  std::string what;                    ///< what was done, for people
+  std::string made_at;                 ///< UTC, "2026-01-31T12:00:00Z"
+  std::vector<std::string> names;      ///< of versions
+};
+
+/// The history of a plan's file, in a database beside it: every state that was recorded, undo, redo, branches
+/// and named versions. Nothing that was recorded is ever lost. The plan's file is always the current state's
+/// text, so that other programs read it as before.
+///
+/// A process may be killed at any instant: the next one that opens the history finds every edit whose
+/// record() returned, and the plan's file is whole, as of that edit. Several processes may hold a history;
+/// one whose state is no longer the current one is refused when it writes, and reads again.
+///
+/// Members throw std::runtime_error with path and reason where the database is none or of a newer version,
+/// where another writer came first, or a name is unknown; voxel::Error, Resource, where the disk gives out.
+/// Cost: an edit stores what it changed and a sync of the disk; opening does not depend on the number of
+/// edits.
+class PlanHistory {
+ public:
+  /// Opens the history of a plan's file, or begins one with its text as the first edit. A file that was
+  /// changed since by another program becomes an edit of its own, "changed outside".
+  explicit PlanHistory(const std::filesystem::path& plan);
+  ~PlanHistory();
+  PlanHistory(const PlanHistory&) = delete;
+  PlanHistory& operator=(const PlanHistory&) = delete;
+
+  /// Where the history of a plan's file lies.
+  static std::filesystem::path path_of(const std::filesystem::path& plan);
+
+  /// Makes a text the current state, after the present one. The same text is no edit.
+  std::int64_t record(const std::string& text, const std::string& what);
+  /// The state before the current one becomes current; false where that is the first.
+  bool undo();
+  /// The state on the current branch that undo() left; false where there is none.
+  bool redo();
+  /// A state, by its number, the name of a version or of a branch, becomes current. Throws where there is
+  /// none, with the nearest name.
+  void go_to(const std::string& where);
+  /// Begins a branch at the current state, and is on it from then on. Throws where the name is taken.
+  void begin_branch(const std::string& name);
+  /// Names the current state. Throws where the name is taken.
+  void name_version(const std::string& name);
+
+  std::int64_t current() const;
+  std::string branch() const;
+  std::string text() const;  ///< of the current state
+  std::string text_of(std::int64_t edit) const;
+  std::int64_t edit_count() const;
+  std::vector<PlanEdit> newest(std::int64_t most) const;  ///< newest first
+  /// Branches and the states at their ends.
+  std::vector<std::pair<std::string, std::int64_t>> branches() const;
+
+ private:
+  class Database;
+  std::unique_ptr<Database> database_;
+};
+
+}  // namespace octotomy::planner

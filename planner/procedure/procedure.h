@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "brep/align/register_landmarks.h"
+
+namespace octotomy::planner {
+
+/// A number that is typed when a procedure is planned.
+struct ProcedureValue {
+  std::string name;  ///< ends in its unit: "forward_mm"
+  std::string says;
+  double preset = 0.0;
+  double least = 0.0, most = 0.0;
+};
+struct ProcedureLandmark {
+  std::string name;
+  std::string says;  ///< its definition
+};
+
+/// An operation by its landmarks and typed values; its steps hold formulas.
+struct Procedure {
+  std::string name;
+  std::string says;
+  std::vector<ProcedureLandmark> landmarks;
+  std::vector<ProcedureValue> values;
+  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+};
+
+/// The most values that a procedure may ask for.
+inline constexpr std::size_t most_values = 12;
+
+/// Reads a procedure's JSON. Throws std::runtime_error with the place in it.
+Procedure parse_procedure(const std::string& json);
+/// A procedure of the program by its name, or one in a file that ends in .json. Throws std::runtime_error
+/// with the nearest name where there is none.
+Procedure read_procedure(const std::string& name_or_path);
+/// Names of the program's procedures.
+std::vector<std::string> procedures();
+
+struct ProcedureInput {
+  nlohmann::ordered_json scan;  ///< as a plan's entry: {"path": ...}
+  std::vector<brep::Landmark> landmarks;
+  std::map<std::string, double> values;  ///< those that are not the preset
+  double voxel_mm = 1.0;
+  std::filesystem::path folder;  ///< of the plan
+};
+
+/// The plan of a procedure on one head, as JSON that stands alone. Where the landmarks hold both porions and
+/// an orbitale, the head is held by the Frankfort plane, and along nasion and basion where they are there.
+/// Throws std::runtime_error where a landmark is missing, with its definition; a value is unknown or out of
+/// its range; a formula or the plan that comes of it is refused, as where landmarks of left and right are
+/// interchanged.
+nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
+
+}  // namespace octotomy::planner

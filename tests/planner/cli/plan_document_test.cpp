@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The verbs of a plan as a document: plan diff, plan merge, plan history, preview and procedure.
+#include "tests/file_bytes.h"
+#include "tests/planner/cli/command_line.h"
+
+namespace octotomy::planner {
+namespace {
+
+class PlanDocument : public tests::CommandLine {
+ protected:
+  std::string plan(const std::string& low, const std::string& more = "") const {
+    return R"({"octotomy_plan": 1, "name": "p", "scans": {"ct": {"path": "ball.nrrd"}}, "steps": [
+        {"id": "ball", "do": "window", "scan": "ct", "low": )" +
+           low + "}" + more + "]}";
+  }
+};
+
+constexpr const char* cut = R"(, {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+    "polygons_mm": [[[-20, 40], [20, 40], [20, 50], [-20, 50]]]}]})";
+
+TEST_F(PlanDocument, DiffNamesStepsAndFields) {
+  write("a.plan.json", plan("0"));
+  write("b.plan.json", plan("10", R"(, {"id": "size", "do": "measure", "object": "ball"})"));
+  const auto told = run("plan diff a.plan.json b.plan.json");
+  EXPECT_EQ(told.status, 0) << told.errors;
+  EXPECT_EQ(told.out, "~ step 'ball', low: 0.0 -> 10.0\n+ step 'size'\n");
+  const auto json = tests::Json::parse(run("plan diff a.plan.json b.plan.json --json").out);
+  EXPECT_EQ(json.at("changed")[0].at("id"), "ball");
+  EXPECT_EQ(json.at("added")[0], "size");
+  expect_refused(run("plan diff a.plan.json none.plan.json"), "none.plan.json");
+}
+
+TEST_F(PlanDocument, MergeWritesWhatAgreesAndNothingWhereItDoesNot) {
+  write("base.plan.json", plan("0"));
+  write("a.plan.json", plan("10"));
+  write("b.plan.json", plan("0", R"(, {"id": "size", "do": "measure", "object": "ball"})"));
+  EXPECT_EQ(run("plan merge base.plan.json a.plan.json b.plan.json -o merged.plan.json").status, 0);
+  const auto merged = tests::Json::parse(tests::bytes_of(folder_ / "merged.plan.json"));
+  EXPECT_EQ(merged.at("steps")[0].at("low"), 10);
+  EXPECT_EQ(merged.at("steps").size(), 2u);
+  write("b.plan.json", plan("20"));
+  expect_refused(run("plan merge base.plan.json a.plan.json b.plan.json -o clash.plan.json"),
+                 "step 'ball', low: 0 became 10 in A and 20 in B");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "clash.plan.json"));
+  const auto told = run("plan merge base.plan.json a.plan.json b.plan.json -o clash.plan.json --json");
+  EXPECT_EQ(told.status, 2);
+  EXPECT_EQ(tests::Json::parse(told.out).at("conflicts")[0].at("field"), "low");
+}
+
+TEST_F(PlanDocument, HistoryRecordsWhatAnEditorChangesAndGoesBack) {
+  write("my.plan.json", plan("0"));
+  EXPECT_EQ(run("plan history my.plan.json --name first").status, 0);
+  write("my.plan.json", plan("10"));
+  const auto told = tests::Json::parse(run("plan history my.plan.json --json").out);
+  EXPECT_EQ(told.at("count"), 2);
+  EXPECT_EQ(told.at("edits")[0].at("what"), "changed outside");
+  EXPECT_EQ(run("plan history my.plan.json --undo").status, 0);
+  EXPECT_EQ(tests::bytes_of(folder_ / "my.plan.json"), plan("0"));
+  expect_refused(run("plan history my.plan.json --undo"), "first state");
+  EXPECT_EQ(run("plan history my.plan.json --redo").status, 0);
+  EXPECT_EQ(run("plan history my.plan.json --go-to first").status, 0);
+  EXPECT_EQ(tests::bytes_of(folder_ / "my.plan.json"), plan("0"));
+  expect_refused(run("plan history my.plan.json --go-to frist"), "did you mean 'first'?");
+}
+
+TEST_F(PlanDocument, PreviewDrawsOneStepAndTellsAMaskThatCutsNothing) {
+  write("my.plan.json",
+        plan("0", std::string(cut) + R"(, {"id": "cap", "do": "combine", "expression": "ball & cut"})"));
+  const auto told = run("preview my.plan.json cap -o cap.png --view left --size 64");
+  // The mask lies beyond the universe, which is refused where it is drawn.
+  expect_refused(told, "step 'cut'");
+  write("my.plan.json", plan("0", R"(, {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+      "polygons_mm": [[[-15, 13.5], [15, 13.5], [15, 15], [-15, 15]]]}]},
+      {"id": "cap", "do": "combine", "expression": "ball & cut"}, {"id": "cup", "do": "combine", "expression": "ball - cut"})"));
+  const auto drawn = run("preview my.plan.json cup -o cup.png --view left --size 64 --json");
+  EXPECT_EQ(drawn.status, 0) << drawn.errors;
+  EXPECT_EQ(tests::bytes_of(folder_ / "cup.png").substr(1, 3), "PNG");
+  EXPECT_NE(drawn.errors.find("the mask 'cut' holds nothing of 'ball'"), std::string::npos) << drawn.errors;
+  const auto ran = run("run my.plan.json -o out --no-certificates");
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_NE(ran.errors.find("cap: it is empty"), std::string::npos) << ran.errors;
+  EXPECT_NE(ran.errors.find("cap: the mask 'cut' holds nothing of 'ball'"), std::string::npos) << ran.errors;
+  expect_refused(run("preview my.plan.json cup -o cup.jpg"), ".png");
+}
+
+TEST_F(PlanDocument, AProcedureIsListedExplainedAndPlanned) {
+  EXPECT_NE(run("procedure").out.find("le_fort_i"), std::string::npos);
+  EXPECT_NE(run("procedure le_fort_i").out.find("--set forward_mm=0"), std::string::npos);
+  write("marks.json", R"({"landmarks": [{"name": "ans", "point_mm": [0, 0, 0]}]})");
+  expect_refused(run("procedure le_fort_i --scan ball.nrrd --landmarks marks.json -o p.plan.json"),
+                 "lacks landmarks");
+  expect_refused(run("procedure le_fort_i --scan ball.nrrd"), "--landmarks");
+  write("own.json", R"({"procedure": "own", "says": "Own.", "landmarks": [{"name": "ans", "says": "any."}],
+      "values": [{"name": "up_mm", "says": "up", "preset": 1, "least": 0, "most": 5}], "steps": [
+      {"id": "bone", "do": "window", "scan": "ct", "low": 0},
+      {"id": "m", "do": "move", "object": "bone", "by": {"up_mm": "=up_mm * 2 + ans.x"}}]})");
+  EXPECT_EQ(
+      run("procedure own.json --scan ball.nrrd --landmarks marks.json --set up_mm=2 -o p.plan.json").status,
+      0);
+  const auto made = run("run p.plan.json -o out --json");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const auto result = tests::Json::parse(made.out);
+  EXPECT_NEAR(result.at("movements")[0].at("centroid").at("up_mm").get<double>(), 4.0, 1e-9);
+  EXPECT_EQ(result.at("landmarks")[0].at("name"), "ans");
+}
+
+}  // namespace
+}  // namespace octotomy::planner

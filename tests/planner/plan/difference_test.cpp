@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/difference.h"
+
+#include <gtest/gtest.h>
+
+namespace octotomy::planner {
+namespace {
+
+Plan plan_of(const std::string& steps, const std::string& name = "p") {
+  return parse_plan(R"({"octotomy_plan": 1, "name": ")" + name +
+                        R"(", "scans": {"ct": {"path": "a.nrrd", "sha256": null}},
+      "steps": [)" + steps +
+                        "]}",
+                    ".");
+}
+
+constexpr const char* skull = R"({"id": "skull", "do": "window", "scan": "ct", "low": 300})";
+const std::string moved = R"({"id": "m", "do": "move", "object": "skull", "translate_mm": [0, -6, 2],
+    "rotate": {"degrees": 5, "axis": [1, 0, 0]}})";
+
+TEST(Difference, ADefaultThatIsSaidAndTheOrderOfKeysAreNone) {
+  const PlanDifference none = difference(
+      plan_of(std::string(skull) + "," + moved),
+      plan_of(R"({"low": 300.0, "do": "window", "id": "skull", "scan": "ct"}, {"id": "m", "do": "move",
+          "object": "skull", "translate_mm": [0, -6, 2],
+          "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, 0, 0]}, "fit": "best"})"));
+  EXPECT_TRUE(none.is_empty()) << text_of(none);
+  EXPECT_EQ(text_of(none), "the plans are the same\n");
+}
+
+TEST(Difference, StepsAndFieldsAreNamedByTheirPlace) {
+  const PlanDifference found = difference(
+      plan_of(std::string(skull) + "," + moved + R"(, {"id": "size", "do": "measure", "object": "m"})"),
+      plan_of(std::string(skull) +
+                  R"(, {"id": "twin", "do": "mirror", "object": "skull"}, {"id": "m", "do": "move",
+          "object": "skull", "translate_mm": [0, -7, 2], "rotate": {"degrees": 4, "axis": [1, 0, 0]}})",
+              "q"));
+  EXPECT_EQ(text_of(found),
+            "~ name: \"p\" -> \"q\"\n"
+            "- step 'size'\n"
+            "~ step 'm', translate_mm: [0.0,-6.0,2.0] -> [0.0,-7.0,2.0]\n"
+            "~ step 'm', rotate, degrees: 5.0 -> 4.0\n"
+            "+ step 'twin'\n");
+  const auto json = to_json(found);
+  EXPECT_EQ(json.at("changed")[0].at("fields")[1].at("field"), "rotate, degrees");
+  EXPECT_EQ(json.at("same"), false);
+}
+
+TEST(Difference, APointWithinAListIsNamedByItsNumber) {
+  const auto points = [](const char* up) {
+    return plan_of(std::string(skull) + R"(, {"id": "m", "do": "move", "object": "skull", "points": [
+        {"at": [0, 0, 0], "up_mm": 1}, {"at": [9, 0, 0], "up_mm": )" +
+                   up + "}]}");
+  };
+  const PlanDifference found = difference(points("2"), points("3"));
+  EXPECT_EQ(text_of(found), "~ step 'm', points[1], up_mm: 2.0 -> 3.0\n");
+}
+
+TEST(Difference, AnotherOrderIsToldOnce) {
+  const std::string a = R"({"id": "a", "do": "mirror", "object": "skull"})",
+                    b = R"({"id": "b", "do": "mirror", "object": "skull"})";
+  const PlanDifference found = difference(plan_of(std::string(skull) + "," + a + "," + b),
+                                          plan_of(std::string(skull) + "," + b + "," + a));
+  EXPECT_FALSE(found.is_empty());
+  EXPECT_EQ(found.reordered, (std::vector<std::string>{"b", "a"}));
+}
+
+}  // namespace
+}  // namespace octotomy::planner

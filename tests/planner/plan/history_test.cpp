@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/history.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/file_bytes.h"
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string plan_text(int number) {
+  return R"({"octotomy_plan": 1, "name": "p", "scans": {"ct": {"path": "a.nrrd"}}, "steps": [{"id": "s", "do":
+"window", "scan": "ct", "low": )" +
+         std::to_string(number) + "}]}\n";
+}
+
+class History : public testing::Test {
+ protected:
+  History() { write(plan_text(0)); }
+  void write(const std::string& text) const { std::ofstream(plan_) << text; }
+  std::string file() const { return tests::bytes_of(plan_); }
+
+  tests::TestFolder folder_;
+  fs::path plan_ = folder_ / "my.plan.json";
+};
+
+TEST_F(History, UndoAndRedoWalkTheStatesAndTheFileFollows) {
+  PlanHistory history(plan_);
+  for (int number = 1; number <= 200; ++number)
+    history.record(plan_text(number), "low " + std::to_string(number));
+  EXPECT_EQ(history.edit_count(), 201);
+  EXPECT_EQ(history.record(plan_text(200), "again"), 201) << "the same text is no edit";
+  for (int number = 199; number >= 0; --number) {
+    ASSERT_TRUE(history.undo());
+    ASSERT_EQ(file(), plan_text(number));
+  }
+  EXPECT_FALSE(history.undo());
+  for (int number = 1; number <= 200; ++number) {
+    ASSERT_TRUE(history.redo());
+    ASSERT_EQ(file(), plan_text(number));
+  }
+  EXPECT_FALSE(history.redo());
+  EXPECT_EQ(history.newest(1)[0].what, "low 200");
+}
+
+TEST_F(History, WhatAnEditAfterUndoLeavesAsideIsNotLost) {
+  PlanHistory history(plan_);
+  history.record(plan_text(1), "one");
+  history.name_version("approved");
+  history.record(plan_text(2), "two");
+  history.undo();
+  history.record(plan_text(3), "three");
+  EXPECT_EQ(history.text_of(3), plan_text(2));
+  history.go_to("approved");
+  EXPECT_EQ(file(), plan_text(1));
+  history.begin_branch("bold");
+  history.record(plan_text(4), "four");
+  history.go_to("main");
+  EXPECT_EQ(file(), plan_text(3));
+  EXPECT_EQ(history.branch(), "main");
+  history.go_to("bold");
+  EXPECT_EQ(file(), plan_text(4));
+  try {
+    history.go_to("aproved");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'approved'?"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(history.name_version("bold"), std::runtime_error);
+  EXPECT_THROW(history.name_version("3rd"), std::runtime_error);
+}
+
+TEST_F(History, AFileThatAnEditorChangedBecomesAnEdit) {
+  { PlanHistory(plan_).record(plan_text(1), "one"); }
+  write(plan_text(7));
+  PlanHistory history(plan_);
+  EXPECT_EQ(history.text(), plan_text(7));
+  EXPECT_EQ(history.newest(1)[0].what, "changed outside");
+  EXPECT_TRUE(history.undo());
+  EXPECT_EQ(file(), plan_text(1));
+}
+
+TEST_F(History, TwoWritersAreDetectedAndNeitherOverwritesTheOther) {
+  PlanHistory mine(plan_), theirs(plan_);
+  theirs.record(plan_text(1), "theirs");
+  EXPECT_THROW(mine.record(plan_text(2), "mine"), std::runtime_error);
+  EXPECT_EQ(file(), plan_text(1));
+  PlanHistory again(plan_);
+  write(plan_text(3));  // by an editor, while it is open
+  EXPECT_THROW(again.record(plan_text(4), "mine"), std::runtime_error);
+  EXPECT_EQ(file(), plan_text(3));
+}
+
+TEST_F(History, AFileThatIsNoDatabaseIsRefusedByName) {
+  std::ofstream(PlanHistory::path_of(plan_)) << std::string(4096, 'x');
+  try {
+    const PlanHistory history(plan_);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("is no history of a plan"), std::string::npos) << error.what();
+  }
+}
+
+/// Records edits for ever, telling each one's number once record() returned.
+[[noreturn]] void edit_until_killed(const fs::path& plan, int from, int told) {
+  try {
+    PlanHistory history(plan);
+    for (int number = from;; ++number) {
+      history.record(plan_text(number), "edit");
+      if (number % 7 == 0) history.undo(), history.redo();
+      if (::write(told, &number, sizeof number) != sizeof number) std::_Exit(3);
+    }
+  } catch (...) {
+    std::_Exit(4);
+  }
+}
+
+TEST_F(History, AKillAtAnyInstantLosesNoEditThatWasTold) {
+  // OCTOTOMY_KILLS=500 is the long run.
+  const char* asked = std::getenv("OCTOTOMY_KILLS");
+  const int kills = asked != nullptr ? std::atoi(asked) : 25;
+  std::mt19937 random(1);
+  int next = 1, killed_late = 0;
+  for (int kill = 0; kill < kills; ++kill) {
+    int pipe_ends[2];
+    ASSERT_EQ(::pipe(pipe_ends), 0);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) edit_until_killed(plan_, next, pipe_ends[1]);
+    ::close(pipe_ends[1]);
+    ::usleep(static_cast<useconds_t>(random() % 60000));
+    ::kill(child, SIGKILL);
+    int status = 0, told = 0, last = next - 1;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the editor ended by itself with " << WEXITSTATUS(status);
+    while (::read(pipe_ends[0], &told, sizeof told) == sizeof told) last = told;
+    ::close(pipe_ends[0]);
+    killed_late += last >= next;
+    const PlanHistory history(plan_);
+    const std::string text = history.text();
+    ASSERT_EQ(file(), text) << "after kill " << kill;
+    const int found = nlohmann::json::parse(text).at("steps")[0].at("low").get<int>();
+    // Told edits are there; the one in the making may be; an undo of it may be the last that was done.
+    ASSERT_GE(found, last - 0) << "after kill " << kill;
+    ASSERT_LE(found, last + 1) << "after kill " << kill;
+    next = found + 1;
+  }
+  EXPECT_GT(killed_late, kills / 4) << "most kills came before the first edit";
+}
+
+TEST_F(History, AHundredThousandEditsOpenInASecond) {
+  { PlanHistory(plan_).record(plan_text(1), "one"); }
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(PlanHistory::path_of(plan_).c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(
+                database,
+                "WITH RECURSIVE n(i) AS (SELECT 3 UNION ALL SELECT i + 1 FROM n WHERE i < 100000) "
+                "INSERT INTO edits SELECT i, i - 1, 'edit', '', (SELECT sum FROM edits WHERE id = 2), "
+                "(i - 1) % 64, (SELECT CASE WHEN (i - 1) % 64 THEN length(middle) + 1 ELSE 0 END FROM edits "
+                "WHERE id = 1), 0, (SELECT middle FROM edits WHERE id = 1) FROM n",
+                nullptr, nullptr, nullptr),
+            SQLITE_OK)
+      << sqlite3_errmsg(database);
+  sqlite3_close(database);
+  const auto start = std::chrono::steady_clock::now();
+  const PlanHistory history(plan_);
+  EXPECT_EQ(history.edit_count(), 100000);
+  EXPECT_EQ(history.newest(50).size(), 50u);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+}
+
+}  // namespace
+}  // namespace octotomy::planner

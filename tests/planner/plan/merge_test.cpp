@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/merge.h"
+
+#include <gtest/gtest.h>
+
+#include "planner/plan/difference.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json base() {
+  return Json::parse(R"({"octotomy_plan": 1, "name": "p", "scans": {"ct": {"path": "a.nrrd", "sha256": null}},
+    "steps": [
+      {"id": "skull", "do": "window", "scan": "ct", "low": 300},
+      {"id": "m", "do": "move", "object": "skull", "translate_mm": [0, -6, 2], "rotate": {"degrees": 5, "axis": [1, 0, 0]}},
+      {"id": "size", "do": "measure", "object": "m"}]})");
+}
+Plan plan(const Json& json) {
+  return parse_plan(json.dump(), ".");
+}
+Merged merged(const Json& a, const Json& b) {
+  return merge(plan(base()), plan(a), plan(b));
+}
+
+TEST(Merge, ChangesOfDifferentFieldsStepsAndNamesMeet) {
+  Json a = base(), b = base();
+  a["name"] = "mine";
+  a["steps"][1]["rotate"]["degrees"] = 7;
+  a["steps"].insert(a["steps"].begin() + 1, Json{{"id", "twin"}, {"do", "mirror"}, {"object", "skull"}});
+  b["steps"][1]["translate_mm"] = {0, -9, 2};
+  b["steps"].push_back(Json{{"id", "gap"}, {"do", "measure"}, {"object", "m"}, {"to", "skull"}});
+  b["steps"].erase(2);  // size
+  b["universe"] = {{"voxel_mm", 1.0}};
+  const Merged one = merged(a, b);
+  ASSERT_TRUE(one.conflicts.empty()) << one.conflicts[0].text();
+  const Plan result = parse_plan(one.text, ".");
+  std::string order;
+  for (const Step& step : result.steps) order += step.id + " ";
+  EXPECT_EQ(order, "skull twin m gap ");
+  EXPECT_EQ(text_of(difference(plan(base()), result)),
+            "~ name: \"p\" -> \"mine\"\n~ universe: null -> {\"voxel_mm\":1.0}\n- step 'size'\n"
+            "~ step 'm', translate_mm: [0.0,-6.0,2.0] -> [0.0,-9.0,2.0]\n"
+            "~ step 'm', rotate, degrees: 5.0 -> 7.0\n+ step 'twin'\n+ step 'gap'\n");
+  // The other way round it is the same plan.
+  EXPECT_TRUE(difference(result, parse_plan(merged(b, a).text, ".")).reordered.size() <= 2);
+  EXPECT_TRUE(difference(result, parse_plan(merged(b, a).text, ".")).changed.empty());
+}
+
+TEST(Merge, BothThatChangeOneFieldAreNamedByStepAndField) {
+  Json a = base(), b = base();
+  a["steps"][1]["translate_mm"] = {0, -7, 2};
+  b["steps"][1]["translate_mm"] = {0, -5, 2};
+  const Merged one = merged(a, b);
+  EXPECT_EQ(one.text, "");
+  ASSERT_EQ(one.conflicts.size(), 1u);
+  EXPECT_EQ(one.conflicts[0].text(),
+            "step 'm', translate_mm: [0,-6,2] became [0,-7,2] in A and [0,-5,2] in B");
+  b["steps"][1]["translate_mm"] = {0, -7, 2};
+  EXPECT_TRUE(merged(a, b).conflicts.empty()) << "the same change is none";
+}
+
+TEST(Merge, AStepThatOneRemovesAndTheOtherChangesIsAConflict) {
+  Json a = base(), b = base();
+  a["steps"].erase(2);
+  b["steps"][2]["object"] = "skull";
+  const Merged one = merged(a, b);
+  ASSERT_EQ(one.conflicts.size(), 1u);
+  EXPECT_EQ(one.conflicts[0].text(), "step 'size': removed in A, changed in B");
+}
+
+TEST(Merge, OneNewIdForTwoThingsIsAConflict) {
+  Json a = base(), b = base();
+  a["steps"].push_back(Json{{"id", "x"}, {"do", "mirror"}, {"object", "skull"}});
+  b["steps"].push_back(Json{{"id", "x"}, {"do", "mirror"}, {"object", "m"}});
+  const Merged one = merged(a, b);
+  ASSERT_EQ(one.conflicts.size(), 1u);
+  EXPECT_EQ(one.conflicts[0].step, "x");
+  EXPECT_EQ(one.conflicts[0].field, "object");
+}
+
+TEST(Merge, ChangesThatAreAtPeaceAndMakeNoPlanAreRefusedByPlace) {
+  Json a = base(), b = base();
+  a["steps"].erase(1);
+  a["steps"][1]["object"] = "skull";  // size, no longer of m
+  b["steps"].push_back(Json{{"id", "twin"}, {"do", "mirror"}, {"object", "m"}});
+  try {
+    merged(a, b);
+    FAIL() << "'twin' mirrors a step that is gone";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("step 'twin', object: no earlier step is called 'm'"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace octotomy::planner

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/object_cache.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "planner/measure/result_json.h"
+#include "tests/planner/operation/ball_operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+using namespace tests;
+
+std::string steps(double up_mm) {
+  return R"({"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+        "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cap", "do": "combine", "expression": "ball & cut"},
+      {"id": "moved", "do": "move", "object": "cap", "translate_mm": [0, 0, )" +
+         std::to_string(up_mm) + "]}";
+}
+
+std::string text_of(const Evaluation& evaluation) {
+  std::string text;
+  for (const Object& object : evaluation.objects) {
+    Json json = to_json(object);
+    text += json.dump();
+    if (object.certificate) {
+      Json certificate = to_json(*object.certificate);
+      certificate.erase("timings_ms");
+      text += certificate.dump();
+    }
+  }
+  return text;
+}
+
+TEST(ObjectCache, AReplayTakesEveryAnswerAndTellsTheSame) {
+  const TestFolder folder;
+  ObjectCache cache;
+  EvaluateOptions options;
+  options.cache = &cache;
+  const std::string first = text_of(evaluate(ball_plan(folder, steps(2)), options));
+  EXPECT_EQ(cache.counts().found, 0u);
+  const std::string again = text_of(evaluate(ball_plan(folder, steps(2)), options));
+  EXPECT_EQ(cache.counts().found, 5u) << "one scan, four objects";
+  EXPECT_EQ(again, first);
+  EXPECT_EQ(text_of(evaluate(ball_plan(folder, steps(2)))), first) << "as without a cache";
+}
+
+TEST(ObjectCache, AChangedLastStepIsTheOnlyOneThatIsMade) {
+  const TestFolder folder;
+  ObjectCache cache;
+  EvaluateOptions options;
+  options.cache = &cache;
+  evaluate(ball_plan(folder, steps(2)), options);
+  const std::size_t missed = cache.counts().missed;
+  const Evaluation changed = evaluate(ball_plan(folder, steps(3)), options);
+  EXPECT_EQ(cache.counts().missed, missed + 1);
+  EXPECT_EQ(text_of(changed), text_of(evaluate(ball_plan(folder, steps(3)))));
+}
+
+TEST(ObjectCache, AnotherScanInItsPlaceIsReadAnew) {
+  const TestFolder folder;
+  ObjectCache cache;
+  EvaluateOptions options;
+  options.cache = &cache;
+  const Plan plan = ball_plan(folder, steps(2));
+  const double before = evaluate(plan, options).object("ball").voxel.measures.volume_mm3;
+  voxel::write_scene(ball_scene(15.0), folder / "ball.nrrd");
+  std::filesystem::last_write_time(
+      folder / "ball.nrrd", std::filesystem::last_write_time(folder / "ball.nrrd") + std::chrono::seconds(2));
+  const double after = evaluate(plan, options).object("ball").voxel.measures.volume_mm3;
+  EXPECT_LT(after, 0.5 * before);
+}
+
+TEST(ObjectCache, AnAnswerWithoutMeshesIsNoneWithThem) {
+  const TestFolder folder;
+  ObjectCache cache;
+  EvaluateOptions options;
+  options.cache = &cache;
+  options.meshes = false;
+  const Plan plan = ball_plan(folder, steps(2));
+  const Evaluation quick = evaluate(plan, options);
+  EXPECT_FALSE(quick.object("moved").mesh.whole);
+  options.meshes = true;
+  const Evaluation whole = evaluate(plan, options);
+  EXPECT_TRUE(whole.object("moved").mesh.whole);
+  EXPECT_TRUE(whole.object("moved").voxel.octree == quick.object("moved").voxel.octree);
+}
+
+TEST(ObjectCache, TheOneUsedLongestAgoGoesFirst) {
+  ObjectCache cache(2);
+  const Object object("a", "window", voxel::Universe{});
+  cache.keep("1", object);
+  cache.keep("2", object);
+  EXPECT_TRUE(cache.object("1"));
+  cache.keep("3", object);
+  EXPECT_TRUE(cache.object("1"));
+  EXPECT_FALSE(cache.object("2"));
+}
+
+}  // namespace
+}  // namespace octotomy::planner

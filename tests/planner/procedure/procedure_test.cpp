@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/procedure/procedure.h"
+
+#include <gtest/gtest.h>
+
+#include "planner/plan/evaluate.h"
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::planner {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The head phantom's landmarks, read off its pictures.
+std::vector<brep::Landmark> head_landmarks() {
+  return {{"piriform_left", {12, -84, -25}},
+          {"piriform_right", {-12, -84, -25}},
+          {"buttress_left", {30, -68, -28}},
+          {"buttress_right", {-30, -68, -28}},
+          {"pterygoid_left", {20, -39, -30}},
+          {"pterygoid_right", {-20, -39, -30}},
+          {"incisor", {0, -85, -57.5}},
+          {"molar_left", {27, -52, -57.5}},
+          {"molar_right", {-27, -52, -57.5}},
+          {"foramen_left", {22, -74, -82}},
+          {"foramen_right", {-22, -74, -82}},
+          {"border_left", {33, -55, -91}},
+          {"border_right", {-33, -55, -91}},
+          {"pogonion", {0, -87, -93}},
+          {"menton", {0, -82, -101}},
+          {"split_front_left", {34, -56, -80}},
+          {"split_front_right", {-34, -56, -80}},
+          {"split_back_left", {46.5, -25, -45}},
+          {"split_back_right", {-46.5, -25, -45}},
+          {"lower_incisor", {0, -84, -61}},
+          {"lower_molar_left", {27, -54, -61}},
+          {"lower_molar_right", {-27, -54, -61}}};
+}
+
+ProcedureInput head_input() {
+  ProcedureInput input;
+  input.scan = {{"path", "head.nrrd"}};
+  input.landmarks = head_landmarks();
+  input.folder = ".";
+  return input;
+}
+
+std::string refusal(const std::string& name, const ProcedureInput& input) {
+  try {
+    plan_of(read_procedure(name), input);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Procedure, EachOfTheProgramMakesAPlanThatReadsAndTakesFewValues) {
+  ASSERT_GE(procedures().size(), 3u);
+  for (const std::string& name : procedures()) {
+    const Procedure procedure = read_procedure(name);
+    EXPECT_EQ(procedure.name, name);
+    EXPECT_LE(procedure.values.size(), most_values) << name;
+    const Json plan = plan_of(procedure, head_input());
+    const Plan read = parse_plan(plan.dump(), ".");
+    EXPECT_EQ(plan.dump().find("\"="), std::string::npos) << name << " keeps a formula";
+    EXPECT_EQ(read.landmarks.size(), head_landmarks().size());
+  }
+}
+
+TEST(Procedure, TypedValuesAndLandmarksBecomeThePlansNumbers) {
+  ProcedureInput input = head_input();
+  input.values = {{"forward_mm", 6}, {"up_mm", 2.5}, {"kerf_mm", 0.8}};
+  const Json plan = plan_of(read_procedure("le_fort_i"), input);
+  const auto step = [&](const char* id) {
+    for (const Json& each : plan["steps"])
+      if (each["id"] == id) return each;
+    return Json();
+  };
+  EXPECT_EQ(step("maxilla_moved")["by"], (Json{{"forward_mm", 6.0}, {"left_mm", 0.0}, {"up_mm", 2.5}}));
+  const Json cut = step("below_cut")["regions"][1]["polygons_mm"][0],
+             kerf = step("below_cut_and_kerf")["regions"][1]["polygons_mm"][0];
+  EXPECT_EQ(cut[6], (Json{-84.0, -25.0}));
+  EXPECT_EQ(kerf[6], (Json{-84.0, -24.2}));
+}
+
+TEST(Procedure, AHeadThatLiesAskewGetsTheSameRegionsInItsOwnDirections) {
+  ProcedureInput level = head_input(), askew = head_input();
+  for (ProcedureInput* input : {&level, &askew})
+    for (const brep::Landmark& mark : std::vector<brep::Landmark>{{"porion_right", {-60, 10, -8}},
+                                                                  {"porion_left", {60, 10, -8}},
+                                                                  {"orbitale_left", {32, -70, -8}},
+                                                                  {"orbitale_right", {-32, -70, -8}}})
+      input->landmarks.push_back(mark);
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  for (brep::Landmark& mark : askew.landmarks)
+    mark.p_mm = {c * mark.p_mm.x - s * mark.p_mm.z, mark.p_mm.y, s * mark.p_mm.x + c * mark.p_mm.z};
+  const auto regions = [](const ProcedureInput& input) {
+    std::vector<double> numbers;
+    const Json plan = plan_of(read_procedure("le_fort_i"), input);
+    for (const Json& step : plan["steps"])
+      if (step["id"] == "below_cut")
+        for (const Json& region : step["regions"])
+          for (const Json& point : region["polygons_mm"][0])
+            for (const Json& number : point) numbers.push_back(number.get<double>());
+    return numbers;
+  };
+  const std::vector<double> a = regions(level), b = regions(askew);
+  ASSERT_EQ(a.size(), 24u);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-3);
+}
+
+TEST(Procedure, RefusalsNameLandmarkValueAndStep) {
+  ProcedureInput input = head_input();
+  std::erase_if(input.landmarks, [](const brep::Landmark& mark) { return mark.name == "incisor"; });
+  EXPECT_NE(refusal("le_fort_i", input).find("'incisor', the edge of the upper central incisors"),
+            std::string::npos);
+  input = head_input();
+  input.values = {{"foward_mm", 6}};
+  EXPECT_NE(refusal("le_fort_i", input).find("did you mean 'forward_mm'?"), std::string::npos);
+  input.values = {{"forward_mm", 600}};
+  EXPECT_NE(refusal("le_fort_i", input).find("forward_mm must be from -20"), std::string::npos);
+  EXPECT_NE(refusal("le_fort_1", head_input()).find("did you mean 'le_fort_i'?"), std::string::npos);
+  try {
+    parse_procedure(
+        R"({"procedure": "p", "says": "s.", "landmarks": [], "values": [{"name": "a"}], "steps": [{}]})");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("values[0] has no 'says'"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace octotomy::planner
