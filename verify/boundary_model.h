@@ -39,6 +39,8 @@ struct BoundaryModel {
   /// Displacement of planes of small integers by counting centres: exact, with its sign.
   VolumeShift planes;
   VolumeSpread planes_without_sign;
+  /// The same of curved or rough boundary nearly along the lattice, as blur and noise leave a plane.
+  VolumeShift nearly_planes;
   double rims_mm2 = 0.0;  ///< length of such planes' rims times their displacement: area gained beside them
   /// Displacement of unknown sign: planes through voxel centres, and rims of planes, which an isosurface
   /// chamfers over the width of a sample so that they are not found flat.

@@ -24,6 +24,7 @@
 #include "verify/certify_bounded.h"
 #include "verify/implicit_solid.h"
 #include "verify/solid_phantom.h"
+#include "verify/witness.h"
 #include "voxel/measure/measure.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
@@ -179,11 +180,14 @@ struct Answers {
   voxel::Octree octree;
   std::optional<double> shares_mm3;  // volume by filled shares, if the voxels have them
   brep::Solid solid;
-  double blur_mm2 = 0.0;  // deviation squared along the coarsest axis
+  double blur_mm2 = 0.0;                          // deviation squared along the coarsest axis
+  std::shared_ptr<const voxel::Scene> scan = {};  // whose window both answers are; none: they share no scan
 };
 
+constexpr double half_level = 0.0, highest_sample = 32767.0;
+
 brep::Solid isosurface_of(const voxel::Scene& scan, double high) {
-  return brep::trusted_solid(convert::isosurface(scan, 0.0, high), brep::Proof::Construction);
+  return brep::trusted_solid(convert::isosurface(scan, half_level, high), brep::Proof::Construction);
 }
 
 Answers answers_of(const SolidPhantom& solid, Sampling sampling, Chance& chance) {
@@ -201,12 +205,12 @@ Answers answers_of(const SolidPhantom& solid, Sampling sampling, Chance& chance)
   }
   blur(shares, solid.universe.side());
   for (double& share : shares) share += noise_share * chance.normal();
-  const voxel::Scene scan = scan_of(solid, shares);
-  const voxel::GreyOctree grey = voxel::grey_octree_of(solid.universe, scan, -1000);
+  const auto scan = std::make_shared<const voxel::Scene>(scan_of(solid, shares));
+  const voxel::GreyOctree grey = voxel::grey_octree_of(solid.universe, *scan, -1000);
   const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
   const double deviation_mm = blur_voxels * longest(spacing_mm);
-  return {voxel::combine(solid.universe, voxel::Window{grey, 0.0}), std::nullopt,
-          isosurface_of(scan, 32767.0), deviation_mm * deviation_mm};
+  return {voxel::combine(solid.universe, voxel::Window{grey, half_level}), std::nullopt,
+          isosurface_of(*scan, highest_sample), deviation_mm * deviation_mm, scan};
 }
 
 Certificate bounded_of(const SolidPhantom& solid, const Answers& answers, const PhantomCase& of) {
@@ -217,6 +221,11 @@ Certificate bounded_of(const SolidPhantom& solid, const Answers& answers, const 
                                                             : "voxels whose centre is in the closed form";
   inputs.mesh_lineage = "isosurface of the samples";
   inputs.scan_spacing_mm = solid.universe.lattice().spacing_mm();
+  if (answers.scan) {
+    inputs.scan_box_mm = voxel::bounds(answers.scan->lattice);
+    inputs.voxels_are_samples = true;
+    inputs.witness = witness_of_window(answers.scan, half_level, highest_sample, solid.universe);
+  }
   return certify_bounded(answers.octree, answers.solid, inputs);
 }
 
@@ -254,10 +263,13 @@ Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, co
   certificate.voxel.volume_mm3 = voxel_mm3;
   certificate.difference_mm3 = voxel_mm3 - solid.volume_mm3;
   const double blurred = answers.blur_mm2 * model.curvature_mm;
-  // A sample is a mean over its voxel, which adds s^2 / 12 to the blur's variance.
-  const double thin = plate_voxels > 0.0 && answers.blur_mm2 > 0.0
-                          ? lost_by_blur(plate_voxels * s / std::sqrt(answers.blur_mm2 + s * s / 12.0))
-                          : 0.0;
+  // A sample is a mean over its voxel, which adds s^2 / 12 to the blur's variance; between samples the mesh
+  // interpolates linearly, which adds s^2 / 6 on average.
+  const auto thin_of = [&](double variance_mm2) {
+    return plate_voxels > 0.0 ? lost_by_blur(plate_voxels * s / std::sqrt(variance_mm2)) : 0.0;
+  };
+  const double thin = answers.blur_mm2 > 0.0 ? thin_of(answers.blur_mm2 + s * s / 12.0) : 0.0;
+  const double thin_mesh = thin_of(answers.blur_mm2 + s * s / 4.0);
   const double lattice_step = std::cbrt(solid.universe.lattice().voxel_mm3());
   if (answers.shares_mm3)
     certificate.terms = {
@@ -268,7 +280,8 @@ Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, co
         {"count", "Voxels are counted by their centres, which scatters on curved and oblique boundary.",
          "3 sqrt(sum over k of a(k) / (4 pi^2 |k|^4))", 3.0 * std::sqrt(model.count_mm6)},
         {"flat", "Voxels move flat parts along the lattice to the nearest voxel face.", "h/2 * area",
-         std::max(std::abs(model.planes.mm3), model.planes_without_sign.mm3) + model.unsure.mm3},
+         std::max(std::abs(model.planes.mm3), model.planes_without_sign.mm3) + model.unsure.mm3 +
+             std::abs(model.nearly_planes.mm3)},
         {"bent", "Between samples the surface is a chord.", "0.12 * integral of |s^2 curvature|",
          0.12 * model.bent_without_sign.mm3},
         {"blur", "Blur of deviation b moves the half level of a curved boundary inward.", "b^2 M", blurred},
@@ -276,7 +289,7 @@ Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, co
          "V (1 - 2 w / t), Phi(w + t/2) - Phi(w - t/2) = 1/2", thin * solid.volume_mm3}};
   for (const ToleranceTerm& term : certificate.terms) certificate.tolerance_mm3 += term.value_mm3;
   const double mesh_tolerance_mm3 = 0.33 * std::abs(model.bent.mm3) + 0.12 * model.bent_without_sign.mm3 +
-                                    blurred + thin * solid.volume_mm3 + model.unsure.mm3 +
+                                    blurred + thin_mesh * solid.volume_mm3 + model.unsure.mm3 +
                                     0.06 * s * std::sqrt(model.area_mm2) * lattice_step;
   add_comparison(certificate,
                  {"voxel volume", "mm3", voxel_mm3, solid.volume_mm3, std::abs(certificate.difference_mm3),
@@ -287,7 +300,7 @@ Certificate closed_form_of(const SolidPhantom& solid, const Answers& answers, co
   add_comparison(
       certificate,
       {"mesh area", "mm2", mesh.area_mm2, solid.area_mm2, std::abs(mesh.area_mm2 - solid.area_mm2),
-       (0.04 + thin) * solid.area_mm2 + 0.8 * s * model.curvature_mm,
+       (0.04 + thin_mesh) * solid.area_mm2 + 0.8 * s * model.curvature_mm,
        "0.04 S for ripple, 0.8 s M for edges cut off, thin parts; the second answer is the truth"});
   if (mesh.centroid_mm && bounded.centroid_tolerance_mm)
     add_comparison(certificate, {.quantity = "mesh centroid",

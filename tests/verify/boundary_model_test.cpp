@@ -9,6 +9,7 @@
 #include "brep/mesh/measure.h"
 #include "brep/mesh/move.h"
 #include "brep/shape/prism.h"
+#include "convert/surface/isosurface.h"
 #include "convert/surface/partial_surface.h"
 #include "convert/voxel/voxelise.h"
 #include "verify/implicit_solid.h"
@@ -93,6 +94,34 @@ TEST(BoundaryModel, APlanesDisplacementIsExactAndASlopesIsNone) {
   const BoundaryModel oblique = boundary_model(brep::moved(box, turn), {unit_lattice(), glm::dvec3(1.0), {}});
   EXPECT_DOUBLE_EQ(oblique.planes.mm3, 0.0);
   EXPECT_GT(oblique.count_mm6, 0.0);
+}
+
+/// A plate along the lattice whose faces noise has roughened by a tenth of a voxel errs in step, nearly as
+/// the smooth one, and a count of centres shows it.
+TEST(BoundaryModel, ARoughPlaneIsDisplacedInStepThoughNoneOfItsTrianglesIsFlat) {
+  const voxel::Universe universe{6, unit_lattice().lps_from_voxel};
+  for (const double top : {4.1, 4.35, 4.7, 4.9}) {
+    // A height map over a disc of radius 20 on a flat floor between centres, its wall oblique.
+    voxel::Scene scene;
+    scene.lattice = unit_lattice();
+    voxel::FloatSamples samples;
+    for (int z = 0; z < 64; ++z)
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+          const glm::dvec3 p = scene.lattice.lps_mm(glm::dvec3(x, y, z));
+          const double rough = 0.1 * std::sin(12.9898 * x + 78.233 * y);
+          const double height = std::min(top + rough - p.z, p.z + 4.0);
+          samples.push_back(static_cast<float>(std::min(height, 20.0 - std::hypot(p.x, p.y))));
+        }
+    scene.samples = std::move(samples);
+    const brep::Solid mesh =
+        brep::trusted_solid(convert::isosurface(scene, 0.0, 1e9), brep::Proof::Construction);
+    const BoundaryModel model = boundary_model(mesh, {unit_lattice(), glm::dvec3(1.0), {}});
+    const auto count = static_cast<double>(convert::voxelise(universe, mesh).voxel_count());
+    const double displaced = count - brep::volume_mm3(mesh);
+    EXPECT_NEAR(displaced, model.planes.mm3 + model.nearly_planes.mm3, 3.0 * std::sqrt(model.count_mm6))
+        << "top at " << top;
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "verify/phantom_suite.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -46,6 +47,22 @@ TEST(PhantomSuite, PlatesOfOneVoxelAreNotResolvedAndNoneFails) {
     }
   // Nothing that is not resolved counts where tolerances are shown to be tight.
   for (const Tightness& tight : suite.tightness) EXPECT_EQ(tight.cases, 0);
+}
+
+/// A blurred box along the lattice has rounded flats, which err in step.
+TEST(PhantomSuite, ScannedBoxesAlongTheLatticePassAndTheirPlacesAreJudgedByAWitness) {
+  PhantomSuiteOptions options;
+  options.poses = 3;
+  options.solid = "box";
+  int scanned = 0;
+  for (const PhantomCase& one : phantom_suite(options).cases) {
+    EXPECT_EQ(one.bounded.verdict, Verdict::Pass)
+        << one.bounded.operation << ": " << (one.bounded.reasons.empty() ? "" : one.bounded.reasons.front());
+    // The bound holds by itself, too.
+    EXPECT_LE(std::abs(one.bounded.difference_mm3), one.bounded.tolerance_mm3) << one.bounded.operation;
+    scanned += one.bounded.limit.has_value();
+  }
+  EXPECT_EQ(scanned, 3 * 3);
 }
 
 TEST(PhantomSuite, StopsWhenAsked) {
