@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "voxel/scan/read_dicom.h"
+#include "voxel/scan/read_dicom_seg.h"
 #include "voxel/scan/read_image_stack.h"
 #include "voxel/scan/read_nifti2.h"
 #include "voxel/scan/read_raw.h"
@@ -28,7 +29,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
     if (!image_files(path).empty()) return read_image_stack(path, options);
     if (!fs::exists(status)) refuse(path, "no such file or folder");
     const std::optional<VolumeFormat> format = volume_format(path);
-    if (!format) return read_dicom(path, options);
+    if (!format) return is_dicom_seg(path) ? read_dicom_seg(path) : read_dicom(path, options);
     if (format == VolumeFormat::Nifti && is_nifti2(path)) return read_nifti2(path);
     return read_volume_file(path, *format);
   }

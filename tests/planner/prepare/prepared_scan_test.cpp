@@ -80,7 +80,8 @@ TEST(PreparedScan, WarnsOfASupportThatHangsOnTheHeadAndTheAdviceTakesItOut) {
   ASSERT_NE(advice.find("remove_headrest=-300,25,3 takes it out"), std::string::npos) << advice;
   const Evaluation followed = step(field(true, true), R"(, "detach_mm": 3)");
   EXPECT_NEAR(followed.object("skin").voxel.measures.volume_mm3,
-              step(field(false, false), "").object("skin").voxel.measures.volume_mm3, 300);
+              step(field(false, false), "").object("skin").voxel.measures.volume_mm3, 500)
+      << "the rim of what is cut off takes a little of the skin around the link";
   EXPECT_TRUE(followed.scans[1].details["remains_mm3"].is_null());
   // Nothing hangs on a head alone: the finding says so, and recommends nothing that does nothing.
   const Evaluation alone = step(field(false, false), "");

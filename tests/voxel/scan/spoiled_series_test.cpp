@@ -5,6 +5,7 @@
 #include "tests/voxel/scan/spoiled_series.h"
 
 #include <algorithm>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -74,6 +75,41 @@ TEST(SpoiledSeries, AreAtLeastSixtyKindsAndTheSoundOnePasses) {
       ++coded;
     }
   EXPECT_GE(coded, 8);
+}
+
+TEST(SpoiledSeries, AnyByteOfAHeaderMayBeSpoiled) {
+  const ScratchFolder folder;
+  int read = 0, named = 0;
+  for (const SpoiledKind& kind : tests::spoiled_kinds()) {
+    if (kind.name != "twelve_bits_packed" && kind.name != "big_endian_with_open_pixels" &&
+        kind.name != "positions_of_acr_nema")
+      continue;
+    std::vector<tests::SpoiledImage> images = tests::sound_series(3);
+    kind.spoil(images);
+    for (const tests::SpoiledImage& image : images)
+      std::ofstream(folder / image.name, std::ios::binary) << image.bytes();
+    const std::string whole = images[1].bytes();
+    const std::size_t header = whole.size() - 700;
+    for (std::size_t at = images[1].has_preamble ? 132 : 0; at < header; at += 2) {
+      std::string mutant = whole;
+      mutant[at] = static_cast<char>(mutant[at] ^ 0x7f);
+      std::ofstream(folder / images[1].name, std::ios::binary) << mutant;
+      try {
+        const Scene scene = read_scene(folder.path());
+        // Nothing is made that the files could not hold: four slices for each of the stack.
+        EXPECT_LE(scene.lattice.dims.z, 13) << kind.name << " at byte " << at;
+        ++read;
+        named += std::any_of(scene.audit.begin(), scene.audit.end(), [](const Finding& line) {
+          return line.verdict != Verdict::Pass && line.check != "acr_nema";
+        });
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::Input) << error.what();
+        ++named;
+      }
+    }
+  }
+  EXPECT_GT(read, 300);
+  EXPECT_GT(named, 300);
 }
 
 }  // namespace
