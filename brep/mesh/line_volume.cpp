@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 deal triangles out to slabs of rows; 2 for each row that a triangle passes, list the lines between its
-// two sides there with the place where they cross it; 3 follow each line and sum the lengths inside. Where a
-// row meets a side is computed from the side's lower end whichever triangle asks, and the sign of a crossing
-// follows from the direction of that side, so that lines through a closed surface always leave it as often as
-// they enter.
+// 1 turn both surfaces about x and deal their triangles out to slabs of rows; 2 for each row that a triangle
+// passes, list the lines between its two sides there with the place where they cross it; 3 follow each line
+// and sum the lengths inside. Where a row meets a side is computed from the side's lower end whichever
+// triangle asks, and the sign of a crossing follows from the direction of that side, so that lines through a
+// closed surface always leave it as often as they enter.
 #include "brep/mesh/line_volume.h"
 
 #include <algorithm>
@@ -41,6 +41,18 @@ struct Lines {
     return k;
   }
 };
+
+/// The points turned about x, so that flat sides along the axes, where rows of lines all pass or all miss,
+/// are oblique to the rows.
+Triangles turned(const Triangles& surface) {
+  constexpr double angle_rad = 0.6180339887;
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  Triangles done{{}, surface.faces};
+  done.points_mm.reserve(surface.points_mm.size());
+  for (const glm::dvec3& p : surface.points_mm)
+    done.points_mm.emplace_back(p.x, c * p.y - s * p.z, s * p.y + c * p.z);
+  return done;
+}
 
 Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
@@ -146,7 +158,8 @@ std::vector<std::vector<std::uint32_t>> deal(const Triangles& a, const Triangles
 
 }  // namespace
 
-LineVolumes line_volumes(const Triangles& a, const Triangles& b, std::size_t count) {
+LineVolumes line_volumes(const Triangles& first, const Triangles& second, std::size_t count) {
+  const Triangles a = turned(first), b = turned(second);
   const Lines lines = lines_over(a, b, std::max<std::size_t>(count, 1));
   const std::vector<std::vector<std::uint32_t>> slabs = deal(a, b, lines);
   std::vector<Sums> sums(slabs.size());

@@ -61,7 +61,8 @@ bool fits(const Side* begin, const Side* end) {
 
 /// A triangle that runs up the edge has the solid at lesser angles, one that runs down at greater ones. So by
 /// falling angle, an upward one opens a part of the solid and the next downward one closes it.
-void join_by_angle(const Triangles& triangles, const Side* begin, const Side* end, Pairs& pairs) {
+void join_by_angle(const Triangles& triangles, const Side* begin, const Side* end,
+                   const std::vector<std::uint8_t>& ends_elsewhere, Pairs& pairs) {
   const glm::dvec3 low = triangles.points_mm[begin->low];
   const glm::dvec3 along = triangles.points_mm[begin->high] - low;
   const double length2 = glm::dot(along, along);
@@ -85,18 +86,27 @@ void join_by_angle(const Triangles& triangles, const Side* begin, const Side* en
     return std::tuple(-a.angle, a.side->upward, a.side->corner) <
            std::tuple(-b.angle, b.side->upward, b.side->corner);
   });
-  std::vector<const Side*> open;
-  std::vector<std::uint8_t> closed(turned.size(), 0);
-  for (std::size_t i = 0; i < 2 * turned.size(); ++i) {
-    const Side* side = turned[i % turned.size()].side;
-    if (side->upward && i < turned.size()) {
-      open.push_back(side);
-    } else if (!side->upward && !closed[i % turned.size()] && !open.empty()) {
-      pairs.emplace_back(open.back()->corner, side->corner);
-      open.pop_back();
-      closed[i % turned.size()] = 1;
+  const auto balanced =
+      2 * std::count_if(begin, end, [](const Side& side) { return side.upward; }) == end - begin;
+  std::vector<std::uint8_t> joined(turned.size(), 0);
+  const auto pass = [&](const auto& takes_part) {
+    std::vector<std::size_t> open;
+    for (std::size_t n = 0; n < 2 * turned.size(); ++n) {
+      const std::size_t i = n % turned.size();
+      if (joined[i] || !takes_part(*turned[i].side)) continue;
+      if (turned[i].side->upward) {
+        if (n < turned.size()) open.push_back(i);
+      } else if (!open.empty()) {
+        pairs.emplace_back(turned[open.back()].side->corner, turned[i].side->corner);
+        joined[i] = joined[open.back()] = 1;
+        open.pop_back();
+      }
     }
-  }
+  };
+  // Of more ways up than down, or the reverse, some end here: sooner those that end elsewhere, too, as fins
+  // do.
+  if (!balanced) pass([&](const Side& side) { return !ends_elsewhere[side.corner / 3]; });
+  pass([](const Side&) { return true; });
 }
 
 /// A pair of corners whose sides are joined, or one whose side is a border: then both are the same.
@@ -172,6 +182,10 @@ SplitFans split_fans(const Triangles& triangles) {
     }
   }
   const std::vector<Side> sides = sides_of(split.surface);
+  std::vector<std::uint8_t> ends_elsewhere(split.surface.faces.size(), 0);
+  each_edge(sides, [&](const Side* begin, const Side* end) {
+    if (end - begin == 1) ends_elsewhere[begin->corner / 3] = 1;
+  });
   DisjointSets fans(sides.size());
   std::vector<std::vector<Group>> groups;  // of each edge that is split
   each_edge(sides, [&](const Side* begin, const Side* end) {
@@ -179,7 +193,7 @@ SplitFans split_fans(const Triangles& triangles) {
     if (fits(begin, end)) {
       if (end - begin == 2) pairs.emplace_back(begin[0].corner, begin[1].corner);
     } else {
-      join_by_angle(split.surface, begin, end, pairs);
+      join_by_angle(split.surface, begin, end, ends_elsewhere, pairs);
       split.edges.push_back({begin->low, begin->high, static_cast<std::size_t>(end - begin), pairs.size(),
                              0.5 * triangles.points_mm[begin->low] + 0.5 * triangles.points_mm[begin->high]});
       std::vector<Group>& own = groups.emplace_back();

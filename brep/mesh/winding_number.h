@@ -12,7 +12,7 @@ namespace octotomy::brep {
 
 /// How often a surface of any triangles winds about points in LPS millimetres: 1 inside a closed surface, 0
 /// outside, in between near holes. Triangles far from a point count by the first two moments of their
-/// clusters: off by under 0.01 where sheets do not lie nearer to each other than their triangles are long.
+/// clusters, and so are off by up to some 0.05 in all.
 class WindingTree {
  public:
   /// Precondition: triangles refer to finite points. Cost: n log n, about 150 bytes a triangle; parallel.

@@ -49,14 +49,17 @@ struct Lattice {
 
 Lattice lattice_about(const Solid& solid, const OffsetOptions& options) {
   const Size& size = solid.size();
-  const double margin = std::max(options.by_mm, 0.0) + options.cell_mm;
+  // Moved by odd shares of a cell, so that planes of round coordinates do not run along the lattice's: a
+  // plane there comes out in slivers.
+  const double margin = std::max(options.by_mm, 0.0) + 2.0 * options.cell_mm;
+  const glm::dvec3 odd_mm = options.cell_mm * glm::dvec3(0.2718281828, 0.3141592653, 0.1414213562);
   const glm::dvec3 extent = size.high_mm - size.low_mm + 2.0 * margin;
   const double cells = std::max({extent.x, extent.y, extent.z}) / options.cell_mm;
   if (!(cells < (1 << side_bits) - 2))
     throw std::length_error(
         "cells of " + std::to_string(options.cell_mm) + " mm are too small for a solid of " +
         std::to_string(std::max({extent.x, extent.y, extent.z})) + " mm: a side has at most 2^20 of them");
-  Lattice lattice{size.low_mm - margin, options.cell_mm, 2};
+  Lattice lattice{size.low_mm - margin + odd_mm, options.cell_mm, 2};
   while (lattice.side < cells) lattice.side *= 2;
   return lattice;
 }

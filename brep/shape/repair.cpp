@@ -27,6 +27,7 @@
 #include "brep/mesh/short_text.h"
 #include "brep/mesh/split_fans.h"
 #include "brep/mesh/triangle_places.h"
+#include "brep/shape/decimate.h"
 #include "brep/shape/enclose.h"
 #include "brep/shape/fill_holes.h"
 #include "brep/shape/untangle.h"
@@ -59,6 +60,21 @@ bool is_lone(const Face& face, const Mesh& mesh) {
     return mesh.is_boundary(mesh.opposite_halfedge_handle(h));
   };
   return is_border(side) && is_border(next) && is_border(last);
+}
+
+/// Of a surface made anew without the slivers and the spare triangles that a lattice leaves; as it is where
+/// it is large, or where collapses made it meet itself.
+Triangles thinned(const Enclosed& made) {
+  constexpr std::size_t most_thinned = 300'000;
+  if (made.solid.mesh().n_faces() > most_thinned) return made.solid.triangles();
+  DecimateOptions options;
+  options.max_error_mm = made.cell_mm / 20.0;
+  try {
+    return triangles_of(decimate(made.solid, options));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::Geometry) throw;
+    return made.solid.triangles();
+  }
 }
 
 class Mender {
@@ -180,7 +196,7 @@ class Mender {
 
   void enclose(const RepairOptions& options) {
     const Enclosed made = brep::enclose(repair_.surface, {options.cell_mm, options.hull, options.progress});
-    repair_.surface = made.solid.triangles();
+    repair_.surface = thinned(made);
     origin_.assign(repair_.surface.faces.size(), is_new);
     repair_.enclosed_cell_mm = made.cell_mm;
     repair_.left.clear();

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "brep/io/read_mesh.h"
+#include "brep/mesh/split_fans.h"
 #include "convert/voxel/winding_number.h"
 
 namespace octotomy::planner {
@@ -33,7 +34,8 @@ voxel::Octree voxels_of_mesh(const std::filesystem::path& path,
   brep::Triangles triangles;
   {
     const Stopwatch watch(bench.timings, "read");
-    triangles = brep::read_triangles(path);
+    // Welded, as each open edge is a rim that costs.
+    triangles = brep::joined_surface(brep::read_triangles(path)).surface;
   }
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(path.string() + ": " + why); };
   if (triangles.faces.empty()) refuse("has no triangles to be drawn");

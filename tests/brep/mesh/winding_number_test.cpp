@@ -28,7 +28,7 @@ TEST(WindingNumber, IsOneInsideOfAClosedSurfaceZeroOutsideAndNegativeInsideOut) 
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double away = glm::length(points[i]) - 5.0;
     if (std::abs(away) < 0.02) continue;
-    ASSERT_NEAR(inside[i], away < 0.0 ? 1.0 : 0.0, 0.01) << "point " << i;
+    ASSERT_NEAR(inside[i], away < 0.0 ? 1.0 : 0.0, 0.05) << "point " << i;
     ASSERT_NEAR(turned[i], -inside[i], 1e-12);
   }
 }
@@ -38,12 +38,12 @@ TEST(WindingNumber, OfHalfASphereAtItsMiddleIsAHalf) {
   std::erase_if(half.faces, [&](const auto& f) {
     return half.points_mm[f[0]].z + half.points_mm[f[1]].z + half.points_mm[f[2]].z > 0.0;
   });
-  EXPECT_NEAR(WindingTree(half).at({{0, 0, 0}})[0], 0.5, 0.01);
+  EXPECT_NEAR(WindingTree(half).at({{0, 0, 0}})[0], 0.5, 0.05);
 }
 
 TEST(WindingNumber, CountsShellsInShellsAndNothingOfNothing) {
   const Triangles two = together(sphere({0, 0, 0}, 5, 3), sphere({1, 0, 0}, 3, 3));
-  EXPECT_NEAR(WindingTree(two).at({{1, 0, 0}})[0], 2.0, 0.01);
+  EXPECT_NEAR(WindingTree(two).at({{1, 0, 0}})[0], 2.0, 0.05);
   EXPECT_EQ(WindingTree(Triangles{}).at({{1, 0, 0}})[0], 0.0);
 }
 
