@@ -5,11 +5,16 @@
   tests/attack/attacks.py build/release [--only WORD]
 """
 import argparse
+import gzip
 import json
 import os
 import signal
 import stat
+import struct
+import subprocess
 import sys
+import time
+import zlib
 from pathlib import Path
 
 from subject import PLAN, Subject
@@ -256,7 +261,7 @@ def long_and_deep_expressions_neither_crash_nor_hang(subject):
                                      {"id": "b", "do": "combine", "expression": "skull"},
                                      {"id": "c", "do": "combine", "expression": expression}]
         subject.write("long.json", json.dumps(dict(PLAN, steps=steps)))
-        ended = subject.run("run", "long.json", "-o", "long", most_s=120)
+        ended = subject.run("run", "long.json", "-o", "long", most_s=400)
         if ended.status not in (0, 2):
             found.append(f"{name} in a plan: {ended}")
         subject.write("deep.json", "[" * 100000)
@@ -291,8 +296,6 @@ def a_limit_on_memory_is_respected(subject):
 @case
 def a_second_signal_ends_at_once(subject):
     """A reader that never reads holds the answer up; so does a device plan."""
-    import subprocess
-    import time
     found = []
     read, write = os.pipe()
     process = subprocess.Popen([subject.program, "schema"], cwd=subject.folder, stdout=write, stderr=subprocess.PIPE)
@@ -308,6 +311,30 @@ def a_second_signal_ends_at_once(subject):
         found.append("a full pipe holds it for ever")
     os.close(read)
     os.close(write)
+    return found
+
+
+@case
+def little_packed_data_that_grows_does_not_fill_the_memory(subject):
+    """A header of few samples before gigabytes of zeros, packed, and headers of many samples before nothing."""
+    found = []
+    zeros = zlib.compressobj(9, zlib.DEFLATED, 16 + zlib.MAX_WBITS)
+    subject.need("convert", "head.nrrd", "-o", "head.nii")
+    nifti = bytearray((subject.folder / "head.nii").read_bytes())
+    bomb = zeros.compress(bytes(nifti))
+    block = bytes(1 << 24)
+    for _ in range(128):
+        bomb += zeros.compress(block)
+    subject.write("bomb.nii.gz", bomb + zeros.flush())
+    head = b"NRRD0004\ntype: short\ndimension: 3\nsizes: %d %d %d\nspacings: 1 1 1\nencoding: gzip\nendian: little\n\n"
+    subject.write("bomb.nrrd", head % (8, 8, 8) + bomb)
+    subject.write("wide.nrrd", head % (4096, 4096, 4096) + gzip.compress(bytes(1 << 20)))
+    nifti[40:56] = struct.pack("<8h", 3, 32767, 32767, 32767, 1, 1, 1, 1)
+    subject.write("wide.nii", bytes(nifti))
+    for name in ("bomb.nii.gz", "bomb.nrrd", "wide.nrrd", "wide.nii"):
+        ended = subject.run("info", name, "--json", "--memory", "0.5", most_s=60)
+        if ended.status not in (0, 2, 3) or (ended.status != 0 and refused(ended, name, status=ended.status)):
+            found.append(f"{name}: {ended}")
     return found
 
 
