@@ -8,6 +8,7 @@ import argparse
 import gzip
 import json
 import os
+import shutil
 import signal
 import stat
 import struct
@@ -311,6 +312,44 @@ def a_second_signal_ends_at_once(subject):
         found.append("a full pipe holds it for ever")
     os.close(read)
     os.close(write)
+    return found
+
+
+@case
+def a_time_limit_holds_in_a_plan_of_a_million_steps(subject):
+    steps = PLAN["steps"][:1] + [{"id": f"m{i}", "do": "measure", "object": "skull"} for i in range(1000000)]
+    subject.write("million.json", json.dumps(dict(PLAN, steps=steps)))
+    ended = subject.run("run", "million.json", "-o", "million", "--time-limit", "1.5", most_s=60)
+    found = [refused(ended, "nothing was written", status=3)]
+    if subject.hidden_left() or (subject.folder / "million").exists():
+        found.append(f"left {subject.hidden_left()}")
+    return [why for why in found if why]
+
+
+@case
+def helpers_that_others_may_change_are_not_started(subject):
+    folder = subject.folder / "helpers"
+    folder.mkdir(mode=0o755)
+    shutil.copy(Path(subject.program).parent / "octotomy-tetgen", folder)
+    helpers = {"OCTOTOMY_HELPERS": str(folder)}
+    found = [done(subject.run("tet", "ball.stl", "--mesher", "tetgen", "-o", "t.inp", environment=helpers))]
+    folder.chmod(0o777)
+    found.append(refused(subject.run("tet", "ball.stl", "--mesher", "tetgen", "-o", "u.inp", environment=helpers),
+                         "others may write", status=3))
+    return [why for why in found if why]
+
+
+@case
+def what_users_run_is_hardened(subject):
+    build = Path(subject.program).parent
+    if not shutil.which("readelf") or "OCTOTOMY_HARDEN:BOOL=ON" not in (build / "CMakeCache.txt").read_text():
+        return []
+    found = []
+    for name in ("octotomy", "octotomy-tetgen", "octotomy-mesh3", "octotomy-mesh3-labels", "octotomy_dicom_codec",
+                 "octotomy_image_io.so"):
+        text = subprocess.run(["readelf", "-dW", "--dyn-syms", build / name], capture_output=True, text=True,
+                              check=True).stdout
+        found += [f"{name}: no {sign}" for sign in ("NOW", "__stack_chk_fail") if sign not in text]
     return found
 
 
