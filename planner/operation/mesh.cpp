@@ -122,13 +122,14 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
   need_folder_of(asked.out);
   if (is_mesh(asked.file.name)) throw std::runtime_error(asked.file.name + ": is a mesh already");
   std::vector<std::string> findings;
-  const brep::Triangles triangles = is_octree(asked.file.name) ? of_octree(asked, bench.timings, findings)
-                                                               : of_scan(bench, asked, findings);
+  brep::Triangles triangles = is_octree(asked.file.name) ? of_octree(asked, bench.timings, findings)
+                                                         : of_scan(bench, asked, findings);
   if (triangles.faces.empty())
     throw std::runtime_error(
         asked.file.name + ": nothing is " +
         (asked.window ? "in the window " + to_string(*asked.window) + ": choose another" : "in it"));
   const brep::Mesh surface = finished(brep::mesh_of(triangles), asked, bench.timings);
+  triangles = {};  // as large as the mesh, which is all that is needed from here on
   brep::Health health;
   {
     const Stopwatch watch(bench.timings, "health");

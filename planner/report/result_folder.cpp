@@ -110,15 +110,24 @@ bool lies_in(const fs::path& inner, const fs::path& outer) {
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
+fs::path hidden_prefix(const fs::path& place) {
+  return "." + place.filename().string() + ".octotomy-";
+}
+
+[[noreturn]] void refuse_closed(const fs::path& folder, const fs::path& named) {
+  refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
+}
+
+/// Tries it: a system may grant what it then refuses.
 void need_writable(const fs::path& folder, const fs::path& named) {
+  // Not a result's hidden name: what such a folder holds may be somebody else's.
+  constexpr const char* prefix = ".octotomy-";
   try {
-    if (::access(folder.c_str(), W_OK | X_OK) == 0)
-      voxel::UnfinishedFolder(folder, ".octotomy-");
-    else
-      throw voxel::Error(ErrorCode::Input, "");
+    voxel::remove_abandoned(folder, prefix);
+    const voxel::UnfinishedFolder trial(folder, prefix);
   } catch (const voxel::Error& error) {
     if (error.code() == ErrorCode::Resource) throw;
-    refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
+    refuse_closed(folder, named);
   }
 }
 
@@ -178,12 +187,12 @@ List need_place(const fs::path& place, const fs::path& named, const std::vector<
   }
   if (!fs::is_directory(place))
     refuse(named.string() + ": is a file, a result needs a folder: choose another -o");
-  need_writable(place.parent_path(), named);
-  need_writable(place, named);
   if (device_of(place) != device_of(place.parent_path()))
     refuse(named.string() +
            ": is mounted there, and a result replaces its folder: choose a folder in it, as " +
            (named / "report").string());
+  need_writable(place.parent_path(), named);
+  if (::access(place.c_str(), W_OK | X_OK) != 0) refuse_closed(place, named);
   List list = need_earlier_result(place, named);
   for (const fs::path& name : names) need_free(place, list, name.lexically_normal(), named);
   return list;
@@ -204,10 +213,6 @@ class PlaceLock {
  private:
   int file_;
 };
-
-fs::path hidden_prefix(const fs::path& place) {
-  return "." + place.filename().string() + ".octotomy-";
-}
 
 /// Gives what is new the permissions of what stood in its place.
 void keep_mode(const fs::path& old, const fs::path& made) {

@@ -5,11 +5,17 @@
   tests/attack/attacks.py build/release [--only WORD]
 """
 import argparse
+import gzip
 import json
 import os
+import shutil
 import signal
 import stat
+import struct
+import subprocess
 import sys
+import time
+import zlib
 from pathlib import Path
 
 from subject import PLAN, Subject
@@ -256,7 +262,7 @@ def long_and_deep_expressions_neither_crash_nor_hang(subject):
                                      {"id": "b", "do": "combine", "expression": "skull"},
                                      {"id": "c", "do": "combine", "expression": expression}]
         subject.write("long.json", json.dumps(dict(PLAN, steps=steps)))
-        ended = subject.run("run", "long.json", "-o", "long", most_s=120)
+        ended = subject.run("run", "long.json", "-o", "long", most_s=400)
         if ended.status not in (0, 2):
             found.append(f"{name} in a plan: {ended}")
         subject.write("deep.json", "[" * 100000)
@@ -291,8 +297,6 @@ def a_limit_on_memory_is_respected(subject):
 @case
 def a_second_signal_ends_at_once(subject):
     """A reader that never reads holds the answer up; so does a device plan."""
-    import subprocess
-    import time
     found = []
     read, write = os.pipe()
     process = subprocess.Popen([subject.program, "schema"], cwd=subject.folder, stdout=write, stderr=subprocess.PIPE)
@@ -308,6 +312,68 @@ def a_second_signal_ends_at_once(subject):
         found.append("a full pipe holds it for ever")
     os.close(read)
     os.close(write)
+    return found
+
+
+@case
+def a_time_limit_holds_in_a_plan_of_a_million_steps(subject):
+    steps = PLAN["steps"][:1] + [{"id": f"m{i}", "do": "measure", "object": "skull"} for i in range(1000000)]
+    subject.write("million.json", json.dumps(dict(PLAN, steps=steps)))
+    ended = subject.run("run", "million.json", "-o", "million", "--time-limit", "1.5", most_s=60)
+    found = [refused(ended, "nothing was written", status=3)]
+    if subject.hidden_left() or (subject.folder / "million").exists():
+        found.append(f"left {subject.hidden_left()}")
+    return [why for why in found if why]
+
+
+@case
+def helpers_that_others_may_change_are_not_started(subject):
+    folder = subject.folder / "helpers"
+    folder.mkdir(mode=0o755)
+    shutil.copy(Path(subject.program).parent / "octotomy-tetgen", folder)
+    helpers = {"OCTOTOMY_HELPERS": str(folder)}
+    found = [done(subject.run("tet", "ball.stl", "--mesher", "tetgen", "-o", "t.inp", environment=helpers))]
+    folder.chmod(0o777)
+    found.append(refused(subject.run("tet", "ball.stl", "--mesher", "tetgen", "-o", "u.inp", environment=helpers),
+                         "others may write", status=3))
+    return [why for why in found if why]
+
+
+@case
+def what_users_run_is_hardened(subject):
+    build = Path(subject.program).parent
+    if not shutil.which("readelf") or "OCTOTOMY_HARDEN:BOOL=ON" not in (build / "CMakeCache.txt").read_text():
+        return []
+    found = []
+    for name in ("octotomy", "octotomy-tetgen", "octotomy-mesh3", "octotomy-mesh3-labels", "octotomy_dicom_codec",
+                 "octotomy_image_io.so"):
+        text = subprocess.run(["readelf", "-dW", "--dyn-syms", build / name], capture_output=True, text=True,
+                              check=True).stdout
+        found += [f"{name}: no {sign}" for sign in ("NOW", "__stack_chk_fail") if sign not in text]
+    return found
+
+
+@case
+def little_packed_data_that_grows_does_not_fill_the_memory(subject):
+    """A header of few samples before gigabytes of zeros, packed, and headers of many samples before nothing."""
+    found = []
+    zeros = zlib.compressobj(9, zlib.DEFLATED, 16 + zlib.MAX_WBITS)
+    subject.need("convert", "head.nrrd", "-o", "head.nii")
+    nifti = bytearray((subject.folder / "head.nii").read_bytes())
+    bomb = zeros.compress(bytes(nifti))
+    block = bytes(1 << 24)
+    for _ in range(128):
+        bomb += zeros.compress(block)
+    subject.write("bomb.nii.gz", bomb + zeros.flush())
+    head = b"NRRD0004\ntype: short\ndimension: 3\nsizes: %d %d %d\nspacings: 1 1 1\nencoding: gzip\nendian: little\n\n"
+    subject.write("bomb.nrrd", head % (8, 8, 8) + bomb)
+    subject.write("wide.nrrd", head % (4096, 4096, 4096) + gzip.compress(bytes(1 << 20)))
+    nifti[40:56] = struct.pack("<8h", 3, 32767, 32767, 32767, 1, 1, 1, 1)
+    subject.write("wide.nii", bytes(nifti))
+    for name in ("bomb.nii.gz", "bomb.nrrd", "wide.nrrd", "wide.nii"):
+        ended = subject.run("info", name, "--json", "--memory", "0.5", most_s=60)
+        if ended.status not in (0, 2, 3) or (ended.status != 0 and refused(ended, name, status=ended.status)):
+            found.append(f"{name}: {ended}")
     return found
 
 

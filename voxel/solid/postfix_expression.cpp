@@ -2,7 +2,11 @@
 #include "voxel/solid/postfix_expression.h"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "voxel/solid/term_walk.h"
 
@@ -31,6 +35,63 @@ Code code_of(Kind kind) {
   return Code::Push;
 }
 
+/// Lays the steps out and leaves out what says nothing new: a value joined again into the row of | or & that
+/// has it, or subtracted again. Equal values have equal numbers.
+class Layout {
+ public:
+  explicit Layout(std::vector<PostfixExpression::Step>& steps) : steps_(steps) {}
+
+  /// The values on the stack, at most so far.
+  std::size_t most() const { return most_; }
+
+  void push(std::uint32_t operand) {
+    stack_.push_back({steps_.size(), number_of(Code::Push, operand, 0), Code::Push, {}});
+    most_ = std::max(most_, stack_.size());
+    steps_.push_back({Code::Push, operand});
+  }
+
+  void complement() {
+    Entry& top = stack_.back();
+    top = {top.first_step, number_of(Code::Not, top.number, 0), Code::Not, {}};
+    steps_.push_back({Code::Not, 0});
+  }
+
+  void join(Code code) {
+    const Entry right = std::move(stack_.back());
+    stack_.pop_back();
+    Entry& left = stack_.back();
+    if (code == Code::And || code == Code::Or || code == Code::Minus) {
+      if (left.row != code) left.members.clear();
+      if (left.row != code && code != Code::Minus) left.members.insert(left.number);
+      if (!left.members.insert(right.number).second) {
+        left.row = code;
+        return steps_.resize(right.first_step);
+      }
+    }
+    left.number = number_of(code, left.number, right.number);
+    left.row = code;
+    steps_.push_back({code, 0});
+  }
+
+ private:
+  struct Entry {
+    std::size_t first_step = 0;
+    std::uint32_t number = 0;
+    Code row = Code::Push;                      ///< the operator of its row
+    std::unordered_set<std::uint32_t> members;  ///< of a row: numbers of what is joined or subtracted
+  };
+
+  std::uint32_t number_of(Code code, std::uint32_t left, std::uint32_t right) {
+    const std::tuple key{code, left, right};
+    return numbers_.try_emplace(key, static_cast<std::uint32_t>(numbers_.size())).first->second;
+  }
+
+  std::vector<PostfixExpression::Step>& steps_;
+  std::vector<Entry> stack_;
+  std::map<std::tuple<Code, std::uint32_t, std::uint32_t>, std::uint32_t> numbers_;
+  std::size_t most_ = 0;
+};
+
 }  // namespace
 
 PostfixExpression postfix_of(const Expression& expression, const std::optional<Universe>& target) {
@@ -41,7 +102,7 @@ PostfixExpression postfix_of(const Expression& expression, const std::optional<U
   std::unordered_multimap<const Expression::Leaf*, std::uint32_t> known;
   // By the universe's address, which windows on the same samples share.
   std::unordered_map<const Universe*, const Expression::Leaf*> scans;
-  std::size_t depth = 0;
+  Layout layout(postfix.steps);
   const auto push = [&](const Expression::Leaf& leaf, bool is_scan) {
     const auto [first, last] = known.equal_range(&leaf);
     const auto found = std::find_if(first, last, [&](const auto& entry) {
@@ -54,8 +115,7 @@ PostfixExpression postfix_of(const Expression& expression, const std::optional<U
       postfix.operands.push_back({&leaf, motions.back(), moved_depth == 0, is_scan});
       known.emplace(&leaf, number);
     }
-    postfix.steps.push_back({Code::Push, number});
-    postfix.stack_size = std::max(postfix.stack_size, ++depth);
+    layout.push(number);
   };
   const auto push_scan_of = [&](const Window& window) {
     const GreyOctree& grey = window.grey;
@@ -65,8 +125,7 @@ PostfixExpression postfix_of(const Expression& expression, const std::optional<U
     if (scan == nullptr)
       scan = postfix.scans.emplace_back(std::make_shared<const Expression::Leaf>(grey.scan())).get();
     push(*scan, true);
-    postfix.steps.push_back({Code::And, 0});
-    --depth;
+    layout.join(Code::And);
   };
   for_each_term(expression, [&](const MetTerm& met) {
     const Expression::Term& term = met.term;
@@ -82,11 +141,13 @@ PostfixExpression postfix_of(const Expression& expression, const std::optional<U
         motions.push_back(motions.back() * term.moved_from_still);
       else
         motions.pop_back();
+    } else if (!met.before && term.kind == Kind::Not) {
+      layout.complement();
     } else if (!met.before) {
-      postfix.steps.push_back({code_of(term.kind), 0});
-      if (term.right) --depth;
+      layout.join(code_of(term.kind));
     }
   });
+  postfix.stack_size = layout.most();
   return postfix;
 }
 

@@ -79,9 +79,10 @@ struct PostfixExpression {
 };
 
 /// Refers to the expression's leaves: the expression must outlive it. The same leaf under the same motion
-/// becomes one operand, however often it occurs. A window becomes an intersection with its scan, unless it is
-/// at rest on the lattice of `target` and misses the background: then no voxel beyond the scan is in it
-/// anyway. Throws as for_each_term().
+/// becomes one operand, however often it occurs, and takes no further step where it joins a row of | or &
+/// that has it, or is subtracted again. A window becomes an intersection with its scan, unless it is at rest
+/// on the lattice of `target` and misses the background: then no voxel beyond the scan is in it anyway.
+/// Throws as for_each_term().
 PostfixExpression postfix_of(const Expression& expression, const std::optional<Universe>& target = {});
 
 }  // namespace octotomy::voxel

@@ -2,7 +2,9 @@
 #include "voxel/space/helper_file.h"
 
 #include <cstdlib>
+#include <sys/stat.h>
 #include <system_error>
+#include <unistd.h>
 #include <vector>
 
 #include "voxel/space/error.h"
@@ -27,6 +29,24 @@ std::vector<fs::path> folders() {
           "/usr/libexec/octotomy"};  // the Debian package's
 }
 
+/// Throws where somebody else could have put the file there or could change it. Whoever owns the running
+/// program is trusted already.
+void need_trusted(const fs::path& file) {
+  struct stat program {};
+  const bool is_known = ::stat("/proc/self/exe", &program) == 0;
+  for (const fs::path& path : {fs::canonical(file), fs::canonical(file).parent_path()}) {
+    struct stat found {};
+    if (::stat(path.c_str(), &found) != 0) continue;
+    const bool is_ours =
+        found.st_uid == 0 || found.st_uid == ::geteuid() || (is_known && found.st_uid == program.st_uid);
+    if (!is_ours || (found.st_mode & S_IWOTH) != 0)
+      throw Error(ErrorCode::Resource,
+                  path.string() +
+                      ": others may write there, so it is not started: take that right away, or "
+                      "install Octotomy again");
+  }
+}
+
 }  // namespace
 
 void set_helper_folder(const fs::path& folder) {
@@ -37,7 +57,10 @@ fs::path helper_file(const std::string& name) {
   std::string places;
   std::error_code ignored;
   for (const fs::path& folder : folders()) {
-    if (fs::exists(folder / name, ignored)) return folder / name;
+    if (fs::exists(folder / name, ignored)) {
+      need_trusted(folder / name);
+      return folder / name;
+    }
     places += (places.empty() ? "" : ", ") + folder.string();
   }
   throw Error(ErrorCode::Resource, name + " is missing in " + places +
