@@ -28,8 +28,8 @@ std::vector<brep::Landmark> head_landmarks() {
           {"border_right", {-33, -55, -91}},
           {"pogonion", {0, -87, -93}},
           {"menton", {0, -82, -101}},
-          {"split_front_left", {34, -56, -80}},
-          {"split_front_right", {-34, -56, -80}},
+          {"split_front_left", {39, -46, -80}},
+          {"split_front_right", {-39, -46, -80}},
           {"split_back_left", {46.5, -25, -45}},
           {"split_back_right", {-46.5, -25, -45}},
           {"lower_incisor", {0, -84, -61}},
@@ -125,7 +125,7 @@ TEST(Procedure, RefusalsNameLandmarkValueAndStep) {
         R"({"procedure": "p", "says": "s.", "landmarks": [], "values": [{"name": "a"}], "steps": [{}]})");
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("values[0] has no 'says'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("values[0]: has no 'says'"), std::string::npos) << error.what();
   }
 }
 
