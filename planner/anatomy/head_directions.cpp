@@ -33,7 +33,7 @@ glm::dvec3 lps_mm(const Displacement& displacement, const glm::dmat3& lps_from_h
 
 Displacement displacement_of(const glm::dvec3& lps_mm, const glm::dmat3& lps_from_head) {
   const glm::dvec3 along = glm::transpose(lps_from_forward(lps_from_head)) * lps_mm;
-  return {along.x, along.y, along.z};
+  return {along.x + 0.0, along.y + 0.0, along.z + 0.0};  // no negative zeros
 }
 
 glm::dmat3 rotation_of(const Turns& turns, const glm::dmat3& lps_from_head) {
@@ -54,7 +54,7 @@ Turns turns_of(const glm::dmat3& rotation, const glm::dmat3& lps_from_head) {
     turns.yaw_deg = glm::degrees(std::atan2(r[0][1], r[0][0]));
     turns.roll_deg = glm::degrees(std::atan2(r[1][2], r[2][2]));
   }
-  return turns;
+  return {turns.pitch_deg + 0.0, turns.yaw_deg + 0.0, turns.roll_deg + 0.0};
 }
 
 std::string in_words(const Displacement& displacement) {

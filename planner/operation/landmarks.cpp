@@ -21,6 +21,8 @@ void check(const Landmarks& landmarks, const Place& place) {
     place.scope->bind_landmark(place.at("points[" + std::to_string(i) + "]").where, landmarks.points[i]);
   if (landmarks.file.empty()) return;
   const Place file = place.at("file");
+  if (!std::filesystem::is_regular_file(place.scope->folder() / landmarks.file))
+    file.refuse(landmarks.file.string() + " is no file: paths are relative to the plan's folder");
   std::vector<brep::Landmark> read;
   try {
     read = read_landmarks(place.scope->folder() / landmarks.file);

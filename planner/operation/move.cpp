@@ -41,9 +41,10 @@ struct Move {
   std::optional<Rotation> rotate;
   std::optional<Turn> turn;
   std::optional<Displacement> by;
+  std::vector<Mark> along;
   std::optional<Mark> from, to;
   std::vector<Point> points;
-  std::string fit = "best";
+  std::optional<std::string> fit;
   std::optional<glm::dmat4> matrix;
   std::optional<ObjectName> with;
 };
@@ -72,8 +73,21 @@ std::vector<WantedPoint> wanted_points(const Move& move, const Objects& objects)
   return wanted;
 }
 
+/// The directions of 'by': the head's, or of a plane through a front point and one at each side, right then
+/// left, as the occlusal plane. Throws std::invalid_argument where the three lie on one line.
+glm::dmat3 directions_of(const Move& move, const Objects& objects) {
+  if (move.along.empty()) return objects.lps_from_head;
+  const glm::dvec3 right = mark_mm(move.along[1], objects), left = mark_mm(move.along[2], objects);
+  const glm::dvec3 front = mark_mm(move.along[0], objects) - 0.5 * (right + left);
+  const glm::dvec3 up = glm::cross(front, left - right);
+  if (!(glm::length(up) > 1e-3 * glm::length(front) * glm::length(left - right)))
+    throw std::invalid_argument("'along' has its three points on one line, through which no plane is fixed");
+  const glm::dvec3 forward = glm::normalize(front);
+  return {glm::cross(glm::normalize(up), forward), -forward, glm::normalize(up)};
+}
+
 PointFit fit_of(const Move& move) {
-  return move.fit == "first_point" ? PointFit::FirstPoint : PointFit::Best;
+  return move.fit.value_or("best") == "first_point" ? PointFit::FirstPoint : PointFit::Best;
 }
 
 glm::dmat4 about_point(const glm::dmat3& turn, const glm::dvec3& p_mm) {
@@ -106,7 +120,7 @@ glm::dmat4 motion_of(const Move& move, const Objects& objects) {
   if (!move.points.empty())
     return motion_of_points(wanted_points(move, objects), fit_of(move)).moved_from_still;
   glm::dvec3 by_mm = move.translate_mm.value_or(glm::dvec3(0.0));
-  if (move.by) by_mm += lps_mm(*move.by, objects.lps_from_head);
+  if (move.by) by_mm += lps_mm(*move.by, directions_of(move, objects));
   if (move.from) by_mm += mark_mm(*move.to, objects) - mark_mm(*move.from, objects);
   if (!is_turned(move) || (move.rotate && move.rotate->through.empty())) {
     // One call, so that a plan of numbers alone keeps its bits.
@@ -149,6 +163,7 @@ void check_ways(const Move& move, const Place& place) {
   if (move.from.has_value() != move.to.has_value())
     place.refuse(std::string("'") + (move.from ? "to" : "from") +
                  "' is missing: marks go from one to another");
+  if (!move.along.empty() && !move.by) place.at("along").refuse("says along which plane 'by' goes: add 'by'");
   if (move.rotate && move.turn) place.refuse("says its turn twice, as 'rotate' and 'turn': keep one of them");
 }
 
@@ -180,6 +195,7 @@ void check(const Move& move, const Place& place) {
   if (move.turn) marks.push_back(move.turn->about_mm);
   if (move.rotate) marks.push_back(move.rotate->about_mm);
   if (move.rotate) marks.insert(marks.end(), move.rotate->through.begin(), move.rotate->through.end());
+  marks.insert(marks.end(), move.along.begin(), move.along.end());
   for (const Move::Point& point : move.points) {
     marks.push_back(point.at);
     marks.push_back(point.to.value_or(Mark{}));
@@ -200,13 +216,14 @@ std::string definition(const Move& move, const Objects&) {
   if (!move.points.empty()) {
     std::string text;
     for (const Move::Point& point : move.points) text += (text.empty() ? "" : ", ") + name_of(point.at);
-    return name + " moved by " + text + (move.fit == "best" ? "" : ", the first trusted most");
+    return name + " moved by " + text + (fit_of(move) == PointFit::Best ? "" : ", the first trusted most");
   }
   const glm::dvec3 by_mm = move.translate_mm.value_or(glm::dvec3(0.0));
   std::string text;
   if (move.translate_mm || !(move.by || move.from || move.turn))
     text = " moved by (" + plain(by_mm.x) + ", " + plain(by_mm.y) + ", " + plain(by_mm.z) + ") mm";
   if (move.by) text += (text.empty() ? " moved " : ", ") + in_words(*move.by);
+  if (!move.along.empty()) text += " along the plane of " + name_of(move.along[0]);
   if (move.from)
     text += (text.empty() ? " moved from " : ", from ") + name_of(*move.from) + " to " + name_of(*move.to);
   if (move.rotate) text += ", turned by " + plain(move.rotate->degrees) + "\u00b0";
@@ -241,7 +258,7 @@ Json points_json(const Move& move, const Objects& objects) {
                       {"up_mm", got.up_mm},
                       {"residual_mm", found.residuals_mm[i]}});
   }
-  return {{"fit", move.fit}, {"points", points}, {"rms_mm", found.rms_mm}};
+  return {{"fit", move.fit.value_or("best")}, {"points", points}, {"rms_mm", found.rms_mm}};
 }
 
 void bound(const Move& move, const BoundBench& bench, Object& made) {
@@ -295,6 +312,12 @@ Operation move_operation() {
                       .to(2)}))
       .takes(record("by", &Move::by, "The translation in words of the head.",
                     along(&Displacement::forward_mm, &Displacement::left_mm, &Displacement::up_mm)))
+      .takes(
+          field("along", &Move::along,
+                "A plane along which 'by' goes in place of the head's directions, as the occlusal plane: a "
+                "front point, then one to the right and one to the left.")
+              .from(3)
+              .to(3))
       .takes(record("turn", &Move::turn,
                     "The rotation in words of the head, which is done first: roll, then pitch, then yaw.",
                     {field("pitch_deg", static_cast<double Turn::*>(&Turn::pitch_deg), "The front goes up."),
@@ -308,11 +331,11 @@ Operation move_operation() {
       .takes(field("to", &Move::to, "The mark to which 'from' is brought."))
       .takes(records("points", &Move::points,
                      "Points and where each is wanted; the motion that does it best.", point))
-      .takes(
-          field("fit", &Move::fit,
-                "How points are weighed: best is the least squares, first_point brings the first one where "
-                "it is wanted, then turns.")
-              .one_of({"best", "first_point"}))
+      .takes(field("fit", &Move::fit,
+                   "How points are weighed: best, the default, is the least squares; first_point brings the "
+                   "first one where "
+                   "it is wanted, then turns.")
+                 .one_of({"best", "first_point"}))
       .takes(
           field("matrix", &Move::matrix, "The motion as four rows of four numbers, LPS, as register tells."))
       .takes(field("with", &Move::with, "The motion of this earlier move or register step."))

@@ -34,9 +34,12 @@ void compare(const Json& from, const Json& to, const std::string& place, std::ve
 Json document_of(const Plan& plan) {
   Json document = Json::parse(plan.text);
   document.erase("steps");
-  for (auto& [name, scan] : document["scans"].items())
-    for (auto entry = scan.begin(); entry != scan.end();)
-      entry = entry->is_null() ? scan.erase(entry) : entry + 1;
+  for (auto& [name, scan] : document["scans"].items()) {
+    Json said = Json::object();
+    for (const auto& [key, value] : scan.items())
+      if (!value.is_null()) said[key] = value;
+    scan = said;
+  }
   return document;
 }
 

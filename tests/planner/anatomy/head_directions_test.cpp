@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/anatomy/head_directions.h"
 
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
@@ -20,6 +21,7 @@ TEST(HeadDirections, ForwardIsMinusYLeftIsXAndUpIsZInTheScansFrame) {
   EXPECT_EQ(in_words(displacement_of({0.3, -6.0, -1.9}, level)), "forward 6.0 mm, down 1.9 mm, left 0.3 mm");
   EXPECT_EQ(in_words(displacement_of({-2.0, 1.0, 0.0}, level)), "back 1.0 mm, right 2.0 mm");
   EXPECT_EQ(in_words(Displacement{}), "no movement");
+  EXPECT_FALSE(std::signbit(displacement_of({0, 0, 3}, level).forward_mm)) << "a negative zero";
 }
 
 TEST(HeadDirections, EachTurnTakesWhatItsSignSays) {

@@ -8,6 +8,12 @@ namespace {
 
 class PlanDocument : public tests::CommandLine {
  protected:
+  /// In the test's folder, so that files are named without it.
+  tests::CommandAnswer run(const std::string& arguments) const {
+    return tests::run_command(
+        "cd '" + folder_.path().string() + "' && " OCTOTOMY_BINARY_DIR "/octotomy " + arguments,
+        folder_ / "");
+  }
   std::string plan(const std::string& low, const std::string& more = "") const {
     return R"({"octotomy_plan": 1, "name": "p", "scans": {"ct": {"path": "ball.nrrd"}}, "steps": [
         {"id": "ball", "do": "window", "scan": "ct", "low": )" +

@@ -12,7 +12,7 @@ using namespace tests;
 
 constexpr const char* marks = R"({"id": "marks", "do": "landmarks", "points": [
     {"name": "front", "point_mm": [0, -20, 0]}, {"name": "rear", "point_mm": [0, 20, 0]},
-    {"name": "left", "point_mm": [20, 0, 0]}, {"name": "far", "point_mm": [0, -26, 0]}]}, )";
+    {"name": "left", "point_mm": [20, 0, 0]}, {"name": "core", "point_mm": [0, 4, 0]}, {"name": "far", "point_mm": [0, -26, 0]}]}, )";
 
 class MoveStep : public testing::Test {
  protected:
@@ -31,10 +31,17 @@ void expect_at(const glm::dvec3& p, const glm::dvec3& wanted) {
 
 TEST_F(MoveStep, WordsOfTheHeadMoveAndTurnAboutALandmarkInBothKernels) {
   const Evaluation evaluation = moved(R"({"id": "m", "do": "move", "object": "ball",
-      "by": {"forward_mm": 6, "up_mm": -2, "left_mm": 0.5}, "turn": {"pitch_deg": 90, "about_mm": "rear"}})");
-  expect_at(comes(evaluation, {0, 20, 0}), {0.5, 14, -2});   // the pivot moves by the translation alone
-  expect_at(comes(evaluation, {0, -20, 0}), {0.5, 14, 38});  // the front goes up
+      "by": {"forward_mm": 6, "up_mm": -2, "left_mm": 0.5}, "turn": {"pitch_deg": 90, "about_mm": "core"}})");
+  expect_at(comes(evaluation, {0, 4, 0}), {0.5, -2, -2});    // the pivot moves by the translation alone
+  expect_at(comes(evaluation, {0, -20, 0}), {0.5, -2, 22});  // the front goes up
   expect_certified(evaluation.object("m"), ball_mm3(ball_radius_mm), 0.02);
+}
+
+TEST_F(MoveStep, ForwardAlongAPlaneThatRisesToTheFrontRisesToo) {
+  // An occlusal plane whose front is 3 higher over 4 of depth.
+  const Evaluation evaluation = moved(R"({"id": "m", "do": "move", "object": "ball", "by": {"forward_mm": 10},
+      "along": [[0, -4, 3], [-5, 0, 0], [5, 0, 0]]})");
+  expect_at(comes(evaluation, {0, 0, 0}), {0, -8, 6});
 }
 
 TEST_F(MoveStep, MarksGoFromOneToAnotherAndToATypedPoint) {
@@ -92,6 +99,8 @@ TEST_F(MoveStep, RefusalsPointAtThePlace) {
   says(R"(, "from": "front")", "'to' is missing");
   says(R"(, "from": "front", "to": "reer")", "to: no landmark is called 'reer', did you mean 'rear'?");
   says(R"(, "from": "front@none", "to": "rear")", "no earlier step is called 'none'");
+  says(R"(, "by": {"forward_mm": 1}, "along": ["front", "rear", [0, 0, 0]])", "on one line");
+  says(R"(, "translate_mm": [1, 0, 0], "along": ["front", "rear", "left"])", "along: says along which plane");
   says(R"(, "with": "ball")", "with: 'ball' is a window step");
   says(R"(, "with": "ball", "translate_mm": [1, 0, 0])", "stand alone");
   says(R"(, "rotate": {"degrees": 3})", "rotate: 'axis' is missing");

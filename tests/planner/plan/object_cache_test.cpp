@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/plan/object_cache.h"
 
-#include <fstream>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <gtest/gtest.h>
 
 #include "planner/measure/result_json.h"
@@ -57,6 +59,52 @@ TEST(ObjectCache, AChangedLastStepIsTheOnlyOneThatIsMade) {
   const Evaluation changed = evaluate(ball_plan(folder, steps(3)), options);
   EXPECT_EQ(cache.counts().missed, missed + 1);
   EXPECT_EQ(text_of(changed), text_of(evaluate(ball_plan(folder, steps(3)))));
+}
+
+TEST(ObjectCache, OfAPlanOfThirtyStepsTheLastMotionAloneIsMade) {
+  // OCTOTOMY_SIDE=512 tells the time at that size.
+  const char* asked = std::getenv("OCTOTOMY_SIDE");
+  const int side = asked != nullptr ? std::atoi(asked) : 64;
+  const TestFolder folder;
+  voxel::write_scene(ball_scene(ball_radius_mm), folder / "ball.nrrd");
+  const auto plan = [&](double up_mm) {
+    nlohmann::json steps =
+        nlohmann::json::array({{{"id", "s0"}, {"do", "window"}, {"scan", "ct"}, {"low", 0}}});
+    for (int step = 1; step < 29; step += 2) {
+      const std::string before = "s" + std::to_string(step - 1), moved = "s" + std::to_string(step);
+      steps.push_back(
+          {{"id", moved}, {"do", "move"}, {"object", before}, {"translate_mm", {0.25, 0, 0.125}}});
+      steps.push_back({{"id", "s" + std::to_string(step + 1)},
+                       {"do", "combine"},
+                       {"expression", before + " & " + moved}});
+    }
+    steps.push_back({{"id", "last"},
+                     {"do", "move"},
+                     {"object", "s0"},
+                     {"translate_mm", {0, 0, up_mm}},
+                     {"rotate", {{"degrees", up_mm}, {"axis", {1, 0, 0}}}}});
+    return parse_plan(nlohmann::json{{"octotomy_plan", 1},
+                                     {"name", "long"},
+                                     {"scans", {{"ct", {{"path", "ball.nrrd"}}}}},
+                                     {"universe", {{"voxel_mm", 64.0 / side}}},
+                                     {"steps", steps}}
+                          .dump(),
+                      folder.path());
+  };
+  ObjectCache cache;
+  EvaluateOptions options;
+  options.cache = &cache;
+  options.certify = options.meshes = false;
+  ASSERT_EQ(plan(1).steps.size(), 30u);
+  evaluate(plan(1), options);
+  const std::size_t missed = cache.counts().missed;
+  const Plan changed = plan(2);
+  const auto start = std::chrono::steady_clock::now();
+  const Evaluation evaluation = evaluate(changed, options);
+  const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(cache.counts().missed, missed + 1);
+  EXPECT_EQ(evaluation.universe.side(), side);
+  if (asked != nullptr) std::printf("the last motion of 30 steps at %d^3: %.1f ms\n", side, took.count());
 }
 
 TEST(ObjectCache, AnotherScanInItsPlaceIsReadAnew) {

@@ -5,6 +5,8 @@
 
 #include "planner/plan/evaluate.h"
 #include "tests/planner/ball_scan.h"
+#include "verify/head_phantom.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
@@ -28,8 +30,8 @@ std::vector<brep::Landmark> head_landmarks() {
           {"border_right", {-33, -55, -91}},
           {"pogonion", {0, -87, -93}},
           {"menton", {0, -82, -101}},
-          {"split_front_left", {34, -56, -80}},
-          {"split_front_right", {-34, -56, -80}},
+          {"split_front_left", {39, -46, -80}},
+          {"split_front_right", {-39, -46, -80}},
           {"split_back_left", {46.5, -25, -45}},
           {"split_back_right", {-46.5, -25, -45}},
           {"lower_incisor", {0, -84, -61}},
@@ -83,6 +85,63 @@ TEST(Procedure, TypedValuesAndLandmarksBecomeThePlansNumbers) {
   EXPECT_EQ(kerf[6], (Json{-84.0, -24.2}));
 }
 
+/// Whether a piece has a voxel within 4 mm of a landmark.
+bool has(const Evaluation& evaluation, const char* piece, const std::string& name) {
+  for (const brep::Landmark& mark : head_landmarks())
+    if (mark.name == name)
+      return !voxel::combine(evaluation.universe, voxel::Expression(evaluation.object(piece).voxel.octree) &
+                                                      voxel::Expression(voxel::Sphere{mark.p_mm, 4.0}))
+                  .is_empty();
+  ADD_FAILURE() << name;
+  return false;
+}
+
+TEST(Procedure, OnTheHeadPhantomEachTakesItsOwnPieceAndLeavesTheOthers) {
+  const tests::TestFolder folder;
+  verify::HeadOptions coarse;
+  coarse.voxel_mm = 2.0;
+  voxel::write_scene(verify::head_phantom(coarse), folder / "head.nrrd");
+  ProcedureInput input = head_input();
+  input.folder = folder.path();
+  input.voxel_mm = 2.0;
+  input.values = {{"forward_mm", 6}, {"kerf_mm", 2}};
+  EvaluateOptions quick;
+  quick.meshes = false;
+  struct Case {
+    const char *name, *piece;
+    double least_cm3, most_cm3;
+    std::vector<std::string> taken, left;
+  };
+  for (const Case& each :
+       {Case{"le_fort_i",
+             "maxilla",
+             30,
+             80,
+             {"incisor", "molar_left", "molar_right"},
+             {"menton", "foramen_left"}},
+        Case{"genioplasty", "chin", 5, 20, {"menton", "pogonion"}, {"incisor", "lower_incisor"}},
+        Case{"bilateral_sagittal_split",
+             "distal",
+             30,
+             70,
+             {"lower_incisor", "menton", "foramen_left", "foramen_right"},
+             {"piriform_left", "buttress_left"}}}) {
+    const Json plan = plan_of(read_procedure(each.name), input);
+    const Evaluation evaluation = evaluate(parse_plan(plan.dump(), folder.path()), quick);
+    const double cm3 = evaluation.object(each.piece).voxel.measures.volume_mm3 / 1000.0;
+    EXPECT_GT(cm3, each.least_cm3) << each.name;
+    EXPECT_LT(cm3, each.most_cm3) << each.name;
+    for (const std::string& mark : each.taken) EXPECT_TRUE(has(evaluation, each.piece, mark)) << mark;
+    for (const std::string& mark : each.left) EXPECT_FALSE(has(evaluation, each.piece, mark)) << mark;
+    // The kerf is gone from both.
+    const double both_cm3 = cm3 + evaluation.object("rest").voxel.measures.volume_mm3 / 1000.0;
+    EXPECT_LT(both_cm3, evaluation.object("skull").voxel.measures.volume_mm3 / 1000.0 - 0.3) << each.name;
+    const std::string moved = std::string(each.piece) + "_moved";
+    EXPECT_NEAR(evaluation.object(moved).voxel.measures.centroid_mm->y,
+                evaluation.object(each.piece).voxel.measures.centroid_mm->y - 6.0, 0.3);
+  }
+}
+
 TEST(Procedure, AHeadThatLiesAskewGetsTheSameRegionsInItsOwnDirections) {
   ProcedureInput level = head_input(), askew = head_input();
   for (ProcedureInput* input : {&level, &askew})
@@ -125,7 +184,7 @@ TEST(Procedure, RefusalsNameLandmarkValueAndStep) {
         R"({"procedure": "p", "says": "s.", "landmarks": [], "values": [{"name": "a"}], "steps": [{}]})");
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("values[0] has no 'says'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("values[0]: has no 'says'"), std::string::npos) << error.what();
   }
 }
 

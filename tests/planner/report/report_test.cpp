@@ -96,6 +96,18 @@ TEST_F(Report, AnswersHaveTheirKeysAndAMissingOneIsNull) {
       EXPECT_TRUE(certificate.contains(key)) << key;
 }
 
+TEST_F(Report, AMovementIsToldInWordsWithItsSigns) {
+  ASSERT_EQ(json_["movements"].size(), 1u);
+  EXPECT_EQ(json_["movements"][0]["object"], "lifted");
+  EXPECT_EQ(json_["movements"][0]["words"], "up 2.0 mm; pitch 0.0\u00b0, yaw 0.0\u00b0, roll 0.0\u00b0");
+  EXPECT_NEAR(json_["movements"][0]["centroid"]["up_mm"].get<double>(), 2.0, 1e-12);
+  EXPECT_NE(json_["movement_words"].get<std::string>().find("Pitch is positive where the front goes up"),
+            std::string::npos);
+  const std::string page = tests::bytes_of(folder_ / "out/report.html");
+  EXPECT_EQ(times(page, "<h2>Movements</h2>"), 1);
+  EXPECT_EQ(times(page, "up 2.0 mm; pitch"), 1);
+}
+
 TEST_F(Report, ThePageNeedsNothingElse) {
   const std::string page = tests::bytes_of(folder_ / "out/report.html");
   EXPECT_EQ(times(page, "http"), 0);
