@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -57,6 +58,24 @@ void add_comparison(Certificate& certificate, Comparison comparison, Verdict wor
     lower(certificate, comparison.verdict, disagreement(certificate, comparison));
   }
   certificate.comparisons.push_back(std::move(comparison));
+}
+
+double Certificate::larger_mm3() const {
+  return std::max(std::abs(voxel.volume_mm3), std::abs(mesh.volume_mm3));
+}
+
+bool is_evident(const Certificate& certificate) {
+  return certificate.resolved() ||
+         (certificate.limit && certificate.unseen_mm3() <= evident_share * certificate.larger_mm3());
+}
+
+void judge_evidence(Certificate& certificate) {
+  const double object_mm3 = certificate.larger_mm3(), unseen_mm3 = certificate.unseen_mm3();
+  if (certificate.unresolved || !(object_mm3 > 0.0) || unseen_mm3 <= evident_share * object_mm3) return;
+  certificate.unresolved = {
+      std::nullopt, "a wrong part of " + voxel::rounded(unseen_mm3) + " mm3 could pass, " +
+                        voxel::rounded(100.0 * unseen_mm3 / object_mm3) + " % of the object; " +
+                        voxel::rounded(100.0 * evident_share) + " % are allowed: take smaller voxels"};
 }
 
 std::string text_of(const WorstPlace& worst) {

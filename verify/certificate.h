@@ -51,9 +51,12 @@ struct Comparison {
 
 /// An object that is too small or too thin for its voxels: a PASS proves little, a FAIL stays one.
 struct Unresolved {
-  double extent_voxels = 0.0;  ///< the smallest extent of its box, or its mean thickness
-  std::string reason;          ///< a clause: "the object's smallest extent is 2.4 voxels, six are needed"
+  /// The smallest extent of its box, or its mean thickness; none: it is large enough, its bound too wide.
+  std::optional<double> extent_voxels;
+  std::string reason;  ///< a clause: "the object's smallest extent is 2.4 voxels, six are needed"
 };
+/// A certificate that would let pass a wrong part of more than this share of the object resolves nothing.
+inline constexpr double evident_share = 0.1;
 
 /// Where the two answers differ most.
 struct WorstPlace {
@@ -87,7 +90,7 @@ struct Certificate {
   std::optional<double> hausdorff_mm;    ///< largest, both directions, voxel faces to triangles and back
   std::optional<double> hausdorff95_mm;  ///< 95th percentile, as the definition in the report says
   std::optional<WorstPlace> worst;       ///< none: the answers are equal, or there is no mesh to compare
-  std::optional<DetectionLimit> limit;   ///< where a witness judged the places
+  std::optional<DetectionLimit> limit;   ///< where the places were judged
   std::vector<Comparison> comparisons;   ///< every quantity that was compared
   Verdict verdict = Verdict::Pass;
   std::vector<std::string> reasons;  ///< why not PASS
@@ -95,7 +98,18 @@ struct Certificate {
   double milliseconds = 0.0;
 
   bool resolved() const { return !unresolved; }
+  /// Volume of the largest wrong part that could pass: the limit, where places were judged, or the tolerance.
+  double unseen_mm3() const { return limit ? limit->volume_mm3 : tolerance_mm3; }
+  /// The larger of both answers.
+  double larger_mm3() const;
 };
+
+/// Whether the verdict rests on evidence: voxels resolve the object, or the limit is within evident_share of
+/// a thin one.
+bool is_evident(const Certificate& certificate);
+/// Sets `unresolved`, unless it is set, where more than evident_share of the object could be wrong unseen.
+/// Two empty answers leave nothing to be wrong.
+void judge_evidence(Certificate& certificate);
 
 /// Adds a comparison and sets its verdict: PASS up to the tolerance, WARN up to twice that, FAIL beyond it
 /// and if the difference is not a number, but no worse than `worst_verdict`. Lowers the certificate's verdict

@@ -588,6 +588,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
     if (inputs.voxels_are_samples) compare_topology(certificate, octree, solid);
   }
   judge_extent(certificate, evidence);
+  judge_evidence(certificate);
   const auto has_place = [&](const std::string& reason) { return reason.rfind("The two surfaces", 0) == 0; };
   if (certificate.verdict != Verdict::Pass && certificate.worst &&
       std::none_of(certificate.reasons.begin(), certificate.reasons.end(), has_place))

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "voxel/measure/distance_map.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::verify {
 namespace {
@@ -65,12 +67,36 @@ voxel::Expression expression_of(const voxel::Octree& a, brep::Operation operatio
   return voxel::Expression(a) - b;
 }
 
-Certificate compared(const voxel::Octree& octree, const brep::Solid& solid,
-                     const std::vector<std::string>& findings) {
+/// A part that holds no voxel's centre is not seen: wherever it lies a ball of more than this volume holds
+/// one, its radius half a voxel's diagonal.
+double unseen_ball_mm3(const voxel::Lattice& lattice) {
+  const double radius_mm = 0.5 * glm::length(lattice.spacing_mm());
+  return 4.0 / 3.0 * std::numbers::pi * radius_mm * radius_mm * radius_mm;
+}
+
+/// Two empty answers prove nothing where the voxels may have missed an operand.
+void judge_operands(const brep::Solid& a, const brep::Solid& b, Certificate& certificate) {
+  const double smaller_mm3 = std::min(a.size().volume_mm3, b.size().volume_mm3);
+  if (certificate.unseen_mm3() <= evident_share * smaller_mm3) return;
+  certificate.unresolved = {std::nullopt, "both answers are empty and a part of " +
+                                              voxel::rounded(certificate.unseen_mm3()) +
+                                              " mm3 could be missed, the smaller operand has " +
+                                              voxel::rounded(smaller_mm3) + ": take smaller voxels"};
+}
+
+}  // namespace
+
+std::string text_of(brep::Operation operation) {
+  return operation == brep::Operation::Union          ? "a | b"
+         : operation == brep::Operation::Intersection ? "a & b"
+                                                      : "a - b";
+}
+
+Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid,
+                               const std::vector<std::string>& findings) {
   const voxel::Measures voxels = voxel::measure(octree);
   const brep::Measures& triangles = solid.measures();
   const voxel::Lattice lattice = octree.universe().lattice();
-  const double h = lattice.spacing_mm().x;
   Certificate certificate;
   certificate.tier = Tier::Bounded;
   certificate.voxel = {"both meshes voxelised at voxels' centres, Boolean of octrees", voxels.volume_mm3,
@@ -79,7 +105,7 @@ Certificate compared(const voxel::Octree& octree, const brep::Solid& solid,
                       triangles.centroid_mm};
   certificate.difference_mm3 = voxels.volume_mm3 - triangles.volume_mm3;
   // A plane along the voxels errs coherently, and a user's mesh may have such planes.
-  const double coherent_mm3 = glm::dot(voxels.exposed_mm2, glm::dvec3(0.5 * h));
+  const double coherent_mm3 = glm::dot(voxels.exposed_mm2, 0.5 * lattice.spacing_mm());
   certificate.terms = {
       {"sampling", "Voxels are sampled at their centres.", "h/2 * area of exposed voxel faces", coherent_mm3},
       {"voxel", "One voxel more or less.", "h^3", lattice.voxel_mm3()}};
@@ -109,11 +135,11 @@ Certificate compared(const voxel::Octree& octree, const brep::Solid& solid,
         octree.contains(glm::ivec3(glm::round(p_voxel))) ? part_of_voxels_only : part_of_mesh_only};
     certificate.reasons.push_back(text_of(*certificate.worst));
   }
+  certificate.limit = DetectionLimit{unseen_ball_mm3(lattice), std::nullopt};
+  judge_evidence(certificate);
   for (const std::string& finding : findings) certificate.reasons.push_back(finding);
   return certificate;
 }
-
-}  // namespace
 
 OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
                                    const MeshOperationOptions& options) {
@@ -123,14 +149,14 @@ OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operati
   const double voxel_mm =
       options.voxel_mm.value_or(std::max({extent_mm.x, extent_mm.y, extent_mm.z}) / 128.0);
   box = {box.low_mm - voxel_mm, box.high_mm + voxel_mm};
-  const voxel::Universe universe = voxel::universe_around(box, voxel_mm);
+  const voxel::Universe universe = options.universe.value_or(voxel::universe_around(box, voxel_mm));
   OperationAnswers answers;
   const voxel::Progress& progress = options.progress;
   progress.at(0.0);
   const voxel::Octree voxels_of_a = convert::voxelise(universe, a);
   progress.at(0.15);
-  answers.octree =
-      voxel::combine(universe, expression_of(voxels_of_a, operation, convert::voxelise(universe, b)));
+  const voxel::Octree voxels_of_b = convert::voxelise(universe, b);
+  answers.octree = voxel::combine(universe, expression_of(voxels_of_a, operation, voxels_of_b));
   progress.at(0.3);
   brep::BooleanResult result;
   try {
@@ -140,10 +166,11 @@ OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operati
   }
   answers.solid = std::move(result.solid);
   progress.at(0.7);
-  answers.certificate = compared(*answers.octree, answers.solid, result.findings);
-  answers.certificate.operation = operation == brep::Operation::Union          ? "a | b"
-                                  : operation == brep::Operation::Intersection ? "a & b"
-                                                                               : "a - b";
+  answers.findings = std::move(result.findings);
+  answers.certificate = certify_at_centres(*answers.octree, answers.solid, answers.findings);
+  // An empty result of operands that the voxels miss proves nothing.
+  if (answers.certificate.larger_mm3() == 0.0) judge_operands(a, b, answers.certificate);
+  answers.certificate.operation = text_of(operation);
   progress.at(1.0);
   return answers;
 }

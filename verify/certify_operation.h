@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "brep/boolean/boolean.h"
 #include "verify/certificate.h"
@@ -12,11 +14,13 @@ namespace octotomy::verify {
 struct OperationAnswers {
   std::optional<voxel::Octree> octree;
   brep::Solid solid;
+  std::vector<std::string> findings;  ///< of the corefinement
   Certificate certificate;
 };
 
 struct MeshOperationOptions {
-  std::optional<double> voxel_mm;  ///< edge; none: 1/128 of the largest extent of both operands
+  std::optional<double> voxel_mm;                ///< edge; none: 1/128 of the largest extent of both operands
+  std::optional<voxel::Universe> universe = {};  ///< to compare in; none: cubes of that edge around both
   voxel::Progress progress{};
 };
 /// A Boolean of two solids in both kernels (tier Bounded): by corefinement, and by voxelising each operand
@@ -27,5 +31,13 @@ struct MeshOperationOptions {
 /// voxel::Stopped.
 OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
                                    const MeshOperationOptions& options = {});
+
+/// The operation in words: "a | b".
+std::string text_of(brep::Operation operation);
+
+/// An octree and a solid that have the same surfaces, at voxels' centres (tier Bounded). `findings` are those
+/// of the Boolean that made the solid, "shifted" among them.
+Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid,
+                               const std::vector<std::string>& findings);
 
 }  // namespace octotomy::verify

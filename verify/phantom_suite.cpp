@@ -23,6 +23,7 @@
 #include "verify/boundary_model.h"
 #include "verify/certify_bounded.h"
 #include "verify/implicit_solid.h"
+#include "verify/phantom_scan.h"
 #include "verify/solid_phantom.h"
 #include "verify/witness.h"
 #include "voxel/measure/measure.h"
@@ -35,31 +36,7 @@ namespace {
 
 constexpr double blur_voxels = 0.7;
 constexpr double noise_share = 0.05;  // of the contrast between inside and outside
-constexpr double contrast = 2000.0;
-
-/// Random numbers of a seed by splitmix64, the same on every machine; those of the standard's distributions
-/// differ.
-class Chance {
- public:
-  explicit Chance(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 1) {}
-  /// Evenly in -1/2..1/2.
-  double even() {
-    state_ += 0x9E3779B97F4A7C15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    z ^= z >> 31;
-    return static_cast<double>(z >> 11) * 0x1.0p-53 - 0.5;
-  }
-  /// Normal of deviation 1 (Box and Muller).
-  double normal() {
-    const double radius = std::sqrt(-2.0 * std::log(even() + 0.5 + 0x1.0p-54));
-    return radius * std::cos(2.0 * std::numbers::pi * even());
-  }
-
- private:
-  std::uint64_t state_;
-};
+constexpr double contrast = -2.0 * phantom_low;
 
 struct Kind {
   std::string name;
@@ -112,55 +89,6 @@ SolidPhantom posed(const Kind& kind, const glm::dvec3& spacing_mm, Chance& chanc
   return plate;
 }
 
-/// The filled share of every voxel, x fastest.
-std::vector<double> shares_of(const voxel::PartialOctree& partial) {
-  const int side = partial.inside.universe().side();
-  std::vector<double> shares;
-  shares.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side) *
-                 static_cast<std::size_t>(side));
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) shares.push_back(partial.inside.contains({x, y, z}) ? 1.0 : 0.0);
-  voxel::for_each_boundary_voxel(partial, [&](const glm::ivec3& voxel, std::uint16_t fraction) {
-    const auto at = static_cast<std::size_t>((voxel.z * side + voxel.y) * side + voxel.x);
-    shares[at] = static_cast<double>(fraction) / voxel::PartialOctree::whole;
-  });
-  return shares;
-}
-
-void blur(std::vector<double>& shares, int side) {
-  constexpr int reach = 3;
-  std::array<double, 2 * reach + 1> weight{};
-  double sum = 0.0;
-  for (int k = -reach; k <= reach; ++k)
-    sum += weight[static_cast<std::size_t>(k + reach)] = std::exp(-k * k / (2.0 * blur_voxels * blur_voxels));
-  for (int axis = 0; axis < 3; ++axis) {
-    const int stride = axis == 0 ? 1 : axis == 1 ? side : side * side;
-    const std::vector<double> before = shares;
-    for (int i = 0; i < static_cast<int>(shares.size()); ++i) {
-      const int at = i / stride % side;
-      double value = 0.0;
-      for (int k = -reach; k <= reach; ++k)
-        if (at + k >= 0 && at + k < side)
-          value += weight[static_cast<std::size_t>(k + reach)] / sum *
-                   before[static_cast<std::size_t>(i + k * stride)];
-      shares[static_cast<std::size_t>(i)] = value;
-    }
-  }
-}
-
-/// Samples whose half level is 0: shares from -1000 to 1000.
-voxel::Scene scan_of(const SolidPhantom& solid, const std::vector<double>& shares) {
-  voxel::Scene scene;
-  scene.lattice = solid.universe.lattice();
-  voxel::Int16Samples samples;
-  for (const double share : shares)
-    samples.push_back(static_cast<std::int16_t>(std::lround(contrast * (share - 0.5))));
-  scene.samples = std::move(samples);
-  scene.source = "phantom";
-  return scene;
-}
-
 enum class Sampling { Binary, Fractions, Blurred };
 struct SamplingName {
   Sampling sampling;
@@ -192,9 +120,8 @@ brep::Solid isosurface_of(const voxel::Scene& scan, double high) {
 
 Answers answers_of(const SolidPhantom& solid, Sampling sampling, Chance& chance) {
   const voxel::PartialOctree partial = digitise_partial(solid);
-  std::vector<double> shares = shares_of(partial);
   if (sampling != Sampling::Blurred) {
-    const voxel::Scene scan = scan_of(solid, shares);
+    const voxel::Scene scan = phantom_scan(partial, {}, chance);
     Answers answers{voxel::at_least_half(partial), voxel::volume_mm3(partial), isosurface_of(scan, contrast),
                     0.0};
     if (sampling == Sampling::Binary) {
@@ -203,9 +130,8 @@ Answers answers_of(const SolidPhantom& solid, Sampling sampling, Chance& chance)
     }
     return answers;
   }
-  blur(shares, solid.universe.side());
-  for (double& share : shares) share += noise_share * chance.normal();
-  const auto scan = std::make_shared<const voxel::Scene>(scan_of(solid, shares));
+  const auto scan =
+      std::make_shared<const voxel::Scene>(phantom_scan(partial, {blur_voxels, noise_share}, chance));
   const voxel::GreyOctree grey = voxel::grey_octree_of(solid.universe, *scan, -1000);
   const glm::dvec3 spacing_mm = solid.universe.lattice().spacing_mm();
   const double deviation_mm = blur_voxels * longest(spacing_mm);
@@ -442,7 +368,7 @@ class Suite {
     const voxel::PartialOctree partial = digitise_partial(solid);
     const auto percent = [](double found, double truth) { return 100.0 * (found / truth - 1.0); };
     const brep::Measures iso =
-        brep::measure(brep::mesh_of(convert::isosurface(scan_of(solid, shares_of(partial)), 0.0, contrast)));
+        brep::measure(brep::mesh_of(convert::isosurface(phantom_scan(partial, {}, chance), 0.0, contrast)));
     const brep::Measures surface = brep::measure(brep::mesh_of(convert::isosurface(partial)));
     return {percent(static_cast<double>(digitise(solid, voxel::Digitisation::Centre).voxel_count()),
                     solid.volume_mm3),

@@ -163,7 +163,8 @@ int parse_and_run(int count, char** arguments) {
       "Example:\n"
       "  octotomy phantom head -o head.nrrd\n"
       "  octotomy run planner/le_fort_i.plan.json --scan ct=head.nrrd -o report\n"
-      "Exit status: 0 done, 1 the kernels disagree, 2 wrong usage or bad input, 3 out of time, memory or "
+      "Exit status: 0 done, 1 the kernels disagree or verify lacks evidence, 2 wrong usage or bad input, 3 "
+      "out of time, memory or "
       "disk.");
   cli::add_manual(app);
   Program program(app);

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// One question is A OP B, and perhaps C, somebody's answer to it. Both kernels answer it and are held against
+// each other; then C is held against each of them. A triple is such a question as JSON, or a folder of files.
+#include <algorithm>
+
+#include "brep/io/read_mesh.h"
 #include "planner/cli/numbers.h"
 #include "planner/cli/verify_suites.h"
 #include "planner/file/mesh_file.h"
+#include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "verify/certify_operation.h"
 #include "verify/exact_agreement.h"
+#include "verify/judge_answer.h"
+#include "verify/sets_as_given.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
@@ -12,22 +21,40 @@
 namespace octotomy::planner::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
+const std::vector<std::pair<const char*, brep::Operation>>& operations() {
+  static const std::vector<std::pair<const char*, brep::Operation>> all{
+      {"union", brep::Operation::Union},           {"intersection", brep::Operation::Intersection},
+      {"difference", brep::Operation::Difference}, {"|", brep::Operation::Union},
+      {"&", brep::Operation::Intersection},        {"-", brep::Operation::Difference}};
+  return all;
+}
+
 brep::Operation operation_of(const std::string& word) {
-  if (word == "union" || word == "|") return brep::Operation::Union;
-  if (word == "intersection" || word == "&") return brep::Operation::Intersection;
-  if (word == "difference" || word == "-") return brep::Operation::Difference;
+  for (const auto& [name, operation] : operations())
+    if (word == name) return operation;
   throw CLI::ValidationError("OP", "'" + word + "' is none of union, intersection, difference, |, & and -");
 }
 
+/// What is asked, and whose answer is judged.
+struct Question {
+  std::string name;
+  fs::path a, b;
+  std::string operation;
+  std::optional<fs::path> answer;
+};
+
 /// All voxels that have a label.
-voxel::Octree labelled(const Program& program, const std::filesystem::path& path, Timings& timings,
-                       voxel::Lattice& lattice) {
+voxel::Octree labelled(const Program& program, const fs::path& path, Timings& timings,
+                       voxel::Lattice& lattice, bool may_be_empty = false) {
   const Stopwatch watch(timings, "read");
   const voxel::Scene scene = voxel::read_scene(path);
   program.note_scan(path, scene);
   lattice = scene.lattice;
   const voxel::Universe universe = voxel::universe_on(scene.lattice);
   const std::vector<voxel::Label> labels = voxel::labels(scene);
+  if (labels.empty() && may_be_empty) return voxel::Octree::empty(universe);
   if (labels.empty()) throw std::runtime_error(path.string() + ": no sample has a label");
   voxel::Expression all = voxel::octree_of_label(universe, scene, labels.front().number);
   for (std::size_t i = 1; i < labels.size(); ++i)
@@ -35,28 +62,85 @@ voxel::Octree labelled(const Program& program, const std::filesystem::path& path
   return voxel::combine(universe, all);
 }
 
-/// The certificate, and the operation's own volume: the exact tier's sets are refined and a little smaller.
-struct LabelMaps {
-  verify::Certificate certificate;
-  double volume_mm3 = 0.0;
+/// Both kernels' answers and the certificates of these.
+struct Answered {
+  verify::KernelAnswers kernels;
+  std::vector<verify::Certificate> certificates;
 };
 
-LabelMaps of_label_maps(Program& program, const std::filesystem::path& a, brep::Operation operation,
-                        const std::filesystem::path& b, Timings& timings) {
+Answered of_label_maps(Program& program, const Question& asked, Timings& timings) {
   voxel::Lattice lattice_a, lattice_b;
-  const voxel::Expression left = labelled(program, a, timings, lattice_a),
-                          right = labelled(program, b, timings, lattice_b);
+  const voxel::Octree left = labelled(program, asked.a, timings, lattice_a),
+                      right = labelled(program, asked.b, timings, lattice_b);
   if (!(lattice_a == lattice_b))
     throw std::runtime_error(
-        a.string() + " and " + b.string() +
+        asked.a.string() + " and " + asked.b.string() +
         " have different lattices: resample one onto the other first (octotomy convert)");
   const Stopwatch watch(timings, "verify");
-  const voxel::Expression expression = operation == brep::Operation::Union          ? left | right
-                                       : operation == brep::Operation::Intersection ? left & right
-                                                                                    : left - right;
-  const voxel::Universe universe = voxel::universe_on(lattice_a);
-  return {verify::certify_exact(verify::exact_answers(expression, {program.stop.get_token(), {}})),
-          static_cast<double>(voxel::combine(universe, expression).voxel_count()) * lattice_a.voxel_mm3()};
+  const voxel::Progress progress{program.stop.get_token(), {}};
+  const brep::Operation operation = operation_of(asked.operation);
+  verify::SetsAnswer given = verify::certify_sets(left, operation, right, progress);
+  const voxel::Expression a = left, b = right;
+  const voxel::Expression expression = operation == brep::Operation::Union          ? a | b
+                                       : operation == brep::Operation::Intersection ? a & b
+                                                                                    : a - b;
+  Answered answered{
+      {std::move(given.octree), std::move(given.solid), std::move(given.findings)},
+      {std::move(given.certificate), verify::certify_exact(verify::exact_answers(expression, progress))}};
+  answered.certificates[1].operation =
+      "the same with both sets refined and smaller by a quarter of a voxel all round, no faces shared";
+  return answered;
+}
+
+Answered of_meshes(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
+  const brep::Solid left = read_solid(asked.a, timings), right = read_solid(asked.b, timings);
+  verify::MeshOperationOptions options{text.operand_voxel_mm, {}, {program.stop.get_token(), {}}};
+  // Voxels are judged in their own universe.
+  if (asked.answer && !is_mesh(*asked.answer))
+    options.universe = voxel::universe_on(voxel::read_scene(*asked.answer).lattice);
+  const Stopwatch watch(timings, "verify");
+  verify::OperationAnswers answers =
+      verify::certify_operation(left, operation_of(asked.operation), right, options);
+  return {{*answers.octree, answers.solid, answers.findings}, {answers.certificate}};
+}
+
+/// Reads the answer and holds it against both kernels'.
+std::vector<verify::Certificate> judged(const fs::path& answer, const verify::KernelAnswers& kernels,
+                                        Program& program, Timings& timings) {
+  if (is_mesh(answer)) {
+    brep::Triangles triangles;
+    {
+      const Stopwatch watch(timings, "read");
+      triangles = brep::read_triangles(answer);
+    }
+    const Stopwatch watch(timings, "judge");
+    return verify::judge_mesh(kernels, triangles, {program.stop.get_token(), {}});
+  }
+  voxel::Lattice lattice;
+  const voxel::Octree voxels = labelled(program, answer, timings, lattice, true);
+  if (!(voxels.universe() == kernels.octree.universe()))
+    throw std::runtime_error(answer.string() +
+                             ": has another lattice than the operands: resample it onto theirs first "
+                             "(octotomy convert)");
+  const Stopwatch watch(timings, "judge");
+  return verify::judge_voxels(kernels, voxels);
+}
+
+/// The kernels' certificates, then those of the answer.
+Answered answered(Program& program, const Question& asked, const VerifyText& text, Timings& timings) {
+  if (is_mesh(asked.a) != is_mesh(asked.b))
+    throw CLI::ValidationError("verify", "two meshes or two label maps, not one of each");
+  if (!is_mesh(asked.a) && text.operand_voxel_mm)
+    throw CLI::ValidationError("--voxel", "label maps have voxels of their own");
+  Answered found =
+      is_mesh(asked.a) ? of_meshes(program, asked, text, timings) : of_label_maps(program, asked, timings);
+  found.certificates.front().operation = asked.a.string() + " " + asked.operation + " " + asked.b.string();
+  if (asked.answer)
+    for (verify::Certificate& certificate : judged(*asked.answer, found.kernels, program, timings)) {
+      certificate.operation = asked.answer->string() + ": " + certificate.operation;
+      found.certificates.push_back(std::move(certificate));
+    }
+  return found;
 }
 
 std::string what_of(const verify::Certificate& certificate) {
@@ -74,41 +158,161 @@ std::string what_of(const verify::Certificate& certificate) {
   return lines(rows);
 }
 
+/// "operands", "operation" and perhaps "result" of one question; paths are relative to the file's folder.
+Question question_of(const nlohmann::json& json, const std::string& where, const fs::path& folder) {
+  check_keys(json, where, {"operands", "operation", "result", "name"});
+  const nlohmann::json& operands = need(json, "operands", where);
+  if (!operands.is_array() || operands.size() != 2) refuse(where + ": operands", "must be two paths");
+  Question asked{"",
+                 folder / word_of(operands[0], where + ": operands"),
+                 folder / word_of(operands[1], where + ": operands"),
+                 word_of(need(json, "operation", where), where + ": operation"),
+                 {}};
+  operation_of(asked.operation);
+  if (json.contains("result") && !json["result"].is_null())
+    asked.answer = folder / word_of(json["result"], where + ": result");
+  asked.name = json.contains("name") ? word_of(json["name"], where + ": name") : where;
+  return asked;
+}
+
+std::vector<Question> questions_of_file(const fs::path& path) {
+  const nlohmann::json json = read_json(path);
+  if (!json.is_array()) return {question_of(json, path.string(), path.parent_path())};
+  std::vector<Question> all;
+  for (std::size_t i = 0; i < json.size(); ++i)
+    all.push_back(question_of(json[i], path.string() + "[" + std::to_string(i) + "]", path.parent_path()));
+  return all;
+}
+
+/// The one file of a folder with this name, whatever its extension.
+std::optional<fs::path> file_called(const fs::path& folder, const std::string& stem) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && entry.path().filename().string().rfind(stem + ".", 0) == 0)
+      found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  if (found.size() > 1) refuse(folder.string(), "has two files called '" + stem + "': keep one");
+  return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
+/// The questions of a folder: its .json files, and each folder in it with files a and b and one or more of
+/// union, intersection and difference. In the order of their names.
+std::vector<Question> questions_of_folder(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
+  std::sort(entries.begin(), entries.end());
+  entries.push_back(folder);
+  std::vector<Question> all;
+  for (const fs::path& entry : entries) {
+    if (entry.extension() == ".json" && fs::is_regular_file(entry))
+      for (Question& asked : questions_of_file(entry)) all.push_back(std::move(asked));
+    if (!fs::is_directory(entry)) continue;
+    const std::optional<fs::path> a = file_called(entry, "a"), b = file_called(entry, "b");
+    if (!a || !b) continue;
+    for (const char* operation : {"union", "intersection", "difference"})
+      if (std::optional<fs::path> answer = file_called(entry, operation))
+        all.push_back({entry.filename().string() + " " + operation, *a, *b, operation, std::move(answer)});
+  }
+  if (all.empty())
+    refuse(folder.string(),
+           "holds no question: give .json files with operands, operation and result, or folders with files "
+           "a, b and union, intersection or difference");
+  return all;
+}
+
+std::string volume_text(double volume_mm3) {
+  return grouped(volume_mm3, 3);
+}
+
+/// A row of the table: the worst verdict of a question's certificates.
+Json row_of(const Question& asked, const std::vector<verify::Certificate>& certificates) {
+  const auto worst = std::max_element(
+      certificates.begin(), certificates.end(),
+      [](const verify::Certificate& a, const verify::Certificate& b) { return verify::is_worse(b, a); });
+  Json row{{"name", asked.name},
+           {"operation", asked.operation},
+           {"verdict", verify::to_string(worst->verdict)},
+           {"resolved", worst->resolved()},
+           {"voxel_mm3", certificates.front().voxel.volume_mm3},
+           {"mesh_mm3", certificates.front().mesh.volume_mm3},
+           {"answer_mm3", nullptr},
+           {"reason", worst->reasons.empty() ? "" : worst->reasons.front()}};
+  if (asked.answer)
+    row["answer_mm3"] = is_mesh(*asked.answer) ? certificates.back().mesh.volume_mm3
+                                               : certificates[certificates.size() - 2].mesh.volume_mm3;
+  return row;
+}
+
 }  // namespace
 
-SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
-  const std::filesystem::path a = text.subject[0], b = text.subject[2];
-  const brep::Operation operation = operation_of(text.subject[1]);
+void need_evidence(SuiteAnswer& answer, const VerifyText& text) {
+  if (answer.counts.without_evidence == 0 || text.accept_unresolved) return;
+  warn("a PASS without evidence: voxels do not resolve the object (--accept-unresolved lets it be)");
+  answer.held = false;
+}
+
+bool holds_questions(const fs::path& path) {
+  if (fs::is_directory(path)) return true;
+  if (path.extension() != ".json" || !fs::is_regular_file(path)) return false;
+  const nlohmann::json json = read_json(path);
+  return json.is_array() || (json.is_object() && !json.contains("octotomy_plan") &&
+                             (json.contains("operands") || json.contains("operation")));
+}
+
+SuiteAnswer verify_questions(Program& program, const VerifyText& text) {
+  const fs::path path = text.subject.front();
   SuiteAnswer answer;
-  verify::Certificate certificate;
-  if (is_mesh(a) != is_mesh(b))
-    throw CLI::ValidationError("verify", "two meshes or two label maps, not one of each");
-  if (is_mesh(a)) {
-    const brep::Solid left = read_solid(a, answer.timings), right = read_solid(b, answer.timings);
-    const Stopwatch watch(answer.timings, "verify");
-    verify::OperationAnswers answers = verify::certify_operation(
-        left, operation, right, {text.operand_voxel_mm, {program.stop.get_token(), {}}});
-    certificate = answers.certificate;
-    if (answers.octree) answer.worst = {certificate, *answers.octree, answers.solid};
-  } else {
-    if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "label maps have voxels of their own");
-    const LabelMaps found = of_label_maps(program, a, operation, b, answer.timings);
-    certificate = found.certificate;
-    answer.more["volume_mm3"] = found.volume_mm3;
-    answer.text = lines({{"volume", grouped(found.volume_mm3, 3) +
-                                        " mm\u00b3 of the label maps' own voxels; below, of "
-                                        "both sets refined and smaller by a quarter of a voxel all round"}});
+  answer.more["questions"] = Json::array();
+  std::vector<std::pair<std::string, std::string>> rows;
+  const std::vector<Question> questions =
+      fs::is_directory(path) ? questions_of_folder(path) : questions_of_file(path);
+  const auto progress = program.progress();
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const Question& asked = questions[i];
+    if (progress) progress(asked.name, static_cast<double>(i) / static_cast<double>(questions.size()));
+    const Answered found = answered(program, asked, text, answer.timings);
+    for (const verify::Certificate& certificate : found.certificates) {
+      answer.certificates.push_back(planner::to_json(certificate));
+      add(answer.counts, certificate);
+    }
+    const Json row = row_of(asked, found.certificates);
+    rows.emplace_back(
+        asked.name,
+        row["verdict"].get<std::string>() + (row["resolved"] ? "" : ", not resolved") + ", voxel " +
+            volume_text(row["voxel_mm3"]) + ", mesh " + volume_text(row["mesh_mm3"]) +
+            (row["answer_mm3"].is_null() ? std::string() : ", answer " + volume_text(row["answer_mm3"])) +
+            " mm\u00b3" + (row["reason"] == "" ? "" : "; " + row["reason"].get<std::string>()));
+    answer.more["questions"].push_back(row);
   }
-  certificate.operation = a.string() + " " + text.subject[1] + " " + b.string();
-  answer.certificates.push_back(planner::to_json(certificate));
-  add(answer.counts, certificate);
-  answer.text += what_of(certificate);
+  rows.emplace_back("verdicts", text_of(answer.counts));
+  answer.text = lines(rows);
+  need_evidence(answer, text);
+  return answer;
+}
+
+SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
+  const Question asked{"", text.subject[0], text.subject[2], text.subject[1], text.answer};
+  operation_of(asked.operation);
+  SuiteAnswer answer;
+  const Answered found = answered(program, asked, text, answer.timings);
+  const verify::Certificate& kernels = found.certificates.front();
+  if (found.kernels.solid) answer.worst = {kernels, found.kernels.octree, found.kernels.solid};
+  answer.more["volume_mm3"] = kernels.voxel.volume_mm3;
+  for (const verify::Certificate& certificate : found.certificates) {
+    answer.certificates.push_back(planner::to_json(certificate));
+    add(answer.counts, certificate);
+    answer.text += what_of(certificate);
+  }
+  need_evidence(answer, text);
   return answer;
 }
 
 void add_operand_options(CLI::App& verb, VerifyText& text) {
   verb.add_option("--voxel", text.operand_voxel_mm, "Edge of the voxels that two meshes are compared in, mm")
       ->check(above_zero());
+  verb.add_option("--answer", text.answer,
+                  "Of A OP B: somebody's result, a mesh or a label map, to be judged against both kernels")
+      ->check(CLI::ExistingFile);
 }
 
 }  // namespace octotomy::planner::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/verify_suites.h"
 #include "planner/table/number_format.h"
+#include "verify/interval_suite.h"
 #include "verify/phantom_suite.h"
 
 namespace octotomy::planner::cli {
@@ -40,6 +41,39 @@ Json study_json(const verify::PhantomSuite& suite) {
   return json;
 }
 
+/// The coverage of the recommended values' intervals: a row for each kind of solid, and two that must hold.
+void add_intervals(const std::vector<verify::IntervalCoverage>& table,
+                   std::vector<std::pair<std::string, std::string>>& rows, SuiteAnswer& answer) {
+  Json json = Json::array();
+  for (const verify::IntervalCoverage& row : table) {
+    const bool all = row.group.empty();
+    const double width = row.p99_share > 0.0 ? 1.0 / row.p99_share : 0.0;
+    json.push_back({{"quantity", row.quantity},
+                    {"group", all ? "all" : row.group},
+                    {"spacing", all ? "all" : row.spacing},
+                    {"sampling", all ? "all" : row.sampling},
+                    {"solids", row.cases},
+                    {"held_percent", 100.0 * row.held},
+                    {"width_over_p99_error", width},
+                    {"bias_percent", row.bias_percent},
+                    {"p99_error_percent", row.p99_error_percent}});
+    const std::string found = three_figures(100.0 * row.held) + " % held, width " + three_figures(width) +
+                              " times the 99th percentile, error up to " +
+                              three_figures(row.p99_error_percent) + " %, " + std::to_string(row.cases) +
+                              " solids";
+    if (!all) {
+      rows.emplace_back(row.quantity + ", " + row.group + ", " + row.spacing + ", " + row.sampling, found);
+      continue;
+    }
+    const bool held = row.held >= verify::least_held && row.p99_share >= verify::least_p99_share;
+    answer.held = answer.held && held;
+    rows.emplace_back(held ? "holds" : "DOES NOT HOLD", "interval of the " + row.quantity + " claimed at " +
+                                                            three_figures(100.0 * verify::claimed_coverage) +
+                                                            " %: " + found);
+  }
+  answer.more["intervals"] = std::move(json);
+}
+
 SuiteAnswer run(Program& program, const VerifyText& text) {
   SuiteAnswer answer;
   verify::PhantomSuiteOptions options;
@@ -69,9 +103,16 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
         check.held ? "holds" : "DOES NOT HOLD",
         check.statement + ": " + three_figures(check.found) + ", limit " + three_figures(check.allowed));
   }
+  std::vector<verify::IntervalCoverage> intervals;
+  {
+    const Stopwatch watch(answer.timings, "intervals");
+    intervals =
+        verify::interval_suite({text.solids, 1, {program.stop.get_token(), program.progress("intervals")}});
+  }
   rows.emplace_back("verdicts", text_of(answer.counts));
   answer.worst = std::move(suite.worst);
   answer.more = study_json(suite);
+  add_intervals(intervals, rows, answer);
   answer.text = lines(rows);
   return answer;
 }
@@ -80,6 +121,11 @@ CLI::Option* add_options(CLI::App& verb, VerifyText& text) {
   verb.add_option("--poses", text.poses,
                   "Of --phantoms: poses of each solid, spacing and sampling; default 6")
       ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  verb.add_option("--solids", text.solids,
+                  "Of --phantoms: solids whose intervals of volume and area are held against the truth; "
+                  "default 400")
+      ->check(CLI::Range(1, 1000000))
       ->type_name("N");
   return verb.add_flag("--phantoms", text.phantoms,
                        "Both kernels on solids with known volume and area, in all samplings");

@@ -23,6 +23,7 @@ SuiteAnswer verify_plan(Program& program, const VerifyText& text) {
   answer.certificates = result_json(result)["certificates"];
   answer.counts = verdict_counts(result.evaluation);
   answer.text = verdict_text(result.evaluation);
+  need_evidence(answer, text);
   for (const Object& object : result.evaluation.objects) {
     if (object.certificate)
       verify::keep_worse(answer.worst, {*object.certificate, object.voxel.octree, object.mesh.within});
@@ -52,6 +53,8 @@ SuiteAnswer chosen(Program& program, VerifyText& text, const std::vector<CLI::Op
     if (!std::filesystem::exists(text.subject[i]))
       throw CLI::ValidationError("subject", "no such file: " + text.subject[i]);
   if (operands) return verify_operands(program, text);
+  if (text.answer) throw CLI::ValidationError("--answer", "for A OP B only");
+  if (holds_questions(text.subject.front())) return verify_questions(program, text);
   if (text.operand_voxel_mm) throw CLI::ValidationError("--voxel", "for A OP B of two meshes only");
   text.plan = text.subject.front();
   return verify_plan(program, text);
@@ -101,11 +104,14 @@ void add_verify_verbs(Program& program) {
   verb.add_option(
           "subject", text->subject,
           "A .plan.json; or A OP B: two meshes or two label maps of any program, and union, intersection "
-          "or difference")
+          "or difference; or a folder or .json file of such questions with their results")
       ->expected(1, 3)
-      ->type_name("PLAN | A OP B");
+      ->type_name("PLAN | A OP B | FOLDER");
   add_plan_options(verb, *text);
   add_operand_options(verb, *text);
+  verb.add_flag(
+      "--accept-unresolved", text->accept_unresolved,
+      "Status 0 although a verdict is PASS for lack of evidence alone: voxels too coarse for the object");
   verb.add_option("--report", text->report,
                   "A folder for report.html, one page with verdicts, plots and pictures, and result.json")
       ->type_name("FOLDER");

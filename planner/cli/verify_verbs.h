@@ -19,8 +19,11 @@ struct VerifyText : PlanIn {
   std::vector<std::string> subject;  ///< a plan, or A OP B; no suite was named
   std::optional<double> operand_voxel_mm;
   std::optional<std::filesystem::path> report;  ///< a folder for report.html and result.json
+  std::optional<std::filesystem::path> answer;  ///< somebody's, to A OP B
+  bool accept_unresolved = false;
   bool faults = false, phantoms = false, thesis = false;
-  int poses = 6;  ///< of --phantoms
+  int poses = 6;     ///< of --phantoms
+  int solids = 400;  ///< of its intervals
   int random_count = 0;
   std::uint64_t seed = 1;
   std::filesystem::path failures = "disagreements";

@@ -155,7 +155,7 @@ Json to_json(const verify::Certificate& certificate) {
       {"verdict", verify::to_string(certificate.verdict)},
       {"resolved", certificate.resolved()},
       {"smallest_extent_voxels",
-       certificate.unresolved ? Json(certificate.unresolved->extent_voxels) : Json(nullptr)},
+       certificate.unresolved ? finite(certificate.unresolved->extent_voxels) : Json(nullptr)},
       {"not_resolved_because", certificate.unresolved ? Json(certificate.unresolved->reason) : Json(nullptr)},
       {"reasons", certificate.reasons},
       {"lineage", {{"voxel", certificate.voxel.lineage}, {"mesh", certificate.mesh.lineage}}},

@@ -6,9 +6,11 @@
 #include <set>
 
 #include "planner/measure/gap.h"
+#include "planner/measure/recommended.h"
 #include "planner/measure/result_json.h"
 #include "planner/measure/surface_questions.h"
 #include "planner/operation/measure_file.h"
+#include "planner/operation/trace.h"
 #include "planner/table/operation.h"
 #include "voxel/measure/flat_parts.h"
 
@@ -55,6 +57,28 @@ Digitised digitised_of(const AnswerBench& bench, const Object& object) {
     if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), *shift_mm);
   }
   return digitised;
+}
+
+/// The recommended volume and area. The mesh's, where there is one: motions keep it and cuts are exact in it,
+/// so that a moved object has its still one's interval, and parts share the doubt of their whole's windows.
+verify::SizeIntervals intervals_of(const AnswerBench& bench, const Object& object,
+                                   const Digitised& digitised) {
+  if (!object.mesh.within || object.bound.spacing_mm == glm::dvec3(0.0))
+    return intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice());
+  SurfaceSamples samples;
+  for (int axis = 0; axis < 3; ++axis) samples.scan_edges[axis] *= object.bound.spacing_mm[axis];
+  samples.window_shift_mm = digitised.shift_mm;
+  for (const Shown& window : object.bound.windows) {
+    samples.grey = window.grey;
+    samples.moved_from_still = window.moved_from_still;
+    for (const ScanRecord& scan : bench.scans) {
+      if (scan.name != window.scan) continue;
+      samples.scan_edges = glm::dmat3(scan.lattice.lps_from_voxel);
+      samples.voxels_are_samples = on_samples(scan.lattice, window.grey.universe().lattice());
+    }
+    break;
+  }
+  return intervals_of_surface(*object.mesh.within, samples);
 }
 
 Json points_json(const Measure& asked, const AnswerBench& bench) {
@@ -115,18 +139,21 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
             {"mesh", nullptr},
             {"difference_mm3", nullptr},
             {"difference_percent", nullptr}};
-  const HalfWidth width = volume_half_width(object.voxel.measures, digitised_of(bench, object));
+  const Digitised digitised = digitised_of(bench, object);
+  const verify::SizeIntervals recommended = intervals_of(bench, object, digitised);
+  json["volume"] = to_json(recommended.volume_mm3, "mm3");
+  json["area"] = to_json(recommended.area_mm2, "mm2");
+  const HalfWidth width = volume_half_width(object.voxel.measures, digitised);
   json["volume_half_width_mm3"] = width.value;
   json["volume_half_width_terms"] = to_json(width);
   json["area_half_width_mm2"] = nullptr;
-  if (object.certificate)
-    for (const verify::Comparison& comparison : object.certificate->comparisons)
-      if (comparison.quantity == "area" && comparison.tolerance)
-        json["area_half_width_mm2"] = *comparison.tolerance;
   if (object.mesh.within) {
     const brep::Measures& measures = object.mesh.within->measures();
     const double mesh_mm3 = measures.volume_mm3;
     json["area_mm2"] = measures.area_mm2;
+    // The triangles lose what the recommended area gains, and have its doubt.
+    json["area_half_width_mm2"] =
+        recommended.area_mm2.half_width + std::abs(recommended.area_mm2.value - measures.area_mm2);
     json["mesh"] = to_json(measures);
     json["difference_mm3"] = voxels_mm3 - mesh_mm3;
     if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;

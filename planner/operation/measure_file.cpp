@@ -8,8 +8,10 @@
 #include "brep/mesh/measure.h"
 #include "convert/surface/isosurface.h"
 #include "planner/file/mesh_file.h"
+#include "planner/measure/recommended.h"
 #include "planner/measure/result_json.h"
 #include "planner/measure/surface_questions.h"
+#include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/plan_universe.h"
 #include "verify/boundary_model.h"
@@ -137,6 +139,10 @@ void add_half_width(const voxel::Octree& octree, Digitised digitised, Json& json
   const HalfWidth width = volume_half_width(voxel::measure(octree), digitised);
   json["volume_half_width_mm3"] = width.value;
   json["volume_half_width_terms"] = to_json(width);
+  const verify::SizeIntervals recommended =
+      intervals_of_count(voxel::measure(octree), digitised, octree.universe().lattice());
+  json["volume"] = to_json(recommended.volume_mm3, "mm3");
+  json["area"] = to_json(recommended.area_mm2, "mm2");
 }
 
 void add_area_half_width(const brep::Solid& surface, const voxel::Lattice& lattice,
@@ -236,6 +242,11 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   }
   const brep::Size& surface = isosurface.size();
   add_area_half_width(isosurface, grey->universe().lattice(), digitised, json);
+  const verify::SizeIntervals recommended = intervals_of_surface(
+      isosurface, {glm::dmat3(scene.lattice.lps_from_voxel), glm::dmat4(1.0), grey,
+                   on_samples(scene.lattice, grey->universe().lattice()), digitised.shift_mm});
+  json["volume"] = to_json(recommended.volume_mm3, "mm3");
+  json["area"] = to_json(recommended.area_mm2, "mm2");
   json["area_crofton13_mm2"] = json["area_mm2"];
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;

@@ -56,6 +56,7 @@ VerdictCounts& VerdictCounts::operator+=(const VerdictCounts& other) {
   fail += other.fail;
   not_resolved += other.not_resolved;
   pass_not_resolved += other.pass_not_resolved;
+  without_evidence += other.without_evidence;
   return *this;
 }
 
@@ -65,6 +66,7 @@ void add(VerdictCounts& counts, const verify::Certificate& certificate) {
   if (certificate.resolved()) return;
   ++counts.not_resolved;
   if (passes) ++counts.pass_not_resolved;
+  if (passes && !verify::is_evident(certificate)) ++counts.without_evidence;
 }
 
 VerdictCounts verdict_counts(const Evaluation& evaluation) {
@@ -78,7 +80,8 @@ Json to_json(const VerdictCounts& counts) {
   return {{"PASS", counts.pass},
           {"WARN", counts.warn},
           {"FAIL", counts.fail},
-          {"not_resolved", counts.not_resolved}};
+          {"not_resolved", counts.not_resolved},
+          {"without_evidence", counts.without_evidence}};
 }
 
 std::string text_of(const VerdictCounts& counts) {

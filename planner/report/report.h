@@ -37,6 +37,7 @@ struct VerdictCounts {
   int pass = 0, warn = 0, fail = 0;
   int not_resolved = 0;       ///< of all three, the objects that are too small or thin for their voxels
   int pass_not_resolved = 0;  ///< of `pass` alone: these prove little
+  int without_evidence = 0;   ///< of `pass` alone: these prove nothing (verify::is_evident())
 
   VerdictCounts& operator+=(const VerdictCounts& other);
 };

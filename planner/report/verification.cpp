@@ -244,15 +244,17 @@ std::string table_of(const std::string& title, const Json& entries) {
 }
 
 std::string suite_tables(const Json& answer) {
-  constexpr std::array<std::pair<const char*, const char*>, 9> titles{{{"checks", "Checks"},
-                                                                       {"calibration", "Calibration"},
-                                                                       {"tightness", "Tightness"},
-                                                                       {"convergence", "Convergence"},
-                                                                       {"faults", "Seeded faults"},
-                                                                       {"power", "Detection power"},
-                                                                       {"missed", "Missed faults"},
-                                                                       {"disagreements", "Disagreements"},
-                                                                       {"tables", "Recomputed entries"}}};
+  constexpr std::array<std::pair<const char*, const char*>, 10> titles{
+      {{"checks", "Checks"},
+       {"intervals", "Coverage of intervals"},
+       {"calibration", "Calibration"},
+       {"tightness", "Tightness"},
+       {"convergence", "Convergence"},
+       {"faults", "Seeded faults"},
+       {"power", "Detection power"},
+       {"missed", "Missed faults"},
+       {"disagreements", "Disagreements"},
+       {"tables", "Recomputed entries"}}};
   std::string html;
   for (const auto& [key, title] : titles)
     if (answer.contains(key)) html += table_of(title, answer.at(key));

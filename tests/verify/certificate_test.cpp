@@ -305,7 +305,7 @@ TEST(CertifyBounded, AFewVoxelsProveNothing) {
   const Certificate certificate = certify(both_kernels(ball({0, 0, 0}, 2.5), 1.0, 1.0, 6.0));
   EXPECT_EQ(certificate.verdict, Verdict::Pass) << told(certificate);
   ASSERT_FALSE(certificate.resolved());
-  EXPECT_NEAR(certificate.unresolved->extent_voxels, 4.0, 0.1);
+  EXPECT_NEAR(certificate.unresolved->extent_voxels.value(), 4.0, 0.1);
   EXPECT_EQ(verdict_text(certificate),
             "PASS, not resolved: the object's smallest extent is 4 voxels, six are needed");
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "voxel/measure/cell_counts.h"
+#include "voxel/measure/crofton.h"
 #include "voxel/tree/slice_bits.h"
 
 // Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of the
@@ -252,6 +253,19 @@ glm::dmat3 inertia_mm5(const Lattice& lattice, double count, const glm::dvec3& f
 }
 
 }  // namespace
+
+glm::dvec3 crofton13_of_flat(const Lattice& lattice) {
+  const std::array<double, 13> share = shares(lattice);
+  glm::dvec3 seen(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3 normal = glm::normalize(glm::cross(glm::dvec3(lattice.lps_from_voxel[(axis + 1) % 3]),
+                                                        glm::dvec3(lattice.lps_from_voxel[(axis + 2) % 3])));
+    for (std::size_t d = 0; d < directions.size(); ++d)
+      seen[axis] +=
+          2.0 * share[d] * std::abs(glm::dot(normal, glm::normalize(step_mm(lattice, directions[d]))));
+  }
+  return seen;
+}
 
 Measures measure(const Octree& octree) {
   const Lattice lattice = octree.universe().lattice();

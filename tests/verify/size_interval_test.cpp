@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "verify/size_interval.h"
+
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
+
+#include "brep/boolean/boolean.h"
+#include "brep/mesh/move.h"
+#include "brep/shape/prism.h"
+#include "convert/surface/isosurface.h"
+#include "verify/implicit_solid.h"
+#include "verify/phantom_scan.h"
+
+namespace octotomy::verify {
+namespace {
+
+SolidPhantom ball() {
+  SolidPhantomOptions options;
+  options.voxels = 32;
+  options.radius_voxels = 11.0;
+  options.centre_mm = {0.1, 0.2, 0.3};
+  return solid_phantom("sphere", options);
+}
+
+voxel::Scene scan_of_ball(double blur_voxels) {
+  Chance chance(1);
+  return phantom_scan(digitise_partial(ball()), {blur_voxels, 0.0}, chance);
+}
+
+brep::Solid surface_of(const voxel::Scene& scan) {
+  return brep::trusted_solid(convert::isosurface(scan, 0.0, std::numeric_limits<double>::infinity()),
+                             brep::Proof::Construction);
+}
+
+double blur_found(const voxel::Scene& scan) {
+  const auto nearest = [&](const glm::dvec3& p_mm) {
+    const glm::dvec3 q = scan.lattice.voxel(p_mm), first = glm::floor(q), t = q - first;
+    double value = 0.0;
+    for (int i = 0; i < 8; ++i) {
+      const glm::dvec3 corner(i & 1, (i >> 1) & 1, i >> 2), weight = glm::mix(1.0 - t, t, corner);
+      const glm::ivec3 at(first + corner);
+      value += weight.x * weight.y * weight.z *
+               std::get<voxel::Int16Samples>(
+                   scan.samples)[static_cast<std::size_t>((at.z * 32 + at.y) * 32 + at.x)];
+    }
+    return value;
+  };
+  return blur_of(surface_of(scan), glm::dmat3(1.0), nearest);
+}
+
+TEST(SizeInterval, TheBlurOfAScanIsFoundFromItsSamples) {
+  EXPECT_NEAR(blur_found(scan_of_ball(0.7)), 0.49, 0.1);
+  EXPECT_LT(blur_found(scan_of_ball(0.0)), 0.1);
+}
+
+TEST(SizeInterval, HoldsABallThatItsBlurMadeSmallerAndNoneThatIsTwoPerCentLarger) {
+  const voxel::Scene scan = scan_of_ball(0.7);
+  const brep::Solid surface = surface_of(scan);
+  SampledFrom from;
+  from.blur_samples2 = blur_found(scan);
+  const SizeIntervals found = size_intervals(surface, from);
+  const SolidPhantom truth = ball();
+  EXPECT_NEAR(found.volume_mm3.value, truth.volume_mm3, found.volume_mm3.half_width);
+  EXPECT_NEAR(found.area_mm2.value, truth.area_mm2, found.area_mm2.half_width);
+  // The isosurface itself is further off than the recommended value.
+  EXPECT_LT(std::abs(found.volume_mm3.value - truth.volume_mm3),
+            0.5 * std::abs(surface.measures().volume_mm3 - truth.volume_mm3));
+  EXPECT_GT(std::abs(1.06 * found.volume_mm3.value - truth.volume_mm3), found.volume_mm3.half_width);
+}
+
+TEST(SizeInterval, AMotionKeepsBoth) {
+  const brep::Solid surface = surface_of(scan_of_ball(0.0));
+  const glm::dmat3 turn = turned({10, 20, 30});
+  SampledFrom still, moved;
+  still.sample_edges = glm::dmat3({1, 0, 0}, {0, 1, 0}, {0, 0, 1});
+  moved.sample_edges = turn * still.sample_edges;
+  const SizeIntervals here = size_intervals(surface, still),
+                      there = size_intervals(brep::moved(surface, glm::dmat4(turn)), moved);
+  EXPECT_NEAR(there.volume_mm3.value, here.volume_mm3.value, 1e-6 * here.volume_mm3.value);
+  EXPECT_NEAR(there.volume_mm3.half_width, here.volume_mm3.half_width, 0.02 * here.volume_mm3.half_width);
+  EXPECT_NEAR(there.area_mm2.half_width, here.area_mm2.half_width, 0.05 * here.area_mm2.half_width);
+}
+
+TEST(SizeInterval, PartsAddUpToTheirWholeAndAreNoSurerOfTheirWindow) {
+  const brep::Solid whole = surface_of(scan_of_ball(0.0));
+  brep::Prism prism;
+  prism.polygons_mm = {{{-20.0, -20.0}, {3.3, -20.0}, {3.3, 20.0}, {-20.0, 20.0}}};
+  prism.from_mm = -20.0;
+  prism.to_mm = 20.0;
+  const brep::Booleans parts = brep::booleans(whole, brep::solid_of(prism), {false, true, true, false});
+  SampledFrom from;
+  from.window_shift_mm = 0.05;
+  const auto window_of = [&](const SizeIntervals& intervals) {
+    double half_width = 0.0;
+    for (const DoubtSource& source : intervals.volume_mm3.sources)
+      if (source.name == "window") half_width = source.half_width;
+    return half_width;
+  };
+  const SizeIntervals all = size_intervals(whole, from), piece = size_intervals(*parts.intersection, from),
+                      rest = size_intervals(*parts.a_minus_b, from);
+  // A cut is exact: its rim adds nothing to either part.
+  EXPECT_NEAR(piece.volume_mm3.value + rest.volume_mm3.value, all.volume_mm3.value,
+              0.002 * all.volume_mm3.value);
+  EXPECT_GE(window_of(piece) + window_of(rest), window_of(all));
+}
+
+}  // namespace
+}  // namespace octotomy::verify
