@@ -76,7 +76,8 @@ int info_of_scan(const Program& program, const std::filesystem::path& path, cons
     for (const Json& series : json["series"])
       text += "  series " + series["choice"].get<std::string>() + ": '" +
               series["description"].get<std::string>() + "', " + series["modality"].get<std::string>() +
-              (series["stack"] == "" ? "" : ", " + series["stack"].get<std::string>()) + ", " + std::to_string(series["slices"].get<int>()) + " slices\n";
+              (series["stack"] == "" ? "" : ", " + series["stack"].get<std::string>()) + ", " +
+              std::to_string(series["slices"].get<int>()) + " slices\n";
   for (const voxel::Finding& finding : scene.audit)
     text += "  " + to_string(finding.verdict) + "  " + finding.check + ": " + finding.detail + "\n";
   program.say(json, text);
