@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <set>
 
 #include "planner/operation/combine.h"
+#include "planner/plan/dependence.h"
 #include "voxel/scan/image_file.h"
 
 namespace octotomy::planner {
@@ -54,6 +56,20 @@ std::vector<std::string> final_pieces(const Plan& plan, const Evaluation& evalua
 std::string still_of(const Evaluation& evaluation, std::string id) {
   while (const auto& moved = evaluation.object(id).moved) id = moved->object;
   return id;
+}
+
+/// The first piece that an object is made of, where something has moved on the way: then the object as it
+/// was before its own move shows no untouched patient. Null where nothing has.
+const Object* untouched(const Plan& plan, const Evaluation& evaluation, const std::string& id) {
+  const std::set<std::string> needed = needed_for(plan, {id});
+  const Object* first = nullptr;
+  bool moved = false;
+  for (const Object& object : evaluation.objects) {
+    if (!needed.contains(object.id) || object.is_tool) continue;
+    if (first == nullptr) first = &object;
+    moved = moved || object.moved;
+  }
+  return moved ? first : nullptr;
 }
 
 struct Frame {
@@ -124,7 +140,14 @@ FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
     const glm::vec3 colour = plain ? bone : accents[accent++ % accents.size()];
     bone_taken = bone_taken || plain;
     scene.moves = scene.moves || still != id;
-    scene.before.push_back(drawn(evaluation.object(still), colour));
+    if (const Object* first = untouched(plan, evaluation, still)) {
+      const bool is_there = std::any_of(scene.before.begin(), scene.before.end(),
+                                        [&](const auto& object) { return object.name == first->id; });
+      if (!is_there) scene.before.push_back(drawn(*first, bone));
+      scene.moves = true;
+    } else {
+      scene.before.push_back(drawn(evaluation.object(still), colour));
+    }
     scene.after.push_back(drawn(evaluation.object(id), colour));
   }
   return scene;

@@ -77,7 +77,8 @@ TEST_F(PlanDocument, PreviewDrawsOneStepAndTellsAMaskThatCutsNothing) {
   expect_refused(told, "step 'cut'");
   write("my.plan.json", plan("0", R"(, {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
       "polygons_mm": [[[-15, 13.5], [15, 13.5], [15, 15], [-15, 15]]]}]},
-      {"id": "cap", "do": "combine", "expression": "ball & cut"}, {"id": "cup", "do": "combine", "expression": "ball - cut"})"));
+      {"id": "cap", "do": "combine", "expression": "ball & cut"}, {"id": "cup", "do": "combine",
+          "expression": "ball - cut"})"));
   const auto drawn = run("preview my.plan.json cup -o cup.png --view left --size 64 --json");
   EXPECT_EQ(drawn.status, 0) << drawn.errors;
   EXPECT_EQ(tests::bytes_of(folder_ / "cup.png").substr(1, 3), "PNG");

@@ -11,8 +11,10 @@ using namespace tests;
 
 /// Caps of the ball above 5 mm and below -5 mm; the hinge lies 40 mm behind, between them.
 std::string jaws(const std::string& more) {
-  return R"({"id": "high", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
-      {"id": "low", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[[-30, -5], [30, -5], [30, -30], [-30, -30]]]}]},
+  return R"({"id": "high", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "low", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, -5], [30, -5], [30, -30], [-30, -30]]]}]},
       {"id": "upper", "do": "combine", "expression": "ball & high"},
       {"id": "lower", "do": "combine", "expression": "ball & low"}, )" +
          more;
@@ -27,8 +29,10 @@ bool overlap(const Evaluation& evaluation, const std::string& a, const std::stri
 TEST(AutorotateStep, TheLowerJawClosesToFirstContactAndNoFurther) {
   const TestFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, jaws(R"(
-      {"id": "closed", "do": "autorotate", "object": "lower", "against": "upper", "condyles": [[-20, 40, 0], [20, 40, 0]]},
-      {"id": "further", "do": "move", "object": "closed", "rotate": {"degrees": 1, "through": [[20, 40, 0], [-20, 40, 0]]}})")));
+      {"id": "closed", "do": "autorotate", "object": "lower", "against": "upper",
+          "condyles": [[-20, 40, 0], [20, 40, 0]]},
+      {"id": "further", "do": "move", "object": "closed", "rotate": {"degrees": 1,
+          "through": [[20, 40, 0], [-20, 40, 0]]}})")));
   // The front edges are farthest from the hinge and meet first: twice the angle at which they are seen.
   const double front_mm = 40.0 + std::sqrt(ball_radius_mm * ball_radius_mm - 25.0);
   const double truth_deg = 2.0 * glm::degrees(std::atan2(5.0, front_mm));
@@ -44,7 +48,8 @@ TEST(AutorotateStep, AJawThatOverlapsOpens) {
   const TestFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, jaws(R"(
       {"id": "deep", "do": "move", "object": "lower", "translate_mm": [0, 0, 12]},
-      {"id": "freed", "do": "autorotate", "object": "deep", "against": "upper", "condyles": [[-20, 40, 0], [20, 40, 0]]})")));
+      {"id": "freed", "do": "autorotate", "object": "deep", "against": "upper",
+          "condyles": [[-20, 40, 0], [20, 40, 0]]})")));
   EXPECT_LT(evaluation.object("freed").moved->details.at("closed_deg").get<double>(), -0.5);
   EXPECT_TRUE(overlap(evaluation, "deep", "upper"));
   EXPECT_FALSE(overlap(evaluation, "freed", "upper"));

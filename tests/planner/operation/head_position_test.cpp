@@ -52,7 +52,8 @@ TEST(HeadPositionStep, RegionsAndWordsAreOfTheHeadAsItIsHeld) {
   // Held upside down, the upper half of the anterior view is the lower half of the scan.
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "held", "do": "head_position", "roll_deg": 180},
-      {"id": "cut", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
       {"id": "cap", "do": "combine", "expression": "ball & cut"},
       {"id": "up", "do": "move", "object": "cap", "by": {"up_mm": 4}})"));
   EXPECT_LT(evaluation.object("cap").voxel.measures.centroid_mm->z, -5.0);
@@ -61,7 +62,8 @@ TEST(HeadPositionStep, RegionsAndWordsAreOfTheHeadAsItIsHeld) {
   // An oblique cut in a head held askew is certified, too.
   const Evaluation askew = evaluate(ball_plan(folder, R"(
       {"id": "held", "do": "head_position", "roll_deg": 12, "pitch_deg": -7, "yaw_deg": 3},
-      {"id": "cut", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
       {"id": "cap", "do": "combine", "expression": "ball & cut"})"));
   expect_certified(askew.object("cap"), cap_mm3(ball_radius_mm, 5.0), 0.03);
 }

@@ -12,7 +12,8 @@ using namespace tests;
 
 constexpr const char* marks = R"({"id": "marks", "do": "landmarks", "points": [
     {"name": "front", "point_mm": [0, -20, 0]}, {"name": "rear", "point_mm": [0, 20, 0]},
-    {"name": "left", "point_mm": [20, 0, 0]}, {"name": "core", "point_mm": [0, 4, 0]}, {"name": "far", "point_mm": [0, -26, 0]}]}, )";
+    {"name": "left", "point_mm": [20, 0, 0]}, {"name": "core", "point_mm": [0, 4, 0]}, {"name": "far",
+          "point_mm": [0, -26, 0]}]}, )";
 
 class MoveStep : public testing::Test {
  protected:

@@ -15,7 +15,8 @@ using namespace tests;
 std::string steps(const std::string& up_mm, const std::string& front_mm = "[0, -20, 0]") {
   return R"({"id": "marks", "do": "landmarks", "points": [{"name": "front", "point_mm": )" + front_mm +
          R"(}]},
-      {"id": "cut", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
       {"id": "cap", "do": "combine", "expression": "ball & cut"},
       {"id": "cup", "do": "combine", "expression": "ball - cut"},
       {"id": "moved", "do": "move", "object": "cap", "translate_mm": [0, 0, )" +
@@ -75,7 +76,8 @@ TEST(Dependence, AFileThatAStepReadsCountsByItsContent) {
 TEST(Dependence, MeshesAreNeededByWhatIsFittedOnThem) {
   const TestFolder folder;
   const Plan plan = ball_plan(folder, steps("2") + R"(,
-      {"id": "twin", "do": "mirror", "object": "cap", "fit": true}, {"id": "all", "do": "combine", "expression": "twin | cup"})");
+      {"id": "twin", "do": "mirror", "object": "cap", "fit": true}, {"id": "all", "do": "combine",
+          "expression": "twin | cup"})");
   EXPECT_EQ(needing_meshes(plan, needed_for(plan, {"moved"})), Ids{});
   EXPECT_EQ(needing_meshes(plan, needed_for(plan, {"all"})), (Ids{"ball", "cut", "cap"}));
 }

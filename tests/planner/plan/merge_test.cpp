@@ -14,7 +14,8 @@ Json base() {
   return Json::parse(R"({"octotomy_plan": 1, "name": "p", "scans": {"ct": {"path": "a.nrrd", "sha256": null}},
     "steps": [
       {"id": "skull", "do": "window", "scan": "ct", "low": 300},
-      {"id": "m", "do": "move", "object": "skull", "translate_mm": [0, -6, 2], "rotate": {"degrees": 5, "axis": [1, 0, 0]}},
+      {"id": "m", "do": "move", "object": "skull", "translate_mm": [0, -6, 2], "rotate": {"degrees": 5,
+          "axis": [1, 0, 0]}},
       {"id": "size", "do": "measure", "object": "m"}]})");
 }
 Plan plan(const Json& json) {

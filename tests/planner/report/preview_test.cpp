@@ -13,7 +13,8 @@ using namespace tests;
 Plan plan_in(const TestFolder& folder) {
   return ball_plan(folder, R"(
       {"id": "marks", "do": "landmarks", "points": [{"name": "front", "point_mm": [0, -20, 0]}]},
-      {"id": "cut", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
       {"id": "cap", "do": "combine", "expression": "ball & cut"},
       {"id": "moved", "do": "move", "object": "cap", "translate_mm": [0, 0, 3]},
       {"id": "off", "do": "combine", "expression": "ball - cut"},
