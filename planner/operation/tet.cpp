@@ -151,6 +151,9 @@ void fill(const Tet& asked, Filled& filled, const std::function<convert::Tetrahe
                                               : ": mend or simplify the surface, or take --fallback"));
   } catch (const voxel::Stopped&) {
     throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
+  } catch (const voxel::Error& error) {
+    if (!asked.fallback) throw voxel::Error(error.code(), std::string(error.what()) + "; or take --fallback");
+    filled.fallback = error.what();
   } catch (const std::runtime_error& error) {
     if (!asked.fallback) throw std::runtime_error(std::string(error.what()) + "; or take --fallback");
     filled.fallback = error.what();

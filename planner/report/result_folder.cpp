@@ -114,20 +114,21 @@ fs::path hidden_prefix(const fs::path& place) {
   return "." + place.filename().string() + ".octotomy-";
 }
 
-[[noreturn]] void refuse_closed(const fs::path& folder, const fs::path& named) {
-  refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
+void need_writable(const fs::path& folder, const fs::path& named) {
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse(named.string() + ": " + folder.string() + " cannot be written to: choose another -o");
 }
 
-/// Tries it: a system may grant what it then refuses.
-void need_writable(const fs::path& folder, const fs::path& named) {
-  // Not a result's hidden name: what such a folder holds may be somebody else's.
+/// Tries it, as a system may grant what it then refuses. Not under a result's hidden name: what such a folder
+/// holds may be somebody else's.
+void try_to_write(fs::path folder, const fs::path& named) {
   constexpr const char* prefix = ".octotomy-";
+  while (!is_there(folder)) folder = folder.parent_path();
   try {
     voxel::remove_abandoned(folder, prefix);
     const voxel::UnfinishedFolder trial(folder, prefix);
   } catch (const voxel::Error& error) {
-    if (error.code() == ErrorCode::Resource) throw;
-    refuse_closed(folder, named);
+    throw voxel::Error(error.code(), named.string() + ": " + error.what());
   }
 }
 
@@ -192,7 +193,7 @@ List need_place(const fs::path& place, const fs::path& named, const std::vector<
            ": is mounted there, and a result replaces its folder: choose a folder in it, as " +
            (named / "report").string());
   need_writable(place.parent_path(), named);
-  if (::access(place.c_str(), W_OK | X_OK) != 0) refuse_closed(place, named);
+  need_writable(place, named);
   List list = need_earlier_result(place, named);
   for (const fs::path& name : names) need_free(place, list, name.lexically_normal(), named);
   return list;
@@ -331,7 +332,9 @@ void take_usual_mode(const fs::path& folder) {
 }  // namespace
 
 void need_result_folder(const fs::path& folder, const std::vector<fs::path>& names) {
-  need_place(place_of(folder), folder, names);
+  const fs::path place = place_of(folder);
+  need_place(place, folder, names);
+  try_to_write(place.parent_path(), folder);
 }
 
 ResultFolder::ResultFolder(const fs::path& folder, const std::vector<fs::path>& names)
