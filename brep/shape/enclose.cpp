@@ -48,7 +48,10 @@ Triangles sound_triangles(const Triangles& surface) {
         }))
       sound.faces.push_back(face);
   if (sound.faces.empty())
-    throw Error(ErrorCode::Geometry, "there is no triangle with finite points to enclose anything");
+    throw Error(
+        ErrorCode::Geometry,
+        "nothing is left to enclose anything: there are only sheets, lone triangles or points that are "
+        "not finite");
   return sound;
 }
 
