@@ -48,7 +48,10 @@ Triangles sound_triangles(const Triangles& surface) {
         }))
       sound.faces.push_back(face);
   if (sound.faces.empty())
-    throw Error(ErrorCode::Geometry, "there is no triangle with finite points to enclose anything");
+    throw Error(
+        ErrorCode::Geometry,
+        "nothing is left to enclose anything: there are only sheets, lone triangles or points that are "
+        "not finite");
   return sound;
 }
 
@@ -231,6 +234,20 @@ void add_neighbours(const Place& cell, const std::array<double, 8>& values, cons
     }
 }
 
+/// What each cell appends, in parallel, in the cells' order.
+template <typename Item, typename Append>
+std::vector<Item> in_order(const std::vector<std::uint64_t>& cells, const Append& append) {
+  constexpr std::size_t block = 4096;
+  std::vector<std::vector<Item>> parts((cells.size() + block - 1) / block);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
+    for (std::size_t i = b * block; i < std::min((b + 1) * block, cells.size()); ++i)
+      append(place_of(cells[i]), parts[b]);
+  });
+  std::vector<Item> items;
+  for (const std::vector<Item>& part : parts) items.insert(items.end(), part.begin(), part.end());
+  return items;
+}
+
 /// Every cell that the surface passes, with others, ascending.
 std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const Lattice& lattice,
                                     Field& field, const Progress& progress) {
@@ -244,10 +261,11 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
     if (cells.size() > most_cells || field.size() > 2 * most_cells)
       throw Error(ErrorCode::Geometry, "the surface passes more than 2^24 cells of " +
                                            short_text(lattice.cell_mm) + " mm: take larger ones, --cell");
-    std::vector<std::uint64_t> beyond;
-    for (const std::uint64_t cell : fresh)
-      add_neighbours(place_of(cell), field.about(place_of(cell)), lattice, beyond);
-    fresh = add_new(std::move(beyond), cells);
+    fresh = add_new(in_order<std::uint64_t>(fresh,
+                                            [&](const Place& cell, std::vector<std::uint64_t>& beyond) {
+                                              add_neighbours(cell, field.about(cell), lattice, beyond);
+                                            }),
+                    cells);
   }
   return cells;
 }
@@ -375,9 +393,10 @@ Enclosed enclose(const Triangles& given, const EncloseOptions& options) {
   Field field(surface, lattice);
   const std::vector<std::uint64_t> cells = cells_of(passages, lattice, field, options.progress);
   options.progress.at(0.6);
-  std::vector<EdgeTriangle> triangles;
-  for (const std::uint64_t cell : cells)
-    add_triangles(place_of(cell), field.about(place_of(cell)), triangles);
+  const auto triangles =
+      in_order<EdgeTriangle>(cells, [&](const Place& cell, std::vector<EdgeTriangle>& made) {
+        add_triangles(cell, field.about(cell), made);
+      });
   if (triangles.empty())
     throw Error(
         ErrorCode::Geometry,
