@@ -66,6 +66,11 @@ voxel::Octree labelled(const Program& program, const fs::path& path, Timings& ti
 struct Answered {
   verify::KernelAnswers kernels;
   std::vector<verify::Certificate> certificates;
+  std::vector<std::string> not_covered;
+  double volume_mm3() const {
+    return static_cast<double>(kernels.octree.voxel_count()) *
+           kernels.octree.universe().lattice().voxel_mm3();
+  }
 };
 
 Answered of_label_maps(Program& program, const Question& asked, Timings& timings) {
@@ -84,11 +89,17 @@ Answered of_label_maps(Program& program, const Question& asked, Timings& timings
   const voxel::Expression expression = operation == brep::Operation::Union          ? a | b
                                        : operation == brep::Operation::Intersection ? a & b
                                                                                     : a - b;
-  Answered answered{
-      {std::move(given.octree), std::move(given.solid), std::move(given.findings)},
-      {std::move(given.certificate), verify::certify_exact(verify::exact_answers(expression, progress))}};
-  answered.certificates[1].operation =
-      "the same with both sets refined and smaller by a quarter of a voxel all round, no faces shared";
+  Answered answered{{std::move(given.octree), std::move(given.solid), std::move(given.findings)}, {}, {}};
+  const std::string question = asked.a.string() + " " + asked.operation + " " + asked.b.string();
+  given.certificate.operation = question;
+  // Sets that touch themselves at an edge may have no manifold Boolean: then general position alone tells.
+  if (answered.kernels.solid)
+    answered.certificates.push_back(std::move(given.certificate));
+  else
+    answered.not_covered.push_back(question + " on the sets as given: " + given.certificate.reasons.front());
+  answered.certificates.push_back(verify::certify_exact(verify::exact_answers(expression, progress)));
+  answered.certificates.back().operation =
+      question + ", both sets refined and smaller by a quarter of a voxel all round, no faces shared";
   return answered;
 }
 
@@ -101,7 +112,8 @@ Answered of_meshes(Program& program, const Question& asked, const VerifyText& te
   const Stopwatch watch(timings, "verify");
   verify::OperationAnswers answers =
       verify::certify_operation(left, operation_of(asked.operation), right, options);
-  return {{*answers.octree, answers.solid, answers.findings}, {answers.certificate}};
+  answers.certificate.operation = asked.a.string() + " " + asked.operation + " " + asked.b.string();
+  return {{*answers.octree, answers.solid, answers.findings}, {answers.certificate}, {}};
 }
 
 /// Reads the answer and holds it against both kernels'.
@@ -134,7 +146,6 @@ Answered answered(Program& program, const Question& asked, const VerifyText& tex
     throw CLI::ValidationError("--voxel", "label maps have voxels of their own");
   Answered found =
       is_mesh(asked.a) ? of_meshes(program, asked, text, timings) : of_label_maps(program, asked, timings);
-  found.certificates.front().operation = asked.a.string() + " " + asked.operation + " " + asked.b.string();
   if (asked.answer)
     for (verify::Certificate& certificate : judged(*asked.answer, found.kernels, program, timings)) {
       certificate.operation = asked.answer->string() + ": " + certificate.operation;
@@ -225,7 +236,8 @@ std::string volume_text(double volume_mm3) {
 }
 
 /// A row of the table: the worst verdict of a question's certificates.
-Json row_of(const Question& asked, const std::vector<verify::Certificate>& certificates) {
+Json row_of(const Question& asked, const Answered& found) {
+  const std::vector<verify::Certificate>& certificates = found.certificates;
   const auto worst = std::max_element(
       certificates.begin(), certificates.end(),
       [](const verify::Certificate& a, const verify::Certificate& b) { return verify::is_worse(b, a); });
@@ -233,7 +245,7 @@ Json row_of(const Question& asked, const std::vector<verify::Certificate>& certi
            {"operation", asked.operation},
            {"verdict", verify::to_string(worst->verdict)},
            {"resolved", worst->resolved()},
-           {"voxel_mm3", certificates.front().voxel.volume_mm3},
+           {"voxel_mm3", found.volume_mm3()},
            {"mesh_mm3", certificates.front().mesh.volume_mm3},
            {"answer_mm3", nullptr},
            {"reason", worst->reasons.empty() ? "" : worst->reasons.front()}};
@@ -275,7 +287,8 @@ SuiteAnswer verify_questions(Program& program, const VerifyText& text) {
       answer.certificates.push_back(planner::to_json(certificate));
       add(answer.counts, certificate);
     }
-    const Json row = row_of(asked, found.certificates);
+    answer.not_covered.insert(answer.not_covered.end(), found.not_covered.begin(), found.not_covered.end());
+    const Json row = row_of(asked, found);
     rows.emplace_back(
         asked.name,
         row["verdict"].get<std::string>() + (row["resolved"] ? "" : ", not resolved") + ", voxel " +
@@ -297,7 +310,10 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
   const Answered found = answered(program, asked, text, answer.timings);
   const verify::Certificate& kernels = found.certificates.front();
   if (found.kernels.solid) answer.worst = {kernels, found.kernels.octree, found.kernels.solid};
-  answer.more["volume_mm3"] = kernels.voxel.volume_mm3;
+  answer.more["volume_mm3"] = found.volume_mm3();
+  answer.not_covered = found.not_covered;
+  for (const std::string& finding : found.not_covered) warn(finding);
+  answer.text = lines({{"volume", grouped(found.volume_mm3(), 3) + " mm\u00b3 by the voxel kernel"}});
   for (const verify::Certificate& certificate : found.certificates) {
     answer.certificates.push_back(planner::to_json(certificate));
     add(answer.counts, certificate);

@@ -68,8 +68,12 @@ verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const 
   const double flat_mm2 = digitised.flat_mm2.x + digitised.flat_mm2.y + digitised.flat_mm2.z;
   const double area_mm2 = measures.area_crofton13_mm2 + glm::dot(digitised.flat_mm2, 1.0 - seen);
   const double oblique_mm2 = (1.0 - std::min({seen.x, seen.y, seen.z})) * std::max(area_mm2 - flat_mm2, 0.0);
-  found.area_mm2 = {
-      area_mm2, oblique_mm2, {{"directions", "(1 - least share of a plane seen) (S - flats)", oblique_mm2}}};
+  // A flat part that is half an edge off takes that from the walls around it; parts count as two squares.
+  const double rims_mm2 = 4.0 * glm::dot(glm::sqrt(0.5 * digitised.flat_mm2), digitised.voxel_mm);
+  found.area_mm2 = {area_mm2,
+                    std::hypot(oblique_mm2, rims_mm2),
+                    {{"directions", "(1 - least share of a plane seen) (S - flats)", oblique_mm2},
+                     {"flat", "h/2 * perimeter of flat parts", rims_mm2}}};
   return found;
 }
 

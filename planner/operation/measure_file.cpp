@@ -43,6 +43,14 @@ FileAnswer said(Json json) {
                    json["area_estimator"].get<std::string>()},
       {"components", value("components", 0)},
       {"euler", value("euler", 0)}};
+  for (const char* key : {"volume", "area"}) {
+    if (!json.contains(key)) continue;
+    const Json& found = json[key];
+    rows.emplace_back(std::string("recommended ") + key,
+                      grouped(found["value"].get<double>(), 1) + " \u00b1 " +
+                          three_figures(found["half_width"].get<double>()) +
+                          (found["unit"] == "mm3" ? " mm\u00b3" : " mm\u00b2") + " in 99 of 100 cases");
+  }
   const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
   rows.insert(rows.end(), asked.begin(), asked.end());
   return {std::move(json), std::move(rows)};

@@ -60,11 +60,9 @@ TEST_F(Verify, TwoMeshesAndTwoLabelMapsOfAnyProgram) {
     EXPECT_EQ(maps.status, 0) << maps.errors << maps.out;
     const tests::Json json = tests::Json::parse(maps.out);
     EXPECT_EQ(json["certificates"][0]["tier"], "exact");
-    // The sets as they were given, and those in general position, which are smaller.
-    ASSERT_EQ(json["certificates"].size(), 2U);
-    EXPECT_EQ(json["volume_mm3"], json["certificates"][0]["voxel"]["volume_mm3"]);
-    EXPECT_EQ(json["volume_mm3"], json["certificates"][0]["mesh"]["volume_mm3"]);
-    EXPECT_GE(json["volume_mm3"], json["certificates"][1]["voxel"]["volume_mm3"]);
+    // The sets as they were given, where the mesh kernel has an answer, and in general position, smaller.
+    EXPECT_EQ(json["counts"]["PASS"], json["certificates"].size());
+    EXPECT_GE(json["volume_mm3"], json["certificates"].back()["voxel"]["volume_mm3"]);
   }
   const auto meshes =
       run("verify " + at("a.ply") + " union " + at("b.ply") + " --voxel 0.7 --json --report " + at("page"));
