@@ -84,7 +84,7 @@ def method(operation):
             lines.append(wrapped(text, " " * 8))
     lines.append('        """')
     passed = "".join(f', {name}={name_of[name]}' for name in said if name == name_of[name])
-    odd = "".join(f'"{name}": {name_of[name]}' for name in said if name != name_of[name])
+    odd = ", ".join(f'"{name}": {name_of[name]}' for name in said if name != name_of[name])
     passed += f", **{{{odd}}}" if odd else ""
     lines.append(f'        return self.add("{operation["title"]}", id{passed})')
     return "\n".join(lines)
