@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "planner/cli/numbers.h"
-#include "voxel/filter/tissue.h"
 #include "planner/table/json_file.h"
+#include "voxel/filter/tissue.h"
 
 namespace octotomy::planner::cli {
 namespace {

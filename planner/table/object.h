@@ -80,9 +80,9 @@ struct Object {
       : id(std::move(name)), kind(std::move(operation)), voxel(universe) {}
 
   std::string id;
-  std::string kind;        ///< the operation's name
-  std::string definition;  ///< in words: "skull & cut"
-  bool is_tool = false;    ///< only helps to make others, as a mask
+  std::string kind;              ///< the operation's name
+  std::string definition;        ///< in words: "skull & cut"
+  bool is_tool = false;          ///< only helps to make others, as a mask
   bool is_interpolated = false;  ///< a part of it comes from samples between images
   VoxelSide voxel;
   MeshSide mesh;
