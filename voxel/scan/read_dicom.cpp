@@ -144,6 +144,27 @@ class SeriesReader {
            print("slope %g, intercept %g applied", first.slope.value_or(1.0), first.intercept.value_or(0.0)));
   }
 
+  /// Takes the marks off blank slices at the stack's ends that hold the least sample of the slice beside
+  /// them: air beyond the head.
+  template <typename Samples>
+  static void pass_over_air(const Samples& samples, std::size_t area, std::vector<char>& blank,
+                            std::vector<char>& repeated) {
+    const auto pass = [&](std::size_t first, std::size_t count, std::size_t beside) {
+      const auto slice = samples.begin() + static_cast<std::ptrdiff_t>(beside * area);
+      const auto least = *std::min_element(slice, slice + static_cast<std::ptrdiff_t>(area));
+      for (std::size_t i = first; i < first + count; ++i)
+        if (samples[i * area] == least) blank[i] = repeated[i] = 0;
+    };
+    const auto is_blank = [](char mark) { return mark != 0; };
+    const auto low =
+        static_cast<std::size_t>(std::find_if_not(blank.begin(), blank.end(), is_blank) - blank.begin());
+    const auto high =
+        static_cast<std::size_t>(std::find_if_not(blank.rbegin(), blank.rend(), is_blank) - blank.rbegin());
+    if (low == blank.size()) return;
+    pass(0, low, low);
+    pass(blank.size() - high, high, blank.size() - high - 1);
+  }
+
   /// Slices without any contrast, and slices that repeat the one below pixel by pixel.
   void audit_contents(const Stack& stack) {
     const std::size_t area =
@@ -157,6 +178,7 @@ class SeriesReader {
             blank[i] = std::all_of(slice, end, [&](auto sample) { return sample == *slice; });
             repeated[i] = i > 0 && std::equal(slice, end, slice - static_cast<std::ptrdiff_t>(area));
           });
+          pass_over_air(samples, area, blank, repeated);
         },
         scene_.samples);
     std::vector<std::string> blanks, repeats;
