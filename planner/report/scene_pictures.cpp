@@ -40,7 +40,11 @@ std::vector<std::string> pieces_of_union(const std::string& expression) {
       return {};
     }
   }
-  return pieces.size() > 1 ? pieces : std::vector<std::string>{};
+  // Each piece is drawn by itself, so each name counts once, and more than people tell apart are one object.
+  constexpr std::size_t most_pieces = 64;
+  std::set<std::string> seen;
+  std::erase_if(pieces, [&](const std::string& piece) { return !seen.insert(piece).second; });
+  return pieces.size() > 1 && pieces.size() <= most_pieces ? pieces : std::vector<std::string>{};
 }
 
 std::vector<std::string> final_pieces(const Plan& plan, const Evaluation& evaluation) {
