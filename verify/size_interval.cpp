@@ -241,7 +241,7 @@ SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from) 
        0.5 * sheet_mm3(shape, b2, s_mm)}};
   std::vector<DoubtSource> area{
       {"digitisation", "5.5 * 0.28^2 E", 5.5 * lost * lost * shape.sharp_mm2},
-      {"blur", "2 b^2 E", 2.0 * b2 * shape.sharp_mm2},
+      {"blur", "7 b^2 E", 7.0 * b2 * shape.sharp_mm2},
       {"ripple", "2.7 R", 2.7 * shape.ripple_mm2},
       {"flat", "0.1 * area of parts along the lattice", 0.1 * shape.flat_mm3 / s_mm}};
   if (from.window_shift_mm) {
