@@ -34,8 +34,8 @@ struct Enclosed {
 /// cell. A surface that is inside out encloses nothing: orient it first. Triangles with points that are not
 /// finite count as holes. Throws std::invalid_argument where the cell is not above 0; Error (Geometry) where
 /// nothing is enclosed or `cell_mm` gives over 2^25 lattice points near the surface; Stopped. The same bits
-/// on any number of threads. Cost: a winding number, about log n, for each lattice point near the surface;
-/// 500k triangles take some 5 s on two cores. Source: Jacobson, Kavan, Sorkine-Hornung, "Robust
+/// on any number of threads. Cost: a winding number, about log n, for each lattice point near the surface.
+/// Source: Jacobson, Kavan, Sorkine-Hornung, "Robust
 /// inside-outside segmentation using generalized winding numbers", SIGGRAPH 2013; the surface between lattice
 /// points as offset() finds it.
 Enclosed enclose(const Triangles& surface, const EncloseOptions& options = {});
