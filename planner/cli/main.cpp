@@ -49,13 +49,18 @@ std::atomic<int> interrupts{0};
   std::_Exit(cli::out_of_resources);
 }
 
-/// A thread met an error that nobody could take: out of memory, or no further thread could be started.
-[[noreturn]] void end_in_thread() {
-  octotomy::voxel::remove_unfinished();
-  cli::warn(
-      "out of memory or of threads: nothing was written; use larger voxels, fewer --threads, or raise "
-      "--memory");
-  std::_Exit(cli::out_of_resources);
+constexpr const char* out_of_memory =
+    "out of memory: nothing was written; use larger voxels (universe, voxel_mm), a smaller scan, or raise "
+    "--memory";
+
+/// An allocation failed, or a thread met an error that nobody could take: most likely no further thread could
+/// be started. Ends the process here and now: code that goes on without its memory may crash or wait for
+/// ever.
+[[noreturn]] void end_for_want(const char* why) {
+  static std::atomic_flag ending;
+  if (ending.test_and_set()) ::pause();
+  octotomy::voxel::lift_memory_limit();
+  end_now(why);
 }
 
 /// Asks the verb to stop when its time is over or the user interrupts, and ends the process where the verb
@@ -76,6 +81,7 @@ class Watch {
     std::optional<Clock::time_point> asked;
     while (!over.stop_requested()) {
       std::this_thread::sleep_for(look_every);
+      if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
       const bool late = program.time_limit_s &&
                         std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s;
       if (interrupts > 1) end_now("interrupted twice: ended at once, what was unfinished is removed");
@@ -112,8 +118,11 @@ int run_chosen(Program& program) {
     if (program.threads)
       threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                       static_cast<std::size_t>(*program.threads));
-    if (program.memory_gb)
+    if (program.memory_gb) {
       octotomy::voxel::limit_memory(static_cast<std::uint64_t>(std::min(*program.memory_gb, 1e9) * 1e9));
+      std::set_new_handler([] { end_for_want(out_of_memory); });
+      if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
+    }
     const Watch watch(program);
     return program.chosen();
   } catch (const CLI::ParseError& error) {
@@ -123,10 +132,7 @@ int run_chosen(Program& program) {
   } catch (const octotomy::brep::Error& error) {
     return refuse(error.what(), status_of(error.code()));
   } catch (const std::bad_alloc&) {
-    return refuse(
-        "out of memory: nothing was written; use larger voxels (universe, voxel_mm), a smaller scan, or "
-        "raise --memory",
-        cli::out_of_resources);
+    return refuse(out_of_memory, cli::out_of_resources);
   } catch (const std::system_error& error) {
     return refuse(error.what(), status_of(octotomy::voxel::code_of_errno(error.code().value())));
   } catch (const std::exception& error) {
@@ -199,7 +205,11 @@ int main(int count, char** arguments) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGINT, [](int) { ++interrupts; });
   std::signal(SIGTERM, [](int) { ++interrupts; });
-  std::set_terminate([] { end_in_thread(); });
+  std::set_terminate([] {
+    end_for_want(
+        "out of memory or of threads: nothing was written; use larger voxels, fewer --threads, or raise "
+        "--memory");
+  });
   try {
     return parse_and_run(count, arguments);
   } catch (const std::bad_alloc&) {

@@ -286,9 +286,16 @@ def a_limit_on_memory_is_respected(subject):
     ended = subject.run("measure", "big.raw", "--raw", "1024x1024x512", "int16", "--spacing", "1,1,1", "--window", "1:",
                         "--memory", "1", most_s=60)
     found = [refused(ended, "1 GB" if "1 GB" in ended.errors else "GB", "--memory", status=3)]
-    ended = subject.run("look", "head.nrrd", "-o", "small", "--memory", "0.12", most_s=60)
-    if ended.status != 0:
-        found.append(refused(ended, "--memory", status=3))
+    for verb in (("look", "head.nrrd", "-o", "limited"), ("run", "plan.json", "-o", "limited"),
+                 ("mesh", "head.nrrd", "--window", "300:", "-o", "limited.stl"),
+                 ("tet", "ball.stl", "-o", "limited.inp")):
+        for tenths in range(10):
+            limit = 0.02 * 1.3 ** tenths
+            ended = subject.run(*verb, "--memory", f"{limit:.4f}", most_s=60)
+            if ended.status != 0 and (why := refused(ended, "--memory", status=3)):
+                found.append(f"{verb[0]} in {limit:.4f} GB: {why}")
+            if subject.hidden_left():
+                found.append(f"{verb[0]} in {limit:.4f} GB left {subject.hidden_left()}")
     return [why for why in found if why]
 
 

@@ -6,10 +6,18 @@
 
 namespace octotomy::voxel {
 
-/// Lets this process take at most so many bytes for data; what goes beyond is std::bad_alloc.
+/// Lets this process take at most so many bytes of memory that no file backs. free_memory() and
+/// need_memory() keep to it; what passes it bit by bit is_memory_over() tells, for a thread that looks often
+/// and ends the process: libraries crash where a small allocation fails, so none is made to. An allocation
+/// far beyond the limit is std::bad_alloc.
 void limit_memory(std::uint64_t bytes);
+/// Takes the bound on single allocations back, so that a process that ends can say why.
+void lift_memory_limit() noexcept;
+/// Whether this process has taken more than limit_memory() lets it. Cost: microseconds, no allocation.
+bool is_memory_over() noexcept;
 
-/// Bytes that this process may still take: what the system has free, and what limit_memory() left.
+/// Bytes that this process may still take: what the system has free, or what limit_memory() left if that is
+/// less.
 std::uint64_t free_memory();
 
 /// Throws Error (Resource) with both figures where `path`, of `sample_count` samples that take

@@ -36,6 +36,9 @@ TEST(LimitMemory, BoundsWhatIsFreeAndWhatIsGiven) {
   if (child == 0) {
     limit_memory(std::uint64_t{512} << 20);
     if (free_memory() > std::uint64_t{512} << 20) ::_exit(1);
+    if (is_memory_over()) ::_exit(4);
+    const std::vector<char> more(std::size_t{600} << 20, 'x');
+    if (!is_memory_over() || free_memory() != 0) ::_exit(more[54321] == 'x' ? 5 : 6);
     try {
       const std::vector<char> many(std::size_t{1} << 30, 'x');
       ::_exit(many[12345] == 'x' ? 2 : 3);
