@@ -6,25 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include "verify/chance.h"
 #include "verify/solid_phantom.h"
 
 // Solids of known volume and area in random poses, as surgeons' objects are: smooth, with edges, cut by
 // planes across and along the lattice, thin.
 namespace octotomy::verify {
-
-/// Evenly in 0..1 by splitmix64, the same on every machine.
-class Chance {
- public:
-  explicit Chance(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 1) {}
-  /// Evenly in -1/2..1/2.
-  double even();
-  double between(double low, double high) { return low + (high - low) * (even() + 0.5); }
-  /// Normal of deviation 1 (Box and Muller).
-  double normal();
-
- private:
-  std::uint64_t state_;
-};
 
 /// "smooth", "edges", "cut across", "cut along", "thin".
 const std::vector<std::string>& measured_groups();

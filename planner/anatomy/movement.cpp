@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/anatomy/head_directions.h"
+#include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -62,6 +63,23 @@ Json movement_json(const Object& object, const Objects& objects, const std::vect
   return json;
 }
 
+/// Whether a piece has bone nearer to a landmark than what stays has: `at_mm` is the landmark's place with
+/// the piece, `still_mm` its place in the scan.
+bool nearer(const voxel::Octree& piece, const std::optional<voxel::Expression>& staying,
+            const glm::dvec3& at_mm, const glm::dvec3& still_mm) {
+  for (const double radius_mm : {0.5, 1.0, 2.0, reach_mm}) {
+    const auto in_reach = [&](const voxel::Expression& bone, const glm::dvec3& p_mm) {
+      return voxel::measure(
+                 voxel::combine(piece.universe(), bone & voxel::Expression(voxel::Sphere{p_mm, radius_mm})))
+          .volume_mm3;
+    };
+    const double of_piece = in_reach(voxel::Expression(piece), at_mm),
+                 of_others = staying ? in_reach(*staying, still_mm) : 0.0;
+    if (of_piece > 0.0 || of_others > 0.0) return of_piece > of_others;
+  }
+  return false;
+}
+
 }  // namespace
 
 Json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
@@ -69,6 +87,35 @@ Json movements_json(const Objects& objects, const std::vector<NamedPoint>& landm
   for (const Object& object : objects)
     if (object.moved) all.push_back(movement_json(object, objects, landmarks));
   return all;
+}
+
+std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks) {
+  // Bone that stays: what no moved object, in any of its places, is or comes from.
+  std::optional<voxel::Expression> staying, pieces;
+  const auto add = [](std::optional<voxel::Expression>& all, const voxel::Octree& octree) {
+    all = all ? *all | voxel::Expression(octree) : voxel::Expression(octree);
+  };
+  for (const Object& object : objects) {
+    if (object.moved && !objects.at(object.moved->object).moved)
+      add(pieces, objects.at(object.moved->object).voxel.octree);
+    if (!object.is_tool && !object.moved && object.shown) add(staying, object.voxel.octree);
+  }
+  std::vector<MovedLandmark> moved;
+  for (const NamedPoint& landmark : landmarks) moved.push_back({landmark, glm::dmat4(1.0)});
+  if (!pieces) return moved;
+  if (staying)
+    staying = voxel::Expression(voxel::combine(objects.front().voxel.octree.universe(), *staying - *pieces));
+  for (MovedLandmark& each : moved) {
+    const glm::dvec3 p_mm = each.landmark.p_mm;
+    for (const Object& object : objects) {
+      if (!object.moved) continue;
+      const Object& still = objects.at(object.moved->object);
+      const glm::dmat4 before = moved_since_made(objects, still.id);
+      if (nearer(still.voxel.octree, staying, carried(before, p_mm), p_mm))
+        each.moved_from_still = object.moved->motion * before;
+    }
+  }
+  return moved;
 }
 
 }  // namespace octotomy::planner

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <glm/glm.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
@@ -15,5 +16,16 @@ namespace octotomy::planner {
 /// on an object that has a voxel within 3 mm of it: surgeons place landmarks on skin-side bone to about that.
 /// Cost: a small Boolean a landmark and object.
 nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks);
+
+/// A landmark, and the motion that a plan carries it by; the identity where it stays.
+struct MovedLandmark {
+  NamedPoint landmark;  ///< as it lies in the scan
+  glm::dmat4 moved_from_still{1.0};
+};
+
+/// Where a plan's objects take the landmarks. A landmark goes with the piece whose bone is nearest to it; it
+/// stays where other bone is as near, or nothing that moves lies within 3 mm. Of pieces that are moved again
+/// the last motion counts. Cost: some small Booleans a landmark and moved object.
+std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 }  // namespace octotomy::planner

@@ -6,16 +6,19 @@
 
 #include "planner/anatomy/head_directions.h"
 #include "planner/anatomy/movement.h"
+#include "planner/cephalometry/cephalogram.h"
+#include "planner/cephalometry/measured.h"
 #include "planner/measure/result_json.h"
 #include "planner/report/report_page.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/json_file.h"
 #include "voxel/filter/components.h"
+#include "voxel/scan/image_file.h"
 
 namespace octotomy::planner {
 namespace {
 
-constexpr int picture_px = 480;
+constexpr int picture_px = 480, cephalogram_px = 700;
 
 Json certificates_json(const Evaluation& evaluation) {
   Json certificates = Json::array();
@@ -46,6 +49,23 @@ void write_pictures(const Result& result, const std::filesystem::path& folder) {
       std::replace(view.begin(), view.end(), ',', '_');
       write_text(folder / (group.name + "_" + view + ".png"), {picture.png.begin(), picture.png.end()});
     }
+}
+
+void add_cephalometry(Result& result) {
+  if (result.plan.landmarks.empty()) return;
+  const Objects& objects = result.evaluation.objects;
+  const Cephalometry definitions = read_cephalometry("lateral");
+  const std::vector<MovedLandmark> landmarks = moved_landmarks(objects, result.plan.landmarks);
+  const CephalometricResults found = measured(definitions, landmarks, objects.lps_from_head);
+  if (found.measured.empty()) return;
+  result.cephalometry = to_json(found, {});
+  for (const Object& object : objects) {
+    if (!object.shown || object.moved) continue;
+    const Cephalogram drawn =
+        draw_cephalogram(object.shown->grey, definitions, landmarks, objects.lps_from_head, cephalogram_px);
+    result.cephalogram = voxel::encode_image("png", drawn.size_px, drawn.rgb);
+    return;
+  }
 }
 
 }  // namespace
@@ -131,6 +151,7 @@ Json result_json(const Result& result) {
   json["lps_from_head"] = to_json(evaluation.objects.lps_from_head);
   json["movements"] = result.movements;
   json["movement_words"] = movement_words;
+  json["cephalometry"] = result.cephalometry;
   json["measurements"] = result.measurements;
   json["certificates"] = certificates_json(evaluation);
   json["counts"] = to_json(verdict_counts(evaluation));
@@ -156,12 +177,16 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     const Stopwatch watch(result.evaluation.timings, "measure");
     result.measurements = measurements_json(result.plan, result.evaluation);
     result.movements = movements_json(result.evaluation.objects, result.plan.landmarks);
+    add_cephalometry(result);
   }
   result.exported =
       write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);
   {
     const Stopwatch watch(result.evaluation.timings, "write");
     write_pictures(result, output.path() / "views");
+    if (!result.cephalogram.empty())
+      write_text(output.path() / "views/cephalogram.png",
+                 {result.cephalogram.begin(), result.cephalogram.end()});
     write_text(output.path() / "report.html", report_html(result));
   }
   Json json = result_json(result);

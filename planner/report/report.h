@@ -29,6 +29,8 @@ struct Result {
   std::vector<Parts> parts;
   nlohmann::ordered_json measurements = nlohmann::ordered_json::array();  ///< measurements_json()
   nlohmann::ordered_json movements = nlohmann::ordered_json::array();     ///< movements_json()
+  nlohmann::ordered_json cephalometry;  ///< to_json() of measured(); null without landmarks for any measure
+  std::vector<std::uint8_t> cephalogram;  ///< PNG; empty without such landmarks or samples
   std::vector<voxel::Finding> findings;  ///< on the plan as a whole, beside those of its parts
 };
 

@@ -279,6 +279,48 @@ std::string movements(const Result& result) {
                                                "within 3 mm of it.");
 }
 
+/// A value with its interval, or a dash.
+std::string interval_cell(const Json& value, bool is_change) {
+  if (value.is_null()) return figure_cell("\u2013");
+  const double number = value.at("value").get<double>();
+  return figure_cell((is_change && number > 0.05 ? "+" : "") + grouped(number, 1) + " \u00b1 " +
+                     grouped(value.at("half_width").get<double>(), 1));
+}
+
+std::string cephalometry(const Result& result) {
+  if (result.cephalometry.is_null()) return "";
+  std::string rows =
+      "<tr><th>Measure</th><th></th><th class=\"n\">before</th><th class=\"n\">planned</th><th "
+      "class=\"n\">change</th><th class=\"n\">norm</th></tr>";
+  for (const Json& row : result.cephalometry.at("measures")) {
+    const std::string unit = row.at("unit") == "deg" ? "\u00b0" : row.at("unit").get<std::string>();
+    rows += "<tr>" + cell(escaped(row.at("name").get<std::string>()) + ", " + unit) +
+            cell("<span class=\"soft\">" + escaped(row.at("says").get<std::string>()) + "</span>") +
+            interval_cell(row.at("before"), false) + interval_cell(row.at("after"), false) +
+            interval_cell(row.at("change"), true) +
+            figure_cell(row.at("norm").is_null()
+                            ? "\u2013"
+                            : number_of(row, "norm", 1) + " \u00b1 " + number_of(row, "deviation", 1)) +
+            "</tr>";
+  }
+  const std::string picture =
+      result.cephalogram.empty()
+          ? ""
+          : element(
+                "figure",
+                "<img alt=\"The radiograph from the right with landmarks and lines of the "
+                "lateral measures\" src=\"data:image/png;base64," +
+                    base64(result.cephalogram) + "\">" +
+                    element("figcaption", "Radiograph in true scale; pale: the patient, orange: planned."));
+  return element("h2", "Cephalometry") + element("div class=\"pictures two\"", picture) +
+         element("table", rows) +
+         element("p class=\"soft small\"",
+                 "After each \u00b1, what landmarks placed to " +
+                     number_of(result.cephalometry, "landmark_deviation_mm", 1) +
+                     " mm (standard deviation along each axis) leave open in 99 of 100 cases; after each "
+                     "norm, its standard deviation among people.");
+}
+
 std::string terms_of(const verify::Certificate& certificate, const std::string& definition) {
   std::string rows =
       "<tr><th>Source of difference that theory allows</th><th>Formula</th><th "
@@ -456,9 +498,9 @@ std::string footer(const Result& result) {
 
 std::string report_html(const Result& result) {
   return html_page(result.plan.name, heading(result) + tiles(result) + findings(result) + pictures(result) +
-                                         movements(result) + measurements(result) + certificates(result) +
-                                         parts_table(result) + scans(result) + exports(result) +
-                                         plan_text(result) + footer(result));
+                                         movements(result) + cephalometry(result) + measurements(result) +
+                                         certificates(result) + parts_table(result) + scans(result) +
+                                         exports(result) + plan_text(result) + footer(result));
 }
 
 }  // namespace octotomy::planner
