@@ -117,6 +117,7 @@ struct Fit {
   double score_mm = 0.0;  ///< rms of the nearest `overlap` of all samples, counterpart or not
   std::size_t kept = 0;
   double stiffness = 0.0;
+  MotionDoubt doubt;
   int rounds = 0;
   bool converged = false;
   double last_step_mm = 0.0;  ///< by which the last round moved the samples, root mean square
@@ -225,9 +226,7 @@ class Refinement {
     Vector6 pull = Vector6::Zero();
     for (const std::size_t i : chosen) {
       const Meeting& m = meetings[i];
-      const glm::dvec3 lever = glm::cross(m.p_mm - centre, m.foot.normal) / moving_.spread_mm;
-      Vector6 row;
-      row << lever.x, lever.y, lever.z, m.foot.normal.x, m.foot.normal.y, m.foot.normal.z;
+      const Vector6 row = row_of(m, centre);
       normal += row * row.transpose();
       pull -= row * glm::dot(m.foot.normal, m.p_mm - m.foot.p_mm);
     }
@@ -247,6 +246,37 @@ class Refinement {
     fit.last_step_mm = motion.norm();
     fit.converged = fit.last_step_mm <= rest_mm_;
     return true;
+  }
+
+  /// How far a sample's distance changes with turns, times the spread, about the centre, and with shifts.
+  Vector6 row_of(const Meeting& m, const glm::dvec3& centre) const {
+    const glm::dvec3 lever = glm::cross(m.p_mm - centre, m.foot.normal) / moving_.spread_mm;
+    Vector6 row;
+    row << lever.x, lever.y, lever.z, m.foot.normal.x, m.foot.normal.y, m.foot.normal.z;
+    return row;
+  }
+
+  /// The inverse of the normal equations; what they leave open is as large as a double may be in a sum.
+  MotionDoubt doubt_of(const std::vector<Meeting>& meetings, const std::vector<std::size_t>& chosen,
+                       const glm::dmat4& motion) const {
+    MotionDoubt doubt{through(motion, moving_.centre_mm), moving_.spread_mm};
+    Matrix6 normal = Matrix6::Zero();
+    for (const std::size_t i : chosen) {
+      const Vector6 row = row_of(meetings[i], doubt.centre_mm);
+      normal += row * row.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(normal);
+    Vector6 inverse;
+    for (int k = 0; k < 6; ++k) {
+      const double value = solver.eigenvalues()[k];
+      inverse[k] = value > softest_share() * solver.eigenvalues()[5] ? 1.0 / value : 1e12;
+    }
+    const Matrix6 covariance =
+        solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+    for (int row = 0; row < 6; ++row)
+      for (int column = 0; column < 6; ++column)
+        doubt.covariance[static_cast<std::size_t>(6 * row + column)] = covariance(row, column);
+    return doubt;
   }
 
   /// Keeps the best motion so far, and tells whether it has not been bettered for a while.
@@ -281,6 +311,7 @@ class Refinement {
     const std::vector<Meeting> meetings = meet(fit.motion);
     const std::vector<std::size_t> chosen = kept(meetings, fit);
     fit.kept = chosen.size();
+    fit.doubt = doubt_of(meetings, chosen, fit.motion);
     double squares = 0.0;
     for (const std::size_t i : chosen) squares += std::pow(meetings[i].foot.distance_mm, 2);
     fit.rms_mm = chosen.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(chosen.size()));
@@ -334,7 +365,24 @@ void check(const SurfaceFitOptions& options) {
     refuse("the overlap keeps fewer than six samples: place landmarks instead");
 }
 
+/// The deviation of a linear measure of the motion.
+double deviation_of(const std::array<double, 36>& covariance, const std::array<double, 6>& row) {
+  double variance = 0.0;
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = 0; j < 6; ++j) variance += row[i] * covariance[6 * i + j] * row[j];
+  return std::sqrt(std::max(variance, 0.0));
+}
+
 }  // namespace
+
+double MotionDoubt::deviation(const glm::dvec3& p_mm, const glm::dvec3& along) const {
+  const glm::dvec3 lever = glm::cross(p_mm - centre_mm, along) / spread_mm;
+  return deviation_of(covariance, {lever.x, lever.y, lever.z, along.x, along.y, along.z});
+}
+
+double MotionDoubt::turn_deviation(const glm::dvec3& axis) const {
+  return deviation_of(covariance, {axis.x, axis.y, axis.z, 0.0, 0.0, 0.0}) / spread_mm;
+}
 
 /// So many samples, each for the same area.
 Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which) {
@@ -384,6 +432,7 @@ SurfaceFit fit_cloud(const Cloud& cloud, const OrientedSurface& fixed, const glm
   answer.last_step_mm = fit.last_step_mm;
   answer.rest_mm = options.rest_mm.value_or(rest_share() * cloud.spread_mm);
   answer.stiffness = fit.stiffness;
+  answer.doubt = fit.doubt;
   if (!fit.converged)
     answer.findings.push_back("the motion still moved by " + short_text(fit.last_step_mm) +
                               " mm a round after " + std::to_string(fit.rounds) +

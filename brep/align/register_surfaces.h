@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <glm/glm.hpp>
@@ -30,6 +31,19 @@ struct SurfaceFitOptions {
   std::function<void(double)> progress = {};  ///< is called with 0..1
 };
 
+/// What a fit's samples leave open of its motion: the covariance of the motion's error for errors of the
+/// samples' distances that are independent and of deviation one.
+struct MotionDoubt {
+  glm::dvec3 centre_mm{0.0};            ///< of the samples, in the fixed surface's frame
+  double spread_mm = 1.0;               ///< by which turns are scaled
+  std::array<double, 36> covariance{};  ///< of turns about x, y, z times the spread, and shifts; row by row
+
+  /// Of a point's displacement along a unit direction, both in the fixed surface's frame, without unit.
+  double deviation(const glm::dvec3& p_mm, const glm::dvec3& along) const;
+  /// Of the turn about a unit axis, radians a millimetre of the samples' error.
+  double turn_deviation(const glm::dvec3& axis) const;
+};
+
 struct SurfaceFit {
   glm::dmat4 fixed_from_moving{1.0};  ///< rigid
   double rms_mm = 0.0;                ///< point to surface, of the samples kept
@@ -41,6 +55,7 @@ struct SurfaceFit {
   /// How far the worst determined motion moves the surface along itself for one unit of distance, as a share
   /// of the best determined one's: near zero where the surfaces slide, as spheres and planes do.
   double stiffness = 0.0;
+  MotionDoubt doubt;
   std::vector<std::string> findings;
 };
 

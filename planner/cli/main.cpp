@@ -186,6 +186,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_phantom(program);
   cli::add_cohort(program);
   cli::add_cephalometry(program);
+  cli::add_outcome(program);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {
