@@ -6,6 +6,8 @@
 #include "planner/plan/difference.h"
 #include "planner/plan/history.h"
 #include "planner/plan/merge.h"
+#include "planner/plan/sha256.h"
+#include "planner/plan/signature.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -126,6 +128,54 @@ void add_history(Program& program) {
       ->type_name("N");
 }
 
+struct SignText {
+  fs::path plan;
+  std::string by, as = "reader", note;
+};
+
+int sign_plan(const Program& program, const SignText& text) {
+  const Plan plan = read_plan(text.plan);
+  std::string signed_text = plan.text;
+  if (!text.by.empty()) {
+    signed_text = with_signature(plan.text, sign(plan, text.by, text.as, text.note));
+    if (fs::exists(PlanHistory::path_of(text.plan)))
+      PlanHistory(text.plan).record(signed_text, "signed by " + text.by);
+    else
+      write_whole(text.plan, signed_text);
+  }
+  std::map<std::string, std::string> sums;
+  for (const auto& [name, scan] : plan.scans)
+    if (fs::exists(scan_path(plan, scan))) sums[name] = sha256_of_path(scan_path(plan, scan));
+  Json json = answer({});
+  json["path"] = text.plan.string();
+  json["signatures"] = Json::array();
+  std::string shown;
+  for (const Signature& signature : signatures_of(signed_text)) {
+    const std::vector<std::string> changed = changed_since(signature, signed_text, sums);
+    json["signatures"].push_back(to_json(signature));
+    json["signatures"].back()["changed_since"] = changed;
+    shown += signature.at + "  " + signature.by + ", " + signature.as + ": ";
+    for (const std::string& part : changed)
+      shown += part + (&part == &changed.back() ? " changed since" : ", ");
+    shown +=
+        (changed.empty() ? "holds" : "") + (signature.note.empty() ? "" : " (" + signature.note + ")") + "\n";
+  }
+  program.say(json, shown.empty() ? "nobody has signed it; --by NAME signs\n" : shown);
+  return done;
+}
+
+void add_sign(Program& program) {
+  const auto text = std::make_shared<SignText>();
+  CLI::App& verb = program.verb(
+      "plan sign", "Signs a plan and its scans as they are; without --by it says which signatures hold",
+      "octotomy plan sign my.plan.json --by \"A. Reader\" --as \"second reader\"",
+      [&program, text] { return sign_plan(program, *text); });
+  add_plan(verb, "plan", text->plan, "A .plan.json");
+  verb.add_option("--by", text->by, "Who signs")->type_name("NAME");
+  verb.add_option("--as", text->as, "In which role; default: reader")->type_name("ROLE");
+  verb.add_option("--note", text->note, "What the reader adds")->type_name("TEXT");
+}
+
 }  // namespace
 
 void add_plan_document(Program& program) {
@@ -148,6 +198,7 @@ void add_plan_document(Program& program) {
   merged.add_option("-o,--out", paths->out, "The merged .plan.json; relative paths in it stay as they are")
       ->required();
   add_history(program);
+  add_sign(program);
 }
 
 }  // namespace octotomy::planner::cli

@@ -14,6 +14,7 @@
 
 #include "planner/plan/migration.h"
 #include "planner/plan/plan_keys.h"
+#include "planner/plan/signature.h"
 #include "planner/table/field_json.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/regular_file.h"
@@ -173,13 +174,14 @@ Ordered step_schema(const Operation& operation) {
 Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   Json root = strict_json(json);
   if (root.is_object()) migrate(root, migrations());
-  const Keys top(root, "", {"octotomy_plan", "name", "scans", "universe", "steps"});
+  const Keys top(root, "", {"octotomy_plan", "name", "scans", "universe", "steps", "signatures"});
   top.need("octotomy_plan");
   Plan plan;
   plan.text = json;
   plan.folder = folder;
   plan.name = top.text("name");
   plan.scans = scans_of(top);
+  signatures_of(json);  // refuses what is none
   if (const Json* universe = top.find("universe")) {
     const Keys keys(*universe, "universe", {"voxel_mm"});
     plan.voxel_mm = keys.number_if("voxel_mm");
@@ -261,7 +263,21 @@ Ordered plan_schema() {
              {{"type", "object"},
               {"properties", {{"voxel_mm", {{"type", "number"}, {"exclusiveMinimum", 0}}}}},
               {"additionalProperties", false}}},
-            {"steps", {{"type", "array"}, {"minItems", 1}, {"items", {{"anyOf", steps}}}}}}},
+            {"steps", {{"type", "array"}, {"minItems", 1}, {"items", {{"anyOf", steps}}}}},
+            {"signatures",
+             {{"description", "Readers who stand by the plan, as octotomy plan sign writes them."},
+              {"type", "array"},
+              {"items",
+               {{"type", "object"},
+                {"properties",
+                 {{"by", {{"type", "string"}, {"minLength", 1}}},
+                  {"as", {{"type", "string"}, {"minLength", 1}}},
+                  {"note", {{"type", "string"}}},
+                  {"at", {{"type", "string"}, {"minLength", 1}}},
+                  {"plan_sha256", {{"type", "string"}, {"minLength", 1}}},
+                  {"scans_sha256", {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}}}}},
+                {"required", {"by", "as", "at", "plan_sha256", "scans_sha256"}},
+                {"additionalProperties", false}}}}}}},
           {"required", {"octotomy_plan", "name", "scans", "steps"}},
           {"additionalProperties", false}};
 }

@@ -51,6 +51,23 @@ void write_pictures(const Result& result, const std::filesystem::path& folder) {
     }
 }
 
+void check_signatures(Result& result) {
+  std::map<std::string, std::string> sums;
+  for (const ScanRecord& scan : result.evaluation.scans)
+    if (scan.made_by.empty()) sums[scan.name] = scan.sha256;
+  if (result.plan.text.empty()) return;
+  for (const Signature& signature : signatures_of(result.plan.text)) {
+    result.signatures.push_back({signature, changed_since(signature, result.plan.text, sums)});
+    std::string what;
+    for (const std::string& part : result.signatures.back().changed)
+      what += (what.empty() ? "" : ", ") + part;
+    if (!what.empty())
+      result.findings.push_back({"signature", voxel::Verdict::Warn,
+                                 what + " changed after " + signature.by + " (" + signature.as +
+                                     ") signed at " + signature.at + ": let it be read and signed again"});
+  }
+}
+
 void add_cephalometry(Result& result) {
   if (result.plan.landmarks.empty()) return;
   const Objects& objects = result.evaluation.objects;
@@ -151,6 +168,11 @@ Json result_json(const Result& result) {
   json["lps_from_head"] = to_json(evaluation.objects.lps_from_head);
   json["movements"] = result.movements;
   json["movement_words"] = movement_words;
+  json["signatures"] = Json::array();
+  for (const SignatureCheck& check : result.signatures) {
+    json["signatures"].push_back(to_json(check.signature));
+    json["signatures"].back()["changed_since"] = check.changed;
+  }
   json["cephalometry"] = result.cephalometry;
   json["measurements"] = result.measurements;
   json["certificates"] = certificates_json(evaluation);
@@ -178,6 +200,7 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     result.measurements = measurements_json(result.plan, result.evaluation);
     result.movements = movements_json(result.evaluation.objects, result.plan.landmarks);
     add_cephalometry(result);
+    check_signatures(result);
   }
   result.exported =
       write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);

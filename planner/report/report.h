@@ -9,6 +9,7 @@
 
 #include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/plan/signature.h"
 #include "planner/report/scene_pictures.h"
 #include "voxel/space/scene.h"
 
@@ -20,6 +21,12 @@ struct Parts {
   std::vector<double> volumes_mm3;
 };
 
+/// A reader's signature, and what has changed since.
+struct SignatureCheck {
+  Signature signature;
+  std::vector<std::string> changed;
+};
+
 /// Everything a plan's evaluation leaves behind.
 struct Result {
   Plan plan;
@@ -29,8 +36,9 @@ struct Result {
   std::vector<Parts> parts;
   nlohmann::ordered_json measurements = nlohmann::ordered_json::array();  ///< measurements_json()
   nlohmann::ordered_json movements = nlohmann::ordered_json::array();     ///< movements_json()
-  nlohmann::ordered_json cephalometry;  ///< to_json() of measured(); null without landmarks for any measure
+  nlohmann::ordered_json cephalometry;    ///< to_json() of measured(); null without landmarks for any measure
   std::vector<std::uint8_t> cephalogram;  ///< PNG; empty without such landmarks or samples
+  std::vector<SignatureCheck> signatures;
   std::vector<voxel::Finding> findings;  ///< on the plan as a whole, beside those of its parts
 };
 

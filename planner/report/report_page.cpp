@@ -22,6 +22,18 @@ namespace {
 
 // ---- heading ----
 
+std::string signatures(const Result& result) {
+  std::string lines;
+  for (const SignatureCheck& check : result.signatures)
+    lines += element("p class=\"small\"",
+                     pill(check.changed.empty() ? voxel::Verdict::Pass : voxel::Verdict::Warn) +
+                         " signed by " + element("b", escaped(check.signature.by)) + ", " +
+                         escaped(check.signature.as) + ", " + escaped(check.signature.at) +
+                         (check.changed.empty() ? ", unchanged since" : ", changed since") +
+                         (check.signature.note.empty() ? "" : ": " + escaped(check.signature.note)));
+  return lines;
+}
+
 std::string heading(const Result& result) {
   std::string scans;
   for (const ScanRecord& scan : result.evaluation.scans)
@@ -29,7 +41,8 @@ std::string heading(const Result& result) {
              escaped(scan.made_by.empty() ? scan.path.generic_string() : scan.made_by);
   const std::string left =
       element("div", element("h1", escaped(result.plan.name)) +
-                         element("p class=\"soft\"", "Scan " + scans + " \u00b7 Octotomy " OCTOTOMY_VERSION));
+                         element("p class=\"soft\"", "Scan " + scans + " \u00b7 Octotomy " OCTOTOMY_VERSION) +
+                         signatures(result));
   return element("header", left + overall_verdict(verdict_counts(result.evaluation)));
 }
 

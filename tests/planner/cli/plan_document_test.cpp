@@ -53,6 +53,33 @@ TEST_F(PlanDocument, MergeWritesWhatAgreesAndNothingWhereItDoesNot) {
   EXPECT_EQ(tests::Json::parse(told.out).at("conflicts")[0].at("field"), "low");
 }
 
+TEST_F(PlanDocument, ASignatureHoldsUntilThePlanOrItsScanChanges) {
+  write("my.plan.json", plan("0"));
+  EXPECT_NE(run("plan sign my.plan.json").out.find("nobody"), std::string::npos);
+  ASSERT_EQ(run("plan sign my.plan.json --by 'A. Reader' --as 'second reader' --note 'kerf checked'").status,
+            0);
+  const std::string text = tests::bytes_of(folder_ / "my.plan.json");
+  EXPECT_NE(run("plan sign my.plan.json").out.find("A. Reader, second reader: holds (kerf checked)"),
+            std::string::npos);
+  ASSERT_EQ(run("run my.plan.json -o report --no-certificates").status, 0);
+  auto result = tests::Json::parse(tests::bytes_of(folder_ / "report/result.json"));
+  EXPECT_TRUE(result.at("signatures")[0].at("changed_since").empty());
+  // Layout is no change, a number is.
+  write("my.plan.json", tests::Json::parse(text).dump());
+  EXPECT_NE(run("plan sign my.plan.json").out.find(": holds"), std::string::npos);
+  auto changed = tests::Json::parse(text);
+  changed["steps"][0]["low"] = 1;
+  write("my.plan.json", changed.dump());
+  EXPECT_NE(run("plan sign my.plan.json").out.find("the plan changed since"), std::string::npos);
+  ASSERT_EQ(run("run my.plan.json -o report --no-certificates").status, 0);
+  result = tests::Json::parse(tests::bytes_of(folder_ / "report/result.json"));
+  EXPECT_EQ(result.at("signatures")[0].at("changed_since")[0], "the plan");
+  EXPECT_NE(result.at("findings").dump().find("let it be read and signed again"), std::string::npos);
+  changed["signatures"][0].erase("by");
+  write("my.plan.json", changed.dump());
+  expect_refused(run("plan sign my.plan.json"), "signatures[0]");
+}
+
 TEST_F(PlanDocument, HistoryRecordsWhatAnEditorChangesAndGoesBack) {
   write("my.plan.json", plan("0"));
   EXPECT_EQ(run("plan history my.plan.json --name first").status, 0);
