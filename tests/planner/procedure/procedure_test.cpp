@@ -36,7 +36,18 @@ std::vector<brep::Landmark> head_landmarks() {
           {"split_back_right", {-46.5, -25, -45}},
           {"lower_incisor", {0, -84, -61}},
           {"lower_molar_left", {27, -54, -61}},
-          {"lower_molar_right", {-27, -54, -61}}};
+          {"lower_molar_right", {-27, -54, -61}},
+          {"lingula_left", {48, -22, -45}},
+          {"lingula_right", {-48, -22, -45}},
+          {"notch_left", {47, -20, -30}},
+          {"notch_right", {-47, -20, -30}},
+          {"nasion", {0, -84, 10}},
+          {"orbital_rim_left", {25, -75, -7}},
+          {"orbital_rim_right", {-25, -75, -7}},
+          {"ramus_border_left", {50, -24, -78}},
+          {"ramus_border_right", {-50, -24, -78}},
+          {"condyle_left", {50, -6, -13}},
+          {"coronoid_left", {47, -37, -22}}};
 }
 
 ProcedureInput head_input() {
@@ -125,7 +136,25 @@ TEST(Procedure, OnTheHeadPhantomEachTakesItsOwnPieceAndLeavesTheOthers) {
              30,
              70,
              {"lower_incisor", "menton", "foramen_left", "foramen_right"},
-             {"piriform_left", "buttress_left"}}}) {
+             {"piriform_left", "buttress_left"}},
+        Case{"inverted_l",
+             "distal",
+             30,
+             75,
+             {"lower_incisor", "menton", "split_front_left"},
+             {"condyle_left", "coronoid_left", "incisor"}},
+        Case{"vertical_ramus",
+             "distal",
+             30,
+             80,
+             {"lower_incisor", "menton", "coronoid_left"},
+             {"condyle_left", "buttress_left", "incisor"}},
+        Case{"le_fort_ii",
+             "midface",
+             45,
+             110,
+             {"incisor", "molar_left", "piriform_left", "piriform_right"},
+             {"menton", "lower_incisor"}}}) {
     const Json plan = plan_of(read_procedure(each.name), input);
     const Evaluation evaluation = evaluate(parse_plan(plan.dump(), folder.path()), quick);
     const double cm3 = evaluation.object(each.piece).voxel.measures.volume_mm3 / 1000.0;
