@@ -4,6 +4,7 @@
 #include "planner/cli/procedure_verb.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"
+#include "planner/report/pdf.h"
 #include "planner/report/preview.h"
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
@@ -14,7 +15,7 @@ namespace {
 
 struct RunText : PlanIn {
   std::filesystem::path out;
-  bool without_certificates = false;
+  bool without_certificates = false, as_pdf = false;
 };
 
 struct PreviewText : PlanIn {
@@ -59,6 +60,8 @@ int preview_step(Program& program, PreviewText& text) {
 int run(Program& program, const RunText& text) {
   Result result;
   result.plan = plan_of(program, text);
+  result.as_pdf = text.as_pdf;
+  if (text.as_pdf) need_pdf_printer();
   need_result_folder(text.out, result_names(result.plan));
   EvaluateOptions options = evaluate_options(program);
   options.certify = !text.without_certificates;
@@ -97,6 +100,8 @@ void add_plan_verbs(Program& program) {
       ->required();
   verb.add_flag("--no-certificates", text->without_certificates,
                 "Make the objects in both kernels and compare them not: faster, and no number is checked");
+  verb.add_flag("--pdf", text->as_pdf,
+                "Print the report as report.pdf, too; takes WeasyPrint or Chromium on the PATH");
   const auto seen = std::make_shared<PreviewText>();
   CLI::App& draws =
       program.verb("preview", "Draws one step of a plan, without certificates",

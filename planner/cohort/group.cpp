@@ -6,7 +6,7 @@
 #include <iterator>
 #include <map>
 
-#include "planner/cohort/csv.h"
+#include "planner/table/csv.h"
 #include "planner/cohort/group_page.h"
 #include "planner/cohort/participant.h"
 #include "planner/cohort/plots.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "planner/cohort/csv.h"
+#include "planner/table/csv.h"
 #include "planner/plan/sha256.h"
 #include "voxel/space/error.h"
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <set>
 
-#include "planner/cohort/csv.h"
+#include "planner/table/csv.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
 

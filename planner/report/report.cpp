@@ -9,8 +9,10 @@
 #include "planner/cephalometry/cephalogram.h"
 #include "planner/cephalometry/measured.h"
 #include "planner/measure/result_json.h"
+#include "planner/report/pdf.h"
 #include "planner/report/report_page.h"
 #include "planner/report/result_folder.h"
+#include "planner/report/result_tables.h"
 #include "planner/table/json_file.h"
 #include "voxel/filter/components.h"
 #include "voxel/scan/image_file.h"
@@ -186,7 +188,7 @@ Json result_json(const Result& result) {
 }
 
 std::vector<std::filesystem::path> result_names(const Plan& plan) {
-  std::vector<std::filesystem::path> names{"report.html", "result.json"};
+  std::vector<std::filesystem::path> names{"report.html", "report.pdf", "result.json"};
   for (const Step& step : plan.steps)
     if (std::filesystem::path path = path_written(step.action); !path.empty())
       names.push_back(std::move(path));
@@ -211,8 +213,13 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
       write_text(output.path() / "views/cephalogram.png",
                  {result.cephalogram.begin(), result.cephalogram.end()});
     write_text(output.path() / "report.html", report_html(result));
+    if (result.as_pdf) print_pdf(output.path() / "report.html", output.path() / "report.pdf", options.stop);
   }
   Json json = result_json(result);
+  for (const auto& [name, text] : result_tables(json)) {
+    std::filesystem::create_directories((output.path() / name).parent_path());
+    write_text(output.path() / name, text);
+  }
   write_text(output.path() / "result.json", json_text(json, 2) + "\n");
   output.publish();
   return json;

@@ -80,6 +80,29 @@ TEST_F(PlanDocument, ASignatureHoldsUntilThePlanOrItsScanChanges) {
   expect_refused(run("plan sign my.plan.json"), "signatures[0]");
 }
 
+TEST_F(PlanDocument, AReportIsPrintedByWhatPrintsPagesAndRefusedBeforeTheWorkWithoutOne) {
+  write("my.plan.json", plan("0"));
+  const auto with_path = [&](const std::string& path) {
+    return tests::run_command("cd '" + folder_.path().string() + "' && PATH='" + path +
+                                  "' " OCTOTOMY_BINARY_DIR
+                                  "/octotomy run my.plan.json -o report "
+                                  "--no-certificates --pdf",
+                              folder_ / "");
+  };
+  const std::string bin = (folder_ / "bin").string();
+  std::filesystem::create_directory(bin);
+  expect_refused(with_path(bin), "apt-get install weasyprint");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report"));
+  write("bin/weasyprint", "#!/bin/sh\n/bin/cp \"$2\" \"$3\"\n");
+  std::filesystem::permissions(folder_ / "bin/weasyprint", std::filesystem::perms::owner_all);
+  EXPECT_EQ(with_path(bin).status, 0);
+  EXPECT_EQ(tests::bytes_of(folder_ / "report/report.pdf"), tests::bytes_of(folder_ / "report/report.html"));
+  write("bin/weasyprint", "#!/bin/sh\nexit 1\n");
+  const auto failed = with_path(bin);
+  EXPECT_EQ(failed.status, 3) << failed.errors;
+  EXPECT_NE(failed.errors.find("leave out --pdf"), std::string::npos) << failed.errors;
+}
+
 TEST_F(PlanDocument, HistoryRecordsWhatAnEditorChangesAndGoesBack) {
   write("my.plan.json", plan("0"));
   EXPECT_EQ(run("plan history my.plan.json --name first").status, 0);

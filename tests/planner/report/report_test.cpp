@@ -58,7 +58,8 @@ class Report : public testing::Test {
 TEST_F(Report, TheFolderHoldsWhatTheAnswerSays) {
   EXPECT_EQ(Json::parse(tests::bytes_of(folder_ / "out/result.json")), Json(json_));
   for (const char* name : {"report.html", "pieces/cap.stl", "cap.nrrd", "cap.inp", "views/after_anterior.png",
-                           "views/before_left.png"})
+                           "views/before_left.png", "tables/measurements.csv", "tables/certificates.csv",
+                           "tables/movements.csv"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/nothing.stl"));
   for (const auto& exported : json_["exports"]) {

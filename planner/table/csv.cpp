@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cohort/csv.h"
+#include "planner/table/csv.h"
 
 #include <array>
 #include <charconv>
