@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "planner/measure/result_json.h"
+#include "planner/operation/first_contact.h"
 #include "planner/operation/move.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
-#include "voxel/solid/combine.h"
+#include "voxel/measure/measure.h"
 
 namespace octotomy::planner {
 namespace {
@@ -56,46 +57,24 @@ void check(const Autorotate& asked, const Place& place) {
     place.at("condyles").refuse("lie within 10 mm of each other: give the right condyle, then the left");
 }
 
-/// 1 March to first contact, or back out of it, in steps that move no point by more than half a voxel, so
-/// that none is passed. 2 Bisect to a 64th of a step. The answer is the side without contact.
 Autorotate settle(const Autorotate& asked, const SettleBench& bench) {
   const Stopwatch watch(bench.timings, "autorotate");
-  const Object &object = bench.objects.at(asked.object.name), &against = bench.objects.at(asked.against.name);
-  const voxel::Universe universe = object.voxel.octree.universe();
-  const auto extents = voxel::measure(object.voxel.octree).extents;
-  if (!extents || against.voxel.octree.is_empty())
-    throw std::runtime_error("'" + (extents ? against.id : object.id) + "' is empty: nothing can meet");
+  const Object& object = bench.objects.at(asked.object.name);
   const std::array<glm::dvec3, 2> axis_mm{mark_mm(asked.condyles[0], bench.objects),
                                           mark_mm(asked.condyles[1], bench.objects)};
-  const voxel::Expression other(against.voxel.octree);
-  const auto overlap = [&](double degrees) {
-    if (bench.progress.stop.stop_requested()) throw voxel::Stopped("stopped while turning to contact");
-    return voxel::combine(universe, moved(*object.voxel.symbol, turn(axis_mm, degrees)) & other);
-  };
-  const glm::dvec3 spacing = universe.lattice().spacing_mm();
-  const double voxel_mm = std::min({spacing.x, spacing.y, spacing.z});
-  const double step_deg =
-      glm::degrees(0.5 * voxel_mm / reach_mm({extents->low_mm, extents->high_mm}, axis_mm));
-  const bool begins_apart = overlap(0.0).is_empty();
-  double before = 0.0, after = 0.0;
-  do {
-    before = after;
-    after += begins_apart ? step_deg : -step_deg;
-    if (std::abs(after) > asked.most_deg)
-      throw std::runtime_error("'" + object.id + "' " +
-                               (begins_apart ? "meets nothing of" : "does not come free of") + " '" +
-                               against.id + "' within " + plain(asked.most_deg) +
-                               "\u00b0: check the condyles, or raise 'most_deg'");
-  } while (overlap(after).is_empty() == begins_apart);
-  double apart = begins_apart ? before : after, touching = begins_apart ? after : before;
-  for (int halving = 0; halving < 6; ++halving) {
-    const double middle = 0.5 * (apart + touching);
-    (overlap(middle).is_empty() ? apart : touching) = middle;
-  }
+  const auto extents = voxel::measure(object.voxel.octree).extents;
+  const double farthest_mm =
+      extents ? reach_mm({extents->low_mm, extents->high_mm}, axis_mm) : voxel_mm(object);
+  const FirstContact found =
+      first_contact(object, bench.objects.at(asked.against.name),
+                    {[&](double degrees) { return turn(axis_mm, degrees); },
+                     glm::degrees(0.5 * voxel_mm(object) / farthest_mm), asked.most_deg,
+                     plain(asked.most_deg) + "\u00b0: check the condyles, or raise 'most_deg'"},
+                    bench.progress.stop);
   Autorotate settled = asked;
-  settled.closed_deg = apart;
-  settled.moved_from_still = turn(axis_mm, apart);
-  settled.contact_mm = voxel::measure(overlap(touching)).centroid_mm;
+  settled.closed_deg = found.apart;
+  settled.moved_from_still = turn(axis_mm, found.apart);
+  settled.contact_mm = found.contact_mm;
   return settled;
 }
 

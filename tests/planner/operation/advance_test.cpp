@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include "tests/planner/operation/ball_operation.h"
+
+namespace octotomy::planner {
+namespace {
+
+using namespace tests;
+
+/// Caps of the ball above 5 mm and below -5 mm, which are 10 mm apart.
+std::string caps(const std::string& more) {
+  return R"({"id": "high", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "low", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, -5], [30, -5], [30, -30], [-30, -30]]]}]},
+      {"id": "upper", "do": "combine", "expression": "ball & high"},
+      {"id": "lower", "do": "combine", "expression": "ball & low"}, )" +
+         more;
+}
+
+TEST(AdvanceStep, GoesToContactAndStopsAGapBefore) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, caps(R"(
+      {"id": "met", "do": "advance", "object": "lower", "against": "upper", "towards": "up"},
+      {"id": "near", "do": "advance", "object": "lower", "against": "upper", "direction": [0, 0, 7],
+          "gap_mm": 2},
+      {"id": "deep", "do": "move", "object": "lower", "translate_mm": [0, 0, 13]},
+      {"id": "freed", "do": "advance", "object": "deep", "against": "upper", "towards": "up"})")));
+  const auto told = [&](const char* id) {
+    return evaluation.object(id).moved->details.at("contact_after_mm").get<double>();
+  };
+  EXPECT_NEAR(told("met"), 10.0, 1.0);
+  EXPECT_NEAR(evaluation.object("met").moved->motion[3].z, told("met"), 1e-12);
+  EXPECT_EQ(told("near"), told("met"));
+  EXPECT_NEAR(evaluation.object("near").moved->motion[3].z, told("met") - 2.0, 1e-9);
+  EXPECT_NEAR(told("freed"), -3.0, 1.0);
+  // A flat face along the lattice counts up to half a layer of voxels more or less.
+  expect_certified(evaluation.object("met"), cap_mm3(ball_radius_mm, 5.0), 0.08);
+}
+
+TEST(AdvanceStep, RefusalsPointAtThePlace) {
+  const TestFolder folder;
+  const auto refusal = [&](const std::string& fields) {
+    return ball_refusal(folder, caps(R"({"id": "a", "do": "advance", "object": "lower", )" + fields + "}"));
+  };
+  EXPECT_NE(refusal(R"("against": "lower", "towards": "up")").find("step 'a', against: is the object itself"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"("against": "upper")").find("takes either 'towards'"), std::string::npos);
+  EXPECT_NE(refusal(R"("against": "upper", "towards": "upp")").find("up"), std::string::npos);
+  EXPECT_NE(refusal(R"("against": "upper", "direction": [0, 0, 0])").find("has no length"),
+            std::string::npos);
+  try {
+    evaluate(ball_plan(folder, caps(R"({"id": "a", "do": "advance", "object": "lower", "against": "upper",
+        "towards": "down"})")));
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("meets nothing of 'upper' within 30 mm"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace octotomy::planner
