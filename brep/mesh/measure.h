@@ -30,6 +30,9 @@ struct Measures {
 /// same bits on any number of threads. Cost: linear, parallel, 24 bytes a face.
 Measures measure(const Mesh& mesh);
 
+/// The same bits for closed triangles that linked() takes as they are. Cost: linear, 80 bytes a triangle.
+Measures measure(const Triangles& triangles);
+
 /// What can be said of triangles without their connection, as in Measures.
 struct Size {
   double volume_mm3 = 0.0;
