@@ -207,7 +207,13 @@ constexpr double nearly_along = 0.9659258262890683;
 class Modeller {
  public:
   Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
-      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()), moved_(triangles_.faces.size()) {}
+      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()), moved_(triangles_.faces.size()) {
+    const glm::dmat3 voxel_from_mm = glm::inverse(glm::dmat3(frame.lattice.lps_from_voxel));
+    const glm::dvec3 first_mm(frame.lattice.lps_from_voxel[3]);
+    points_voxel_.reserve(triangles_.points_mm.size());
+    for (const glm::dvec3& p_mm : triangles_.points_mm)
+      points_voxel_.push_back(voxel_from_mm * (p_mm - first_mm));
+  }
 
   BoundaryModel run() {
     add_faces();
@@ -244,9 +250,8 @@ class Modeller {
     }
   }
   Triangle in_voxels(std::size_t face) const {
-    Triangle at_voxel = triangle(face);
-    for (glm::dvec3& p : at_voxel.p) p = frame_.lattice.voxel(p);
-    return at_voxel;
+    const auto& corner = triangles_.faces[face];
+    return {{points_voxel_[corner[0]], points_voxel_[corner[1]], points_voxel_[corner[2]]}};
   }
 
   /// The boundary outside such planes: flat facets by their transforms, the rest by its normals.
@@ -477,6 +482,7 @@ class Modeller {
   const brep::Mesh& mesh_;
   const BoundaryFrame& frame_;
   const brep::Triangles& triangles_;
+  std::vector<glm::dvec3> points_voxel_;     ///< the points of the triangles
   std::vector<std::optional<Moved>> moved_;  ///< of each face that is part of a lattice plane
   const double longest_mm_ =
       std::max({frame_.sample_spacing_mm.x, frame_.sample_spacing_mm.y, frame_.sample_spacing_mm.z});

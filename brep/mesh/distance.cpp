@@ -16,12 +16,15 @@
 #include <tbb/parallel_reduce.h>
 
 #include "brep/mesh/halving.h"
+#include "brep/mesh/morton_tree.h"
 #include "brep/mesh/ray_passing.h"
 
 namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
+/// A tree is 32 deep at most, along a curve 60 more, and each level leaves one node waiting.
+constexpr std::size_t most_waiting = 96;
 
 struct Corners {
   glm::dvec3 a, b, c;
@@ -135,7 +138,7 @@ struct SurfaceTree::Tree {
   std::vector<std::uint32_t> faces;
   std::vector<Node> nodes;
 
-  explicit Tree(const Triangles& source) {
+  Tree(const Triangles& source, SurfaceTree::Build build) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());
     if (count == 0) return;
     faces.resize(count);
@@ -169,7 +172,29 @@ struct SurfaceTree::Tree {
         nodes[self].box.high = glm::max(nodes[self].box.high, nodes[half].box.high);
       }
     };
-    halve(items, leaf_size, leaf, inner, 0, 0, count);
+    if (build == SurfaceTree::Build::Searched) {
+      halve(items, leaf_size, leaf, inner, 0, 0, count);
+      return;
+    }
+    std::vector<glm::dvec3> centres_mm(count);
+    for (std::uint32_t i = 0; i < count; ++i) centres_mm[i] = items[i].centre_mm;
+    const MortonOrder order = morton_order(centres_mm);
+    for (std::uint32_t i = 0; i < count; ++i) items[i].number = order.numbers[i];
+    nodes.clear();
+    const auto build_run = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
+      const auto self = static_cast<std::uint32_t>(nodes.size());
+      nodes.emplace_back();
+      if (end - begin <= leaf_size) {
+        leaf(self, begin, end);
+        return;
+      }
+      const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
+      again(again, begin, middle);
+      const auto second = static_cast<std::uint32_t>(nodes.size());
+      again(again, middle, end);
+      inner(self, second);
+    };
+    build_run(build_run, 0, count);
   }
 
   /// `nearest_triangle` is where to look first, and becomes the one found: neighbours in a list of points are
@@ -178,8 +203,7 @@ struct SurfaceTree::Tree {
     assert(nearest_triangle < triangles.size());
     double nearest = squared_distance_to_triangle(p, triangles[nearest_triangle]);
     const double rounding_mm2 = squared_rounding(p, nodes[0].box);
-    // Depth is at most 32 and each level leaves one node waiting.
-    std::array<std::pair<std::uint32_t, double>, 64> waiting;
+    std::array<std::pair<std::uint32_t, double>, most_waiting> waiting;
     std::size_t top = 0;
     waiting[top++] = {0, nodes[0].box.squared_distance(p)};
     while (top > 0) {
@@ -226,7 +250,7 @@ struct SurfaceTree::Tree {
   template <typename Visit>
   void visit_crossings(const glm::dvec3& p, Visit visit) const {
     if (nodes.empty()) return;
-    std::array<std::uint32_t, 64> waiting;
+    std::array<std::uint32_t, most_waiting> waiting;
     std::size_t top = 0;
     waiting[top++] = 0;
     while (top > 0) {
@@ -247,7 +271,9 @@ struct SurfaceTree::Tree {
   }
 };
 
-SurfaceTree::SurfaceTree(const Triangles& triangles) : tree_(std::make_unique<Tree>(triangles)) {}
+SurfaceTree::SurfaceTree(const Triangles& triangles) : SurfaceTree(triangles, Build::Searched) {}
+SurfaceTree::SurfaceTree(const Triangles& triangles, Build build)
+    : tree_(std::make_unique<Tree>(triangles, build)) {}
 SurfaceTree::SurfaceTree(const Mesh& mesh) : SurfaceTree(triangles_of(mesh)) {}
 SurfaceTree::~SurfaceTree() = default;
 SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 number the points' cells along the curve; 2 sort by that number, 12 bits at a time from the lowest;
-// 3 lay boxes over halves of halves of the order.
+// 3 part the order where the curve leaves a cube, the largest first, and lay boxes over the runs.
 #include "brep/mesh/morton_tree.h"
 
 #include <array>
+#include <bit>
 #include <numeric>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -47,8 +48,19 @@ std::vector<std::uint32_t> all_of(const Triangles& surface) {
 
 }  // namespace
 
-std::vector<std::uint32_t> morton_order(const std::vector<glm::dvec3>& points_mm) {
-  std::vector<std::uint32_t> order(points_mm.size());
+std::size_t MortonOrder::split(std::size_t begin, std::size_t end) const {
+  assert(begin + 1 < end && end <= cells.size());
+  const std::uint64_t first = cells[begin], last = cells[end - 1];
+  if (first == last) return begin + (end - begin) / 2;
+  const std::uint64_t parting = std::bit_floor(first ^ last), beyond = last & ~(parting - 1);
+  return static_cast<std::size_t>(std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                   cells.begin() + static_cast<std::ptrdiff_t>(end), beyond) -
+                                  cells.begin());
+}
+
+MortonOrder morton_order(const std::vector<glm::dvec3>& points_mm) {
+  MortonOrder order{std::vector<std::uint32_t>(points_mm.size()),
+                    std::vector<std::uint64_t>(points_mm.size())};
   if (points_mm.empty()) return order;
   glm::dvec3 low = points_mm.front(), high = low;
   for (const glm::dvec3& p : points_mm) {
@@ -69,13 +81,17 @@ std::vector<std::uint32_t> morton_order(const std::vector<glm::dvec3>& points_mm
     }
   });
   sort_by_digits(keyed);
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].second;
+  for (std::size_t i = 0; i < keyed.size(); ++i) {
+    order.cells[i] = keyed[i].first;
+    order.numbers[i] = keyed[i].second;
+  }
   return order;
 }
 
 MortonTree::MortonTree(const Triangles& surface) : MortonTree(surface, all_of(surface)) {}
 
 MortonTree::MortonTree(const Triangles& surface, const std::vector<std::uint32_t>& faces) {
+  MortonOrder order;
   {
     std::vector<glm::dvec3> centres_mm(faces.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 4096), [&](const auto& range) {
@@ -85,31 +101,35 @@ MortonTree::MortonTree(const Triangles& surface, const std::vector<std::uint32_t
         centres_mm[i] = 0.5 * glm::min(p, glm::min(q, r)) + 0.5 * glm::max(p, glm::max(q, r));
       }
     });
-    const std::vector<std::uint32_t> order = morton_order(centres_mm);
-    faces_.resize(faces.size());
-    for (std::size_t i = 0; i < order.size(); ++i) faces_[i] = faces[order[i]];
+    order = morton_order(centres_mm);
   }
+  faces_.resize(faces.size());
+  for (std::size_t i = 0; i < faces_.size(); ++i) faces_[i] = faces[order.numbers[i]];
   boxes_.resize(faces_.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces_.size(), 4096), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
       for (const std::uint32_t v : surface.faces[faces_[i]]) boxes_[i].add(surface.points_mm[v]);
   });
-  std::size_t nodes = 2;
-  for (std::size_t count = faces_.size(); count > leaf_size; count = (count + 1) / 2) nodes *= 2;
-  node_boxes_.resize(nodes);
-  if (!faces_.empty()) build(root());
+  nodes_.reserve(faces_.size());
+  if (!faces_.empty()) build(order, 0, static_cast<std::uint32_t>(faces_.size()));
 }
 
-OuterBox MortonTree::build(const Node& node) {
-  assert(node.begin < node.end && node.end <= faces_.size() && node.number < node_boxes_.size());
-  OuterBox box;
-  if (node.is_leaf()) {
-    for (std::size_t i = node.begin; i < node.end; ++i) box.add(boxes_[i]);
+void MortonTree::build(const MortonOrder& order, std::uint32_t begin, std::uint32_t end) {
+  assert(begin < end && end <= faces_.size());
+  const std::size_t self = nodes_.size();
+  Node node{{}, begin, end, 0};
+  nodes_.push_back(node);
+  if (end - begin <= leaf_size) {
+    for (std::uint32_t i = begin; i < end; ++i) node.box.add(boxes_[i]);
   } else {
-    box = build(node.first());
-    box.add(build(node.second()));
+    const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
+    build(order, begin, middle);
+    node.second = static_cast<std::uint32_t>(nodes_.size());
+    build(order, middle, end);
+    node.box = nodes_[self + 1].box;
+    node.box.add(nodes_[node.second].box);
   }
-  return node_boxes_[node.number] = box;
+  nodes_[self] = node;
 }
 
 }  // namespace octotomy::brep

@@ -41,13 +41,22 @@ struct OuterBox {
   }
 };
 
-/// The order of points along a Morton curve through their box, equal cells by number. Precondition: all are
-/// finite. The same on any number of threads. Cost: linear.
-std::vector<std::uint32_t> morton_order(const std::vector<glm::dvec3>& points_mm);
+/// Points in the order of a Morton curve through their box, those of one cell by number.
+struct MortonOrder {
+  std::vector<std::uint32_t> numbers;
+  std::vector<std::uint64_t> cells;  ///< along the curve, ascending; 20 bits an axis, x lowest
 
-/// Boxes over halves of halves of triangles along a Morton curve; a node stands for a run of the order and is
-/// numbered like a heap's. Building: linear; 28 bytes a triangle and 12 to 24 for the nodes.
-/// Source: Lauterbach et al., "Fast BVH construction on GPUs", 2009.
+  /// Where a run of two and more is parted: at the largest cube's face that parts it, or in its middle where
+  /// all are of one cell. Cost: log n.
+  std::size_t split(std::size_t begin, std::size_t end) const;
+};
+
+/// Precondition: all are finite. The same on any number of threads. Cost: linear.
+MortonOrder morton_order(const std::vector<glm::dvec3>& points_mm);
+
+/// Boxes over triangles along a Morton curve; a node stands for a run of the order. Building: linear; 28
+/// bytes a triangle and about 36 for the nodes. Source: Lauterbach et al., "Fast BVH construction on GPUs",
+/// 2009.
 class MortonTree {
  public:
   /// Of all triangles, or of some. Precondition: their points are finite.
@@ -59,58 +68,59 @@ class MortonTree {
   /// Calls visit(face) for each face whose box and whose nodes' boxes pass `reaches`.
   template <typename Reaches, typename Visit>
   void visit(const Reaches& reaches, const Visit& visit_face) const {
-    if (!empty()) visit_node(root(), reaches, visit_face);
+    if (!empty()) visit_node(0, reaches, visit_face);
   }
 
   /// Calls visit(face, other) once for each pair of faces of this tree whose boxes overlap, in parallel.
   template <typename Visit>
   void visit_own_pairs(const Visit& visit_pair) const {
-    if (!empty()) within(root(), visit_pair);
+    if (!empty()) within(0, visit_pair);
   }
 
   /// Calls visit(face of this, face of the other) for each pair whose boxes overlap, in parallel.
   template <typename Visit>
   void visit_pairs(const MortonTree& other, const Visit& visit_pair) const {
-    if (!empty() && !other.empty()) between(root(), other, other.root(), visit_pair);
+    if (!empty() && !other.empty()) between(0, other, 0, visit_pair);
   }
 
  private:
-  static constexpr std::size_t leaf_size = 4;
-  static constexpr std::size_t parallel_size = 4096;
+  static constexpr std::uint32_t leaf_size = 4;
+  static constexpr std::uint32_t parallel_size = 4096;
 
+  /// A run of the order; an inner node's children are the next one and `second`.
   struct Node {
-    std::size_t number, begin, end;
-    std::size_t count() const { return end - begin; }
-    bool is_leaf() const { return count() <= leaf_size; }
-    Node first() const { return {2 * number, begin, begin + count() / 2}; }
-    Node second() const { return {2 * number + 1, begin + count() / 2, end}; }
+    OuterBox box;
+    std::uint32_t begin = 0, end = 0, second = 0;
+    std::uint32_t count() const { return end - begin; }
+    bool is_leaf() const { return second == 0; }
   };
-  Node root() const { return {1, 0, faces_.size()}; }
-  OuterBox build(const Node& node);
+  void build(const MortonOrder& order, std::uint32_t begin, std::uint32_t end);
 
   template <typename Reaches, typename Visit>
-  void visit_node(const Node& node, const Reaches& reaches, const Visit& visit_face) const {
-    if (!reaches(node_boxes_[node.number])) return;
+  void visit_node(std::uint32_t number, const Reaches& reaches, const Visit& visit_face) const {
+    const Node& node = nodes_[number];
+    if (!reaches(node.box)) return;
     if (!node.is_leaf()) {
-      visit_node(node.first(), reaches, visit_face);
-      visit_node(node.second(), reaches, visit_face);
+      visit_node(number + 1, reaches, visit_face);
+      visit_node(node.second, reaches, visit_face);
       return;
     }
-    for (std::size_t i = node.begin; i < node.end; ++i)
+    for (std::uint32_t i = node.begin; i < node.end; ++i)
       if (reaches(boxes_[i])) visit_face(faces_[i]);
   }
 
   template <typename Visit>
-  void within(const Node& node, const Visit& visit_pair) const {
+  void within(std::uint32_t number, const Visit& visit_pair) const {
+    const Node& node = nodes_[number];
     if (node.is_leaf()) {
-      for (std::size_t i = node.begin; i < node.end; ++i)
-        for (std::size_t j = i + 1; j < node.end; ++j)
+      for (std::uint32_t i = node.begin; i < node.end; ++i)
+        for (std::uint32_t j = i + 1; j < node.end; ++j)
           if (boxes_[i].overlaps(boxes_[j])) visit_pair(faces_[i], faces_[j]);
       return;
     }
-    const auto first = [&] { within(node.first(), visit_pair); };
-    const auto second = [&] { within(node.second(), visit_pair); };
-    const auto both = [&] { between(node.first(), *this, node.second(), visit_pair); };
+    const auto first = [&] { within(number + 1, visit_pair); };
+    const auto second = [&] { within(node.second, visit_pair); };
+    const auto both = [&] { between(number + 1, *this, node.second, visit_pair); };
     if (node.count() > parallel_size) {
       tbb::parallel_invoke(first, second, both);
     } else {
@@ -121,24 +131,25 @@ class MortonTree {
   }
 
   template <typename Visit>
-  void between(const Node& own, const MortonTree& other, const Node& of_other,
+  void between(std::uint32_t number, const MortonTree& other, std::uint32_t other_number,
                const Visit& visit_pair) const {
-    if (!node_boxes_[own.number].overlaps(other.node_boxes_[of_other.number])) return;
+    const Node &own = nodes_[number], &of_other = other.nodes_[other_number];
+    if (!own.box.overlaps(of_other.box)) return;
     if (own.is_leaf() && of_other.is_leaf()) {
-      for (std::size_t i = own.begin; i < own.end; ++i)
-        for (std::size_t j = of_other.begin; j < of_other.end; ++j)
+      for (std::uint32_t i = own.begin; i < own.end; ++i) {
+        if (!boxes_[i].overlaps(of_other.box)) continue;
+        for (std::uint32_t j = of_other.begin; j < of_other.end; ++j)
           if (boxes_[i].overlaps(other.boxes_[j])) visit_pair(faces_[i], other.faces_[j]);
+      }
       return;
     }
-    const bool halve_own = of_other.is_leaf() || (!own.is_leaf() && own.count() >= of_other.count());
-    const auto first = [&] {
-      halve_own ? between(own.first(), other, of_other, visit_pair)
-                : between(own, other, of_other.first(), visit_pair);
+    const bool parts_own = of_other.is_leaf() || (!own.is_leaf() && own.count() >= of_other.count());
+    const auto half = [&](std::uint32_t of_own, std::uint32_t beside) {
+      parts_own ? between(of_own, other, other_number, visit_pair)
+                : between(number, other, beside, visit_pair);
     };
-    const auto second = [&] {
-      halve_own ? between(own.second(), other, of_other, visit_pair)
-                : between(own, other, of_other.second(), visit_pair);
-    };
+    const auto first = [&] { half(number + 1, other_number + 1); };
+    const auto second = [&] { half(own.second, of_other.second); };
     if (std::min(own.count(), of_other.count()) > parallel_size) {
       tbb::parallel_invoke(first, second);
     } else {
@@ -149,7 +160,7 @@ class MortonTree {
 
   std::vector<std::uint32_t> faces_;  ///< in the order
   std::vector<OuterBox> boxes_;       ///< of the faces, in the order
-  std::vector<OuterBox> node_boxes_;
+  std::vector<Node> nodes_;           ///< a parent before its children
 };
 
 }  // namespace octotomy::brep
