@@ -463,14 +463,6 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                  most);
 }
 
-/// V - E + F of a closed surface: its triangles have three halves of edges each.
-std::int64_t euler_of(const brep::Triangles& surface) {
-  std::vector<std::uint8_t> used(surface.points_mm.size(), 0);
-  for (const auto& face : surface.faces)
-    for (const std::uint32_t v : face) used[v] = 1;
-  return std::count(used.begin(), used.end(), 1) - static_cast<std::int64_t>(surface.faces.size() / 2);
-}
-
 /// Both objects must have one topology if the voxels are the mesh's samples. The mesh parts inside corners
 /// that meet at edges and corners, and outside corners that meet at a cell's corners only. The voxels' Euler
 /// number by faces joins the latter, by a tunnel each.
@@ -480,7 +472,7 @@ void compare_topology(Certificate& certificate, const voxel::Octree& octree, con
   for (unsigned corner = 0; corner < 4; ++corner)
     solid_euler += static_cast<std::int64_t>(cells[255U - (1U << corner) - (1U << (7U - corner))]);
   const auto twice = 2.0 * static_cast<double>(solid_euler);
-  const auto surface = static_cast<double>(euler_of(solid.triangles()));
+  const auto surface = static_cast<double>(brep::euler_number(solid.triangles()));
   add_comparison(certificate, {"euler", "", twice, surface, std::abs(twice - surface), 0.0,
                                "0: one topology; a surface has twice its solid's Euler number",
                                "The Euler numbers of the two surfaces differ by %"});

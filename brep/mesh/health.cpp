@@ -76,7 +76,7 @@ void count_duplicates(const Triangles& triangles, const Side* begin, const Side*
   for (std::size_t i = 1; i < thirds.size(); ++i) {
     earlier = thirds[i].first == thirds[i - 1].first ? earlier + 1 : 0;
     health.duplicate_faces += earlier;
-    if (earlier == 1) Offenders::note(offenders.duplicate, thirds[i].second);
+    if (earlier == 1) Offenders::note(offenders.duplicate, thirds[i - 1].second);
   }
 }
 

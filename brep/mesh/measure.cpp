@@ -278,4 +278,12 @@ Measures measure(const Triangles& triangles) {
   return measures_from(ListCorners{triangles});
 }
 
+long euler_number(const Triangles& surface) {
+  std::vector<std::uint8_t> used(surface.points_mm.size(), 0);
+  for (const auto& face : surface.faces)
+    for (const std::uint32_t v : face) used[v] = 1;
+  // Each triangle has three halves of edges.
+  return std::count(used.begin(), used.end(), 1) - static_cast<long>(surface.faces.size() / 2);
+}
+
 }  // namespace octotomy::brep
