@@ -46,6 +46,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tbb/parallel_sort.h>
 #include <utility>
 #include <vector>
 
@@ -431,7 +432,7 @@ class Modeller {
       bends.push_back(
           {cell_of(middle, normal), mm, mm * glm::dot(spacing_mm, spacing_mm), middle - frame_.about_mm});
     }
-    add_bends(std::move(bends));
+    add_bends(bends);
   }
   /// The volume that two displaced planes gain at their common edge beyond their own gains.
   void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
@@ -464,16 +465,19 @@ class Modeller {
     return key;
   }
 
-  void add_bends(std::vector<Bend> bends) {
-    std::stable_sort(bends.begin(), bends.end(),
-                     [](const Bend& x, const Bend& y) { return x.cell < y.cell; });
+  void add_bends(const std::vector<Bend>& bends) {
+    // By cell, those of one in the order of their edges.
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(bends.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {bends[i].cell, i};
+    tbb::parallel_sort(order.begin(), order.end());
     double cell_mm = 0.0, cell_mm3 = 0.0;
-    for (std::size_t i = 0; i < bends.size(); ++i) {
-      model_.bent.add(bends[i].mm3, bends[i].arm_mm);
-      cell_mm += bends[i].mm;
-      cell_mm3 += bends[i].mm3;
-      if (i + 1 < bends.size() && bends[i + 1].cell == bends[i].cell) continue;
-      model_.bent_without_sign.add(std::abs(cell_mm3), glm::length(bends[i].arm_mm));
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Bend& bend = bends[order[i].second];
+      model_.bent.add(bend.mm3, bend.arm_mm);
+      cell_mm += bend.mm;
+      cell_mm3 += bend.mm3;
+      if (i + 1 < order.size() && order[i + 1].first == bend.cell) continue;
+      model_.bent_without_sign.add(std::abs(cell_mm3), glm::length(bend.arm_mm));
       model_.curvature_mm += std::abs(cell_mm);
       cell_mm = cell_mm3 = 0.0;
     }
