@@ -46,6 +46,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tbb/parallel_sort.h>
 #include <utility>
 #include <vector>
 
@@ -207,7 +208,13 @@ constexpr double nearly_along = 0.9659258262890683;
 class Modeller {
  public:
   Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
-      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()), moved_(triangles_.faces.size()) {}
+      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()), moved_(triangles_.faces.size()) {
+    const glm::dmat3 voxel_from_mm = glm::inverse(glm::dmat3(frame.lattice.lps_from_voxel));
+    const glm::dvec3 first_mm(frame.lattice.lps_from_voxel[3]);
+    points_voxel_.reserve(triangles_.points_mm.size());
+    for (const glm::dvec3& p_mm : triangles_.points_mm)
+      points_voxel_.push_back(voxel_from_mm * (p_mm - first_mm));
+  }
 
   BoundaryModel run() {
     add_faces();
@@ -244,9 +251,8 @@ class Modeller {
     }
   }
   Triangle in_voxels(std::size_t face) const {
-    Triangle at_voxel = triangle(face);
-    for (glm::dvec3& p : at_voxel.p) p = frame_.lattice.voxel(p);
-    return at_voxel;
+    const auto& corner = triangles_.faces[face];
+    return {{points_voxel_[corner[0]], points_voxel_[corner[1]], points_voxel_[corner[2]]}};
   }
 
   /// The boundary outside such planes: flat facets by their transforms, the rest by its normals.
@@ -426,7 +432,7 @@ class Modeller {
       bends.push_back(
           {cell_of(middle, normal), mm, mm * glm::dot(spacing_mm, spacing_mm), middle - frame_.about_mm});
     }
-    add_bends(std::move(bends));
+    add_bends(bends);
   }
   /// The volume that two displaced planes gain at their common edge beyond their own gains.
   void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
@@ -459,16 +465,19 @@ class Modeller {
     return key;
   }
 
-  void add_bends(std::vector<Bend> bends) {
-    std::stable_sort(bends.begin(), bends.end(),
-                     [](const Bend& x, const Bend& y) { return x.cell < y.cell; });
+  void add_bends(const std::vector<Bend>& bends) {
+    // By cell, those of one in the order of their edges.
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(bends.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {bends[i].cell, i};
+    tbb::parallel_sort(order.begin(), order.end());
     double cell_mm = 0.0, cell_mm3 = 0.0;
-    for (std::size_t i = 0; i < bends.size(); ++i) {
-      model_.bent.add(bends[i].mm3, bends[i].arm_mm);
-      cell_mm += bends[i].mm;
-      cell_mm3 += bends[i].mm3;
-      if (i + 1 < bends.size() && bends[i + 1].cell == bends[i].cell) continue;
-      model_.bent_without_sign.add(std::abs(cell_mm3), glm::length(bends[i].arm_mm));
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Bend& bend = bends[order[i].second];
+      model_.bent.add(bend.mm3, bend.arm_mm);
+      cell_mm += bend.mm;
+      cell_mm3 += bend.mm3;
+      if (i + 1 < order.size() && order[i + 1].first == bend.cell) continue;
+      model_.bent_without_sign.add(std::abs(cell_mm3), glm::length(bend.arm_mm));
       model_.curvature_mm += std::abs(cell_mm);
       cell_mm = cell_mm3 = 0.0;
     }
@@ -477,6 +486,7 @@ class Modeller {
   const brep::Mesh& mesh_;
   const BoundaryFrame& frame_;
   const brep::Triangles& triangles_;
+  std::vector<glm::dvec3> points_voxel_;     ///< the points of the triangles
   std::vector<std::optional<Moved>> moved_;  ///< of each face that is part of a lattice plane
   const double longest_mm_ =
       std::max({frame_.sample_spacing_mm.x, frame_.sample_spacing_mm.y, frame_.sample_spacing_mm.z});

@@ -277,7 +277,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
 /// vertices where the witness has none.
 double piece_limit_mm3(const brep::Solid& solid, const brep::Triangles& mesh, const voxel::Octree& octree,
                        const Witness& witness) {
-  const std::vector<brep::Component> pieces = brep::components(solid);
+  const std::vector<brep::Component>& pieces = solid.components();
   std::vector<double> lost_mm3(pieces.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
     if (!is_seen(mesh, pieces[i], octree, witness)) lost_mm3[i] = std::abs(pieces[i].volume_mm3);

@@ -36,8 +36,24 @@ void append_point(std::string& bytes, const glm::dvec3& p) {
   bytes += '\n';
 }
 
-std::string stl_of(const Triangles& triangles) {
-  std::string bytes = "octotomy, binary STL, LPS millimetres";
+/// A file in the making, written a piece at a time so that the whole need not be in memory.
+struct Sink {
+  std::ofstream& file;
+  std::string bytes{};
+
+  /// Called between items: passes on what has gathered.
+  void let_go() {
+    if (bytes.size() >= (1u << 20)) flush();
+  }
+  void flush() {
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.clear();
+  }
+};
+
+void write_stl(const Triangles& triangles, Sink& sink) {
+  std::string& bytes = sink.bytes;
+  bytes = "octotomy, binary STL, LPS millimetres";
   bytes.resize(80, ' ');
   append_little(bytes, static_cast<std::uint32_t>(triangles.faces.size()));
   for (const auto& face : triangles.faces) {
@@ -50,13 +66,13 @@ std::string stl_of(const Triangles& triangles) {
     for (const glm::dvec3& v : {normal, a, b, c})
       for (int axis = 0; axis < 3; ++axis) append_little(bytes, static_cast<float>(v[axis]));
     append_little(bytes, std::uint16_t{0});
+    sink.let_go();
   }
-  return bytes;
 }
 
-std::string ply_of(const Triangles& triangles, const VertexData& data) {
-  std::string bytes =
-      "ply\nformat binary_little_endian 1.0\ncomment octotomy, LPS millimetres\nelement vertex ";
+void write_ply(const Triangles& triangles, const VertexData& data, Sink& sink) {
+  std::string& bytes = sink.bytes;
+  bytes = "ply\nformat binary_little_endian 1.0\ncomment octotomy, LPS millimetres\nelement vertex ";
   append_text(bytes, triangles.points_mm.size());
   bytes += "\nproperty double x\nproperty double y\nproperty double z";
   if (!data.colours.empty()) bytes += "\nproperty uchar red\nproperty uchar green\nproperty uchar blue";
@@ -69,19 +85,22 @@ std::string ply_of(const Triangles& triangles, const VertexData& data) {
     if (!data.colours.empty())
       for (int channel = 0; channel < 3; ++channel) append_little(bytes, data.colours[v][channel]);
     if (!data.scalars.empty()) append_little(bytes, data.scalars[v]);
+    sink.let_go();
   }
   for (const auto& face : triangles.faces) {
     append_little(bytes, std::uint8_t{3});
     for (const std::uint32_t corner : face) append_little(bytes, static_cast<std::int32_t>(corner));
+    sink.let_go();
   }
-  return bytes;
 }
 
-std::string obj_of(const Triangles& triangles) {
-  std::string bytes = "# octotomy, LPS millimetres\n";
+void write_obj(const Triangles& triangles, Sink& sink) {
+  std::string& bytes = sink.bytes;
+  bytes = "# octotomy, LPS millimetres\n";
   for (const glm::dvec3& p : triangles.points_mm) {
     bytes += "v ";
     append_point(bytes, p);
+    sink.let_go();
   }
   for (const auto& face : triangles.faces) {
     bytes += 'f';
@@ -90,17 +109,21 @@ std::string obj_of(const Triangles& triangles) {
       append_text(bytes, corner + 1);
     }
     bytes += '\n';
+    sink.let_go();
   }
-  return bytes;
 }
 
-std::string off_of(const Triangles& triangles) {
-  std::string bytes = "OFF\n# octotomy, LPS millimetres\n";
+void write_off(const Triangles& triangles, Sink& sink) {
+  std::string& bytes = sink.bytes;
+  bytes = "OFF\n# octotomy, LPS millimetres\n";
   append_text(bytes, triangles.points_mm.size());
   bytes += ' ';
   append_text(bytes, triangles.faces.size());
   bytes += " 0\n";
-  for (const glm::dvec3& p : triangles.points_mm) append_point(bytes, p);
+  for (const glm::dvec3& p : triangles.points_mm) {
+    append_point(bytes, p);
+    sink.let_go();
+  }
   for (const auto& face : triangles.faces) {
     bytes += '3';
     for (const std::uint32_t corner : face) {
@@ -108,8 +131,8 @@ std::string off_of(const Triangles& triangles) {
       append_text(bytes, corner);
     }
     bytes += '\n';
+    sink.let_go();
   }
-  return bytes;
 }
 
 /// The code of a failed system call: Resource if the disk or memory gave out.
@@ -119,14 +142,18 @@ ErrorCode code_of(int number) {
              : ErrorCode::Input;
 }
 
-void replace_file(const std::filesystem::path& path, const std::string& bytes) {
+/// `write` fills the file.
+template <typename Write>
+void replace_file(const std::filesystem::path& path, const Write& write) {
   std::filesystem::path beside = path;
   beside += "." + std::to_string(::getpid()) + ".part";
   std::error_code ignored, error;
   {
     errno = 0;
     std::ofstream file(beside, std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    Sink sink{file};
+    write(sink);
+    sink.flush();
     file.close();
     if (!file) {
       const ErrorCode code = code_of(errno);
@@ -156,26 +183,31 @@ void check(const VertexData& data, std::size_t vertex_count) {
 
 }  // namespace
 
-void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexData& data) {
+void write_mesh(const Triangles& triangles, const std::filesystem::path& path, const VertexData& data) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const Triangles triangles = triangles_of(mesh);
   check(data, triangles.points_mm.size());
-  if (extension == ".ply") return replace_file(path, ply_of(triangles, data));
-  if (extension == ".vtp") return replace_file(path, vtp_of(triangles, data));
-  if (extension == ".glb" && data.scalars.empty()) return replace_file(path, glb_of(triangles, data));
+  if (extension == ".ply") return replace_file(path, [&](Sink& sink) { write_ply(triangles, data, sink); });
+  if (extension == ".vtp")
+    return replace_file(path, [&](Sink& sink) { sink.bytes = vtp_of(triangles, data); });
+  if (extension == ".glb" && data.scalars.empty())
+    return replace_file(path, [&](Sink& sink) { sink.bytes = glb_of(triangles, data); });
   if (!data.colours.empty() || !data.scalars.empty())
     throw Error(ErrorCode::Input,
                 path.string() +
                     ": colours of vertices go into .ply, .vtp and .glb, scalars into .ply and "
                     ".vtp");
-  if (extension == ".stl") return replace_file(path, stl_of(triangles));
-  if (extension == ".obj") return replace_file(path, obj_of(triangles));
-  if (extension == ".off") return replace_file(path, off_of(triangles));
+  if (extension == ".stl") return replace_file(path, [&](Sink& sink) { write_stl(triangles, sink); });
+  if (extension == ".obj") return replace_file(path, [&](Sink& sink) { write_obj(triangles, sink); });
+  if (extension == ".off") return replace_file(path, [&](Sink& sink) { write_off(triangles, sink); });
   throw Error(ErrorCode::Input,
               path.string() + ": '" + extension +
                   "' is no mesh format that is written; use .stl, .ply, .obj, .off, .vtp or .glb");
+}
+
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexData& data) {
+  write_mesh(triangles_of(mesh), path, data);
 }
 
 }  // namespace octotomy::brep

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 
@@ -27,5 +28,6 @@ struct VertexData {
 /// reason: Input if the format holds none or the file cannot be written, Resource if the disk gave out. What
 /// was there before stays.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const VertexData& data = {});
+void write_mesh(const Triangles& triangles, const std::filesystem::path& path, const VertexData& data = {});
 
 }  // namespace octotomy::brep

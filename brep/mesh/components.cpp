@@ -10,11 +10,11 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 
-#include "brep/mesh/distance.h"
+#include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/equal_points.h"
 #include "brep/mesh/mesh_point.h"
-#include "brep/mesh/triangles.h"
+#include "brep/mesh/sides.h"
 
 namespace octotomy::brep {
 namespace {
@@ -29,76 +29,42 @@ struct Shell {
 };
 
 /// Labels faces connected across edges; labels ascend with a shell's first face.
-std::vector<std::uint32_t> label_shells(const Mesh& mesh, std::uint32_t& shell_count) {
-  std::vector<std::uint32_t> label(mesh.n_faces(), none);
-  std::vector<Mesh::FaceHandle> flood;
+std::vector<std::uint32_t> labels_of(DisjointSets& shells, std::size_t face_count,
+                                     std::uint32_t& shell_count) {
+  std::vector<std::uint32_t> label(face_count);
   shell_count = 0;
-  for (const auto seed : mesh.faces()) {
-    if (label[static_cast<std::size_t>(seed.idx())] != none) continue;
-    label[static_cast<std::size_t>(seed.idx())] = shell_count;
-    flood.assign(1, seed);
-    while (!flood.empty()) {
-      const Mesh::FaceHandle face = flood.back();
-      flood.pop_back();
-      for (auto it = mesh.cff_begin(face); it != mesh.cff_end(face); ++it) {
-        std::uint32_t& beyond = label[static_cast<std::size_t>(it->idx())];
-        if (beyond != none) continue;
-        beyond = shell_count;
-        flood.push_back(*it);
-      }
-    }
-    ++shell_count;
+  for (std::uint32_t f = 0; f < face_count; ++f) {
+    const std::uint32_t first = shells.set_of(f);
+    label[f] = first == f ? shell_count++ : label[first];
   }
   return label;
 }
 
-/// Marks vertices that stand where one of another shell does: whether they are inside of that is a toss.
-std::vector<std::uint8_t> mark_touching(const Mesh& mesh, const std::vector<std::uint32_t>& label) {
-  std::vector<Mesh::VertexHandle> order;
-  for (const auto v : mesh.vertices())
-    if (!mesh.is_isolated(v)) order.push_back(v);
-  const auto shell_of = [&](Mesh::VertexHandle v) {
-    return label[static_cast<std::size_t>(mesh.face_handle(mesh.halfedge_handle(v)).idx())];
-  };
-  std::sort(order.begin(), order.end(), [&](Mesh::VertexHandle v, Mesh::VertexHandle w) {
-    const Mesh::Point &p = mesh.point(v), &q = mesh.point(w);
-    return std::tie(p[0], p[1], p[2]) < std::tie(q[0], q[1], q[2]);
-  });
-  std::vector<std::uint8_t> touching(mesh.n_vertices(), 0);
-  for (std::size_t i = 0, j; i < order.size(); i = j) {
-    bool several = false;
-    for (j = i + 1; j < order.size() && mesh.point(order[j]) == mesh.point(order[i]); ++j)
-      several = several || shell_of(order[j]) != shell_of(order[i]);
-    for (std::size_t k = i; several && k < j; ++k) touching[static_cast<std::size_t>(order[k].idx())] = 1;
-  }
-  return touching;
-}
-
 /// Shells with their integrals, about the first point of each to keep digits.
-std::vector<Shell> measure_shells(const Mesh& mesh, const std::vector<std::uint32_t>& label,
+std::vector<Shell> measure_shells(const Triangles& triangles, const std::vector<std::uint32_t>& label,
                                   std::uint32_t shell_count) {
   std::vector<Shell> shells(shell_count);
-  assert(label.size() == mesh.n_faces());
+  assert(label.size() == triangles.faces.size());
   for (std::uint32_t f = 0; f < label.size(); ++f) {
     assert(label[f] < shell_count);
     shells[label[f]].faces.push_back(f);
   }
+  // Whether a point where another shell has one is inside of that is a toss.
   const std::vector<std::uint8_t> touching =
-      shell_count > 1 ? mark_touching(mesh, label) : std::vector<std::uint8_t>(mesh.n_vertices(), 0);
+      shell_count > 1 ? shared_points(triangles, first_equal_points(triangles.points_mm), label)
+                      : std::vector<std::uint8_t>(triangles.points_mm.size(), 0);
   for (Shell& shell : shells) {
     std::optional<glm::dvec3> origin;
     bool probe_touches = true;
     for (const std::uint32_t f : shell.faces) {
-      const Mesh::HalfedgeHandle h = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
-      const glm::dvec3 a = glm_of(mesh.point(mesh.from_vertex_handle(h)));
-      const glm::dvec3 b = glm_of(mesh.point(mesh.to_vertex_handle(h)));
-      const glm::dvec3 c = glm_of(mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(h))));
+      const auto& face = triangles.faces[f];
+      const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
+                       &c = triangles.points_mm[face[2]];
       if (!origin) {
         origin = a;
         shell.probe_mm = a;
       }
-      if (const Mesh::VertexHandle v = mesh.from_vertex_handle(h);
-          probe_touches && !touching[static_cast<std::size_t>(v.idx())]) {
+      if (probe_touches && !touching[face[0]]) {
         shell.probe_mm = a;
         probe_touches = false;
       }
@@ -127,29 +93,22 @@ std::optional<std::uint32_t> shell_around(std::uint32_t cavity, const std::vecto
   return around;
 }
 
-}  // namespace
-
-std::vector<Component> components(const Mesh& mesh) {
-  for (const auto e : mesh.edges())
-    if (mesh.is_boundary(e))
-      throw std::invalid_argument("the components of an open mesh have no volume: edge " +
-                                  std::to_string(e.idx()) + " has one triangle; close it first");
+std::vector<Component> components_of(const Triangles& triangles, DisjointSets& joined,
+                                     const std::function<const SurfaceTree&()>& tree) {
   std::uint32_t shell_count = 0;
-  const std::vector<std::uint32_t> label = label_shells(mesh, shell_count);
-  const std::vector<Shell> shells = measure_shells(mesh, label, shell_count);
+  const std::vector<std::uint32_t> label = labels_of(joined, triangles.faces.size(), shell_count);
+  const std::vector<Shell> shells = measure_shells(triangles, label, shell_count);
 
   std::vector<std::uint32_t> owner(shell_count);
-  std::optional<SurfaceTree> tree;
   for (std::uint32_t s = 0; s < shell_count; ++s) {
     owner[s] = s;
     if (shells[s].volume_mm3 >= 0.0) continue;
-    if (!tree) tree.emplace(mesh);
-    owner[s] = shell_around(s, shells, label, *tree).value_or(s);
+    owner[s] = shell_around(s, shells, label, tree()).value_or(s);
   }
 
   assert(std::accumulate(shells.begin(), shells.end(), std::size_t{0},
                          [](std::size_t sum, const Shell& shell) { return sum + shell.faces.size(); }) ==
-         mesh.n_faces());
+         triangles.faces.size());
   std::vector<Component> by_shell(shell_count);
   for (std::uint32_t s = 0; s < shell_count; ++s) {
     Component& component = by_shell[owner[s]];
@@ -164,6 +123,40 @@ std::vector<Component> components(const Mesh& mesh) {
     return a.volume_mm3 != b.volume_mm3 ? a.volume_mm3 > b.volume_mm3 : a.faces.front() < b.faces.front();
   });
   return by_shell;
+}
+
+}  // namespace
+
+std::vector<Component> components(const Triangles& triangles,
+                                  const std::function<const SurfaceTree&()>& tree) {
+  DisjointSets joined(triangles.faces.size());
+  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) {
+    if (end - begin == 1)
+      throw std::invalid_argument("the components of open triangles have no volume: triangle " +
+                                  std::to_string(begin->corner / 3) +
+                                  " has a side of its own; close it first");
+    for (const Side* other = begin + 1; other != end; ++other)
+      joined.join(begin->corner / 3, other->corner / 3);
+  });
+  return components_of(triangles, joined, tree);
+}
+
+std::vector<Component> components(const Mesh& mesh) {
+  DisjointSets joined(mesh.n_faces());
+  for (const auto e : mesh.edges()) {
+    if (mesh.is_boundary(e))
+      throw std::invalid_argument("the components of an open mesh have no volume: edge " +
+                                  std::to_string(e.idx()) + " has one triangle; close it first");
+    const auto h = mesh.halfedge_handle(e, 0);
+    joined.join(static_cast<std::uint32_t>(mesh.face_handle(h).idx()),
+                static_cast<std::uint32_t>(mesh.opposite_face_handle(h).idx()));
+  }
+  const Triangles triangles = triangles_of(mesh);
+  std::optional<SurfaceTree> tree;
+  return components_of(triangles, joined, [&]() -> const SurfaceTree& {
+    if (!tree) tree.emplace(triangles);
+    return *tree;
+  });
 }
 
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces) {

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "brep/mesh/distance.h"
 #include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 
@@ -21,6 +24,11 @@ struct Component {
 /// around it stands alone with its negative volume. Throws std::invalid_argument where the mesh is open.
 /// Cost: n log n, one ray a shell.
 std::vector<Component> components(const Mesh& mesh);
+
+/// The same of closed triangles that linked() takes as they are; `tree` is their tree, asked for only where
+/// there are cavities. Cost: linear, one ray a cavity.
+std::vector<Component> components(const Triangles& triangles,
+                                  const std::function<const SurfaceTree&()>& tree);
 
 /// The mesh of some of a mesh's faces, in the order given, without other vertices.
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces);

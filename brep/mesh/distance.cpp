@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A binary tree of axis-aligned boxes, split at the median centre along the longest axis. Nearest point of a
-// triangle: Ericson, Real-Time Collision Detection, 2005, 5.1.5. Crossings: a triangle is passed where an odd
-// number of its edges, projected along x, run past the point on one side; each edge is judged from its lower
-// end whichever triangle asks, so neighbours agree and no ray slips between them.
+// triangle: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
 #include "brep/mesh/distance.h"
 
 #include <algorithm>
@@ -15,17 +13,18 @@
 #include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include "brep/mesh/halving.h"
-#include "brep/mesh/orientation.h"
+#include "brep/mesh/morton_tree.h"
+#include "brep/mesh/ray_passing.h"
 
 namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-constexpr std::uint32_t parallel_size = 8192;  // below it halves are built one after the other
+/// A tree is 32 deep at most, along a curve 60 more, and each level leaves one node waiting.
+constexpr std::size_t most_waiting = 96;
 
 struct Corners {
   glm::dvec3 a, b, c;
@@ -43,6 +42,24 @@ struct TreeBox {
     return glm::dot(d, d);
   }
 };
+
+TreeBox box_of(const Corners& t) {
+  return {glm::min(t.a, glm::min(t.b, t.c)), glm::max(t.a, glm::max(t.b, t.c))};
+}
+
+/// Square of what rounding may take off a distance: some units in the last place of the largest coordinate.
+double squared_rounding(const glm::dvec3& p, const TreeBox& all) {
+  const glm::dvec3 most = glm::max(glm::abs(p), glm::max(glm::abs(all.low), glm::abs(all.high)));
+  const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * (most.x + most.y + most.z);
+  return rounding * rounding;
+}
+
+/// A squared distance to a box from which on no triangle in it is computed to be as near as `nearest`: with a
+/// rounding of r, (d + r)^2 <= (1 + s) d^2 + (1 + 1 / s) r^2 for any s > 0.
+double surely_farther(double nearest, double rounding_mm2) {
+  constexpr double share = 1e-6;
+  return (1.0 + share) * nearest + (1.0 + 1.0 / share) * rounding_mm2;
+}
 
 /// Share of the way from a to b at which a segment is nearest.
 double share_along(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
@@ -94,32 +111,6 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
   return weights;
 }
 
-/// As the ray along x sees it.
-glm::dvec2 projected(const glm::dvec3& p) {
-  return {p.y, p.z};
-}
-
-/// Whether the projected edge, which straddles the point's z by the half-open rule, runs past its larger y.
-/// Exactly, as all of passes(): one wrong crossing turns a whole part of a solid inside out.
-bool edge_passes(const glm::dvec3& p, const glm::dvec3& from, const glm::dvec3& to) {
-  if ((from.z <= p.z) == (to.z <= p.z)) return false;
-  if (from.y <= p.y && to.y <= p.y) return false;
-  if (from.y > p.y && to.y > p.y) return true;
-  const glm::dvec3 &low = from.z < to.z ? from : to, &high = from.z < to.z ? to : from;
-  return orientation(projected(low), projected(high), projected(p)) > 0;
-}
-
-bool passes(const glm::dvec3& p, const Corners& t) {
-  const bool in_projection = edge_passes(p, t.a, t.b) != edge_passes(p, t.b, t.c) ? !edge_passes(p, t.c, t.a)
-                                                                                  : edge_passes(p, t.c, t.a);
-  if (!in_projection) return false;
-  if (t.a.x <= p.x && t.b.x <= p.x && t.c.x <= p.x) return false;
-  if (t.a.x > p.x && t.b.x > p.x && t.c.x > p.x) return true;
-  // Along +x the plane lies ahead where the point is not on the side that the normal says.
-  const int normal_x = orientation(projected(t.a), projected(t.b), projected(t.c));
-  return orientation(t.a, t.b, t.c, p) * normal_x < 0;
-}
-
 }  // namespace
 
 bool is_inside(const glm::dvec3& p_mm, const Triangles& surface) {
@@ -128,8 +119,8 @@ bool is_inside(const glm::dvec3& p_mm, const Triangles& surface) {
       [&](const auto& range, std::size_t count) {
         for (std::size_t f = range.begin(); f != range.end(); ++f) {
           const auto& face = surface.faces[f];
-          count += passes(
-              p_mm, {surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]});
+          count += passing_of(p_mm, surface.points_mm[face[0]], surface.points_mm[face[1]],
+                              surface.points_mm[face[2]]) != RayPassing::Beside;
         }
         return count;
       },
@@ -147,67 +138,63 @@ struct SurfaceTree::Tree {
   std::vector<std::uint32_t> faces;
   std::vector<Node> nodes;
 
-  explicit Tree(const Triangles& source) {
+  Tree(const Triangles& source, SurfaceTree::Build build) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());
     if (count == 0) return;
     faces.resize(count);
-    std::iota(faces.begin(), faces.end(), 0u);
     std::vector<Corners> unordered(count);
-    std::vector<glm::dvec3> centres(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+    std::vector<Centred> items(count);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 4096), [&](const auto& range) {
+      for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
         const auto& f = source.faces[i];
         assert(std::max({f[0], f[1], f[2]}) < source.points_mm.size());
         unordered[i] = {source.points_mm[f[0]], source.points_mm[f[1]], source.points_mm[f[2]]};
         TreeBox box;
         box.add(unordered[i]);
-        centres[i] = 0.5 * box.low + 0.5 * box.high;
+        items[i] = {0.5 * box.low + 0.5 * box.high, i};
       }
     });
     triangles.resize(count);
     nodes.resize(halving_nodes(count, leaf_size));
-    build(unordered, centres, 0, 0, count);
-  }
-
-  void build(const std::vector<Corners>& unordered, const std::vector<glm::dvec3>& centres,
-             std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    assert(begin < end && end <= faces.size() && self < nodes.size());
-    if (end - begin <= leaf_size) {
+    const auto leaf = [&](std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t i = begin; i < end; ++i) {
+        faces[i] = items[i].number;
         triangles[i] = unordered[faces[i]];
         nodes[self].box.add(triangles[i]);
       }
       nodes[self].first = begin;
       nodes[self].count = end - begin;
+    };
+    const auto inner = [&](std::uint32_t self, std::uint32_t second) {
+      nodes[self].first = second;
+      for (const std::uint32_t half : {self + 1, second}) {
+        nodes[self].box.low = glm::min(nodes[self].box.low, nodes[half].box.low);
+        nodes[self].box.high = glm::max(nodes[self].box.high, nodes[half].box.high);
+      }
+    };
+    if (build == SurfaceTree::Build::Searched) {
+      halve(items, leaf_size, leaf, inner, 0, 0, count);
       return;
     }
-    glm::dvec3 low = centres[faces[begin]], high = low;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      low = glm::min(low, centres[faces[i]]);
-      high = glm::max(high, centres[faces[i]]);
-    }
-    const glm::dvec3 extent = high - low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(faces.begin() + begin, faces.begin() + middle, faces.begin() + end,
-                     [&](std::uint32_t f, std::uint32_t g) {
-                       return centres[f][axis] != centres[g][axis] ? centres[f][axis] < centres[g][axis]
-                                                                   : f < g;
-                     });
-    const std::uint32_t second = self + 1 + halving_nodes(middle - begin, leaf_size);
-    const auto first_half = [&] { build(unordered, centres, self + 1, begin, middle); };
-    const auto second_half = [&] { build(unordered, centres, second, middle, end); };
-    if (end - begin > parallel_size) {
-      tbb::parallel_invoke(first_half, second_half);
-    } else {
-      first_half();
-      second_half();
-    }
-    nodes[self].first = second;
-    for (const std::uint32_t half : {self + 1, second}) {
-      nodes[self].box.low = glm::min(nodes[self].box.low, nodes[half].box.low);
-      nodes[self].box.high = glm::max(nodes[self].box.high, nodes[half].box.high);
-    }
+    std::vector<glm::dvec3> centres_mm(count);
+    for (std::uint32_t i = 0; i < count; ++i) centres_mm[i] = items[i].centre_mm;
+    const MortonOrder order = morton_order(centres_mm);
+    for (std::uint32_t i = 0; i < count; ++i) items[i].number = order.numbers[i];
+    nodes.clear();
+    const auto build_run = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
+      const auto self = static_cast<std::uint32_t>(nodes.size());
+      nodes.emplace_back();
+      if (end - begin <= leaf_size) {
+        leaf(self, begin, end);
+        return;
+      }
+      const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
+      again(again, begin, middle);
+      const auto second = static_cast<std::uint32_t>(nodes.size());
+      again(again, middle, end);
+      inner(self, second);
+    };
+    build_run(build_run, 0, count);
   }
 
   /// `nearest_triangle` is where to look first, and becomes the one found: neighbours in a list of points are
@@ -215,8 +202,8 @@ struct SurfaceTree::Tree {
   double distance(const glm::dvec3& p, std::uint32_t& nearest_triangle) const {
     assert(nearest_triangle < triangles.size());
     double nearest = squared_distance_to_triangle(p, triangles[nearest_triangle]);
-    // Depth is at most 32 and each level leaves one node waiting.
-    std::array<std::pair<std::uint32_t, double>, 64> waiting;
+    const double rounding_mm2 = squared_rounding(p, nodes[0].box);
+    std::array<std::pair<std::uint32_t, double>, most_waiting> waiting;
     std::size_t top = 0;
     waiting[top++] = {0, nodes[0].box.squared_distance(p)};
     while (top > 0) {
@@ -225,6 +212,7 @@ struct SurfaceTree::Tree {
       const Node& node = nodes[index];
       if (node.count > 0) {
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+          if (box_of(triangles[i]).squared_distance(p) > surely_farther(nearest, rounding_mm2)) continue;
           const double squared = squared_distance_to_triangle(p, triangles[i]);
           if (squared >= nearest) continue;
           nearest = squared;
@@ -262,7 +250,7 @@ struct SurfaceTree::Tree {
   template <typename Visit>
   void visit_crossings(const glm::dvec3& p, Visit visit) const {
     if (nodes.empty()) return;
-    std::array<std::uint32_t, 64> waiting;
+    std::array<std::uint32_t, most_waiting> waiting;
     std::size_t top = 0;
     waiting[top++] = 0;
     while (top > 0) {
@@ -278,12 +266,14 @@ struct SurfaceTree::Tree {
         continue;
       }
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        if (passes(p, triangles[i])) visit(i);
+        if (const Corners& t = triangles[i]; passing_of(p, t.a, t.b, t.c) != RayPassing::Beside) visit(i);
     }
   }
 };
 
-SurfaceTree::SurfaceTree(const Triangles& triangles) : tree_(std::make_unique<Tree>(triangles)) {}
+SurfaceTree::SurfaceTree(const Triangles& triangles) : SurfaceTree(triangles, Build::Searched) {}
+SurfaceTree::SurfaceTree(const Triangles& triangles, Build build)
+    : tree_(std::make_unique<Tree>(triangles, build)) {}
 SurfaceTree::SurfaceTree(const Mesh& mesh) : SurfaceTree(triangles_of(mesh)) {}
 SurfaceTree::~SurfaceTree() = default;
 SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;

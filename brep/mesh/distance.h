@@ -37,6 +37,10 @@ class SurfaceTree {
  public:
   explicit SurfaceTree(const Mesh& mesh);
   explicit SurfaceTree(const Triangles& triangles);
+  /// Hasty: built in linear time along a curve, for a surface that is asked about a few times. Distances are
+  /// the same but for rounding; of faces that are equally near, feet() may name another.
+  enum class Build { Searched, Hasty };
+  SurfaceTree(const Triangles& triangles, Build build);
   ~SurfaceTree();
   SurfaceTree(SurfaceTree&&) noexcept;
   SurfaceTree& operator=(SurfaceTree&&) noexcept;

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <cassert>
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <tbb/parallel_invoke.h>
+#include <vector>
 
 namespace octotomy::brep {
 
@@ -21,6 +26,50 @@ inline std::uint32_t halving_nodes(std::uint32_t count, std::uint32_t leaf_size)
     small /= 2;
   }
   return static_cast<std::uint32_t>(nodes);
+}
+
+/// An item of a tree, by a point that stands for it.
+struct Centred {
+  glm::dvec3 centre_mm{0.0};
+  std::uint32_t number = 0;
+};
+
+/// Builds such a tree over items, each node split at the median centre along its longest axis, equal centres
+/// by number. Calls leaf(node, begin, end) for each leaf, whose items stand at begin .. end - 1, and
+/// inner(node, second) for each other node after its children, the next one and `second`; in parallel.
+/// Precondition: no two items of one number. The same on any number of threads. Cost: n log n.
+template <typename Leaf, typename Inner>
+void halve(std::vector<Centred>& items, std::uint32_t leaf_size, const Leaf& leaf, const Inner& inner,
+           std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+  constexpr std::uint32_t parallel_size = 8192;  // below it halves are built one after the other
+  assert(begin < end && end <= items.size());
+  if (end - begin <= leaf_size) {
+    leaf(self, begin, end);
+    return;
+  }
+  glm::dvec3 low = items[begin].centre_mm, high = low;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    low = glm::min(low, items[i].centre_mm);
+    high = glm::max(high, items[i].centre_mm);
+  }
+  const glm::dvec3 extent = high - low;
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end,
+                   [axis](const Centred& a, const Centred& b) {
+                     return a.centre_mm[axis] != b.centre_mm[axis] ? a.centre_mm[axis] < b.centre_mm[axis]
+                                                                   : a.number < b.number;
+                   });
+  const std::uint32_t second = self + 1 + halving_nodes(middle - begin, leaf_size);
+  const auto first_half = [&] { halve(items, leaf_size, leaf, inner, self + 1, begin, middle); };
+  const auto second_half = [&] { halve(items, leaf_size, leaf, inner, second, middle, end); };
+  if (end - begin > parallel_size) {
+    tbb::parallel_invoke(first_half, second_half);
+  } else {
+    first_half();
+    second_half();
+  }
+  inner(self, second);
 }
 
 }  // namespace octotomy::brep

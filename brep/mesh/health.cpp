@@ -1,33 +1,30 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 sort the sides of all triangles by edge; 2 count edges, fans and shells from runs of equal edges; 3 count
-// degenerate and duplicate triangles; 4 place each shell among the others by a ray; 5 test for intersections
-// the pairs whose boxes overlap (Zomorodian, Edelsbrunner 2002, as CGAL's box_intersection_d), each pair by
-// exact predicates. Works on triangles rather than halfedges so that what is not manifold can be reported.
+// 1 sort the sides of all triangles by edge; 2 count edges, fans, shells and duplicates from runs of equal
+// edges; 3 count degenerate triangles; 4 place each shell among the others by a ray; 5 test for intersections
+// the pairs whose boxes overlap, each by exact predicates, behind a filter in doubles that lets most pass.
+// Works on triangles rather than halfedges so that what is not manifold can be reported. Rays and pairs go
+// through one tree.
 #include "brep/mesh/health.h"
 
-// CGAL's boxes in parallel; no other part of it is.
-#ifndef CGAL_LINKED_WITH_TBB
-#define CGAL_LINKED_WITH_TBB
-#endif
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
+#include <numeric>
+#include <optional>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-#include <tuple>
 
 #include "brep/mesh/disjoint_sets.h"
-#include "brep/mesh/distance.h"
 #include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/morton_tree.h"
+#include "brep/mesh/ray_passing.h"
+#include "brep/mesh/sides.h"
 
 namespace octotomy::brep {
 namespace {
@@ -52,28 +49,6 @@ void check_points(const Triangles& triangles) {
     }
 }
 
-/// Side `corner % 3` of triangle `corner / 3`, from that corner to the next.
-struct Side {
-  std::uint32_t low, high, corner;
-  bool upward;  ///< runs from the lower point number to the higher
-};
-
-std::vector<Side> sorted_sides(const Triangles& triangles) {
-  std::vector<Side> sides(3 * triangles.faces.size());
-  for (std::uint32_t c = 0; c < sides.size(); ++c) {
-    const std::uint32_t from = triangles.faces[c / 3][c % 3], to = triangles.faces[c / 3][(c + 1) % 3];
-    sides[c] = {std::min(from, to), std::max(from, to), c, from < to};
-  }
-  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
-  });
-  return sides;
-}
-
-std::uint32_t next_corner(std::uint32_t corner) {
-  return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
 /// The first triangle that each of the findings is about.
 struct Offenders {
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
@@ -83,34 +58,60 @@ struct Offenders {
   static void note(std::uint32_t& first, std::uint32_t triangle) { first = std::min(first, triangle); }
 };
 
+/// Counts the pairs of triangles with the same points among those that share an edge. `thirds` is scratch.
+void count_duplicates(const Triangles& triangles, const Side* begin, const Side* end,
+                      std::vector<std::pair<std::uint32_t, std::uint32_t>>& thirds, Health& health,
+                      Offenders& offenders) {
+  // A triangle is counted at the edge of its two lowest points.
+  thirds.clear();
+  for (const Side* side = begin; side != end; ++side) {
+    const std::uint32_t third = triangles.faces[side->corner / 3][previous_corner(side->corner) % 3];
+    if (third >= side->high) thirds.emplace_back(third, side->corner / 3);
+  }
+  if (thirds.size() < 2) return;
+  std::sort(thirds.begin(), thirds.end());
+  // One that repeats a point has an edge twice.
+  thirds.erase(std::unique(thirds.begin(), thirds.end()), thirds.end());
+  std::size_t earlier = 0;
+  for (std::size_t i = 1; i < thirds.size(); ++i) {
+    earlier = thirds[i].first == thirds[i - 1].first ? earlier + 1 : 0;
+    health.duplicate_faces += earlier;
+    if (earlier == 1) Offenders::note(offenders.duplicate, thirds[i - 1].second);
+  }
+}
+
 /// Counts what edges and vertices tell; returns the shell of each triangle, named by its first triangle.
 std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health& health,
                                              Offenders& offenders) {
   const std::vector<Side> sides = sorted_sides(triangles);
   DisjointSets shells(triangles.faces.size()), fans(sides.size());
   std::size_t edges = 0;
-  for (std::size_t i = 0, j; i < sides.size(); i = j) {
-    for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high; ++j) {
-      const Side &a = sides[i], &b = sides[j];
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> thirds;
+  each_edge(sides, [&](const Side* begin, const Side* end) {
+    for (const Side* other = begin + 1; other != end; ++other) {
+      const Side &a = *begin, &b = *other;
       shells.join(a.corner / 3, b.corner / 3);
       const bool same_way = a.upward == b.upward;
       fans.join(a.corner, same_way ? b.corner : next_corner(b.corner));
       fans.join(next_corner(a.corner), same_way ? next_corner(b.corner) : b.corner);
     }
     ++edges;
-    const std::uint32_t first = sides[i].corner / 3;
+    const std::uint32_t first = begin->corner / 3;
     assert(first < triangles.faces.size());
-    if (j - i == 1) {
+    if (end - begin == 1) {
       ++health.boundary_edges;
       Offenders::note(offenders.boundary, first);
-    } else if (j - i > 2) {
+      return;
+    }
+    count_duplicates(triangles, begin, end, thirds, health, offenders);
+    if (end - begin > 2) {
       ++health.nonmanifold_edges;
       Offenders::note(offenders.nonmanifold_edge, first);
-    } else if (sides[i].upward == sides[i + 1].upward) {
+    } else if (begin[0].upward == begin[1].upward) {
       ++health.misoriented_edges;
       Offenders::note(offenders.misoriented, first);
     }
-  }
+  });
 
   std::vector<std::uint32_t> fan_count(triangles.points_mm.size(), 0);
   for (std::uint32_t c = 0; c < sides.size(); ++c)
@@ -141,37 +142,71 @@ std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health&
   return shell;
 }
 
-/// Counts points that stand on others, and the boundary edges that end when those become one.
-void count_coincident(const Triangles& triangles, Health& health) {
-  std::vector<glm::dvec3> points_mm(triangles.points_mm.size(), glm::dvec3(0.0));
-  std::vector<std::uint8_t> used(points_mm.size(), 0);
-  std::vector<std::uint32_t> number(points_mm.size()), in_use;
+/// For each point in use the first in use at its place; others are named by their own number.
+std::vector<std::uint32_t> first_in_use(const Triangles& triangles, const Health& health) {
+  if (health.unused_vertices == 0) return first_equal_points(triangles.points_mm);
+  std::vector<std::uint8_t> used(triangles.points_mm.size(), 0);
   for (const auto& face : triangles.faces)
     for (const std::uint32_t v : face) used[v] = 1;
+  std::vector<std::uint32_t> in_use;
+  std::vector<glm::dvec3> points_mm;
   for (std::uint32_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
-    number[v] = static_cast<std::uint32_t>(in_use.size());
-    points_mm[in_use.size()] = triangles.points_mm[v];
     in_use.push_back(v);
+    points_mm.push_back(triangles.points_mm[v]);
   }
-  points_mm.resize(in_use.size());
-  const std::vector<std::uint32_t> first = first_equal_points(points_mm);
-  for (std::uint32_t i = 0; i < first.size(); ++i) health.coincident_points += first[i] != i;
+  const std::vector<std::uint32_t> place = first_equal_points(points_mm);
+  std::vector<std::uint32_t> first(used.size());
+  std::iota(first.begin(), first.end(), 0u);
+  for (std::size_t i = 0; i < in_use.size(); ++i) first[in_use[i]] = in_use[place[i]];
+  return first;
+}
+
+/// Counts points that stand on others, and the boundary edges that end when those become one.
+void count_coincident(const Triangles& triangles, const std::vector<std::uint32_t>& first, Health& health) {
+  for (std::uint32_t v = 0; v < first.size(); ++v) health.coincident_points += first[v] != v;
   if (health.coincident_points == 0 || health.boundary_edges == 0) return;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  edges.reserve(3 * triangles.faces.size());
+  Triangles welded{triangles.points_mm, {}};
   for (const auto& face : triangles.faces)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = first[number[face[k]]], to = first[number[face[(k + 1) % 3]]];
-      if (from != to) edges.emplace_back(std::min(from, to), std::max(from, to));
-    }
-  tbb::parallel_sort(edges.begin(), edges.end());
+    welded.faces.push_back({first[face[0]], first[face[1]], first[face[2]]});
   std::size_t open = 0;
-  for (std::size_t i = 0, j; i < edges.size(); i = j) {
-    for (j = i + 1; j < edges.size() && edges[j] == edges[i];) ++j;
-    open += j - i == 1;
-  }
+  each_edge(sorted_sides(welded), [&](const Side* begin, const Side* end) {
+    open += end - begin == 1 && begin->low != begin->high;
+  });
   health.unwelded_edges = health.boundary_edges - std::min(open, health.boundary_edges);
+}
+
+/// The sign of a sum of products whose terms add up to `permanent` without signs, in doubles; 0 where
+/// rounding may decide. The bound is Shewchuk's for a determinant of three differences ("Adaptive precision
+/// floating-point arithmetic and fast robust geometric predicates", 1997), one of two keeps it, too; below
+/// `least` products may be lost to underflow.
+int sure_sign(double determinant, double permanent) {
+  constexpr double half_epsilon = 0.5 * std::numeric_limits<double>::epsilon();
+  constexpr double share = (7.0 + 56.0 * half_epsilon) * half_epsilon;
+  constexpr double least = 1e-250;
+  const double bound = share * permanent;
+  return !(permanent > least) ? 0 : determinant > bound ? 1 : determinant < -bound ? -1 : 0;
+}
+
+/// The side of the plane through a, b and c that p is on, 0 where doubles cannot tell.
+int sure_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p) {
+  const glm::dvec3 u = a - p, v = b - p, w = c - p;
+  const double vw = v.x * w.y, wv = w.x * v.y, wu = w.x * u.y, uw = u.x * w.y, uv = u.x * v.y, vu = v.x * u.y;
+  return sure_sign(u.z * (vw - wv) + v.z * (wu - uw) + w.z * (uv - vu),
+                   (std::abs(vw) + std::abs(wv)) * std::abs(u.z) +
+                       (std::abs(wu) + std::abs(uw)) * std::abs(v.z) +
+                       (std::abs(uv) + std::abs(vu)) * std::abs(w.z));
+}
+
+/// Whether three points certainly span a triangle, by its three projections.
+bool surely_has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 u = b - a, v = c - a;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const double one = u[i] * v[j], other = u[j] * v[i];
+    if (sure_sign(one - other, std::abs(one) + std::abs(other)) != 0) return true;
+  }
+  return false;
 }
 
 /// Marks triangles without area, exactly.
@@ -180,8 +215,9 @@ std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& he
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, degenerate.size(), 4096), [&](const auto& range) {
     for (std::size_t f = range.begin(); f != range.end(); ++f) {
       const auto& v = triangles.faces[f];
-      degenerate[f] = CGAL::collinear(exact(triangles.points_mm[v[0]]), exact(triangles.points_mm[v[1]]),
-                                      exact(triangles.points_mm[v[2]]));
+      const glm::dvec3 &a = triangles.points_mm[v[0]], &b = triangles.points_mm[v[1]],
+                       &c = triangles.points_mm[v[2]];
+      degenerate[f] = !surely_has_area(a, b, c) && CGAL::collinear(exact(a), exact(b), exact(c));
     }
   });
   for (std::size_t f = 0; f < degenerate.size(); ++f) {
@@ -192,96 +228,87 @@ std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& he
   return degenerate;
 }
 
-void count_duplicates(const Triangles& triangles, Health& health, Offenders& offenders) {
-  std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> faces;
-  faces.reserve(triangles.faces.size());
-  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f) {
-    faces.emplace_back(triangles.faces[f], f);
-    std::sort(faces.back().first.begin(), faces.back().first.end());
-  }
-  tbb::parallel_sort(faces.begin(), faces.end());
-  std::size_t earlier = 0;
-  for (std::size_t i = 1; i < faces.size(); ++i) {
-    earlier = faces[i].first == faces[i - 1].first ? earlier + 1 : 0;
-    health.duplicate_faces += earlier;
-    if (earlier == 1) Offenders::note(offenders.duplicate, faces[i - 1].second);
-  }
-}
-
-/// Marks points that stand where a point of another shell does.
-std::vector<std::uint8_t> mark_touching(const Triangles& triangles, const std::vector<std::uint32_t>& shell) {
-  struct Corner {
-    glm::dvec3 p_mm;
-    std::uint32_t shell, point;
-  };
-  std::vector<Corner> corners;
-  corners.reserve(3 * shell.size());
-  for (std::uint32_t f = 0; f < shell.size(); ++f)
-    for (const std::uint32_t v : triangles.faces[f]) corners.push_back({triangles.points_mm[v], shell[f], v});
-  tbb::parallel_sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
-    return std::tie(a.p_mm.x, a.p_mm.y, a.p_mm.z) < std::tie(b.p_mm.x, b.p_mm.y, b.p_mm.z);
-  });
-  assert(corners.size() == 3 * triangles.faces.size());
-  std::vector<std::uint8_t> touching(triangles.points_mm.size(), 0);
-  for (std::size_t i = 0, j; i < corners.size(); i = j) {
-    bool several = false;
-    for (j = i + 1; j < corners.size() && corners[j].p_mm == corners[i].p_mm; ++j)
-      several = several || corners[j].shell != corners[i].shell;
-    if (!several) continue;
-    for (std::size_t k = i; k < j; ++k) touching[corners[k].point] = 1;
-  }
-  return touching;
-}
-
-/// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
-/// turned outward, to one where it is turned inward. Returns the total volume. Needs a closed, manifold,
-/// consistently wound mesh.
-double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& shell, Health& health,
-                    Offenders& offenders) {
-  assert(health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0);
-  struct Probe {
-    double volume_mm3 = 0.0;
-    /// The shell's point of largest x, one that no other shell shares where there is any.
-    glm::dvec3 p_mm{-std::numeric_limits<double>::infinity()};
-    bool touches = true;
-  };
-  const std::vector<std::uint8_t> touching = health.shells > 1
-                                                 ? mark_touching(triangles, shell)
-                                                 : std::vector<std::uint8_t>(triangles.points_mm.size(), 0);
-  std::map<std::uint32_t, Probe> probes;
+/// What places a shell among the others.
+struct Probe {
+  std::uint32_t shell = 0;
   double volume_mm3 = 0.0;
+  /// The shell's point of largest x, one that no other shell shares where there is any.
+  glm::dvec3 p_mm{-std::numeric_limits<double>::infinity()};
+  bool touches = true;
+};
+
+/// The probe of each shell, in the order of their names.
+std::vector<Probe> probes_of(const Triangles& triangles, const std::vector<std::uint32_t>& shell,
+                             const std::vector<std::uint8_t>& touching) {
+  std::vector<Probe> probes;
+  std::vector<std::uint32_t> number(shell.size());
   for (std::uint32_t f = 0; f < shell.size(); ++f) {
-    Probe& probe = probes[shell[f]];
-    const auto point = [&](int k) {
-      return triangles.points_mm[triangles.faces[f][static_cast<std::size_t>(k)]];
-    };
+    // A shell is named by its first triangle.
+    if (shell[f] == f) {
+      number[f] = static_cast<std::uint32_t>(probes.size());
+      probes.push_back({.shell = f});
+    }
+    Probe& probe = probes[number[shell[f]]];
     for (const std::uint32_t v : triangles.faces[f]) {
       const glm::dvec3& p = triangles.points_mm[v];
-      const bool touches = touching[v] != 0;
+      const bool touches = !touching.empty() && touching[v] != 0;
       if (touches != probe.touches ? probe.touches : p.x > probe.p_mm.x) {
         probe.p_mm = p;
         probe.touches = touches;
       }
     }
+    const auto point = [&](std::size_t k) { return triangles.points_mm[triangles.faces[f][k]]; };
     // About the shell's first point, which keeps digits far from the origin.
     const glm::dvec3 origin = triangles.points_mm[triangles.faces[shell[f]][0]];
     probe.volume_mm3 += glm::dot(point(0) - origin, glm::cross(point(1) - origin, point(2) - origin)) / 6.0;
   }
-  const SurfaceTree tree(triangles);
-  for (const auto& [name, probe] : probes) {
-    volume_mm3 += probe.volume_mm3;
-    int winding = 0;
-    for (const Crossing& crossing : tree.crossings(probe.p_mm))
-      if (shell[crossing.face] != name) winding += crossing.leaving ? 1 : -1;
-    if (winding == (probe.volume_mm3 > 0.0 ? 0 : 1)) continue;
+  return probes;
+}
+
+/// How often the shells other than the probe's wind about it.
+int winding_around(const Probe& probe, const Triangles& triangles, const std::vector<std::uint32_t>& shell,
+                   const MortonTree& tree) {
+  int winding = 0;
+  const glm::dvec3& p = probe.p_mm;
+  tree.visit(
+      [&](const OuterBox& box) {
+        return !(box.high.x < p.x || box.low.y > p.y || box.high.y < p.y || box.low.z > p.z ||
+                 box.high.z < p.z);
+      },
+      [&](std::uint32_t f) {
+        if (shell[f] == probe.shell) return;
+        const auto& [a, b, c] = triangles.faces[f];
+        const RayPassing passing =
+            passing_of(p, triangles.points_mm[a], triangles.points_mm[b], triangles.points_mm[c]);
+        winding += passing == RayPassing::Leaving ? 1 : passing == RayPassing::Entering ? -1 : 0;
+      });
+  return winding;
+}
+
+/// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
+/// turned outward, to one where it is turned inward. Returns the total volume. Needs a closed, manifold,
+/// consistently wound mesh, and a tree where there are several shells.
+double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>& first,
+                    const std::vector<std::uint32_t>& shell, const MortonTree* tree, Health& health,
+                    Offenders& offenders) {
+  assert(health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0);
+  const std::vector<Probe> probes =
+      probes_of(triangles, shell,
+                health.shells > 1 ? shared_points(triangles, first, shell) : std::vector<std::uint8_t>());
+  std::vector<std::uint8_t> misplaced(probes.size(), 0);
+  tbb::parallel_for(std::size_t{0}, probes.size(), [&](std::size_t i) {
+    const int winding = probes.size() > 1 ? winding_around(probes[i], triangles, shell, *tree) : 0;
+    misplaced[i] = winding != (probes[i].volume_mm3 > 0.0 ? 0 : 1);
+  });
+  double volume_mm3 = 0.0;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    volume_mm3 += probes[i].volume_mm3;
+    if (misplaced[i] == 0) continue;
     ++health.misplaced_shells;
-    Offenders::note(offenders.misplaced, name);
+    Offenders::note(offenders.misplaced, probes[i].shell);
   }
   return volume_mm3;
 }
-
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t,
-                                                      CGAL::Box_intersection_d::ID_FROM_BOX_ADDRESS>;
 
 /// Whether two triangles meet elsewhere than in the corners or the side they share.
 class MeetsElsewhere {
@@ -303,6 +330,10 @@ class MeetsElsewhere {
       shared_b = static_cast<std::size_t>(at - b.begin());
     }
     if (shared == 3) return true;
+    // Neither reaches through the other's plane: they meet in the corner they share at most.
+    if (shared < 2 &&
+        (is_beside(b, shared == 1 ? shared_b : 3, a) || is_beside(a, shared == 1 ? shared_a : 3, b)))
+      return false;
     if (shared == 0) return CGAL::do_intersect(triangle(a), triangle(b));
     if (shared == 1)
       return CGAL::do_intersect(triangle(a), opposite(b, shared_b)) ||
@@ -310,6 +341,7 @@ class MeetsElsewhere {
     assert(shared == 2);
     for (std::size_t i = 0; i < 3; ++i)
       if (std::find(a.begin(), a.end(), b[i]) == a.end()) own_b = i;
+    if (sure_side(at(a[0]), at(a[1]), at(a[2]), at(b[own_b])) != 0) return false;
     // Folded flat onto each other: coplanar, with both free corners on one side of the shared edge.
     const Kernel::Point_3 p = point(a[(own_a + 1) % 3]), q = point(a[(own_a + 2) % 3]);
     const Kernel::Point_3 r = point(a[own_a]), s = point(b[own_b]);
@@ -318,6 +350,18 @@ class MeetsElsewhere {
 
  private:
   using Face = std::array<std::uint32_t, 3>;
+  const glm::dvec3& at(std::uint32_t v) const { return triangles_.points_mm[v]; }
+  /// Whether all corners of f but one are certainly on one side of g's plane.
+  bool is_beside(const Face& f, std::size_t but, const Face& g) const {
+    int side = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k == but) continue;
+      const int of_corner = sure_side(at(g[0]), at(g[1]), at(g[2]), at(f[k]));
+      if (of_corner == 0 || of_corner == -side) return false;
+      side = of_corner;
+    }
+    return true;
+  }
   Kernel::Point_3 point(std::uint32_t v) const { return exact(triangles_.points_mm[v]); }
   Kernel::Triangle_3 triangle(const Face& f) const { return {point(f[0]), point(f[1]), point(f[2])}; }
   Kernel::Segment_3 opposite(const Face& f, std::size_t corner) const {
@@ -327,31 +371,16 @@ class MeetsElsewhere {
   const Triangles& triangles_;
 };
 
-void test_intersections(const Triangles& triangles, const std::vector<std::uint8_t>& degenerate,
-                        Health& health) {
-  std::vector<Box> boxes;
-  boxes.reserve(triangles.faces.size());
-  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f) {
-    if (degenerate[f]) continue;
-    CGAL::Bbox_3 box;
-    for (const std::uint32_t v : triangles.faces[f]) box += exact(triangles.points_mm[v]).bbox();
-    boxes.emplace_back(box, f);
-  }
-  std::vector<const Box*> order(boxes.size());
-  std::transform(boxes.begin(), boxes.end(), order.begin(), [](const Box& box) { return &box; });
-
+void test_intersections(const Triangles& triangles, const MortonTree& tree,
+                        const std::vector<std::uint8_t>& degenerate, Health& health) {
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   tbb::enumerable_thread_specific<std::vector<Pair>> found;
   const MeetsElsewhere meets_elsewhere(triangles);
-  // CGAL's cutoff below which boxes are scanned instead of divided; any value gives the same pairs.
-  constexpr std::ptrdiff_t cutoff = 2000;
-  CGAL::box_self_intersection_d<CGAL::Parallel_tag>(
-      order.begin(), order.end(),
-      [&](const Box* a, const Box* b) {
-        const Pair pair(std::min(a->info(), b->info()), std::max(a->info(), b->info()));
-        if (meets_elsewhere(pair.first, pair.second)) found.local().push_back(pair);
-      },
-      cutoff);
+  tree.visit_own_pairs([&](std::uint32_t f, std::uint32_t g) {
+    if (degenerate[f] != 0 || degenerate[g] != 0) return;
+    const Pair pair = std::minmax(f, g);
+    if (meets_elsewhere(pair.first, pair.second)) found.local().push_back(pair);
+  });
   std::vector<Pair> meeting;
   for (const std::vector<Pair>& part : found) meeting.insert(meeting.end(), part.begin(), part.end());
 
@@ -418,19 +447,22 @@ Health health(const Triangles& triangles, const HealthOptions& options) {
   Health health;
   Offenders offenders;
   const std::vector<std::uint32_t> shell = count_connections(triangles, health, offenders);
-  count_coincident(triangles, health);
+  const std::vector<std::uint32_t> first = first_in_use(triangles, health);
+  count_coincident(triangles, first, health);
   const std::vector<std::uint8_t> degenerate = mark_degenerate(triangles, health, offenders);
-  count_duplicates(triangles, health, offenders);
 
   health.closed = health.faces > 0 && health.boundary_edges == 0;
   health.manifold = health.faces > 0 && health.nonmanifold_edges == 0 && health.nonmanifold_vertices == 0;
   health.oriented = health.faces > 0 && health.nonmanifold_edges == 0 && health.misoriented_edges == 0;
+  const bool places = health.closed && health.oriented;
+  std::optional<MortonTree> tree;
+  if (options.self_intersections || (places && health.shells > 1)) tree.emplace(triangles);
   double volume_mm3 = 0.0;
-  if (health.closed && health.oriented) {
-    volume_mm3 = place_shells(triangles, shell, health, offenders);
+  if (places) {
+    volume_mm3 = place_shells(triangles, first, shell, tree ? &*tree : nullptr, health, offenders);
     health.oriented = health.misplaced_shells == 0 && volume_mm3 > 0.0;
   }
-  if (options.self_intersections) test_intersections(triangles, degenerate, health);
+  if (options.self_intersections) test_intersections(triangles, *tree, degenerate, health);
   tell(triangles, health, offenders, volume_mm3);
   return health;
 }

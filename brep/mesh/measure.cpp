@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "brep/mesh/mesh_point.h"
+#include "brep/mesh/sides.h"
 
 namespace octotomy::brep {
 namespace {
@@ -154,8 +155,9 @@ double edge_curvature_mm(const glm::dvec3& n, const glm::dvec3& m, double length
   return 0.5 * length_mm * std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
 }
 
-/// Edges with one triangle count nothing. Precondition: normals are in the order of the faces.
-double absolute_mean_curvature_mm(const Mesh& mesh, const std::vector<glm::dvec3>& normals) {
+/// Edges with one triangle count nothing. `normals` are in the order of the faces.
+double absolute_mean_curvature_mm(const MeshCorners& source, const std::vector<glm::dvec3>& normals) {
+  const Mesh& mesh = source.mesh;
   assert(normals.size() == mesh.n_faces());
   return blockwise_sum<double>(mesh.n_edges(), [&](std::size_t i) {
     const Mesh::EdgeHandle e(static_cast<int>(i));
@@ -165,6 +167,26 @@ double absolute_mean_curvature_mm(const Mesh& mesh, const std::vector<glm::dvec3
                              normals[static_cast<std::size_t>(mesh.face_handle(g).idx())],
                              glm::distance(glm_of(mesh.point(mesh.to_vertex_handle(h))),
                                            glm_of(mesh.point(mesh.to_vertex_handle(g)))));
+  });
+}
+
+/// Edges in the order of mesh_of(): by the first of their corners.
+double absolute_mean_curvature_mm(const ListCorners& source, const std::vector<glm::dvec3>& normals) {
+  const Triangles& triangles = source.triangles;
+  std::vector<std::uint32_t> beyond(3 * triangles.faces.size(), Linked::none);
+  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) {
+    if (end - begin == 2) beyond[begin[0].corner] = begin[1].corner;
+  });
+  std::vector<std::uint32_t> edges;  // by their first corner
+  edges.reserve(beyond.size() / 2);
+  for (std::uint32_t c = 0; c < beyond.size(); ++c)
+    if (beyond[c] != Linked::none) edges.push_back(c);
+  return blockwise_sum<double>(edges.size(), [&](std::size_t i) {
+    const std::uint32_t c = edges[i];
+    const auto& face = triangles.faces[c / 3];
+    return edge_curvature_mm(
+        normals[c / 3], normals[beyond[c] / 3],
+        glm::distance(triangles.points_mm[face[(c + 1) % 3]], triangles.points_mm[face[c % 3]]));
   });
 }
 
@@ -205,25 +227,10 @@ glm::dmat3 inertia_of(SecondMoments moments, double volume, const glm::dvec3& ar
   return {s.y + s.z, -p.z, -p.y, -p.z, s.z + s.x, -p.x, -p.y, -p.x, s.x + s.y};
 }
 
-}  // namespace
-
-Size size_of(const Triangles& triangles) {
-  return size_from(ListCorners{triangles});
-}
-
-Size size_of(const Mesh& mesh) {
-  return size_from(MeshCorners{mesh});
-}
-
-double volume_mm3(const Mesh& mesh) {
-  const MeshCorners source{mesh};
-  return source.count() == 0 ? 0.0 : volume_about(source, extents_of(source).centre());
-}
-
-Measures measure(const Mesh& mesh) {
+template <typename Source>
+Measures measures_from(const Source& source) {
   Measures measures;
-  if (mesh.n_faces() == 0) return measures;
-  const MeshCorners source{mesh};
+  if (source.count() == 0) return measures;
   const Size size = size_from(source);
   measures.volume_mm3 = size.volume_mm3;
   measures.area_mm2 = size.area_mm2;
@@ -244,8 +251,39 @@ Measures measure(const Mesh& mesh) {
         source.count(), [&](std::size_t f) { return second_moments(source(f), centre); });
     measures.inertia_mm5 = inertia_of(second, measures.volume_mm3, arm);
   }
-  measures.absolute_mean_curvature_mm = absolute_mean_curvature_mm(mesh, normals);
+  measures.absolute_mean_curvature_mm = absolute_mean_curvature_mm(source, normals);
   return measures;
+}
+
+}  // namespace
+
+Size size_of(const Triangles& triangles) {
+  return size_from(ListCorners{triangles});
+}
+
+Size size_of(const Mesh& mesh) {
+  return size_from(MeshCorners{mesh});
+}
+
+double volume_mm3(const Mesh& mesh) {
+  const MeshCorners source{mesh};
+  return source.count() == 0 ? 0.0 : volume_about(source, extents_of(source).centre());
+}
+
+Measures measure(const Mesh& mesh) {
+  return measures_from(MeshCorners{mesh});
+}
+
+Measures measure(const Triangles& triangles) {
+  return measures_from(ListCorners{triangles});
+}
+
+long euler_number(const Triangles& surface) {
+  std::vector<std::uint8_t> used(surface.points_mm.size(), 0);
+  for (const auto& face : surface.faces)
+    for (const std::uint32_t v : face) used[v] = 1;
+  // Each triangle has three halves of edges.
+  return std::count(used.begin(), used.end(), 1) - static_cast<long>(surface.faces.size() / 2);
 }
 
 }  // namespace octotomy::brep

@@ -30,6 +30,12 @@ struct Measures {
 /// same bits on any number of threads. Cost: linear, parallel, 24 bytes a face.
 Measures measure(const Mesh& mesh);
 
+/// The same bits for closed triangles that linked() takes as they are. Cost: linear, 80 bytes a triangle.
+Measures measure(const Triangles& triangles);
+
+/// V - E + F of the points in use of a closed surface, of whose edges each has two triangles. Cost: linear.
+long euler_number(const Triangles& surface);
+
 /// What can be said of triangles without their connection, as in Measures.
 struct Size {
   double volume_mm3 = 0.0;

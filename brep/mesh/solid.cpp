@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/mesh/solid.h"
 
+#include <algorithm>
 #include <cassert>
 #include <mutex>
 #include <optional>
@@ -16,12 +17,22 @@
 namespace octotomy::brep {
 namespace {
 
+[[noreturn]] void refuse_open(std::size_t face) {
+  throw std::invalid_argument("the surface is open: triangle " + std::to_string(face) +
+                              " has no neighbour along a side; close it first");
+}
+
 void check_closed(const Mesh& mesh) {
   for (const auto h : mesh.halfedges())
-    if (mesh.is_boundary(h))
-      throw std::invalid_argument("the surface is open: triangle " +
-                                  std::to_string(mesh.opposite_face_handle(h).idx()) +
-                                  " has no neighbour along a side; close it first");
+    if (mesh.is_boundary(h)) refuse_open(static_cast<std::size_t>(mesh.opposite_face_handle(h).idx()));
+}
+
+Triangles closed(Triangles given) {
+  Linked linked = brep::linked(std::move(given));
+  const auto open = std::find(linked.opposite.begin(), linked.opposite.end(), Linked::none);
+  if (open != linked.opposite.end())
+    refuse_open(static_cast<std::size_t>(open - linked.opposite.begin()) / 3);
+  return std::move(linked.triangles);
 }
 
 void check_health(const Triangles& triangles) {
@@ -39,6 +50,8 @@ class Kept {
     std::call_once(once_, [&] { tbb::this_task_arena::isolate([&] { value_.emplace(compute()); }); });
     return *value_;
   }
+  /// Precondition: the value was computed.
+  const Value& given() const { return *value_; }
 
  private:
   std::once_flag once_;
@@ -48,25 +61,32 @@ class Kept {
 }  // namespace
 
 struct Solid::State {
-  State(const Mesh& given, Proof by) : mesh(given), proof(by) { check(); }
-  State(Triangles given, Proof by) : mesh(mesh_of(given)), proof(by) {
+  State(const Mesh& given, Proof by) : from_mesh(true), face_count(given.n_faces()), proof(by) {
+    check_closed(given);
+    mesh.get([&] { return given; });
     check();
-    // Points that fans shared have copies in the mesh.
-    if (mesh.n_vertices() == given.points_mm.size()) triangles.get([&] { return std::move(given); });
+  }
+  State(Triangles given, Proof by) : from_mesh(false), face_count(given.faces.size()), proof(by) {
+    triangles.get([&] { return closed(std::move(given)); });
+    check();
   }
 
-  const Mesh mesh;
-  const Proof proof;
+  // One of mesh and triangles is given, the other made of it.
+  mutable Kept<Mesh> mesh;
   mutable Kept<Triangles> triangles;
+  const Triangles& list() const {
+    return triangles.get([&] { return triangles_of(mesh.given()); });
+  }
+  const bool from_mesh;
+  const std::size_t face_count;
+  const Proof proof;
   mutable Kept<Size> size;
   mutable Kept<Measures> measures;
   mutable Kept<SurfaceTree> tree;
+  mutable Kept<std::vector<Component>> components;
 
  private:
-  void check() const {
-    check_closed(mesh);
-    assert(proof != Proof::Construction || volume_mm3(mesh) >= 0.0);
-  }
+  void check() const { assert(proof != Proof::Construction || size_of(list()).volume_mm3 >= 0.0); }
 };
 
 Solid::Solid() {
@@ -75,7 +95,11 @@ Solid::Solid() {
 }
 
 const Mesh& Solid::mesh() const {
-  return state_->mesh;
+  return state_->mesh.get([&] { return mesh_of(state_->list()); });
+}
+
+bool Solid::empty() const {
+  return state_->face_count == 0;
 }
 
 Proof Solid::proof() const {
@@ -83,19 +107,25 @@ Proof Solid::proof() const {
 }
 
 const Triangles& Solid::triangles() const {
-  return state_->triangles.get([&] { return triangles_of(mesh()); });
+  return state_->list();
 }
 
 const Size& Solid::size() const {
-  return state_->size.get([&] { return size_of(mesh()); });
+  return state_->size.get([&] { return size_of(triangles()); });
 }
 
 const Measures& Solid::measures() const {
-  return state_->measures.get([&] { return measure(mesh()); });
+  // The order of a given mesh's edges is its own, and sums go by it.
+  return state_->measures.get([&] { return state_->from_mesh ? measure(mesh()) : measure(triangles()); });
 }
 
 const SurfaceTree& Solid::tree() const {
   return state_->tree.get([&] { return SurfaceTree(triangles()); });
+}
+
+const std::vector<Component>& Solid::components() const {
+  return state_->components.get(
+      [&] { return brep::components(triangles(), [&]() -> const SurfaceTree& { return tree(); }); });
 }
 
 Solid solid_of(const Triangles& triangles) {

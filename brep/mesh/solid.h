@@ -4,7 +4,9 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/mesh.h"
@@ -26,20 +28,21 @@ enum class Proof {
 };
 
 /// The inside of a closed surface in LPS millimetres, or the empty set. An immutable value that is cheap to
-/// copy: copies share one state. Its triangles, size, measures and search tree are computed at the first call
+/// copy: copies share one state. Its mesh, size, measures and search tree are computed at the first call
 /// and kept, on any number of threads at once.
 class Solid {
  public:
   /// The empty set: no triangles.
   Solid();
 
+  /// First call where the solid was made of triangles: as mesh_of(). Prefer triangles(), which cost less.
   const Mesh& mesh() const;
   /// A solid serves wherever a mesh does. The reference holds as long as a copy of this solid lives.
   operator const Mesh&() const { return mesh(); }  // NOLINT(google-explicit-constructor)
-  bool empty() const { return mesh().n_faces() == 0; }
+  bool empty() const;
   Proof proof() const;
 
-  /// As triangles_of(). First call: linear, parallel; 36 bytes a triangle.
+  /// Numbered as the mesh's. 36 bytes a triangle.
   const Triangles& triangles() const;
   /// As size_of(). First call: linear, parallel.
   const Size& size() const;
@@ -47,6 +50,8 @@ class Solid {
   const Measures& measures() const;
   /// First call: n log n, about 150 bytes a triangle.
   const SurfaceTree& tree() const;
+  /// As components(). First call: linear, and tree() where there are cavities.
+  const std::vector<Component>& components() const;
 
   /// Whether both are copies of one value. Equal sets that were made apart are not.
   bool is_same(const Solid& other) const { return state_ == other.state_; }
@@ -98,6 +103,9 @@ inline double volume_mm3(const Solid& solid) {
 }
 inline const Measures& measure(const Solid& solid) {
   return solid.measures();
+}
+inline const std::vector<Component>& components(const Solid& solid) {
+  return solid.components();
 }
 
 }  // namespace octotomy::brep

@@ -10,7 +10,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <tbb/parallel_sort.h>
 #include <tuple>
 #include <utility>
 
@@ -18,42 +17,13 @@
 #include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
+#include "brep/mesh/sides.h"
 
 namespace octotomy::brep {
 namespace {
 
-/// From corner `corner % 3` of triangle `corner / 3` to the next.
-struct Side {
-  std::uint32_t low, high, corner;
-  bool upward;  ///< from the lower point number to the higher
-};
-
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // of corners
-
-std::uint32_t next_corner(std::uint32_t corner) {
-  return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
-std::vector<Side> sides_of(const Triangles& triangles) {
-  std::vector<Side> sides(3 * triangles.faces.size());
-  for (std::uint32_t c = 0; c < sides.size(); ++c) {
-    const std::uint32_t from = triangles.faces[c / 3][c % 3], to = triangles.faces[c / 3][(c + 1) % 3];
-    sides[c] = {std::min(from, to), std::max(from, to), c, from < to};
-  }
-  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
-  });
-  return sides;
-}
-
-template <typename Visit>
-void each_edge(const std::vector<Side>& sides, const Visit& visit) {
-  for (std::size_t i = 0, j; i < sides.size(); i = j) {
-    for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;) ++j;
-    visit(sides.data() + i, sides.data() + j);
-  }
-}
 
 bool fits(const Side* begin, const Side* end) {
   return end - begin == 1 || (end - begin == 2 && begin[0].upward != begin[1].upward);
@@ -156,7 +126,7 @@ void check(const Triangles& triangles) {
 
 std::size_t open_edges(const Triangles& triangles) {
   std::size_t open = 0;
-  each_edge(sides_of(triangles), [&](const Side* begin, const Side* end) { open += end - begin == 1; });
+  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) { open += end - begin == 1; });
   return open;
 }
 
@@ -181,7 +151,7 @@ SplitFans split_fans(const Triangles& triangles) {
       split.face_origin.push_back(f);
     }
   }
-  const std::vector<Side> sides = sides_of(split.surface);
+  const std::vector<Side> sides = sorted_sides(split.surface);
   std::vector<std::uint8_t> ends_elsewhere(split.surface.faces.size(), 0);
   each_edge(sides, [&](const Side* begin, const Side* end) {
     if (end - begin == 1) ends_elsewhere[begin->corner / 3] = 1;

@@ -5,13 +5,14 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <utility>
 
 #include "brep/mesh/error.h"
+#include "brep/mesh/sides.h"
 
 // The halfedge structure is written directly rather than by add_face, which prints to the standard error,
 // depends on the order of the triangles at vertices where several fans meet, and cannot say what is wrong.
@@ -22,13 +23,6 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-
-std::uint32_t next_corner(std::uint32_t corner) {
-  return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-std::uint32_t previous_corner(std::uint32_t corner) {
-  return corner % 3 == 0 ? corner + 2 : corner - 1;
-}
 
 [[noreturn]] void refuse(std::size_t face, const std::string& why, const std::string& advice) {
   throw Error(ErrorCode::Input, "triangle " + std::to_string(face) + " " + why + "; " + advice);
@@ -57,53 +51,23 @@ void check_triangles(const Triangles& triangles) {
 
 /// For each halfedge, numbered by the corner it leaves, the one along the same edge the other way, or none.
 std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
-  struct Side {
-    std::uint32_t low, high, corner;
-  };
-  const auto corner_count = static_cast<std::uint32_t>(3 * triangles.faces.size());
-  const auto side_of = [&](std::uint32_t c) {
-    const std::uint32_t from = triangles.faces[c / 3][c % 3], to = triangles.faces[c / 3][(c + 1) % 3];
-    return Side{std::min(from, to), std::max(from, to), c};
-  };
-  // Sides are laid out by their lower point, then the few of each point are sorted.
-  std::vector<std::uint32_t> begin(triangles.points_mm.size() + 1, 0);
-  for (std::uint32_t c = 0; c < corner_count; ++c) ++begin[side_of(c).low + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Side> sides(corner_count);
-  std::vector<std::uint32_t> place(begin.begin(), begin.end() - 1);
-  for (std::uint32_t c = 0; c < corner_count; ++c) {
-    const Side side = side_of(c);
-    assert(place[side.low] < begin[side.low + 1]);
-    sides[place[side.low]++] = side;
-  }
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, triangles.points_mm.size(), 4096), [&](const auto& range) {
-        for (std::size_t v = range.begin(); v != range.end(); ++v)
-          std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1], [](const Side& a, const Side& b) {
-            return std::tie(a.high, a.corner) < std::tie(b.high, b.corner);
-          });
-      });
-
-  std::vector<std::uint32_t> opposite(corner_count, none);
+  std::vector<std::uint32_t> opposite(3 * triangles.faces.size(), none);
   std::uint32_t offender = none;
   bool too_many = false;
-  for (std::size_t i = 0, j; i < sides.size(); i = j) {
-    for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;) ++j;
-    if (j - i == 1) continue;
-    const std::uint32_t first = sides[i].corner, second = sides[i + 1].corner;
-    const bool same_way = triangles.faces[first / 3][first % 3] == triangles.faces[second / 3][second % 3];
-    if (same_way || j - i > 2) {
-      const std::uint32_t culprit = (same_way ? second : sides[i + 2].corner) / 3;
+  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) {
+    if (end - begin == 1) return;
+    const bool same_way = begin[0].upward == begin[1].upward;
+    if (same_way || end - begin > 2) {
+      const std::uint32_t culprit = (same_way ? begin[1] : begin[2]).corner / 3;
       if (culprit < offender) {
         offender = culprit;
         too_many = !same_way;
       }
-      continue;
+      return;
     }
-    assert(opposite[first] == none && opposite[second] == none);
-    opposite[first] = second;
-    opposite[second] = first;
-  }
+    opposite[begin[0].corner] = begin[1].corner;
+    opposite[begin[1].corner] = begin[0].corner;
+  });
   if (offender != none)
     refuse(offender,
            too_many ? "is the third along one of its edges" : "runs along an edge the same way as another",
@@ -188,6 +152,20 @@ Mesh mesh_of(const Triangles& triangles) {
   for (const Mesh::HalfedgeHandle outside : boundary)
     mesh.set_next_halfedge_handle(outside, mesh.halfedge_handle(mesh.to_vertex_handle(outside)));
   return mesh;
+}
+
+Linked linked(Triangles triangles) {
+  check_triangles(triangles);
+  Linked linked{{}, pair_halfedges(triangles)};
+  std::vector<glm::dvec3> copies_mm;
+  const std::vector<Mesh::VertexHandle> vertex = place_corners(triangles, linked.opposite, copies_mm);
+  if (!copies_mm.empty()) {
+    for (std::size_t c = 0; c < vertex.size(); ++c)
+      triangles.faces[c / 3][c % 3] = static_cast<std::uint32_t>(vertex[c].idx());
+    triangles.points_mm.insert(triangles.points_mm.end(), copies_mm.begin(), copies_mm.end());
+  }
+  linked.triangles = std::move(triangles);
+  return linked;
 }
 
 Triangles triangles_of(const Mesh& mesh) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "brep/mesh/mesh.h"
@@ -24,6 +25,20 @@ struct Triangles {
 /// (Resource) if 32 bits do not number the triangles. Cost: n log n, about 100 bytes a triangle beside the
 /// mesh.
 Mesh mesh_of(const Triangles& triangles);
+
+/// Triangles with what lies beyond each side.
+struct Linked {
+  /// No such corner: the side is on the boundary.
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  Triangles triangles;
+  /// For side k of triangle f at 3 f + k: the corner, numbered alike, that the other triangle's side leaves.
+  std::vector<std::uint32_t> opposite;
+};
+
+/// The triangles of mesh_of() without the mesh: numbered alike, copies of points included. Throws as that.
+/// Cost: linear, about 90 bytes a triangle.
+Linked linked(Triangles triangles);
 
 /// Throws where mesh_of() would, at a third of its cost.
 void check_joins(const Triangles& triangles);

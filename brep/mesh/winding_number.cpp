@@ -9,10 +9,8 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include "brep/mesh/halving.h"
 
@@ -20,7 +18,6 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 8;
-constexpr std::uint32_t parallel_size = 8192;
 
 /// A cluster counts by its moments from this many of its radii on; the source's accuracy scale.
 constexpr double nearness() {
@@ -56,55 +53,29 @@ struct WindingTree::Tree {
   explicit Tree(const Triangles& surface) {
     const auto count = static_cast<std::uint32_t>(surface.faces.size());
     if (count == 0) return;
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0u);
+    std::vector<Centred> items(count);
     std::vector<Corners> corners(count);
-    std::vector<glm::dvec3> middles(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-      for (std::size_t f = range.begin(); f != range.end(); ++f) {
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 4096), [&](const auto& range) {
+      for (std::uint32_t f = range.begin(); f != range.end(); ++f) {
         for (std::size_t k = 0; k < 3; ++k) corners[f][k] = surface.points_mm[surface.faces[f][k]];
-        middles[f] = (corners[f][0] + corners[f][1] + corners[f][2]) / 3.0;
+        items[f] = {(corners[f][0] + corners[f][1] + corners[f][2]) / 3.0, f};
       }
     });
     triangles.resize(count);
     nodes.resize(halving_nodes(count, leaf_size));
-    build(corners, middles, order, 0, 0, count);
-  }
-
-  void build(const std::vector<Corners>& corners, const std::vector<glm::dvec3>& middles,
-             std::vector<std::uint32_t>& order, std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
-    assert(begin < end && self < nodes.size());
-    if (end - begin <= leaf_size) {
-      for (std::uint32_t i = begin; i < end; ++i) triangles[i] = corners[order[i]];
-      nodes[self].first = begin;
-      nodes[self].count = end - begin;
-      sum_leaf(nodes[self]);
-      return;
-    }
-    glm::dvec3 low = middles[order[begin]], high = low;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      low = glm::min(low, middles[order[i]]);
-      high = glm::max(high, middles[order[i]]);
-    }
-    const glm::dvec3 extent = high - low;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    const std::uint32_t half = begin + (end - begin) / 2,
-                        second = self + 1 + halving_nodes(half - begin, leaf_size);
-    std::nth_element(order.begin() + begin, order.begin() + half, order.begin() + end,
-                     [&](std::uint32_t f, std::uint32_t g) {
-                       return middles[f][axis] != middles[g][axis] ? middles[f][axis] < middles[g][axis]
-                                                                   : f < g;
-                     });
-    const auto first_half = [&] { build(corners, middles, order, self + 1, begin, half); };
-    const auto second_half = [&] { build(corners, middles, order, second, half, end); };
-    if (end - begin > parallel_size) {
-      tbb::parallel_invoke(first_half, second_half);
-    } else {
-      first_half();
-      second_half();
-    }
-    nodes[self].first = second;
-    sum_halves(nodes[self], nodes[self + 1], nodes[second]);
+    halve(
+        items, leaf_size,
+        [&](std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+          for (std::uint32_t i = begin; i < end; ++i) triangles[i] = corners[items[i].number];
+          nodes[self].first = begin;
+          nodes[self].count = end - begin;
+          sum_leaf(nodes[self]);
+        },
+        [&](std::uint32_t self, std::uint32_t second) {
+          nodes[self].first = second;
+          sum_halves(nodes[self], nodes[self + 1], nodes[second]);
+        },
+        0, 0, count);
   }
 
   void sum_leaf(Node& node) const {

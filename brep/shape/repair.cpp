@@ -25,6 +25,7 @@
 #include "brep/mesh/line_volume.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/short_text.h"
+#include "brep/mesh/sides.h"
 #include "brep/mesh/split_fans.h"
 #include "brep/mesh/triangle_places.h"
 #include "brep/shape/decimate.h"
@@ -147,7 +148,7 @@ class Mender {
   /// Whether it turned any.
   bool orient() {
     std::vector<std::uint8_t> turned(repair_.surface.faces.size(), 0);
-    const Across across = across_of(repair_.surface.faces);
+    const Across across = across_of(repair_.surface);
     const std::vector<std::uint32_t> shell = wind_alike(across, turned);
     place_shells(across, shell, turned);
     bool any = false;
@@ -213,7 +214,7 @@ class Mender {
   const Triangles& surface() const { return repair_.surface; }
   /// Whether a side of a triangle is not shared by just one other.
   bool is_open() const {
-    const Across across = across_of(repair_.surface.faces);
+    const Across across = across_of(repair_.surface);
     return std::find(across.face.begin(), across.face.end(), is_new) != across.face.end();
   }
   double extent_mm() const {
@@ -252,7 +253,7 @@ class Mender {
 
   /// Triangles without neighbours, and closed shells that hold nothing: two sheets on each other.
   void remove_films() {
-    const Across across = across_of(repair_.surface.faces);
+    const Across across = across_of(repair_.surface);
     std::vector<std::uint8_t> turned(repair_.surface.faces.size(), 0);
     const std::vector<std::uint32_t> shell = wind_alike(across, turned);
     const std::map<std::uint32_t, Shell> shells = shells_of(repair_.surface, across, shell, turned);
@@ -345,30 +346,16 @@ class Mender {
     std::vector<std::uint32_t> face;
     std::vector<std::uint8_t> same_way;  ///< the other runs along the side the same way
   };
-  static Across across_of(const std::vector<Face>& faces) {
-    struct Side {
-      std::uint32_t low, high, corner;
-      bool upward;
-    };
-    std::vector<Side> sides(3 * faces.size());
-    for (std::uint32_t c = 0; c < sides.size(); ++c) {
-      const std::uint32_t from = faces[c / 3][c % 3], to = faces[c / 3][(c + 1) % 3];
-      sides[c] = {std::min(from, to), std::max(from, to), c, from < to};
-    }
-    tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
-    });
-    Across across{std::vector<std::uint32_t>(sides.size(), is_new),
-                  std::vector<std::uint8_t>(sides.size(), 0)};
-    for (std::size_t i = 0, j; i < sides.size(); i = j) {
-      for (j = i + 1; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high;)
-        ++j;
-      if (j - i != 2) continue;
-      const std::uint32_t c = sides[i].corner, d = sides[i + 1].corner;
+  static Across across_of(const Triangles& surface) {
+    Across across{std::vector<std::uint32_t>(3 * surface.faces.size(), is_new),
+                  std::vector<std::uint8_t>(3 * surface.faces.size(), 0)};
+    each_edge(sorted_sides(surface), [&](const Side* begin, const Side* end) {
+      if (end - begin != 2) return;
+      const std::uint32_t c = begin[0].corner, d = begin[1].corner;
       across.face[c] = d / 3;
       across.face[d] = c / 3;
-      across.same_way[c] = across.same_way[d] = sides[i].upward == sides[i + 1].upward;
-    }
+      across.same_way[c] = across.same_way[d] = begin[0].upward == begin[1].upward;
+    });
     return across;
   }
 
@@ -663,17 +650,29 @@ RepairEffect repair_effect(const Triangles& before, const Triangles& after) {
   effect.area_after_mm2 = size_of(is).area_mm2;
   const auto measure = [&](const Triangles& from, const Triangles& to) {
     if (from.faces.empty() || to.faces.empty()) return;
+    // Each point once, then the triangles' middles.
     std::vector<glm::dvec3> points;
-    for (const Face& face : from.faces) {
-      const glm::dvec3 &a = from.points_mm[face[0]], &b = from.points_mm[face[1]],
-                       &c = from.points_mm[face[2]];
-      points.insert(points.end(), {a, b, c, (a + b + c) / 3.0});
+    std::vector<std::uint32_t> place(from.points_mm.size(), is_new);
+    for (const Face& face : from.faces)
+      for (const std::uint32_t v : face) {
+        if (place[v] != is_new) continue;
+        place[v] = static_cast<std::uint32_t>(points.size());
+        points.push_back(from.points_mm[v]);
+      }
+    for (const Face& face : from.faces)
+      points.push_back((from.points_mm[face[0]] + from.points_mm[face[1]] + from.points_mm[face[2]]) / 3.0);
+    const std::vector<double> distances = SurfaceTree(to, SurfaceTree::Build::Hasty).distances_mm(points);
+    // Of places that are equally far the first in the order of the triangles.
+    const auto add = [&](std::size_t i) {
+      if (distances[i] <= effect.largest_distance_mm) return;
+      effect.largest_distance_mm = distances[i];
+      effect.largest_at_mm = points[i];
+    };
+    const std::size_t middles = points.size() - from.faces.size();
+    for (std::size_t f = 0; f < from.faces.size(); ++f) {
+      for (const std::uint32_t v : from.faces[f]) add(place[v]);
+      add(middles + f);
     }
-    const std::vector<double> distances = SurfaceTree(to).distances_mm(points);
-    const auto largest = std::max_element(distances.begin(), distances.end());
-    if (*largest <= effect.largest_distance_mm) return;
-    effect.largest_distance_mm = *largest;
-    effect.largest_at_mm = points[static_cast<std::size_t>(largest - distances.begin())];
   };
   measure(was, is);
   measure(is, was);

@@ -34,19 +34,24 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
   }
 }
 
-void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings,
+void write_surface(const brep::Triangles& triangles, const std::filesystem::path& out, Timings& timings,
                    const brep::VertexData& data) {
   const Stopwatch watch(timings, "write");
   voxel::StagedFiles staged(out.parent_path());
   const std::filesystem::path file = staged.folder() / out.filename();
   try {
-    brep::write_mesh(mesh, file, data);
+    brep::write_mesh(triangles, file, data);
   } catch (const brep::Error& error) {
     std::string reason = error.what();  // begins with the hidden name
     if (reason.starts_with(file.string())) reason.replace(0, file.string().size(), out.string());
     throw brep::Error(error.code(), reason);
   }
   staged.commit();
+}
+
+void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings,
+                   const brep::VertexData& data) {
+  write_surface(brep::triangles_of(mesh), out, timings, data);
 }
 
 }  // namespace octotomy::planner

@@ -25,5 +25,7 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
 /// timings.
 void write_surface(const brep::Mesh& mesh, const std::filesystem::path& out, Timings& timings,
                    const brep::VertexData& data = {});
+void write_surface(const brep::Triangles& triangles, const std::filesystem::path& out, Timings& timings,
+                   const brep::VertexData& data = {});
 
 }  // namespace octotomy::planner

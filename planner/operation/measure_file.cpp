@@ -131,10 +131,11 @@ FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked,
   return said(std::move(json));
 }
 
-/// What voxels alone tell of an object.
-Json of_voxels(const voxel::Octree& octree, Timings& timings) {
+/// What voxels alone tell of an object; its measures beside.
+Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& measures) {
   const Stopwatch watch(timings, "measure");
-  Json json = to_json(voxel::measure(octree));
+  measures = voxel::measure(octree);
+  Json json = to_json(measures);
   json["components"] = voxel::components(octree).voxel_counts.size();
   json["euler"] = voxel::euler_numbers(octree).by_faces;
   json["euler_of"] = "voxels that touch by faces";
@@ -142,13 +143,14 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings) {
   return json;
 }
 
-void add_half_width(const voxel::Octree& octree, Digitised digitised, Json& json) {
+void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures, Digitised digitised,
+                    Json& json) {
   digitised.flat_mm2 = voxel::flat_parts_mm2(octree);
-  const HalfWidth width = volume_half_width(voxel::measure(octree), digitised);
+  const HalfWidth width = volume_half_width(measures, digitised);
   json["volume_half_width_mm3"] = width.value;
   json["volume_half_width_terms"] = to_json(width);
   const verify::SizeIntervals recommended =
-      intervals_of_count(voxel::measure(octree), digitised, octree.universe().lattice());
+      intervals_of_count(measures, digitised, octree.universe().lattice());
   json["volume"] = to_json(recommended.volume_mm3, "mm3");
   json["area"] = to_json(recommended.area_mm2, "mm2");
 }
@@ -190,25 +192,28 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     file = voxel::read_octree(file_path);
   }
   Json json;
+  voxel::Measures measures;
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     const voxel::Window window = window_of(*grey, file_path, asked);
     const voxel::Octree inside = voxel::combine(grey->universe(), window);
-    json = of_voxels(inside, timings);
+    json = of_voxels(inside, timings, measures);
     add_partial_volume(window, timings, json);
     const Stopwatch watch(timings, "half_width");
-    add_half_width(inside, {grey->universe().lattice().spacing_mm(), {}, window_shift_mm(window)}, json);
+    add_half_width(inside, measures, {grey->universe().lattice().spacing_mm(), {}, window_shift_mm(window)},
+                   json);
   } else if (asked.window) {
     throw std::runtime_error(file_path.string() + ": holds no samples to take a --window of: leave it out");
   } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
-    json = of_voxels(voxel::at_least_half(*partial), timings);
-    add_half_width(voxel::at_least_half(*partial), {partial->inside.universe().lattice().spacing_mm()}, json);
+    const voxel::Octree half = voxel::at_least_half(*partial);
+    json = of_voxels(half, timings, measures);
+    add_half_width(half, measures, {partial->inside.universe().lattice().spacing_mm()}, json);
     json["volume_estimator"] = "voxels at least half filled, counted";
     json["volume_partial_mm3"] = voxel::volume_mm3(*partial);
     json["volume_partial_estimator"] = "the voxels' filled shares";
   } else {
     const auto& octree = std::get<voxel::Octree>(file.tree);
-    json = of_voxels(octree, timings);
-    add_half_width(octree, {octree.universe().lattice().spacing_mm()}, json);
+    json = of_voxels(octree, timings, measures);
+    add_half_width(octree, measures, {octree.universe().lattice().spacing_mm()}, json);
     json["volume_partial_mm3"] = nullptr;
     json["findings"].push_back(
         "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
@@ -222,7 +227,7 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
 
 FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
-  const voxel::Scene scene = bench.read_scan(file);
+  voxel::Scene scene = bench.read_scan(file);
   if (asked.window) need_hounsfield(*asked.window, scene);
   std::optional<voxel::GreyOctree> grey;
   {
@@ -231,22 +236,21 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   }
   const voxel::Window window = window_of(*grey, file, asked);
   const voxel::Octree inside = voxel::combine(grey->universe(), window);
-  Json json = of_voxels(inside, timings);
+  voxel::Measures measures;
+  Json json = of_voxels(inside, timings, measures);
   add_partial_volume(window, timings, json);
   Digitised digitised{grey->universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
   {
     const Stopwatch watch(timings, "half_width");
     digitised.shift_mm = window_shift_mm(window);
-    add_half_width(inside, digitised, json);
+    add_half_width(inside, measures, digitised, json);
   }
   brep::Solid isosurface;
-  brep::Health health;
   {
     const Stopwatch watch(timings, "isosurface");
-    const brep::Triangles triangles =
-        convert::isosurface(scene, window.low, asked.window->high_or_infinity());
-    health = brep::health(triangles, {false});
-    isosurface = brep::trusted_solid(triangles, brep::Proof::Construction);
+    brep::Triangles triangles = convert::isosurface(scene, window.low, asked.window->high_or_infinity());
+    scene.samples = {};  // from here on the octree's serve
+    isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
   }
   const brep::Size& surface = isosurface.size();
   add_area_half_width(isosurface, grey->universe().lattice(), digitised, json);
@@ -259,7 +263,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;
   json["volume_isosurface_mm3"] = surface.volume_mm3;
-  json["euler"] = health.euler;
+  json["euler"] = brep::euler_number(isosurface.triangles());
   json["euler_of"] = "the isosurface: V - E + F";
   Json whole{{"kind", "scan"}};
   whole["window"] = {window.low, asked.window->high ? Json(window.high) : Json(nullptr)};

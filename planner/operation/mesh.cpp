@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The surface of a scan's window or of an octree, in files; in a plan it is the mesh kernel's side of window
 // and segment, and the step surface.
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
@@ -102,19 +104,36 @@ brep::Triangles of_scan(const FileBench& bench, const Meshed& asked, std::vector
       to_string(window));
 }
 
-brep::Mesh finished(brep::Mesh surface, const Meshed& asked, Timings& timings) {
+/// A surface that is to be written, and its size.
+struct Finished {
+  brep::Triangles surface;
+  brep::Measures measures;
+};
+
+Finished finished(brep::Triangles triangles, const Meshed& asked, Timings& timings) {
+  const bool fewer = asked.faces && static_cast<std::size_t>(*asked.faces) < triangles.faces.size();
+  if (!asked.smooth && !fewer) {
+    brep::Linked linked = brep::linked(std::move(triangles));
+    const bool closed = std::find(linked.opposite.begin(), linked.opposite.end(), brep::Linked::none) ==
+                        linked.opposite.end();
+    linked.opposite = {};
+    brep::Measures measures = closed ? measure(linked.triangles) : measure(mesh_of(linked.triangles));
+    return {std::move(linked.triangles), std::move(measures)};
+  }
+  brep::Mesh surface = mesh_of(triangles);
+  triangles = {};
   if (asked.smooth) {
     const Stopwatch watch(timings, "smooth");
     surface = brep::smooth(surface);
   }
-  if (asked.faces && static_cast<std::size_t>(*asked.faces) < surface.n_faces()) {
+  if (fewer) {
     const Stopwatch watch(timings, "decimate");
     // The number is what was asked for: no bound on the error may end it before.
     constexpr double no_bound_mm = 1e6;
     surface = brep::decimate(surface,
                              {.max_error_mm = no_bound_mm, .faces = static_cast<std::size_t>(*asked.faces)});
   }
-  return surface;
+  return {triangles_of(surface), measure(surface)};
 }
 
 FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
@@ -128,14 +147,12 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
     throw std::runtime_error(
         asked.file.name + ": nothing is " +
         (asked.window ? "in the window " + to_string(*asked.window) + ": choose another" : "in it"));
-  const brep::Mesh surface = finished(brep::mesh_of(triangles), asked, bench.timings);
-  triangles = {};  // as large as the mesh, which is all that is needed from here on
+  const auto& [surface, measures] = finished(std::move(triangles), asked, bench.timings);
   brep::Health health;
   {
     const Stopwatch watch(bench.timings, "health");
     health = brep::health(surface);
   }
-  const brep::Measures measures = brep::measure(surface);
   write_surface(surface, asked.out, bench.timings);
   FileAnswer answer{{{"kind", "mesh"}, {"path", asked.out.string()}, {"surface", asked.surface}}};
   answer.json.update(to_json(health));

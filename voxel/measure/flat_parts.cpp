@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 Faces in the order of their plane, then row by row.
+// 1 Faces in the order of their plane, then row by row, as numbers of 64 bits.
 // 2 Faces beside each other in a row, and in rows beside each other, are joined (union-find).
 // 3 Parts larger than a curved surface's count.
 #include "voxel/measure/flat_parts.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
-#include <tuple>
+#include <tbb/parallel_sort.h>
 #include <vector>
 
 #include "voxel/tree/voxel_boundary.h"
@@ -17,11 +18,18 @@
 namespace octotomy::voxel {
 namespace {
 
-int along(const VoxelFace& face, int by) {
-  return face.voxel[(face.axis + by) % 3];
+constexpr int bits = 20;  // of a coordinate; a universe has fewer
+constexpr std::uint64_t one_row = 1u << bits;
+
+/// Ascends by axis, side, plane, row and column.
+std::uint64_t key_of(const VoxelFace& face) {
+  const auto along = [&](int by) { return static_cast<std::uint64_t>(face.voxel[(face.axis + by) % 3]); };
+  return ((static_cast<std::uint64_t>(2 * face.axis + (face.side > 0)) << bits | along(0)) << bits | along(2))
+             << bits |
+         along(1);
 }
-auto place_of(const VoxelFace& face) {
-  return std::tuple(face.axis, face.side, along(face, 0), along(face, 2), along(face, 1));
+int axis_of(std::uint64_t key) {
+  return static_cast<int>(key >> (3 * bits)) / 2;
 }
 
 std::size_t root_of(std::vector<std::size_t>& part, std::size_t i) {
@@ -32,32 +40,33 @@ std::size_t root_of(std::vector<std::size_t>& part, std::size_t i) {
 }  // namespace
 
 glm::dvec3 flat_parts_mm2(const Octree& octree) {
-  std::vector<VoxelFace> faces = voxel_boundary(octree);
-  const auto before = [](const VoxelFace& a, const VoxelFace& b) { return place_of(a) < place_of(b); };
-  std::sort(faces.begin(), faces.end(), before);
+  std::vector<std::uint64_t> faces;
+  for (const VoxelFace& face : voxel_boundary(octree)) faces.push_back(key_of(face));
+  tbb::parallel_sort(faces.begin(), faces.end());
   std::vector<std::size_t> part(faces.size());
   std::iota(part.begin(), part.end(), std::size_t{0});
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (const int by : {1, 2}) {
-      VoxelFace beside = faces[i];
-      --beside.voxel[(beside.axis + by) % 3];
-      const auto found = std::lower_bound(faces.begin(), faces.end(), beside, before);
-      if (found == faces.end() || place_of(*found) != place_of(beside)) continue;
-      part[root_of(part, i)] = root_of(part, static_cast<std::size_t>(found - faces.begin()));
-    }
+  std::size_t row_before = 0;  // the first face that does not stand before the one in the row before
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    // The first column and row have no neighbours before: theirs would be of another row or plane.
+    if ((faces[i] & (one_row - 1)) != 0 && i > 0 && faces[i - 1] == faces[i] - 1)
+      part[root_of(part, i)] = root_of(part, i - 1);
+    if ((faces[i] >> bits & (one_row - 1)) == 0) continue;
+    while (faces[row_before] < faces[i] - one_row) ++row_before;
+    if (faces[row_before] == faces[i] - one_row) part[root_of(part, i)] = root_of(part, row_before);
+  }
   const glm::dvec3 spacing_mm = octree.universe().lattice().spacing_mm();
   const glm::dvec3 face_mm2(spacing_mm.y * spacing_mm.z, spacing_mm.z * spacing_mm.x,
                             spacing_mm.x * spacing_mm.y);
   std::vector<double> area_mm2(faces.size(), 0.0);
   double all_mm2 = 0.0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    area_mm2[root_of(part, i)] += face_mm2[faces[i].axis];
-    all_mm2 += face_mm2[faces[i].axis];
+    area_mm2[root_of(part, i)] += face_mm2[axis_of(faces[i])];
+    all_mm2 += face_mm2[axis_of(faces[i])];
   }
   glm::dvec3 flat_mm2(0.0);
   for (std::size_t i = 0; i < faces.size(); ++i)
-    if (area_mm2[i] > 2.0 * spacing_mm[faces[i].axis] * std::sqrt(std::numbers::pi * all_mm2))
-      flat_mm2[faces[i].axis] += area_mm2[i];
+    if (area_mm2[i] > 2.0 * spacing_mm[axis_of(faces[i])] * std::sqrt(std::numbers::pi * all_mm2))
+      flat_mm2[axis_of(faces[i])] += area_mm2[i];
   return flat_mm2;
 }
 

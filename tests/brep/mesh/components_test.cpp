@@ -28,6 +28,15 @@ TEST(Components, ComeLargestFirstWithTheirCavities) {
   EXPECT_NEAR(pieces[2].volume_mm3, 1, 1e-12);
   EXPECT_EQ(pieces[2].cavities, 0u);
 
+  const SurfaceTree tree(t);
+  const std::vector<Component> of_list = components(t, [&]() -> const SurfaceTree& { return tree; });
+  ASSERT_EQ(of_list.size(), pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    EXPECT_EQ(of_list[i].faces, pieces[i].faces);
+    EXPECT_EQ(of_list[i].volume_mm3, pieces[i].volume_mm3);
+    EXPECT_EQ(of_list[i].cavities, pieces[i].cavities);
+  }
+
   const Mesh largest = largest_component(mesh);
   EXPECT_NEAR(measure(largest).volume_mm3, 488, 1e-10);
   EXPECT_EQ(largest.n_vertices(), 16u);
@@ -44,6 +53,7 @@ TEST(Components, AnOpenMeshHasNone) {
   Triangles open = shapes::box({0, 0, 0}, {1, 1, 1});
   open.faces.pop_back();
   EXPECT_THROW(components(mesh_of(open)), std::invalid_argument);
+  EXPECT_THROW(components(open, {}), std::invalid_argument);
   EXPECT_TRUE(components(Mesh()).empty());
   EXPECT_EQ(largest_component(Mesh()).n_faces(), 0u);
 }

@@ -67,6 +67,19 @@ TEST(Measure, FarFromTheOriginTheVolumeLosesNoMoreThanThePointsDo) {
   EXPECT_NEAR(measure(there).volume_mm3, measure(here).volume_mm3, spacing * measure(here).area_mm2);
 }
 
+TEST(Measure, OfTrianglesIsThatOfTheirMeshToTheBit) {
+  const Triangles surface =
+      shapes::together(shapes::sphere({10, -20, 30}, 5, 4), shapes::box({-1, 2, -3}, {2, 4, 1}));
+  const Measures of_list = measure(surface), of_mesh = measure(mesh_of(surface));
+  EXPECT_EQ(of_list.volume_mm3, of_mesh.volume_mm3);
+  EXPECT_EQ(of_list.area_mm2, of_mesh.area_mm2);
+  EXPECT_EQ(of_list.centroid_mm, of_mesh.centroid_mm);
+  EXPECT_EQ(of_list.inertia_mm5, of_mesh.inertia_mm5);
+  EXPECT_EQ(of_list.low_mm, of_mesh.low_mm);
+  EXPECT_EQ(of_list.high_mm, of_mesh.high_mm);
+  EXPECT_EQ(of_list.absolute_mean_curvature_mm, of_mesh.absolute_mean_curvature_mm);
+}
+
 TEST(Measure, AMirroredSurfaceHasNegativeVolumeAndTheSameArea) {
   const Triangles sphere = shapes::sphere({1, 1, 1}, 2, 3);
   const Measures out = measure(mesh_of(sphere)), in = measure(mesh_of(shapes::inside_out(sphere)));

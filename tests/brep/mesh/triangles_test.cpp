@@ -74,6 +74,28 @@ TEST(Triangles, KeepPointsThatNoneOfThemUses) {
   EXPECT_EQ(triangles_of(mesh_of(t)).points_mm, t.points_mm);
 }
 
+TEST(Triangles, LinkedOnesAreTheMeshsOwnAndKnowWhatLiesBeyondEachSide) {
+  // Two tetrahedra with one point in common, one of them open.
+  Triangles t;
+  t.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  t.faces = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {4, 6, 5}};
+  const Linked found = linked(t);
+  const Triangles expected = triangles_of(mesh_of(t));
+  EXPECT_EQ(found.triangles.points_mm, expected.points_mm);
+  EXPECT_EQ(found.triangles.faces, expected.faces);
+  std::size_t open = 0;
+  for (std::uint32_t c = 0; c < found.opposite.size(); ++c) {
+    const std::uint32_t beyond = found.opposite[c];
+    if (beyond == Linked::none) {
+      ++open;
+      continue;
+    }
+    EXPECT_EQ(found.opposite[beyond], c);
+    EXPECT_EQ(found.triangles.faces[c / 3][c % 3], found.triangles.faces[beyond / 3][(beyond + 1) % 3]);
+  }
+  EXPECT_EQ(open, 3u);
+}
+
 TEST(Triangles, TheFirstOneThatCannotBeJoinedIsNamed) {
   Triangles t = shapes::box({0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(refusal_of(t), "");
