@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 struct ServeText {
   std::vector<fs::path> paths;
   serve::ServerOptions options;
+  fs::path token_file;
   bool open = false;
 };
 
@@ -40,7 +41,7 @@ int run(Program& program, ServeText& text) {
   if (text.options.address != "127.0.0.1" && text.options.address != "::1")
     warn("--listen " + text.options.address +
          ": others on the network reach this server, and read what they send and get: nothing is encrypted");
-  text.options.token = serve::new_token();
+  text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
   text.options.ready = [&](const std::string& url) {
     Json json = answer({});
     json.erase("timings_ms");
@@ -70,6 +71,9 @@ void add_serve(Program& program) {
       ->check(CLI::ExistingPath);
   verb.add_option("--port", text->options.port, "Port to listen on; default: a free one")
       ->check(CLI::Range(0, 65535));
+  verb.add_option("--token-file", text->token_file,
+                  "Keeps the address's token in this file: with the same --port, pages that are open find a "
+                  "server that was started again");
   verb.add_flag("--open", text->open, "Opens the desktop's browser");
   verb.add_option("--listen", text->options.address,
                   "Address of another interface, so that other machines reach the server; default 127.0.0.1");

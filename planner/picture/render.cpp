@@ -158,7 +158,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
     }
     picture = voxel::render(objects, options);
   }
-  RenderedPicture made{picture.size_px, {}, picture.pixel_mm};
+  RenderedPicture made{picture.size_px, {}, picture.pixel_mm, {}, {}};
   made.said = {{"view", render.view},
                {"algorithm", name_of(algorithms, picture.algorithm)},
                {"shading", render.shading},

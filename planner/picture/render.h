@@ -44,6 +44,7 @@ struct RenderedPicture {
   glm::ivec2 size_px{0};
   std::vector<std::uint8_t> rgb;
   double pixel_mm = 1.0;
+  glm::dvec2 centre_mm{0.0};  ///< of pictures along rays, in the view's millimetres
   nlohmann::ordered_json said = nlohmann::ordered_json::object();
 };
 

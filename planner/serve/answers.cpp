@@ -10,7 +10,7 @@
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
 #include "planner/serve/pane_fields.h"
-#include "planner/table/number_format.h"
+#include "planner/serve/told_measurement.h"
 #include "voxel/measure/measure.h"
 #include "voxel/space/error.h"
 
@@ -50,34 +50,27 @@ Json measured(Desk& desk, Json step, const std::vector<std::string>& needed, boo
   return measurements_json(alone, evaluation).front();
 }
 
-Json told(double value, const std::string& unit, const Json& half_width, const std::string& what,
-          const Json& details) {
-  const double half = half_width.is_number() ? half_width.get<double>() : 0.0;
-  const std::string unit_text = unit == "deg"   ? "\u00b0"
-                                : unit == "mm2" ? " mm\u00b2"
-                                : unit == "mm3" ? " mm\u00b3"
-                                                : " mm";
-  const int decimals = unit == "mm" || unit == "deg" ? 2 : 0;
-  return {{"value", value},
-          {"unit", unit},
-          {"half_width", half_width},
-          {"sentence", what + " " + grouped(value, decimals) + unit_text + " \u00b1 " +
-                           grouped(half, decimals) + unit_text + " (99 %)"},
-          {"details", details}};
-}
-
-const Object& need_object(const Evaluation& evaluation, const std::string& id) {
-  for (const Object& object : evaluation.objects)
-    if (object.id == id) return object;
-  refuse("'" + id + "' is not evaluated yet: evaluate it");
-}
-
 std::vector<std::string> names_of(const Json& value) {
   if (value.is_string()) return {value.get<std::string>()};
   return value.get<std::vector<std::string>>();
 }
 
-/// The boundary voxel's centre nearest to a point, of all bones; none within snap_mm.
+/// Points with landmarks' places for their names.
+Json points_mm(const Json& points, const Plan& plan) {
+  Json typed = Json::array();
+  for (const Json& point : points) {
+    const auto known =
+        std::find_if(plan.landmarks.begin(), plan.landmarks.end(),
+                     [&](const NamedPoint& landmark) { return point.is_string() && landmark.name == point; });
+    if (point.is_string() && known == plan.landmarks.end())
+      refuse("there is no landmark '" + point.get<std::string>() + "'");
+    typed.push_back(point.is_string() ? planner::to_json(known->p_mm) : point);
+  }
+  return typed;
+}
+
+/// The middle of the voxel face nearest to a point, on the surface of all bones or of one; none within
+/// snap_mm.
 std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3& p_mm,
                                   const std::string& only) {
   const voxel::Lattice lattice = evaluation.universe.lattice();
@@ -99,14 +92,11 @@ std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3
           const glm::ivec3 at = middle + glm::ivec3(x, y, z);
           const glm::dvec3 centre = lattice.lps_mm(at);
           if (glm::distance(centre, p_mm) >= best_mm || !is_in(at)) continue;
-          bool is_edge = false;
           for (int axis = 0; axis < 3; ++axis)
             for (const int side : {-1, 1}) {
               glm::ivec3 next = at;
               next[axis] += side;
               if (is_in(next)) continue;
-              is_edge = true;
-              // The point on that face.
               glm::dvec3 face = at;
               face[axis] += 0.5 * side;
               const glm::dvec3 on_face = lattice.lps_mm(face);
@@ -114,7 +104,6 @@ std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3
               best_mm = glm::distance(on_face, p_mm);
               best = on_face;
             }
-          if (!is_edge) continue;
         }
   }
   return best;
@@ -134,35 +123,25 @@ Json measure(Desk& desk, const Json& said, const Watched& watched) {
     const Json json = measured(desk, {{"object", object}}, {object}, true, watched);
     const Json& number = json.at(kind);
     return told(number.at("value"), number.at("unit"), number.at("half_width"),
-                (kind == "volume" ? "Volume of " : "Surface area of ") + object + ":", json);
+                (kind == "volume" ? "Volume of " : "Surface area of ") + object);
   }
   const Json& points = said.at("points");
   if (kind == "surface_distance") {
     const std::string object = said.at("object");
-    const Json json = measured(desk, {{"object", object}, {"along", points}}, {object}, true, watched);
-    const Json& along = json.at("along");
-    if (!along.is_object()) refuse("there is no way along '" + object + "' between the two points");
-    return told(along.at("length_mm").get<double>(), "mm", along.value("half_width_mm", Json(nullptr)),
-                "Along the surface of " + object + ":", json);
+    const Json typed =
+        desk.with_document([&](const Document& document) { return points_mm(points, *document.plan()); });
+    return told_measurement(measured(desk, {{"object", object}, {"along", typed}}, {object}, true, watched));
   }
   if (kind != "distance" && kind != "angle")
     refuse("kind: must be distance, angle, surface_distance, volume or area");
-  // Landmarks that went with an object need its motion.
-  const bool is_typed = std::all_of(points.begin(), points.end(), [](const Json& p) { return p.is_array(); });
+  // A landmark that goes with an object needs the object's motion.
   std::vector<std::string> needed;
-  if (!is_typed)
-    desk.with_document([&](const Document& document) {
-      for (const Json& point : points) {
-        if (!point.is_string()) continue;
-        const std::string name = point;
-        if (const auto at = name.find('@'); at != std::string::npos) needed.push_back(name.substr(at + 1));
-      }
-      (void)document;
-    });
-  const Json json = measured(desk, {{"points_mm", points}}, needed, false, watched);
-  if (kind == "distance")
-    return told(json.at("distance_mm"), "mm", json.at("distance_half_width_mm"), "Distance:", json);
-  return told(json.at("angle_deg"), "deg", json.at("angle_half_width_deg"), "Angle:", json);
+  for (const Json& point : points) {
+    if (!point.is_string()) continue;
+    const std::string name = point;
+    if (const auto at = name.find('@'); at != std::string::npos) needed.push_back(name.substr(at + 1));
+  }
+  return told_measurement(measured(desk, {{"points_mm", points}}, needed, false, watched));
 }
 
 Json certify(Desk& desk, const Json& said, const Watched& watched) {
@@ -211,17 +190,7 @@ Json place_landmark(Desk& desk, const Json& said, const Watched&) {
   if (said.value("snap", false) && snapshot.evaluation)
     p_mm = snapped(*snapshot.evaluation, p_mm, said.value("object", "")).value_or(p_mm);
   for (int axis = 0; axis < 3; ++axis) p_mm[axis] = std::round(p_mm[axis] * 1e4) / 1e4;
-  desk.with_document([&](Document& document) {
-    Json landmarks = Json::array();
-    bool is_there = false;
-    for (const NamedPoint& known : document.plan()->landmarks) {
-      const bool is_it = known.name == name;
-      is_there = is_there || is_it;
-      landmarks.push_back({{"name", known.name}, {"point", planner::to_json(is_it ? p_mm : known.p_mm)}});
-    }
-    if (!is_there) landmarks.push_back({{"name", name}, {"point", planner::to_json(p_mm)}});
-    document.edit({{"landmarks", landmarks}, {"what", "landmark " + name}});
-  });
+  desk.with_document([&](Document& document) { document.place_landmark(name, planner::to_json(p_mm)); });
   return {{"point", planner::to_json(p_mm)}};
 }
 

@@ -6,8 +6,11 @@
 
 #include "planner/measure/result_json.h"
 #include "planner/picture/colour.h"
+#include "planner/plan/answers.h"
 #include "planner/plan/dependence.h"
 #include "planner/serve/new_plan.h"
+#include "planner/serve/told_measurement.h"
+#include "planner/table/number_format.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -50,11 +53,37 @@ Json scan_json(const ScanRecord& scan) {
 
 Json certificate_json(const verify::Certificate& certificate) {
   Json json = planner::to_json(certificate);
-  json["sentence"] = verify::verdict_text(certificate);
-  for (const std::string& reason : certificate.reasons)
-    json["sentence"] = json["sentence"].get<std::string>() + ". " + reason;
+  std::string sentence = verify::verdict_text(certificate);
+  if (certificate.verdict == voxel::Verdict::Pass) sentence += ": both kernels agree";
+  if (certificate.limit)
+    sentence += "; a part of " + three_figures(certificate.limit->volume_mm3) +
+                " mm\u00b3 that is lost or added would have been seen";
+  for (const std::string& reason : certificate.reasons) sentence += ". " + reason;
+  json["sentence"] = sentence;
   json["place"] = certificate.worst ? planner::to_json(certificate.worst->at_mm) : Json(nullptr);
   return json;
+}
+
+/// A measure step of an object, for its recommended sizes.
+constexpr const char* size_of = "size_of_";
+
+/// The plan's steps that measure what is there, each as a page shows it.
+Json measurements_of(Plan plan, const Evaluation& evaluation) {
+  const auto is_there = [&](const std::string& id) {
+    return std::any_of(evaluation.objects.begin(), evaluation.objects.end(),
+                       [&](const Object& object) { return object.id == id; });
+  };
+  std::erase_if(plan.steps, [&](const Step& step) {
+    const std::vector<std::string> used = objects_used(step.action);
+    return step.action.operation().makes != Makes::Measurement ||
+           !std::all_of(used.begin(), used.end(), is_there);
+  });
+  Json list = Json::array();
+  for (const Json& measured : measurements_json(plan, evaluation)) {
+    Json told = told_measurement(measured);
+    if (!told.is_null()) list.push_back(std::move(told));
+  }
+  return list;
 }
 
 /// The steps that are wanted and need none of those that failed.
@@ -87,6 +116,7 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   {
     const std::lock_guard lock(mutex_);
     document_ = std::move(document);
+    ++opened_;
     snapshot_ = {};
     certified_.clear();
   }
@@ -95,7 +125,7 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   without_steps.steps.clear();
   auto evaluation = std::make_shared<const Evaluation>(evaluate(without_steps, {}, false, watched));
   const std::lock_guard lock(mutex_);
-  if (!snapshot_.evaluation) snapshot_ = {document_->plan(), std::move(evaluation), {}};
+  if (!snapshot_.evaluation) snapshot_ = {document_->plan(), std::move(evaluation), {}, Json::array()};
 }
 
 bool Desk::is_open() const {
@@ -123,8 +153,18 @@ Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& step
 
 Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched) {
   Snapshot made;
-  made.plan = with_document([](const Document& document) { return document.plan(); });
+  std::uint64_t opened = 0;
   std::vector<std::string> wanted = steps;
+  {
+    const std::lock_guard lock(mutex_);
+    made.plan = need_document().plan();
+    opened = opened_;
+    // What pictures show already stays in them.
+    if (!steps.empty() && !certify && snapshot_.evaluation)
+      for (const Step& step : made.plan->steps)
+        if (makes_object(step) && object_json(snapshot_, step.id)["evaluated"] == true)
+          wanted.push_back(step.id);
+  }
   if (wanted.empty())
     for (const Step& step : made.plan->steps)
       if (makes_object(step) || step.action.operation().makes == Makes::Scan) wanted.push_back(step.id);
@@ -152,20 +192,32 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
       if (!is_step || !made.errors.emplace(id, error.what()).second) throw;
     }
   }
+  if (certify) keep_certified(*made.plan, *made.evaluation);
+  made.measurements = measurements_of(*made.plan, *made.evaluation);
   const std::lock_guard lock(mutex_);
-  if (certify) keep_certificates(*made.plan, *made.evaluation);
-  // Of steps that were not asked for, what was there stays.
-  if (steps.empty() || !snapshot_.evaluation || snapshot_.evaluation->objects.size() == 0) snapshot_ = made;
+  if (opened == opened_ && (!certify || steps.empty())) snapshot_ = made;
   return made;
 }
 
-void Desk::keep_certificates(const Plan& plan, const Evaluation& evaluation) {
+void Desk::keep_certified(const Plan& plan, const Evaluation& evaluation) {
+  Json measures = Json::array();
+  for (const Object& object : evaluation.objects)
+    if (!object.is_tool && !object.voxel.octree.is_empty())
+      measures.push_back({{"id", size_of + object.id}, {"do", "measure"}, {"object", object.id}});
+  Json whole = Json::parse(plan.text);
+  for (const Json& step : measures) whole["steps"].push_back(step);
+  Plan measuring = parse_plan(whole.dump(), plan.folder);
+  std::erase_if(measuring.steps, [](const Step& step) { return !step.id.starts_with(size_of); });
   const std::map<std::string, std::string> keys = keys_of(plan);
+  std::map<std::string, Certified> found;
   for (const Object& object : evaluation.objects) {
-    Certified kept{keys.at(object.id), nullptr, nullptr};
-    if (object.certificate) kept.certificate = certificate_json(*object.certificate);
-    certified_[object.id] = std::move(kept);
+    found[object.id] = {keys.at(object.id), Json::object()};
+    if (object.certificate) found[object.id].said["certificate"] = certificate_json(*object.certificate);
   }
+  for (const Json& measured : measurements_json(measuring, evaluation))
+    for (const char* size : {"volume", "area"}) found[measured.at("object")].said[size] = measured.at(size);
+  const std::lock_guard lock(mutex_);
+  for (auto& [id, said] : found) certified_[id] = std::move(said);
 }
 
 Snapshot Desk::snapshot() const {
@@ -227,9 +279,7 @@ Json Desk::objects_json(const Plan& plan) const {
     json["kind"] = operation.is_tool ? "mask" : operation.name;
     json["colour"] = text_of_colour(colour_of(number++));
     const auto known = certified_.find(step.id);
-    if (!json.contains("certificate") && known != certified_.end() && known->second.key == keys[step.id] &&
-        !known->second.certificate.is_null())
-      json["certificate"] = known->second.certificate;
+    if (known != certified_.end() && known->second.key == keys[step.id]) json.update(known->second.said);
     list.push_back(std::move(json));
   }
   return list;
@@ -249,6 +299,7 @@ Json Desk::state() const {
   json["landmarks"] = Json::array();
   for (const NamedPoint& landmark : plan.landmarks)
     json["landmarks"].push_back({{"name", landmark.name}, {"point", planner::to_json(landmark.p_mm)}});
+  json["measurements"] = snapshot_.measurements;
   json["universe"] = nullptr;
   if (snapshot_.evaluation) {
     const voxel::Lattice lattice = snapshot_.evaluation->universe.lattice();

@@ -30,6 +30,7 @@ struct Snapshot {
   std::shared_ptr<const Plan> plan;
   std::shared_ptr<const Evaluation> evaluation;
   std::map<std::string, std::string> errors;  ///< of the steps that could not be evaluated
+  Json measurements = Json::array();          ///< of the plan's steps that measure
 };
 
 /// The one plan that all windows work on, its objects and its files. All members may be called from any
@@ -55,8 +56,8 @@ class Desk {
   }
 
   /// Evaluates steps of the plan and those that they need; none named: all. Without `certify` in voxels
-  /// alone. A step that cannot be evaluated is left out, with those that need it. Throws Stopped, and what
-  /// evaluate() throws where no step is at fault.
+  /// alone; then what comes of it is the snapshot. A step that cannot be evaluated is left out, with those
+  /// that need it. Throws Stopped, and what evaluate() throws where no step is at fault.
   Snapshot evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched);
   /// The same of another plan, which is not kept.
   Evaluation evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
@@ -80,16 +81,18 @@ class Desk {
  private:
   Document& need_document() const;
   Json objects_json(const Plan& plan) const;
-  void keep_certificates(const Plan& plan, const Evaluation& evaluation);
+  /// The certificates and sizes of what was evaluated in both kernels, by the keys of the steps.
+  void keep_certified(const Plan& plan, const Evaluation& evaluation);
 
   std::filesystem::path working_folder_;
   mutable std::mutex mutex_;  ///< of all below
   std::unique_ptr<Document> document_;
+  std::uint64_t opened_ = 0;  ///< documents so far: what is evaluated of an earlier one is not kept
   Snapshot snapshot_;
   /// Of a step: what decides its answer, and what was certified of it.
   struct Certified {
     std::string key;
-    Json certificate, size;
+    Json said;  ///< "certificate", "volume", "area"
   };
   std::map<std::string, Certified> certified_;
 

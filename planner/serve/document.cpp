@@ -22,19 +22,22 @@ Json::iterator find_step(Json& steps, const std::string& id) {
   throw std::runtime_error("the plan has no step '" + id + "'" + suggestion(id, ids));
 }
 
-/// Puts points in the plan's first step that names landmarks, or in a new one at its beginning.
-void set_landmarks(Json& steps, const Json& landmarks) {
-  Json points = Json::array();
-  for (const Json& landmark : landmarks)
-    points.push_back({{"name", landmark.at("name")}, {"point_mm", landmark.at("point")}});
-  const auto found = std::find_if(steps.begin(), steps.end(), [](const Json& step) {
+/// The points of the plan's first step that types landmarks; one is begun where there is none.
+Json& points_in(Json& steps) {
+  auto found = std::find_if(steps.begin(), steps.end(), [](const Json& step) {
     return step.value("do", "") == "landmarks" && step.contains("points");
   });
-  if (found != steps.end()) {
-    (*found)["points"] = points;
-    return;
-  }
-  steps.insert(steps.begin(), Json{{"id", "landmarks"}, {"do", "landmarks"}, {"points", points}});
+  if (found == steps.end())
+    found = steps.insert(steps.begin(),
+                         Json{{"id", "landmarks"}, {"do", "landmarks"}, {"points", Json::array()}});
+  return (*found)["points"];
+}
+
+void set_landmarks(Json& steps, const Json& landmarks) {
+  Json& points = points_in(steps);
+  points = Json::array();
+  for (const Json& landmark : landmarks)
+    points.push_back({{"name", landmark.at("name")}, {"point_mm", landmark.at("point")}});
 }
 
 void change_steps(Json& steps, const Json& said) {
@@ -79,6 +82,18 @@ void Document::edit(const Json& said) {
     if (said.contains(key)) changed[key] = said[key];
   change_steps(changed["steps"], said);
   record(changed, said.value("what", "edited"));
+}
+
+void Document::place_landmark(const std::string& name, const Json& point_mm) {
+  Json changed = json();
+  Json& points = points_in(changed["steps"]);
+  const auto known = std::find_if(points.begin(), points.end(),
+                                  [&](const Json& point) { return point.value("name", "") == name; });
+  if (known != points.end())
+    (*known)["point_mm"] = point_mm;
+  else
+    points.push_back({{"name", name}, {"point_mm", point_mm}});
+  record(changed, "landmark " + name);
 }
 
 void Document::record(const Json& json, const std::string& what) {

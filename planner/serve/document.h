@@ -31,6 +31,8 @@ class Document {
   /// {"id", "step"} and "remove": an id; "scans", "universe" and "name" as in plans; "landmarks": points by
   /// {"name", "point"}. Throws std::runtime_error where what comes of it is no plan; then nothing is changed.
   void edit(const Json& said);
+  /// Names a point [x, y, z], or puts a named one elsewhere.
+  void place_landmark(const std::string& name, const Json& point_mm);
   /// Puts a plan in the place of this one, as an edit of that name.
   void record(const Json& json, const std::string& what);
   bool undo();

@@ -2,8 +2,12 @@
 #include "planner/serve/gate.h"
 
 #include <algorithm>
+#include <fcntl.h>
+#include <fstream>
 #include <random>
 #include <stdexcept>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace octotomy::planner::serve {
 namespace {
@@ -60,6 +64,29 @@ std::string new_token() {
   std::random_device device;
   std::string token;
   for (int i = 0; i < 32; ++i) token += "0123456789abcdef"[device() % 16];
+  return token;
+}
+
+std::string token_in(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  constexpr fs::perms of_others = fs::perms::group_all | fs::perms::others_all;
+  if (!fs::exists(path)) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    const std::string token = new_token();
+    const bool is_written =
+        file >= 0 && ::write(file, token.data(), token.size()) == static_cast<ssize_t>(token.size());
+    if (file >= 0) ::close(file);
+    if (!is_written) throw std::runtime_error(path.string() + ": cannot be written");
+    return token;
+  }
+  if ((fs::status(path).permissions() & of_others) != fs::perms::none)
+    throw std::runtime_error(path.string() + ": others may read this token: chmod 600, or name a new file");
+  std::ifstream file(path);
+  std::string token;
+  file >> token;
+  constexpr std::size_t least_length = 32;
+  if (token.size() < least_length || token.find_first_not_of("0123456789abcdef") != std::string::npos)
+    throw std::runtime_error(path.string() + ": holds no token: name a file that is not there yet");
   return token;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,6 +26,10 @@ struct Caller {
 
 /// 128 random bits in hexadecimal.
 std::string new_token();
+/// The token in a file that only its owner may read, or a new one that is written there: a server that is
+/// started again with it is known to the pages that the earlier one opened. Throws std::runtime_error where
+/// others may read the file, or it holds no token.
+std::string token_in(const std::filesystem::path& path);
 
 /// A page of another site can make a browser send requests here, by a name of its own for this machine, too:
 /// it knows no token, and its Host or Origin is another.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/serve/pane_queue.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace octotomy::planner::serve {
@@ -42,10 +43,12 @@ void PaneQueue::shown(const PaneName& name, std::int64_t frame) {
   changed_.notify_all();
 }
 
-bool PaneQueue::is_outdated(const PaneName& name) const {
+int PaneQueue::moving_panes() const {
   const std::lock_guard lock(mutex_);
-  const auto pane = panes_.find(name);
-  return pane == panes_.end() || pane->second.waiting.has_value();
+  const auto count = std::count_if(panes_.begin(), panes_.end(), [](const auto& pane) {
+    return !pane.second.in_flight.empty() || (pane.second.waiting && pane.second.waiting->is_moving);
+  });
+  return std::max(1, static_cast<int>(count));
 }
 
 std::optional<PaneQueue::Asked> PaneQueue::close(const PaneName& name) {

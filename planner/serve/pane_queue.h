@@ -41,8 +41,8 @@ class PaneQueue {
   std::optional<Asked> next(const std::stop_token& stop);
   /// The page shows a frame.
   void shown(const PaneName& name, std::int64_t frame);
-  /// Whether a newer request of the pane waits, so that a slow picture need not be finished.
-  bool is_outdated(const PaneName& name) const;
+  /// The panes that share the time of drawing: those with a moving request or frames in flight, at least 1.
+  int moving_panes() const;
   /// Forgets a pane; what waited of it.
   std::optional<Asked> close(const PaneName& name);
   /// Forgets all panes of a window that has gone.
@@ -51,8 +51,8 @@ class PaneQueue {
  private:
   struct Pane {
     std::optional<Asked> waiting;
-    std::set<std::int64_t> in_flight;
-    std::uint64_t served = 0;  ///< when, by turns
+    std::set<std::int64_t> in_flight;  ///< moving frames that the page has not shown yet
+    std::uint64_t served = 0;          ///< when, by turns
   };
   std::map<PaneName, Pane>::iterator ready();
 

@@ -122,7 +122,7 @@ Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
   for (const Object& object : made.evaluation->objects) objects.push_back(desk.object_json(made, object.id));
   for (const auto& [id, error] : made.errors)
     objects.push_back({{"id", id}, {"evaluated", false}, {"error", error}});
-  return {{"objects", objects}};
+  return {{"objects", objects}, {"measurements", made.measurements}};
 }
 
 Json procedure(Desk& desk, const Json& said, const Watched&) {
@@ -190,11 +190,11 @@ const std::vector<Word>& words() {
       {"procedure", Lane::Desk, true, procedure},
       {"landmark", Lane::Desk, true, place_landmark},
       {"command", Lane::Desk, false, command_of_step},
-      {"evaluate", Lane::Evaluate, false, evaluate},
+      {"evaluate", Lane::Evaluate, false, evaluate, true},
       {"overlap", Lane::Overlap, false, overlap},
       {"measure", Lane::Long, false, measure},
       {"movement", Lane::Long, false, movement},
-      {"certify", Lane::Long, false, certify},
+      {"certify", Lane::Long, false, certify, true},
       {"export", Lane::Long, false, export_file},
       {"report", Lane::Long, false, report},
   };

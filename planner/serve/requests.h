@@ -20,6 +20,7 @@ struct Word {
   Lane lane = Lane::Desk;
   bool changes_plan = false;  ///< the answer is the plan's state, which all windows are told
   std::function<Json(Desk& desk, const Json& said, const Watched& watched)> answer;
+  bool changes_objects = false;  ///< all windows are told the plan's state
 };
 
 const std::vector<Word>& words();

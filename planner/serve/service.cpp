@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/serve/service.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -11,6 +12,11 @@ namespace octotomy::planner::serve {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// What all moving panes together may take of a thirtieth of a second; the page draws in the rest.
+constexpr double most_round_ms = 24.0;
+/// A single pane is no coarser for the sake of more frames than screens show.
+constexpr double most_frame_ms = 14.0;
 
 /// Progress is told at most so often.
 constexpr std::chrono::milliseconds tell_every{100};
@@ -158,10 +164,8 @@ void Service::answer(std::uint64_t window, const Request& request, const Word& w
           if (ok.is_object()) state.update(ok);
           ok = std::move(state);
         }
-        if (word.lane == Lane::Evaluate) {
-          tell_all(event("objects", ok));
-          tell_plan();
-        }
+        if (word.lane == Lane::Evaluate) tell_all(event("objects", ok));
+        if (word.changes_objects) tell_plan();
         send(window, answer_to(request.id, ok));
       },
       [&](const std::exception& error) { send(window, refusal_to(request.id, error)); });
@@ -184,7 +188,9 @@ void Service::draw(const std::stop_token& stop) {
             return send(asked->name.window, draw_slice(desk_, asked->request, stop));
           auto& view = views_[asked->name];
           if (view == nullptr) view = std::make_unique<ViewPane>();
-          send(asked->name.window, view->draw(desk_, asked->request, stop));
+          send(asked->name.window,
+               view->draw(desk_, asked->request,
+                          std::min(most_frame_ms, most_round_ms / panes_.moving_panes()), stop));
         },
         [&](const std::exception& error) {
           panes_.shown(asked->name, asked->request.id);

@@ -22,8 +22,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A moving frame that takes longer is drawn at half of the pixels along each side.
-constexpr double most_frame_ms = 14.0;
+/// Coarser than this share along each side, a moving picture shows nothing of a plan.
+constexpr double least_scale = 0.375;
 
 constexpr const char* overlap_colour = "#e5484d";
 
@@ -67,6 +67,13 @@ const Object* find(const Evaluation& evaluation, const std::string& id) {
   for (const Object& object : evaluation.objects)
     if (object.id == id) return &object;
   return nullptr;
+}
+
+/// A picture without depths.
+Part flat_part(bool is_moving, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb) {
+  if (is_moving) return {"jpeg", jpeg_of(size_px, rgb)};
+  const std::vector<std::uint8_t> png = voxel::encode_image("png", size_px, rgb);
+  return {"png", std::string(png.begin(), png.end())};
 }
 
 /// The verb's command for one window of a scan as it was read, where the picture is that.
@@ -117,7 +124,7 @@ voxel::Octree ViewPane::threshold(const Evaluation& evaluation, const Json& wind
   return *threshold_;
 }
 
-Message ViewPane::draw(Desk& desk, const Request& request, const std::stop_token& stop) {
+Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop) {
   const Json& said = request.said;
   const Snapshot snapshot = desk.snapshot();
   if (!snapshot.evaluation) throw std::runtime_error("no plan is open");
@@ -200,12 +207,12 @@ Message ViewPane::draw(Desk& desk, const Request& request, const std::stop_token
     if (other == nullptr) throw std::runtime_error("colour_by: '" + reference + "' is not evaluated");
     for (voxel::DrawnObject& object : drawing.objects) {
       if (object.name != of) continue;
-      const std::string key = of + " " + reference + " " + exact(range_mm) + " " +
-                              std::to_string(reinterpret_cast<std::uintptr_t>(snapshot.evaluation.get()));
-      if (scalar_of_ != key || !scalar_)
+      const std::string key = of + " " + reference + " " + exact(range_mm);
+      if (scalar_of_ != key || scalar_evaluation_ != snapshot.evaluation)
         scalar_ = std::make_shared<const voxel::SurfaceScalar>(
             voxel::distance_to(other->voxel.octree, object.octree, range_mm));
       scalar_of_ = key;
+      scalar_evaluation_ = snapshot.evaluation;
       object.scalar = scalar_;
     }
     drawing.header["legend"] = {{"low_mm", -range_mm},
@@ -231,26 +238,25 @@ Message ViewPane::draw(Desk& desk, const Request& request, const std::stop_token
     drawing.header["quality"] = is_moving ? "moving" : "rest";
     drawing.header["width"] = size_px.x;
     drawing.header["height"] = size_px.y;
-    return packed(drawing.header, {{"jpeg", jpeg_of(size_px, blank)}});
+    return packed(drawing.header, {flat_part(is_moving, size_px, blank)});
   }
   if (is_ray_picture(drawing.render)) {
     Timings timings;
     std::vector<voxel::DrawnObject> with_samples;
     for (const voxel::DrawnObject& object : drawing.objects)
       if (object.grey && with_samples.empty()) with_samples.push_back(object);
-    drawing.render.centre_mm.reset();
     const RenderedPicture picture = render_rays(drawing.render, with_samples, timings, stop);
     drawing.header["quality"] = is_moving ? "moving" : "rest";
     drawing.header["width"] = picture.size_px.x;
     drawing.header["height"] = picture.size_px.y;
-    const voxel::Box box = voxel::bounds(drawing.universe.lattice());
-    drawing.header["view_frame"] = view_frame_json(voxel::parse_view(drawing.render.view),
-                                                   0.5 * (box.low_mm + box.high_mm), picture.pixel_mm);
-    return packed(drawing.header, {{"jpeg", jpeg_of(picture.size_px, picture.rgb)}});
+    const voxel::View view = voxel::parse_view(drawing.render.view);
+    drawing.header["view_frame"] = view_frame_json(
+        view, view.right * picture.centre_mm.x + view.up * picture.centre_mm.y, picture.pixel_mm);
+    return packed(drawing.header, {flat_part(is_moving, picture.size_px, picture.rgb)});
   }
   drawing.options = options_of(drawing.render);
   drawing.options.background = background;
-  if (is_moving) return moving(drawing, drawing.header);
+  if (is_moving) return moving(drawing, drawing.header, most_ms);
 
   const voxel::Picture picture = voxel::render(drawing.objects, drawing.options);
   if (stop.stop_requested()) throw Stopped("a newer picture of the pane is wanted");
@@ -285,20 +291,20 @@ Message ViewPane::draw(Desk& desk, const Request& request, const std::stop_token
                          {"object", deflated(object.data(), 2 * object.size())}});
 }
 
-Message ViewPane::moving(const Drawing& drawing, Json header) {
+Message ViewPane::moving(const Drawing& drawing, Json header, double most_ms) {
   voxel::RenderOptions options = drawing.options;
   options.antialias = false;
-  const bool is_coarse =
-      full_frame_ms_ > most_frame_ms && glm::min(options.size_px.x, options.size_px.y) > 64;
   const glm::ivec2 full_px = options.size_px;
-  if (is_coarse) {
-    options.size_px = (full_px + 1) / 2;
-    if (options.width_mm) *options.width_mm *= 2.0 * options.size_px.x / full_px.x;
-  }
+  // In eighths, so that frames do not change their size all the time.
+  const double scale =
+      full_frame_ms_ > most_ms
+          ? std::max(least_scale, std::floor(8.0 * std::sqrt(most_ms / full_frame_ms_)) / 8.0)
+          : 1.0;
+  options.size_px = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(full_px))));
   const Clock::time_point start = Clock::now();
   const voxel::Picture picture = renderer_.frame(drawing.objects, options);
-  // Half of the pixels along each side take somewhat more than a quarter of the time.
-  const double spent_ms = ms_since(start) * (is_coarse ? 3.0 : 1.0);
+  std::string jpeg = jpeg_of(picture.size_px, picture.rgb);
+  const double spent_ms = ms_since(start) / (scale * scale);
   full_frame_ms_ = full_frame_ms_ == 0.0 ? spent_ms : 0.8 * full_frame_ms_ + 0.2 * spent_ms;
   header["quality"] = "moving";
   header["width"] = picture.size_px.x;
@@ -306,7 +312,7 @@ Message ViewPane::moving(const Drawing& drawing, Json header) {
   const voxel::View& view = options.view;
   header["view_frame"] = view_frame_json(
       view, view.right * picture.centre_mm.x + view.up * picture.centre_mm.y, picture.pixel_mm);
-  return packed(std::move(header), {{"jpeg", jpeg_of(picture.size_px, picture.rgb)}});
+  return packed(std::move(header), {{"jpeg", std::move(jpeg)}});
 }
 
 }  // namespace octotomy::planner::serve
