@@ -185,6 +185,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_operation_verbs(program);
   cli::add_phantom(program);
   cli::add_cohort(program);
+  cli::add_serve(program);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {

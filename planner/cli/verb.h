@@ -75,6 +75,7 @@ void add_look(Program& program);
 void add_verify_verbs(Program& program);
 void add_mark(Program& program);
 void add_cohort(Program& program);
+void add_serve(Program& program);
 
 /// What info does for an .octree file.
 int info_of_octree(const Program& program, const std::filesystem::path& path);

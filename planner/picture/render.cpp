@@ -73,18 +73,6 @@ voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::Draw
   return {grey, n[0], n[1]};
 }
 
-voxel::RenderOptions options_of(const Render& render) {
-  voxel::RenderOptions options;
-  options.view = voxel::parse_view(render.view);
-  options.size_px = size_of(render);
-  options.shading = shadings.at(render.shading);
-  options.width_mm = render.width_mm;
-  options.eye_mm = render.eye_mm;
-  options.count = render.count;
-  if (!render.algorithm.empty()) options.algorithm = algorithms.at(render.algorithm);
-  return options;
-}
-
 /// The file or object of `distance:NAME`.
 std::string other_of(const std::string& text) {
   const std::string kind = "distance:";
@@ -154,7 +142,6 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
     return render_rays(render, drawn, timings, stop);
   }
   voxel::RenderOptions options = options_of(render);
-  options.cuts = cuts_of(render);
   std::vector<glm::ivec2> picks;
   for (const std::string& pick : render.picks) picks.push_back(pixel_of(pick, options.size_px));
   const Scene scene = scene_of(render, std::move(drawn), timings);
@@ -171,7 +158,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
     }
     picture = voxel::render(objects, options);
   }
-  RenderedPicture made{picture.size_px, {}, picture.pixel_mm};
+  RenderedPicture made{picture.size_px, {}, picture.pixel_mm, {}, {}};
   made.said = {{"view", render.view},
                {"algorithm", name_of(algorithms, picture.algorithm)},
                {"shading", render.shading},
@@ -281,6 +268,20 @@ std::vector<std::string> all_shadings() {
 
 }  // namespace
 
+voxel::RenderOptions options_of(const Render& render) {
+  voxel::RenderOptions options;
+  options.view = voxel::parse_view(render.view);
+  options.size_px = size_of(render);
+  options.shading = shadings.at(render.shading);
+  options.width_mm = render.width_mm;
+  if (render.centre_mm) options.centre_mm = options.view.project(*render.centre_mm);
+  options.eye_mm = render.eye_mm;
+  options.cuts = cuts_of(render);
+  options.count = render.count;
+  if (!render.algorithm.empty()) options.algorithm = algorithms.at(render.algorithm);
+  return options;
+}
+
 glm::ivec2 size_of(const Render& render) {
   const std::string& text = render.size;
   int width = 0, height = 0;
@@ -339,6 +340,9 @@ Operation render_operation() {
       .takes(field("size", &Render::size, "WxH in pixels."))
       .takes(field("width_mm", &Render::width_mm, "What the picture spans. Default: the objects' extents.")
                  .greater_than(0.0))
+      .takes(field("centre_mm", &Render::centre_mm,
+                   "X,Y,Z in LPS of a point in the picture's middle. Default: the objects' middle.")
+                 .called("centre"))
       .takes(
           field("eye_mm", &Render::eye_mm,
                 "Perspective: the eye's distance from the middle of the scan. Default: orthographic, in true "
