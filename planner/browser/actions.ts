@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
 import { drawn_objects } from "./drawn_objects";
-import { Hello, Json, Measured, PlanState, Step } from "./protocol";
+import { Hello, Measured, Measurement, PlanState, Step } from "./protocol";
 import { State, first_scan, kept_view, notify, set, state, steps, usual_panes } from "./state";
 import { Vec3, add, scaled } from "./vector";
 import { Refusal, Wire } from "./wire";
@@ -29,14 +29,21 @@ export async function try_to<Answer>(word: string, fields: object = {}): Promise
 export function take_plan(plan: PlanState | null): void {
   if (!plan) return set({ plan: null, page: "start" });
   const is_new = plan.path !== state.plan?.path || state.page === "start";
-  if (!is_new) return set({ plan, jobs: plan.jobs ?? state.jobs });
+  if (!is_new) return set({ plan: { ...plan, measurements: plan.measurements ?? known_measurements(plan) }, jobs: plan.jobs ?? state.jobs });
   const kept = kept_view(plan.path);
   const before: Partial<State> = kept ?? {
     ...fitted(plan), looks: {}, selected: null, cut_plane: null, compare: null, arch_mm: [], maximised: null,
   };
-  const needs_audit = !kept && plan.plan.steps.length <= 1 && plan.history.length <= 1;
+  const needs_audit = kept ? kept.page === "audit" : plan.plan.steps.length <= 1 && plan.history.length <= 1;
   set({ ...before, plan, page: needs_audit ? "audit" : "plan", preview: null, overlap_mm3: null, marked: null, jobs: plan.jobs ?? [] });
   void evaluate();
+}
+
+// What was measured before, of the steps that are still as they were.
+function known_measurements(plan: PlanState): Measurement[] {
+  const before = new Map(steps().map((step) => [step.id, JSON.stringify(step)]));
+  const unchanged = new Set(plan.plan.steps.filter((step) => before.get(step.id) === JSON.stringify(step)).map((step) => step.id));
+  return (state.plan?.measurements ?? []).filter((found) => unchanged.has(found.id));
 }
 
 /// Panes that show the whole scan, and the cross-hair in its middle.
@@ -62,12 +69,12 @@ export async function greet(): Promise<void> {
 }
 
 export async function open_plan(what: { path?: string; phantom?: string }): Promise<void> {
+  set({ plan: null, page: "start" });
   const key = busy("Opening");
   const plan = await try_to<PlanState>("open", what);
   done(key);
-  if (!plan) return;
-  set({ page: "start" });
-  take_plan(plan);
+  // The event `plan` may have come before.
+  if (plan && state.plan === null) take_plan(plan);
 }
 
 /// One change of the plan, said in words for its history.
@@ -107,10 +114,10 @@ export interface MeasureAnswer extends Measured {
 }
 export const measure = (kind: string, fields: object): Promise<MeasureAnswer | null> => try_to("measure", { kind, ...fields });
 
-/// A point on the nearest surface, or as it is.
-export async function snapped(name: string, point: Vec3): Promise<Vec3> {
-  const answer = await try_to<{ point: Vec3 }>("landmark", { name, point, snap: true });
-  return answer?.point ?? point;
+/// Places a landmark, or moves it, on the nearest surface or as it is. Answers where it lies then.
+export async function put_landmark(name: string, point: Vec3, snap: boolean): Promise<Vec3 | null> {
+  const answer = await try_to<{ point: Vec3 }>("landmark", { name, point, snap });
+  return answer?.point ?? null;
 }
 
 /// A name that no step has: the stem, or the stem with a number.
@@ -120,15 +127,6 @@ export function free_id(stem: string): string {
   let number = 2;
   while (taken.has(`${stem}_${number}`)) ++number;
   return `${stem}_${number}`;
-}
-
-/// A landmark set or moved, within the plan's first step of landmarks.
-export function put_landmark(name: string, point: Vec3): Promise<boolean> {
-  const step = steps().find((one) => one.do === "landmarks" && one.points !== undefined);
-  const point_json: Json = { name, point_mm: [...point] };
-  if (!step) return add_step({ id: free_id("landmarks"), do: "landmarks", points: [point_json] }, `landmark ${name}`);
-  const points = (step.points as { [key: string]: Json }[]).filter((one) => one.name !== name);
-  return replace_step(step.id, { ...step, points: [...points, point_json] }, `landmark ${name}`);
 }
 
 export function window_step(low: number, high?: number): Step {

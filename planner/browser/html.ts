@@ -17,6 +17,7 @@ export function el<Tag extends keyof HTMLElementTagNameMap>(
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
     if (typeof value === "function") element.addEventListener(name.slice(2), value as EventListener);
+    else if (name === "style") element.style.cssText = String(value); // the page's policy refuses the attribute
     else if (name === "value" && "value" in element) (element as HTMLInputElement).value = String(value);
     else element.setAttribute(name, value === true ? "" : String(value));
   }

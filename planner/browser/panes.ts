@@ -2,7 +2,7 @@
 // A pane: a 2D canvas that shows the newest picture of the server, asks for the next, and picks by the depth and object
 // planes of the picture at rest. At most two pictures are under way; the latest setting wins.
 import { ask } from "./actions";
-import { drawn_objects, is_overlap } from "./drawn_objects";
+import { drawn_objects, is_overlap, makes_shape } from "./drawn_objects";
 import { el } from "./html";
 import { draw_overlay } from "./overlay";
 import { FrameHeader, PaneRequest } from "./protocol";
@@ -35,6 +35,7 @@ export class Pane {
   private in_flight = 0;
   private rest_timer = 0;
   private newest_decoded = 0;
+  private last_asked = "";
   private is_dirty = false;
   private readonly sent = new Map<number, number>();
 
@@ -139,21 +140,24 @@ export class Pane {
   }
 
   private pump(): void {
-    if (!this.is_wanted || this.in_flight >= most_in_flight || state.link !== "open" || !state.plan) return;
+    if (!this.is_wanted || this.in_flight >= (this.is_dragging ? most_in_flight : 1) || state.link !== "open" || !state.plan) return;
     if (!this.canvas.clientWidth || !this.canvas.width) return;
     if (!this.is_slice && drawn_objects().length === 0 && !state.preview) {
       this.is_wanted = false;
-      this.picture = null;
-      this.depth = this.object = this.value = null;
+      this.forget();
       this.problem = "";
       return this.redraw();
     }
     this.is_wanted = false;
-    this.in_flight++;
     const started = performance.now();
     const fields = this.request();
+    const asked = JSON.stringify(fields) + shapes();
+    if (asked === this.last_asked) return;
+    this.last_asked = asked;
+    this.in_flight++;
     ask_picture(fields, (id) => this.sent.set(id, started)).catch((error: unknown) => {
       this.in_flight = Math.max(0, this.in_flight - 1);
+      this.last_asked = "";
       if (error instanceof Refusal && error.code !== "cancelled" && error.code !== "lost") {
         this.problem = error.message;
         this.redraw();
@@ -165,6 +169,7 @@ export class Pane {
   /// Forgets what was under way when the connection broke.
   reconnected(): void {
     this.in_flight = 0;
+    this.last_asked = "";
     this.sent.clear();
     this.newest_decoded = 0;
     this.want(false);
@@ -232,6 +237,7 @@ export class Pane {
 
   /// Lets the picture go, since the pane is to show something else.
   forget(): void {
+    this.last_asked = "";
     this.picture?.bitmap.close();
     this.picture = null;
     this.depth = this.object = this.value = null;
@@ -303,6 +309,9 @@ export class Pane {
     this.want(true);
   }
 }
+
+/// The steps that make shapes: what pictures depend on besides their own request.
+const shapes = (): string => JSON.stringify([state.plan?.path, (state.plan?.plan.steps ?? []).filter((step) => makes_shape(step) || step.do === "head_position")]);
 
 export function change_pane(index: number, change: Partial<PaneSetting>): void {
   set({ panes: state.panes.map((pane, number) => (number === index ? { ...pane, ...change } : pane)) });

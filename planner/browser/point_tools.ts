@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Tools that take points: landmarks by name, distances, angles, ways along a surface, seeds of a segmentation, the dental arch.
-import { add_step, free_id, put_landmark, snapped } from "./actions";
+import { add_step, free_id, put_landmark } from "./actions";
 import { button, el } from "./html";
 import { dot_at, ink, line, text } from "./overlay";
 import { change_pane } from "./panes";
@@ -88,8 +88,9 @@ export function ask_for_landmarks(wanted: { name: string; says: string }[]): voi
   next_wanted();
   take_tool("landmark");
 }
-function next_wanted(): void {
-  const missing = procedure_wants.find((one) => !state.plan?.landmarks.some((mark) => mark.name === one.name));
+// `placed` may not have come back in the plan's state yet.
+function next_wanted(placed = ""): void {
+  const missing = procedure_wants.find((one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
   landmark_name = missing?.name ?? "";
   if (procedure_wants.length && !missing) {
     procedure_wants = [];
@@ -108,13 +109,11 @@ export const landmark_tool: Tool = {
     const point = hundredths(pane.point_at(at));
     const name = landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
     void (async () => {
-      const place = is_snapping && !pane.is_slice ? hundredths(await snapped(name, point)) : point;
-      if (await put_landmark(name, place)) {
-        set({ cross_mm: place });
-        if (procedure_wants.length) next_wanted();
-        else landmark_name = "";
-        set({ tool: state.tool });
-      }
+      const place = await put_landmark(name, point, is_snapping && !pane.is_slice);
+      if (!place) return;
+      if (procedure_wants.length) next_wanted(name);
+      else landmark_name = "";
+      set({ cross_mm: hundredths(place) });
     })();
     return true;
   },

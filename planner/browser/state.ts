@@ -119,11 +119,11 @@ export function watch(keys: Key[], call: () => void): void {
 
 // How a window looks at a plan is kept in the browser, by the plan's path; the plan itself is the server's.
 const kept: Key[] = [
-  "panes", "looks", "selected", "cross_mm", "grey", "left_tab", "right_tab", "cut_plane", "compare", "arch_mm", "maximised",
+  "page", "panes", "looks", "selected", "cross_mm", "grey", "left_tab", "right_tab", "cut_plane", "compare", "arch_mm", "maximised",
 ];
 
 function keep(): void {
-  if (!state.plan) return;
+  if (!state.plan || state.page === "start") return;
   const view: Partial<Record<Key, unknown>> = {};
   for (const key of kept) view[key] = state[key];
   localStorage.setItem(`octotomy:${state.plan.path}`, JSON.stringify(view));
