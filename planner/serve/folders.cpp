@@ -46,9 +46,11 @@ fs::path Folders::need_within(const fs::path& path) const {
     for (const fs::path& folder : opened_)
       if (!failed && holds(folder, real)) return real;
   }
-  throw voxel::Error(voxel::ErrorCode::Input,
-                     path.string().substr(0, 200) +
-                         ": lies in no folder that is open; start the server with it: octotomy serve PATH");
+  std::string shown = path.string().substr(0, 200);
+  std::erase(shown, '\0');
+  throw voxel::Error(
+      voxel::ErrorCode::Input,
+      shown + ": lies in no folder that is open; start the server with it: octotomy serve PATH");
 }
 
 fs::path need_plain_name(const std::string& name) {

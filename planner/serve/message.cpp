@@ -72,9 +72,12 @@ Message answer_to(std::int64_t id, const Json& ok) {
 }
 
 Message refusal_to(std::int64_t id, const std::exception& error) {
-  const std::string said = dynamic_cast<const std::bad_alloc*>(&error) != nullptr
-                               ? "out of memory: use larger voxels or a smaller scan"
-                               : error.what();
+  std::string said = error.what();
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
+    said = "out of memory: use larger voxels or a smaller scan";
+  // The library begins with its own name and a number.
+  if (dynamic_cast<const Json::exception*>(&error) != nullptr)
+    said = "the request lacks a value or has one of another type: " + said.substr(said.find(']') + 1);
   return text_of({{"id", id}, {"error", {{"message", said}, {"code", code_of(error)}}}});
 }
 

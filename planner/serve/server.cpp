@@ -234,7 +234,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void send_file(const std::string& name) {
     const fs::path folder = files_folder(context_.desk);
-    const fs::path path = context_.desk.folders.need_within(folder / name);
+    const fs::path path = context_.desk.folders.need_within(folder / need_plain_name(name));
     auto response = std::make_shared<http::response<http::file_body>>(http::status::ok, 11);
     beast::error_code failed;
     if (fs::is_regular_file(path)) response->body().open(path.c_str(), beast::file_mode::scan, failed);

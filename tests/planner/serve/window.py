@@ -25,7 +25,8 @@ class Server:
         self.token = urllib.parse.parse_qs(parts.query)["token"][0]
 
     def resident_mb(self):
-        status = open(f"/proc/{self.process.pid}/status", encoding="utf-8").read()
+        with open(f"/proc/{self.process.pid}/status", encoding="utf-8") as file:
+            status = file.read()
         return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
 
     def http(self, target, method="GET", body=b"", **headers):
