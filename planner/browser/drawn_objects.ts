@@ -35,6 +35,9 @@ export function is_overlap(step: Step, all: Step[]): boolean {
   return operands(step).some((name) => moves.has(all.find((other) => other.id === name)?.do ?? ""));
 }
 
+/// What lies inside a mask: a piece, which has its colour before it moves.
+const is_piece = (step: Step): boolean => step.do === "combine" && typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
+
 function is_used_up(id: string, all: Step[]): boolean {
   return all.some((step) => {
     if (!operands(step).includes(id)) return false;
@@ -63,6 +66,7 @@ export function look_of(id: string): Shown {
     else if (is_overlap(step, all)) usual = { colour: overlap_colour, opacity: 1, visible };
     else if (moves.has(step.do)) usual = { colour: moved[number % moved.length]!, opacity: 1, visible };
     else if (step.do === "mirror") usual = { colour: "#8fb8de", opacity: 1, visible: false };
+    else if (is_piece(step)) usual = { colour: moved[number % moved.length]!, opacity: 1, visible };
     else usual = { colour: is_union(step) ? bone[2]! : bone[0]!, opacity: 1, visible: visible && !is_union(step) };
   }
   return {

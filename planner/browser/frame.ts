@@ -11,16 +11,16 @@ import { active_tool, all_tools, take_tool } from "./tool";
 export function make_bar(host: HTMLElement): void {
   const again = (): void => {
     const plan = state.plan;
-    const act = (name: IconName, label: string, tip: string, run: () => void, more = {}): Child => button([icon(name, 16), el("span", { class: "label" }, label)], tip, run, more);
+    const act = (name: IconName, label: string, tip: string, run: () => void, more = {}): Child => button([icon(name, 16), el("span", { class: "label" }, label)], tip, run, { "aria-label": label, ...more });
     fill(host,
       button([el("span", { class: "logo" }), el("b", {}, "Octotomy")], "Start page", () => set({ page: "start" }), { class: "brand ghost" }),
       plan ? el("span", { class: "plan-name", title: plan.path }, plan.name) : null,
-      plan ? button([icon("branch", 14), plan.branch], "New branch. The plan as it is stays on this one", () => void new_branch(), { class: "ghost small" }) : null,
+      plan ? button([icon("branch", 14), plan.branch], "New branch. The plan as it is stays on this one", () => void new_branch(), { class: "ghost small", "aria-label": `New branch beside ${plan.branch}` }) : null,
       plan ? el("span", { class: "group" },
         button(icon("undo", 17), "Undo. Ctrl Z", () => void change_history("undo"), { disabled: !plan.can_undo, class: "ghost" }),
         button(icon("redo", 17), "Redo. Ctrl Y", () => void change_history("redo"), { disabled: !plan.can_redo, class: "ghost" })) : null,
       el("span", { class: "spring" }),
-      button([icon("search", 15), el("span", { class: "label" }, "Search commands"), el("kbd", {}, "Ctrl K")], "Every command by its name", () => dialogs.palette(), { class: "search" }),
+      button([icon("search", 15), el("span", { class: "label" }, "Search commands"), el("kbd", {}, "Ctrl K")], "Every command by its name", () => dialogs.palette(), { class: "search", "aria-label": "Search commands" }),
       el("span", { class: "spring" }),
       plan ? act("procedure", "Procedure", "Procedure. Plans an operation by landmarks and a few values", () => dialogs.procedure()) : null,
       plan ? act("certify", "Certify", "Certify. Asks both kernels and compares their answers. Ctrl Enter", () => void certify_all()) : null,

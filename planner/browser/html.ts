@@ -49,12 +49,14 @@ export function fill(host: Element, ...children: Child[]): void {
   again.focus({ preventScroll: true });
 }
 
-/// A button with an icon or a word, its name for screen readers and its tip.
+/// A button with words or an icon, and its tip. Where it has an icon alone, the tip's first sentence is its name for
+/// screen readers.
 export function button(
   label: Child,
   tip: string,
   onclick: (event: MouseEvent) => void,
   more: Attributes = {},
 ): HTMLButtonElement {
-  return el("button", { type: "button", "data-tip": tip, "aria-label": tip.split(". ")[0] ?? tip, onclick, ...more }, label);
+  const name = label instanceof SVGElement ? { "aria-label": tip.split(". ")[0] ?? tip } : {};
+  return el("button", { type: "button", "data-tip": tip, ...name, onclick, ...more }, label);
 }

@@ -59,7 +59,7 @@ function step_card(step: Step): Child {
   const is_number = step.do === "measure";
   const found = is_number ? state.plan?.measurements?.find((one) => one.id === step.id) : undefined;
   return el("section", { class: "card" },
-    el("h3", {}, step.id.replace(/_/g, " "), el("small", {}, step.do.replace(/_/g, " ")), el("span", { class: "spring" }), makes_shape(step) ? badge(step.id, certificate) : null),
+    el("h3", {}, step.id.replace(/_/g, " "), el("small", {}, step.do.replace(/_/g, " ")), el("span", { class: "spring" }), makes_shape(step) && step.do !== "mask" ? badge(step.id, certificate) : null),
     object?.error ? el("p", { class: "error" }, object.error) : null,
     object?.volume ? el("p", { class: "reading" }, el("b", {}, measured_text(object.volume)), object.area ? `  ·  ${measured_text(object.area)}` : "") : null,
     found ? el("p", { class: "reading" }, el("b", {}, measured_text(found))) : null,

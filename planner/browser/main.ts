@@ -40,7 +40,7 @@ function take_objects(found: { objects: ObjectState[]; measurements?: Measuremen
   const news = new Map(found.objects.map((object) => [object.id, object]));
   const known = plan.objects.map((object) => ({ ...object, ...news.get(object.id) }));
   const more = found.objects.filter((object) => !plan.objects.some((one) => one.id === object.id));
-  set({ plan: { ...plan, objects: [...known, ...more], measurements: found.measurements ?? plan.measurements } });
+  set({ plan: { ...plan, objects: [...known, ...more], measurements: found.measurements ?? plan.measurements }, evaluations: state.evaluations + 1 });
 }
 
 function take_progress(message: { [key: string]: Json }): void {

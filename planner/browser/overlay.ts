@@ -150,6 +150,7 @@ function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
     const middle = at[Math.floor(at.length / 2)]!;
     const before = at[Math.floor(at.length / 2) - 1]!;
     const words = found ? `${found.value.toFixed(found.unit === "mm" ? 2 : 1)} ${found.unit}` : step.id;
+    if (Math.hypot(middle[0] - before[0], middle[1] - before[1]) < 24 * pane.ratio) continue;
     text(context, words, [(middle[0] + before[0]) / 2 + 6 * pane.ratio, (middle[1] + before[1]) / 2 - 9 * pane.ratio], pane.ratio, { colour: ink.measure });
   }
 }

@@ -148,6 +148,7 @@ export class Pane {
       this.problem = "";
       return this.redraw();
     }
+    if (!this.is_slice && is_pending()) return;
     this.is_wanted = false;
     const started = performance.now();
     const fields = this.request();
@@ -311,7 +312,13 @@ export class Pane {
 }
 
 /// The steps that make shapes: what pictures depend on besides their own request.
-const shapes = (): string => JSON.stringify([state.plan?.path, (state.plan?.plan.steps ?? []).filter((step) => makes_shape(step) || step.do === "head_position")]);
+const shapes = (): string => JSON.stringify([state.plan?.path, state.evaluations, (state.plan?.plan.steps ?? []).filter((step) => makes_shape(step) || step.do === "head_position")]);
+
+/// Whether an object that is to be drawn is still being evaluated: the picture before stays until it is there.
+function is_pending(): boolean {
+  const pending = new Set((state.plan?.objects ?? []).filter((object) => object.evaluated === false && !object.error).map((object) => object.id));
+  return drawn_objects().some((object) => object.id !== undefined && pending.has(object.id));
+}
 
 export function change_pane(index: number, change: Partial<PaneSetting>): void {
   set({ panes: state.panes.map((pane, number) => (number === index ? { ...pane, ...change } : pane)) });

@@ -68,6 +68,7 @@ export interface State {
   jobs: Job[];
   notices: (Notice & { key: number })[];
   tour: number | null;
+  evaluations: number; // how often the server has told evaluated objects: pictures may have changed
   pointer: string; // what lies under the pointer, in words
 }
 
@@ -87,7 +88,7 @@ const first: State = {
   link: "opening", hello: null, plan: null, page: "start", theme: "system", panes: usual_panes(), maximised: null,
   active_pane: 0, looks: {}, selected: null, cross_mm: [0, 0, 0], grey: [500, 2000], draft_window: null, draft_step: null,
   preview: null, overlap_mm3: null, compare: null, cut_plane: null, arch_mm: [], marked: null, tool: "navigate",
-  left_tab: "steps", right_tab: "inspector", jobs: [], notices: [], tour: null, pointer: "",
+  left_tab: "steps", right_tab: "inspector", jobs: [], notices: [], tour: null, evaluations: 0, pointer: "",
 };
 
 type Key = keyof State;

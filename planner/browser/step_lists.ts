@@ -49,7 +49,7 @@ function objects(): Child {
           onclick: (event: Event) => event.stopPropagation(), onchange: (event: Event) => change_look(id, { colour: (event.target as HTMLInputElement).value }),
         }),
         el("button", { type: "button", class: "name" }, id.replace(/_/g, " ")),
-        badge(id, object?.certificate), eye(id)),
+        object?.kind === "mask" ? null : badge(id, object?.certificate), eye(id)),
       el("label", { class: "opacity", "data-tip": "Opacity" }, el("span", {}, `${Math.round(look.opacity * 100)} %`),
         el("input", {
           type: "range", min: 0.05, max: 1, step: 0.05, value: look.opacity, "aria-label": `Opacity of ${id}`, "data-key": `opacity-${id}`,
@@ -83,7 +83,7 @@ function step_rows(): Child {
         el("div", { class: "item-line" },
           makes_shape(step) ? el("span", { class: "chip", style: `background:${look_of(step.id).colour}` }) : el("span", { class: "chip empty" }, index + 1),
           el("button", { type: "button", class: "name", "aria-current": state.selected === step.id ? "step" : null }, step.id.replace(/_/g, " ")),
-          makes_shape(step) ? badge(step.id, object?.certificate) : null,
+          makes_shape(step) && step.do !== "mask" ? badge(step.id, object?.certificate) : null,
           makes_shape(step) ? eye(step.id) : null,
           step_menu(step)),
         el("p", { class: "words" }, el("b", {}, step.do.replace(/_/g, " ")), " ", step_words(step)),
