@@ -168,9 +168,10 @@ Json procedure(Desk& desk, const Json& said, const Watched&) {
     input.scan = whole.at("scans").front();
     input.voxel_mm = document.plan()->voxel_mm.value_or(1.0);
     for (const auto& [name, point] : said.at("landmarks").items())
-      input.landmarks.push_back({name, *point_of(said["landmarks"], name.c_str())});
-    for (const auto& [name, value] : said.value("values", Json::object()).items())
-      input.values[name] = value.get<double>();
+      if (const auto p_mm = point_of(said.at("landmarks"), name.c_str()))
+        input.landmarks.push_back({name, *p_mm});
+    const Json values = said.value("values", Json::object());
+    for (const auto& [name, value] : values.items()) input.values[name] = value.get<double>();
     const Json made = plan_of(procedure, input);
     whole["steps"] = joined(whole["steps"], made.at("steps"), whole["scans"].begin().key());
     document.record(whole, procedure.name);
