@@ -187,6 +187,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_cohort(program);
   cli::add_cephalometry(program);
   cli::add_outcome(program);
+  cli::add_serve(program);
   try {
     app.parse(count, arguments);
   } catch (const CLI::ParseError& error) {

@@ -77,6 +77,7 @@ void add_mark(Program& program);
 void add_cohort(Program& program);
 void add_cephalometry(Program& program);
 void add_outcome(Program& program);
+void add_serve(Program& program);
 
 /// What info does for an .octree file.
 int info_of_octree(const Program& program, const std::filesystem::path& path);

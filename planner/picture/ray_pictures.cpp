@@ -99,6 +99,7 @@ RenderedPicture render_rays(const Render& render, const std::vector<voxel::Drawn
   made.size_px = size_of(render);
   voxel::Frame frame = voxel::frame_about(objects, view, made.size_px);
   if (render.width_mm) frame.width_mm = *render.width_mm;
+  if (render.centre_mm) frame.centre_mm = view.project(*render.centre_mm);
   const voxel::ImagePlane plane = voxel::image_plane(grey.universe(), view, made.size_px, frame);
   const voxel::Progress progress{stop, {}};
   RayPicture picture;
@@ -118,6 +119,7 @@ RenderedPicture render_rays(const Render& render, const std::vector<voxel::Drawn
   }
   made.rgb = std::move(picture.rgb);
   made.pixel_mm = plane.pixel_mm;
+  made.centre_mm = plane.centre_mm;
   const auto range = [](const glm::vec2& ends) { return Json::array({ends.x, ends.y}); };
   made.said = {{"view", render.view},
                {"shading", render.shading},

@@ -52,39 +52,6 @@ std::string name_of(const std::map<std::string, Value>& values, Value value) {
   return {};
 }
 
-/// The samples that cut faces show, and what is black and white of them.
-voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects) {
-  const auto with_samples =
-      std::find_if(objects.begin(), objects.end(),
-                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
-  if (with_samples == objects.end())
-    throw std::runtime_error(
-        "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
-  const voxel::GreyOctree& grey = *with_samples->grey;
-  if (render.tones.empty()) {
-    const voxel::MinMax range = grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
-    return {grey, static_cast<double>(range.low), std::max<double>(range.high, range.low + 1.0)};
-  }
-  const auto colon = render.tones.find(':');
-  std::string numbers = render.tones;
-  if (colon != std::string::npos) numbers[colon] = ',';
-  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
-  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
-  return {grey, n[0], n[1]};
-}
-
-voxel::RenderOptions options_of(const Render& render) {
-  voxel::RenderOptions options;
-  options.view = voxel::parse_view(render.view);
-  options.size_px = size_of(render);
-  options.shading = shadings.at(render.shading);
-  options.width_mm = render.width_mm;
-  options.eye_mm = render.eye_mm;
-  options.count = render.count;
-  if (!render.algorithm.empty()) options.algorithm = algorithms.at(render.algorithm);
-  return options;
-}
-
 /// The file or object of `distance:NAME`.
 std::string other_of(const std::string& text) {
   const std::string kind = "distance:";
@@ -154,7 +121,6 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
     return render_rays(render, drawn, timings, stop);
   }
   voxel::RenderOptions options = options_of(render);
-  options.cuts = cuts_of(render);
   std::vector<glm::ivec2> picks;
   for (const std::string& pick : render.picks) picks.push_back(pixel_of(pick, options.size_px));
   const Scene scene = scene_of(render, std::move(drawn), timings);
@@ -171,7 +137,7 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
     }
     picture = voxel::render(objects, options);
   }
-  RenderedPicture made{picture.size_px, {}, picture.pixel_mm};
+  RenderedPicture made{picture.size_px, {}, picture.pixel_mm, {}, {}};
   made.said = {{"view", render.view},
                {"algorithm", name_of(algorithms, picture.algorithm)},
                {"shading", render.shading},
@@ -281,6 +247,40 @@ std::vector<std::string> all_shadings() {
 
 }  // namespace
 
+voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects) {
+  const auto with_samples =
+      std::find_if(objects.begin(), objects.end(),
+                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
+  if (with_samples == objects.end())
+    throw std::runtime_error(
+        "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
+  const voxel::GreyOctree& grey = *with_samples->grey;
+  if (render.tones.empty()) {
+    const voxel::MinMax range = grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
+    return {grey, static_cast<double>(range.low), std::max<double>(range.high, range.low + 1.0)};
+  }
+  const auto colon = render.tones.find(':');
+  std::string numbers = render.tones;
+  if (colon != std::string::npos) numbers[colon] = ',';
+  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
+  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
+  return {grey, n[0], n[1]};
+}
+
+voxel::RenderOptions options_of(const Render& render) {
+  voxel::RenderOptions options;
+  options.view = voxel::parse_view(render.view);
+  options.size_px = size_of(render);
+  options.shading = shadings.at(render.shading);
+  options.width_mm = render.width_mm;
+  if (render.centre_mm) options.centre_mm = options.view.project(*render.centre_mm);
+  options.eye_mm = render.eye_mm;
+  options.cuts = cuts_of(render);
+  options.count = render.count;
+  if (!render.algorithm.empty()) options.algorithm = algorithms.at(render.algorithm);
+  return options;
+}
+
 glm::ivec2 size_of(const Render& render) {
   const std::string& text = render.size;
   int width = 0, height = 0;
@@ -339,6 +339,9 @@ Operation render_operation() {
       .takes(field("size", &Render::size, "WxH in pixels."))
       .takes(field("width_mm", &Render::width_mm, "What the picture spans. Default: the objects' extents.")
                  .greater_than(0.0))
+      .takes(field("centre_mm", &Render::centre_mm,
+                   "X,Y,Z in LPS of a point in the picture's middle. Default: the objects' middle.")
+                 .called("centre"))
       .takes(
           field("eye_mm", &Render::eye_mm,
                 "Perspective: the eye's distance from the middle of the scan. Default: orthographic, in true "

@@ -11,6 +11,7 @@
 #include "voxel/view/annotation.h"
 #include "voxel/view/cutaway.h"
 #include "voxel/view/drawn_object.h"
+#include "voxel/view/render.h"
 
 // A picture of objects: what is asked for, and what its ways of drawing have in common.
 namespace octotomy::planner {
@@ -20,6 +21,7 @@ struct Render {
   std::filesystem::path path;
   std::string view = "anterior", size = "512x512", algorithm, shading = "partial_volume";
   std::optional<double> width_mm, eye_mm, stereo_deg;
+  std::optional<glm::dvec3> centre_mm;
   std::vector<std::string> colours;
   std::vector<double> opacities;
   std::string colour_by;
@@ -42,6 +44,7 @@ struct RenderedPicture {
   glm::ivec2 size_px{0};
   std::vector<std::uint8_t> rgb;
   double pixel_mm = 1.0;
+  glm::dvec2 centre_mm{0.0};  ///< of pictures along rays, in the view's millimetres
   nlohmann::ordered_json said = nlohmann::ordered_json::object();
 };
 
@@ -62,6 +65,12 @@ std::array<double, Count> numbers_of(const std::string& what, const std::string&
   return numbers;
 }
 
+/// View, size, frame, shading and cuts, without the grey tones of cut faces. Throws std::runtime_error for
+/// what cannot be read. Precondition: no ray picture.
+voxel::RenderOptions options_of(const Render& render);
+/// The samples that cut faces show, and what is black and white of them. Throws std::runtime_error where no
+/// object has samples.
+voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects);
 /// WxH in pixels.
 glm::ivec2 size_of(const Render& render);
 /// Normals are made unit.

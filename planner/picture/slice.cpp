@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A plane or a curved sheet of samples in true scale, with the outlines of objects.
+#include "planner/picture/slice.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/picture/colour.h"
 #include "planner/picture/mesh_voxels.h"
+#include "planner/picture/render.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
@@ -24,25 +27,6 @@ namespace {
 constexpr int least_curve_px = 800;
 
 namespace fs = std::filesystem;
-
-struct Slice {
-  ScanName scan;
-  fs::path path;
-  std::string axial, coronal, sagittal;
-  std::vector<glm::dvec3> oblique, curve_mm;
-  double height_mm = 60.0;
-  std::optional<glm::dvec3> up;
-  std::optional<SampleWindow> window;
-  std::vector<double> level;
-  std::vector<ObjectName> objects;
-  std::vector<std::string> colours;
-  std::optional<double> pixel_mm;
-  std::string interpolate = "linear";
-  bool plain = false;
-  // Of the verb.
-  fs::path out;
-  std::vector<std::string> curve;
-};
 
 /// What is cut: a scan, or a tree of any kind.
 struct Subject {
@@ -82,12 +66,6 @@ Subject subject_of_mesh(const fs::path& path, const Slice& slice, const FileBenc
   subject.lattice = std::get<voxel::Octree>(subject.samples).universe().lattice();
   return subject;
 }
-
-/// An object whose outline is drawn.
-struct Outlined {
-  std::string name;  ///< the path of its file, or its own
-  voxel::Octree octree;
-};
 
 /// Which sheet is drawn, in words and in millimetres.
 struct CutSheet {
@@ -150,6 +128,30 @@ std::vector<glm::dvec3> curve_points(const std::vector<std::string>& words) {
   return points;
 }
 
+/// A rectangle of a plane about a point's projection onto it; by default the middle of what is cut.
+voxel::Sheet rectangle_of(const Slice& slice, const voxel::Lattice& lattice, const voxel::View& view,
+                          double position_mm, double pixel_mm) {
+  Render said;
+  said.size = slice.size;
+  const glm::ivec2 size_px = size_of(said);
+  const glm::dvec3 asked_mm = slice.centre_mm.value_or(lattice.lps_mm(0.5 * glm::dvec3(lattice.dims - 1)));
+  const glm::dvec3 centre_mm = asked_mm + view.look * (position_mm - glm::dot(asked_mm, view.look));
+  voxel::Sheet sheet;
+  sheet.down = -view.up;
+  sheet.pixel_mm = pixel_mm;
+  sheet.height_px = size_px.y;
+  const glm::dvec3 top_mm = centre_mm + view.up * (0.5 * (size_px.y - 1) * pixel_mm);
+  for (int column = 0; column < size_px.x; ++column)
+    sheet.columns_mm.push_back(top_mm + view.right * ((column - 0.5 * (size_px.x - 1)) * pixel_mm));
+  return sheet;
+}
+
+voxel::Sheet sheet_of(const Slice& slice, const voxel::Lattice& lattice, const voxel::View& view,
+                      double position_mm, double pixel_mm) {
+  return slice.size.empty() ? voxel::plane_sheet(lattice, view, position_mm, pixel_mm)
+                            : rectangle_of(slice, lattice, view, position_mm, pixel_mm);
+}
+
 CutSheet cut_of(const Slice& slice, const voxel::Lattice& lattice) {
   const double pixel_mm = slice.pixel_mm.value_or(finest_mm(lattice));
   struct Named {
@@ -181,7 +183,7 @@ CutSheet cut_of(const Slice& slice, const voxel::Lattice& lattice) {
   if (!slice.oblique.empty()) {
     const voxel::View view = view_along(slice.oblique[1], slice.up);
     const double position_mm = glm::dot(slice.oblique[0], view.look);
-    return {"oblique", position_mm, voxel::plane_sheet(lattice, view, position_mm, pixel_mm)};
+    return {"oblique", position_mm, sheet_of(slice, lattice, view, position_mm, pixel_mm)};
   }
   const auto* chosen =
       std::find_if(named.begin(), named.end(), [](const Named& each) { return !each.position.empty(); });
@@ -190,7 +192,7 @@ CutSheet cut_of(const Slice& slice, const voxel::Lattice& lattice) {
       chosen->plane, chosen->position.empty() ? "middle" : chosen->position, lattice, chosen->axis);
   const voxel::View view = voxel::parse_view(chosen->view);
   return {chosen->plane, position_mm,
-          voxel::plane_sheet(lattice, view, position_mm * view.look[chosen->axis], pixel_mm)};
+          sheet_of(slice, lattice, view, position_mm * view.look[chosen->axis], pixel_mm)};
 }
 
 voxel::Interpolation interpolation_of(const std::string& name) {
@@ -312,24 +314,18 @@ Json said_of(const Slice& slice, const Subject& subject, const CutSheet& cut,
   return json;
 }
 
-/// A picture, and what is said of it.
-struct Drawn {
-  glm::ivec2 size_px{0};
-  std::vector<std::uint8_t> rgb;
-  Json said;
-};
-
-Drawn drawn(const Slice& slice, const Subject& subject, const std::vector<Outlined>& objects,
-            Timings& timings, const std::stop_token& stop) {
+SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector<Outlined>& objects,
+                   Timings& timings, const std::stop_token& stop) {
   const CutSheet cut = cut_of(slice, subject.lattice);
-  voxel::SheetSamples samples;
+  SlicePicture picture{cut.sheet, {}, {}, {}};
+  voxel::SheetSamples& samples = picture.samples;
   {
     const Stopwatch watch(timings, "slice");
     samples = samples_of(slice, subject, cut.sheet, stop);
   }
   const voxel::Range shown = shown_range(slice, subject, samples);
-  Drawn picture{cut.sheet.size_px(), voxel::grey_tones(samples.image, shown.low, shown.high),
-                said_of(slice, subject, cut, samples, shown)};
+  picture.rgb = voxel::grey_tones(samples.image, shown.low, shown.high);
+  picture.said = said_of(slice, subject, cut, samples, shown);
   // What lies beside the scan is black, not the border's grey.
   for (std::size_t i = 0; i < samples.inside.size(); ++i)
     if (samples.inside[i] == 0) std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0);
@@ -337,20 +333,24 @@ Drawn drawn(const Slice& slice, const Subject& subject, const std::vector<Outlin
   picture.said["scale_bar_mm"] = nullptr;
   if (slice.plain) return picture;
   voxel::ImagePlane plane;
-  plane.size_px = picture.size_px;
+  plane.size_px = picture.sheet.size_px();
   plane.pixel_mm = cut.sheet.pixel_mm;
   voxel::Annotation annotation;
   annotation.letters = voxel::edge_letters(cut.sheet);
   for (std::size_t i = 0; i < objects.size(); ++i)
     annotation.legend.push_back({fs::path(objects[i].name).stem().string(), outline_colour(slice, i)});
   voxel::annotate(picture.rgb, plane, annotation);
-  picture.said["scale_bar_mm"] = voxel::round_length(0.25 * picture.size_px.x * cut.sheet.pixel_mm);
+  picture.said["scale_bar_mm"] = voxel::round_length(0.25 * plane.size_px.x * cut.sheet.pixel_mm);
   return picture;
 }
 
 void check(const Slice& slice, const Place& place) {
   if (slice.window && !slice.level.empty())
     place.at("level").refuse("says the same as 'window': leave one out");
+  if (!slice.size.empty() && !slice.curve_mm.empty())
+    place.at("size").refuse("is of planes; a curve's picture is as long as the curve");
+  if (slice.centre_mm && slice.size.empty())
+    place.at("centre_mm").refuse("is of pictures of a 'size': add it");
   if (slice.colours.size() > slice.objects.size()) place.at("colours").refuse("give at most one an object");
   if (!slice.level.empty() && !(slice.level[1] > 0.0))
     place.at("level").refuse("is CENTRE and WIDTH, which is above zero");
@@ -363,12 +363,13 @@ void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
   std::vector<Outlined> objects;
   for (const ObjectName& name : slice.objects)
     objects.push_back({name.name, bench.objects.at(name.name).voxel.octree});
-  Drawn picture =
+  SlicePicture picture =
       drawn(slice, subject_of(bench.samples(slice.scan.name), slice), objects, bench.timings, bench.stop);
-  voxel::write_image(output_file(bench.folder, made.path), picture.size_px, picture.rgb);
+  voxel::write_image(output_file(bench.folder, made.path), picture.sheet.size_px(), picture.rgb);
   made.written = true;
   made.content = "a " + picture.said["plane"].get<std::string>() + " picture, " +
-                 std::to_string(picture.size_px.x) + " x " + std::to_string(picture.size_px.y) + " pixels";
+                 std::to_string(picture.sheet.size_px().x) + " x " +
+                 std::to_string(picture.sheet.size_px().y) + " pixels";
   made.details = std::move(picture.said);
 }
 
@@ -397,10 +398,10 @@ FileAnswer on_files(const Slice& asked, const FileBench& bench) {
                                "--window LOW:HIGH");
     objects.push_back({name.name, *octree});
   }
-  const Drawn picture = drawn(slice, subject, objects, bench.timings, bench.stop);
+  const SlicePicture picture = drawn(slice, subject, objects, bench.timings, bench.stop);
   {
     const Stopwatch watch(bench.timings, "write");
-    voxel::write_image(asked.out, picture.size_px, picture.rgb);
+    voxel::write_image(asked.out, picture.sheet.size_px(), picture.rgb);
   }
   FileAnswer answer{{{"path", asked.out.string()}, {"source", file.string()}}};
   answer.json.update(picture.said);
@@ -416,6 +417,11 @@ FileAnswer on_files(const Slice& asked, const FileBench& bench) {
 }
 
 }  // namespace
+
+SlicePicture slice_of(const Slice& slice, const voxel::Scene& scene, const std::vector<Outlined>& objects,
+                      Timings& timings, const std::stop_token& stop) {
+  return drawn(slice, subject_of(scene, slice), objects, timings, stop);
+}
 
 Operation slice_operation() {
   return Describe<Slice>("slice",
@@ -460,6 +466,11 @@ Operation slice_operation() {
                 "Edge of a pixel. Default: the scan's smallest spacing; finer in a curved picture of fewer "
                 "than 800 columns.")
               .greater_than(0.0))
+      .takes(field("size", &Slice::size, "WxH in pixels. Default: all of the scan."))
+      .takes(field("centre_mm", &Slice::centre_mm,
+                   "X,Y,Z in LPS of a point whose place on the plane is the picture's middle. Default: the "
+                   "scan's middle.")
+                 .called("centre"))
       .takes(field("interpolate", &Slice::interpolate, "Between samples.")
                  .one_of({"nearest", "linear", "cubic"}))
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))

@@ -99,10 +99,10 @@ class Evaluator {
         throw std::runtime_error("step '" + step.id + "': " + error.what());
       }
       for (const std::string& scan : scans_used(step.action))
-        if (--uses_left_[scan] == 0) loaded_.erase(scan);
+        if (--uses_left_[scan] == 0 && !options_.keep_scans) loaded_.erase(scan);
     }
     for (auto& [name, scan] : loaded_)
-      if (uses_left_[name] > 0)
+      if (uses_left_[name] > 0 || options_.keep_scans)
         result_.loaded.emplace(name, std::make_shared<const LoadedScan>(std::move(scan)));
     report("evaluated", 1.0);
     return std::move(result_);
@@ -262,7 +262,7 @@ class Evaluator {
     for (const std::string& finding : made.findings)
       record.audit.push_back({operation.name, voxel::Verdict::Warn, finding});
     result_.scans.push_back(std::move(record));
-    if (!uses_left_.contains(step.id)) return;
+    if (!uses_left_.contains(step.id) && !options_.keep_scans) return;
     load(step.id, std::move(made.scene));
     if (options_.cache != nullptr)
       options_.cache->keep(keys_.at(step.id), {loaded_.at(step.id), result_.scans.back()});
@@ -310,7 +310,7 @@ class Evaluator {
       object.mesh.whole = object.mesh.within;
       object.witness = verify::both(object.witness, verify::witness_of_box(box_));
     }
-    if (options_.cache != nullptr) options_.cache->keep(key_of(step), object);
+    if (options_.cache != nullptr && !options_.only_look_up) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));
   }
 

@@ -22,7 +22,7 @@ struct Evaluation {
   voxel::Universe universe;
   Objects objects;  ///< in the order of their steps
   Timings timings;
-  /// The scans that measurements and files use, read or made.
+  /// The scans that measurements and files use, read or made; all of them with EvaluateOptions::keep_scans.
   std::map<std::string, std::shared_ptr<const LoadedScan>> loaded;
 
   const Object& object(const std::string& id) const { return objects.at(id); }
@@ -41,8 +41,12 @@ struct EvaluateOptions {
   bool meshes = true;
   /// The steps that are wanted; those that they need are evaluated, and no others. Empty: all.
   std::vector<std::string> wanted = {};
+  /// Leaves every scan in Evaluation::loaded, so that slices of it can be drawn.
+  bool keep_scans = false;
   /// Answers of earlier evaluations, which are not made again, and to which new ones are added; may be null.
   ObjectCache* cache = nullptr;
+  /// Adds no objects to the cache, as for a piece that is dragged, of which none comes again.
+  bool only_look_up = false;
 };
 
 /// Evaluates every step that makes an object or a scan, objects in the voxel kernel and in the mesh kernel,

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they have in common.
+import { DrawnObject, Step } from "./protocol";
+import { state, steps } from "./state";
+
+const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
+const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
+export const mask_colour = "#5b9dff";
+export const overlap_colour = "#e5484d";
+const shape_steps = new Set([
+  "window", "segment", "mask", "combine", "move", "mirror", "saw", "register", "autorotate", "warp", "import", "repair",
+  "parts", "fill", "offset", "shell", "smooth", "decimate",
+]);
+
+export const makes_shape = (step: Step): boolean => shape_steps.has(step.do);
+
+/// The names that a step uses: its object, or those of its expression.
+export function operands(step: Step): string[] {
+  const names: string[] = [];
+  for (const field of ["object", "onto", "against", "to", "a", "b"]) {
+    const value = step[field];
+    if (typeof value === "string") names.push(value);
+  }
+  if (typeof step.expression === "string") names.push(...(step.expression.match(/[A-Za-z_]\w*/g) ?? []));
+  return names;
+}
+
+const moves = new Set(["move", "register", "autorotate", "warp"]);
+const is_union = (step: Step): boolean =>
+  step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
+
+/// What a moved piece and something else have in common: interference, drawn in red.
+export function is_overlap(step: Step, all: Step[]): boolean {
+  if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&()]+$/.test(step.expression)) return false;
+  return operands(step).some((name) => moves.has(all.find((other) => other.id === name)?.do ?? ""));
+}
+
+/// What lies inside a mask: a piece, which has its colour before it moves.
+const is_piece = (step: Step): boolean => step.do === "combine" && typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
+
+function is_used_up(id: string, all: Step[]): boolean {
+  return all.some((step) => {
+    if (!operands(step).includes(id)) return false;
+    if (step.do === "combine") return !is_union(step) && !is_overlap(step, all);
+    return makes_shape(step) && step.do !== "mirror" && step.object === id;
+  });
+}
+
+export interface Shown {
+  colour: string;
+  opacity: number;
+  visible: boolean;
+}
+
+/// How an object is drawn: as the person set it, else by what its step does.
+export function look_of(id: string): Shown {
+  const all = steps();
+  const index = all.findIndex((step) => step.id === id);
+  const step = all[index];
+  const look = state.looks[id] ?? {};
+  let usual: Shown = { colour: bone[0]!, opacity: 1, visible: false };
+  if (step) {
+    const number = all.slice(0, index).filter((other) => moves.has(other.do)).length;
+    const visible = !is_used_up(id, all);
+    if (step.do === "mask") usual = { colour: mask_colour, opacity: 0.35, visible };
+    else if (is_overlap(step, all)) usual = { colour: overlap_colour, opacity: 1, visible };
+    else if (moves.has(step.do)) usual = { colour: moved[number % moved.length]!, opacity: 1, visible };
+    else if (step.do === "mirror") usual = { colour: "#8fb8de", opacity: 1, visible: false };
+    else if (is_piece(step)) usual = { colour: moved[number % moved.length]!, opacity: 1, visible };
+    else usual = { colour: is_union(step) ? bone[2]! : bone[0]!, opacity: 1, visible: visible && !is_union(step) };
+  }
+  return {
+    colour: look.colour ?? usual.colour,
+    opacity: look.opacity ?? usual.opacity,
+    visible: look.visible ?? usual.visible,
+  };
+}
+
+/// The ids of the plan's objects, in the order of its steps.
+export const object_ids = (): string[] => steps().filter(makes_shape).map((step) => step.id);
+
+/// What the panes ask the server to draw.
+export function drawn_objects(): DrawnObject[] {
+  const drawn: DrawnObject[] = [];
+  const failed = new Set((state.plan?.objects ?? []).filter((object) => object.error).map((object) => object.id));
+  for (const id of object_ids()) {
+    const look = look_of(id);
+    if (state.draft_window?.replaces === id) continue;
+    if (look.visible && look.opacity > 0 && !failed.has(id)) drawn.push({ id, colour: look.colour, opacity: look.opacity });
+  }
+  if (state.draft_window) {
+    const { replaces, ...window } = state.draft_window;
+    drawn.push({ window, colour: replaces ? look_of(replaces).colour : bone[0]!, opacity: 1 });
+  }
+  return drawn;
+}

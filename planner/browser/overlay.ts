@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines, marks and the
+// handles of the tool that is in hand.
+import type { Pane } from "./panes";
+import { Json, Step } from "./protocol";
+import { state, steps, step_of } from "./state";
+import { active_tool } from "./tool";
+import { Vec2, Vec3, add, dot, scaled } from "./vector";
+import { edge_letters, view_of_plane, view_text } from "./view_frame";
+
+export const ink = {
+  cross: ["#ff8a65", "#7bd88f", "#64b5f6"] as const, // sagittal, coronal, axial
+  region: "#5b9dff",
+  landmark: "#ffd166",
+  measure: "#7ee0d0",
+  mark: "#ff5d8f",
+  text: "rgba(255,255,255,.92)",
+  faint: "rgba(255,255,255,.55)",
+};
+
+export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): void {
+  if (!state.plan) return;
+  const ratio = pane.ratio;
+  context.lineJoin = "round";
+  draw_cross(pane, context);
+  draw_regions(pane, context);
+  draw_measures(pane, context);
+  draw_landmarks(pane, context);
+  if (state.marked) draw_mark(pane, context, state.marked.at_mm);
+  active_tool()?.draw?.(pane, context);
+  draw_letters(pane, context);
+  draw_scale(pane, context);
+  if (pane.problem) text(context, pane.problem, [pane.size[0] / 2, pane.size[1] / 2], ratio, { align: "center", colour: "#ffb4a8" });
+  else if (!pane.picture && !pane.is_slice) {
+    text(context, state.plan.plan.steps.length ? "No object is shown. Turn one on in the list." : "Choose a tissue to begin.",
+      [pane.size[0] / 2, pane.size[1] / 2], ratio, { align: "center", colour: ink.faint });
+  }
+}
+
+interface TextLook {
+  align?: CanvasTextAlign;
+  colour?: string;
+  px?: number;
+  plate?: boolean;
+}
+/// Words with a dark outline, so that they are legible on bone and on black.
+export function text(context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
+  context.font = `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
+  context.textAlign = look.align ?? "left";
+  context.textBaseline = "middle";
+  context.lineWidth = 3 * ratio;
+  context.strokeStyle = "rgba(0,0,0,.75)";
+  context.strokeText(words, at[0], at[1]);
+  context.fillStyle = look.colour ?? ink.text;
+  context.fillText(words, at[0], at[1]);
+}
+
+export function line(context: CanvasRenderingContext2D, points: Vec2[], colour: string, width: number, closed = false): void {
+  if (!points.length) return;
+  context.beginPath();
+  points.forEach((p, i) => (i ? context.lineTo(p[0], p[1]) : context.moveTo(p[0], p[1])));
+  if (closed) context.closePath();
+  context.strokeStyle = "rgba(0,0,0,.55)";
+  context.lineWidth = width + 2;
+  context.stroke();
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.stroke();
+}
+
+export function dot_at(context: CanvasRenderingContext2D, at: Vec2, radius: number, colour: string, hollow = false): void {
+  context.beginPath();
+  context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
+  context.fillStyle = hollow ? "rgba(0,0,0,.35)" : colour;
+  context.fill();
+  context.lineWidth = Math.max(1, radius * 0.35);
+  context.strokeStyle = hollow ? colour : "rgba(0,0,0,.7)";
+  context.stroke();
+}
+
+// Each line is the trace of the other panes' planes; a gap in the middle leaves the point itself free to be seen.
+function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
+  if (pane.setting.mode === "panoramic") return;
+  const frame = pane.frame;
+  const [x, y] = pane.pixel_at(state.cross_mm);
+  const [width, height] = pane.size;
+  const gap = 9 * pane.ratio;
+  const axis = (d: Vec3): number => [0, 1, 2].reduce((best, i) => (Math.abs(d[i]!) > Math.abs(d[best]!) ? i : best), 0);
+  const stroke = (from: Vec2, to: Vec2, colour: string): void => {
+    context.beginPath();
+    context.moveTo(from[0], from[1]);
+    context.lineTo(to[0], to[1]);
+    context.strokeStyle = colour;
+    context.lineWidth = pane.ratio;
+    context.globalAlpha = pane.is_slice ? 0.75 : 0.4;
+    context.stroke();
+    context.globalAlpha = 1;
+  };
+  const vertical = ink.cross[axis(frame.right)]!;
+  const horizontal = ink.cross[axis(frame.up)]!;
+  stroke([x, 0], [x, y - gap], vertical);
+  stroke([x, y + gap], [x, height], vertical);
+  stroke([0, y], [x - gap, y], horizontal);
+  stroke([x + gap, y], [width, y], horizontal);
+}
+
+/// The name under which a region drawn in the pane is kept: a view, or the view of the slice's plane.
+export const region_view = (pane: Pane): string =>
+  pane.is_slice ? view_of_plane[pane.setting.plane] : view_text(pane.setting.view);
+
+export const uv_pixel = (pane: Pane, uv: Vec2): Vec2 => {
+  const frame = pane.frame;
+  return pane.pixel_at(add(scaled(frame.right, uv[0]), scaled(frame.up, uv[1])));
+};
+
+interface Region {
+  view: string;
+  polygons_mm: Vec2[][];
+}
+export const regions_of = (step: Step | undefined): Region[] =>
+  step?.do === "mask" && Array.isArray(step.regions) ? (step.regions as unknown as Region[]) : [];
+
+function draw_regions(pane: Pane, context: CanvasRenderingContext2D): void {
+  const step = step_of(state.selected);
+  const view = region_view(pane);
+  for (const region of regions_of(step))
+    if (region.view === view)
+      for (const polygon of region.polygons_mm) {
+        const points = polygon.map((uv) => uv_pixel(pane, uv));
+        line(context, points, ink.region, 1.5 * pane.ratio, true);
+        if (state.tool === "region") for (const p of points) dot_at(context, p, 4 * pane.ratio, ink.region);
+      }
+}
+
+export function mark_mm(mark: Json | undefined): Vec3 | null {
+  if (Array.isArray(mark) && mark.length === 3) return mark as Vec3;
+  if (typeof mark !== "string") return null;
+  return state.plan?.landmarks.find((one) => one.name === mark)?.point ?? null;
+}
+
+function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
+  for (const step of steps()) {
+    const marks = step.do === "measure" && Array.isArray(step.points_mm) ? step.points_mm : [];
+    const points = marks.map(mark_mm).filter((p): p is Vec3 => p !== null);
+    if (points.length < 2) continue;
+    const at = points.map((p) => pane.pixel_at(p));
+    line(context, at, ink.measure, 1.5 * pane.ratio);
+    for (const p of at) dot_at(context, p, 3 * pane.ratio, ink.measure);
+    const found = state.plan?.measurements?.find((one) => one.id === step.id);
+    const middle = at[Math.floor(at.length / 2)]!;
+    const before = at[Math.floor(at.length / 2) - 1]!;
+    const words = found ? `${found.value.toFixed(found.unit === "mm" ? 2 : 1)} ${found.unit}` : step.id;
+    if (Math.hypot(middle[0] - before[0], middle[1] - before[1]) < 24 * pane.ratio) continue;
+    text(context, words, [(middle[0] + before[0]) / 2 + 6 * pane.ratio, (middle[1] + before[1]) / 2 - 9 * pane.ratio], pane.ratio, { colour: ink.measure });
+  }
+}
+
+function draw_landmarks(pane: Pane, context: CanvasRenderingContext2D): void {
+  const plane = dot(state.cross_mm, pane.frame.look);
+  for (const landmark of state.plan?.landmarks ?? []) {
+    if (pane.is_slice && Math.abs(dot(landmark.point, pane.frame.look) - plane) > 6) continue;
+    const at = pane.pixel_at(landmark.point);
+    dot_at(context, at, 3.5 * pane.ratio, ink.landmark);
+    text(context, landmark.name.replace(/_/g, " "), [at[0] + 7 * pane.ratio, at[1]], pane.ratio, { colour: ink.landmark, px: 11 });
+  }
+}
+
+function draw_mark(pane: Pane, context: CanvasRenderingContext2D, p_mm: Vec3): void {
+  const at = pane.pixel_at(p_mm);
+  for (const radius of [7, 13]) {
+    context.beginPath();
+    context.arc(at[0], at[1], radius * pane.ratio, 0, 2 * Math.PI);
+    context.strokeStyle = ink.mark;
+    context.lineWidth = 2 * pane.ratio;
+    context.stroke();
+  }
+}
+
+function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
+  if (pane.setting.mode === "panoramic") return;
+  const [width, height] = pane.size;
+  const inset = 12 * pane.ratio;
+  const letters = edge_letters(pane.frame);
+  const look: TextLook = { align: "center", colour: ink.faint, px: 12 };
+  text(context, letters.left, [inset, height / 2], pane.ratio, look);
+  text(context, letters.right, [width - inset, height / 2], pane.ratio, look);
+  text(context, letters.bottom, [width / 2, height - inset], pane.ratio, look);
+}
+
+// A bar of 1, 2 or 5 times a power of ten, about a fifth of the pane's width.
+function draw_scale(pane: Pane, context: CanvasRenderingContext2D): void {
+  const frame = pane.frame;
+  const [width, height] = pane.size;
+  const wanted_mm = width * 0.2 * frame.pixel_mm;
+  const ten = 10 ** Math.floor(Math.log10(wanted_mm));
+  const mm = ([5, 2, 1].find((n) => n * ten <= wanted_mm) ?? 1) * ten;
+  const long = mm / frame.pixel_mm;
+  const right = width - 10 * pane.ratio;
+  const y = height - 10 * pane.ratio;
+  line(context, [[right - long, y - 4 * pane.ratio], [right - long, y], [right, y], [right, y - 4 * pane.ratio]], ink.faint, pane.ratio);
+  text(context, `${mm} mm`, [right - long / 2, y - 9 * pane.ratio], pane.ratio, { align: "center", colour: ink.faint, px: 11 });
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Frames of orthographic pictures: directions, pixels and millimetres. The same table as the command line's views.
+import { Vec2, Vec3, add, cross, dot, scaled } from "./vector";
+
+export interface ViewFrame {
+  right: Vec3;
+  up: Vec3;
+  look: Vec3;
+  centre_mm: Vec3; // a point that the picture's centre shows
+  pixel_mm: number;
+}
+
+export interface Turned {
+  azimuth: number; // degrees from anterior towards the patient's left
+  elevation: number; // degrees upwards
+}
+export type ViewName = "anterior" | "posterior" | "left" | "right" | "superior" | "inferior";
+export type View = ViewName | Turned;
+export type PlaneName = "axial" | "coronal" | "sagittal";
+
+const directions: Record<ViewName, [Vec3, Vec3]> = {
+  anterior: [[0, 1, 0], [0, 0, 1]],
+  posterior: [[0, -1, 0], [0, 0, 1]],
+  left: [[-1, 0, 0], [0, 0, 1]],
+  right: [[1, 0, 0], [0, 0, 1]],
+  superior: [[0, 0, -1], [0, -1, 0]],
+  inferior: [[0, 0, 1], [0, -1, 0]],
+};
+export const view_names = Object.keys(directions) as ViewName[];
+
+/// The view from which a slice's plane is seen; a region drawn on the slice is one of that view.
+export const view_of_plane: Record<PlaneName, ViewName> = { axial: "inferior", coronal: "anterior", sagittal: "left" };
+
+const turned_of: Record<ViewName, Turned> = {
+  anterior: { azimuth: 0, elevation: 0 },
+  left: { azimuth: 90, elevation: 0 },
+  posterior: { azimuth: 180, elevation: 0 },
+  right: { azimuth: -90, elevation: 0 },
+  superior: { azimuth: 180, elevation: 89.9 },
+  inferior: { azimuth: 0, elevation: -89.9 },
+};
+
+/// A view as angles, from which it can be turned on.
+export const turned = (view: View): Turned => (typeof view === "string" ? turned_of[view] : view);
+
+export function directions_of(view: View): { right: Vec3; up: Vec3; look: Vec3 } {
+  if (typeof view === "string") {
+    const [look, up] = directions[view];
+    return { look, up, right: cross(look, up) };
+  }
+  const a = (view.azimuth * Math.PI) / 180;
+  const e = (view.elevation * Math.PI) / 180;
+  const look: Vec3 = [-Math.sin(a) * Math.cos(e), Math.cos(a) * Math.cos(e), -Math.sin(e)];
+  const up: Vec3 = [-Math.sin(a) * Math.sin(e), Math.cos(a) * Math.sin(e), Math.cos(e)];
+  return { look, up, right: cross(look, up) };
+}
+
+/// A view as the plan says it: its name, or AZ,EL.
+export const view_text = (view: View): string =>
+  typeof view === "string" ? view : `${Math.round(view.azimuth)},${Math.round(view.elevation)}`;
+
+/// Where a point lies in a picture of the size, in pixels from the top left.
+export function pixel_of(frame: ViewFrame, size: Vec2, p_mm: Vec3): Vec2 {
+  const x = dot(p_mm, frame.right) - dot(frame.centre_mm, frame.right);
+  const y = dot(p_mm, frame.up) - dot(frame.centre_mm, frame.up);
+  return [size[0] / 2 + x / frame.pixel_mm, size[1] / 2 - y / frame.pixel_mm];
+}
+
+/// The view's millimetres (u, v) = (p . right, p . up) of a pixel position.
+export function uv_of(frame: ViewFrame, size: Vec2, at: Vec2): Vec2 {
+  return [
+    dot(frame.centre_mm, frame.right) + (at[0] - size[0] / 2) * frame.pixel_mm,
+    dot(frame.centre_mm, frame.up) - (at[1] - size[1] / 2) * frame.pixel_mm,
+  ];
+}
+
+/// The point of a pixel position at a depth, p . look.
+export function point_of(frame: ViewFrame, size: Vec2, at: Vec2, depth_mm: number): Vec3 {
+  const [u, v] = uv_of(frame, size, at);
+  return add(add(scaled(frame.right, u), scaled(frame.up, v)), scaled(frame.look, depth_mm));
+}
+
+/// The letters at a picture's left, right, top and bottom edge: R, L, A, P, H, F; two where it is oblique.
+export function edge_letters(frame: ViewFrame): { left: string; right: string; top: string; bottom: string } {
+  const name = (d: Vec3): string =>
+    ([[d[0], "L", "R"], [d[1], "P", "A"], [d[2], "H", "F"]] as [number, string, string][])
+      .filter(([part]) => Math.abs(part) > 0.35)
+      .sort((a, b) => Math.abs(b[0]) - Math.abs(a[0]))
+      .slice(0, 2)
+      .map(([part, plus, minus]) => (part > 0 ? plus : minus))
+      .join("");
+  return {
+    left: name(scaled(frame.right, -1)),
+    right: name(frame.right),
+    top: name(frame.up),
+    bottom: name(scaled(frame.up, -1)),
+  };
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The one WebSocket of this window: requests as promises, events, binary pictures, and a new connection after a loss.
+import { FrameHeader, Json } from "./protocol";
+
+/// What the server refused, with its code: input, geometry, cancelled, resource; or lost, where the line broke.
+export class Refusal extends Error {
+  constructor(message: string, readonly code: string) {
+    super(message);
+  }
+}
+
+export interface WireEvents {
+  opened(): void;
+  lost(in_s: number): void;
+  event(word: string, message: { [key: string]: Json }): void;
+  picture(header: FrameHeader, parts: Uint8Array[]): void;
+}
+
+interface Waiting {
+  resolve(value: unknown): void;
+  reject(error: Refusal): void;
+}
+
+const first_retry_ms = 400;
+const last_retry_ms = 5000;
+
+export class Wire {
+  private socket: WebSocket | null = null;
+  private next_id = 1;
+  private retry_ms = first_retry_ms;
+  private readonly waiting = new Map<number, Waiting>();
+
+  constructor(private readonly url: string, private readonly events: WireEvents) {}
+
+  open(): void {
+    const socket = new WebSocket(this.url);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    socket.onopen = () => {
+      this.retry_ms = first_retry_ms;
+      this.events.opened();
+    };
+    socket.onmessage = (message: MessageEvent<string | ArrayBuffer>) =>
+      typeof message.data === "string" ? this.hear(message.data) : this.see(message.data);
+    socket.onclose = () => this.closed();
+  }
+
+  /// Asks the server; the promise is refused with a Refusal. Its id is told at once where `on_id` is given.
+  ask<Answer>(word: string, fields: object = {}, on_id?: (id: number) => void): Promise<Answer> {
+    const id = this.next_id++;
+    on_id?.(id);
+    return new Promise<Answer>((resolve, reject) => {
+      if (this.socket?.readyState !== WebSocket.OPEN) {
+        reject(new Refusal("The connection to the planner's program is lost.", "lost"));
+        return;
+      }
+      this.waiting.set(id, { resolve: (value) => resolve(value as Answer), reject });
+      this.socket.send(JSON.stringify({ id, do: word, ...fields }));
+    });
+  }
+
+  /// Says something that has no answer.
+  say(word: string, fields: object): void {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ do: word, ...fields }));
+  }
+
+  private hear(text: string): void {
+    const message = JSON.parse(text) as { [key: string]: Json };
+    if (typeof message.event === "string") {
+      this.events.event(message.event, message);
+      return;
+    }
+    const asked = this.waiting.get(message.id as number);
+    if (!asked) return;
+    this.waiting.delete(message.id as number);
+    const error = message.error as { message: string; code: string } | undefined;
+    if (error) asked.reject(new Refusal(error.message, error.code));
+    else asked.resolve(message.ok);
+  }
+
+  private see(data: ArrayBuffer): void {
+    const header_bytes = new DataView(data).getUint32(0, true);
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, header_bytes))) as FrameHeader;
+    const parts: Uint8Array[] = [];
+    let at = 4 + header_bytes;
+    for (const part of header.parts) {
+      parts.push(new Uint8Array(data, at, part.bytes));
+      at += part.bytes;
+    }
+    // A picture answers its request; a text answer need not follow.
+    this.waiting.get(header.id)?.resolve(header);
+    this.waiting.delete(header.id);
+    this.events.picture(header, parts);
+  }
+
+  private closed(): void {
+    for (const asked of this.waiting.values()) asked.reject(new Refusal("The connection was lost.", "lost"));
+    this.waiting.clear();
+    this.events.lost(this.retry_ms / 1000);
+    window.setTimeout(() => this.open(), this.retry_ms);
+    this.retry_ms = Math.min(last_retry_ms, this.retry_ms * 2);
+  }
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <cstdlib>
+#include <filesystem>
+#include <unistd.h>
+
+#include "planner/cli/verb.h"
+#include "planner/serve/folders.h"
+#include "planner/serve/gate.h"
+#include "planner/serve/server.h"
+#include "planner/table/json_file.h"
+#include "voxel/space/unfinished_folder.h"
+
+namespace octotomy::planner::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ServeText {
+  std::vector<fs::path> paths;
+  serve::ServerOptions options;
+  fs::path token_file;
+  bool open = false;
+};
+
+/// Starts the desktop's browser; nothing is said where there is none.
+void open_browser(const std::string& url) {
+  if (::fork() != 0) return;
+  ::execlp("xdg-open", "xdg-open", url.c_str(), nullptr);
+  ::_exit(1);
+}
+
+int run(Program& program, ServeText& text) {
+  serve::Desk desk(fs::current_path());
+  for (const fs::path& path : text.paths) desk.folders.open(path);
+  for (const fs::path& path : text.paths) {
+    if (desk.is_open()) throw std::runtime_error("name one plan or scan; others may be folders");
+    const bool is_folder_only = fs::is_directory(path) && text.paths.size() > 1;
+    if (!is_folder_only) desk.open(fs::canonical(path), {program.stop.get_token(), program.progress()});
+  }
+  serve::Service service(desk);
+  if (text.options.address != "127.0.0.1" && text.options.address != "::1")
+    warn("--listen " + text.options.address +
+         ": others on the network reach this server, and read what they send and get: nothing is encrypted");
+  text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
+  text.options.ready = [&](const std::string& url) {
+    Json json = answer({});
+    json.erase("timings_ms");
+    json["url"] = url;
+    const std::string line = program.json ? json_text(json) + "\n" : "Open " + url + "\nCtrl-C ends it.\n";
+    std::fputs(line.c_str(), stdout);
+    std::fflush(stdout);
+    if (text.open) open_browser(url);
+  };
+  serve::serve(service, desk, text.options, program.stop.get_token());
+  // Every edit is on the disk. Work that is under way is nobody's any more, and may take long to stop.
+  while (!has_last_word(Speaker::Verb)) ::pause();
+  voxel::remove_unfinished();
+  std::_Exit(done);
+}
+
+}  // namespace
+
+void add_serve(Program& program) {
+  const auto text = std::make_shared<ServeText>();
+  CLI::App& verb = program.verb("serve", "Opens the planner in a browser; nothing leaves this machine",
+                                "octotomy serve head.nrrd --open\n"
+                                "  octotomy serve le_fort_i.plan.json",
+                                [&program, text] { return run(program, *text); });
+  verb.add_option("paths", text->paths,
+                  "A plan or a scan to begin with, and folders that the page may open files of")
+      ->check(CLI::ExistingPath);
+  verb.add_option("--port", text->options.port, "Port to listen on; default: a free one")
+      ->check(CLI::Range(0, 65535));
+  verb.add_option("--token-file", text->token_file,
+                  "Keeps the address's token in this file: with the same --port, pages that are open find a "
+                  "server that was started again");
+  verb.add_flag("--open", text->open, "Opens the desktop's browser");
+  verb.add_option("--listen", text->options.address,
+                  "Address of another interface, so that other machines reach the server; default 127.0.0.1");
+}
+
+}  // namespace octotomy::planner::cli

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/serve/answers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planner/anatomy/movement.h"
+#include "planner/measure/result_json.h"
+#include "planner/plan/answers.h"
+#include "planner/report/report.h"
+#include "planner/report/result_folder.h"
+#include "planner/serve/pane_fields.h"
+#include "planner/serve/told_measurement.h"
+#include "voxel/measure/measure.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* asked_step = "asked_of_the_page";
+
+/// How far from a pointed place a landmark looks for bone.
+constexpr double snap_mm = 8.0;
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw voxel::Error(voxel::ErrorCode::Input, why);
+}
+
+/// The answer of one more step of the plan that measures.
+Json measured(Desk& desk, Json step, const std::vector<std::string>& needed, bool certify,
+              const Watched& watched) {
+  step["id"] = asked_step;
+  step["do"] = "measure";
+  const Plan plan =
+      desk.with_document([&](const Document& document) { return document.with_steps(Json::array({step})); });
+  std::vector<std::string> wanted = needed;
+  Plan alone = plan;
+  // Without objects only the scans matter.
+  if (wanted.empty())
+    alone.steps = {plan.steps.back()};
+  else
+    std::erase_if(alone.steps, [&](const Step& each) {
+      return each.action.operation().makes == Makes::Measurement && each.id != asked_step;
+    });
+  if (wanted.empty()) wanted = {asked_step};
+  const Evaluation evaluation = desk.evaluate(alone, wanted, certify, watched);
+  alone.steps = {plan.steps.back()};
+  return measurements_json(alone, evaluation).front();
+}
+
+std::vector<std::string> names_of(const Json& value) {
+  if (value.is_string()) return {value.get<std::string>()};
+  return value.get<std::vector<std::string>>();
+}
+
+/// Points with landmarks' places for their names.
+Json points_mm(const Json& points, const Plan& plan) {
+  Json typed = Json::array();
+  for (const Json& point : points) {
+    const auto known =
+        std::find_if(plan.landmarks.begin(), plan.landmarks.end(),
+                     [&](const NamedPoint& landmark) { return point.is_string() && landmark.name == point; });
+    if (point.is_string() && known == plan.landmarks.end())
+      refuse("there is no landmark '" + point.get<std::string>() + "'");
+    typed.push_back(point.is_string() ? planner::to_json(known->p_mm) : point);
+  }
+  return typed;
+}
+
+/// The middle of the voxel face nearest to a point, on the surface of all bones or of one; none within
+/// snap_mm.
+std::optional<glm::dvec3> snapped(const Evaluation& evaluation, const glm::dvec3& p_mm,
+                                  const std::string& only) {
+  const voxel::Lattice lattice = evaluation.universe.lattice();
+  const double voxel_mm = lattice.spacing_mm().x;
+  const glm::ivec3 middle(glm::round(lattice.voxel(p_mm)));
+  const int reach = static_cast<int>(std::ceil(snap_mm / voxel_mm));
+  std::optional<glm::dvec3> best;
+  double best_mm = snap_mm;
+  for (const Object& object : evaluation.objects) {
+    if (object.is_tool || (!only.empty() && object.id != only)) continue;
+    const voxel::Octree& octree = object.voxel.octree;
+    const auto is_in = [&](const glm::ivec3& at) {
+      return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
+             glm::all(glm::lessThan(at, lattice.dims)) && octree.contains(at);
+    };
+    for (int z = -reach; z <= reach; ++z)
+      for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+          const glm::ivec3 at = middle + glm::ivec3(x, y, z);
+          const glm::dvec3 centre = lattice.lps_mm(at);
+          if (glm::distance(centre, p_mm) >= best_mm || !is_in(at)) continue;
+          for (int axis = 0; axis < 3; ++axis)
+            for (const int side : {-1, 1}) {
+              glm::ivec3 next = at;
+              next[axis] += side;
+              if (is_in(next)) continue;
+              glm::dvec3 face = at;
+              face[axis] += 0.5 * side;
+              const glm::dvec3 on_face = lattice.lps_mm(face);
+              if (glm::distance(on_face, p_mm) >= best_mm) continue;
+              best_mm = glm::distance(on_face, p_mm);
+              best = on_face;
+            }
+        }
+  }
+  return best;
+}
+
+}  // namespace
+
+fs::path files_folder(const Desk& desk) {
+  const fs::path plan = desk.with_document([](const Document& document) { return document.path(); });
+  return plan.parent_path() / (plain_stem(plan) + " files");
+}
+
+Json measure(Desk& desk, const Json& said, const Watched& watched) {
+  const std::string kind = said.at("kind");
+  if (kind == "volume" || kind == "area") {
+    const std::string object = said.at("object");
+    const Json json = measured(desk, {{"object", object}}, {object}, true, watched);
+    const Json& number = json.at(kind);
+    return told(number.at("value"), number.at("unit"), number.at("half_width"),
+                (kind == "volume" ? "Volume of " : "Surface area of ") + object);
+  }
+  const Json& points = said.at("points");
+  if (kind == "surface_distance") {
+    const std::string object = said.at("object");
+    const Json typed =
+        desk.with_document([&](const Document& document) { return points_mm(points, *document.plan()); });
+    return told_measurement(measured(desk, {{"object", object}, {"along", typed}}, {object}, true, watched));
+  }
+  if (kind != "distance" && kind != "angle")
+    refuse("kind: must be distance, angle, surface_distance, volume or area");
+  // A landmark that goes with an object needs the object's motion.
+  std::vector<std::string> needed;
+  for (const Json& point : points) {
+    if (!point.is_string()) continue;
+    const std::string name = point;
+    if (const auto at = name.find('@'); at != std::string::npos) needed.push_back(name.substr(at + 1));
+  }
+  return told_measurement(measured(desk, {{"points_mm", points}}, needed, false, watched));
+}
+
+Json certify(Desk& desk, const Json& said, const Watched& watched) {
+  const std::string id = said.at("object");
+  const Snapshot made = desk.evaluate({id}, true, watched);
+  if (const auto failed = made.errors.find(id); failed != made.errors.end()) refuse(failed->second);
+  const Json json = desk.object_json(made, id);
+  if (!json.contains("certificate"))
+    return {{"verdict", nullptr},
+            {"sentence", json.value("findings", Json::array()).empty()
+                             ? "There is no certificate: '" + id + "' only helps to make others."
+                             : json["findings"].front().get<std::string>()},
+            {"place", nullptr},
+            {"detection_limit", nullptr},
+            {"rows", Json::array()}};
+  const Json& certificate = json["certificate"];
+  return {{"verdict", certificate.at("verdict")},  {"sentence", certificate.at("sentence")},
+          {"place", certificate.at("place")},      {"detection_limit", certificate.at("detection_limit")},
+          {"rows", certificate.at("comparisons")}, {"certificate", certificate}};
+}
+
+Json overlap(Desk& desk, const Json& said, const Watched& watched) {
+  const Desk::Preview preview =
+      desk.preview(said.at("object"), said.at("move"), names_of(said.at("with")), watched.stop);
+  for (const Object& object : preview.evaluation->objects)
+    if (object.id == Desk::Preview::overlap) return {{"mm3", object.voxel.measures.volume_mm3}};
+  refuse("with: name at least one other object");
+}
+
+Json movement(Desk& desk, const Json& said, const Watched&) {
+  const Snapshot snapshot = desk.snapshot();
+  if (!snapshot.evaluation) refuse("nothing is evaluated yet");
+  const std::string id = said.value("object", "");
+  Json rows = Json::array();
+  for (const Json& row : movements_json(snapshot.evaluation->objects, snapshot.plan->landmarks))
+    if (id.empty() || row.value("object", "") == id) rows.push_back(row);
+  return {{"rows", rows}};
+}
+
+Json place_landmark(Desk& desk, const Json& said, const Watched&) {
+  const std::string name = said.at("name");
+  const auto asked = point_of(said, "point");
+  if (!asked) refuse("point: is missing");
+  glm::dvec3 p_mm = *asked;
+  const Snapshot snapshot = desk.snapshot();
+  if (said.value("snap", false) && snapshot.evaluation)
+    p_mm = snapped(*snapshot.evaluation, p_mm, said.value("object", "")).value_or(p_mm);
+  for (int axis = 0; axis < 3; ++axis) p_mm[axis] = std::round(p_mm[axis] * 1e4) / 1e4;
+  desk.with_document([&](Document& document) { document.place_landmark(name, planner::to_json(p_mm)); });
+  return {{"point", planner::to_json(p_mm)}};
+}
+
+Json export_file(Desk& desk, const Json& said, const Watched& watched) {
+  const std::string object = said.at("object");
+  const std::string kind = said.value("kind", "stl");
+  const fs::path folder = files_folder(desk);
+  const fs::path asked =
+      need_plain_name(said.contains("path") ? said["path"].get<std::string>() : object + "." + kind);
+  const fs::path path = unused(folder / asked);
+  const Json step{
+      {"id", asked_step}, {"do", "export"}, {"object", object}, {"path", path.filename().string()}};
+  Plan plan =
+      desk.with_document([&](const Document& document) { return document.with_steps(Json::array({step})); });
+  fs::create_directories(path.parent_path());
+  const Step last = plan.steps.back();
+  plan.steps.pop_back();
+  const Evaluation evaluation = desk.evaluate(plan, {object}, true, watched);
+  plan.steps.push_back(last);
+  Timings timings;
+  std::map<std::string, std::shared_ptr<const void>> kept;
+  const Exported exported =
+      write_file(plan, evaluation, last, path.parent_path(), timings, kept, {watched.stop, watched.progress});
+  if (!exported.written)
+    throw voxel::Error(voxel::ErrorCode::Geometry,
+                       exported.findings.empty() ? object + " was not written" : exported.findings.front());
+  return {{"file", fs::relative(path, folder).generic_string()},
+          {"path", path.string()},
+          {"content", exported.content},
+          {"findings", exported.findings}};
+}
+
+Json report(Desk& desk, const Json&, const Watched& watched) {
+  const fs::path folder = unused(files_folder(desk) / "report");
+  Result result;
+  result.plan = desk.with_document([](const Document& document) { return *document.plan(); });
+  fs::create_directories(folder.parent_path());
+  need_result_folder(folder, result_names(result.plan));
+  result.evaluation = desk.evaluate(result.plan, {}, true, watched);
+  result.pictures = plan_pictures(result.plan, result.evaluation);
+  write_result(result, folder, {watched.stop, watched.progress});
+  return {{"folder", folder.string()},
+          {"file", folder.filename().string() + "/report.html"},
+          {"counts", planner::to_json(verdict_counts(result.evaluation))}};
+}
+
+namespace {
+
+/// A word of a shell.
+std::string quoted(const std::string& text) {
+  std::string safe = "'";
+  for (const char symbol : text) {
+    if (symbol == '\'')
+      safe += "'\\''";
+    else
+      safe += symbol;
+  }
+  return safe + "'";
+}
+
+/// JSON as Python writes it.
+std::string python_of(const Json& value) {
+  if (value.is_null()) return "None";
+  if (value.is_boolean()) return value.get<bool>() ? "True" : "False";
+  if (value.is_array()) {
+    std::string text;
+    for (const Json& part : value) text += (text.empty() ? "" : ", ") + python_of(part);
+    return "[" + text + "]";
+  }
+  if (!value.is_object()) return value.dump();
+  std::string text;
+  for (const auto& [key, part] : value.items())
+    text += (text.empty() ? "" : ", ") + Json(key).dump() + ": " + python_of(part);
+  return "{" + text + "}";
+}
+
+}  // namespace
+
+Json command_of_step(Desk& desk, const Json& said, const Watched&) {
+  const std::string id = said.at("step");
+  return desk.with_document([&](const Document& document) -> Json {
+    const Json whole = document.json();
+    for (const Json& step : whole.at("steps")) {
+      if (step.value("id", "") != id) continue;
+      std::string call = "plan." + step.value("do", "") + "(" + Json(id).dump();
+      for (const auto& [key, value] : step.items())
+        if (key != "id" && key != "do") call += ", " + key + "=" + python_of(value);
+      const std::string path = document.path().string();
+      return {{"shell", "octotomy preview " + quoted(path) + " " + id + " -o " + quoted(id + ".png")},
+              {"python", call + ")"}};
+    }
+    refuse("the plan has no step '" + id + "'");
+  });
+}
+
+}  // namespace octotomy::planner::serve

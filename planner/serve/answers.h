@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/serve/desk.h"
+#include "planner/serve/message.h"
+
+// Requests that ask for numbers, proofs and files of the plan's objects; those of requests.h that change or
+// show the document stand there.
+namespace octotomy::planner::serve {
+
+/// {"kind", "points" or "object"} -> {"value", "unit", "half_width", "sentence"}, as a step "measure" has it.
+Json measure(Desk& desk, const Json& said, const Watched& watched);
+/// {"object"} -> {"verdict", "sentence", "place", "detection_limit", "rows"}.
+Json certify(Desk& desk, const Json& said, const Watched& watched);
+/// {"object", "with", "move"} -> {"mm3"}, in voxels.
+Json overlap(Desk& desk, const Json& said, const Watched& watched);
+/// {"object"} -> {"rows"}: its movement in words.
+Json movement(Desk& desk, const Json& said, const Watched& watched);
+/// {"name", "point", "snap"} -> {"point"}: names a point, on the nearest bone where it snaps.
+Json place_landmark(Desk& desk, const Json& said, const Watched& watched);
+/// {"object", "path"} -> {"file"}, which is written into the plan's folder of exports.
+Json export_file(Desk& desk, const Json& said, const Watched& watched);
+/// {} -> {"folder", "file"}.
+Json report(Desk& desk, const Json& said, const Watched& watched);
+/// {"step"} -> {"shell", "python"}.
+Json command_of_step(Desk& desk, const Json& said, const Watched& watched);
+
+/// Where the open plan's exports and reports are written: "NAME files" beside it.
+std::filesystem::path files_folder(const Desk& desk);
+
+}  // namespace octotomy::planner::serve

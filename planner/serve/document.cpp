@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/serve/document.h"
+
+#include <algorithm>
+
+#include "planner/plan/difference.h"
+#include "planner/table/json_file.h"
+#include "planner/table/nearest_name.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+/// Edits that a page lists.
+constexpr std::int64_t most_listed = 200;
+
+Json::iterator find_step(Json& steps, const std::string& id) {
+  const auto found =
+      std::find_if(steps.begin(), steps.end(), [&](const Json& step) { return step.value("id", "") == id; });
+  if (found != steps.end()) return found;
+  std::vector<std::string> ids;
+  for (const Json& step : steps) ids.push_back(step.value("id", ""));
+  throw std::runtime_error("the plan has no step '" + id + "'" + suggestion(id, ids));
+}
+
+/// The points of the plan's first step that types landmarks; one is begun where there is none.
+Json& points_in(Json& steps) {
+  auto found = std::find_if(steps.begin(), steps.end(), [](const Json& step) {
+    return step.value("do", "") == "landmarks" && step.contains("points");
+  });
+  if (found == steps.end())
+    found = steps.insert(steps.begin(),
+                         Json{{"id", "landmarks"}, {"do", "landmarks"}, {"points", Json::array()}});
+  return (*found)["points"];
+}
+
+void set_landmarks(Json& steps, const Json& landmarks) {
+  Json& points = points_in(steps);
+  points = Json::array();
+  for (const Json& landmark : landmarks)
+    points.push_back({{"name", landmark.at("name")}, {"point_mm", landmark.at("point")}});
+}
+
+void change_steps(Json& steps, const Json& said) {
+  if (said.contains("add")) {
+    const Json& add = said["add"];
+    auto place = steps.end();
+    if (add.contains("after") && add["after"].is_string()) place = find_step(steps, add["after"]) + 1;
+    steps.insert(place, add.at("step"));
+  }
+  if (said.contains("replace")) *find_step(steps, said["replace"].at("id")) = said["replace"].at("step");
+  if (said.contains("remove")) steps.erase(find_step(steps, said["remove"].get<std::string>()));
+  if (said.contains("landmarks")) set_landmarks(steps, said["landmarks"]);
+}
+
+}  // namespace
+
+Document::Document(const std::filesystem::path& path) : path_(path) {
+  read_plan(path_);  // refuses what is no plan before a history is begun
+  history_ = std::make_unique<PlanHistory>(path_);
+  read_again();
+}
+
+void Document::read_again() {
+  Plan plan = parse_plan(history_->text(), path_.parent_path());
+  plan.file = path_;
+  plan_ = std::make_shared<const Plan>(std::move(plan));
+}
+
+Plan Document::parsed(const Json& json) const {
+  return parse_plan(json_text(json, 2) + "\n", path_.parent_path());
+}
+
+Plan Document::with_steps(const Json& steps) const {
+  Json whole = json();
+  for (const Json& step : steps) whole["steps"].push_back(step);
+  return parsed(whole);
+}
+
+void Document::edit(const Json& said) {
+  Json changed = json();
+  for (const char* key : {"steps", "scans", "universe", "name"})
+    if (said.contains(key)) changed[key] = said[key];
+  change_steps(changed["steps"], said);
+  record(changed, said.value("what", "edited"));
+}
+
+void Document::place_landmark(const std::string& name, const Json& point_mm) {
+  Json changed = json();
+  Json& points = points_in(changed["steps"]);
+  const auto known = std::find_if(points.begin(), points.end(),
+                                  [&](const Json& point) { return point.value("name", "") == name; });
+  if (known != points.end())
+    (*known)["point_mm"] = point_mm;
+  else
+    points.push_back({{"name", name}, {"point_mm", point_mm}});
+  record(changed, "landmark " + name);
+}
+
+void Document::record(const Json& json, const std::string& what) {
+  parsed(json);
+  history_->record(json_text(json, 2) + "\n", what);
+  read_again();
+}
+
+bool Document::undo() {
+  const bool done = history_->undo();
+  read_again();
+  return done;
+}
+
+bool Document::redo() {
+  const bool done = history_->redo();
+  read_again();
+  return done;
+}
+
+void Document::go_to(const std::string& where) {
+  history_->go_to(where);
+  read_again();
+}
+
+void Document::begin_branch(const std::string& name) {
+  history_->begin_branch(name);
+}
+
+void Document::name_version(const std::string& name) {
+  history_->name_version(name);
+}
+
+Json Document::difference_of(std::int64_t a, std::int64_t b) const {
+  const auto plan_of = [&](std::int64_t edit) {
+    return parse_plan(history_->text_of(edit), path_.parent_path());
+  };
+  return planner::to_json(difference(plan_of(a), plan_of(b)));
+}
+
+Json Document::history_json() const {
+  Json json{{"branch", history_->branch()}, {"edit", history_->current()}};
+  Json list = Json::array();
+  bool can_undo = false;
+  std::vector<PlanEdit> edits = history_->newest(most_listed);
+  std::reverse(edits.begin(), edits.end());
+  for (const PlanEdit& edit : edits) {
+    if (edit.id == history_->current()) can_undo = edit.parent.has_value();
+    list.push_back({{"id", edit.id},
+                    {"parent", edit.parent ? Json(*edit.parent) : Json(nullptr)},
+                    {"what", edit.what},
+                    {"made_at", edit.made_at},
+                    {"names", edit.names}});
+  }
+  Json branches = Json::array();
+  bool can_redo = false;
+  for (const auto& [name, end] : history_->branches()) {
+    branches.push_back({name, end});
+    if (name == history_->branch()) can_redo = end != history_->current();
+  }
+  json["can_undo"] = can_undo;
+  json["can_redo"] = can_redo;
+  json["history"] = list;
+  json["branches"] = branches;
+  return json;
+}
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <vector>
+
+namespace octotomy::planner::serve {
+
+/// The folders that a page may name paths in. Links are followed before a path is judged. All members may be
+/// called from any thread.
+class Folders {
+ public:
+  /// Opens a folder, or the folder of a file. A folder within an open one is open already.
+  void open(const std::filesystem::path& path);
+  std::vector<std::filesystem::path> opened() const;
+
+  /// The path without links, made absolute against the first folder. Throws voxel::Error, Input, where it is
+  /// in none of the folders.
+  std::filesystem::path need_within(const std::filesystem::path& path) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::filesystem::path> opened_;
+};
+
+/// A name that stays below whatever folder it is put in: its parts are no "..", none begins with a dot, and
+/// there are at most two. Throws voxel::Error, Input, for any other.
+std::filesystem::path need_plain_name(const std::string& name);
+
+/// The path, or the first of NAME-2.EXT, NAME-3.EXT, ... that is not there; ".plan.json" is one ending.
+std::filesystem::path unused(const std::filesystem::path& path);
+
+/// A file's name without folder and endings as ".nii.gz" and ".plan.json".
+std::string plain_stem(const std::filesystem::path& path);
+
+}  // namespace octotomy::planner::serve

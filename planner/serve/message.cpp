@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/serve/message.h"
+
+#include <new>
+#include <stdexcept>
+#include <system_error>
+#include <zlib.h>
+
+#include "brep/mesh/error.h"
+#include "planner/table/json_file.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+[[noreturn]] void refuse_request(const std::string& why) {
+  throw voxel::Error(voxel::ErrorCode::Input, "the request " + why);
+}
+
+/// Levels of brackets outside of texts, before anything is built of them.
+int levels_of(std::string_view text) {
+  int level = 0, deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char symbol = text[i];
+    if (symbol == '"') in_text = !in_text;
+    if (in_text && symbol == '\\') ++i;
+    if (in_text) continue;
+    if (symbol == '[' || symbol == '{') deepest = std::max(deepest, ++level);
+    if (symbol == ']' || symbol == '}') --level;
+  }
+  return deepest;
+}
+
+template <typename Code>
+std::string name_of(Code code) {
+  if (code == Code::Geometry) return "geometry";
+  if (code == Code::Cancelled) return "cancelled";
+  return code == Code::Resource ? "resource" : "input";
+}
+
+std::string code_of(const std::exception& error) {
+  if (const auto* of_voxels = dynamic_cast<const voxel::Error*>(&error)) return name_of(of_voxels->code());
+  if (const auto* of_meshes = dynamic_cast<const brep::Error*>(&error)) return name_of(of_meshes->code());
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) return "resource";
+  if (const auto* of_system = dynamic_cast<const std::system_error*>(&error))
+    return name_of(voxel::code_of_errno(of_system->code().value()));
+  return "input";
+}
+
+Message text_of(const Json& json) {
+  return {json_text(json), false};
+}
+
+}  // namespace
+
+Request parse_request(std::string_view text) {
+  if (levels_of(text) > most_levels) refuse_request("is nested too deeply");
+  Request request;
+  request.said = Json::parse(text, nullptr, false);
+  if (!request.said.is_object()) refuse_request("is no JSON object");
+  if (const auto id = request.said.find("id"); id != request.said.end() && id->is_number_integer())
+    request.id = *id;
+  const auto what = request.said.find("do");
+  if (what == request.said.end() || !what->is_string()) refuse_request("has no word 'do'");
+  request.what = *what;
+  return request;
+}
+
+Message answer_to(std::int64_t id, const Json& ok) {
+  return text_of({{"id", id}, {"ok", ok}});
+}
+
+Message refusal_to(std::int64_t id, const std::exception& error) {
+  std::string said = error.what();
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
+    said = "out of memory: use larger voxels or a smaller scan";
+  // The library begins with its own name and a number.
+  if (dynamic_cast<const Json::exception*>(&error) != nullptr)
+    said = "the request lacks a value or has one of another type: " + said.substr(said.find(']') + 1);
+  return text_of({{"id", id}, {"error", {{"message", said}, {"code", code_of(error)}}}});
+}
+
+Message event(const std::string& name, const Json& said) {
+  Json json{{"event", name}};
+  json.update(said);
+  return text_of(json);
+}
+
+Message packed(Json header, const std::vector<Part>& parts) {
+  header["parts"] = Json::array();
+  for (const Part& part : parts)
+    header["parts"].push_back({{"kind", part.kind}, {"bytes", part.bytes.size()}});
+  const std::string text = json_text(header);
+  Message message{{}, true};
+  for (int byte = 0; byte < 4; ++byte)
+    message.bytes += static_cast<char>((text.size() >> (8 * byte)) & 0xffu);
+  message.bytes += text;
+  for (const Part& part : parts) message.bytes += part.bytes;
+  return message;
+}
+
+std::string deflated(const void* bytes, std::size_t count) {
+  uLongf size = compressBound(static_cast<uLong>(count));
+  std::string packed_bytes(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(packed_bytes.data()), &size, static_cast<const Bytef*>(bytes),
+                static_cast<uLong>(count), Z_BEST_SPEED) != Z_OK)
+    throw std::bad_alloc();
+  packed_bytes.resize(size);
+  return packed_bytes;
+}
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/serve/new_plan.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "planner/report/first_look.h"
+#include "planner/serve/folders.h"
+#include "planner/serve/message.h"
+#include "planner/table/json_file.h"
+#include "verify/head_phantom.h"
+#include "voxel/filter/tissue.h"
+#include "voxel/scan/read_scene.h"
+#include "voxel/scan/write_scene.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether a plan's only scan is this one.
+bool is_plan_of(const fs::path& plan, const fs::path& scan) {
+  std::ifstream file(plan, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("scans") || json["scans"].size() != 1) return false;
+  const Json& entry = json["scans"].front();
+  return entry.is_object() && entry.value("path", "") == scan.string();
+}
+
+double bone_low(const voxel::Scene& scene) {
+  if (scene.meaning == voxel::Meaning::Hounsfield) return *voxel::tissue("bone")->low;
+  return thresholds_of(scene).upper;
+}
+
+}  // namespace
+
+fs::path plan_of_scan(const fs::path& scan, const fs::path& folder, const voxel::Progress& progress) {
+  const fs::path place = folder / (plain_stem(scan) + ".plan.json");
+  if (is_plan_of(place, scan)) return place;
+  voxel::ReadOptions options;
+  options.progress = progress;
+  const voxel::Scene scene = voxel::read_scene(scan, options);
+  const Json plan{
+      {"octotomy_plan", 1},
+      {"name", plain_stem(scan)},
+      {"scans", {{"ct", {{"path", scan.string()}}}}},
+      {"steps", Json::array({{{"id", "bone"}, {"do", "window"}, {"scan", "ct"}, {"low", bone_low(scene)}}})}};
+  const fs::path path = unused(place);
+  write_json(plan, path);
+  return path;
+}
+
+fs::path phantom_in(const fs::path& folder, const voxel::Progress& progress) {
+  const fs::path path = folder / "head_phantom.nrrd";
+  if (!fs::exists(path)) voxel::write_scene(verify::head_phantom({}, progress), path);
+  return path;
+}
+
+}  // namespace octotomy::planner::serve

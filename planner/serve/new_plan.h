@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "voxel/space/progress.h"
+
+namespace octotomy::planner::serve {
+
+/// The plan with which work on a scan begins: the scan "ct", and its bone as the object "bone": from 300 HU
+/// on, or the brightest of three classes where samples are no Hounsfield units. It is written as
+/// NAME.plan.json in `folder`; where a plan of that name begins with this very scan it is the one that is
+/// gone on with, and any other is left alone. Returns the plan's path. Throws as voxel::read_scene().
+std::filesystem::path plan_of_scan(const std::filesystem::path& scan, const std::filesystem::path& folder,
+                                   const voxel::Progress& progress = {});
+
+/// The head phantom as a scan in `folder`: head_phantom.nrrd, which is made once.
+std::filesystem::path phantom_in(const std::filesystem::path& folder, const voxel::Progress& progress = {});
+
+}  // namespace octotomy::planner::serve

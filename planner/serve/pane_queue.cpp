@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/serve/pane_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace octotomy::planner::serve {
+
+std::optional<PaneQueue::Asked> PaneQueue::ask(Asked asked) {
+  const std::lock_guard lock(mutex_);
+  Pane& pane = panes_[asked.name];
+  std::optional<Asked> replaced = std::exchange(pane.waiting, std::move(asked));
+  changed_.notify_all();
+  return replaced;
+}
+
+std::map<PaneName, PaneQueue::Pane>::iterator PaneQueue::ready() {
+  auto chosen = panes_.end();
+  for (auto pane = panes_.begin(); pane != panes_.end(); ++pane) {
+    const Pane& each = pane->second;
+    const bool is_free = each.waiting && (!each.waiting->is_moving || each.in_flight.size() < most_in_flight);
+    if (is_free && (chosen == panes_.end() || each.served < chosen->second.served)) chosen = pane;
+  }
+  return chosen;
+}
+
+std::optional<PaneQueue::Asked> PaneQueue::next(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  if (!changed_.wait(lock, stop, [this] { return ready() != panes_.end(); })) return {};
+  Pane& pane = ready()->second;
+  pane.served = ++turn_;
+  Asked asked = *std::exchange(pane.waiting, std::nullopt);
+  if (asked.is_moving) pane.in_flight.insert(asked.request.id);
+  return asked;
+}
+
+void PaneQueue::shown(const PaneName& name, std::int64_t frame) {
+  const std::lock_guard lock(mutex_);
+  const auto pane = panes_.find(name);
+  if (pane == panes_.end()) return;
+  // The page draws frames in their order: what came before is shown or passed over.
+  pane->second.in_flight.erase(pane->second.in_flight.begin(), pane->second.in_flight.upper_bound(frame));
+  changed_.notify_all();
+}
+
+int PaneQueue::moving_panes() const {
+  const std::lock_guard lock(mutex_);
+  const auto count = std::count_if(panes_.begin(), panes_.end(), [](const auto& pane) {
+    return !pane.second.in_flight.empty() || (pane.second.waiting && pane.second.waiting->is_moving);
+  });
+  return std::max(1, static_cast<int>(count));
+}
+
+std::optional<PaneQueue::Asked> PaneQueue::close(const PaneName& name) {
+  const std::lock_guard lock(mutex_);
+  const auto pane = panes_.find(name);
+  if (pane == panes_.end()) return {};
+  std::optional<Asked> waited = std::move(pane->second.waiting);
+  panes_.erase(pane);
+  return waited;
+}
+
+void PaneQueue::close_window(std::uint64_t window) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(panes_, [window](const auto& pane) { return pane.first.window == window; });
+}
+
+}  // namespace octotomy::planner::serve

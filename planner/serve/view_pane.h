@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "planner/serve/desk.h"
+#include "planner/serve/message.h"
+#include "voxel/view/renderer.h"
+
+namespace octotomy::planner::serve {
+
+/// Draws one pane's views, frame after frame. One thread at a time may use it.
+class ViewPane {
+ public:
+  /// A frame for a request "pane" of the kind "view". While something moves a JPEG, of fewer pixels where
+  /// frames of all would take longer than `most_ms`; at rest the PNG that `octotomy render` writes, with the
+  /// depth and the object of every pixel. Throws std::runtime_error for what cannot be read; Stopped.
+  Message draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop);
+
+ private:
+  struct Drawing;
+  Message moving(const Drawing& drawing, Json header, double most_ms);
+  voxel::Octree threshold(const Evaluation& evaluation, const Json& window);
+
+  voxel::Renderer renderer_;
+  double full_frame_ms_ = 0.0;  ///< of a frame of all pixels, as the last ones took
+  std::string threshold_of_;
+  std::shared_ptr<const voxel::Octree> threshold_;
+  std::string scalar_of_;
+  std::shared_ptr<const Evaluation> scalar_evaluation_;
+  std::shared_ptr<const voxel::SurfaceScalar> scalar_;
+};
+
+}  // namespace octotomy::planner::serve

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A planner's server and a window of headless Chromium, started without any GL, that looks at it. Actions are counted as a
+// person would: a click, a drag, a key, a typed field.
+import { spawn } from 'node:child_process';
+import fs from 'node:fs';
+import { chromium } from 'playwright-core';
+
+export const program = process.env.OCTOTOMY_PROGRAM ?? 'build/release/octotomy';
+export const browser_path = process.env.OCTOTOMY_CHROMIUM ?? '/usr/bin/chromium';
+
+/// Starts `octotomy serve` in a folder; answers its URL, and stop().
+export function start_server(folder, more = []) {
+  const child = spawn(program, ['serve', ...more], { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'] });
+  let said = '';
+  return new Promise((resolve, reject) => {
+    child.stdout.on('data', (data) => {
+      said += data;
+      const url = said.match(/http:\S+/);
+      if (url) resolve({ url: url[0], process: child, stop: () => child.kill() });
+    });
+    child.stderr.on('data', (data) => { said += data; });
+    child.on('exit', (status) => reject(new Error(`octotomy serve ended with ${status}: ${said}`)));
+  });
+}
+
+const axes = { anterior: [[1, 0, 0], [0, 0, 1]], left: [[0, 1, 0], [0, 0, 1]], superior: [[-1, 0, 0], [0, -1, 0]] };
+
+export class PlannerWindow {
+  actions = 0;
+  problems = [];
+  frames = []; // headers and pictures that came over the wire, the newest last
+
+  /// Opens the page. `size` is the window's; `theme` light or dark.
+  static async open(url, { size = { width: 1440, height: 900 }, theme = 'dark' } = {}) {
+    const one = new PlannerWindow();
+    one.browser = await chromium.launch({ executablePath: browser_path, args: ['--disable-gpu', '--disable-software-rasterizer', '--no-sandbox'] });
+    one.context = await one.browser.newContext({ viewport: size, colorScheme: theme, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'] });
+    one.page = await one.context.newPage();
+    one.page.on('console', (message) => { if (message.type() === 'error') one.problems.push(message.text()); });
+    one.page.on('pageerror', (error) => one.problems.push(String(error)));
+    one.page.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => one.take_frame(payload)));
+    // Before any script of the page: every context that a canvas is asked for is counted by its kind.
+    await one.page.addInitScript(() => {
+      window.asked_contexts = {};
+      const before = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        window.asked_contexts[kind] = (window.asked_contexts[kind] ?? 0) + 1;
+        return before.call(this, kind, ...rest);
+      };
+      window.pictures = [];
+      addEventListener('picture', (event) => window.pictures.push({ at: performance.now(), pane: event.target.closest('.pane').dataset.pane, ...event.detail }));
+    });
+    await one.page.goto(url);
+    return one;
+  }
+
+  take_frame(payload) {
+    if (typeof payload === 'string') return;
+    const length = payload.readUInt32LE(0);
+    const header = JSON.parse(payload.subarray(4, 4 + length).toString());
+    if (header.quality !== 'rest') return;
+    this.frames.push({ header, picture: payload.subarray(4 + length, 4 + length + header.parts[0].bytes) });
+    if (this.frames.length > 40) this.frames.shift();
+  }
+
+  close = () => this.browser.close();
+
+  async click(what, options = {}) {
+    this.actions++;
+    await (typeof what === 'string' ? this.page.getByRole('button', { name: what, ...options }).first() : what).click();
+  }
+  async press(key) {
+    this.actions++;
+    await this.page.keyboard.press(key);
+  }
+  async type(key, text) {
+    this.actions++;
+    const field = this.page.locator(`[data-key="${key}"]`);
+    await field.fill(String(text));
+    await field.press('Enter');
+  }
+
+  /// The canvas position of a point of a pane's view, in the view's millimetres.
+  async position(pane, uv) {
+    const setting = await this.setting(pane);
+    const box = await this.page.locator('.pane canvas').nth(pane).boundingBox();
+    const [right, up] = axes[setting.view];
+    const of = (axis) => setting.centre_mm.reduce((sum, value, i) => sum + value * axis[i], 0);
+    return { x: box.x + box.width / 2 + (uv[0] - of(right)) / setting.pixel_mm, y: box.y + box.height / 2 - (uv[1] - of(up)) / setting.pixel_mm };
+  }
+  /// How the window looks at its pane, as the browser keeps it.
+  setting(pane) {
+    return this.page.evaluate((index) => {
+      const key = Object.keys(localStorage).find((name) => name.startsWith('octotomy:'));
+      return JSON.parse(localStorage.getItem(key)).panes[index];
+    }, pane);
+  }
+  async click_at(pane, uv) {
+    this.actions++;
+    const { x, y } = await this.position(pane, uv);
+    await this.page.mouse.click(x, y);
+  }
+  async drag(pane, from, to) {
+    this.actions++;
+    const [a, b] = [await this.position(pane, from), await this.position(pane, to)];
+    await this.page.mouse.move(a.x, a.y);
+    await this.page.mouse.down();
+    for (let i = 1; i <= 12; ++i) {
+      await this.page.mouse.move(a.x + ((b.x - a.x) * i) / 12, a.y + ((b.y - a.y) * i) / 12);
+      await this.page.waitForTimeout(20);
+    }
+    await this.page.mouse.up();
+  }
+  /// Waits until every pane that is shown has its picture at rest.
+  async at_rest() {
+    await this.page.waitForTimeout(350);
+    await this.page.waitForFunction(() => {
+      const shown = [...document.querySelectorAll('.pane')].filter((pane) => !pane.hidden).map((pane) => pane.dataset.pane);
+      return shown.every((pane) => window.pictures.filter((one) => one.pane === pane).pop()?.quality === 'rest');
+    }, undefined, { timeout: 20000 });
+  }
+  select(step) {
+    return this.click(this.page.locator('.lists .name', { hasText: new RegExp(`^${step.replace(/_/g, ' ')}$`) }));
+  }
+  tab(name) {
+    return this.click(this.page.getByRole('tab', { name }));
+  }
+  /// The saved plan.
+  plan(path) {
+    return JSON.parse(fs.readFileSync(path, 'utf8'));
+  }
+  async until(test, what, within_ms = 20000) {
+    const end = Date.now() + within_ms;
+    for (;;) {
+      const found = await test();
+      if (found) return found;
+      if (Date.now() > end) throw new Error(`${what}: not within ${within_ms / 1000} s`);
+      await this.page.waitForTimeout(60);
+    }
+  }
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/serve/folders.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/planner/ball_scan.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FoldersTest : public testing::Test {
+ protected:
+  FoldersTest() {
+    fs::create_directories(root_ / "open/within");
+    fs::create_directories(root_ / "open too");
+    fs::create_directories(root_ / "shut");
+    std::ofstream(root_ / "open/a.nrrd") << "a";
+    std::ofstream(root_ / "shut/b.nrrd") << "b";
+    fs::create_directory_symlink(root_ / "shut", root_ / "open/link");
+    folders_.open(root_ / "open");
+  }
+
+  tests::TestFolder kept_;
+  fs::path root_ = fs::canonical(kept_.path());
+  Folders folders_;
+};
+
+TEST_F(FoldersTest, PathsWithinAreMadeAbsolute) {
+  EXPECT_EQ(folders_.need_within("a.nrrd"), root_ / "open/a.nrrd");
+  EXPECT_EQ(folders_.need_within("within/../a.nrrd"), root_ / "open/a.nrrd");
+  EXPECT_EQ(folders_.need_within(root_ / "open/not_yet.stl"), root_ / "open/not_yet.stl");
+  EXPECT_EQ(folders_.need_within(""), root_ / "open");
+}
+
+TEST_F(FoldersTest, NoWayLeadsOut) {
+  // "open too" begins as "open" does.
+  const fs::path paths[] = {"..",          "../shut/b.nrrd",       "within/../../shut",
+                            "link/b.nrrd", root_ / "shut/b.nrrd",  root_ / "open too",
+                            "/etc/passwd", root_ / "open/../shut", root_,
+                            "/",           std::string("a\0b", 3), std::string(5000, 'x')};
+  for (const fs::path& path : paths) EXPECT_THROW(folders_.need_within(path), voxel::Error) << path;
+  EXPECT_THROW(Folders().need_within("a"), voxel::Error);
+}
+
+TEST_F(FoldersTest, AFileOpensItsFolderAndThatOnce) {
+  folders_.open(root_ / "shut/b.nrrd");
+  folders_.open(root_ / "open/within");
+  EXPECT_EQ(folders_.opened(), (std::vector<fs::path>{root_ / "open", root_ / "shut"}));
+  EXPECT_EQ(folders_.need_within("link/b.nrrd"), root_ / "shut/b.nrrd");
+}
+
+TEST_F(FoldersTest, UnusedNamesKeepTheirEndings) {
+  EXPECT_EQ(unused(root_ / "open/b.nrrd"), root_ / "open/b.nrrd");
+  EXPECT_EQ(unused(root_ / "open/a.nrrd"), root_ / "open/a-2.nrrd");
+  std::ofstream(root_ / "open/a.plan.json") << "{}";
+  std::ofstream(root_ / "open/a-2.plan.json") << "{}";
+  EXPECT_EQ(unused(root_ / "open/a.plan.json"), root_ / "open/a-3.plan.json");
+  EXPECT_EQ(plain_stem("x/head.nii.gz"), "head");
+  EXPECT_EQ(plain_stem("x/series/"), "series");
+}
+
+TEST(PlainName, StaysBelowItsFolder) {
+  for (const char* name : {"head.nrrd", "series/0001.dcm", "a b.stl", "h\u00e9ad.nii.gz"})
+    EXPECT_EQ(need_plain_name(name), fs::path(name));
+  for (const char* name :
+       {"", "..", ".", "../a", "a/../b", "/a", "a/", "a/b/c", ".hidden", "a/.b", "a\nb", "a\\b"})
+    EXPECT_THROW(need_plain_name(name), voxel::Error) << name;
+}
+
+}  // namespace
+}  // namespace octotomy::planner::serve

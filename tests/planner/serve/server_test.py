@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""The server of the planner, spoken with over its own wire."""
+import json
+import math
+import os
+import pathlib
+import random
+import struct
+import subprocess
+import tempfile
+import unittest
+import zlib
+
+from window import Server, Window
+
+PROGRAM = os.environ["OCTOTOMY_PROGRAM"]
+
+BOX = {"id": "cut", "do": "mask", "regions": [
+    {"view": "anterior", "polygons_mm": [[[-40, -60], [40, -60], [40, -25], [-40, -25]]]},
+    {"view": "left", "polygons_mm": [[[-90, -60], [-20, -60], [-20, -25], [-90, -25]]]}]}
+PIECE = {"id": "piece", "do": "combine", "expression": "bone & cut"}
+REST = {"id": "rest", "do": "combine", "expression": "bone - cut"}
+MOVED = {"id": "moved", "do": "move", "object": "piece", "by": {"forward_mm": 6.0}}
+
+
+def octotomy(folder, *arguments):
+    made = subprocess.run([PROGRAM, *map(str, arguments)], cwd=folder, capture_output=True, text=True, check=False)
+    if made.returncode:
+        raise RuntimeError(made.stderr)
+    return made.stdout
+
+
+class Served(unittest.TestCase):
+    """One server, whose desk holds the head phantom."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.kept.name).resolve()
+        octotomy(cls.folder, "phantom", "head", "-o", "head.nrrd", "--voxel", "2")
+        cls.server = Server(PROGRAM, cls.folder, "head.nrrd")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.kill()
+        cls.kept.cleanup()
+
+    def setUp(self):
+        self.window = Window(self.server)
+        self.assertEqual(self.window.status, 101)
+        self.window.ask("go_to", where="1")
+        self.window.ask("evaluate")
+
+    def tearDown(self):
+        self.window.close()
+
+    def rest(self, **said):
+        return self.window.ask("pane", pane=0, size=[300, 200], dragging=False, **said)
+
+
+class Gate(Served):
+    def test_a_wrong_token_origin_or_host_is_refused(self):
+        where = f"{self.server.host}:{self.server.port}"
+        for wrong in ({"token": ""}, {"token": "0" * 32}, {"token": self.server.token[:-1]},
+                      {"origin": "http://evil.example"}, {"origin": ""}, {"origin": "null"},
+                      {"origin": f"https://{where}"}, {"host": "evil.example", "origin": "http://evil.example"},
+                      {"host": f"evil.example:{self.server.port}"}):
+            with self.subTest(**wrong):
+                window = Window(self.server, **wrong)
+                self.assertEqual(window.status, 403)
+                window.close()
+
+    def test_the_page_takes_the_token_and_its_files_none(self):
+        status, headers, _ = self.server.http(f"/?token={self.server.token}")
+        self.assertEqual(status, 200)
+        self.assertIn("default-src 'none'", headers["Content-Security-Policy"])
+        self.assertNotIn("unsafe", headers["Content-Security-Policy"])
+        self.assertEqual(self.server.http("/")[0], 403)
+        self.assertEqual(self.server.http("/", Origin="http://evil.example")[0], 403)
+        self.assertEqual(self.server.http("/app.js", Host="evil.example")[0], 403)
+        self.assertEqual(self.server.http("/../etc/passwd")[0], 404)
+        self.assertEqual(self.server.http("/%zz")[0], 400)
+
+    def test_no_path_outside_of_the_open_folders(self):
+        outside = tempfile.NamedTemporaryFile(suffix=".plan.json", dir="/tmp")
+        os.symlink("/etc", self.folder / "link") if not (self.folder / "link").is_symlink() else None
+        for path in (outside.name, "/etc/passwd", "../../etc/passwd", "link/passwd", "a\0b", "x" * 9000):
+            with self.assertRaisesRegex(RuntimeError, "input: .*no folder that is open", msg=path):
+                self.window.ask("open", path=path)
+        for folder in ("/", "..", "link"):
+            with self.assertRaisesRegex(RuntimeError, "no folder that is open"):
+                self.window.ask("list", folder=folder)
+        token = self.server.token
+        for name in ("../head.nrrd", "..%2f..%2f..%2f..%2fetc/passwd", "%2fetc%2fpasswd"):
+            self.assertNotEqual(self.server.http(f"/file/{name}?token={token}")[0], 200, name)
+        outside.close()
+
+    def test_an_upload_lands_in_the_working_folder_and_overwrites_nothing(self):
+        origin = {"Origin": f"http://{self.server.host}:{self.server.port}"}
+        target = f"/upload?token={self.server.token}&name="
+        first = self.server.http(target + "a.txt", "POST", b"one", **origin)
+        second = self.server.http(target + "a.txt", "POST", b"two", **origin)
+        self.assertEqual((first[0], second[0]), (200, 200), first)
+        paths = [pathlib.Path(json.loads(answer[2])["path"]) for answer in (first, second)]
+        self.assertEqual([path.read_bytes() for path in paths], [b"one", b"two"])
+        self.assertEqual(paths[0].parent, self.folder / "uploads")
+        for name in ("../a.txt", "/a.txt", ".a", "a/b/c", "", "a/../../b"):
+            self.assertEqual(self.server.http(target + name, "POST", b"x", **origin)[0], 400, name)
+        self.assertEqual(self.server.http(target + "b.txt", "POST", b"x")[0], 403)
+        self.assertEqual(self.server.http("/upload?token=0&name=b", "POST", b"x", **origin)[0], 403)
+
+
+class Wire(Served):
+    def test_ten_thousand_malformed_messages_leave_the_server_alive_and_its_memory_flat(self):
+        seeded = random.Random(1)
+        good = json.dumps({"id": -5, "do": "pane", "pane": 0, "kind": "view", "size": [64, 64], "view": "left",
+                           "objects": [{"id": "bone"}]}).encode()
+        words = ["edit", "list", "measure", "procedure", "landmark", "go_to", "overlap", "export", "command", "diff",
+                 "shown", "close_pane", "cancel", "certify", "pane", "movement", "evaluate", "save", "open"]
+        fields = ["steps", "add", "replace", "remove", "scans", "landmarks", "what", "name", "values", "kind", "points",
+                  "object", "objects", "with", "move", "path", "folder", "where", "a", "b", "point", "snap", "step",
+                  "pane", "view", "plane", "at_mm", "size", "pixel_mm", "centre_mm", "window", "threshold", "preview",
+                  "overlap", "colour_by", "cut_planes", "cut_face", "shading", "background", "dragging", "frame"]
+        values = [None, 0, -1, 1e308, 2**63, True, "", "bone", "le_fort_i", "slice", "distance", "axial", "../..", [],
+                  [[]], [0, 0, 0], [64, 48], ["bone", "bone"], [{"id": "bone"}], {}, {"id": "bone"}, {"a": None},
+                  {"object": "bone", "move": {"translate_mm": [1, 0, 0]}}, {"translate_mm": [1, 0, 0]},
+                  {"normal": [0, 0, 0]}, {"normal": [0, 0, 1]}, {"curve_mm": [[0, 0, 0], [9, 0, 0]]},
+                  {"window": {"scan": "ct", "low": 300}}, [{"window": {"low": "x"}}]]
+        kinds = [
+            lambda: seeded.randbytes(seeded.randrange(200)).decode("latin-1").encode(),
+            lambda: good[:seeded.randrange(len(good))],
+            lambda: b"[" * seeded.randrange(1, 3000),
+            lambda: b'{"do":' * 500,
+            lambda: json.dumps({"id": seeded.choice([-4, -1, 2**70, "x", None, 1.5]), "do": seeded.choice(
+                ["edit", "undo_it", "open", "list", "measure", "procedure", "landmark", "go_to", "branch", "overlap",
+                 "export", "command", "diff", "shown", "close_pane", "cancel", "certify", 7, None, {}])}).encode(),
+            lambda: json.dumps({"id": -2, "do": "pane", "pane": seeded.choice([0, -1, 99, "x", None]),
+                                "kind": seeded.choice(["view", "slice", 5]), "size": seeded.choice(
+                                    [[1e9, 1], [0, 0], "x", None, [64], [64, 64]]), "pixel_mm": seeded.choice(
+                                        [-1, 0, 1e-300, "x", None]), "objects": seeded.choice(
+                                            [5, [5], [{}], [{"id": 5}], [{"id": "none"}]])}).encode(),
+            lambda: json.dumps({"id": -6, "do": seeded.choice(words), **{
+                field: seeded.choice(values) for field in seeded.sample(fields, seeded.randrange(1, 6))}}).encode(),
+            lambda: json.dumps({"id": -3, "do": "edit", "add": seeded.choice(
+                [5, {}, {"step": {}}, {"step": {"id": "a b", "do": "window"}}, {"step": 5}, {"after": "x"}]),
+                "steps": seeded.choice([5, [], [5], None])}).encode(),
+        ]
+        memory = []
+        for number in range(15000):
+            self.window.send_bytes(seeded.choice(kinds)())
+            if number % 100 == 99:
+                self.assertIn("version", self.window.ask("hello"))
+            if number == 9999 or number == 14999:
+                memory.append(self.server.resident_mb())
+        self.assertIsNone(self.server.process.poll())
+        self.assertLess(memory[1] - memory[0], 20, memory)  # what is loaded or kept at first use is there by then
+        self.window.ask("go_to", where="1")
+        self.assertEqual(len(self.window.ask("hello")["plan_state"]["plan"]["steps"]), 1)
+
+    def test_oversized_messages_and_broken_frames_end_their_connection_only(self):
+        before = self.server.resident_mb()
+        for number in range(40):
+            other = Window(self.server)
+            try:
+                if number % 2:
+                    other.send_bytes(b" " * (5 << 20))
+                else:
+                    other.stream.sendall(os.urandom(3000))
+                while True:
+                    other.receive()
+            except (ConnectionError, OSError):
+                pass
+            other.close()
+        self.assertIn("version", self.window.ask("hello"))
+        self.assertLess(self.server.resident_mb() - before, 60)
+
+    def test_every_request_is_answered_once_and_the_newest_picture_wins(self):
+        said = {"pane": 3, "kind": "view", "size": [200, 150], "objects": [{"id": "bone"}], "dragging": True}
+        asked = [self.window.post("pane", view={"azimuth": n, "elevation": 0}, **said) for n in range(30)]
+        drawn, cancelled = [], []
+        while len(drawn) + len(cancelled) < 28 or asked[-1] not in drawn:
+            message = self.window.receive()
+            if isinstance(message, tuple):
+                drawn.append(message[0]["id"])
+                self.window.send_bytes(json.dumps({"do": "shown", "pane": 3, "frame": drawn[-1]}).encode())
+            elif message.get("id") in asked:
+                self.assertEqual(message["error"]["code"], "cancelled")
+                cancelled.append(message["id"])
+        self.assertEqual(sorted(drawn + cancelled), asked)
+        self.assertEqual(drawn, sorted(drawn))
+
+    def test_without_acknowledgement_two_frames_are_in_flight(self):
+        said = {"pane": 4, "kind": "view", "size": [64, 64], "objects": [{"id": "bone"}], "view": "left"}
+        for _ in range(2):
+            self.window.wait(self.window.post("pane", dragging=True, **said))
+        third = self.window.post("pane", dragging=True, **said)
+        self.window.ask("hello")
+        rest = self.window.post("pane", dragging=False, **said)  # does not wait, and replaces the third
+        with self.assertRaisesRegex(RuntimeError, "cancelled"):
+            self.window.wait(third)
+        self.assertEqual(self.window.wait(rest)[0]["quality"], "rest")
+
+
+class Desk(Served):
+    def test_edits_undo_redo_and_branches_reach_every_window(self):
+        other = Window(self.server)
+        state = self.window.ask("edit", add={"step": BOX}, what="draw the cut")
+        self.assertEqual([step["id"] for step in state["plan"]["steps"]], ["bone", "cut"])
+        self.assertEqual(state["history"][-1]["what"], "draw the cut")
+        other.ask("hello")
+        told = [event for event in other.events if event["event"] == "plan"]
+        self.assertEqual(told[-1]["plan_state"]["edit"], state["edit"])
+        other.close()
+        undone = self.window.ask("undo")
+        self.assertEqual((len(undone["plan"]["steps"]), undone["can_redo"]), (1, True))
+        self.assertEqual(len(self.window.ask("redo")["plan"]["steps"]), 2)
+        name = f"branch_{state['edit']}"
+        self.assertEqual(self.window.ask("branch", name=name)["branch"], name)
+        rows = self.window.ask("diff", a=1, b=state["edit"])
+        self.assertEqual(rows["added"], ["cut"])
+        with self.assertRaisesRegex(RuntimeError, "input: .*'nothing'"):
+            self.window.ask("edit", add={"step": {"id": "x", "do": "combine", "expression": "nothing"}})
+
+    def test_objects_are_measured_moved_and_certified(self):
+        for step in (BOX, PIECE, REST, MOVED):
+            self.window.ask("edit", add={"step": step}, what=step["id"])
+        made = {entry["id"]: entry for entry in self.window.ask("evaluate")["objects"]}
+        self.assertTrue(made["moved"]["evaluated"])
+        overlap = self.window.ask("overlap", object="piece", move={"by": {"up_mm": 6.0}},
+                                  **{"with": ["rest"]})
+        self.assertGreater(overlap["mm3"], 100.0)
+        rows = self.window.ask("movement", object="moved")["rows"]
+        self.assertIn("forward 6.0 mm", rows[0]["words"])
+        certificate = self.window.ask("certify", object="moved")
+        self.assertEqual(certificate["verdict"], "PASS", certificate["sentence"])
+        state = self.window.ask("hello")["plan_state"]
+        known = {entry["id"]: entry for entry in state["objects"]}
+        self.assertEqual(known["moved"]["certificate"]["verdict"], "PASS")
+        self.assertGreater(known["moved"]["volume"]["half_width"], 0)
+        exported = self.window.ask("export", object="moved", path="moved.stl")
+        status, _, body = self.server.http(f"/file/{exported['file']}?token={self.server.token}")
+        self.assertEqual((status, body), (200, pathlib.Path(exported["path"]).read_bytes()))
+        told = self.window.ask("command", step="moved")
+        self.assertIn('plan.move("moved", object="piece", by={"forward_mm": 6.0})', told["python"])
+
+    def test_a_procedure_is_placed_by_its_landmarks_and_keeps_others(self):
+        marks = {"piriform_left": [12, -84, -25], "piriform_right": [-12, -84, -25], "buttress_left": [30, -68, -28],
+                 "buttress_right": [-30, -68, -28], "pterygoid_left": [20, -39, -30],
+                 "pterygoid_right": [-20, -39, -30], "incisor": [0, -85, -57.5], "molar_left": [27, -52, -57.5],
+                 "molar_right": [-27, -52, -57.5]}
+        self.window.ask("landmark", name="mine", point=[0, 0, 0])
+        state = self.window.ask("procedure", name="le_fort_i", landmarks=marks, values={"forward_mm": 5})
+        self.assertEqual({mark["name"] for mark in state["landmarks"]}, {"mine", *marks})
+        self.assertIn("bone", [step["id"] for step in state["plan"]["steps"]])
+        made = self.window.ask("evaluate")["objects"]
+        self.assertTrue(all(entry["evaluated"] for entry in made), made)
+        words = " ".join(row["words"] for row in self.window.ask("movement")["rows"])
+        self.assertIn("forward 5.0 mm", words)
+        with self.assertRaisesRegex(RuntimeError, "input: .*buttress_left"):
+            self.window.ask("procedure", name="le_fort_i", landmarks={"incisor": [0, 0, 0]})
+
+    def test_a_broken_step_is_told_and_the_others_are_there(self):
+        lost = {"id": "lost", "do": "window", "scan": "ct", "low": 30000}
+        self.window.ask("edit", add={"step": lost})
+        self.window.ask("edit", add={"step": {"id": "shell", "do": "shell", "object": "lost", "thickness_mm": 2}})
+        self.window.ask("edit", add={"step": BOX})
+        made = {entry["id"]: entry for entry in self.window.ask("evaluate")["objects"]}
+        self.assertTrue(made["bone"]["evaluated"] and made["cut"]["evaluated"])
+
+    def test_a_distance_is_the_command_lines(self):
+        self.window.ask("landmark", name="a", point=[10.5, -20.25, 3.0], snap=False)
+        self.window.ask("landmark", name="b", point=[-14.0, 30.0, -9.0], snap=False)
+        told = self.window.ask("measure", kind="distance", points=["a", "b"])
+        state = self.window.ask("edit", add={"step": {"id": "d", "do": "measure", "points_mm": ["a", "b"]}})
+        octotomy(self.folder, "run", pathlib.Path(state["path"]).name, "-o", "measured")
+        result = json.loads((self.folder / "measured/result.json").read_text())
+        self.assertAlmostEqual(told["value"], result["measurements"][0]["distance_mm"], places=9)
+
+    def test_the_depth_plane_is_where_landmarks_snap(self):
+        header, parts = self.rest(kind="view", view="anterior", objects=[{"id": "bone"}])
+        frame, (width, height) = header["view_frame"], (header["width"], header["height"])
+        depths = struct.unpack(f"<{width * height}f", zlib.decompress(parts["depth"]))
+        objects = struct.unpack(f"<{width * height}H", zlib.decompress(parts["object"]))
+        column, row = width // 2 + 20, height // 4
+        self.assertEqual(objects[row * width + column], 1)
+        self.assertEqual((objects[0], math.isnan(depths[0])), (0, True))
+        right, up = ((column + 0.5 - width / 2) * frame["pixel_mm"], -(row + 0.5 - height / 2) * frame["pixel_mm"])
+        seen = [frame["centre_mm"][0] + right, depths[row * width + column], frame["centre_mm"][2] + up]
+        before = [seen[0], seen[1] - 4.0, seen[2]]  # in front of the bone
+        snapped = self.window.ask("landmark", name="glabella", point=before, snap=True)["point"]
+        self.assertGreater(math.dist(snapped, before), 0.5)
+        self.assertLess(math.dist(snapped, before), 4.0 + 2.0)  # a voxel's edge further than what is seen
+
+    def test_the_picture_at_rest_is_that_of_render_and_slice(self):
+        for view in ("anterior", "left", {"azimuth": 35.5, "elevation": 15}):
+            header, parts = self.rest(kind="view", view=view, objects=[{"id": "bone", "colour": "#cc7a29"}],
+                                      pixel_mm=0.9, centre_mm=[5, 0, -10])
+            subprocess.run(header["command"].replace("octotomy", PROGRAM, 1), shell=True, cwd=self.folder, check=True,
+                           capture_output=True)
+            self.assertEqual(parts["png"], (self.folder / "view.png").read_bytes(), view)
+        for step in (BOX, PIECE, REST):
+            self.window.ask("edit", add={"step": step})
+        self.window.ask("evaluate")
+        steps, pngs = [], []
+        for number, view in enumerate(("anterior", {"azimuth": -20, "elevation": 40})):
+            header, parts = self.rest(kind="view", view=view, objects=[
+                {"id": "rest"}, {"id": "piece", "colour": "#0072b2", "opacity": 0.5}])
+            steps.append({**header["step"], "id": f"view{number}", "path": f"view{number}.png"})
+            pngs.append(parts["png"])
+        for number, plane in enumerate(("axial", "coronal", "sagittal", {"normal": [1, 2, 0.5]})):
+            header, parts = self.rest(kind="slice", plane=plane, at_mm=[3, -40, -42], pixel_mm=0.8,
+                                      window=[300, 1500], objects=[{"id": "piece", "colour": "#d55e00"}])
+            steps.append({**header["step"], "id": f"slice{number}", "path": f"slice{number}.png"})
+            pngs.append(parts["png"])
+        state = self.window.ask("hello")["plan_state"]
+        plan = state["plan"] | {"steps": state["plan"]["steps"] + steps}
+        (self.folder / "drawn.plan.json").write_text(json.dumps(plan))
+        octotomy(self.folder, "run", "drawn.plan.json", "-o", "drawn")
+        for step, png in zip(steps, pngs):
+            self.assertEqual((self.folder / "drawn" / step["path"]).read_bytes(), png, step["id"])
+
+
+class Killed(unittest.TestCase):
+    def test_a_killed_server_loses_no_edit_that_it_told(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name).resolve()
+            octotomy(folder, "phantom", "head", "-o", "head.nrrd", "--voxel", "4")
+            port, told = [], {"bone"}
+            for life in range(4):
+                server = Server(PROGRAM, folder, "head.nrrd", "--token-file", "token", *port)
+                port = ["--port", server.port]
+                window = Window(server)
+                steps = {step["id"] for step in window.ask("hello")["plan_state"]["plan"]["steps"]}
+                self.assertLessEqual(told, steps)
+                self.assertLessEqual(len(steps), len(told) + life)  # and what was not told
+                for number in range(5):
+                    window.ask("edit", add={"step": {**BOX, "id": f"cut_{life}_{number}"}}, what=f"{number}")
+                    told.add(f"cut_{life}_{number}")
+                window.post("edit", add={"step": {**BOX, "id": f"late_{life}"}})
+                server.kill()
+                window.close()
+            octotomy(folder, "plan", "history", "head.plan.json")
+            text = json.loads((folder / "head.plan.json").read_text())
+            self.assertLessEqual(told, {step["id"] for step in text["steps"]})
+
+
+if __name__ == "__main__":
+    unittest.main()
