@@ -204,10 +204,10 @@ test('the server is killed: the page says so, and goes on with everything when i
   const url = new URL(server.url);
   const listed = await one.page.locator('.lists .name').allInnerTexts();
   server.stop();
-  await one.page.locator('.lost').waitFor({ state: 'visible' });
+  await one.page.locator('div.lost').waitFor({ state: 'visible' });
   const token = path.join(folder, 'token');
   fs.writeFileSync(token, url.searchParams.get('token'), { mode: 0o600 });
   server = await start_server(folder, ['--port', url.port, '--token-file', token, plan_path]);
-  await one.page.locator('.lost').waitFor({ state: 'hidden', timeout: 20000 });
+  await one.page.locator('div.lost').waitFor({ state: 'hidden', timeout: 20000 });
   await one.until(async () => JSON.stringify(await one.page.locator('.lists .name').allInnerTexts()) === JSON.stringify(listed), 'the same steps');
 });
