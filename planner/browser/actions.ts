@@ -65,7 +65,12 @@ export async function greet(): Promise<void> {
   const hello = await try_to<Hello>("hello");
   if (!hello) return;
   set({ hello, link: "open" });
-  if (hello.plan_state) take_plan(hello.plan_state);
+  if (hello.plan_state) return take_plan(hello.plan_state);
+  // The program was started anew without the plan that this window shows: its file and history are on the disk.
+  if (state.plan) {
+    const plan = await try_to<PlanState>("open", { path: state.plan.path });
+    if (plan) take_plan(plan);
+  }
 }
 
 export async function open_plan(what: { path?: string; phantom?: string }): Promise<void> {

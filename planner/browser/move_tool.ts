@@ -130,7 +130,7 @@ function turn_in(pane: Pane): { turn: Turn; sign: number } {
 export const move_tool: Tool = {
   name: "move",
   title: "Move a piece",
-  says: "Select a piece, then drag it, an arrow for one direction, or the ring to turn it. The overlap with what stays is drawn in red.",
+  says: "Select a piece, then drag it within the ring, by an arrow for one direction, or turn it by the ring. The overlap with what stays is drawn in red.",
   key: "g",
   cursor: "move",
 
@@ -182,7 +182,7 @@ function handle_at(pane: Pane, at: Vec2, centre: Vec2, one: { source: string; st
   const radius = Math.hypot(from[0], from[1]);
   if (Math.abs(radius - ring_px) < 9) return "turn";
   const picked = pane.pick(at)?.object;
-  return radius < 22 || (picked !== null && picked !== undefined && (picked === one.source || picked === one.step?.id)) ? "free" : null;
+  return radius < ring_px || (picked !== null && picked !== undefined && (picked === one.source || picked === one.step?.id)) ? "free" : null;
 }
 
 function dragged(drag: Held, source: string, at: Vec2): Motion {

@@ -30,6 +30,7 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
   active_tool()?.draw?.(pane, context);
   draw_letters(pane, context);
   draw_scale(pane, context);
+  if (pane.is_slow) text(context, "drawing …", [10 * ratio, pane.size[1] - 12 * ratio], ratio, { colour: ink.faint, px: 11 });
   if (pane.problem) text(context, pane.problem, [pane.size[0] / 2, pane.size[1] / 2], ratio, { align: "center", colour: "#ffb4a8" });
   else if (!pane.picture && !pane.is_slice) {
     text(context, state.plan.plan.steps.length ? "No object is shown. Turn one on in the list." : "Choose a tissue to begin.",

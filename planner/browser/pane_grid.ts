@@ -40,7 +40,8 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
     head_again();
     pane.canvas.addEventListener("picture", () => {
       const about = pane.picture?.header.legend;
-      legend.hidden = !about;
+      const first_view = panes.findIndex((other, number) => !other.is_slice && (state.maximised === null || state.maximised === number));
+      legend.hidden = !about || index !== first_view;
       if (about) fill(legend, el("div", { class: "ramp" }), el("span", {}, `${about.low_mm} mm`), el("span", {}, "0"), el("span", {}, `+${about.high_mm} mm`), el("p", {}, about.definition));
     });
     legend.hidden = true;
@@ -64,9 +65,12 @@ export function reconnected(): void {
   for (const pane of panes) pane.reconnected();
 }
 
+/// Fits every pane to the scan, once the page has laid them out.
 export function fit_all(): void {
-  if (state.plan) set({ panes: fitted(state.plan).panes });
-  want_all(false);
+  requestAnimationFrame(() => {
+    if (state.plan) set({ panes: fitted(state.plan).panes });
+    want_all(false);
+  });
 }
 
 /// Brings the cross-hair and every pane to a place, and marks it.

@@ -18,6 +18,7 @@ export const is_dark = (): boolean =>
 
 const most_in_flight = 2;
 const rest_after_ms = 140;
+const slow_after_ms = 500;
 
 interface Picture {
   header: FrameHeader;
@@ -35,6 +36,8 @@ export class Pane {
   private in_flight = 0;
   private rest_timer = 0;
   private newest_decoded = 0;
+  private is_sized = false;
+  private waiting_since = 0;
   private last_asked = "";
   private is_dirty = false;
   private readonly sent = new Map<number, number>();
@@ -52,6 +55,10 @@ export class Pane {
   }
   get size(): Vec2 {
     return [this.canvas.width, this.canvas.height];
+  }
+  /// Whether a picture takes so long that the person is told.
+  get is_slow(): boolean {
+    return this.in_flight > 0 && performance.now() - this.waiting_since > slow_after_ms;
   }
   get is_slice(): boolean {
     return this.setting.mode !== "view";
@@ -78,8 +85,13 @@ export class Pane {
     const width = Math.round(this.canvas.clientWidth * this.ratio);
     const height = Math.round(this.canvas.clientHeight * this.ratio);
     if (!width || !height || (width === this.canvas.width && height === this.canvas.height)) return;
+    // A pane that grows or shrinks keeps what it shows.
+    const before = this.is_sized ? Math.min(this.canvas.width, this.canvas.height) : Math.min(width, height);
+    this.is_sized = true;
+    const scale = before / Math.min(width, height);
     this.canvas.width = width;
     this.canvas.height = height;
+    if (state.plan && scale !== 1) change_pane(this.index, { pixel_mm: this.setting.pixel_mm * scale });
     this.want(false);
     this.redraw_now();
   }
@@ -155,7 +167,10 @@ export class Pane {
     const asked = JSON.stringify(fields) + shapes();
     if (asked === this.last_asked) return;
     this.last_asked = asked;
-    this.in_flight++;
+    if (!this.in_flight++) {
+      this.waiting_since = started;
+      window.setTimeout(() => this.redraw(), slow_after_ms + 20);
+    }
     ask_picture(fields, (id) => this.sent.set(id, started)).catch((error: unknown) => {
       this.in_flight = Math.max(0, this.in_flight - 1);
       this.last_asked = "";

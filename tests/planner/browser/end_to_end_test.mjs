@@ -72,9 +72,7 @@ test('the piece is dragged 6 mm forward, and its overlap is read while it moves'
   await one.press('g');
   const pivot = await one.until(() => one.page.evaluate(() => document.querySelector('[data-key="move-forward_mm"]') !== null), 'the handles');
   assert.ok(pivot);
-  await one.at_rest();
-  const bounds = await one.until(() => one.frames.length > 0, 'a picture');
-  assert.ok(bounds);
+  await one.shows(1, 'piece');
   // In the left view the patient looks to the left; teeth lie at y -95 to -60, z -55 to -30.
   await one.drag(1, [-75, -45], [-81, -45]);
   await has('piece_moved');
@@ -206,10 +204,10 @@ test('the server is killed: the page says so, and goes on with everything when i
   const url = new URL(server.url);
   const listed = await one.page.locator('.lists .name').allInnerTexts();
   server.stop();
-  await one.page.locator('.lost').waitFor({ state: 'visible' });
+  await one.page.locator('div.lost').waitFor({ state: 'visible' });
   const token = path.join(folder, 'token');
   fs.writeFileSync(token, url.searchParams.get('token'), { mode: 0o600 });
   server = await start_server(folder, ['--port', url.port, '--token-file', token, plan_path]);
-  await one.page.locator('.lost').waitFor({ state: 'hidden', timeout: 20000 });
+  await one.page.locator('div.lost').waitFor({ state: 'hidden', timeout: 20000 });
   await one.until(async () => JSON.stringify(await one.page.locator('.lists .name').allInnerTexts()) === JSON.stringify(listed), 'the same steps');
 });

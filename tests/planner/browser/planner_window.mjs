@@ -119,6 +119,11 @@ export class PlannerWindow {
       return shown.every((pane) => window.pictures.filter((one) => one.pane === pane).pop()?.quality === 'rest');
     }, undefined, { timeout: 20000 });
   }
+  /// Waits until a pane at rest shows an object.
+  async shows(pane, object) {
+    await this.until(() => this.frames.filter(({ header }) => header.pane === pane).pop()?.header.objects?.includes(object), `${object} in pane ${pane}`);
+    await this.page.waitForTimeout(150);
+  }
   select(step) {
     return this.click(this.page.locator('.lists .name', { hasText: new RegExp(`^${step.replace(/_/g, ' ')}$`) }));
   }
