@@ -52,27 +52,6 @@ std::string name_of(const std::map<std::string, Value>& values, Value value) {
   return {};
 }
 
-/// The samples that cut faces show, and what is black and white of them.
-voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects) {
-  const auto with_samples =
-      std::find_if(objects.begin(), objects.end(),
-                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
-  if (with_samples == objects.end())
-    throw std::runtime_error(
-        "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
-  const voxel::GreyOctree& grey = *with_samples->grey;
-  if (render.tones.empty()) {
-    const voxel::MinMax range = grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
-    return {grey, static_cast<double>(range.low), std::max<double>(range.high, range.low + 1.0)};
-  }
-  const auto colon = render.tones.find(':');
-  std::string numbers = render.tones;
-  if (colon != std::string::npos) numbers[colon] = ',';
-  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
-  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
-  return {grey, n[0], n[1]};
-}
-
 /// The file or object of `distance:NAME`.
 std::string other_of(const std::string& text) {
   const std::string kind = "distance:";
@@ -267,6 +246,26 @@ std::vector<std::string> all_shadings() {
 }
 
 }  // namespace
+
+voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects) {
+  const auto with_samples =
+      std::find_if(objects.begin(), objects.end(),
+                   [](const voxel::DrawnObject& object) { return object.grey.has_value(); });
+  if (with_samples == objects.end())
+    throw std::runtime_error(
+        "--cut-face grey: no object has samples; give a scan or grey octree first, and a --window LOW:");
+  const voxel::GreyOctree& grey = *with_samples->grey;
+  if (render.tones.empty()) {
+    const voxel::MinMax range = grey.range(std::max(2, voxel::root_height(grey.universe().depth)), {0, 0, 0});
+    return {grey, static_cast<double>(range.low), std::max<double>(range.high, range.low + 1.0)};
+  }
+  const auto colon = render.tones.find(':');
+  std::string numbers = render.tones;
+  if (colon != std::string::npos) numbers[colon] = ',';
+  const auto n = numbers_of<2>("--tones", numbers, "-500:1500");
+  if (!(n[1] > n[0])) throw std::runtime_error("--tones: '" + render.tones + "' has no room between");
+  return {grey, n[0], n[1]};
+}
 
 voxel::RenderOptions options_of(const Render& render) {
   voxel::RenderOptions options;

@@ -68,6 +68,9 @@ std::array<double, Count> numbers_of(const std::string& what, const std::string&
 /// View, size, frame, shading and cuts, without the grey tones of cut faces. Throws std::runtime_error for
 /// what cannot be read. Precondition: no ray picture.
 voxel::RenderOptions options_of(const Render& render);
+/// The samples that cut faces show, and what is black and white of them. Throws std::runtime_error where no
+/// object has samples.
+voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::DrawnObject>& objects);
 /// WxH in pixels.
 glm::ivec2 size_of(const Render& render);
 /// Normals are made unit.

@@ -310,7 +310,7 @@ class Evaluator {
       object.mesh.whole = object.mesh.within;
       object.witness = verify::both(object.witness, verify::witness_of_box(box_));
     }
-    if (options_.cache != nullptr) options_.cache->keep(key_of(step), object);
+    if (options_.cache != nullptr && !options_.only_look_up) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));
   }
 

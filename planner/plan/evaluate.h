@@ -45,6 +45,8 @@ struct EvaluateOptions {
   bool keep_scans = false;
   /// Answers of earlier evaluations, which are not made again, and to which new ones are added; may be null.
   ObjectCache* cache = nullptr;
+  /// Adds no objects to the cache, as for a piece that is dragged, of which none comes again.
+  bool only_look_up = false;
 };
 
 /// Evaluates every step that makes an object or a scan, objects in the voxel kernel and in the mesh kernel,

@@ -140,7 +140,7 @@ Document& Desk::need_document() const {
 }
 
 Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
-                          const Watched& watched) {
+                          const Watched& watched, bool only_look_up) {
   EvaluateOptions options;
   options.stop = watched.stop;
   options.progress = watched.progress;
@@ -148,6 +148,7 @@ Evaluation Desk::evaluate(const Plan& plan, const std::vector<std::string>& step
   options.wanted = steps;
   options.keep_scans = true;
   options.cache = &cache;
+  options.only_look_up = only_look_up;
   return planner::evaluate(plan, options);
 }
 
@@ -241,12 +242,15 @@ Desk::Preview Desk::preview(const std::string& object, const Json& move, const s
                      {"expression", std::string(Preview::moved) + " & (" + others + ")"}});
   const std::lock_guard lock(preview_mutex_);
   const Plan plan = with_document([&](const Document& document) { return document.with_steps(steps); });
-  if (previewed_ == plan.text && preview_.evaluation) return preview_;
+  for (const auto& [text, made] : previews_)
+    if (text == plan.text) return made;
   std::vector<std::string> wanted{Preview::moved};
   if (!others.empty()) wanted.emplace_back(Preview::overlap);
-  preview_.evaluation = std::make_shared<const Evaluation>(evaluate(plan, wanted, false, {stop, {}}));
-  previewed_ = plan.text;
-  return preview_;
+  Preview made{std::make_shared<const Evaluation>(evaluate(plan, wanted, false, {stop, {}}, true))};
+  constexpr std::size_t most_previews = 4;
+  previews_.emplace_back(plan.text, made);
+  if (previews_.size() > most_previews) previews_.pop_front();
+  return made;
 }
 
 Json Desk::object_json(const Snapshot& snapshot, const std::string& id) const {

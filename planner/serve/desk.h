@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "planner/plan/evaluate.h"
@@ -59,9 +61,9 @@ class Desk {
   /// alone; then what comes of it is the snapshot. A step that cannot be evaluated is left out, with those
   /// that need it. Throws Stopped, and what evaluate() throws where no step is at fault.
   Snapshot evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched);
-  /// The same of another plan, which is not kept.
+  /// The same of another plan, which is no snapshot; `only_look_up` as in EvaluateOptions.
   Evaluation evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,
-                      const Watched& watched);
+                      const Watched& watched, bool only_look_up = false);
   Snapshot snapshot() const;
 
   /// A plan's object moved as a step "move" would, in voxels alone, and what of it lies in other objects.
@@ -97,8 +99,8 @@ class Desk {
   std::map<std::string, Certified> certified_;
 
   std::mutex preview_mutex_;
-  std::string previewed_;
-  Preview preview_;
+  /// The newest last, by the text of their plans: panes of one window ask for the same.
+  std::deque<std::pair<std::string, Preview>> previews_;
 };
 
 }  // namespace octotomy::planner::serve

@@ -125,6 +125,40 @@ Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
   return {{"objects", objects}, {"measurements", made.measurements}};
 }
 
+/// Whether a step names what later ones use: it stands before them, and there is one of its kind.
+bool is_of_names(const Json& step) {
+  return step["do"] == "landmarks" || step["do"] == "head_position";
+}
+
+/// The steps of a plan and those of a procedure, whose scan is called "ct". One of the procedure takes the
+/// place of the one of its id, or of its kind where it is of names; landmarks of other names stay.
+Json joined(const Json& steps, const Json& of_procedure, const std::string& scan) {
+  Json names = Json::array(), kept = Json::array(), others = Json::array();
+  for (Json step : of_procedure) {
+    if (step.value("scan", "") == "ct") step["scan"] = scan;
+    (is_of_names(step) ? names : others).push_back(std::move(step));
+  }
+  for (const Json& step : steps) {
+    const auto same_kind = std::find_if(names.begin(), names.end(), [&](const Json& name) {
+      return is_of_names(step) && name["do"] == step["do"];
+    });
+    if (same_kind != names.end()) {
+      for (const Json& point : step.value("points", Json::array())) {
+        Json& points = (*same_kind)["points"];
+        if (std::none_of(points.begin(), points.end(),
+                         [&](const Json& known) { return known["name"] == point["name"]; }))
+          points.push_back(point);
+      }
+    } else if (std::none_of(others.begin(), others.end(),
+                            [&](const Json& other) { return other["id"] == step["id"]; })) {
+      kept.push_back(step);
+    }
+  }
+  for (const Json* part : {&kept, &others})
+    for (const Json& step : *part) names.push_back(step);
+  return names;
+}
+
 Json procedure(Desk& desk, const Json& said, const Watched&) {
   const Procedure procedure = read_procedure(said.at("name").get<std::string>());
   desk.with_document([&](Document& document) {
@@ -134,28 +168,12 @@ Json procedure(Desk& desk, const Json& said, const Watched&) {
     input.scan = whole.at("scans").front();
     input.voxel_mm = document.plan()->voxel_mm.value_or(1.0);
     for (const auto& [name, point] : said.at("landmarks").items())
-      input.landmarks.push_back({name, *point_of(said["landmarks"], name.c_str())});
-    for (const auto& [name, value] : said.value("values", Json::object()).items())
-      input.values[name] = value.get<double>();
+      if (const auto p_mm = point_of(said.at("landmarks"), name.c_str()))
+        input.landmarks.push_back({name, *p_mm});
+    const Json values = said.value("values", Json::object());
+    for (const auto& [name, value] : values.items()) input.values[name] = value.get<double>();
     const Json made = plan_of(procedure, input);
-    // The plan's own scan keeps its name and its first steps stay; a step of a name that is there is
-    // replaced.
-    const std::string scan = whole["scans"].begin().key();
-    Json& steps = whole["steps"];
-    Json before = Json::array();
-    for (Json step : made.at("steps")) {
-      if (step.value("scan", "") == "ct") step["scan"] = scan;
-      for (std::size_t i = steps.size(); i-- > 0;)
-        if (steps[i]["id"] == step["id"] ||
-            (steps[i]["do"] == step["do"] && (step["do"] == "landmarks" || step["do"] == "head_position")))
-          steps.erase(i);
-      if (step["do"] == "landmarks" || step["do"] == "head_position")
-        before.push_back(step);
-      else
-        steps.push_back(step);
-    }
-    for (std::size_t i = 0; i < before.size(); ++i)
-      steps.insert(steps.begin() + static_cast<std::ptrdiff_t>(i), before[i]);
+    whole["steps"] = joined(whole["steps"], made.at("steps"), whole["scans"].begin().key());
     document.record(whole, procedure.name);
   });
   return nullptr;

@@ -80,23 +80,24 @@ void draw_threshold(const Json& threshold, SlicePicture& picture) {
   }
 }
 
-/// Where a plane's pixels lie; null for a curve.
-Json frame_of(const Slice& slice, const voxel::Sheet& sheet) {
-  if (!slice.curve_mm.empty()) return nullptr;
+/// Where the pixels lie; of a curve those at its middle.
+Json frame_of(const voxel::Sheet& sheet) {
   const glm::ivec2 size_px = sheet.size_px();
+  const std::size_t left = static_cast<std::size_t>((size_px.x - 1) / 2);
+  const std::size_t right = std::min(left + 1, sheet.columns_mm.size() - 1);
   voxel::View view;
   view.up = -sheet.down;
-  view.right = size_px.x > 1 ? glm::normalize(sheet.columns_mm.back() - sheet.columns_mm.front())
-                             : glm::dvec3(1, 0, 0);
+  if (right > left) view.right = glm::normalize(sheet.columns_mm[right] - sheet.columns_mm[left]);
   view.look = glm::cross(view.up, view.right);
-  const glm::dvec3 centre_mm = 0.5 * (sheet.columns_mm.front() + sheet.columns_mm.back()) +
-                               sheet.down * (0.5 * (size_px.y - 1) * sheet.pixel_mm);
-  return view_frame_json(view, centre_mm, sheet.pixel_mm);
+  glm::dvec3 middle_mm = sheet.columns_mm[left];
+  if (size_px.x % 2 == 0) middle_mm = 0.5 * (middle_mm + sheet.columns_mm[right]);
+  return view_frame_json(view, middle_mm + sheet.down * (0.5 * (size_px.y - 1) * sheet.pixel_mm),
+                         sheet.pixel_mm);
 }
 
 }  // namespace
 
-Message draw_slice(const Desk& desk, const Request& request, const std::stop_token& stop) {
+Message draw_slice(Desk& desk, const Request& request, const std::stop_token& stop) {
   const Json& said = request.said;
   const Snapshot snapshot = desk.snapshot();
   if (!snapshot.evaluation || snapshot.evaluation->loaded.empty())
@@ -106,16 +107,25 @@ Message draw_slice(const Desk& desk, const Request& request, const std::stop_tok
   if (named == loaded.end()) throw std::runtime_error("scan: there is none of that name");
   const voxel::Scene& scene = named->second->scene();
   Slice slice = slice_asked(said, scene);
+  Desk::Preview preview;
+  std::string replaced;
+  if (const Json asked = said.value("preview", Json()); asked.is_object()) {
+    replaced = asked.at("object");
+    preview = desk.preview(asked.value("of", replaced), asked.at("move"), {}, stop);
+  }
   std::vector<Outlined> outlined;
   Json drawn = Json::array();
   for (const Json& entry : said.value("objects", Json::array())) {
     if (!entry.contains("id")) continue;
-    for (const Object& object : snapshot.evaluation->objects) {
-      if (object.id != entry["id"].get<std::string>() || object.voxel.octree.is_empty()) continue;
+    const std::string id = entry["id"];
+    const bool is_dragged = preview.evaluation && id == replaced;
+    const std::string sought = is_dragged ? Desk::Preview::moved : id;
+    for (const Object& object : (is_dragged ? *preview.evaluation : *snapshot.evaluation).objects) {
+      if (object.id != sought || object.voxel.octree.is_empty()) continue;
       slice.colours.push_back(entry.value("colour", text_of_colour(colour_of(outlined.size() + 1))));
-      slice.objects.push_back({object.id});
-      outlined.push_back({object.id, object.voxel.octree});
-      drawn.push_back(object.id);
+      slice.objects.push_back({id});
+      outlined.push_back({id, object.voxel.octree});
+      drawn.push_back(id);
     }
   }
   Timings timings;
@@ -129,11 +139,11 @@ Message draw_slice(const Desk& desk, const Request& request, const std::stop_tok
               {"height", size_px.y},
               {"objects", drawn},
               {"letters", picture.said.at("letters")},
-              {"view_frame", frame_of(slice, picture.sheet)}};
+              {"view_frame", frame_of(picture.sheet)}};
   const Json threshold = said.value("threshold", Json());
   draw_threshold(threshold, picture);
   if (is_moving) return packed(header, {{"jpeg", jpeg_of(size_px, picture.rgb)}});
-  if (threshold.is_null()) {
+  if (threshold.is_null() && !preview.evaluation) {
     slice.scan.name = named->first;
     Json step{{"do", "slice"}};
     step.update(print_fields(find_operation("slice")->fields, &slice));

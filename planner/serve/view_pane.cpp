@@ -60,6 +60,7 @@ Render render_of(const Json& said) {
     for (const Json& number : plane) text += (text.empty() ? "" : ",") + exact(number.get<double>());
     render.cut_planes.push_back(text);
   }
+  if (!render.cut_planes.empty()) render.cut_face = said.value("cut_face", "plain");
   return render;
 }
 
@@ -89,11 +90,12 @@ Json command_of(const Plan& plan, const Render& render, const Object* object) {
                      "' -o view.png --window " + exact(object->shown->threshold) + ":" +
                      (fields.contains("high") ? exact(fields["high"].get<double>()) : "");
   if (plan.voxel_mm) text += " --voxel " + exact(*plan.voxel_mm);
-  text += " --view " + render.view + " --size " + render.size;
+  text += " --view=" + render.view + " --size " + render.size;
   if (render.width_mm) text += " --width " + exact(*render.width_mm);
   if (const auto& centre = render.centre_mm)
-    text += " --centre " + exact(centre->x) + "," + exact(centre->y) + "," + exact(centre->z);
-  for (const std::string& plane : render.cut_planes) text += " --cut-plane " + plane;
+    text += " --centre=" + exact(centre->x) + "," + exact(centre->y) + "," + exact(centre->z);
+  for (const std::string& plane : render.cut_planes) text += " --cut-plane=" + plane;
+  if (render.cut_face != "plain") text += " --cut-face " + render.cut_face;
   text += " --shading " + render.shading + " --colour '" + render.colours.front() + "' --opacity " +
           exact(render.opacities.front());
   return text;
@@ -126,6 +128,7 @@ voxel::Octree ViewPane::threshold(const Evaluation& evaluation, const Json& wind
 
 Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop) {
   const Json& said = request.said;
+  const Clock::time_point start = Clock::now();
   const Snapshot snapshot = desk.snapshot();
   if (!snapshot.evaluation) throw std::runtime_error("no plan is open");
   const bool is_moving = said.value("dragging", false);
@@ -256,7 +259,16 @@ Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const
   }
   drawing.options = options_of(drawing.render);
   drawing.options.background = background;
-  if (is_moving) return moving(drawing, drawing.header, most_ms);
+  if (drawing.render.cut_face == "grey") {
+    const bool has_samples = std::any_of(drawing.objects.begin(), drawing.objects.end(),
+                                         [](const auto& object) { return object.grey.has_value(); });
+    if (has_samples)
+      drawing.options.cut_tones = cut_tones_of(drawing.render, drawing.objects);
+    else
+      drawing.render.cut_face = "plain";
+  }
+  // A piece that is dragged is moved first; what that takes is left out of drawing.
+  if (is_moving) return moving(drawing, drawing.header, std::max(0.3 * most_ms, most_ms - ms_since(start)));
 
   const voxel::Picture picture = voxel::render(drawing.objects, drawing.options);
   if (stop.stop_requested()) throw Stopped("a newer picture of the pane is wanted");

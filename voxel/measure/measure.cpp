@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 
 #include "voxel/measure/cell_counts.h"
@@ -44,7 +45,7 @@ glm::dvec3 step_mm(const Lattice& lattice, const std::array<int, 3>& direction) 
 
 // The share of all directions nearest to each of the 13, from an equal-area grid of the half sphere. With
 // 400 x 400 directions the error, from grid points along the cells' boundaries, is below 0.1 % of a weight.
-std::array<double, 13> shares(const Lattice& lattice) {
+std::array<double, 13> summed_shares(const Lattice& lattice) {
   std::array<glm::dvec3, 13> unit;
   for (std::size_t d = 0; d < unit.size(); ++d) unit[d] = glm::normalize(step_mm(lattice, directions[d]));
   std::array<double, 13> share{};
@@ -64,6 +65,21 @@ std::array<double, 13> shares(const Lattice& lattice) {
         }
       share[nearest] += 1.0 / (static_cast<double>(fineness) * fineness);
     }
+  return share;
+}
+
+// Kept for the lattice that was asked for last, as all objects of a plan share theirs: summing them takes
+// longer than counting a small object.
+std::array<double, 13> shares(const Lattice& lattice) {
+  static std::mutex mutex;
+  static glm::dmat3 known(0.0);
+  static std::array<double, 13> share{};
+  const glm::dmat3 edges(lattice.lps_from_voxel);
+  const std::lock_guard lock(mutex);
+  if (known != edges) {
+    share = summed_shares(lattice);
+    known = edges;
+  }
   return share;
 }
 

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "tests/planner/ball_scan.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -13,9 +14,7 @@ namespace fs = std::filesystem;
 
 class FoldersTest : public testing::Test {
  protected:
-  void SetUp() override {
-    root_ = fs::canonical(testing::TempDir()) / "octotomy_folders";
-    fs::remove_all(root_);
+  FoldersTest() {
     fs::create_directories(root_ / "open/within");
     fs::create_directories(root_ / "open too");
     fs::create_directories(root_ / "shut");
@@ -24,9 +23,9 @@ class FoldersTest : public testing::Test {
     fs::create_directory_symlink(root_ / "shut", root_ / "open/link");
     folders_.open(root_ / "open");
   }
-  void TearDown() override { fs::remove_all(root_); }
 
-  fs::path root_;
+  tests::TestFolder kept_;
+  fs::path root_ = fs::canonical(kept_.path());
   Folders folders_;
 };
 
@@ -34,7 +33,7 @@ TEST_F(FoldersTest, PathsWithinAreMadeAbsolute) {
   EXPECT_EQ(folders_.need_within("a.nrrd"), root_ / "open/a.nrrd");
   EXPECT_EQ(folders_.need_within("within/../a.nrrd"), root_ / "open/a.nrrd");
   EXPECT_EQ(folders_.need_within(root_ / "open/not_yet.stl"), root_ / "open/not_yet.stl");
-  EXPECT_EQ(folders_.need_within(""), root_ / "open/");
+  EXPECT_EQ(folders_.need_within(""), root_ / "open");
 }
 
 TEST_F(FoldersTest, NoWayLeadsOut) {

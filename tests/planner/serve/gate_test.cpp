@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "tests/planner/ball_scan.h"
+
 namespace octotomy::planner::serve {
 namespace {
 
@@ -41,8 +43,8 @@ TEST(Gate, TokensAreLongAndDiffer) {
 }
 
 TEST(Gate, ATokenFileIsItsOwnersAlone) {
-  const fs::path path = fs::path(testing::TempDir()) / "octotomy_gate_token";
-  fs::remove(path);
+  const tests::TestFolder folder;
+  const fs::path path = folder / "token";
   const std::string token = token_in(path);
   EXPECT_EQ(token_in(path), token);
   EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
@@ -51,7 +53,6 @@ TEST(Gate, ATokenFileIsItsOwnersAlone) {
   fs::permissions(path, fs::perms::group_read, fs::perm_options::remove);
   std::ofstream(path) << "short";
   EXPECT_THROW(token_in(path), std::runtime_error);
-  fs::remove(path);
   EXPECT_THROW(token_in(path / "in_no_folder"), std::runtime_error);
 }
 

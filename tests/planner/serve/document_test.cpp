@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/serve/document.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/planner/ball_scan.h"
+
+namespace octotomy::planner::serve {
+namespace {
+
+class DocumentTest : public testing::Test {
+ protected:
+  DocumentTest() {
+    std::ofstream(folder_ / "a.plan.json") << R"({"octotomy_plan": 1, "name": "a",
+      "scans": {"ct": {"path": "a.nrrd"}},
+      "steps": [{"id": "bone", "do": "window", "scan": "ct", "low": 300}]})";
+    document_ = std::make_unique<Document>(folder_ / "a.plan.json");
+  }
+
+  /// The ids of the steps, in their order.
+  std::string ids() const {
+    std::string text;
+    for (const Step& step : document_->plan()->steps) text += step.id + " ";
+    return text;
+  }
+
+  const Json skin_{{"id", "skin"}, {"do", "window"}, {"scan", "ct"}, {"low", -300}};
+  tests::TestFolder folder_;
+  std::unique_ptr<Document> document_;
+};
+
+TEST_F(DocumentTest, StepsAreAddedReplacedAndRemoved) {
+  document_->edit({{"add", {{"step", skin_}}}, {"what", "add the skin"}});
+  EXPECT_EQ(ids(), "bone skin ");
+  document_->edit(
+      {{"add",
+        {{"step", {{"id", "both"}, {"do", "combine"}, {"expression", "bone & bone"}}}, {"after", "bone"}}}});
+  EXPECT_EQ(ids(), "bone both skin ");
+  Json moved = skin_;
+  moved["low"] = -200;
+  document_->edit({{"replace", {{"id", "skin"}, {"step", moved}}}});
+  EXPECT_EQ(document_->json()["steps"][2]["low"], -200);
+  document_->edit({{"remove", "both"}});
+  EXPECT_EQ(ids(), "bone skin ");
+  EXPECT_EQ(document_->history_json()["history"][1]["what"], "add the skin");
+  EXPECT_EQ(Json::parse(std::ifstream(folder_ / "a.plan.json")), document_->json()) << "the file is the plan";
+}
+
+TEST_F(DocumentTest, WhatIsNoPlanChangesNothing) {
+  const std::string before = document_->plan()->text;
+  for (const Json& wrong :
+       {Json{{"remove", "bone"}}, Json{{"remove", "bome"}}, Json{{"add", {{"step", 5}}}}, Json{{"add", 5}},
+        Json{{"steps", Json::array()}}, Json{{"add", {{"step", skin_}, {"after", "nobody"}}}},
+        Json{{"replace", {{"id", "bone"}, {"step", {{"id", "bone"}}}}}}, Json{{"scans", 5}}})
+    EXPECT_ANY_THROW(document_->edit(wrong)) << wrong;
+  EXPECT_EQ(document_->plan()->text, before);
+  EXPECT_EQ(document_->history_json()["edit"], 1);
+}
+
+TEST_F(DocumentTest, UndoRedoAndBranchesAreTold) {
+  EXPECT_FALSE(document_->history_json()["can_undo"]);
+  document_->edit({{"add", {{"step", skin_}}}});
+  EXPECT_TRUE(document_->history_json()["can_undo"]);
+  EXPECT_TRUE(document_->undo());
+  EXPECT_EQ(ids(), "bone ");
+  EXPECT_TRUE(document_->history_json()["can_redo"]);
+  EXPECT_TRUE(document_->redo());
+  EXPECT_FALSE(document_->redo());
+  document_->begin_branch("other");
+  EXPECT_EQ(document_->history_json()["branch"], "other");
+  EXPECT_EQ(document_->difference_of(1, 2)["added"], Json::array({"skin"}));
+  document_->go_to("1");
+  EXPECT_EQ(ids(), "bone ");
+}
+
+TEST_F(DocumentTest, LandmarksStandBeforeTheStepsThatUseThem) {
+  document_->place_landmark("ans", {0, -80, 10});
+  EXPECT_EQ(ids(), "landmarks bone ");
+  document_->place_landmark("pns", {0, -40, 10});
+  document_->place_landmark("ans", {1, -80, 10});
+  ASSERT_EQ(document_->plan()->landmarks.size(), 2u);
+  EXPECT_EQ(document_->plan()->landmarks[0].p_mm, glm::dvec3(1, -80, 10));
+}
+
+TEST_F(DocumentTest, AnotherDocumentOfTheSameFileGoesOn) {
+  document_->edit({{"add", {{"step", skin_}}}});
+  document_.reset();
+  document_ = std::make_unique<Document>(folder_ / "a.plan.json");
+  EXPECT_EQ(ids(), "bone skin ");
+  EXPECT_TRUE(document_->undo());
+}
+
+}  // namespace
+}  // namespace octotomy::planner::serve
