@@ -80,7 +80,11 @@ export async function commit_motion(move: Motion): Promise<void> {
     const id = free_id(`${one.source}_moved`);
     const stays = others(one.source, id);
     const more: Step[] = [{ id, do: "move", object: one.source, ...fields } as Step];
-    if (stays.length) more.push({ id: free_id("overlap"), do: "combine", expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}` });
+    // What both have in common, and last the operation's outcome, which the report shows.
+    if (stays.length)
+      more.push(
+        { id: free_id("overlap"), do: "combine", expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}` },
+        { id: free_id("planned"), do: "combine", expression: `${stays.join(" | ")} | ${id}` });
     await add_steps(more, what);
     set({ selected: id });
   }
@@ -297,7 +301,7 @@ export function movement_fields(): Child {
           void commit_motion({ ...move, turn: { ...move.turn, about_mm } });
         },
       },
-        el("option", { value: "", selected: typeof about !== "string" }, "the piece's middle"),
+        el("option", { value: "", selected: typeof about !== "string" }, "its middle"),
         el("option", { value: "cross" }, "the cross-hair"),
         landmarks.map((mark) => el("option", { value: mark.name, selected: about === mark.name }, mark.name.replace(/_/g, " "))))),
     el("p", { class: "reading", role: "status" }, motion_words(move),
