@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Moves and turns a piece: by handles in a pane, or by numbers in the head's words; the overlap is told and drawn meanwhile.
-import { add_steps, ask, free_id, replace_step } from "./actions";
+import { add_steps, free_id, replace_step } from "./actions";
 import { Direction, Turn, directions, lps, motion_words, turns, word_of } from "./anatomical";
 import { is_overlap, look_of, makes_shape, overlap_colour } from "./drawn_objects";
 import { Child, el } from "./html";
@@ -19,8 +19,6 @@ interface Held {
   before: Motion;
 }
 let held: Held | null = null;
-let is_asking = false;
-let is_changed_since = false;
 
 const arrow_px = 62;
 const ring_px = 84;
@@ -68,25 +66,6 @@ export function preview_motion(move: Motion): void {
   if (!one) return;
   const object = one.step?.id ?? `${one.source}_moved`;
   set({ preview: { object: one.step?.id ?? one.source, of: one.source, move, against: others(one.source, object) } });
-  ask_overlap();
-}
-
-// One question at a time; the newest motion is asked when the answer has come.
-function ask_overlap(): void {
-  const preview = state.preview;
-  is_changed_since = true;
-  if (!preview || is_asking || !preview.against.length) return;
-  is_asking = true;
-  is_changed_since = false;
-  ask<{ mm3: number }>("overlap", { object: preview.of, with: preview.against, move: preview.move })
-    .then((answer) => {
-      if (state.preview) set({ overlap_mm3: answer.mm3 });
-    })
-    .catch(() => undefined)
-    .finally(() => {
-      is_asking = false;
-      if (is_changed_since && state.preview) ask_overlap();
-    });
 }
 
 export async function commit_motion(move: Motion): Promise<void> {
@@ -101,11 +80,15 @@ export async function commit_motion(move: Motion): Promise<void> {
     const id = free_id(`${one.source}_moved`);
     const stays = others(one.source, id);
     const more: Step[] = [{ id, do: "move", object: one.source, ...fields } as Step];
-    if (stays.length) more.push({ id: free_id("overlap"), do: "combine", expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}` });
+    // What both have in common, and last the operation's outcome, which the report shows.
+    if (stays.length)
+      more.push(
+        { id: free_id("overlap"), do: "combine", expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}` },
+        { id: free_id("planned"), do: "combine", expression: `${stays.join(" | ")} | ${id}` });
     await add_steps(more, what);
     set({ selected: id });
   }
-  set({ preview: null });
+  set({ preview: null, overlap_mm3: null });
 }
 const clean = (values: { [field: string]: Json | undefined }): { [field: string]: Json } =>
   Object.fromEntries(Object.entries(values).filter(([, value]) => typeof value === "number" && value !== 0)) as { [field: string]: Json };
@@ -318,7 +301,7 @@ export function movement_fields(): Child {
           void commit_motion({ ...move, turn: { ...move.turn, about_mm } });
         },
       },
-        el("option", { value: "", selected: typeof about !== "string" }, "the piece's middle"),
+        el("option", { value: "", selected: typeof about !== "string" }, "its middle"),
         el("option", { value: "cross" }, "the cross-hair"),
         landmarks.map((mark) => el("option", { value: mark.name, selected: about === mark.name }, mark.name.replace(/_/g, " "))))),
     el("p", { class: "reading", role: "status" }, motion_words(move),

@@ -18,8 +18,12 @@ export const ink = {
   faint: "rgba(255,255,255,.55)",
 };
 
+// Views stand on white on a light page; words are dark with a light outline there.
+let is_on_white = false;
+
 export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): void {
   if (!state.plan) return;
+  is_on_white = !pane.is_slice && !is_dark_page();
   const ratio = pane.ratio;
   context.lineJoin = "round";
   draw_cross(pane, context);
@@ -38,22 +42,29 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
   }
 }
 
+const is_dark_page = (): boolean => document.documentElement.dataset.theme !== "light";
+
 interface TextLook {
   align?: CanvasTextAlign;
   colour?: string;
   px?: number;
   plate?: boolean;
 }
-/// Words with a dark outline, so that they are legible on bone and on black.
+const dark_of: { [colour: string]: string } = { [ink.text]: "#18212b", [ink.faint]: "#52606e", [ink.landmark]: "#7a4b00", [ink.measure]: "#005e50", "#ff8f93": "#b3212a", "#9be7b0": "#14713c" };
+
+/// Words with an outline, so that they are legible on bone and on the ground; they stay within the picture.
 export function text(context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
   context.font = `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
   context.textAlign = look.align ?? "left";
   context.textBaseline = "middle";
   context.lineWidth = 3 * ratio;
-  context.strokeStyle = "rgba(0,0,0,.75)";
-  context.strokeText(words, at[0], at[1]);
-  context.fillStyle = look.colour ?? ink.text;
-  context.fillText(words, at[0], at[1]);
+  const colour = look.colour ?? ink.text;
+  const half = context.measureText(words).width / 2 + 4 * ratio;
+  const x = look.align === "center" && 2 * half < context.canvas.width ? Math.max(half, Math.min(context.canvas.width - half, at[0])) : at[0];
+  context.strokeStyle = is_on_white ? "rgba(255,255,255,.85)" : "rgba(0,0,0,.75)";
+  context.strokeText(words, x, at[1]);
+  context.fillStyle = is_on_white ? dark_of[colour] ?? colour : colour;
+  context.fillText(words, x, at[1]);
 }
 
 export function line(context: CanvasRenderingContext2D, points: Vec2[], colour: string, width: number, closed = false): void {
@@ -61,10 +72,10 @@ export function line(context: CanvasRenderingContext2D, points: Vec2[], colour: 
   context.beginPath();
   points.forEach((p, i) => (i ? context.lineTo(p[0], p[1]) : context.moveTo(p[0], p[1])));
   if (closed) context.closePath();
-  context.strokeStyle = "rgba(0,0,0,.55)";
+  context.strokeStyle = is_on_white ? "rgba(255,255,255,.8)" : "rgba(0,0,0,.55)";
   context.lineWidth = width + 2;
   context.stroke();
-  context.strokeStyle = colour;
+  context.strokeStyle = is_on_white ? dark_of[colour] ?? colour : colour;
   context.lineWidth = width;
   context.stroke();
 }

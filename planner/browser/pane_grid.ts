@@ -47,9 +47,20 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
     legend.hidden = true;
   }
   watch(["plan", "looks", "draft_window", "compare", "cut_plane", "theme"], () => want_all(false));
-  watch(["preview"], () => want_all(state.preview !== null));
+  watch(["preview"], follow_preview);
   watch(["selected", "marked", "tool", "cross_mm", "arch_mm"], () => panes.forEach((pane) => pane.redraw()));
   watch(["tool"], () => panes.forEach((pane) => { pane.canvas.style.cursor = active_tool()?.cursor ?? "default"; }));
+}
+
+// The pane in hand follows a moving piece at every picture; the others a few times a second, so that it stays smooth.
+const others_every_ms = 300;
+let others_at = 0;
+function follow_preview(): void {
+  if (!state.preview) return want_all(false);
+  const now = performance.now();
+  const is_turn_of_others = now - others_at > others_every_ms;
+  if (is_turn_of_others) others_at = now;
+  for (const pane of panes) if (is_turn_of_others || pane.index === state.active_pane) pane.want(true);
 }
 
 export function want_all(dragging: boolean): void {

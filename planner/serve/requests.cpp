@@ -118,11 +118,8 @@ Json save(Desk& desk, const Json& said, const Watched&) {
 Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
   const bool certify = said.value("certify", false);
   const Snapshot made = desk.evaluate(said.value("objects", std::vector<std::string>{}), certify, watched);
-  Json objects = Json::array();
-  for (const Object& object : made.evaluation->objects) objects.push_back(desk.object_json(made, object.id));
-  for (const auto& [id, error] : made.errors)
-    objects.push_back({{"id", id}, {"evaluated", false}, {"error", error}});
-  return {{"objects", objects}, {"measurements", made.measurements}};
+  const Json state = desk.state();
+  return {{"objects", state.at("objects")}, {"measurements", made.measurements}};
 }
 
 /// Whether a step names what later ones use: it stands before them, and there is one of its kind.

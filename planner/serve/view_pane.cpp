@@ -5,8 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "planner/operation/segment.h"
 #include "planner/picture/colour.h"
 #include "planner/picture/drawn_files.h"
 #include "planner/picture/ray_pictures.h"
@@ -101,230 +101,227 @@ Json command_of(const Plan& plan, const Render& render, const Object* object) {
   return text;
 }
 
+/// The header's lines of a picture's size and frame.
+void set_frame(Json& header, bool is_moving, const glm::ivec2& size_px, const voxel::View& view,
+               const glm::dvec3& centre_mm, double pixel_mm) {
+  header["quality"] = is_moving ? "moving" : "rest";
+  header["width"] = size_px.x;
+  header["height"] = size_px.y;
+  header["view_frame"] = view_frame_json(view, centre_mm, pixel_mm);
+}
+
+/// The point of a view's plane through the origin.
+glm::dvec3 on_plane(const voxel::View& view, const glm::dvec2& p_mm) {
+  return view.right * p_mm.x + view.up * p_mm.y;
+}
+
 }  // namespace
 
 /// What is drawn, and how it is said.
 struct ViewPane::Drawing {
+  Snapshot snapshot;
   Render render;
-  voxel::RenderOptions options;
+  glm::vec3 background{1.0f};
+  bool is_moving = false;
+  bool is_of_plan = true;  ///< a step of the plan could draw the same
   std::vector<voxel::DrawnObject> objects;
-  Json header;
-  voxel::Universe universe;
-};
+  const Object* last = nullptr;            ///< of the plan's that are drawn
+  std::shared_ptr<const Evaluation> held;  ///< keeps the objects of a preview
+  Json header = Json::object();
 
-voxel::Octree ViewPane::threshold(const Evaluation& evaluation, const Json& window) {
-  const auto scan = evaluation.loaded.find(window.value("scan", "ct"));
-  if (scan == evaluation.loaded.end()) throw std::runtime_error("window: there is no such scan");
-  const std::string text = window.dump();
-  if (threshold_of_ != text || !threshold_ || threshold_->universe() != evaluation.universe) {
-    SampleWindow samples{number_of(window, "low").value_or(-std::numeric_limits<double>::infinity())};
-    samples.high = number_of(window, "high");
-    threshold_ = std::make_shared<const voxel::Octree>(
-        voxel::combine(evaluation.universe, voxel::Expression(window_on(scan->second->grey, samples))));
-    threshold_of_ = text;
-  }
-  return *threshold_;
-}
-
-Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop) {
-  const Json& said = request.said;
-  const Clock::time_point start = Clock::now();
-  const Snapshot snapshot = desk.snapshot();
-  if (!snapshot.evaluation) throw std::runtime_error("no plan is open");
-  const bool is_moving = said.value("dragging", false);
-  Drawing drawing{render_of(said), {}, {}, Json::object(), snapshot.evaluation->universe};
-  const bool is_plain = said.value("preview", Json()).is_null();
-  Desk::Preview preview;
-  std::string replaced;
-  if (!is_plain) {
-    const Json& asked = said["preview"];
-    replaced = asked.at("object");
-    preview = desk.preview(asked.value("of", replaced), asked.at("move"),
-                           said.value("overlap", false) ? asked.value("against", std::vector<std::string>{})
-                                                        : std::vector<std::string>{},
-                           stop);
-  }
-  Json ids = Json::array();
-  bool all_of_plan = true;
-  const Object* last = nullptr;
-  const auto add = [&](voxel::DrawnObject object, const std::string& id, const Json& entry) {
-    const std::string colour = entry.value("colour", text_of_colour(colour_of(drawing.objects.size())));
+  /// Adds an object in the colour and opacity of its entry; an empty one is left out.
+  void add(voxel::DrawnObject object, const std::string& id, const Json& entry) {
+    if (object.octree.is_empty()) return;
+    const std::string colour = entry.value("colour", text_of_colour(colour_of(objects.size())));
     const double opacity = number_of(entry, "opacity").value_or(1.0);
     if (!(opacity >= 0.0 && opacity <= 1.0)) throw std::runtime_error("opacity: must be from 0 to 1");
     object.name = id;
     object.colour = need_colour(colour);
     object.opacity = static_cast<float>(opacity);
-    drawing.objects.push_back(std::move(object));
-    drawing.render.objects.push_back({id});
-    drawing.render.colours.push_back(colour);
-    drawing.render.opacities.push_back(opacity);
-    ids.push_back(id);
-  };
-  bool has_replaced = false;
+    objects.push_back(std::move(object));
+    render.objects.push_back({id});
+    render.colours.push_back(colour);
+    render.opacities.push_back(opacity);
+    header["objects"].push_back(id);
+  }
+
+  /// Nothing to draw is a picture, too.
+  Message blank() {
+    const glm::ivec2 size_px = size_of(render);
+    const glm::ivec3 colour(glm::round(255.0f * background));
+    std::vector<std::uint8_t> rgb;
+    for (int pixel = 0; pixel < size_px.x * size_px.y; ++pixel)
+      for (int channel = 0; channel < 3; ++channel) rgb.push_back(static_cast<std::uint8_t>(colour[channel]));
+    const voxel::Box box = voxel::bounds(snapshot.evaluation->universe.lattice());
+    set_frame(header, is_moving, size_px, voxel::parse_view(render.view),
+              render.centre_mm.value_or(0.5 * (box.low_mm + box.high_mm)),
+              render.width_mm.value_or(box.high_mm.x - box.low_mm.x) / size_px.x);
+    return packed(header, {flat_part(is_moving, size_px, rgb)});
+  }
+
+  /// What lies along rays through the first object's samples.
+  Message along_rays(const std::stop_token& stop) {
+    Timings timings;
+    const auto first = std::find_if(objects.begin(), objects.end(),
+                                    [](const auto& object) { return object.grey.has_value(); });
+    if (first == objects.end()) throw std::runtime_error("shading: no object that is shown has samples");
+    const RenderedPicture picture = render_rays(render, {*first}, timings, stop);
+    const voxel::View view = voxel::parse_view(render.view);
+    set_frame(header, is_moving, picture.size_px, view, on_plane(view, picture.centre_mm), picture.pixel_mm);
+    return packed(header, {flat_part(is_moving, picture.size_px, picture.rgb)});
+  }
+
+  voxel::RenderOptions options() {
+    const bool has_samples = std::any_of(objects.begin(), objects.end(),
+                                         [](const auto& object) { return object.grey.has_value(); });
+    if (!has_samples) render.cut_face = "plain";
+    voxel::RenderOptions made = options_of(render);
+    made.background = background;
+    if (render.cut_face == "grey") made.cut_tones = cut_tones_of(render, objects);
+    return made;
+  }
+
+  Message at_rest() {
+    const voxel::Picture picture = voxel::render(objects, options());
+    const voxel::View& view = picture.view;
+    set_frame(header, false, picture.size_px, view,
+              on_plane(view, picture.centre_mm) +
+                  view.look * glm::dot(render.centre_mm.value_or(glm::dvec3(0.0)), view.look),
+              picture.pixel_mm);
+    if (is_of_plan) {
+      header["step"] = {{"do", "render"}};
+      header["step"].update(print_fields(find_operation("render")->fields, &render));
+      if (objects.size() == 1) header["command"] = command_of(*snapshot.plan, render, last);
+    }
+    std::vector<float> depth(picture.depth_mm.size());
+    std::vector<std::uint16_t> object(picture.object.size());
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      depth[i] = std::isfinite(picture.depth_mm[i])
+                     ? static_cast<float>(picture.depth_mm[i] + picture.nearest_mm)
+                     : std::numeric_limits<float>::quiet_NaN();
+      object[i] = static_cast<std::uint16_t>(picture.object[i] + 1);
+    }
+    return packed(header, {flat_part(false, picture.size_px, picture.rgb),
+                           {"depth", deflated(depth.data(), 4 * depth.size())},
+                           {"object", deflated(object.data(), 2 * object.size())}});
+  }
+};
+
+voxel::DrawnObject ViewPane::threshold(const Evaluation& evaluation, const Json& window) {
+  const auto scan = evaluation.loaded.find(window.value("scan", "ct"));
+  if (scan == evaluation.loaded.end()) throw std::runtime_error("window: there is no such scan");
+  const std::string text = window.dump();
+  SampleWindow samples{number_of(window, "low").value_or(-std::numeric_limits<double>::infinity())};
+  samples.high = number_of(window, "high");
+  if (threshold_of_ != text || !threshold_ || threshold_->universe() != evaluation.universe) {
+    threshold_ = std::make_shared<const voxel::Octree>(
+        voxel::combine(evaluation.universe, voxel::Expression(window_on(scan->second->grey, samples))));
+    threshold_of_ = text;
+  }
+  voxel::DrawnObject object{"", *threshold_};
+  if (!samples.high && std::isfinite(samples.low)) object.grey = scan->second->grey;
+  if (object.grey) object.threshold = samples.low;
+  return object;
+}
+
+void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop) {
+  const Evaluation& evaluation = *drawing.snapshot.evaluation;
+  Desk::Preview preview;
+  std::string dragged;
+  if (const Json asked = said.value("preview", Json()); !asked.is_null()) {
+    dragged = asked.at("object");
+    const auto against = asked.value("against", std::vector<std::string>{});
+    preview = desk.preview(asked.value("of", dragged), asked.at("move"),
+                           said.value("overlap", false) ? against : std::vector<std::string>{}, stop);
+    drawing.is_of_plan = false;
+  }
+  const Object* moved = preview.evaluation ? find(*preview.evaluation, Desk::Preview::moved) : nullptr;
   for (const Json& entry : said.value("objects", Json::array())) {
     if (entry.contains("window")) {
-      voxel::DrawnObject object{"threshold", threshold(*snapshot.evaluation, entry["window"])};
-      if (!entry["window"].contains("high") || entry["window"]["high"].is_null()) {
-        object.grey = snapshot.evaluation->loaded.at(entry["window"].value("scan", "ct"))->grey;
-        object.threshold = number_of(entry["window"], "low").value_or(0.0);
-      }
-      all_of_plan = false;
-      if (!object.octree.is_empty()) add(std::move(object), "", entry);
+      drawing.is_of_plan = false;
+      drawing.add(threshold(evaluation, entry.at("window")), "", entry);
       continue;
     }
     const std::string id = entry.at("id");
-    const bool is_dragged = preview.evaluation && id == replaced;
-    has_replaced = has_replaced || is_dragged;
-    const Object* object =
-        is_dragged ? find(*preview.evaluation, Desk::Preview::moved) : find(*snapshot.evaluation, id);
-    if (object == nullptr || object->voxel.octree.is_empty()) continue;
-    last = object;
-    add(planner::drawn(*object, glm::vec3(1.0f)), id, entry);
-  }
-  if (preview.evaluation && !has_replaced) {
-    const Object* object = find(*preview.evaluation, Desk::Preview::moved);
-    if (object != nullptr && !object->voxel.octree.is_empty())
-      add(planner::drawn(*object, glm::vec3(1.0f)), replaced, Json::object());
-  }
-  if (preview.evaluation) {
-    if (const Object* both = find(*preview.evaluation, Desk::Preview::overlap)) {
-      drawing.header["overlap_mm3"] = both->voxel.measures.volume_mm3;
-      // Drawn as voxels, which lie in both surfaces: nearer than either by what tracing tells apart.
-      if (!both->voxel.octree.is_empty())
-        add({"overlap", both->voxel.octree}, "", {{"colour", overlap_colour}});
+    const bool is_dragged = moved != nullptr && id == dragged;
+    if (const Object* object = is_dragged ? std::exchange(moved, nullptr) : find(evaluation, id)) {
+      drawing.last = object;
+      drawing.add(planner::drawn(*object, glm::vec3(1.0f)), id, entry);
     }
   }
-  drawing.header["id"] = request.id;
-  drawing.header["pane"] = said.value("pane", 0);
-  drawing.header["objects"] = ids;
-  if (const auto background = said.find("background"); background != said.end() && background->is_string()) {
-    drawing.options.background = need_colour(*background);
-    all_of_plan = false;
+  if (!preview.evaluation) return;
+  if (moved != nullptr) drawing.add(planner::drawn(*moved, glm::vec3(1.0f)), dragged, Json::object());
+  if (const Object* both = find(*preview.evaluation, Desk::Preview::overlap)) {
+    drawing.header["overlap_mm3"] = both->voxel.measures.volume_mm3;
+    drawing.add({"overlap", both->voxel.octree}, "", {{"colour", overlap_colour}});
   }
-  const glm::vec3 background = drawing.options.background;
-  const Json colour_by = said.value("colour_by", Json());
-  if (colour_by.is_object() && !drawing.objects.empty()) {
-    const std::string of = colour_by.at("object"), reference = colour_by.at("reference");
-    const double range_mm = number_of(colour_by, "range_mm").value_or(5.0);
-    const Object* other = find(*snapshot.evaluation, reference);
-    if (other == nullptr) throw std::runtime_error("colour_by: '" + reference + "' is not evaluated");
-    for (voxel::DrawnObject& object : drawing.objects) {
-      if (object.name != of) continue;
-      const std::string key = of + " " + reference + " " + exact(range_mm);
-      if (scalar_of_ != key || scalar_evaluation_ != snapshot.evaluation)
-        scalar_ = std::make_shared<const voxel::SurfaceScalar>(
-            voxel::distance_to(other->voxel.octree, object.octree, range_mm));
-      scalar_of_ = key;
-      scalar_evaluation_ = snapshot.evaluation;
-      object.scalar = scalar_;
-    }
-    drawing.header["legend"] = {{"low_mm", -range_mm},
-                                {"high_mm", range_mm},
-                                {"definition", "distance of each surface point to the nearest of '" +
-                                                   reference + "', positive outside of it"}};
-    drawing.render.colour_by = "distance:" + reference;
-    drawing.render.range_mm = range_mm;
-    if (drawing.objects.front().name != of) all_of_plan = false;
-  }
-  const glm::ivec2 size_px = size_of(drawing.render);
-  if (drawing.objects.empty()) {
-    // Nothing to draw is a picture, too.
-    const std::vector<std::uint8_t> blank(
-        3 * static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y),
-        static_cast<std::uint8_t>(std::lround(255.0f * background.x)));
-    const voxel::View view = voxel::parse_view(drawing.render.view);
-    const voxel::Box box = voxel::bounds(drawing.universe.lattice());
-    const double pixel_mm =
-        drawing.render.width_mm.value_or(box.high_mm.x - box.low_mm.x) / static_cast<double>(size_px.x);
-    drawing.header["view_frame"] =
-        view_frame_json(view, drawing.render.centre_mm.value_or(0.5 * (box.low_mm + box.high_mm)), pixel_mm);
-    drawing.header["quality"] = is_moving ? "moving" : "rest";
-    drawing.header["width"] = size_px.x;
-    drawing.header["height"] = size_px.y;
-    return packed(drawing.header, {flat_part(is_moving, size_px, blank)});
-  }
-  if (is_ray_picture(drawing.render)) {
-    Timings timings;
-    std::vector<voxel::DrawnObject> with_samples;
-    for (const voxel::DrawnObject& object : drawing.objects)
-      if (object.grey && with_samples.empty()) with_samples.push_back(object);
-    const RenderedPicture picture = render_rays(drawing.render, with_samples, timings, stop);
-    drawing.header["quality"] = is_moving ? "moving" : "rest";
-    drawing.header["width"] = picture.size_px.x;
-    drawing.header["height"] = picture.size_px.y;
-    const voxel::View view = voxel::parse_view(drawing.render.view);
-    drawing.header["view_frame"] = view_frame_json(
-        view, view.right * picture.centre_mm.x + view.up * picture.centre_mm.y, picture.pixel_mm);
-    return packed(drawing.header, {flat_part(is_moving, picture.size_px, picture.rgb)});
-  }
-  drawing.options = options_of(drawing.render);
-  drawing.options.background = background;
-  if (drawing.render.cut_face == "grey") {
-    const bool has_samples = std::any_of(drawing.objects.begin(), drawing.objects.end(),
-                                         [](const auto& object) { return object.grey.has_value(); });
-    if (has_samples)
-      drawing.options.cut_tones = cut_tones_of(drawing.render, drawing.objects);
-    else
-      drawing.render.cut_face = "plain";
-  }
-  // A piece that is dragged is moved first; what that takes is left out of drawing.
-  if (is_moving) return moving(drawing, drawing.header, std::max(0.3 * most_ms, most_ms - ms_since(start)));
-
-  const voxel::Picture picture = voxel::render(drawing.objects, drawing.options);
-  if (stop.stop_requested()) throw Stopped("a newer picture of the pane is wanted");
-  Json& header = drawing.header;
-  header["quality"] = "rest";
-  header["width"] = picture.size_px.x;
-  header["height"] = picture.size_px.y;
-  const voxel::View& view = drawing.options.view;
-  const glm::dvec3 wanted = drawing.render.centre_mm.value_or(glm::dvec3(0.0));
-  header["view_frame"] = view_frame_json(view,
-                                         view.right * picture.centre_mm.x + view.up * picture.centre_mm.y +
-                                             view.look * glm::dot(wanted, view.look),
-                                         picture.pixel_mm);
-  if (all_of_plan && is_plain) {
-    const Operation& operation = *find_operation("render");
-    Json step{{"do", "render"}};
-    step.update(print_fields(operation.fields, &drawing.render));
-    header["step"] = step;
-    if (drawing.objects.size() == 1) header["command"] = command_of(*snapshot.plan, drawing.render, last);
-  }
-  std::vector<float> depth(picture.depth_mm.size());
-  std::vector<std::uint16_t> object(picture.object.size());
-  for (std::size_t i = 0; i < depth.size(); ++i) {
-    depth[i] = std::isfinite(picture.depth_mm[i])
-                   ? static_cast<float>(picture.depth_mm[i] + picture.nearest_mm)
-                   : std::numeric_limits<float>::quiet_NaN();
-    object[i] = static_cast<std::uint16_t>(picture.object[i] + 1);
-  }
-  const std::vector<std::uint8_t> png = voxel::encode_image("png", picture.size_px, picture.rgb);
-  return packed(header, {{"png", std::string(png.begin(), png.end())},
-                         {"depth", deflated(depth.data(), 4 * depth.size())},
-                         {"object", deflated(object.data(), 2 * object.size())}});
+  drawing.held = preview.evaluation;
 }
 
-Message ViewPane::moving(const Drawing& drawing, Json header, double most_ms) {
-  voxel::RenderOptions options = drawing.options;
+void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
+  const std::string of = colour_by.at("object"), reference = colour_by.at("reference");
+  const double range_mm = number_of(colour_by, "range_mm").value_or(5.0);
+  if (!(range_mm > 0.0)) throw std::runtime_error("range_mm: must be above zero");
+  const Object* other = find(*drawing.snapshot.evaluation, reference);
+  if (other == nullptr) throw std::runtime_error("colour_by: '" + reference + "' is not evaluated");
+  for (voxel::DrawnObject& object : drawing.objects) {
+    if (object.name != of) continue;
+    const std::string key = of + " " + reference + " " + exact(range_mm);
+    if (scalar_of_ != key || scalar_evaluation_ != drawing.snapshot.evaluation)
+      scalar_ = std::make_shared<const voxel::SurfaceScalar>(
+          voxel::distance_to(other->voxel.octree, object.octree, range_mm));
+    scalar_of_ = key;
+    scalar_evaluation_ = drawing.snapshot.evaluation;
+    object.scalar = scalar_;
+  }
+  drawing.header["legend"] = {{"low_mm", -range_mm},
+                              {"high_mm", range_mm},
+                              {"definition", "distance of each surface point to the nearest of '" +
+                                                 reference + "', positive outside of it"}};
+  drawing.render.colour_by = "distance:" + reference;
+  drawing.render.range_mm = range_mm;
+  // The operation colours its first object.
+  if (drawing.objects.front().name != of) drawing.is_of_plan = false;
+}
+
+Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop) {
+  const Json& said = request.said;
+  const Clock::time_point start = Clock::now();
+  Drawing drawing{.snapshot = desk.snapshot(), .render = render_of(said)};
+  if (!drawing.snapshot.evaluation) throw std::runtime_error("no plan is open");
+  drawing.is_moving = said.value("dragging", false);
+  drawing.header = {{"id", request.id}, {"pane", said.value("pane", 0)}, {"objects", Json::array()}};
+  if (const auto background = said.find("background"); background != said.end() && background->is_string()) {
+    drawing.background = need_colour(*background);
+    drawing.is_of_plan = false;
+  }
+  add_objects(desk, said, drawing, stop);
+  if (drawing.objects.empty()) return drawing.blank();
+  if (is_ray_picture(drawing.render)) return drawing.along_rays(stop);
+  if (const Json colour_by = said.value("colour_by", Json()); colour_by.is_object())
+    colour(colour_by, drawing);
+  if (!drawing.is_moving) return drawing.at_rest();
+  // A piece that is dragged is moved first; what that takes is left out of drawing.
+  return moving(drawing, std::max(0.3 * most_ms, most_ms - ms_since(start)));
+}
+
+Message ViewPane::moving(Drawing& drawing, double most_ms) {
+  voxel::RenderOptions options = drawing.options();
   options.antialias = false;
-  const glm::ivec2 full_px = options.size_px;
   // In eighths, so that frames do not change their size all the time.
   const double scale =
       full_frame_ms_ > most_ms
           ? std::max(least_scale, std::floor(8.0 * std::sqrt(most_ms / full_frame_ms_)) / 8.0)
           : 1.0;
-  options.size_px = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(full_px))));
+  options.size_px = glm::max(glm::ivec2(1), glm::ivec2(glm::round(scale * glm::dvec2(options.size_px))));
   const Clock::time_point start = Clock::now();
   const voxel::Picture picture = renderer_.frame(drawing.objects, options);
-  std::string jpeg = jpeg_of(picture.size_px, picture.rgb);
+  const Part jpeg = flat_part(true, picture.size_px, picture.rgb);
   const double spent_ms = ms_since(start) / (scale * scale);
   full_frame_ms_ = full_frame_ms_ == 0.0 ? spent_ms : 0.8 * full_frame_ms_ + 0.2 * spent_ms;
-  header["quality"] = "moving";
-  header["width"] = picture.size_px.x;
-  header["height"] = picture.size_px.y;
-  const voxel::View& view = options.view;
-  header["view_frame"] = view_frame_json(
-      view, view.right * picture.centre_mm.x + view.up * picture.centre_mm.y, picture.pixel_mm);
-  return packed(std::move(header), {{"jpeg", std::move(jpeg)}});
+  set_frame(drawing.header, true, picture.size_px, picture.view, on_plane(picture.view, picture.centre_mm),
+            picture.pixel_mm);
+  return packed(drawing.header, {jpeg});
 }
 
 }  // namespace octotomy::planner::serve

@@ -21,8 +21,13 @@ class ViewPane {
 
  private:
   struct Drawing;
-  Message moving(const Drawing& drawing, Json header, double most_ms);
-  voxel::Octree threshold(const Evaluation& evaluation, const Json& window);
+  /// The objects of a request, one that is dragged in its new place.
+  void add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop);
+  /// Colours one of them by its distance to another.
+  void colour(const Json& colour_by, Drawing& drawing);
+  /// A window of a scan that is no step yet.
+  voxel::DrawnObject threshold(const Evaluation& evaluation, const Json& window);
+  Message moving(Drawing& drawing, double most_ms);
 
   voxel::Renderer renderer_;
   double full_frame_ms_ = 0.0;  ///< of a frame of all pixels, as the last ones took
