@@ -112,6 +112,7 @@ function cut_target(mask: Step | undefined): string | undefined {
 export async function cut(mask: Step, target: string): Promise<void> {
   const used = steps().some((step) => step.do === "combine" && operands(step).includes(mask.id) && operands(step).includes(target));
   if (used) return notify(`${target} is cut by ${mask.id} already.`, "warning");
+  take_tool("navigate");
   const piece = free_id("piece");
   const rest = free_id("rest");
   await add_steps(
@@ -122,7 +123,6 @@ export async function cut(mask: Step, target: string): Promise<void> {
     `cut ${target} by ${mask.id}`,
   );
   set({ selected: piece });
-  take_tool("navigate");
 }
 export function cut_selected(): void {
   const mask = selected_step()?.do === "mask" ? selected_step() : steps().filter((step) => step.do === "mask").pop();
