@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
-import { drawn_objects } from "./drawn_objects";
-import { Hello, Measured, Measurement, PlanState, Step } from "./protocol";
-import { State, first_scan, kept_view, notify, set, state, steps, usual_panes } from "./state";
-import { Vec3, add, scaled } from "./vector";
-import { Refusal, Wire } from "./wire";
+import {drawn_objects} from "./drawn_objects";
+import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
+import {first_scan, kept_view, notify, set, State, state, steps, usual_panes} from "./state";
+import {add, scaled, Vec3} from "./vector";
+import {Refusal, Wire} from "./wire";
 
 let wire: Wire;
 export function use_wire(one: Wire): void {
   wire = one;
 }
-export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> => wire.ask<Answer>(word, fields);
+export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
+    wire.ask<Answer>(word, fields);
 
 /// Asks, and shows a refusal to the person; null then.
-export async function try_to<Answer>(word: string, fields: object = {}): Promise<Answer | null> {
+export async function try_to<Answer>(word: string, fields: object = {}): Promise<Answer|null> {
   try {
     return await wire.ask<Answer>(word, fields);
   } catch (error) {
@@ -25,29 +26,49 @@ export async function try_to<Answer>(word: string, fields: object = {}): Promise
   }
 }
 
-/// Takes a plan's state; the first of a plan also takes how this browser last looked at it, or fits the panes.
-export function take_plan(plan: PlanState | null): void {
-  if (!plan) return set({ plan: null, page: "start" });
+/// Takes a plan's state; the first of a plan also takes how this browser last looked at it, or fits the
+/// panes.
+export function take_plan(plan: PlanState|null): void {
+  if (!plan) return set({plan: null, page: "start"});
   const is_new = plan.path !== state.plan?.path || state.page === "start";
-  if (!is_new) return set({ plan: { ...plan, measurements: plan.measurements ?? known_measurements(plan) }, jobs: plan.jobs ?? state.jobs });
+  if (!is_new)
+    return set({
+      plan: {...plan, measurements: plan.measurements ?? known_measurements(plan)},
+      jobs: plan.jobs ?? state.jobs
+    });
   const kept = kept_view(plan.path);
   const before: Partial<State> = kept ?? {
-    ...fitted(plan), looks: {}, selected: null, cut_plane: null, compare: null, arch_mm: [], maximised: null,
+    ...fitted(plan),
+    looks: {},
+    selected: null,
+    cut_plane: null,
+    compare: null,
+    arch_mm: [],
+    maximised: null,
   };
   const needs_audit = kept ? kept.page === "audit" : plan.plan.steps.length <= 1 && plan.history.length <= 1;
-  set({ ...before, plan, page: needs_audit ? "audit" : "plan", preview: null, overlap_mm3: null, marked: null, jobs: plan.jobs ?? [] });
+  set({
+    ...before,
+    plan,
+    page: needs_audit ? "audit" : "plan",
+    preview: null,
+    overlap_mm3: null,
+    marked: null,
+    jobs: plan.jobs ?? []
+  });
   void evaluate();
 }
 
 // What was measured before, of the steps that are still as they were.
 function known_measurements(plan: PlanState): Measurement[] {
   const before = new Map(steps().map((step) => [step.id, JSON.stringify(step)]));
-  const unchanged = new Set(plan.plan.steps.filter((step) => before.get(step.id) === JSON.stringify(step)).map((step) => step.id));
+  const unchanged = new Set(
+      plan.plan.steps.filter((step) => before.get(step.id) === JSON.stringify(step)).map((step) => step.id));
   return (state.plan?.measurements ?? []).filter((found) => unchanged.has(found.id));
 }
 
 /// Panes that show the whole scan, and the cross-hair in its middle.
-export function fitted(plan: PlanState): Pick<State, "panes" | "cross_mm" | "grey"> {
+export function fitted(plan: PlanState): Pick<State, "panes"|"cross_mm"|"grey"> {
   const bounds = plan.scans[0]?.bounds_mm ?? [[-100, -120, -130], [100, 120, 120]];
   const [low, high] = bounds as [Vec3, Vec3];
   const middle = scaled(add(low, high), 0.5);
@@ -56,25 +77,26 @@ export function fitted(plan: PlanState): Pick<State, "panes" | "cross_mm" | "gre
   const panes = (state.panes.length ? state.panes : usual_panes()).map((pane, index) => {
     const host = hosts[index];
     const side = host ? Math.min(host.clientWidth, host.clientHeight) : 0;
-    return { ...pane, centre_mm: middle, pixel_mm: (extent * 1.08) / (side || 360) };
+    return {...pane, centre_mm: middle, pixel_mm: (extent * 1.08) / (side || 360)};
   });
-  return { panes, cross_mm: middle, grey: plan.scans[0]?.window_suggestion ?? [500, 2000] };
+  return {panes, cross_mm: middle, grey: plan.scans[0]?.window_suggestion ?? [500, 2000]};
 }
 
 export async function greet(): Promise<void> {
   const hello = await try_to<Hello>("hello");
   if (!hello) return;
-  set({ hello, link: "open" });
+  set({hello, link: "open"});
   if (hello.plan_state) return take_plan(hello.plan_state);
-  // The program was started anew without the plan that this window shows: its file and history are on the disk.
+  // The program was started anew without the plan that this window shows: its file and history are on the
+  // disk.
   if (state.plan) {
-    const plan = await try_to<PlanState>("open", { path: state.plan.path });
+    const plan = await try_to<PlanState>("open", {path: state.plan.path});
     if (plan) take_plan(plan);
   }
 }
 
-export async function open_plan(what: { path?: string; phantom?: string }): Promise<void> {
-  set({ plan: null, page: "start" });
+export async function open_plan(what: {path?: string; phantom?: string}): Promise<void> {
+  set({plan: null, page: "start"});
   const key = busy("Opening");
   const plan = await try_to<PlanState>("open", what);
   done(key);
@@ -83,23 +105,24 @@ export async function open_plan(what: { path?: string; phantom?: string }): Prom
 }
 
 /// One change of the plan, said in words for its history.
-export async function edit(change: object, what: string, select?: string | null): Promise<boolean> {
-  const plan = await try_to<PlanState>("edit", { ...change, what });
+export async function edit(change: object, what: string, select?: string|null): Promise<boolean> {
+  const plan = await try_to<PlanState>("edit", {...change, what});
   if (!plan) return false;
   take_plan(plan);
-  if (select !== undefined) set({ selected: select });
+  if (select !== undefined) set({selected: select});
   void evaluate();
   return true;
 }
-export const add_step = (step: Step, what: string): Promise<boolean> => edit({ add: { step } }, what, step.id);
+export const add_step = (step: Step, what: string): Promise<boolean> => edit({add: {step}}, what, step.id);
 export const replace_step = (id: string, step: Step, what: string): Promise<boolean> =>
-  edit({ replace: { id, step } }, what, step.id);
+    edit({replace: {id, step}}, what, step.id);
 
 /// Adds several steps as one edit.
 export const add_steps = (more: Step[], what: string): Promise<boolean> =>
-  edit({ steps: [...steps(), ...more] }, what, more[more.length - 1]?.id ?? null);
+    edit({steps: [...steps(), ...more]}, what, more[more.length - 1]?.id ?? null);
 
-export async function change_history(word: "undo" | "redo" | "branch" | "go_to" | "name_version", fields: object = {}): Promise<void> {
+export async function change_history(
+    word: "undo"|"redo"|"branch"|"go_to"|"name_version", fields: object = {}): Promise<void> {
   const plan = await try_to<PlanState>(word, fields);
   if (!plan) return;
   take_plan(plan);
@@ -111,17 +134,18 @@ export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
   const objects = drawn_objects().flatMap((object) => (object.id ? [object.id] : []));
   const measures = steps().filter((step) => step.do === "measure").map((step) => step.id);
-  await try_to("evaluate", certify ? { certify: true } : { objects: [...objects, ...measures] });
+  await try_to("evaluate", certify ? {certify: true} : {objects: [...objects, ...measures]});
 }
 
 export interface MeasureAnswer extends Measured {
   sentence?: string;
 }
-export const measure = (kind: string, fields: object): Promise<MeasureAnswer | null> => try_to("measure", { kind, ...fields });
+export const measure = (kind: string, fields: object): Promise<MeasureAnswer|null> =>
+    try_to("measure", {kind, ...fields});
 
 /// Places a landmark, or moves it, on the nearest surface or as it is. Answers where it lies then.
-export async function put_landmark(name: string, point: Vec3, snap: boolean): Promise<Vec3 | null> {
-  const answer = await try_to<{ point: Vec3 }>("landmark", { name, point, snap });
+export async function put_landmark(name: string, point: Vec3, snap: boolean): Promise<Vec3|null> {
+  const answer = await try_to<{point: Vec3}>("landmark", {name, point, snap});
   return answer?.point ?? null;
 }
 
@@ -135,24 +159,24 @@ export function free_id(stem: string): string {
 }
 
 export function window_step(low: number, high?: number): Step {
-  const step: Step = { id: free_id("skull"), do: "window", scan: first_scan(), low };
-  return high === undefined ? step : { ...step, high };
+  const step: Step = {id: free_id("skull"), do: "window", scan: first_scan(), low};
+  return high === undefined ? step : {...step, high};
 }
 
 let next_busy = -1;
 /// Work that the page waits for, shown as a job without a share.
 export function busy(what: string): number {
   const id = next_busy--;
-  set({ jobs: [...state.jobs, { id, what, share: 0 }] });
+  set({jobs: [...state.jobs, {id, what, share: 0}]});
   return id;
 }
 export function done(id: number): void {
-  set({ jobs: state.jobs.filter((job) => job.id !== id) });
+  set({jobs: state.jobs.filter((job) => job.id !== id)});
 }
 
 /// Where a file of the server is fetched, with this window's token.
 export const file_url = (name: string): string =>
-  `/file/${encodeURIComponent(name)}?token=${encodeURIComponent(token())}`;
+    `/file/${encodeURIComponent(name)}?token=${encodeURIComponent(token())}`;
 export const token = (): string => new URLSearchParams(location.search).get("token") ?? "";
 
 export function download(name: string): void {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Motions in the head's words, as the plan's `move` takes them: forward, left, up; pitch, yaw, roll.
-import { Motion } from "./protocol";
-import { Vec3 } from "./vector";
+import {Motion} from "./protocol";
+import {Vec3} from "./vector";
 
 export const directions = ["forward_mm", "left_mm", "up_mm"] as const;
 export const turns = ["pitch_deg", "yaw_deg", "roll_deg"] as const;
@@ -9,9 +9,13 @@ export type Direction = typeof directions[number];
 export type Turn = typeof turns[number];
 
 /// LPS directions of the words, for a head that is held as the scan holds it.
-export const lps: Record<Direction, Vec3> = { forward_mm: [0, -1, 0], left_mm: [1, 0, 0], up_mm: [0, 0, 1] };
+export const lps: Record<Direction, Vec3> = {
+  forward_mm: [0, -1, 0],
+  left_mm: [1, 0, 0],
+  up_mm: [0, 0, 1]
+};
 
-const words: Record<Direction | Turn, [string, string]> = {
+const words: Record<Direction|Turn, [string, string]> = {
   forward_mm: ["forward", "back"],
   left_mm: ["to the left", "to the right"],
   up_mm: ["up", "down"],
@@ -19,16 +23,20 @@ const words: Record<Direction | Turn, [string, string]> = {
   yaw_deg: ["front to the left", "front to the right"],
   roll_deg: ["left side up", "left side down"],
 };
-export const word_of = (field: Direction | Turn, value: number): string => words[field][value < 0 ? 1 : 0];
+export const word_of = (field: Direction|Turn, value: number): string => words[field][value < 0 ? 1 : 0];
 
 /// "6.0 mm forward, 2.0 mm up; 3.0° front up"
 export function motion_words(move: Motion): string {
-  const said = (fields: readonly (Direction | Turn)[], values: { [field: string]: number | undefined }, unit: string): string =>
-    fields
-      .filter((field) => Math.abs(values[field] ?? 0) >= 0.05)
-      .map((field) => `${Math.abs(values[field]!).toFixed(1)}${unit} ${word_of(field, values[field]!)}`)
-      .join(", ");
+  const said =
+      (fields: readonly(Direction | Turn)[], values: {[field: string]: number|undefined}, unit: string):
+          string =>
+              fields.filter((field) => Math.abs(values[field] ?? 0) >= 0.05)
+                  .map(
+                      (field) =>
+                          `${Math.abs(values[field]!).toFixed(1)}${unit} ${word_of(field, values[field]!)}`)
+                  .join(", ");
   const by = said(directions, move.by ?? {}, " mm");
-  const turn = said(turns, { ...(move.turn ?? {}), about_mm: undefined } as { [field: string]: number | undefined }, "°");
+  const turn =
+      said(turns, {...(move.turn ?? {}), about_mm: undefined} as {[field: string]: number | undefined}, "°");
   return [by, turn].filter(Boolean).join("; ") || "not moved";
 }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Everything that can be asked for by name: the palette, the keys and the menus read this one table.
-import { add_step, change_history, edit, evaluate, free_id, try_to } from "./actions";
-import { ask_text } from "./dialog";
-import { makes_shape } from "./drawn_objects";
-import { all_panes, fit_all, show_in } from "./pane_grid";
-import { change_pane } from "./panes";
-import { Step } from "./protocol";
-import { new_step, operations } from "./schema_form";
-import { notify, selected_step, set, state, usual_panes } from "./state";
-import { all_tools, take_tool } from "./tool";
-import { cut_selected } from "./region_tool";
-import { view_names } from "./view_frame";
+import {add_step, change_history, edit, evaluate, free_id, try_to} from "./actions";
+import {ask_text} from "./dialog";
+import {makes_shape} from "./drawn_objects";
+import {all_panes, fit_all, show_in} from "./pane_grid";
+import {change_pane} from "./panes";
+import {Step} from "./protocol";
+import {cut_selected} from "./region_tool";
+import {new_step, operations} from "./schema_form";
+import {notify, selected_step, set, state, usual_panes} from "./state";
+import {all_tools, take_tool} from "./tool";
+import {view_names} from "./view_frame";
 
 export interface Command {
   name: string;
   says?: string;
-  key?: string; // "ctrl+z", "?", "m"
+  key?: string;  // "ctrl+z", "?", "m"
   run(): void;
 }
 
@@ -33,21 +33,21 @@ export const dialogs = {
 };
 
 export async function certify_all(): Promise<void> {
-  set({ right_tab: "numbers" });
+  set({right_tab: "numbers"});
   await evaluate(true);
 }
 
 export function remove_step(step: Step): void {
-  void edit({ remove: step.id }, `${step.id} taken away`, null);
+  void edit({remove: step.id}, `${step.id} taken away`, null);
 }
 
 export async function save(): Promise<void> {
-  const plan = await try_to<{ path?: string; name?: string }>("save");
+  const plan = await try_to<{path?: string; name?: string}>("save");
   if (plan) notify(`Saved. ${plan.path ?? state.plan?.path ?? ""}`);
 }
 
-export async function copy_command(step: Step, as: "shell" | "python"): Promise<void> {
-  const answer = await try_to<{ shell: string; python: string }>("command", { step: step.id });
+export async function copy_command(step: Step, as: "shell"|"python"): Promise<void> {
+  const answer = await try_to<{shell: string; python: string}>("command", {step: step.id});
   if (!answer) return;
   try {
     await navigator.clipboard.writeText(answer[as]);
@@ -61,92 +61,192 @@ export function mirror_selected(): void {
   const step = selected_step();
   if (!step || !makes_shape(step)) return notify("Select the object to mirror first.", "warning");
   const id = free_id(`${step.id}_mirrored`);
-  void add_step({ id, do: "mirror", object: step.id }, `mirror image of ${step.id}`).then(() =>
-    set({ looks: { ...state.looks, [id]: { visible: true, opacity: 0.6 } } }));
+  void add_step({id, do: "mirror", object: step.id}, `mirror image of ${step.id}`)
+      .then(() => set({looks: {...state.looks, [id]: {visible: true, opacity: 0.6}}}));
 }
 
 export function compare_selected(): void {
   const step = selected_step();
-  if (state.compare) return set({ compare: null });
+  if (state.compare) return set({compare: null});
   if (!step || !makes_shape(step)) return notify("Select the object to compare first.", "warning");
-  const reference = typeof step.object === "string" ? step.object : state.plan?.plan.steps.find((one) => makes_shape(one) && one.id !== step.id)?.id;
+  const reference = typeof step.object === "string" ?
+      step.object :
+      state.plan?.plan.steps.find((one) => makes_shape(one) && one.id !== step.id)?.id;
   if (!reference) return notify("A second object is needed to compare with.", "warning");
-  set({ compare: { object: step.id, reference, range_mm: 5 }, right_tab: "inspector" });
+  set({compare: {object: step.id, reference, range_mm: 5}, right_tab: "inspector"});
 }
 
 export function all_commands(): Command[] {
   const has_plan = state.plan !== null;
   const list: Command[] = [
-    { name: "Open a scan or plan", key: "ctrl+o", run: () => dialogs.open() },
-    { name: "Guided tour: a Le Fort I in seven steps", run: () => dialogs.tour() },
-    { name: "Keys and help", key: "?", run: () => dialogs.help() },
-    { name: "Dark or light", says: "Changes between the dark and the light page.", run: change_theme },
+    {name: "Open a scan or plan", key: "ctrl+o", run: () => dialogs.open()},
+    {name: "Guided tour: a Le Fort I in seven steps", run: () => dialogs.tour()},
+    {name: "Keys and help", key: "?", run: () => dialogs.help()},
+    {name: "Dark or light", says: "Changes between the dark and the light page.", run: change_theme},
   ];
   if (!has_plan) return list;
   return [
-    ...all_tools().map((tool) => ({ name: `Tool: ${tool.title}`, says: tool.says, key: tool.key || undefined, run: () => take_tool(tool.name) })) as Command[],
-    { name: "Undo", key: "ctrl+z", run: () => void change_history("undo") },
-    { name: "Redo", key: "ctrl+y", run: () => void change_history("redo") },
-    { name: "New branch", says: "Tries something beside the present plan.", run: () => void new_branch() },
-    { name: "Name this version", run: () => void name_version() },
-    { name: "Save", key: "ctrl+s", run: () => void save() },
-    { name: "Certify", says: "Asks both kernels and compares their answers.", key: "ctrl+enter", run: () => void certify_all() },
-    { name: "Cut inside and outside", says: "Cuts by the selected mask into the piece and the rest.", key: "x", run: cut_selected },
-    { name: "Procedure from landmarks", says: "Le Fort I, sagittal split, genioplasty: placed by landmarks.", run: () => dialogs.procedure() },
-    { name: "Mirror the selected object", run: mirror_selected },
-    { name: "Compare in colours", says: "Colours the selected object by its distance from another.", key: "c", run: compare_selected },
-    { name: "Cut plane", says: "Takes away what lies on one side of a plane, to look inside.", key: "k", run: () => set({ cut_plane: state.cut_plane ? null : { axis: 0, side: 1, offset_mm: state.cross_mm[0] } }) },
-    { name: "Radiograph and landmarks (cephalometry)", says: "The left view as a radiograph in true scale.", run: show_cephalometry },
-    { name: "Show the scan's audit", run: () => dialogs.audit() },
-    { name: "Export", says: "Surfaces for print, decks of finite elements, label maps.", key: "ctrl+e", run: () => dialogs.export() },
-    { name: "Report", says: "Writes the report with every certificate.", run: () => dialogs.report() },
-    { name: "Screenshot of the panes", run: () => dialogs.screenshot() },
-    { name: "Fit all panes", key: "0", run: fit_all },
-    { name: "Four views", key: "shift+1", run: () => { set({ panes: usual_panes(), maximised: null }); fit_all(); } },
-    { name: "Views and slices", says: "One view and three slices.", key: "shift+2", run: () => { show_in(0, "anterior"); show_in(1, "sagittal"); show_in(2, "axial"); show_in(3, "coronal"); set({ maximised: null }); } },
-    ...view_names.map((view, index) => ({ name: `View: ${view}`, key: String(index + 1), run: () => show_in(state.active_pane, view) })),
-    ...["axial", "coronal", "sagittal"].map((plane, index) => ({ name: `Slice: ${plane}`, key: String(index + 7), run: () => show_in(state.active_pane, plane) })),
-    { name: "Next pane", key: "n", run: () => { const next = (state.active_pane + 1) % 4; set({ active_pane: next }); all_panes()[next]?.canvas.focus(); } },
-    { name: "Enlarge the pane", key: "m", run: () => set({ maximised: state.maximised === null ? state.active_pane : null }) },
-    { name: "Take the selected step away", run: () => { const step = selected_step(); if (step) remove_step(step); } },
-    { name: "Copy the selected step as a command", run: () => { const step = selected_step(); if (step) void copy_command(step, "shell"); } },
-    { name: "Copy the selected step as Python", run: () => { const step = selected_step(); if (step) void copy_command(step, "python"); } },
+    ...all_tools().map((tool) => ({
+                         name: `Tool: ${tool.title}`,
+                         says: tool.says,
+                         key: tool.key || undefined,
+                         run: () => take_tool(tool.name)
+                       })) as Command[],
+    {name: "Undo", key: "ctrl+z", run: () => void change_history("undo")},
+    {name: "Redo", key: "ctrl+y", run: () => void change_history("redo")},
+    {name: "New branch", says: "Tries something beside the present plan.", run: () => void new_branch()},
+    {name: "Name this version", run: () => void name_version()},
+    {name: "Save", key: "ctrl+s", run: () => void save()},
+    {
+      name: "Certify",
+      says: "Asks both kernels and compares their answers.",
+      key: "ctrl+enter",
+      run: () => void certify_all()
+    },
+    {
+      name: "Cut inside and outside",
+      says: "Cuts by the selected mask into the piece and the rest.",
+      key: "x",
+      run: cut_selected
+    },
+    {
+      name: "Procedure from landmarks",
+      says: "Le Fort I, sagittal split, genioplasty: placed by landmarks.",
+      run: () => dialogs.procedure()
+    },
+    {name: "Mirror the selected object", run: mirror_selected},
+    {
+      name: "Compare in colours",
+      says: "Colours the selected object by its distance from another.",
+      key: "c",
+      run: compare_selected
+    },
+    {
+      name: "Cut plane",
+      says: "Takes away what lies on one side of a plane, to look inside.",
+      key: "k",
+      run: () => set({cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]}})
+    },
+    {
+      name: "Radiograph and landmarks (cephalometry)",
+      says: "The left view as a radiograph in true scale.",
+      run: show_cephalometry
+    },
+    {name: "Show the scan's audit", run: () => dialogs.audit()},
+    {
+      name: "Export",
+      says: "Surfaces for print, decks of finite elements, label maps.",
+      key: "ctrl+e",
+      run: () => dialogs.export()
+    },
+    {name: "Report", says: "Writes the report with every certificate.", run: () => dialogs.report()},
+    {name: "Screenshot of the panes", run: () => dialogs.screenshot()},
+    {name: "Fit all panes", key: "0", run: fit_all},
+    {
+      name: "Four views",
+      key: "shift+1",
+      run: () => {
+        set({panes: usual_panes(), maximised: null});
+        fit_all();
+      }
+    },
+    {
+      name: "Views and slices",
+      says: "One view and three slices.",
+      key: "shift+2",
+      run: () => {
+        show_in(0, "anterior");
+        show_in(1, "sagittal");
+        show_in(2, "axial");
+        show_in(3, "coronal");
+        set({maximised: null});
+      }
+    },
+    ...view_names.map(
+        (view, index) =>
+            ({name: `View: ${view}`, key: String(index + 1), run: () => show_in(state.active_pane, view)})),
+    ...["axial", "coronal", "sagittal"].map(
+        (plane, index) => (
+            {name: `Slice: ${plane}`, key: String(index + 7), run: () => show_in(state.active_pane, plane)})),
+    {
+      name: "Next pane",
+      key: "n",
+      run: () => {
+        const next = (state.active_pane + 1) % 4;
+        set({active_pane: next});
+        all_panes()[next]?.canvas.focus();
+      }
+    },
+    {
+      name: "Enlarge the pane",
+      key: "m",
+      run: () => set({maximised: state.maximised === null ? state.active_pane : null})
+    },
+    {
+      name: "Take the selected step away",
+      run: () => {
+        const step = selected_step();
+        if (step) remove_step(step);
+      }
+    },
+    {
+      name: "Copy the selected step as a command",
+      run: () => {
+        const step = selected_step();
+        if (step) void copy_command(step, "shell");
+      }
+    },
+    {
+      name: "Copy the selected step as Python",
+      run: () => {
+        const step = selected_step();
+        if (step) void copy_command(step, "python");
+      }
+    },
     ...list,
-    ...operations().filter((schema) => !schema.title?.startsWith("export")).map((schema) => ({
-      name: `Add step: ${(schema.title ?? "").replace(/_/g, " ")}`,
-      says: schema.description ?? "",
-      run: () => set({ draft_step: new_step(schema, free_id(schema.title ?? "step")), right_tab: "inspector" }),
-    })),
+    ...operations()
+        .filter((schema) => !schema.title?.startsWith("export"))
+        .map((schema) => ({
+               name: `Add step: ${(schema.title ?? "").replace(/_/g, " ")}`,
+               says: schema.description ?? "",
+               run: () => set(
+                   {draft_step: new_step(schema, free_id(schema.title ?? "step")), right_tab: "inspector"}),
+             })),
   ];
 }
 
 export function change_theme(): void {
-  const is_now_dark = state.theme === "dark" || (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
-  set({ theme: is_now_dark ? "light" : "dark" });
+  const is_now_dark = state.theme === "dark" ||
+      (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
+  set({theme: is_now_dark ? "light" : "dark"});
 }
 
 function show_cephalometry(): void {
-  change_pane(1, { mode: "view", view: "left", shading: "radiograph" });
-  set({ maximised: 1, active_pane: 1 });
+  change_pane(1, {mode: "view", view: "left", shading: "radiograph"});
+  set({maximised: 1, active_pane: 1});
   all_panes()[1]?.want(false);
   take_tool("landmark");
 }
 
 export async function new_branch(): Promise<void> {
   const name = await ask_text("New branch", "Name", `variant_${(state.plan?.branches.length ?? 0) + 1}`);
-  if (name) await change_history("branch", { name });
+  if (name) await change_history("branch", {name});
 }
 export async function name_version(): Promise<void> {
   const name = await ask_text("Name this version", "Name", "approved");
-  if (name) await change_history("name_version", { name });
+  if (name) await change_history("name_version", {name});
 }
 
 /// The command of a key press, if one has it. Keys of letters are free while something is typed.
-export function command_of(event: KeyboardEvent): Command | undefined {
+export function command_of(event: KeyboardEvent): Command|undefined {
   const target = event.target as HTMLElement;
   const is_typing = target.matches("input, textarea, select");
-  const words = [event.ctrlKey || event.metaKey ? "ctrl" : "", event.shiftKey && /^\d$/.test(event.code.replace("Digit", "")) ? "shift" : ""].filter(Boolean);
-  const base = event.shiftKey && event.code.startsWith("Digit") ? event.code.replace("Digit", "") : event.key.toLowerCase();
+  const words = [
+    event.ctrlKey || event.metaKey ? "ctrl" : "",
+    event.shiftKey && /^\d$/.test(event.code.replace("Digit", "")) ? "shift" : ""
+  ].filter(Boolean);
+  const base = event.shiftKey && event.code.startsWith("Digit") ? event.code.replace("Digit", "") :
+                                                                  event.key.toLowerCase();
   const pressed = [...words, base].join("+");
   if (is_typing && !words.includes("ctrl")) return undefined;
   return all_commands().find((command) => command.key === pressed);

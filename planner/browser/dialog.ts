@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Dialogs over the page, and a question for one line of text.
-import { Child, button, el, fill } from "./html";
-import { icon } from "./icons";
+import {button, Child, el, fill} from "./html";
+import {icon} from "./icons";
 
 export interface Dialog {
   refill(...children: Child[]): void;
@@ -10,10 +10,13 @@ export interface Dialog {
 
 /// Opens a dialog; Escape, the cross and close() end it.
 export function open_dialog(title: string, name: string, closed: () => void = () => undefined): Dialog {
-  const body = el("div", { class: "dialog-body" });
-  const box = el("dialog", { class: `dialog ${name}`, "aria-label": title });
+  const body = el("div", {class: "dialog-body"});
+  const box = el("dialog", {class: `dialog ${name}`, "aria-label": title});
   const close = (): void => box.close();
-  box.append(el("header", {}, el("h2", {}, title), button(icon("close", 16), "Close", close, { class: "ghost small" })), body);
+  box.append(
+      el("header", {}, el("h2", {}, title),
+         button(icon("close", 16), "Close", close, {class: "ghost small"})),
+      body);
   box.addEventListener("close", () => {
     box.remove();
     closed();
@@ -23,22 +26,25 @@ export function open_dialog(title: string, name: string, closed: () => void = ()
   });
   document.body.append(box);
   box.showModal();
-  return { refill: (...children) => fill(body, ...children), close };
+  return {refill: (...children) => fill(body, ...children), close};
 }
 
 /// Asks for one line of text; null where the person leaves.
-export function ask_text(title: string, label: string, usual: string): Promise<string | null> {
+export function ask_text(title: string, label: string, usual: string): Promise<string|null> {
   return new Promise((resolve) => {
-    let answer: string | null = null;
+    let answer: string|null = null;
     const dialog = open_dialog(title, "ask", () => resolve(answer));
-    const field = el("input", { value: usual, name: "answer" });
-    const form = el("form", {
-      onsubmit: (event: Event) => {
-        event.preventDefault();
-        answer = field.value.trim() || null;
-        dialog.close();
-      },
-    }, el("label", { class: "field" }, el("span", {}, label), field), el("div", { class: "row end" }, el("button", { type: "submit", class: "primary" }, "OK")));
+    const field = el("input", {value: usual, name: "answer"});
+    const form =
+        el("form", {
+          onsubmit: (event: Event) => {
+            event.preventDefault();
+            answer = field.value.trim() || null;
+            dialog.close();
+          },
+        },
+           el("label", {class: "field"}, el("span", {}, label), field),
+           el("div", {class: "row end"}, el("button", {type: "submit", class: "primary"}, "OK")));
     dialog.refill(form);
     field.select();
   });

@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they have in common.
-import { DrawnObject, Step } from "./protocol";
-import { state, steps } from "./state";
+// Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they
+// have in common.
+import {DrawnObject, Step} from "./protocol";
+import {state, steps} from "./state";
 
 const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
 export const mask_colour = "#5b9dff";
 export const overlap_colour = "#e5484d";
 const shape_steps = new Set([
-  "window", "segment", "mask", "combine", "move", "mirror", "saw", "register", "autorotate", "warp", "import", "repair",
-  "parts", "fill", "offset", "shell", "smooth", "decimate",
+  "window",
+  "segment",
+  "mask",
+  "combine",
+  "move",
+  "mirror",
+  "saw",
+  "register",
+  "autorotate",
+  "warp",
+  "import",
+  "repair",
+  "parts",
+  "fill",
+  "offset",
+  "shell",
+  "smooth",
+  "decimate",
 ]);
 
 export const makes_shape = (step: Step): boolean => shape_steps.has(step.do);
@@ -27,16 +44,18 @@ export function operands(step: Step): string[] {
 
 const moves = new Set(["move", "register", "autorotate", "warp"]);
 const is_union = (step: Step): boolean =>
-  step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
+    step.do === "combine" && typeof step.expression === "string" && !/[&^~-]/.test(step.expression);
 
 /// What a moved piece and something else have in common: interference, drawn in red.
 export function is_overlap(step: Step, all: Step[]): boolean {
-  if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&()]+$/.test(step.expression)) return false;
+  if (step.do !== "combine" || typeof step.expression !== "string" || !/^[\w\s&()]+$/.test(step.expression))
+    return false;
   return operands(step).some((name) => moves.has(all.find((other) => other.id === name)?.do ?? ""));
 }
 
 /// What lies inside a mask: a piece, which has its colour before it moves.
-const is_piece = (step: Step): boolean => step.do === "combine" && typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
+const is_piece = (step: Step): boolean => step.do === "combine" && typeof step.expression === "string" &&
+    /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
 
 function is_used_up(id: string, all: Step[]): boolean {
   return all.some((step) => {
@@ -58,16 +77,22 @@ export function look_of(id: string): Shown {
   const index = all.findIndex((step) => step.id === id);
   const step = all[index];
   const look = state.looks[id] ?? {};
-  let usual: Shown = { colour: bone[0]!, opacity: 1, visible: false };
+  let usual: Shown = {colour: bone[0]!, opacity: 1, visible: false};
   if (step) {
     const number = all.slice(0, index).filter((other) => moves.has(other.do)).length;
     const visible = !is_used_up(id, all);
-    if (step.do === "mask") usual = { colour: mask_colour, opacity: 0.35, visible };
-    else if (is_overlap(step, all)) usual = { colour: overlap_colour, opacity: 1, visible };
-    else if (moves.has(step.do)) usual = { colour: moved[number % moved.length]!, opacity: 1, visible };
-    else if (step.do === "mirror") usual = { colour: "#8fb8de", opacity: 1, visible: false };
-    else if (is_piece(step)) usual = { colour: moved[number % moved.length]!, opacity: 1, visible };
-    else usual = { colour: is_union(step) ? bone[2]! : bone[0]!, opacity: 1, visible: visible && !is_union(step) };
+    if (step.do === "mask")
+      usual = {colour: mask_colour, opacity: 0.35, visible};
+    else if (is_overlap(step, all))
+      usual = {colour: overlap_colour, opacity: 1, visible};
+    else if (moves.has(step.do))
+      usual = {colour: moved[number % moved.length]!, opacity: 1, visible};
+    else if (step.do === "mirror")
+      usual = {colour: "#8fb8de", opacity: 1, visible: false};
+    else if (is_piece(step))
+      usual = {colour: moved[number % moved.length]!, opacity: 1, visible};
+    else
+      usual = {colour: is_union(step) ? bone[2]! : bone[0]!, opacity: 1, visible: visible && !is_union(step)};
   }
   return {
     colour: look.colour ?? usual.colour,
@@ -82,15 +107,17 @@ export const object_ids = (): string[] => steps().filter(makes_shape).map((step)
 /// What the panes ask the server to draw.
 export function drawn_objects(): DrawnObject[] {
   const drawn: DrawnObject[] = [];
-  const failed = new Set((state.plan?.objects ?? []).filter((object) => object.error).map((object) => object.id));
+  const failed =
+      new Set((state.plan?.objects ?? []).filter((object) => object.error).map((object) => object.id));
   for (const id of object_ids()) {
     const look = look_of(id);
     if (state.draft_window?.replaces === id) continue;
-    if (look.visible && look.opacity > 0 && !failed.has(id)) drawn.push({ id, colour: look.colour, opacity: look.opacity });
+    if (look.visible && look.opacity > 0 && !failed.has(id))
+      drawn.push({id, colour: look.colour, opacity: look.opacity});
   }
   if (state.draft_window) {
-    const { replaces, ...window } = state.draft_window;
-    drawn.push({ window, colour: replaces ? look_of(replaces).colour : bone[0]!, opacity: 1 });
+    const {replaces, ...window} = state.draft_window;
+    drawn.push({window, colour: replaces ? look_of(replaces).colour : bone[0]!, opacity: 1});
   }
   return drawn;
 }

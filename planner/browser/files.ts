@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Scans and plans from the opened folders, and files that are dropped on the page.
-import { open_plan, token, try_to } from "./actions";
-import { open_dialog } from "./dialog";
-import { Child, button, el } from "./html";
-import { icon } from "./icons";
-import { notify, state } from "./state";
+import {open_plan, token, try_to} from "./actions";
+import {open_dialog} from "./dialog";
+import {button, Child, el} from "./html";
+import {icon} from "./icons";
+import {notify, state} from "./state";
 
 interface Entry {
   name: string;
-  kind: string; // folder, scan, plan, ...
+  kind: string;  // folder, scan, plan, ...
   size?: number;
 }
 
@@ -18,31 +18,52 @@ export function open_picker(): void {
   const folders = state.hello?.folders ?? [];
   const choose = (path: string): void => {
     dialog.close();
-    void open_plan({ path });
+    void open_plan({path});
   };
-  const show = async (folder: string): Promise<void> => {
-    const answer = await try_to<{ entries: Entry[] }>("list", { folder });
-    const entries = (answer?.entries ?? []).sort((a, b) => Number(b.kind === "folder") - Number(a.kind === "folder") || a.name.localeCompare(b.name));
+  const show = async(folder: string): Promise<void> => {
+    const answer = await try_to<{entries: Entry[]}>("list", {folder});
+    const entries = (answer?.entries ?? [])
+                        .sort(
+                            (a, b) => Number(b.kind === "folder") - Number(a.kind === "folder") ||
+                                a.name.localeCompare(b.name));
     const join = (name: string): string => `${folder.replace(/\/$/, "")}/${name}`;
     const parent = folder.replace(/\/[^/]+\/?$/, "");
     dialog.refill(
-      el("div", { class: "presets" }, folders.map((one) => button(one, `Folder ${one}`, () => void show(one), { class: one === folder ? "on" : "" }))),
-      el("p", { class: "path" }, folder),
-      el("div", { class: "files", role: "list" },
-        folders.some((one) => folder !== one && folder.startsWith(one)) ? row("folder", "..", "", () => void show(parent)) : null,
-        entries.map((entry) => row(entry.kind, entry.name, entry.size ? size_words(entry.size) : "", () => (entry.kind === "folder" ? void show(join(entry.name)) : choose(join(entry.name))),
-          entry.kind === "folder" ? () => choose(join(entry.name)) : undefined)),
-        entries.length ? null : el("p", { class: "says" }, "No scan or plan lies here.")));
+        el("div", {class: "presets"},
+           folders.map(
+               (one) =>
+                   button(one, `Folder ${one}`, () => void show(one), {class: one === folder ? "on" : ""}))),
+        el("p", {class: "path"}, folder),
+        el("div", {class: "files", role: "list"},
+           folders.some((one) => folder !== one && folder.startsWith(one)) ?
+               row("folder", "..", "", () => void show(parent)) :
+               null,
+           entries.map(
+               (entry) => row(
+                   entry.kind, entry.name, entry.size ? size_words(entry.size) : "",
+                   () => (entry.kind === "folder" ? void show(join(entry.name)) : choose(join(entry.name))),
+                   entry.kind === "folder" ? () => choose(join(entry.name)) : undefined)),
+           entries.length ? null : el("p", {class: "says"}, "No scan or plan lies here.")));
   };
   void show(folders[0] ?? ".");
 }
 
 function row(kind: string, name: string, size: string, open: () => void, as_scan?: () => void): Child {
-  return el("div", { class: "file-row", role: "listitem" },
-    el("button", { type: "button", class: "file", onclick: open }, icon(kind === "folder" ? "folder" : kind === "plan" ? "report" : "file", 16), el("span", {}, name), el("small", {}, size || kind)),
-    as_scan ? button("Open as scan", "Reads the folder as a DICOM series", as_scan, { class: "ghost small" }) : null);
+  return el(
+      "div", {class: "file-row", role: "listitem"},
+      el("button", {type: "button", class: "file", onclick: open},
+         icon(
+             kind === "folder"   ? "folder" :
+                 kind === "plan" ? "report" :
+                                   "file",
+             16),
+         el("span", {}, name), el("small", {}, size || kind)),
+      as_scan ?
+          button("Open as scan", "Reads the folder as a DICOM series", as_scan, {class: "ghost small"}) :
+          null);
 }
-const size_words = (bytes: number): string => (bytes > 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} KB`);
+const size_words = (bytes: number): string =>
+    (bytes > 1e6 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.ceil(bytes / 1e3)} KB`);
 
 /// Takes files that are dropped anywhere on the page.
 export function take_drops(): void {
@@ -63,8 +84,10 @@ export function take_drops(): void {
 
 export async function upload(file: File): Promise<void> {
   notify(`Reading ${file.name} …`);
-  const answer = await fetch(`/upload?token=${encodeURIComponent(token())}&name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
+  const answer = await fetch(
+      `/upload?token=${encodeURIComponent(token())}&name=${encodeURIComponent(file.name)}`,
+      {method: "POST", body: file});
   if (!answer.ok) return notify(`${file.name} was refused: ${(await answer.text()).slice(0, 200)}`, "error");
-  const { path } = (await answer.json()) as { path: string };
-  await open_plan({ path });
+  const {path} = (await answer.json()) as {path: string};
+  await open_plan({path});
 }

@@ -1,33 +1,56 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The page's frame: the bar on top, the rail of tools, the status line, jobs, notices and the word of a lost connection.
-import { change_history, try_to } from "./actions";
-import { certify_all, change_theme, compare_selected, dialogs, mirror_selected, new_branch } from "./commands";
-import { cut_selected } from "./region_tool";
-import { Child, button, el, fill } from "./html";
-import { IconName, icon, is_icon } from "./icons";
-import { dismiss, set, state, watch } from "./state";
-import { active_tool, all_tools, take_tool } from "./tool";
+// The page's frame: the bar on top, the rail of tools, the status line, jobs, notices and the word of a lost
+// connection.
+import {change_history, try_to} from "./actions";
+import {certify_all, change_theme, compare_selected, dialogs, mirror_selected, new_branch} from "./commands";
+import {button, Child, el, fill} from "./html";
+import {icon, IconName, is_icon} from "./icons";
+import {cut_selected} from "./region_tool";
+import {dismiss, set, state, watch} from "./state";
+import {active_tool, all_tools, take_tool} from "./tool";
 
 export function make_bar(host: HTMLElement): void {
   const again = (): void => {
     const plan = state.plan;
-    const act = (name: IconName, label: string, tip: string, run: () => void, more = {}): Child => button([icon(name, 16), el("span", { class: "label" }, label)], tip, run, { "aria-label": label, ...more });
-    fill(host,
-      button([el("span", { class: "logo" }), el("b", {}, "Octotomy")], "Start page", () => set({ page: "start" }), { class: "brand ghost" }),
-      plan ? el("span", { class: "plan-name", title: plan.path }, plan.name) : null,
-      plan ? button([icon("branch", 14), plan.branch], "New branch. The plan as it is stays on this one", () => void new_branch(), { class: "ghost small", "aria-label": `New branch beside ${plan.branch}` }) : null,
-      plan ? el("span", { class: "group" },
-        button(icon("undo", 17), "Undo. Ctrl Z", () => void change_history("undo"), { disabled: !plan.can_undo, class: "ghost" }),
-        button(icon("redo", 17), "Redo. Ctrl Y", () => void change_history("redo"), { disabled: !plan.can_redo, class: "ghost" })) : null,
-      el("span", { class: "spring" }),
-      button([icon("search", 15), el("span", { class: "label" }, "Search commands"), el("kbd", {}, "Ctrl K")], "Every command by its name", () => dialogs.palette(), { class: "search", "aria-label": "Search commands" }),
-      el("span", { class: "spring" }),
-      plan ? act("procedure", "Procedure", "Procedure. Plans an operation by landmarks and a few values", () => dialogs.procedure()) : null,
-      plan ? act("certify", "Certify", "Certify. Asks both kernels and compares their answers. Ctrl Enter", () => void certify_all()) : null,
-      plan ? act("export", "Export", "Export and print. Ctrl E", () => dialogs.export()) : null,
-      plan ? act("report", "Report", "Report. Writes every number with its certificate", () => dialogs.report(), { class: "primary" }) : null,
-      button(icon("theme", 17), "Dark or light", change_theme, { class: "ghost" }),
-      button(icon("help", 17), "Keys and help. ?", () => dialogs.help(), { class: "ghost" }));
+    const act = (name: IconName, label: string, tip: string, run: () => void, more = {}): Child => button(
+        [icon(name, 16), el("span", {class: "label"}, label)], tip, run, {"aria-label": label, ...more});
+    fill(
+        host,
+        button(
+            [el("span", {class: "logo"}), el("b", {}, "Octotomy")], "Start page", () => set({page: "start"}),
+            {class: "brand ghost"}),
+        plan ? el("span", {class: "plan-name", title: plan.path}, plan.name) : null,
+        plan ? button(
+                   [icon("branch", 14), plan.branch], "New branch. The plan as it is stays on this one",
+                   () => void new_branch(),
+                   {class: "ghost small", "aria-label": `New branch beside ${plan.branch}`}) :
+               null,
+        plan ? el("span", {class: "group"},
+                  button(
+                      icon("undo", 17), "Undo. Ctrl Z", () => void change_history("undo"),
+                      {disabled: !plan.can_undo, class: "ghost"}),
+                  button(
+                      icon("redo", 17), "Redo. Ctrl Y", () => void change_history("redo"),
+                      {disabled: !plan.can_redo, class: "ghost"})) :
+               null,
+        el("span", {class: "spring"}),
+        button(
+            [icon("search", 15), el("span", {class: "label"}, "Search commands"), el("kbd", {}, "Ctrl K")],
+            "Every command by its name", () => dialogs.palette(),
+            {class: "search", "aria-label": "Search commands"}),
+        el("span", {class: "spring"}),
+        plan ? act("procedure", "Procedure", "Procedure. Plans an operation by landmarks and a few values",
+                   () => dialogs.procedure()) :
+               null,
+        plan ? act("certify", "Certify", "Certify. Asks both kernels and compares their answers. Ctrl Enter",
+                   () => void certify_all()) :
+               null,
+        plan ? act("export", "Export", "Export and print. Ctrl E", () => dialogs.export()) : null,
+        plan ? act("report", "Report", "Report. Writes every number with its certificate",
+                   () => dialogs.report(), {class: "primary"}) :
+               null,
+        button(icon("theme", 17), "Dark or light", change_theme, {class: "ghost"}),
+        button(icon("help", 17), "Keys and help. ?", () => dialogs.help(), {class: "ghost"}));
   };
   watch(["plan", "page"], again);
   again();
@@ -36,17 +59,39 @@ export function make_bar(host: HTMLElement): void {
 export function make_rail(host: HTMLElement): void {
   const again = (): void => {
     const rail_button = (name: IconName, tip: string, on: boolean, run: () => void): Child =>
-      button(icon(name, 20), tip, run, { class: on ? "on" : "", "aria-pressed": String(on) });
-    fill(host,
-      all_tools().filter((tool) => is_icon(tool.name)).map((tool) =>
-        rail_button(tool.name as IconName, `${tool.title}${tool.key ? ` (${tool.key.toUpperCase()})` : ""}. ${tool.says}`, state.tool === tool.name, () => { set({ right_tab: "inspector" }); take_tool(tool.name); })),
-      el("hr", {}),
-      rail_button("cut", "Cut (X). Cuts by the selected mask into the piece inside and the rest", false, cut_selected),
-      rail_button("mirror", "Mirror. Makes the selected object's mirror image about the plane that fits best", false, mirror_selected),
-      rail_button("compare", "Compare (C). Colours the selected object by its distance from another", state.compare !== null, compare_selected),
-      rail_button("plane", "Cut plane (K). Takes away what lies on one side, to look inside", state.cut_plane !== null, () => set({ cut_plane: state.cut_plane ? null : { axis: 0, side: 1, offset_mm: state.cross_mm[0] }, right_tab: "inspector" })),
-      el("span", { class: "spring" }),
-      rail_button("camera", "Screenshot. The panes as a picture", false, () => dialogs.screenshot()));
+        button(icon(name, 20), tip, run, {class: on ? "on" : "", "aria-pressed": String(on)});
+    fill(
+        host,
+        all_tools()
+            .filter((tool) => is_icon(tool.name))
+            .map(
+                (tool) => rail_button(
+                    tool.name as IconName,
+                    `${tool.title}${tool.key ? ` (${tool.key.toUpperCase()})` : ""}. ${tool.says}`,
+                    state.tool === tool.name,
+                    () => {
+                      set({right_tab: "inspector"});
+                      take_tool(tool.name);
+                    })),
+        el("hr", {}),
+        rail_button(
+            "cut", "Cut (X). Cuts by the selected mask into the piece inside and the rest", false,
+            cut_selected),
+        rail_button(
+            "mirror", "Mirror. Makes the selected object's mirror image about the plane that fits best",
+            false, mirror_selected),
+        rail_button(
+            "compare", "Compare (C). Colours the selected object by its distance from another",
+            state.compare !== null, compare_selected),
+        rail_button(
+            "plane", "Cut plane (K). Takes away what lies on one side, to look inside",
+            state.cut_plane !== null,
+            () => set({
+              cut_plane: state.cut_plane ? null : {axis: 0, side: 1, offset_mm: state.cross_mm[0]},
+              right_tab: "inspector"
+            })),
+        el("span", {class: "spring"}),
+        rail_button("camera", "Screenshot. The panes as a picture", false, () => dialogs.screenshot()));
   };
   watch(["tool", "plan", "compare", "cut_plane"], again);
   again();
@@ -56,35 +101,62 @@ export function make_status(host: HTMLElement): void {
   const again = (): void => {
     const tool = active_tool();
     const cross = state.cross_mm.map((x) => x.toFixed(1).replace("-", "−")).join("  ");
-    fill(host,
-      el("span", { class: "hint" }, state.marked ? [el("b", {}, "Marked: "), state.marked.says, " ", button("clear", "Takes the mark away", () => set({ marked: null }), { class: "link" })] : tool && tool.name !== "navigate" ? [el("b", {}, `${tool.title}: `), tool.says] : "Drag turns a view. Wheel zooms a view and goes through slices. Click brings the cross-hair."),
-      el("span", { class: "spring" }),
-      state.pointer ? el("span", { class: "pointer" }, state.pointer) : null,
-      el("span", { "data-tip": "The cross-hair: x to the patient's left, y to the back, z to the head." }, `✛ ${cross} mm`),
-      jobs());
+    fill(
+        host,
+        el("span", {class: "hint"},
+           state.marked ?
+               [
+                 el("b", {}, "Marked: "), state.marked.says, " ",
+                 button("clear", "Takes the mark away", () => set({marked: null}), {class: "link"})
+               ] :
+               tool && tool.name !== "navigate" ?
+               [el("b", {}, `${tool.title}: `), tool.says] :
+               "Drag turns a view. Wheel zooms a view and goes through slices. Click brings the cross-hair."),
+        el("span", {class: "spring"}), state.pointer ? el("span", {class: "pointer"}, state.pointer) : null,
+        el("span", {"data-tip": "The cross-hair: x to the patient's left, y to the back, z to the head."},
+           `✛ ${cross} mm`),
+        jobs());
   };
   watch(["tool", "pointer", "cross_mm", "marked", "jobs", "link"], again);
 }
 
 function jobs(): Child {
   const job = state.jobs[state.jobs.length - 1];
-  if (!job) return el("span", { class: "idle" }, el("i", { class: `lamp ${state.link}` }), state.link === "open" ? "ready" : "no connection");
+  if (!job)
+    return el(
+        "span", {class: "idle"}, el("i", {class: `lamp ${state.link}`}),
+        state.link === "open" ? "ready" : "no connection");
   const share = job.share > 0 ? `${Math.round(job.share * 100)} %` : "";
   const left = job.left_s ? `, ${Math.ceil(job.left_s)} s left` : "";
-  return el("span", { class: "job", role: "status" }, el("span", { class: "spinner" }), `${job.what} ${share}${left}`,
-    job.share > 0 ? el("progress", { value: job.share, max: 1 }) : null,
-    job.id > 0 ? button(icon("close", 12), `Cancel ${job.what}`, () => void try_to("cancel", { target: job.id }), { class: "ghost small" }) : null);
+  return el(
+      "span", {class: "job", role: "status"}, el("span", {class: "spinner"}), `${job.what} ${share}${left}`,
+      job.share > 0 ? el("progress", {value: job.share, max: 1}) : null,
+      job.id > 0 ? button(
+                       icon("close", 12), `Cancel ${job.what}`, () => void try_to("cancel", {target: job.id}),
+                       {class: "ghost small"}) :
+                   null);
 }
 
 export function make_notices(host: HTMLElement): void {
-  watch(["notices"], () => fill(host, state.notices.map((notice) =>
-    el("div", { class: `notice ${notice.level}`, role: notice.level === "error" ? "alert" : "status" }, el("span", {}, notice.message), button(icon("close", 14), "Close", () => dismiss(notice.key), { class: "ghost small" })))));
+  watch(
+      ["notices"],
+      () => fill(
+          host,
+          state.notices.map(
+              (notice) => el(
+                  "div",
+                  {class: `notice ${notice.level}`, role: notice.level === "error" ? "alert" : "status"},
+                  el("span", {}, notice.message),
+                  button(icon("close", 14), "Close", () => dismiss(notice.key), {class: "ghost small"})))));
 }
 
 export function make_lost(host: HTMLElement): void {
   const again = (): void => {
     host.hidden = state.link !== "lost";
-    if (!host.hidden) fill(host, el("span", { class: "spinner" }), "The connection to the planner's program is lost. Nothing is lost: the plan is on disk. Trying again …");
+    if (!host.hidden)
+      fill(
+          host, el("span", {class: "spinner"}),
+          "The connection to the planner's program is lost. Nothing is lost: the plan is on disk. Trying again …");
   };
   watch(["link"], again);
   again();

@@ -1,63 +1,87 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The page of `octotomy serve`: makes its parts, opens the wire, and gives what the server tells to the state.
-import { evaluate, greet, take_plan, use_wire } from "./actions";
-import { command_of, dialogs } from "./commands";
-import { drawn_objects } from "./drawn_objects";
-import { open_picker, take_drops } from "./files";
-import { make_bar, make_lost, make_notices, make_rail, make_status } from "./frame";
-import { el } from "./html";
-import { make_inspector } from "./inspector";
-import { move_tool } from "./move_tool";
-import { make_panes, reconnected, take_picture } from "./pane_grid";
-import { use_picture_asker } from "./panes";
-import { open_audit, open_export, open_procedure, take_screenshot, write_report } from "./plan_dialogs";
-import { open_help, open_palette } from "./palette";
-import { angle_tool, arch_tool, distance_tool, landmark_tool, segment_tool, surface_tool } from "./point_tools";
-import { Job, Json, Measurement, Notice, ObjectState, PlanState } from "./protocol";
-import { region_tool } from "./region_tool";
-import { make_start } from "./start_page";
-import { notify, set, state, watch } from "./state";
-import { make_lists } from "./step_lists";
-import { Tool, register_tools, take_tool } from "./tool";
-import { attach_tips } from "./tool_tip";
-import { make_tour, start_tour } from "./tour";
-import { window_tool } from "./window_panel";
-import { Wire } from "./wire";
+// The page of `octotomy serve`: makes its parts, opens the wire, and gives what the server tells to the
+// state.
+import {evaluate, greet, take_plan, use_wire} from "./actions";
+import {command_of, dialogs} from "./commands";
+import {drawn_objects} from "./drawn_objects";
+import {open_picker, take_drops} from "./files";
+import {make_bar, make_lost, make_notices, make_rail, make_status} from "./frame";
+import {el} from "./html";
+import {make_inspector} from "./inspector";
+import {move_tool} from "./move_tool";
+import {open_help, open_palette} from "./palette";
+import {make_panes, reconnected, take_picture} from "./pane_grid";
+import {use_picture_asker} from "./panes";
+import {open_audit, open_export, open_procedure, take_screenshot, write_report} from "./plan_dialogs";
+import {angle_tool, arch_tool, distance_tool, landmark_tool, segment_tool, surface_tool} from "./point_tools";
+import {Job, Json, Measurement, Notice, ObjectState, PlanState} from "./protocol";
+import {region_tool} from "./region_tool";
+import {make_start} from "./start_page";
+import {notify, set, state, watch} from "./state";
+import {make_lists} from "./step_lists";
+import {register_tools, take_tool, Tool} from "./tool";
+import {attach_tips} from "./tool_tip";
+import {make_tour, start_tour} from "./tour";
+import {window_tool} from "./window_panel";
+import {Wire} from "./wire";
 
-const navigate: Tool = { name: "navigate", title: "Look", says: "Drag turns a view, the wheel zooms, a click selects.", key: "v", cursor: "default" };
+const navigate: Tool = {
+  name: "navigate",
+  title: "Look",
+  says: "Drag turns a view, the wheel zooms, a click selects.",
+  key: "v",
+  cursor: "default"
+};
 
-function take_event(word: string, message: { [key: string]: Json }): void {
-  if (word === "plan") take_plan((message.plan_state ?? message.plan ?? message) as unknown as PlanState);
-  else if (word === "objects") take_objects(message as unknown as { objects: ObjectState[]; measurements?: Measurement[] });
-  else if (word === "progress") take_progress(message);
-  else if (word === "job_done") set({ jobs: state.jobs.filter((job) => job.id !== message.job) });
-  else if (word === "notice") notify(String(message.message), (message.level as Notice["level"]) ?? "info");
+function take_event(word: string, message: {[key: string]: Json}): void {
+  if (word === "plan")
+    take_plan((message.plan_state ?? message.plan ?? message) as unknown as PlanState);
+  else if (word === "objects")
+    take_objects(message as unknown as {
+      objects: ObjectState[];
+      measurements?: Measurement[]
+    });
+  else if (word === "progress")
+    take_progress(message);
+  else if (word === "job_done")
+    set({jobs: state.jobs.filter((job) => job.id !== message.job)});
+  else if (word === "notice")
+    notify(String(message.message), (message.level as Notice["level"]) ?? "info");
 }
 
-function take_objects(found: { objects: ObjectState[]; measurements?: Measurement[] }): void {
+function take_objects(found: {objects: ObjectState[]; measurements?: Measurement[]}): void {
   const plan = state.plan;
   if (!plan) return;
   const news = new Map(found.objects.map((object) => [object.id, object]));
-  const known = plan.objects.map((object) => ({ ...object, ...news.get(object.id) }));
+  const known = plan.objects.map((object) => ({...object, ...news.get(object.id)}));
   const more = found.objects.filter((object) => !plan.objects.some((one) => one.id === object.id));
-  set({ plan: { ...plan, objects: [...known, ...more], measurements: found.measurements ?? plan.measurements }, evaluations: state.evaluations + 1 });
+  set({
+    plan: {...plan, objects: [...known, ...more], measurements: found.measurements ?? plan.measurements},
+    evaluations: state.evaluations + 1
+  });
 }
 
-function take_progress(message: { [key: string]: Json }): void {
-  const job: Job = { id: Number(message.job), what: String(message.what ?? "Working"), share: Number(message.share ?? 0), left_s: message.left_s as number | null };
-  set({ jobs: [...state.jobs.filter((one) => one.id !== job.id), job] });
+function take_progress(message: {[key: string]: Json}): void {
+  const job: Job = {
+    id: Number(message.job),
+    what: String(message.what ?? "Working"),
+    share: Number(message.share ?? 0),
+    left_s: message.left_s as number | null
+  };
+  set({jobs: [...state.jobs.filter((one) => one.id !== job.id), job]});
 }
 
 function make_page(): void {
-  const part = (name: string, tag: "header" | "nav" | "aside" | "section" | "footer" | "div", label: string): HTMLElement => {
-    const element = el(tag, { class: name, "aria-label": label });
-    document.body.append(element);
-    return element;
-  };
+  const part =
+      (name: string, tag: "header"|"nav"|"aside"|"section"|"footer"|"div", label: string): HTMLElement => {
+        const element = el(tag, {class: name, "aria-label": label});
+        document.body.append(element);
+        return element;
+      };
   make_bar(part("bar", "header", "Plan"));
   make_lists(part("lists", "aside", "Objects, steps and history"));
   make_rail(part("rail", "nav", "Tools"));
-  make_panes(part("panes", "section", "Panes"), (pane, frame) => wire.say("shown", { pane, frame }));
+  make_panes(part("panes", "section", "Panes"), (pane, frame) => wire.say("shown", {pane, frame}));
   make_inspector(part("inspector", "aside", "Inspector"));
   make_status(part("status", "footer", "Status"));
   make_start(part("start-host", "div", "Start"));
@@ -70,13 +94,14 @@ function make_page(): void {
 
 function follow_theme(): void {
   const again = (): void => {
-    const is_dark = state.theme === "dark" || (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
+    const is_dark = state.theme === "dark" ||
+        (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
     document.documentElement.dataset.theme = is_dark ? "dark" : "light";
     localStorage.setItem("octotomy-theme", state.theme);
   };
   const kept = localStorage.getItem("octotomy-theme");
-  if (kept === "light" || kept === "dark") set({ theme: kept });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => set({ theme: state.theme }));
+  if (kept === "light" || kept === "dark") set({theme: kept});
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => set({theme: state.theme}));
   watch(["theme"], again);
   again();
 }
@@ -95,28 +120,42 @@ function follow_keys(): void {
     command.run();
   });
   addEventListener("pointerdown", (event) => {
-    if (!(event.target as Element).closest(".menu-host")) document.querySelectorAll<HTMLElement>(".menu").forEach((menu) => { menu.hidden = true; });
+    if (!(event.target as Element).closest(".menu-host"))
+      document.querySelectorAll<HTMLElement>(".menu").forEach((menu) => {
+        menu.hidden = true;
+      });
   });
 }
 
-const socket_url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket${location.search}`;
+const socket_url =
+    `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket${location.search}`;
 const wire = new Wire(socket_url, {
   opened: () => {
-    set({ link: "open" });
+    set({link: "open"});
     void greet().then(() => {
       reconnected();
     });
   },
-  lost: () => set({ link: "lost", jobs: [] }),
+  lost: () => set({link: "lost", jobs: []}),
   event: take_event,
   picture: take_picture,
 });
 use_wire(wire);
 use_picture_asker((fields, on_id) => wire.ask("pane", fields, on_id));
-register_tools([navigate, window_tool, region_tool, move_tool, landmark_tool, distance_tool, angle_tool, surface_tool, segment_tool, arch_tool]);
+register_tools([
+  navigate, window_tool, region_tool, move_tool, landmark_tool, distance_tool, angle_tool, surface_tool,
+  segment_tool, arch_tool
+]);
 Object.assign(dialogs, {
-  palette: open_palette, help: open_help, open: open_picker, audit: open_audit, procedure: open_procedure, export: open_export,
-  report: () => void write_report(), screenshot: take_screenshot, tour: () => void start_tour(),
+  palette: open_palette,
+  help: open_help,
+  open: open_picker,
+  audit: open_audit,
+  procedure: open_procedure,
+  export: open_export,
+  report: () => void write_report(),
+  screenshot: take_screenshot,
+  tour: () => void start_tour(),
 });
 follow_theme();
 make_page();

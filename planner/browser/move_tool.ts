@@ -1,45 +1,47 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moves and turns a piece: by handles in a pane, or by numbers in the head's words; the overlap is told and drawn meanwhile.
-import { add_steps, free_id, replace_step } from "./actions";
-import { Direction, Turn, directions, lps, motion_words, turns, word_of } from "./anatomical";
-import { is_overlap, look_of, makes_shape, overlap_colour } from "./drawn_objects";
-import { Child, el } from "./html";
-import { dot_at, ink, mark_mm, text } from "./overlay";
-import type { Pane } from "./panes";
-import { Json, Motion, Step } from "./protocol";
-import { selected_step, set, state, steps } from "./state";
-import { Tool } from "./tool";
-import { Vec2, Vec3, add, dot, scaled } from "./vector";
+// Moves and turns a piece: by handles in a pane, or by numbers in the head's words; the overlap is told and
+// drawn meanwhile.
+import {add_steps, free_id, replace_step} from "./actions";
+import {Direction, directions, lps, motion_words, Turn, turns, word_of} from "./anatomical";
+import {is_overlap, look_of, makes_shape, overlap_colour} from "./drawn_objects";
+import {Child, el} from "./html";
+import {dot_at, ink, mark_mm, text} from "./overlay";
 
-type Handle = Direction | "turn" | "free";
+import type {Pane} from "./panes";
+import {Json, Motion, Step} from "./protocol";
+import {selected_step, set, state, steps} from "./state";
+import {Tool} from "./tool";
+import {Vec2, Vec3, add, dot, scaled} from "./vector";
+
+type Handle = Direction|"turn"|"free";
 interface Held {
   handle: Handle;
   start: Vec2;
   pane: Pane;
   before: Motion;
 }
-let held: Held | null = null;
+let held: Held|null = null;
 
 const arrow_px = 62;
 const ring_px = 84;
 const turn_axes: Record<Turn, [Vec3, Vec3]> = {
-  pitch_deg: [[0, -1, 0], [0, 0, 1]], // the front goes up
-  yaw_deg: [[0, -1, 0], [1, 0, 0]], // the front goes to the left
-  roll_deg: [[1, 0, 0], [0, 0, 1]], // the left side goes up
+  pitch_deg: [[0, -1, 0], [0, 0, 1]],  // the front goes up
+  yaw_deg: [[0, -1, 0], [1, 0, 0]],    // the front goes to the left
+  roll_deg: [[1, 0, 0], [0, 0, 1]],    // the left side goes up
 };
 
 /// The piece that the tool moves: the selected move's, or the selected object itself.
-function piece(): { source: string; step: Step | undefined } | null {
+function piece(): {source: string; step: Step | undefined}|null {
   const step = selected_step();
   if (!step || !makes_shape(step) || step.do === "mask") return null;
-  if (step.do === "move" && typeof step.object === "string") return { source: step.object, step };
+  if (step.do === "move" && typeof step.object === "string") return {source: step.object, step};
   const moved = steps().find((one) => one.do === "move" && one.object === step.id);
-  return moved ? { source: step.id, step: moved } : { source: step.id, step: undefined };
+  return moved ? {source: step.id, step: moved} : {source: step.id, step: undefined};
 }
 
-const motion_of = (step: Step | undefined): Motion => ({
-  by: { ...((step?.by as Motion["by"]) ?? {}) },
-  ...(step?.turn ? { turn: { ...(step.turn as unknown as NonNullable<Motion["turn"]>) } } : {}),
+const motion_of = (step: Step|undefined): Motion => ({
+  by: {...((step?.by as Motion["by"]) ?? {})},
+  ...(step?.turn ? {turn: {...(step.turn as unknown as NonNullable<Motion["turn"]>)}} : {}),
 });
 const current = (): Motion => state.preview?.move ?? motion_of(piece()?.step);
 
@@ -54,80 +56,91 @@ function centre_of(id: string): Vec3 {
 }
 
 /// What a piece must not run into: the shown objects that stay.
-function others(source: string, moved: string | undefined): string[] {
+function others(source: string, moved: string|undefined): string[] {
   return steps()
-    .filter((step) => makes_shape(step) && step.do !== "mask" && step.id !== source && step.id !== moved)
-    .filter((step) => look_of(step.id).visible && !is_overlap(step, steps()) && step.object !== source)
-    .map((step) => step.id);
+      .filter((step) => makes_shape(step) && step.do !== "mask" && step.id !== source && step.id !== moved)
+      .filter((step) => look_of(step.id).visible && !is_overlap(step, steps()) && step.object !== source)
+      .map((step) => step.id);
 }
 
 export function preview_motion(move: Motion): void {
   const one = piece();
   if (!one) return;
   const object = one.step?.id ?? `${one.source}_moved`;
-  set({ preview: { object: one.step?.id ?? one.source, of: one.source, move, against: others(one.source, object) } });
+  set({
+    preview: {object: one.step?.id ?? one.source, of: one.source, move, against: others(one.source, object)}
+  });
 }
 
 export async function commit_motion(move: Motion): Promise<void> {
   const one = piece();
   if (!one) return;
-  const fields = { by: clean(move.by ?? {}), ...(move.turn ? { turn: { ...clean(move.turn as { [f: string]: Json }), about_mm: move.turn.about_mm } } : {}) };
+  const fields = {
+    by: clean(move.by ?? {}),
+    ...(move.turn ? {turn: {...clean(move.turn as {[f: string]: Json}), about_mm: move.turn.about_mm}} : {})
+  };
   const what = `${one.source}: ${motion_words(move)}`;
   if (one.step) {
-    const { by: _by, turn: _turn, ...kept } = one.step;
-    await replace_step(one.step.id, { ...kept, ...fields } as Step, what);
+    const {by: _by, turn: _turn, ...kept} = one.step;
+    await replace_step(one.step.id, {...kept, ...fields} as Step, what);
   } else {
     const id = free_id(`${one.source}_moved`);
     const stays = others(one.source, id);
-    const more: Step[] = [{ id, do: "move", object: one.source, ...fields } as Step];
+    const more: Step[] = [{id, do: "move", object: one.source, ...fields} as Step];
     // What both have in common, and last the operation's outcome, which the report shows.
     if (stays.length)
       more.push(
-        { id: free_id("overlap"), do: "combine", expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}` },
-        { id: free_id("planned"), do: "combine", expression: `${stays.join(" | ")} | ${id}` });
+          {
+            id: free_id("overlap"),
+            do: "combine",
+            expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}`
+          },
+          {id: free_id("planned"), do: "combine", expression: `${stays.join(" | ")} | ${id}`});
     await add_steps(more, what);
-    set({ selected: id });
+    set({selected: id});
   }
-  set({ preview: null, overlap_mm3: null });
+  set({preview: null, overlap_mm3: null});
 }
-const clean = (values: { [field: string]: Json | undefined }): { [field: string]: Json } =>
-  Object.fromEntries(Object.entries(values).filter(([, value]) => typeof value === "number" && value !== 0)) as { [field: string]: Json };
+const clean = (values: {[field: string]: Json|undefined}): {[field: string]: Json} =>
+    Object.fromEntries(Object.entries(values).filter(
+        ([, value]) => typeof value === "number" && value !== 0)) as {[field: string]: Json};
 
-const arrow_end = (pane: Pane, word: Direction): Vec2 | null => {
+const arrow_end = (pane: Pane, word: Direction): Vec2|null => {
   const frame = pane.frame;
   const x = dot(lps[word], frame.right);
   const y = -dot(lps[word], frame.up);
   return Math.hypot(x, y) < 0.35 ? null : [x, y];
 };
 /// The turn about the direction that a pane looks in, and whether it goes counter-clockwise on the screen.
-function turn_in(pane: Pane): { turn: Turn; sign: number } {
+function turn_in(pane: Pane): {turn: Turn; sign: number} {
   const frame = pane.frame;
   const size = (turn: Turn): number => {
     const [a, b] = turn_axes[turn];
     return dot(a, frame.right) * dot(b, frame.up) - dot(a, frame.up) * dot(b, frame.right);
   };
   const best = turns.reduce((one, other) => (Math.abs(size(other)) > Math.abs(size(one)) ? other : one));
-  return { turn: best, sign: Math.sign(size(best)) || 1 };
+  return {turn: best, sign: Math.sign(size(best)) || 1};
 }
 
 export const move_tool: Tool = {
   name: "move",
   title: "Move a piece",
-  says: "Select a piece, then drag it within the ring, by an arrow for one direction, or turn it by the ring. The overlap with what stays is drawn in red.",
+  says:
+      "Select a piece, then drag it within the ring, by an arrow for one direction, or turn it by the ring. The overlap with what stays is drawn in red.",
   key: "g",
   cursor: "move",
 
-  down({ pane, at }) {
+  down({pane, at}) {
     const one = piece();
     if (!one) return false;
     const before = current();
     const centre = pane.pixel_at(pivot_mm(one.source, before));
     const handle = handle_at(pane, at, centre, one);
     if (!handle) return false;
-    held = { handle, start: at, pane, before };
+    held = {handle, start: at, pane, before};
     return true;
   },
-  move({ at, pane }) {
+  move({at, pane}) {
     const one = piece();
     if (!held || !one) return;
     preview_motion(dragged(held, one.source, at));
@@ -139,56 +152,74 @@ export const move_tool: Tool = {
     if (state.preview) void commit_motion(state.preview.move);
   },
   press(event) {
-    const keys: { [key: string]: [Direction, number] } = {
-      w: ["up_mm", 0.5], s: ["up_mm", -0.5], a: ["left_mm", -0.5], d: ["left_mm", 0.5], f: ["forward_mm", 0.5], b: ["forward_mm", -0.5],
+    const keys: {[key: string]: [Direction, number]} = {
+      w: ["up_mm", 0.5],
+      s: ["up_mm", -0.5],
+      a: ["left_mm", -0.5],
+      d: ["left_mm", 0.5],
+      f: ["forward_mm", 0.5],
+      b: ["forward_mm", -0.5],
     };
     const hit = event.ctrlKey || event.metaKey ? undefined : keys[event.key];
     if (!hit || !piece()) return false;
     const move = current();
-    void commit_motion({ ...move, by: { ...move.by, [hit[0]]: (move.by?.[hit[0]] ?? 0) + hit[1] } });
+    void commit_motion({...move, by: {...move.by, [hit[0]]: (move.by?.[hit[0]] ?? 0) + hit[1]}});
     return true;
   },
   left() {
     held = null;
-    set({ preview: null });
+    set({preview: null});
   },
   draw: draw_handles,
-  panel: () => (piece() ? null : el("p", { class: "says" }, "Select the piece that moves in the list or click it in a view.")),
+  panel: () =>
+      (piece() ? null :
+                 el("p", {class: "says"}, "Select the piece that moves in the list or click it in a view.")),
 };
 
-function handle_at(pane: Pane, at: Vec2, centre: Vec2, one: { source: string; step: Step | undefined }): Handle | null {
+function handle_at(pane: Pane, at: Vec2, centre: Vec2, one: {source: string; step: Step | undefined}): Handle|
+    null {
   const from: Vec2 = [(at[0] - centre[0]) / pane.ratio, (at[1] - centre[1]) / pane.ratio];
   for (const word of directions) {
     const end = arrow_end(pane, word);
-    if (end && [1, -1].some((side) => Math.hypot(from[0] - side * end[0] * arrow_px, from[1] - side * end[1] * arrow_px) < 13)) return word;
+    if (end &&
+        [1, -1].some(
+            (side) =>
+                Math.hypot(from[0] - side * end[0] * arrow_px, from[1] - side * end[1] * arrow_px) < 13))
+      return word;
   }
   const radius = Math.hypot(from[0], from[1]);
   if (Math.abs(radius - ring_px) < 9) return "turn";
   const picked = pane.pick(at)?.object;
-  return radius < ring_px || (picked !== null && picked !== undefined && (picked === one.source || picked === one.step?.id)) ? "free" : null;
+  return radius < ring_px ||
+          (picked !== null && picked !== undefined && (picked === one.source || picked === one.step?.id)) ?
+      "free" :
+      null;
 }
 
 function dragged(drag: Held, source: string, at: Vec2): Motion {
-  const { pane, start, before, handle } = drag;
+  const {pane, start, before, handle} = drag;
   const frame = pane.frame;
   if (handle === "turn") {
     const centre = pane.pixel_at(pivot_mm(source, before));
     const angle = (p: Vec2): number => (Math.atan2(-(p[1] - centre[1]), p[0] - centre[0]) * 180) / Math.PI;
-    const { turn, sign } = turn_in(pane);
+    const {turn, sign} = turn_in(pane);
     const by = ((((angle(at) - angle(start)) * sign + 180) % 360) + 360) % 360 - 180;
     const about_mm = before.turn?.about_mm ?? centre_of(source);
-    return { ...before, turn: { ...before.turn, about_mm, [turn]: half((before.turn?.[turn] ?? 0) + by, 0.1) } };
+    return {...before, turn: {...before.turn, about_mm, [turn]: half((before.turn?.[turn] ?? 0) + by, 0.1)}};
   }
   const x = (at[0] - start[0]) * frame.pixel_mm;
   const y = -(at[1] - start[1]) * frame.pixel_mm;
   const moved = add(scaled(frame.right, x), scaled(frame.up, y));
-  const by = { ...before.by };
+  const by = {...before.by};
   for (const word of directions) {
     if (handle !== "free" && handle !== word) continue;
-    const along = dot(moved, lps[word]) / (handle === "free" ? 1 : Math.max(0.35, Math.hypot(dot(lps[word], frame.right), dot(lps[word], frame.up)) ** 2));
+    const along = dot(moved, lps[word]) /
+        (handle === "free" ?
+             1 :
+             Math.max(0.35, Math.hypot(dot(lps[word], frame.right), dot(lps[word], frame.up)) ** 2));
     by[word] = half((before.by?.[word] ?? 0) + along, 0.1);
   }
-  return { ...before, by };
+  return {...before, by};
 }
 const half = (value: number, to: number): number => Math.round(Math.round(value / to) * to * 100) / 100;
 
@@ -198,7 +229,7 @@ function draw_handles(pane: Pane, context: CanvasRenderingContext2D): void {
   const move = current();
   const [x, y] = pane.pixel_at(pivot_mm(one.source, move));
   const ratio = pane.ratio;
-  const { turn } = turn_in(pane);
+  const {turn} = turn_in(pane);
   context.beginPath();
   context.arc(x, y, ring_px * ratio, 0, 2 * Math.PI);
   context.lineWidth = 5 * ratio;
@@ -207,8 +238,11 @@ function draw_handles(pane: Pane, context: CanvasRenderingContext2D): void {
   context.lineWidth = 2 * ratio;
   context.strokeStyle = ink.measure;
   context.stroke();
-  dot_at(context, [x + ring_px * ratio * Math.SQRT1_2, y - ring_px * ratio * Math.SQRT1_2], 5 * ratio, ink.measure);
-  const colours: Record<Direction, string> = { left_mm: ink.cross[0], forward_mm: ink.cross[1], up_mm: ink.cross[2] };
+  dot_at(
+      context, [x + ring_px * ratio * Math.SQRT1_2, y - ring_px * ratio * Math.SQRT1_2], 5 * ratio,
+      ink.measure);
+  const colours:
+      Record<Direction, string> = {left_mm: ink.cross[0], forward_mm: ink.cross[1], up_mm: ink.cross[2]};
   for (const word of directions) {
     const end = arrow_end(pane, word);
     if (!end) continue;
@@ -219,11 +253,13 @@ function draw_handles(pane: Pane, context: CanvasRenderingContext2D): void {
   }
   dot_at(context, [x, y], 5 * ratio, "#fff");
   if (held?.pane !== pane) return;
-  const words = held.handle === "turn" ? `${turn_words(move, turn)}` : motion_words({ by: move.by ?? {} });
-  text(context, words, [x, y - (ring_px + 16) * ratio], ratio, { align: "center", px: 13 });
+  const words = held.handle === "turn" ? `${turn_words(move, turn)}` : motion_words({by: move.by ?? {}});
+  text(context, words, [x, y - (ring_px + 16) * ratio], ratio, {align: "center", px: 13});
   if (state.overlap_mm3 !== null)
     text(context, `overlap ${state.overlap_mm3.toFixed(0)} mm³`, [x, y + (ring_px + 16) * ratio], ratio, {
-      align: "center", px: 13, colour: state.overlap_mm3 > 0.5 ? "#ff8f93" : "#9be7b0",
+      align: "center",
+      px: 13,
+      colour: state.overlap_mm3 > 0.5 ? "#ff8f93" : "#9be7b0",
     });
 }
 const turn_words = (move: Motion, turn: Turn): string => {
@@ -234,7 +270,8 @@ const turn_words = (move: Motion, turn: Turn): string => {
 function arrow(context: CanvasRenderingContext2D, from: Vec2, to: Vec2, colour: string, ratio: number): void {
   const angle = Math.atan2(to[1] - from[1], to[0] - from[0]);
   const back = 10 * ratio;
-  const wing = (turned_by: number): Vec2 => [to[0] - back * Math.cos(angle + turned_by), to[1] - back * Math.sin(angle + turned_by)];
+  const wing = (turned_by: number):
+      Vec2 => [to[0] - back * Math.cos(angle + turned_by), to[1] - back * Math.sin(angle + turned_by)];
   for (const [width, ink_of] of [[5, "rgba(0,0,0,.45)"], [2.5, colour]] as const) {
     context.beginPath();
     context.moveTo(from[0], from[1]);
@@ -249,7 +286,7 @@ function arrow(context: CanvasRenderingContext2D, from: Vec2, to: Vec2, colour: 
   }
 }
 
-const titles: Record<Direction | Turn, [string, string]> = {
+const titles: Record<Direction|Turn, [string, string]> = {
   forward_mm: ["Forward", "negative: back"],
   left_mm: ["Left", "to the patient's left; negative: right"],
   up_mm: ["Up", "negative: down"],
@@ -262,52 +299,66 @@ const titles: Record<Direction | Turn, [string, string]> = {
 export function movement_fields(): Child {
   const one = piece();
   if (!one) return null;
-  if (one.step && !one.step.by && !one.step.turn && Object.keys(one.step).some((key) => !["id", "do", "object"].includes(key))) return null;
+  if (one.step && !one.step.by && !one.step.turn &&
+      Object.keys(one.step).some((key) => !["id", "do", "object"].includes(key)))
+    return null;
   const move = current();
-  const field = (word: Direction | Turn): Child => {
+  const field = (word: Direction|Turn): Child => {
     const unit = word.endsWith("mm") ? "mm" : "°";
-    const values = (unit === "mm" ? move.by : move.turn) as { [field: string]: number | undefined } | undefined;
-    const changed = (value: number): Motion =>
-      unit === "mm"
-        ? { ...move, by: { ...move.by, [word]: value } }
-        : { ...move, turn: { ...move.turn, about_mm: move.turn?.about_mm ?? centre_of(one.source), [word]: value } };
+    const values = (unit === "mm" ? move.by : move.turn) as {[field: string]: number | undefined} | undefined;
+    const changed = (value: number): Motion => unit === "mm" ? {...move, by: {...move.by, [word]: value}} : {
+      ...move,
+      turn: {...move.turn, about_mm: move.turn?.about_mm ?? centre_of(one.source), [word]: value}
+    };
     const take = (event: Event, end: boolean): void => {
       const value = Number((event.target as HTMLInputElement).value);
       if (!Number.isFinite(value)) return;
-      if (end) void commit_motion(changed(value));
-      else preview_motion(changed(value));
+      if (end)
+        void commit_motion(changed(value));
+      else
+        preview_motion(changed(value));
     };
-    return el("label", { class: "number-field", "data-tip": `${titles[word][0]}: ${titles[word][1]}` },
-      el("span", {}, titles[word][0]),
-      el("input", {
-        type: "number", step: unit === "mm" ? 0.5 : 0.5, value: (values?.[word] ?? 0).toString(), "data-key": `move-${word}`, name: word,
-        "aria-label": `${titles[word][0]}, ${titles[word][1]}`,
-        oninput: (event: Event) => take(event, false), onchange: (event: Event) => take(event, true),
-      }),
-      el("i", {}, unit));
+    return el(
+        "label", {class: "number-field", "data-tip": `${titles[word][0]}: ${titles[word][1]}`},
+        el("span", {}, titles[word][0]), el("input", {
+          type: "number",
+          step: unit === "mm" ? 0.5 : 0.5,
+          value: (values?.[word] ?? 0).toString(),
+          "data-key": `move-${word}`,
+          name: word,
+          "aria-label": `${titles[word][0]}, ${titles[word][1]}`,
+          oninput: (event: Event) => take(event, false),
+          onchange: (event: Event) => take(event, true),
+        }),
+        el("i", {}, unit));
   };
   const landmarks = state.plan?.landmarks ?? [];
   const about = move.turn?.about_mm;
-  return el("section", { class: "card" },
-    el("h3", {}, one.step ? `Motion of ${one.source}` : `Move ${one.source}`),
-    el("div", { class: "grid-3" }, directions.map(field)),
-    el("div", { class: "grid-3" }, turns.map(field)),
-    el("label", { class: "field" }, el("span", {}, "Turn about"),
-      el("select", {
-        "data-key": "move-about",
-        onchange: (event: Event) => {
-          const value = (event.target as HTMLSelectElement).value;
-          const about_mm = value === "" ? centre_of(one.source) : value === "cross" ? state.cross_mm : value;
-          void commit_motion({ ...move, turn: { ...move.turn, about_mm } });
-        },
-      },
-        el("option", { value: "", selected: typeof about !== "string" }, "its middle"),
-        el("option", { value: "cross" }, "the cross-hair"),
-        landmarks.map((mark) => el("option", { value: mark.name, selected: about === mark.name }, mark.name.replace(/_/g, " "))))),
-    el("p", { class: "reading", role: "status" }, motion_words(move),
-      state.preview && state.overlap_mm3 !== null
-        ? el("b", { style: `color:${state.overlap_mm3 > 0.5 ? overlap_colour : "var(--good)"}` }, ` overlap ${state.overlap_mm3.toFixed(0)} mm³`)
-        : null));
+  return el(
+      "section", {class: "card"}, el("h3", {}, one.step ? `Motion of ${one.source}` : `Move ${one.source}`),
+      el("div", {class: "grid-3"}, directions.map(field)), el("div", {class: "grid-3"}, turns.map(field)),
+      el("label", {class: "field"}, el("span", {}, "Turn about"),
+         el("select", {
+           "data-key": "move-about",
+           onchange: (event: Event) => {
+             const value = (event.target as HTMLSelectElement).value;
+             const about_mm = value === "" ? centre_of(one.source) :
+                 value === "cross"         ? state.cross_mm :
+                                             value;
+             void commit_motion({...move, turn: {...move.turn, about_mm}});
+           },
+         },
+            el("option", {value: "", selected: typeof about !== "string"}, "its middle"),
+            el("option", {value: "cross"}, "the cross-hair"),
+            landmarks.map(
+                (mark) =>
+                    el("option", {value: mark.name, selected: about === mark.name},
+                       mark.name.replace(/_/g, " "))))),
+      el("p", {class: "reading", role: "status"}, motion_words(move),
+         state.preview && state.overlap_mm3 !== null ?
+             el("b", {style: `color:${state.overlap_mm3 > 0.5 ? overlap_colour : "var(--good)"}`},
+                ` overlap ${state.overlap_mm3.toFixed(0)} mm³`) :
+             null));
 }
 
 export const can_move = (): boolean => piece() !== null;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines, marks and the
-// handles of the tool that is in hand.
-import type { Pane } from "./panes";
-import { Json, Step } from "./protocol";
-import { state, steps, step_of } from "./state";
-import { active_tool } from "./tool";
-import { Vec2, Vec3, add, dot, scaled } from "./vector";
-import { edge_letters, view_of_plane, view_text } from "./view_frame";
+// What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
+// marks and the handles of the tool that is in hand.
+import type {Pane} from "./panes";
+import {Json, Step} from "./protocol";
+import {state, steps, step_of} from "./state";
+import {active_tool} from "./tool";
+import {Vec2, Vec3, add, dot, scaled} from "./vector";
+import {edge_letters, view_of_plane, view_text} from "./view_frame";
 
 export const ink = {
-  cross: ["#ff8a65", "#7bd88f", "#64b5f6"] as const, // sagittal, coronal, axial
+  cross: ["#ff8a65", "#7bd88f", "#64b5f6"] as const,  // sagittal, coronal, axial
   region: "#5b9dff",
   landmark: "#ffd166",
   measure: "#7ee0d0",
@@ -34,11 +34,18 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
   active_tool()?.draw?.(pane, context);
   draw_letters(pane, context);
   draw_scale(pane, context);
-  if (pane.is_slow) text(context, "drawing …", [10 * ratio, pane.size[1] - 12 * ratio], ratio, { colour: ink.faint, px: 11 });
-  if (pane.problem) text(context, pane.problem, [pane.size[0] / 2, pane.size[1] / 2], ratio, { align: "center", colour: "#ffb4a8" });
+  if (pane.is_slow)
+    text(context, "drawing …", [10 * ratio, pane.size[1] - 12 * ratio], ratio, {colour: ink.faint, px: 11});
+  if (pane.problem)
+    text(
+        context, pane.problem, [pane.size[0] / 2, pane.size[1] / 2], ratio,
+        {align: "center", colour: "#ffb4a8"});
   else if (!pane.picture && !pane.is_slice) {
-    text(context, state.plan.plan.steps.length ? "No object is shown. Turn one on in the list." : "Choose a tissue to begin.",
-      [pane.size[0] / 2, pane.size[1] / 2], ratio, { align: "center", colour: ink.faint });
+    text(
+        context,
+        state.plan.plan.steps.length ? "No object is shown. Turn one on in the list." :
+                                       "Choose a tissue to begin.",
+        [pane.size[0] / 2, pane.size[1] / 2], ratio, {align: "center", colour: ink.faint});
   }
 }
 
@@ -50,24 +57,35 @@ interface TextLook {
   px?: number;
   plate?: boolean;
 }
-const dark_of: { [colour: string]: string } = { [ink.text]: "#18212b", [ink.faint]: "#52606e", [ink.landmark]: "#7a4b00", [ink.measure]: "#005e50", "#ff8f93": "#b3212a", "#9be7b0": "#14713c" };
+const dark_of: {[colour: string]: string} = {
+  [ink.text]: "#18212b",
+  [ink.faint]: "#52606e",
+  [ink.landmark]: "#7a4b00",
+  [ink.measure]: "#005e50",
+  "#ff8f93": "#b3212a",
+  "#9be7b0": "#14713c"
+};
 
 /// Words with an outline, so that they are legible on bone and on the ground; they stay within the picture.
-export function text(context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
+export function text(
+    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
   context.font = `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
   context.textAlign = look.align ?? "left";
   context.textBaseline = "middle";
   context.lineWidth = 3 * ratio;
   const colour = look.colour ?? ink.text;
   const half = context.measureText(words).width / 2 + 4 * ratio;
-  const x = look.align === "center" && 2 * half < context.canvas.width ? Math.max(half, Math.min(context.canvas.width - half, at[0])) : at[0];
+  const x = look.align === "center" && 2 * half < context.canvas.width ?
+      Math.max(half, Math.min(context.canvas.width - half, at[0])) :
+      at[0];
   context.strokeStyle = is_on_white ? "rgba(255,255,255,.85)" : "rgba(0,0,0,.75)";
   context.strokeText(words, x, at[1]);
   context.fillStyle = is_on_white ? dark_of[colour] ?? colour : colour;
   context.fillText(words, x, at[1]);
 }
 
-export function line(context: CanvasRenderingContext2D, points: Vec2[], colour: string, width: number, closed = false): void {
+export function line(
+    context: CanvasRenderingContext2D, points: Vec2[], colour: string, width: number, closed = false): void {
   if (!points.length) return;
   context.beginPath();
   points.forEach((p, i) => (i ? context.lineTo(p[0], p[1]) : context.moveTo(p[0], p[1])));
@@ -80,7 +98,8 @@ export function line(context: CanvasRenderingContext2D, points: Vec2[], colour: 
   context.stroke();
 }
 
-export function dot_at(context: CanvasRenderingContext2D, at: Vec2, radius: number, colour: string, hollow = false): void {
+export function dot_at(
+    context: CanvasRenderingContext2D, at: Vec2, radius: number, colour: string, hollow = false): void {
   context.beginPath();
   context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
   context.fillStyle = hollow ? "rgba(0,0,0,.35)" : colour;
@@ -90,14 +109,16 @@ export function dot_at(context: CanvasRenderingContext2D, at: Vec2, radius: numb
   context.stroke();
 }
 
-// Each line is the trace of the other panes' planes; a gap in the middle leaves the point itself free to be seen.
+// Each line is the trace of the other panes' planes; a gap in the middle leaves the point itself free to be
+// seen.
 function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
   if (pane.setting.mode === "panoramic") return;
   const frame = pane.frame;
   const [x, y] = pane.pixel_at(state.cross_mm);
   const [width, height] = pane.size;
   const gap = 9 * pane.ratio;
-  const axis = (d: Vec3): number => [0, 1, 2].reduce((best, i) => (Math.abs(d[i]!) > Math.abs(d[best]!) ? i : best), 0);
+  const axis = (d: Vec3): number => [0, 1, 2].reduce(
+      (best, i) => (Math.abs(d[i]!) > Math.abs(d[best]!) ? i : best), 0);
   const stroke = (from: Vec2, to: Vec2, colour: string): void => {
     context.beginPath();
     context.moveTo(from[0], from[1]);
@@ -118,7 +139,7 @@ function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
 
 /// The name under which a region drawn in the pane is kept: a view, or the view of the slice's plane.
 export const region_view = (pane: Pane): string =>
-  pane.is_slice ? view_of_plane[pane.setting.plane] : view_text(pane.setting.view);
+    pane.is_slice ? view_of_plane[pane.setting.plane] : view_text(pane.setting.view);
 
 export const uv_pixel = (pane: Pane, uv: Vec2): Vec2 => {
   const frame = pane.frame;
@@ -129,8 +150,8 @@ interface Region {
   view: string;
   polygons_mm: Vec2[][];
 }
-export const regions_of = (step: Step | undefined): Region[] =>
-  step?.do === "mask" && Array.isArray(step.regions) ? (step.regions as unknown as Region[]) : [];
+export const regions_of = (step: Step|undefined): Region[] =>
+    step?.do === "mask" && Array.isArray(step.regions) ? (step.regions as unknown as Region[]) : [];
 
 function draw_regions(pane: Pane, context: CanvasRenderingContext2D): void {
   const step = step_of(state.selected);
@@ -140,11 +161,12 @@ function draw_regions(pane: Pane, context: CanvasRenderingContext2D): void {
       for (const polygon of region.polygons_mm) {
         const points = polygon.map((uv) => uv_pixel(pane, uv));
         line(context, points, ink.region, 1.5 * pane.ratio, true);
-        if (state.tool === "region") for (const p of points) dot_at(context, p, 4 * pane.ratio, ink.region);
+        if (state.tool === "region")
+          for (const p of points) dot_at(context, p, 4 * pane.ratio, ink.region);
       }
 }
 
-export function mark_mm(mark: Json | undefined): Vec3 | null {
+export function mark_mm(mark: Json|undefined): Vec3|null {
   if (Array.isArray(mark) && mark.length === 3) return mark as Vec3;
   if (typeof mark !== "string") return null;
   return state.plan?.landmarks.find((one) => one.name === mark)?.point ?? null;
@@ -163,7 +185,10 @@ function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
     const before = at[Math.floor(at.length / 2) - 1]!;
     const words = found ? `${found.value.toFixed(found.unit === "mm" ? 2 : 1)} ${found.unit}` : step.id;
     if (Math.hypot(middle[0] - before[0], middle[1] - before[1]) < 24 * pane.ratio) continue;
-    text(context, words, [(middle[0] + before[0]) / 2 + 6 * pane.ratio, (middle[1] + before[1]) / 2 - 9 * pane.ratio], pane.ratio, { colour: ink.measure });
+    text(
+        context, words,
+        [(middle[0] + before[0]) / 2 + 6 * pane.ratio, (middle[1] + before[1]) / 2 - 9 * pane.ratio],
+        pane.ratio, {colour: ink.measure});
   }
 }
 
@@ -173,7 +198,9 @@ function draw_landmarks(pane: Pane, context: CanvasRenderingContext2D): void {
     if (pane.is_slice && Math.abs(dot(landmark.point, pane.frame.look) - plane) > 6) continue;
     const at = pane.pixel_at(landmark.point);
     dot_at(context, at, 3.5 * pane.ratio, ink.landmark);
-    text(context, landmark.name.replace(/_/g, " "), [at[0] + 7 * pane.ratio, at[1]], pane.ratio, { colour: ink.landmark, px: 11 });
+    text(
+        context, landmark.name.replace(/_/g, " "), [at[0] + 7 * pane.ratio, at[1]], pane.ratio,
+        {colour: ink.landmark, px: 11});
   }
 }
 
@@ -193,7 +220,7 @@ function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
   const [width, height] = pane.size;
   const inset = 12 * pane.ratio;
   const letters = edge_letters(pane.frame);
-  const look: TextLook = { align: "center", colour: ink.faint, px: 12 };
+  const look: TextLook = {align: "center", colour: ink.faint, px: 12};
   text(context, letters.left, [inset, height / 2], pane.ratio, look);
   text(context, letters.right, [width - inset, height / 2], pane.ratio, look);
   text(context, letters.bottom, [width / 2, height - inset], pane.ratio, look);
@@ -209,6 +236,11 @@ function draw_scale(pane: Pane, context: CanvasRenderingContext2D): void {
   const long = mm / frame.pixel_mm;
   const right = width - 10 * pane.ratio;
   const y = height - 10 * pane.ratio;
-  line(context, [[right - long, y - 4 * pane.ratio], [right - long, y], [right, y], [right, y - 4 * pane.ratio]], ink.faint, pane.ratio);
-  text(context, `${mm} mm`, [right - long / 2, y - 9 * pane.ratio], pane.ratio, { align: "center", colour: ink.faint, px: 11 });
+  line(
+      context,
+      [[right - long, y - 4 * pane.ratio], [right - long, y], [right, y], [right, y - 4 * pane.ratio]],
+      ink.faint, pane.ratio);
+  text(
+      context, `${mm} mm`, [right - long / 2, y - 9 * pane.ratio], pane.ratio,
+      {align: "center", colour: ink.faint, px: 11});
 }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The four panes, each with its head: what it shows, its slider, its buttons. They ask for new pictures when what they
-// show has changed.
-import { button, el, fill } from "./html";
-import { icon } from "./icons";
-import { fitted } from "./actions";
-import { Pane, change_pane } from "./panes";
-import { FrameHeader } from "./protocol";
-import { PaneSetting, set, state, watch } from "./state";
-import { active_tool } from "./tool";
-import { Vec2, Vec3 } from "./vector";
-import { PlaneName, ViewName, turned, view_names } from "./view_frame";
-import { attach_input } from "./view_input";
+// The four panes, each with its head: what it shows, its slider, its buttons. They ask for new pictures when
+// what they show has changed.
+import {fitted} from "./actions";
+import {button, el, fill} from "./html";
+import {icon} from "./icons";
+import {change_pane, Pane} from "./panes";
+import {FrameHeader} from "./protocol";
+import {PaneSetting, set, state, watch} from "./state";
+import {active_tool} from "./tool";
+import {Vec2, Vec3} from "./vector";
+import {PlaneName, turned, view_names, ViewName} from "./view_frame";
+import {attach_input} from "./view_input";
 
 const panes: Pane[] = [];
 export const all_panes = (): Pane[] => panes;
@@ -19,19 +19,21 @@ export const all_panes = (): Pane[] => panes;
 export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame: number) => void): void {
   for (let index = 0; index < 4; ++index) {
     const pane = new Pane(index, acknowledge);
-    const head = el("div", { class: "pane-head" });
-    const legend = el("div", { class: "legend" });
-    const frame = el("div", { class: "pane", "data-pane": index }, pane.canvas, head, legend);
+    const head = el("div", {class: "pane-head"});
+    const legend = el("div", {class: "legend"});
+    const frame = el("div", {class: "pane", "data-pane": index}, pane.canvas, head, legend);
     host.append(frame);
     panes.push(pane);
     attach_input(pane, all_panes, tell_pointer);
     let shown = "";
     const head_again = (): void => {
-      const now = JSON.stringify([{ ...pane.setting, centre_mm: 0 }, state.maximised, state.arch_mm.length]);
+      const now = JSON.stringify([{...pane.setting, centre_mm: 0}, state.maximised, state.arch_mm.length]);
       frame.classList.toggle("active", state.active_pane === index);
       frame.hidden = state.maximised !== null && state.maximised !== index;
       host.classList.toggle("one", state.maximised !== null);
-      pane.canvas.setAttribute("aria-label", `${pane_title(pane.setting)} pane. Arrow keys turn the view or go through the slices.`);
+      pane.canvas.setAttribute(
+          "aria-label",
+          `${pane_title(pane.setting)} pane. Arrow keys turn the view or go through the slices.`);
       if (now === shown) return;
       shown = now;
       fill(head, head_of(pane));
@@ -40,19 +42,26 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
     head_again();
     pane.canvas.addEventListener("picture", () => {
       const about = pane.picture?.header.legend;
-      const first_view = panes.findIndex((other, number) => !other.is_slice && (state.maximised === null || state.maximised === number));
+      const first_view = panes.findIndex(
+          (other, number) => !other.is_slice && (state.maximised === null || state.maximised === number));
       legend.hidden = !about || index !== first_view;
-      if (about) fill(legend, el("div", { class: "ramp" }), el("span", {}, `${about.low_mm} mm`), el("span", {}, "0"), el("span", {}, `+${about.high_mm} mm`), el("p", {}, about.definition));
+      if (about)
+        fill(
+            legend, el("div", {class: "ramp"}), el("span", {}, `${about.low_mm} mm`), el("span", {}, "0"),
+            el("span", {}, `+${about.high_mm} mm`), el("p", {}, about.definition));
     });
     legend.hidden = true;
   }
   watch(["plan", "looks", "draft_window", "compare", "cut_plane", "theme"], () => want_all(false));
   watch(["preview"], follow_preview);
   watch(["selected", "marked", "tool", "cross_mm", "arch_mm"], () => panes.forEach((pane) => pane.redraw()));
-  watch(["tool"], () => panes.forEach((pane) => { pane.canvas.style.cursor = active_tool()?.cursor ?? "default"; }));
+  watch(["tool"], () => panes.forEach((pane) => {
+    pane.canvas.style.cursor = active_tool()?.cursor ?? "default";
+  }));
 }
 
-// The pane in hand follows a moving piece at every picture; the others a few times a second, so that it stays smooth.
+// The pane in hand follows a moving piece at every picture; the others a few times a second, so that it stays
+// smooth.
 const others_every_ms = 300;
 let others_at = 0;
 function follow_preview(): void {
@@ -60,14 +69,16 @@ function follow_preview(): void {
   const now = performance.now();
   const is_turn_of_others = now - others_at > others_every_ms;
   if (is_turn_of_others) others_at = now;
-  for (const pane of panes) if (is_turn_of_others || pane.index === state.active_pane) pane.want(true);
+  for (const pane of panes)
+    if (is_turn_of_others || pane.index === state.active_pane) pane.want(true);
 }
 
 export function want_all(dragging: boolean): void {
   for (const pane of panes) pane.want(dragging);
 }
 export function want_slices(dragging: boolean): void {
-  for (const pane of panes) if (pane.is_slice) pane.want(dragging);
+  for (const pane of panes)
+    if (pane.is_slice) pane.want(dragging);
 }
 export function take_picture(header: FrameHeader, parts: Uint8Array[]): void {
   void panes[header.pane]?.take(header, parts);
@@ -79,7 +90,7 @@ export function reconnected(): void {
 /// Fits every pane to the scan, once the page has laid them out.
 export function fit_all(): void {
   requestAnimationFrame(() => {
-    if (state.plan) set({ panes: fitted(state.plan).panes });
+    if (state.plan) set({panes: fitted(state.plan).panes});
     want_all(false);
   });
 }
@@ -88,47 +99,84 @@ export function fit_all(): void {
 export function show_place(at_mm: Vec3, says: string): void {
   set({
     cross_mm: at_mm,
-    marked: { at_mm, says },
-    panes: state.panes.map((pane) => ({ ...pane, centre_mm: at_mm, pixel_mm: Math.min(pane.pixel_mm, 0.25) })),
+    marked: {at_mm, says},
+    panes: state.panes.map((pane) => ({...pane, centre_mm: at_mm, pixel_mm: Math.min(pane.pixel_mm, 0.25)})),
   });
   want_all(false);
 }
 
-export const pane_title = (setting: PaneSetting): string =>
-  setting.mode === "panoramic" ? "Panoramic" : capital(setting.mode === "slice" ? setting.plane : typeof setting.view === "string" ? setting.view : "free view");
+export const pane_title = (setting: PaneSetting): string => setting.mode === "panoramic" ?
+    "Panoramic" :
+    capital(
+        setting.mode === "slice"             ? setting.plane :
+            typeof setting.view === "string" ? setting.view :
+                                               "free view");
 const capital = (word: string): string => word.charAt(0).toUpperCase() + word.slice(1);
 
 function head_of(pane: Pane): Node[] {
   const setting = pane.setting;
-  const value = setting.mode === "panoramic" ? "panoramic" : setting.mode === "slice" ? setting.plane : typeof setting.view === "string" ? setting.view : "free";
-  const option = (name: string, label: string): HTMLOptionElement => el("option", { value: name, selected: name === value }, label);
-  const choose = el("select", {
-    class: "pane-choice", "aria-label": `What pane ${pane.index + 1} shows`, "data-tip": "Choose a view of the objects or a slice of the scan.",
-    onchange: (event: Event) => show_in(pane.index, (event.target as HTMLSelectElement).value),
-  },
-    el("optgroup", { label: "Views" }, [...view_names, "free" as const].map((name) => option(name, name === "free" ? "Free view" : capital(name)))),
-    el("optgroup", { label: "Slices" }, ["axial", "coronal", "sagittal"].map((name) => option(name, capital(name))), option("panoramic", "Panoramic")));
-  const angles = setting.mode === "view" && typeof setting.view !== "string"
-    ? el("span", { class: "angles" }, `${setting.view.azimuth.toFixed(0)}°, ${setting.view.elevation.toFixed(0)}°`) : "";
-  const shading = el("select", {
-    class: "pane-choice faint", "aria-label": "Shading", "data-tip": "How surfaces are drawn: shaded, as a radiograph, or the largest sample.",
-    hidden: setting.mode !== "view",
-    onchange: (event: Event) => { change_pane(pane.index, { shading: (event.target as HTMLSelectElement).value }); pane.want(false); },
-  }, ([["partial_volume", "Surface"], ["radiograph", "Radiograph"], ["mip", "Largest sample"], ["context", "Context"]] as const).map(([name, label]) =>
-    el("option", { value: name, selected: name === setting.shading }, label)));
+  const value = setting.mode === "panoramic" ? "panoramic" :
+      setting.mode === "slice"               ? setting.plane :
+      typeof setting.view === "string"       ? setting.view :
+                                               "free";
+  const option = (name: string, label: string): HTMLOptionElement =>
+      el("option", {value: name, selected: name === value}, label);
+  const choose =
+      el("select", {
+        class: "pane-choice",
+        "aria-label": `What pane ${pane.index + 1} shows`,
+        "data-tip": "Choose a view of the objects or a slice of the scan.",
+        onchange: (event: Event) => show_in(pane.index, (event.target as HTMLSelectElement).value),
+      },
+         el("optgroup", {label: "Views"},
+            [...view_names, "free" as const].map(
+                (name) => option(name, name === "free" ? "Free view" : capital(name)))),
+         el("optgroup", {label: "Slices"},
+            ["axial", "coronal", "sagittal"].map((name) => option(name, capital(name))),
+            option("panoramic", "Panoramic")));
+  const angles = setting.mode === "view" && typeof setting.view !== "string" ?
+      el("span", {class: "angles"},
+         `${setting.view.azimuth.toFixed(0)}°, ${setting.view.elevation.toFixed(0)}°`) :
+      "";
+  const shading =
+      el("select", {
+        class: "pane-choice faint",
+        "aria-label": "Shading",
+        "data-tip": "How surfaces are drawn: shaded, as a radiograph, or the largest sample.",
+        hidden: setting.mode !== "view",
+        onchange: (event: Event) => {
+          change_pane(pane.index, {shading: (event.target as HTMLSelectElement).value});
+          pane.want(false);
+        },
+      },
+         ([
+           ["partial_volume", "Surface"], ["radiograph", "Radiograph"], ["mip", "Largest sample"],
+           ["context", "Context"]
+         ] as const)
+             .map(([name, label]) => el("option", {value: name, selected: name === setting.shading}, label)));
   return [
-    choose, angles as Node, shading, el("span", { class: "spring" }),
-    button(icon("maximise", 14), state.maximised === null ? "Enlarge this pane. Double click does it too" : "Show four panes", () =>
-      set({ maximised: state.maximised === null ? pane.index : null, active_pane: pane.index }), { class: "ghost small" }),
+    choose,
+    angles as Node,
+    shading,
+    el("span", {class: "spring"}),
+    button(
+        icon("maximise", 14),
+        state.maximised === null ? "Enlarge this pane. Double click does it too" : "Show four panes",
+        () => set({maximised: state.maximised === null ? pane.index : null, active_pane: pane.index}),
+        {class: "ghost small"}),
   ].filter((node) => node !== ("" as unknown as Node));
 }
 
 /// Shows a view or slice by its name in a pane.
 export function show_in(index: number, name: string): void {
-  if (name === "panoramic") change_pane(index, { mode: "panoramic" });
-  else if (name === "free") change_pane(index, { mode: "view", view: turned(state.panes[index]!.view) });
-  else if (["axial", "coronal", "sagittal"].includes(name)) change_pane(index, { mode: "slice", plane: name as PlaneName });
-  else change_pane(index, { mode: "view", view: name as ViewName });
+  if (name === "panoramic")
+    change_pane(index, {mode: "panoramic"});
+  else if (name === "free")
+    change_pane(index, {mode: "view", view: turned(state.panes[index]!.view)});
+  else if (["axial", "coronal", "sagittal"].includes(name))
+    change_pane(index, {mode: "slice", plane: name as PlaneName});
+  else
+    change_pane(index, {mode: "view", view: name as ViewName});
   panes[index]?.forget();
   panes[index]?.want(false);
 }
@@ -137,8 +185,9 @@ function tell_pointer(pane: Pane, at: Vec2): void {
   const picked = pane.pick(at);
   const value = pane.value_at(at);
   const unit = state.plan?.scans[0]?.unit ?? "HU";
-  const words = picked
-    ? `${picked.point.map((x) => x.toFixed(1).replace("-", "−")).join("  ")} mm${value === null ? "" : `   ${value.toFixed(0).replace("-", "−")} ${unit}`}${picked.object ? `   ${picked.object}` : ""}`
-    : "";
-  if (words !== state.pointer) set({ pointer: words });
+  const words = picked ? `${picked.point.map((x) => x.toFixed(1).replace("-", "−")).join("  ")} mm${
+                             value === null ? "" : `   ${value.toFixed(0).replace("-", "−")} ${unit}`}${
+                             picked.object ? `   ${picked.object}` : ""}` :
+                                             "";
+  if (words !== state.pointer) set({pointer: words});
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pane: a 2D canvas that shows the newest picture of the server, asks for the next, and picks by the depth and object
-// planes of the picture at rest. At most two pictures are under way; the latest setting wins.
-import { ask } from "./actions";
-import { drawn_objects, is_overlap, makes_shape } from "./drawn_objects";
-import { el } from "./html";
-import { draw_overlay } from "./overlay";
-import { FrameHeader, PaneRequest } from "./protocol";
-import { PaneSetting, first_scan, set, state, step_of } from "./state";
-import { Vec2, Vec3, dot, scaled, sub, add } from "./vector";
-import { ViewFrame, directions_of, pixel_of, point_of, uv_of, view_of_plane } from "./view_frame";
-import { Refusal } from "./wire";
+// A pane: a 2D canvas that shows the newest picture of the server, asks for the next, and picks by the depth
+// and object planes of the picture at rest. At most two pictures are under way; the latest setting wins.
+import {ask} from "./actions";
+import {drawn_objects, is_overlap, makes_shape} from "./drawn_objects";
+import {el} from "./html";
+import {draw_overlay} from "./overlay";
+import {FrameHeader, PaneRequest} from "./protocol";
+import {first_scan, PaneSetting, set, state, step_of} from "./state";
+import {add, dot, scaled, sub, Vec2, Vec3} from "./vector";
+import {directions_of, pixel_of, point_of, uv_of, view_of_plane, ViewFrame} from "./view_frame";
+import {Refusal} from "./wire";
 
 /// The ground of views on a dark page; on a light one they stand on white, as `octotomy render` draws them.
 export const dark_ground = "#0b0f14";
-export const is_dark = (): boolean =>
-  state.theme === "dark" || (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
+export const is_dark = (): boolean => state.theme === "dark" ||
+    (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
 
 const most_in_flight = 2;
 const rest_after_ms = 140;
@@ -26,12 +26,12 @@ interface Picture {
 }
 
 export class Pane {
-  readonly canvas = el("canvas", { tabindex: 0, role: "img" });
-  picture: Picture | null = null;
+  readonly canvas = el("canvas", {tabindex: 0, role: "img"});
+  picture: Picture|null = null;
   problem = "";
-  private depth: Float32Array | null = null;
-  private object: Uint16Array | null = null;
-  private value: Float32Array | null = null;
+  private depth: Float32Array|null = null;
+  private object: Uint16Array|null = null;
+  private value: Float32Array|null = null;
   private is_wanted = false;
   private in_flight = 0;
   private rest_timer = 0;
@@ -64,14 +64,15 @@ export class Pane {
     return this.setting.mode !== "view";
   }
 
-  /// The frame of what is wanted now; the picture's own directions where it has them, since a held head turns them.
+  /// The frame of what is wanted now; the picture's own directions where it has them, since a held head turns
+  /// them.
   get frame(): ViewFrame {
     const setting = this.setting;
     const own = this.picture?.header.view_frame;
     const wanted = directions_of(this.is_slice ? view_of_plane[setting.plane] : setting.view);
     const turned_little = own && dot(own.look, wanted.look) > 0.7 && this.picture_is_of(setting);
     return {
-      ...(turned_little ? { right: own.right, up: own.up, look: own.look } : wanted),
+      ...(turned_little ? {right: own.right, up: own.up, look: own.look} : wanted),
       centre_mm: setting.mode === "panoramic" && own ? own.centre_mm : setting.centre_mm,
       pixel_mm: setting.mode === "panoramic" && own ? own.pixel_mm : setting.pixel_mm / this.ratio,
     };
@@ -91,12 +92,13 @@ export class Pane {
     const scale = before / Math.min(width, height);
     this.canvas.width = width;
     this.canvas.height = height;
-    if (state.plan && scale !== 1) change_pane(this.index, { pixel_mm: this.setting.pixel_mm * scale });
+    if (state.plan && scale !== 1) change_pane(this.index, {pixel_mm: this.setting.pixel_mm * scale});
     this.want(false);
     this.redraw_now();
   }
 
-  /// Asks for a picture of the present setting; while dragging a coarse one, and one at rest soon after the last.
+  /// Asks for a picture of the present setting; while dragging a coarse one, and one at rest soon after the
+  /// last.
   want(dragging: boolean): void {
     this.is_wanted = true;
     this.is_dragging = dragging;
@@ -134,8 +136,9 @@ export class Pane {
       request.scan = first_scan();
       request.window = state.grey;
       request.at_mm = state.cross_mm;
-      request.plane =
-        setting.mode === "panoramic" && state.arch_mm.length > 1 ? { curve_mm: state.arch_mm, height_mm: 70 } : setting.plane;
+      request.plane = setting.mode === "panoramic" && state.arch_mm.length > 1 ?
+          {curve_mm: state.arch_mm, height_mm: 70} :
+          setting.plane;
       if (state.draft_window) request.threshold = [state.draft_window.low, state.draft_window.high ?? 32767];
     }
     if (state.preview) {
@@ -152,7 +155,9 @@ export class Pane {
   }
 
   private pump(): void {
-    if (!this.is_wanted || this.in_flight >= (this.is_dragging ? most_in_flight : 1) || state.link !== "open" || !state.plan) return;
+    if (!this.is_wanted || this.in_flight >= (this.is_dragging ? most_in_flight : 1) ||
+        state.link !== "open" || !state.plan)
+      return;
     if (!this.canvas.clientWidth || !this.canvas.width) return;
     if (!this.is_slice && drawn_objects().length === 0 && !state.preview) {
       this.is_wanted = false;
@@ -198,23 +203,24 @@ export class Pane {
     this.pump();
     const image = header.parts.findIndex((part) => part.kind === "jpeg" || part.kind === "png");
     const type = header.parts[image]?.kind === "png" ? "image/png" : "image/jpeg";
-    const bitmap = await createImageBitmap(new Blob([parts[image]!], { type }));
+    const bitmap = await createImageBitmap(new Blob([parts[image]!], {type}));
     this.acknowledge(this.index, header.id);
     if (header.id < this.newest_decoded) return bitmap.close();
     this.newest_decoded = header.id;
     this.picture?.bitmap.close();
-    this.picture = { header, bitmap };
+    this.picture = {header, bitmap};
     this.problem = "";
     this.depth = this.object = this.value = null;
     this.redraw_now();
     const latency_ms = started === undefined ? null : performance.now() - started;
-    this.canvas.dispatchEvent(new CustomEvent("picture", { bubbles: true, detail: { latency_ms, quality: header.quality } }));
-    if (header.overlap_mm3 !== undefined && state.preview) set({ overlap_mm3: header.overlap_mm3 });
+    this.canvas.dispatchEvent(
+        new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
+    if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
     if (header.quality === "rest") await this.take_planes(header, parts);
   }
 
   private async take_planes(header: FrameHeader, parts: Uint8Array[]): Promise<void> {
-    const plane = async (kind: "depth" | "object" | "value"): Promise<ArrayBuffer | null> => {
+    const plane = async(kind: "depth"|"object"|"value"): Promise<ArrayBuffer|null> => {
       const at = header.parts.findIndex((part) => part.kind === kind);
       return at < 0 ? null : inflated(parts[at]!);
     };
@@ -225,10 +231,12 @@ export class Pane {
     this.value = value ? new Float32Array(value) : null;
   }
 
-  /// What a pixel position of the canvas shows: a point of a surface or of the slice, and the object. Null beside all objects.
-  pick(at: Vec2): { point: Vec3; object: string | null } | null {
+  /// What a pixel position of the canvas shows: a point of a surface or of the slice, and the object. Null
+  /// beside all objects.
+  pick(at: Vec2): {point: Vec3; object: string | null}|null {
     const frame = this.frame;
-    if (this.is_slice) return { point: point_of(frame, this.size, at, dot(state.cross_mm, frame.look)), object: null };
+    if (this.is_slice)
+      return {point: point_of(frame, this.size, at, dot(state.cross_mm, frame.look)), object: null};
     const header = this.picture?.header;
     if (!header || !this.depth || header.quality !== "rest") return null;
     const x = Math.floor((at[0] * header.width) / this.canvas.width);
@@ -238,11 +246,11 @@ export class Pane {
     const number = this.object?.[y * header.width + x] ?? 0;
     const size: Vec2 = [header.width, header.height];
     const point = point_of(header.view_frame, size, [x + 0.5, y + 0.5], depth);
-    return { point, object: number ? header.objects?.[number - 1] ?? null : null };
+    return {point, object: number ? header.objects?.[number - 1] ?? null : null};
   }
 
   /// The sample of a slice at rest at a position.
-  value_at(at: Vec2): number | null {
+  value_at(at: Vec2): number|null {
     const header = this.picture?.header;
     if (!header || !this.value) return null;
     const x = Math.floor((at[0] * header.width) / this.canvas.width);
@@ -277,7 +285,7 @@ export class Pane {
 
   private redraw_now(): void {
     this.is_dirty = false;
-    const context = this.canvas.getContext("2d", { alpha: false });
+    const context = this.canvas.getContext("2d", {alpha: false});
     if (!context) return;
     const [width, height] = this.size;
     context.setTransform(1, 0, 0, 1, 0, 0);
@@ -301,7 +309,8 @@ export class Pane {
     context.imageSmoothingEnabled = Math.abs(width - picture.bitmap.width) > 1;
     const left = (this.canvas.width - width) / 2 + x;
     const top = (this.canvas.height - height) / 2 + y;
-    const near = (value: number): number => (Math.abs(value - Math.round(value)) < 0.02 ? Math.round(value) : value);
+    const near = (value: number): number =>
+        (Math.abs(value - Math.round(value)) < 0.02 ? Math.round(value) : value);
     context.drawImage(picture.bitmap, near(left), near(top), near(width), near(height));
   }
 
@@ -309,7 +318,7 @@ export class Pane {
   pan(by: Vec2): void {
     const frame = this.frame;
     const moved = add(scaled(frame.right, -by[0] * frame.pixel_mm), scaled(frame.up, by[1] * frame.pixel_mm));
-    change_pane(this.index, { centre_mm: add(this.setting.centre_mm, moved) });
+    change_pane(this.index, {centre_mm: add(this.setting.centre_mm, moved)});
     this.want(true);
   }
 
@@ -321,31 +330,37 @@ export class Pane {
     const x = (at[0] - this.canvas.width / 2) * frame.pixel_mm * rest;
     const y = (at[1] - this.canvas.height / 2) * frame.pixel_mm * rest;
     const centre_mm = add(this.setting.centre_mm, sub(scaled(frame.right, x), scaled(frame.up, y)));
-    change_pane(this.index, { centre_mm, pixel_mm });
+    change_pane(this.index, {centre_mm, pixel_mm});
     this.want(true);
   }
 }
 
 /// The steps that make shapes: what pictures depend on besides their own request.
-const shapes = (): string => JSON.stringify([state.plan?.path, state.evaluations, (state.plan?.plan.steps ?? []).filter((step) => makes_shape(step) || step.do === "head_position")]);
+const shapes = (): string => JSON.stringify([
+  state.plan?.path, state.evaluations,
+  (state.plan?.plan.steps ?? []).filter((step) => makes_shape(step) || step.do === "head_position")
+]);
 
-/// Whether an object that is to be drawn is still being evaluated: the picture before stays until it is there.
+/// Whether an object that is to be drawn is still being evaluated: the picture before stays until it is
+/// there.
 function is_pending(): boolean {
-  const pending = new Set((state.plan?.objects ?? []).filter((object) => object.evaluated === false && !object.error).map((object) => object.id));
+  const pending = new Set((state.plan?.objects ?? [])
+                              .filter((object) => object.evaluated === false && !object.error)
+                              .map((object) => object.id));
   return drawn_objects().some((object) => object.id !== undefined && pending.has(object.id));
 }
 
 export function change_pane(index: number, change: Partial<PaneSetting>): void {
-  set({ panes: state.panes.map((pane, number) => (number === index ? { ...pane, ...change } : pane)) });
+  set({panes: state.panes.map((pane, number) => (number === index ? {...pane, ...change} : pane))});
 }
 
-let picture_asker: ((fields: PaneRequest, on_id: (id: number) => void) => Promise<unknown>) | null = null;
+let picture_asker: ((fields: PaneRequest, on_id: (id: number) => void) => Promise<unknown>)|null = null;
 /// The wire's way to ask for pictures, which tells a request's id before the answer.
 export function use_picture_asker(asker: typeof picture_asker): void {
   picture_asker = asker;
 }
 const ask_picture = (fields: PaneRequest, on_id: (id: number) => void): Promise<unknown> =>
-  picture_asker ? picture_asker(fields, on_id) : ask("pane", fields);
+    picture_asker ? picture_asker(fields, on_id) : ask("pane", fields);
 
 // Browsers have it; the compiler's list of their names does not yet.
 declare class DecompressionStream implements GenericTransformStream {
@@ -358,4 +373,3 @@ async function inflated(bytes: Uint8Array): Promise<ArrayBuffer> {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Response(stream).arrayBuffer();
 }
-

@@ -1,29 +1,37 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tools that take points: landmarks by name, distances, angles, ways along a surface, seeds of a segmentation, the dental arch.
-import { add_step, free_id, put_landmark } from "./actions";
-import { button, el } from "./html";
-import { dot_at, ink, line, text } from "./overlay";
-import { change_pane } from "./panes";
-import { Json } from "./protocol";
-import { first_scan, notify, selected_step, set, state } from "./state";
-import { Tool, take_tool } from "./tool";
-import { Vec3, angle_deg, distance, hundredths } from "./vector";
+// Tools that take points: landmarks by name, distances, angles, ways along a surface, seeds of a
+// segmentation, the dental arch.
+import {add_step, free_id, put_landmark} from "./actions";
+import {button, el} from "./html";
+import {dot_at, ink, line, text} from "./overlay";
+import {change_pane} from "./panes";
+import {Json} from "./protocol";
+import {first_scan, notify, selected_step, set, state} from "./state";
+import {take_tool, Tool} from "./tool";
+import {angle_deg, distance, hundredths, Vec3} from "./vector";
 
 let taken: Vec3[] = [];
-let pointed: Vec3 | null = null;
+let pointed: Vec3|null = null;
 let landmark_name = "";
-let procedure_wants: { name: string; says: string }[] = [];
+let procedure_wants: {name: string; says: string}[] = [];
 let is_snapping = true;
 
-const named = (p: Vec3): Json => state.plan?.landmarks.find((mark) => distance(mark.point, p) < 0.005)?.name ?? [...p];
+const named = (p: Vec3): Json =>
+    state.plan?.landmarks.find((mark) => distance(mark.point, p) < 0.005)?.name ?? [...p];
 
 /// A landmark that is nearer than this on the screen is meant when its place is clicked.
 const near_px = 10;
 
-function point_tool(kind: "distance" | "angle" | "surface_distance", count: number, title: string, says: string, key: string): Tool {
+function point_tool(
+    kind: "distance"|"angle"|"surface_distance", count: number, title: string, says: string,
+    key: string): Tool {
   return {
-    name: kind, title, says, key, cursor: "crosshair",
-    down({ pane, at }) {
+    name: kind,
+    title,
+    says,
+    key,
+    cursor: "crosshair",
+    down({pane, at}) {
       const mark = state.plan?.landmarks.find((one) => {
         const p = pane.pixel_at(one.point);
         return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
@@ -38,7 +46,7 @@ function point_tool(kind: "distance" | "angle" | "surface_distance", count: numb
       pane.redraw();
       return true;
     },
-    hover({ pane, at }) {
+    hover({pane, at}) {
       if (!taken.length) return;
       pointed = pane.point_at(at);
       pane.redraw();
@@ -55,8 +63,11 @@ function point_tool(kind: "distance" | "angle" | "surface_distance", count: numb
       for (const p of points) dot_at(context, p, 4 * pane.ratio, ink.measure);
       const last = points[points.length - 1];
       if (!last || !pointed || !taken.length) return;
-      const words = taken.length === 2 ? `${angle_deg(taken[0]!, taken[1]!, pointed).toFixed(1)}°` : `${distance(taken[0]!, pointed).toFixed(1)} mm`;
-      text(context, words, [last[0] + 12 * pane.ratio, last[1] - 12 * pane.ratio], pane.ratio, { colour: ink.measure });
+      const words = taken.length === 2 ? `${angle_deg(taken[0]!, taken[1]!, pointed).toFixed(1)}°` :
+                                         `${distance(taken[0]!, pointed).toFixed(1)} mm`;
+      text(
+          context, words, [last[0] + 12 * pane.ratio, last[1] - 12 * pane.ratio], pane.ratio,
+          {colour: ink.measure});
     },
     left() {
       taken = [];
@@ -70,27 +81,32 @@ async function finish(kind: string, points: Vec3[]): Promise<void> {
   const step = selected_step();
   if (kind === "surface_distance") {
     const object = step && step.do !== "measure" && step.do !== "landmarks" ? step.id : undefined;
-    if (!object) return notify("Select the object on whose surface the way runs, then click its two ends.", "warning");
-    await add_step({ id, do: "measure", object, along: points.map((p) => [...p]) }, `way along ${object}`);
+    if (!object)
+      return notify("Select the object on whose surface the way runs, then click its two ends.", "warning");
+    await add_step({id, do: "measure", object, along: points.map((p) => [...p])}, `way along ${object}`);
   } else {
-    await add_step({ id, do: "measure", points_mm: points.map(named) }, kind);
+    await add_step({id, do: "measure", points_mm: points.map(named)}, kind);
   }
-  set({ right_tab: "numbers" });
+  set({right_tab: "numbers"});
 }
 
 export const distance_tool = point_tool("distance", 2, "Distance", "Click two points or landmarks.", "d");
-export const angle_tool = point_tool("angle", 3, "Angle", "Click three points or landmarks; the angle is at the second.", "a");
-export const surface_tool = point_tool("surface_distance", 2, "Way along a surface", "Select an object, then click two points of its surface.", "");
+export const angle_tool =
+    point_tool("angle", 3, "Angle", "Click three points or landmarks; the angle is at the second.", "a");
+export const surface_tool = point_tool(
+    "surface_distance", 2, "Way along a surface", "Select an object, then click two points of its surface.",
+    "");
 
 /// Landmarks that a procedure waits for: clicked one after the other.
-export function ask_for_landmarks(wanted: { name: string; says: string }[]): void {
+export function ask_for_landmarks(wanted: {name: string; says: string}[]): void {
   procedure_wants = wanted;
   next_wanted();
   take_tool("landmark");
 }
 // `placed` may not have come back in the plan's state yet.
 function next_wanted(placed = ""): void {
-  const missing = procedure_wants.find((one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
+  const missing = procedure_wants.find(
+      (one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
   landmark_name = missing?.name ?? "";
   if (procedure_wants.length && !missing) {
     procedure_wants = [];
@@ -102,34 +118,52 @@ function next_wanted(placed = ""): void {
 export const landmark_tool: Tool = {
   name: "landmark",
   title: "Landmark",
-  says: "Name a landmark, then click it in a view or slice. It snaps to the surface; drag a placed one to move it.",
+  says:
+      "Name a landmark, then click it in a view or slice. It snaps to the surface; drag a placed one to move it.",
   key: "l",
   cursor: "crosshair",
-  down({ pane, at }) {
+  down({pane, at}) {
     const point = hundredths(pane.point_at(at));
-    const name = landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
+    const name =
+        landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
     void (async () => {
       const place = await put_landmark(name, point, is_snapping && !pane.is_slice);
       if (!place) return;
-      if (procedure_wants.length) next_wanted(name);
-      else landmark_name = "";
-      set({ cross_mm: hundredths(place) });
+      if (procedure_wants.length)
+        next_wanted(name);
+      else
+        landmark_name = "";
+      set({cross_mm: hundredths(place)});
     })();
     return true;
   },
   panel: () => {
     const wanted = procedure_wants.find((one) => one.name === landmark_name);
-    const placed = procedure_wants.filter((one) => state.plan?.landmarks.some((mark) => mark.name === one.name)).length;
+    const placed =
+        procedure_wants.filter((one) => state.plan?.landmarks.some((mark) => mark.name === one.name)).length;
     return [
-      wanted ? el("p", { class: "says" }, el("b", {}, `${placed + 1} of ${procedure_wants.length}: ${wanted.name.replace(/_/g, " ")}. `), wanted.says) : null,
-      el("label", { class: "field" }, el("span", {}, "Name"),
-        el("input", {
-          value: landmark_name, placeholder: "ans, nasion, …", "data-key": "landmark-name", name: "landmark",
-          oninput: (event: Event) => { landmark_name = (event.target as HTMLInputElement).value; },
-        })),
-      el("label", { class: "check" },
-        el("input", { type: "checkbox", checked: is_snapping, onchange: (event: Event) => { is_snapping = (event.target as HTMLInputElement).checked; } }),
-        "Snap to the surface"),
+      wanted ?
+          el("p", {class: "says"},
+             el("b", {}, `${placed + 1} of ${procedure_wants.length}: ${wanted.name.replace(/_/g, " ")}. `),
+             wanted.says) :
+          null,
+      el("label", {class: "field"}, el("span", {}, "Name"), el("input", {
+           value: landmark_name,
+           placeholder: "ans, nasion, …",
+           "data-key": "landmark-name",
+           name: "landmark",
+           oninput: (event: Event) => {
+             landmark_name = (event.target as HTMLInputElement).value;
+           },
+         })),
+      el("label", {class: "check"}, el("input", {
+           type: "checkbox",
+           checked: is_snapping,
+           onchange: (event: Event) => {
+             is_snapping = (event.target as HTMLInputElement).checked;
+           }
+         }),
+         "Snap to the surface"),
     ];
   },
   left() {
@@ -140,14 +174,18 @@ export const landmark_tool: Tool = {
 export const segment_tool: Tool = {
   name: "segment",
   title: "Segment by click",
-  says: "Click a tissue in a slice or view: the connected part with samples like those of the selected window becomes an object.",
+  says:
+      "Click a tissue in a slice or view: the connected part with samples like those of the selected window becomes an object.",
   key: "p",
   cursor: "crosshair",
-  down({ pane, at }) {
+  down({pane, at}) {
     const seed = hundredths(pane.point_at(at));
     const base = [selected_step(), ...(state.plan?.plan.steps ?? [])].find((step) => step?.do === "window");
-    const window_text = base ? `${String(base.low)}:${base.high === undefined ? "" : String(base.high)}` : "bone";
-    void add_step({ id: free_id("part"), do: "segment", scan: first_scan(), window: window_text, seeds_mm: [[...seed]] }, "segment by click");
+    const window_text =
+        base ? `${String(base.low)}:${base.high === undefined ? "" : String(base.high)}` : "bone";
+    void add_step(
+        {id: free_id("part"), do: "segment", scan: first_scan(), window: window_text, seeds_mm: [[...seed]]},
+        "segment by click");
     return true;
   },
 };
@@ -155,21 +193,22 @@ export const segment_tool: Tool = {
 export const arch_tool: Tool = {
   name: "arch",
   title: "Dental arch",
-  says: "In an axial slice click along the arch from the patient's right to the left; Enter shows the panoramic slice.",
+  says:
+      "In an axial slice click along the arch from the patient's right to the left; Enter shows the panoramic slice.",
   key: "",
   cursor: "crosshair",
   taken() {
-    set({ arch_mm: [] });
-    change_pane(2, { mode: "slice", plane: "axial" });
+    set({arch_mm: []});
+    change_pane(2, {mode: "slice", plane: "axial"});
   },
-  down({ pane, at }) {
-    set({ arch_mm: [...state.arch_mm, hundredths(pane.point_at(at))] });
+  down({pane, at}) {
+    set({arch_mm: [...state.arch_mm, hundredths(pane.point_at(at))]});
     pane.redraw();
     return true;
   },
   press(event) {
     if (event.key !== "Enter" || state.arch_mm.length < 2) return false;
-    change_pane(3, { mode: "panoramic" });
+    change_pane(3, {mode: "panoramic"});
     take_tool("navigate");
     return true;
   },
@@ -178,10 +217,12 @@ export const arch_tool: Tool = {
     line(context, points, ink.landmark, 2 * pane.ratio);
     for (const p of points) dot_at(context, p, 3.5 * pane.ratio, ink.landmark);
   },
-  panel: () => button("Show panoramic slice", "Shows the curved slice along the points in the fourth pane", () => {
-    if (state.arch_mm.length < 2) return notify("Click at least two points along the arch.", "warning");
-    change_pane(3, { mode: "panoramic" });
-    take_tool("navigate");
-  }, { class: "primary" }),
+  panel: () => button(
+      "Show panoramic slice", "Shows the curved slice along the points in the fourth pane",
+      () => {
+        if (state.arch_mm.length < 2) return notify("Click at least two points along the arch.", "warning");
+        change_pane(3, {mode: "panoramic"});
+        take_tool("navigate");
+      },
+      {class: "primary"}),
 };
-

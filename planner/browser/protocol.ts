@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What the planner's server and its page say to each other.
-import { Vec3 } from "./vector";
-import { PlaneName, View, ViewFrame } from "./view_frame";
+import {Vec3} from "./vector";
+import {PlaneName, View, ViewFrame} from "./view_frame";
 
-export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+export type Json = null|boolean|number|string|Json[]|{[key: string]: Json};
 export interface Step {
   id: string;
   do: string;
@@ -11,20 +11,20 @@ export interface Step {
 }
 
 export interface Certificate {
-  verdict: "PASS" | "WARN" | "FAIL";
+  verdict: "PASS"|"WARN"|"FAIL";
   sentence: string;
-  place?: Vec3 | null;
+  place?: Vec3|null;
   resolved?: boolean;
 }
 export interface Measured {
   value: number;
   unit: string;
-  half_width?: number | null;
+  half_width?: number|null;
   coverage?: number;
 }
 export interface AuditRow {
   check?: string;
-  verdict: "PASS" | "WARN" | "FAIL";
+  verdict: "PASS"|"WARN"|"FAIL";
   sentence: string;
 }
 export interface ScanState {
@@ -36,18 +36,18 @@ export interface ScanState {
   bounds_mm: [Vec3, Vec3];
   range?: [number, number];
   unit?: string;
-  window_suggestion?: [number, number] | null;
+  window_suggestion?: [number, number]|null;
 }
 export interface ObjectState {
   id: string;
   kind: string;
   colour?: string;
   evaluated?: boolean;
-  bounds_mm?: [Vec3, Vec3] | null;
-  error?: string | null;
-  certificate?: Certificate | null;
-  volume?: Measured | null;
-  area?: Measured | null;
+  bounds_mm?: [Vec3, Vec3]|null;
+  error?: string|null;
+  certificate?: Certificate|null;
+  volume?: Measured|null;
+  area?: Measured|null;
 }
 export interface Measurement extends Measured {
   id: string;
@@ -56,7 +56,7 @@ export interface Measurement extends Measured {
 }
 export interface HistoryEdit {
   id: number;
-  parent: number | null;
+  parent: number|null;
   what: string;
   made_at: string;
   names: string[];
@@ -65,12 +65,12 @@ export interface Job {
   id: number;
   what: string;
   share: number;
-  left_s?: number | null;
+  left_s?: number|null;
 }
 export interface PlanDocument {
   name?: string;
-  scans?: { [name: string]: { path: string } };
-  universe?: { voxel_mm?: number };
+  scans?: {[name: string]: {path: string}};
+  universe?: {voxel_mm?: number};
   steps: Step[];
 }
 export interface PlanState {
@@ -86,32 +86,32 @@ export interface PlanState {
   plan: PlanDocument;
   scans: ScanState[];
   objects: ObjectState[];
-  landmarks: { name: string; point: Vec3 }[];
+  landmarks: {name: string; point: Vec3}[];
   measurements?: Measurement[];
   jobs?: Job[];
 }
 export interface ProcedureSays {
   name: string;
   says: string;
-  landmarks: { name: string; says: string }[];
-  values: { name: string; unit?: string; default: number; says: string; low: number; high: number }[];
+  landmarks: {name: string; says: string}[];
+  values: {name: string; unit?: string; default: number; says: string; low: number; high: number}[];
 }
 export interface Tissue {
   name: string;
-  low?: number | null;
-  high?: number | null;
+  low?: number|null;
+  high?: number|null;
   says?: string;
 }
 export interface Schema {
   description?: string;
-  type?: string | string[];
+  type?: string|string[];
   title?: string;
-  properties?: { [field: string]: Schema };
+  properties?: {[field: string]: Schema};
   required?: string[];
-  items?: Schema | { anyOf: Schema[] };
+  items?: Schema|{anyOf: Schema[]};
   oneOf?: Schema[];
   enum?: string[];
-  const?: string;
+  const ?: string;
   default?: Json;
   minimum?: number;
   maximum?: number;
@@ -123,7 +123,7 @@ export interface Schema {
 }
 export interface Hello {
   version: string;
-  plan_state: PlanState | null;
+  plan_state: PlanState|null;
   schema: Schema;
   procedures: ProcedureSays[];
   tissues: Tissue[];
@@ -131,21 +131,28 @@ export interface Hello {
 }
 
 export interface Motion {
-  by?: { forward_mm?: number; left_mm?: number; up_mm?: number };
-  turn?: { pitch_deg?: number; yaw_deg?: number; roll_deg?: number; about_mm: Vec3 | string };
-  [field: string]: Json | undefined;
+  by?: {forward_mm?: number; left_mm?: number; up_mm?: number};
+  turn?: {pitch_deg?: number; yaw_deg?: number; roll_deg?: number; about_mm: Vec3 | string};
+  [field: string]: Json|undefined;
 }
 export interface DrawnObject {
   id?: string;
-  window?: { scan: string; low: number; high?: number };
+  window?: {scan: string; low: number; high?: number};
   colour: string;
   opacity: number;
 }
 export interface PaneRequest {
   pane: number;
-  kind: "view" | "slice";
+  kind: "view"|"slice";
   view?: View;
-  plane?: PlaneName | { normal: Vec3; up: Vec3 } | { curve_mm: Vec3[]; height_mm: number };
+  plane?: PlaneName|{
+    normal: Vec3;
+    up: Vec3
+  }
+  |{
+    curve_mm: Vec3[];
+    height_mm: number
+  };
   at_mm?: Vec3;
   centre_mm: Vec3;
   size: [number, number];
@@ -154,11 +161,11 @@ export interface PaneRequest {
   window?: [number, number];
   threshold?: [number, number];
   objects: DrawnObject[];
-  preview?: { object: string; of: string; move: Motion; against: string[] };
+  preview?: {object: string; of: string; move: Motion; against: string[]};
   overlap?: boolean;
-  colour_by?: { object: string; reference: string; range_mm: number };
+  colour_by?: {object: string; reference: string; range_mm: number};
   cut_planes?: [number, number, number, number][];
-  cut_face?: "plain" | "grey";
+  cut_face?: "plain"|"grey";
   shading?: string;
   background?: string;
   dragging: boolean;
@@ -166,17 +173,17 @@ export interface PaneRequest {
 export interface FrameHeader {
   id: number;
   pane: number;
-  quality: "moving" | "rest";
+  quality: "moving"|"rest";
   width: number;
   height: number;
   view_frame: ViewFrame;
   objects?: string[];
   command?: string;
-  legend?: { low_mm: number; high_mm: number; definition: string };
-  overlap_mm3?: number | null;
-  parts: { kind: "jpeg" | "png" | "depth" | "object" | "value"; bytes: number }[];
+  legend?: {low_mm: number; high_mm: number; definition: string};
+  overlap_mm3?: number|null;
+  parts: {kind: "jpeg"|"png"|"depth"|"object"|"value"; bytes: number}[];
 }
 export interface Notice {
   message: string;
-  level: "info" | "warning" | "error";
+  level: "info"|"warning"|"error";
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What this window shows: the server's plan, and how this window looks at it. One value, changed by set(), watched by key.
-import { Hello, Job, Motion, Notice, PlanState, Step } from "./protocol";
-import { Vec3 } from "./vector";
-import { PlaneName, View } from "./view_frame";
+// What this window shows: the server's plan, and how this window looks at it. One value, changed by set(),
+// watched by key.
+import {Hello, Job, Motion, Notice, PlanState, Step} from "./protocol";
+import {Vec3} from "./vector";
+import {PlaneName, View} from "./view_frame";
 
 export interface PaneSetting {
-  mode: "view" | "slice" | "panoramic";
+  mode: "view"|"slice"|"panoramic";
   view: View;
   plane: PlaneName;
   shading: string;
   centre_mm: Vec3;
-  pixel_mm: number; // of a CSS pixel
+  pixel_mm: number;  // of a CSS pixel
 }
 export interface ObjectLook {
   colour?: string;
@@ -31,8 +32,8 @@ export interface DraftWindow {
   replaces?: string;
 }
 export interface CutPlane {
-  axis: 0 | 1 | 2;
-  side: 1 | -1;
+  axis: 0|1|2;
+  side: 1|- 1;
   offset_mm: number;
 }
 export interface Compare {
@@ -42,58 +43,87 @@ export interface Compare {
 }
 
 export interface State {
-  link: "opening" | "open" | "lost";
-  hello: Hello | null;
-  plan: PlanState | null;
-  page: "start" | "audit" | "plan";
-  theme: "system" | "light" | "dark";
+  link: "opening"|"open"|"lost";
+  hello: Hello|null;
+  plan: PlanState|null;
+  page: "start"|"audit"|"plan";
+  theme: "system"|"light"|"dark";
   panes: PaneSetting[];
-  maximised: number | null;
+  maximised: number|null;
   active_pane: number;
-  looks: { [object: string]: ObjectLook };
-  selected: string | null; // a step's id
+  looks: {[object: string]: ObjectLook};
+  selected: string|null;  // a step's id
   cross_mm: Vec3;
-  grey: [number, number]; // level and width of slices
-  draft_window: DraftWindow | null;
-  draft_step: Step | null; // a step that is being filled in and is not in the plan yet
-  preview: Preview | null;
-  overlap_mm3: number | null;
-  compare: Compare | null;
-  cut_plane: CutPlane | null;
-  arch_mm: Vec3[]; // points of the panoramic sheet, left to right
-  marked: { at_mm: Vec3; says: string } | null; // the place that a certificate names
+  grey: [number, number];  // level and width of slices
+  draft_window: DraftWindow|null;
+  draft_step: Step|null;  // a step that is being filled in and is not in the plan yet
+  preview: Preview|null;
+  overlap_mm3: number|null;
+  compare: Compare|null;
+  cut_plane: CutPlane|null;
+  arch_mm: Vec3[];                           // points of the panoramic sheet, left to right
+  marked: {at_mm: Vec3; says: string}|null;  // the place that a certificate names
   tool: string;
-  left_tab: "objects" | "steps" | "history";
-  right_tab: "inspector" | "numbers" | "movement";
+  left_tab: "objects"|"steps"|"history";
+  right_tab: "inspector"|"numbers"|"movement";
   jobs: Job[];
-  notices: (Notice & { key: number })[];
-  tour: number | null;
-  evaluations: number; // how often the server has told evaluated objects: pictures may have changed
-  pointer: string; // what lies under the pointer, in words
+  notices: (Notice&{key: number})[];
+  tour: number|null;
+  evaluations: number;  // how often the server has told evaluated objects: pictures may have changed
+  pointer: string;      // what lies under the pointer, in words
 }
 
 const pane = (mode: PaneSetting["mode"], view: View, plane: PlaneName): PaneSetting => ({
-  mode, view, plane, shading: "partial_volume", centre_mm: [0, 0, 0], pixel_mm: 0.6,
+  mode,
+  view,
+  plane,
+  shading: "partial_volume",
+  centre_mm: [0, 0, 0],
+  pixel_mm: 0.6,
 });
 
 /// The layout that its users know: anterior, left, superior, and one to turn freely.
-export const usual_panes = (): PaneSetting[] => [
-  pane("view", "anterior", "coronal"),
-  pane("view", "left", "sagittal"),
-  pane("view", "superior", "axial"),
-  pane("view", { azimuth: 35, elevation: 15 }, "axial"),
+export const usual_panes = (): PaneSetting[] =>
+    [pane("view", "anterior", "coronal"),
+     pane("view", "left", "sagittal"),
+     pane("view", "superior", "axial"),
+     pane("view", {azimuth: 35, elevation: 15}, "axial"),
 ];
 
 const first: State = {
-  link: "opening", hello: null, plan: null, page: "start", theme: "system", panes: usual_panes(), maximised: null,
-  active_pane: 0, looks: {}, selected: null, cross_mm: [0, 0, 0], grey: [500, 2000], draft_window: null, draft_step: null,
-  preview: null, overlap_mm3: null, compare: null, cut_plane: null, arch_mm: [], marked: null, tool: "navigate",
-  left_tab: "steps", right_tab: "inspector", jobs: [], notices: [], tour: null, evaluations: 0, pointer: "",
+  link: "opening",
+  hello: null,
+  plan: null,
+  page: "start",
+  theme: "system",
+  panes: usual_panes(),
+  maximised: null,
+  active_pane: 0,
+  looks: {},
+  selected: null,
+  cross_mm: [0, 0, 0],
+  grey: [500, 2000],
+  draft_window: null,
+  draft_step: null,
+  preview: null,
+  overlap_mm3: null,
+  compare: null,
+  cut_plane: null,
+  arch_mm: [],
+  marked: null,
+  tool: "navigate",
+  left_tab: "steps",
+  right_tab: "inspector",
+  jobs: [],
+  notices: [],
+  tour: null,
+  evaluations: 0,
+  pointer: "",
 };
 
 type Key = keyof State;
 export const state: State = first;
-const watchers: { keys: Set<Key>; call: () => void }[] = [];
+const watchers: {keys: Set<Key>; call: () => void}[] = [];
 const changed = new Set<Key>();
 let is_queued = false;
 
@@ -110,17 +140,29 @@ function tell(): void {
   is_queued = false;
   const keys = new Set(changed);
   changed.clear();
-  for (const watcher of watchers) if ([...watcher.keys].some((key) => keys.has(key))) watcher.call();
+  for (const watcher of watchers)
+    if ([...watcher.keys].some((key) => keys.has(key))) watcher.call();
   if ([...keys].some((key) => kept.includes(key))) keep();
 }
 
 export function watch(keys: Key[], call: () => void): void {
-  watchers.push({ keys: new Set(keys), call });
+  watchers.push({keys: new Set(keys), call});
 }
 
 // How a window looks at a plan is kept in the browser, by the plan's path; the plan itself is the server's.
 const kept: Key[] = [
-  "page", "panes", "looks", "selected", "cross_mm", "grey", "left_tab", "right_tab", "cut_plane", "compare", "arch_mm", "maximised",
+  "page",
+  "panes",
+  "looks",
+  "selected",
+  "cross_mm",
+  "grey",
+  "left_tab",
+  "right_tab",
+  "cut_plane",
+  "compare",
+  "arch_mm",
+  "maximised",
 ];
 
 function keep(): void {
@@ -131,7 +173,7 @@ function keep(): void {
 }
 
 /// How this browser last looked at the plan, if it did.
-export function kept_view(path: string): Partial<State> | null {
+export function kept_view(path: string): Partial<State>|null {
   const text = localStorage.getItem(`octotomy:${path}`);
   if (!text) return null;
   try {
@@ -142,17 +184,20 @@ export function kept_view(path: string): Partial<State> | null {
 }
 
 export const steps = (): Step[] => state.plan?.plan.steps ?? [];
-export const step_of = (id: string | null): Step | undefined => steps().find((step) => step.id === id);
-export const selected_step = (): Step | undefined => step_of(state.selected);
+export const step_of = (id: string|null): Step|undefined => steps().find((step) => step.id === id);
+export const selected_step = (): Step|undefined => step_of(state.selected);
 export const first_scan = (): string => state.plan?.scans[0]?.name ?? "ct";
 
 let next_notice = 1;
 /// Tells the person something; an error stays until it is closed.
 export function notify(message: string, level: Notice["level"] = "info"): void {
   const key = next_notice++;
-  set({ notices: [...state.notices.filter((notice) => notice.message !== message).slice(-2), { message, level, key }] });
+  set({
+    notices:
+        [...state.notices.filter((notice) => notice.message !== message).slice(-2), {message, level, key}]
+  });
   if (level !== "error") window.setTimeout(() => dismiss(key), level === "info" ? 4000 : 8000);
 }
 export function dismiss(key: number): void {
-  set({ notices: state.notices.filter((notice) => notice.key !== key) });
+  set({notices: state.notices.filter((notice) => notice.key !== key)});
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Tool tips: every element with `data-tip` tells what it is for, on hover and on keyboard focus.
-import { el } from "./html";
+import {el} from "./html";
 
 export function attach_tips(): void {
-  const tip = el("div", { class: "tip", role: "tooltip", hidden: true });
+  const tip = el("div", {class: "tip", role: "tooltip", hidden: true});
   document.body.append(tip);
   let timer = 0;
   const hide = (): void => {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Points and directions of the patient frame (LPS: x to the patient's left, y to the back, z to the head), in mm.
+// Points and directions of the patient frame (LPS: x to the patient's left, y to the back, z to the head), in
+// mm.
 
 export type Vec3 = [number, number, number];
 export type Vec2 = [number, number];
@@ -8,10 +9,10 @@ export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2
 export const add = (a: Vec3, b: Vec3): Vec3 => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const sub = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const scaled = (a: Vec3, by: number): Vec3 => [a[0] * by, a[1] * by, a[2] * by];
-export const cross = (a: Vec3, b: Vec3): Vec3 => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
+export const cross = (a: Vec3, b: Vec3): Vec3 =>
+    [a[1] * b[2] - a[2] * b[1],
+     a[2] * b[0] - a[0] * b[2],
+     a[0] * b[1] - a[1] * b[0],
 ];
 export const length = (a: Vec3): number => Math.hypot(a[0], a[1], a[2]);
 export const normalised = (a: Vec3): Vec3 => scaled(a, 1 / (length(a) || 1));

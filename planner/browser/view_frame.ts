@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Frames of orthographic pictures: directions, pixels and millimetres. The same table as the command line's views.
-import { Vec2, Vec3, add, cross, dot, scaled } from "./vector";
+// Frames of orthographic pictures: directions, pixels and millimetres. The same table as the command line's
+// views.
+import {add, cross, dot, scaled, Vec2, Vec3} from "./vector";
 
 export interface ViewFrame {
   right: Vec3;
   up: Vec3;
   look: Vec3;
-  centre_mm: Vec3; // a point that the picture's centre shows
+  centre_mm: Vec3;  // a point that the picture's centre shows
   pixel_mm: number;
 }
 
 export interface Turned {
-  azimuth: number; // degrees from anterior towards the patient's left
-  elevation: number; // degrees upwards
+  azimuth: number;    // degrees from anterior towards the patient's left
+  elevation: number;  // degrees upwards
 }
-export type ViewName = "anterior" | "posterior" | "left" | "right" | "superior" | "inferior";
-export type View = ViewName | Turned;
-export type PlaneName = "axial" | "coronal" | "sagittal";
+export type ViewName = "anterior"|"posterior"|"left"|"right"|"superior"|"inferior";
+export type View = ViewName|Turned;
+export type PlaneName = "axial"|"coronal"|"sagittal";
 
 const directions: Record<ViewName, [Vec3, Vec3]> = {
   anterior: [[0, 1, 0], [0, 0, 1]],
@@ -29,35 +30,39 @@ const directions: Record<ViewName, [Vec3, Vec3]> = {
 export const view_names = Object.keys(directions) as ViewName[];
 
 /// The view from which a slice's plane is seen; a region drawn on the slice is one of that view.
-export const view_of_plane: Record<PlaneName, ViewName> = { axial: "inferior", coronal: "anterior", sagittal: "left" };
+export const view_of_plane: Record<PlaneName, ViewName> = {
+  axial: "inferior",
+  coronal: "anterior",
+  sagittal: "left"
+};
 
 const turned_of: Record<ViewName, Turned> = {
-  anterior: { azimuth: 0, elevation: 0 },
-  left: { azimuth: 90, elevation: 0 },
-  posterior: { azimuth: 180, elevation: 0 },
-  right: { azimuth: -90, elevation: 0 },
-  superior: { azimuth: 180, elevation: 89.9 },
-  inferior: { azimuth: 0, elevation: -89.9 },
+  anterior: {azimuth: 0, elevation: 0},
+  left: {azimuth: 90, elevation: 0},
+  posterior: {azimuth: 180, elevation: 0},
+  right: {azimuth: -90, elevation: 0},
+  superior: {azimuth: 180, elevation: 89.9},
+  inferior: {azimuth: 0, elevation: -89.9},
 };
 
 /// A view as angles, from which it can be turned on.
 export const turned = (view: View): Turned => (typeof view === "string" ? turned_of[view] : view);
 
-export function directions_of(view: View): { right: Vec3; up: Vec3; look: Vec3 } {
+export function directions_of(view: View): {right: Vec3; up: Vec3; look: Vec3} {
   if (typeof view === "string") {
     const [look, up] = directions[view];
-    return { look, up, right: cross(look, up) };
+    return {look, up, right: cross(look, up)};
   }
   const a = (view.azimuth * Math.PI) / 180;
   const e = (view.elevation * Math.PI) / 180;
   const look: Vec3 = [-Math.sin(a) * Math.cos(e), Math.cos(a) * Math.cos(e), -Math.sin(e)];
   const up: Vec3 = [-Math.sin(a) * Math.sin(e), Math.cos(a) * Math.sin(e), Math.cos(e)];
-  return { look, up, right: cross(look, up) };
+  return {look, up, right: cross(look, up)};
 }
 
 /// A view as the plan says it: its name, or AZ,EL.
 export const view_text = (view: View): string =>
-  typeof view === "string" ? view : `${Math.round(view.azimuth)},${Math.round(view.elevation)}`;
+    typeof view === "string" ? view : `${Math.round(view.azimuth)},${Math.round(view.elevation)}`;
 
 /// Where a point lies in a picture of the size, in pixels from the top left.
 export function pixel_of(frame: ViewFrame, size: Vec2, p_mm: Vec3): Vec2 {
@@ -81,14 +86,14 @@ export function point_of(frame: ViewFrame, size: Vec2, at: Vec2, depth_mm: numbe
 }
 
 /// The letters at a picture's left, right, top and bottom edge: R, L, A, P, H, F; two where it is oblique.
-export function edge_letters(frame: ViewFrame): { left: string; right: string; top: string; bottom: string } {
+export function edge_letters(frame: ViewFrame): {left: string; right: string; top: string; bottom: string} {
   const name = (d: Vec3): string =>
-    ([[d[0], "L", "R"], [d[1], "P", "A"], [d[2], "H", "F"]] as [number, string, string][])
-      .filter(([part]) => Math.abs(part) > 0.35)
-      .sort((a, b) => Math.abs(b[0]) - Math.abs(a[0]))
-      .slice(0, 2)
-      .map(([part, plus, minus]) => (part > 0 ? plus : minus))
-      .join("");
+      ([[d[0], "L", "R"], [d[1], "P", "A"], [d[2], "H", "F"]] as [number, string, string][])
+          .filter(([part]) => Math.abs(part) > 0.35)
+          .sort((a, b) => Math.abs(b[0]) - Math.abs(a[0]))
+          .slice(0, 2)
+          .map(([part, plus, minus]) => (part > 0 ? plus : minus))
+          .join("");
   return {
     left: name(scaled(frame.right, -1)),
     right: name(frame.right),

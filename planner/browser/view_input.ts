@@ -1,36 +1,38 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pointer, pen, touch, wheel and keys in a pane: the tool in hand first, then turning, panning, zooming, slices, the cross-hair.
-import type { Pane } from "./panes";
-import { change_pane } from "./panes";
-import { set, state } from "./state";
-import { Pointer, active_tool } from "./tool";
-import { Vec2, Vec3, add, dot, hundredths, scaled } from "./vector";
-import { turned } from "./view_frame";
+// Pointer, pen, touch, wheel and keys in a pane: the tool in hand first, then turning, panning, zooming,
+// slices, the cross-hair.
+import type {Pane} from "./panes";
+import {change_pane} from "./panes";
+import {set, state} from "./state";
+import {Pointer, active_tool} from "./tool";
+import {Vec2, Vec3, add, dot, hundredths, scaled} from "./vector";
+import {turned} from "./view_frame";
 
 const turn_deg_per_px = 0.45;
 const click_px = 4;
 
-type Drag = "turn" | "pan" | "zoom" | "grey" | "cross" | "tool";
+type Drag = "turn"|"pan"|"zoom"|"grey"|"cross"|"tool";
 
 export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane, at: Vec2) => void): void {
   const canvas = pane.canvas;
   const fingers = new Map<number, Vec2>();
-  let drag: Drag | null = null;
+  let drag: Drag|null = null;
   let last: Vec2 = [0, 0];
   let start: Vec2 = [0, 0];
   let has_moved = false;
   let pinch = 0;
 
-  const at_of = (event: PointerEvent | WheelEvent | MouseEvent): Vec2 => {
+  const at_of = (event: PointerEvent|WheelEvent|MouseEvent): Vec2 => {
     const box = canvas.getBoundingClientRect();
     return [(event.clientX - box.left) * pane.ratio, (event.clientY - box.top) * pane.ratio];
   };
-  const pointer = (event: PointerEvent): Pointer => ({ pane, at: at_of(event), event });
+  const pointer = (event: PointerEvent): Pointer => ({pane, at: at_of(event), event});
   const want_slices = (): void => {
-    for (const other of all()) if (other.is_slice) other.want(true);
+    for (const other of all())
+      if (other.is_slice) other.want(true);
   };
   const put_cross = (at: Vec2): void => {
-    set({ cross_mm: hundredths(pane.point_at(at)) });
+    set({cross_mm: hundredths(pane.point_at(at))});
     want_slices();
   };
 
@@ -42,9 +44,9 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   }
 
   canvas.addEventListener("pointerdown", (event) => {
-    canvas.focus({ preventScroll: true });
+    canvas.focus({preventScroll: true});
     canvas.setPointerCapture(event.pointerId);
-    set({ active_pane: pane.index });
+    set({active_pane: pane.index});
     fingers.set(event.pointerId, at_of(event));
     last = start = at_of(event);
     has_moved = false;
@@ -79,15 +81,17 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     if (drag === "cross") put_cross(at);
     if (drag === "grey") {
       const width = Math.max(1, state.grey[1] + (by[0] / pane.ratio) * 8);
-      set({ grey: [Math.round(state.grey[0] - (by[1] / pane.ratio) * 5), Math.round(width)] });
+      set({grey: [Math.round(state.grey[0] - (by[1] / pane.ratio) * 5), Math.round(width)]});
       want_slices();
     }
   });
 
   const ended = (event: PointerEvent): void => {
     fingers.delete(event.pointerId);
-    if (drag === "tool") active_tool()?.up?.(pointer(event));
-    else if (drag === "turn" && !has_moved) click(at_of(event));
+    if (drag === "tool")
+      active_tool()?.up?.(pointer(event));
+    else if (drag === "turn" && !has_moved)
+      click(at_of(event));
     if (!fingers.size) drag = null;
   };
   canvas.addEventListener("pointerup", ended);
@@ -97,38 +101,48 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   function click(at: Vec2): void {
     const picked = pane.pick(at);
     if (!picked) return;
-    set({ cross_mm: hundredths(picked.point), ...(picked.object ? { selected: picked.object } : {}) });
+    set({cross_mm: hundredths(picked.point), ...(picked.object ? {selected: picked.object} : {})});
     want_slices();
   }
 
   canvas.addEventListener("dblclick", (event) => {
     const tool = active_tool();
-    if (tool?.double?.({ pane, at: at_of(event), event: event as PointerEvent })) return;
-    if (state.tool === "navigate") set({ maximised: state.maximised === null ? pane.index : null });
+    if (tool?.double?.({pane, at: at_of(event), event: event as PointerEvent})) return;
+    if (state.tool === "navigate") set({maximised: state.maximised === null ? pane.index : null});
   });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener(
-    "wheel",
-    (event) => {
-      event.preventDefault();
-      if (pane.is_slice && !event.ctrlKey) step_slice(pane, event.deltaY > 0 ? 1 : -1, want_slices);
-      else pane.zoom(Math.exp(event.deltaY * 0.0012), at_of(event));
-    },
-    { passive: false },
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        if (pane.is_slice && !event.ctrlKey)
+          step_slice(pane, event.deltaY > 0 ? 1 : -1, want_slices);
+        else
+          pane.zoom(Math.exp(event.deltaY * 0.0012), at_of(event));
+      },
+      {passive: false},
   );
 
   canvas.addEventListener("keydown", (event) => {
     if (active_tool()?.press?.(event, pane)) return event.preventDefault();
     const step = event.shiftKey ? 15 : 5;
-    const arrows: { [key: string]: Vec2 } = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const arrows:
+        {[key: string]: Vec2} = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
     const arrow = arrows[event.key];
-    if (arrow && pane.is_slice && arrow[1]) step_slice(pane, arrow[1] * (event.shiftKey ? 5 : 1), want_slices);
-    else if (arrow && !pane.is_slice) turn(pane, (arrow[0] * step) / turn_deg_per_px, (arrow[1] * step) / turn_deg_per_px);
-    else if (event.key === "+" || event.key === "=") pane.zoom(1 / 1.15, [pane.size[0] / 2, pane.size[1] / 2]);
-    else if (event.key === "-") pane.zoom(1.15, [pane.size[0] / 2, pane.size[1] / 2]);
-    else if (event.key === "PageUp") step_slice(pane, -1, want_slices);
-    else if (event.key === "PageDown") step_slice(pane, 1, want_slices);
-    else return;
+    if (arrow && pane.is_slice && arrow[1])
+      step_slice(pane, arrow[1] * (event.shiftKey ? 5 : 1), want_slices);
+    else if (arrow && !pane.is_slice)
+      turn(pane, (arrow[0] * step) / turn_deg_per_px, (arrow[1] * step) / turn_deg_per_px);
+    else if (event.key === "+" || event.key === "=")
+      pane.zoom(1 / 1.15, [pane.size[0] / 2, pane.size[1] / 2]);
+    else if (event.key === "-")
+      pane.zoom(1.15, [pane.size[0] / 2, pane.size[1] / 2]);
+    else if (event.key === "PageUp")
+      step_slice(pane, -1, want_slices);
+    else if (event.key === "PageDown")
+      step_slice(pane, 1, want_slices);
+    else
+      return;
     event.preventDefault();
   });
 }
@@ -145,7 +159,7 @@ export function turn(pane: Pane, by_x: number, by_y: number): void {
   azimuth = ((((azimuth + 180) % 360) + 360) % 360) - 180;
   const elevation = Math.max(-90, Math.min(90, from.elevation + by_y * turn_deg_per_px));
   const tenth = (value: number): number => Math.round(value * 10) / 10;
-  change_pane(pane.index, { view: { azimuth: tenth(azimuth), elevation: tenth(elevation) } });
+  change_pane(pane.index, {view: {azimuth: tenth(azimuth), elevation: tenth(elevation)}});
   pane.want(true);
 }
 
@@ -154,6 +168,6 @@ function step_slice(pane: Pane, by: number, want_slices: () => void): void {
   const spacing = state.plan?.scans[0]?.spacing_mm ?? [1, 1, 1];
   const look = pane.frame.look;
   const step = Math.max(0.2, Math.abs(dot(spacing as Vec3, look.map(Math.abs) as Vec3)));
-  set({ cross_mm: hundredths(add(state.cross_mm, scaled(look, by * step))) });
+  set({cross_mm: hundredths(add(state.cross_mm, scaled(look, by * step)))});
   want_slices();
 }

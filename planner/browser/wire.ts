@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The one WebSocket of this window: requests as promises, events, binary pictures, and a new connection after a loss.
-import { FrameHeader, Json } from "./protocol";
+// The one WebSocket of this window: requests as promises, events, binary pictures, and a new connection after
+// a loss.
+import {FrameHeader, Json} from "./protocol";
 
-/// What the server refused, with its code: input, geometry, cancelled, resource; or lost, where the line broke.
+/// What the server refused, with its code: input, geometry, cancelled, resource; or lost, where the line
+/// broke.
 export class Refusal extends Error {
   constructor(message: string, readonly code: string) {
     super(message);
@@ -12,7 +14,7 @@ export class Refusal extends Error {
 export interface WireEvents {
   opened(): void;
   lost(in_s: number): void;
-  event(word: string, message: { [key: string]: Json }): void;
+  event(word: string, message: {[key: string]: Json}): void;
   picture(header: FrameHeader, parts: Uint8Array[]): void;
 }
 
@@ -25,7 +27,7 @@ const first_retry_ms = 400;
 const last_retry_ms = 5000;
 
 export class Wire {
-  private socket: WebSocket | null = null;
+  private socket: WebSocket|null = null;
   private next_id = 1;
   private retry_ms = first_retry_ms;
   private readonly waiting = new Map<number, Waiting>();
@@ -40,8 +42,8 @@ export class Wire {
       this.retry_ms = first_retry_ms;
       this.events.opened();
     };
-    socket.onmessage = (message: MessageEvent<string | ArrayBuffer>) =>
-      typeof message.data === "string" ? this.hear(message.data) : this.see(message.data);
+    socket.onmessage = (message: MessageEvent<string|ArrayBuffer>) =>
+        typeof message.data === "string" ? this.hear(message.data) : this.see(message.data);
     socket.onclose = () => this.closed();
   }
 
@@ -54,18 +56,18 @@ export class Wire {
         reject(new Refusal("The connection to the planner's program is lost.", "lost"));
         return;
       }
-      this.waiting.set(id, { resolve: (value) => resolve(value as Answer), reject });
-      this.socket.send(JSON.stringify({ id, do: word, ...fields }));
+      this.waiting.set(id, {resolve: (value) => resolve(value as Answer), reject});
+      this.socket.send(JSON.stringify({id, do: word, ...fields}));
     });
   }
 
   /// Says something that has no answer.
   say(word: string, fields: object): void {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ do: word, ...fields }));
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({do: word, ...fields}));
   }
 
   private hear(text: string): void {
-    const message = JSON.parse(text) as { [key: string]: Json };
+    const message = JSON.parse(text) as {[key: string]: Json};
     if (typeof message.event === "string") {
       this.events.event(message.event, message);
       return;
@@ -73,9 +75,15 @@ export class Wire {
     const asked = this.waiting.get(message.id as number);
     if (!asked) return;
     this.waiting.delete(message.id as number);
-    const error = message.error as { message: string; code: string } | undefined;
-    if (error) asked.reject(new Refusal(error.message, error.code));
-    else asked.resolve(message.ok);
+    const error = message.error as {
+      message: string;
+      code: string
+    }
+    |undefined;
+    if (error)
+      asked.reject(new Refusal(error.message, error.code));
+    else
+      asked.resolve(message.ok);
   }
 
   private see(data: ArrayBuffer): void {
