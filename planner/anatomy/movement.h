@@ -12,9 +12,8 @@ namespace octotomy::planner {
 
 /// What each moved object's last step moved, in the order of the objects: the motion, its turns, the
 /// displacement of the object's centroid and of the landmarks that lie on it, in words and along the head's
-/// directions; where earlier steps moved the object, too, the displacements since the scan. A landmark lies
-/// on an object that has a voxel within 3 mm of it: surgeons place landmarks on skin-side bone to about that.
-/// Cost: a small Boolean a landmark and object.
+/// directions; where earlier steps moved the object, too, the displacements since the scan. Landmarks go with
+/// objects as moved_landmarks() says. Cost: some small Booleans a landmark and object.
 nlohmann::ordered_json movements_json(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 /// A landmark, and the motion that a plan carries it by; the identity where it stays.
@@ -24,8 +23,9 @@ struct MovedLandmark {
 };
 
 /// Where a plan's objects take the landmarks. A landmark goes with the piece whose bone is nearest to it; it
-/// stays where other bone is as near, or nothing that moves lies within 3 mm. Of pieces that are moved again
-/// the last motion counts. Cost: some small Booleans a landmark and moved object.
+/// stays where other bone is nearer, or nothing that moves lies within 3 mm: surgeons place landmarks to
+/// about that. On a cut it goes with the piece. Of pieces that are moved again the last motion counts. Cost:
+/// some small Booleans a landmark and moved object.
 std::vector<MovedLandmark> moved_landmarks(const Objects& objects, const std::vector<NamedPoint>& landmarks);
 
 }  // namespace octotomy::planner

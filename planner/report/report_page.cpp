@@ -289,7 +289,7 @@ std::string movements(const Result& result) {
   return element("h2", "Movements") + element("table", rows) +
          element("p class=\"soft small\"", std::string(movement_words) +
                                                " A piece's own row is its centroid; landmarks are those "
-                                               "within 3 mm of it.");
+                                               "that its bone is nearest to.");
 }
 
 /// A value with its interval, or a dash.
