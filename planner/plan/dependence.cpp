@@ -21,7 +21,12 @@ std::vector<std::string> inputs_of(const Step& step) {
   return inputs;
 }
 
-/// The files that a step reads, as its fields name them.
+Json numbers(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> files_read(const Step& step) {
   std::vector<std::filesystem::path> files;
   if (step.action.operation().makes == Makes::File) return files;
@@ -34,12 +39,6 @@ std::vector<std::filesystem::path> files_read(const Step& step) {
   }
   return files;
 }
-
-Json numbers(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-}  // namespace
 
 std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string>& ids) {
   std::set<std::string> needed(ids.begin(), ids.end());

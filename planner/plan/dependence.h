@@ -12,6 +12,9 @@
 // Which steps of a plan depend on which, and what each one's answer depends on.
 namespace octotomy::planner {
 
+/// The files that a step reads, as its fields name them: relative to the plan's folder.
+std::vector<std::filesystem::path> files_read(const Step& step);
+
 /// The ids of the steps that these steps depend on, and these. Throws std::invalid_argument where the plan
 /// has no such step.
 std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string>& ids);

@@ -110,7 +110,7 @@ void Desk::open(const fs::path& path, const Watched& watched) {
                                    if (watched.progress) watched.progress("read " + path.string(), share);
                                  }};
   const fs::path plan = is_plan(path) ? path : plan_of_scan(path, working_folder_, progress);
-  auto document = std::make_unique<Document>(plan);
+  auto document = std::make_unique<Document>(plan, folders);
   folders.open(plan);
   for (const auto& [name, scan] : document->plan()->scans) folders.open(scan_path(*document->plan(), scan));
   {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "planner/plan/dependence.h"
 #include "planner/plan/difference.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
@@ -54,7 +55,8 @@ void change_steps(Json& steps, const Json& said) {
 
 }  // namespace
 
-Document::Document(const std::filesystem::path& path) : path_(path) {
+Document::Document(const std::filesystem::path& path, const Folders& folders)
+    : path_(path), folders_(folders) {
   read_plan(path_);  // refuses what is no plan before a history is begun
   history_ = std::make_unique<PlanHistory>(path_);
   read_again();
@@ -67,7 +69,11 @@ void Document::read_again() {
 }
 
 Plan Document::parsed(const Json& json) const {
-  return parse_plan(json_text(json, 2) + "\n", path_.parent_path());
+  Plan plan = parse_plan(json_text(json, 2) + "\n", path_.parent_path());
+  for (const auto& [name, scan] : plan.scans) folders_.need_within(scan_path(plan, scan));
+  for (const Step& step : plan.steps)
+    for (const std::filesystem::path& file : files_read(step)) folders_.need_within(plan.folder / file);
+  return plan;
 }
 
 Plan Document::with_steps(const Json& steps) const {

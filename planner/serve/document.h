@@ -7,6 +7,7 @@
 
 #include "planner/plan/history.h"
 #include "planner/plan/plan.h"
+#include "planner/serve/folders.h"
 #include "planner/serve/message.h"
 
 namespace octotomy::planner::serve {
@@ -15,14 +16,16 @@ namespace octotomy::planner::serve {
 /// at a time may use it.
 class Document {
  public:
-  /// Opens a plan's file. Throws as read_plan() and PlanHistory.
-  explicit Document(const std::filesystem::path& path);
+  /// Opens a plan's file; `folders` are those that a change may name, and live longer. Throws as read_plan()
+  /// and PlanHistory.
+  Document(const std::filesystem::path& path, const Folders& folders);
 
   const std::filesystem::path& path() const { return path_; }
   std::shared_ptr<const Plan> plan() const { return plan_; }
   Json json() const { return Json::parse(plan_->text); }
 
-  /// A text as a plan of this document's folder, which is not recorded. Throws as parse_plan().
+  /// A text as a plan of this document's folder, which is not recorded. Throws as parse_plan(); voxel::Error,
+  /// Input, where a scan or a file that a step reads lies in no open folder.
   Plan parsed(const Json& json) const;
   /// The plan with further steps at its end, which is not recorded.
   Plan with_steps(const Json& steps) const;
@@ -50,6 +53,7 @@ class Document {
   void read_again();
 
   std::filesystem::path path_;
+  const Folders& folders_;
   std::unique_ptr<PlanHistory> history_;
   std::shared_ptr<const Plan> plan_;
 };

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/planner/ball_scan.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -15,7 +16,8 @@ class DocumentTest : public testing::Test {
     std::ofstream(folder_ / "a.plan.json") << R"({"octotomy_plan": 1, "name": "a",
       "scans": {"ct": {"path": "a.nrrd"}},
       "steps": [{"id": "bone", "do": "window", "scan": "ct", "low": 300}]})";
-    document_ = std::make_unique<Document>(folder_ / "a.plan.json");
+    folders_.open(folder_.path());
+    document_ = std::make_unique<Document>(folder_ / "a.plan.json", folders_);
   }
 
   /// The ids of the steps, in their order.
@@ -27,6 +29,7 @@ class DocumentTest : public testing::Test {
 
   const Json skin_{{"id", "skin"}, {"do", "window"}, {"scan", "ct"}, {"low", -300}};
   tests::TestFolder folder_;
+  Folders folders_;
   std::unique_ptr<Document> document_;
 };
 
@@ -58,6 +61,16 @@ TEST_F(DocumentTest, WhatIsNoPlanChangesNothing) {
   EXPECT_EQ(document_->history_json()["edit"], 1);
 }
 
+TEST_F(DocumentTest, ScansAndFilesLieInOpenFolders) {
+  const std::string before = document_->plan()->text;
+  EXPECT_THROW(document_->edit({{"scans", {{"ct", {{"path", "/etc/passwd"}}}}}}), voxel::Error);
+  EXPECT_THROW(document_->edit({{"add", {{"step", {{"id", "in"}, {"do", "import"}, {"path", "../b.stl"}}}}}}),
+               voxel::Error);
+  EXPECT_EQ(document_->plan()->text, before);
+  document_->edit({{"add", {{"step", {{"id", "in"}, {"do", "import"}, {"path", "b.stl"}}}}}});
+  EXPECT_EQ(ids(), "bone in ");
+}
+
 TEST_F(DocumentTest, UndoRedoAndBranchesAreTold) {
   EXPECT_FALSE(document_->history_json()["can_undo"]);
   document_->edit({{"add", {{"step", skin_}}}});
@@ -86,7 +99,7 @@ TEST_F(DocumentTest, LandmarksStandBeforeTheStepsThatUseThem) {
 TEST_F(DocumentTest, AnotherDocumentOfTheSameFileGoesOn) {
   document_->edit({{"add", {{"step", skin_}}}});
   document_.reset();
-  document_ = std::make_unique<Document>(folder_ / "a.plan.json");
+  document_ = std::make_unique<Document>(folder_ / "a.plan.json", folders_);
   EXPECT_EQ(ids(), "bone skin ");
   EXPECT_TRUE(document_->undo());
 }

@@ -90,6 +90,11 @@ class Gate(Served):
         for folder in ("/", "..", "link"):
             with self.assertRaisesRegex(RuntimeError, "no folder that is open"):
                 self.window.ask("list", folder=folder)
+        for said in ({"scans": {"ct": {"path": "/etc/passwd"}}}, {"scans": {"ct": {"path": "link/passwd"}}},
+                     {"add": {"step": {"id": "read", "do": "import", "path": "/etc/machine-id.stl"}}},
+                     {"add": {"step": {"id": "read", "do": "import", "path": "../../../etc/machine-id.stl"}}}):
+            with self.assertRaisesRegex(RuntimeError, "no folder that is open", msg=said):
+                self.window.ask("edit", what="reads elsewhere", **said)
         token = self.server.token
         for name in ("../head.nrrd", "..%2f..%2f..%2f..%2fetc/passwd", "%2fetc%2fpasswd"):
             self.assertNotEqual(self.server.http(f"/file/{name}?token={token}")[0], 200, name)
