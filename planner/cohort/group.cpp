@@ -6,12 +6,12 @@
 #include <iterator>
 #include <map>
 
-#include "planner/table/csv.h"
 #include "planner/cohort/group_page.h"
 #include "planner/cohort/participant.h"
 #include "planner/cohort/plots.h"
 #include "planner/cohort/statistics.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/csv.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {

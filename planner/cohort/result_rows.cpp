@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "planner/table/csv.h"
 #include "planner/plan/sha256.h"
+#include "planner/table/csv.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
