@@ -287,7 +287,9 @@ void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
 Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop) {
   const Json& said = request.said;
   const Clock::time_point start = Clock::now();
-  Drawing drawing{.snapshot = desk.snapshot(), .render = render_of(said)};
+  Drawing drawing;
+  drawing.snapshot = desk.snapshot();
+  drawing.render = render_of(said);
   if (!drawing.snapshot.evaluation) throw std::runtime_error("no plan is open");
   drawing.is_moving = said.value("dragging", false);
   drawing.header = {{"id", request.id}, {"pane", said.value("pane", 0)}, {"objects", Json::array()}};

@@ -148,7 +148,7 @@ TEST_F(Report, TheMasksOutlineStandsWhereItWasDrawn) {
 
 TEST_F(Report, AnOutlineElsewhereIsNotTaken) {
   Action elsewhere(*find_operation("mask"));
-  *static_cast<Mask*>(elsewhere.value()) = {{{"anterior", {{{0, 0}, {1, 0}, {1, 1}}}}}};
+  static_cast<Mask*>(elsewhere.value())->regions = {{"anterior", {{{0, 0}, {1, 0}, {1, 1}}}}};
   result_.plan.steps[1].action = elsewhere;
   EXPECT_EQ(report_html(result_).find("stroke-dasharray"), std::string::npos);
 }
