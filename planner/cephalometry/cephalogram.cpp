@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <set>
+#include <utility>
 
 #include "voxel/view/lettering.h"
 #include "voxel/view/pen.h"
@@ -14,7 +14,7 @@ namespace octotomy::planner {
 namespace {
 
 using Kind = CephalometricKind;
-using Places = std::map<std::string, glm::dvec3>;
+using Places = LandmarkPlaces;
 
 constexpr glm::vec3 as_is{0.55f, 0.85f, 0.95f}, as_planned{1.0f, 0.62f, 0.20f}, dark{0.05f, 0.06f, 0.08f};
 constexpr double margin_mm = 25.0;
@@ -30,15 +30,7 @@ Places places_of(const Cephalometry& definitions, const std::vector<MovedLandmar
       places[each.landmark.name] =
           planned ? glm::dvec3(each.moved_from_still * glm::dvec4(each.landmark.p_mm, 1.0))
                   : each.landmark.p_mm;
-  for (const CephalometricLandmark& landmark : definitions.landmarks) {
-    if (landmark.mean_of.empty() || places.contains(landmark.name)) continue;
-    glm::dvec3 sum(0.0);
-    std::size_t found = 0;
-    for (const std::string& name : landmark.mean_of)
-      if (const auto at = places.find(name); at != places.end()) sum += at->second, ++found;
-    if (found == landmark.mean_of.size()) places[landmark.name] = sum / static_cast<double>(found);
-  }
-  return places;
+  return with_means(definitions, std::move(places));
 }
 
 /// The lines that lateral measures are read between, each once.

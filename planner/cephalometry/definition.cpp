@@ -134,6 +134,21 @@ const char* CephalometricMeasure::unit() const {
   }
 }
 
+LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points) {
+  for (const CephalometricLandmark& landmark : definitions.landmarks) {
+    if (landmark.mean_of.empty() || points.contains(landmark.name)) continue;
+    glm::dvec3 sum(0.0);
+    bool all = true;
+    for (const std::string& name : landmark.mean_of) {
+      const auto found = points.find(name);
+      all = all && found != points.end();
+      if (all) sum += found->second;
+    }
+    if (all) points[landmark.name] = sum / static_cast<double>(landmark.mean_of.size());
+  }
+  return points;
+}
+
 Cephalometry parse_cephalometry(const std::string& text) {
   try {
     return Reader().read(Json::parse(text));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <glm/glm.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +49,11 @@ struct Cephalometry {
   std::vector<CephalometricLandmark> landmarks;
   std::vector<CephalometricMeasure> measures;
 };
+
+/// Landmarks' places by their names, in any frame.
+using LandmarkPlaces = std::map<std::string, glm::dvec3>;
+/// The landmarks as placed, and those that are means of others and were not placed themselves.
+LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points);
 
 /// Throws std::runtime_error with the place in it: an unknown key, kind, landmark or measure (one is used
 /// after it is defined), a wrong number of points.

@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = CephalometricKind;
 using Plane = CephalometricPlane;
-using Points = std::map<std::string, glm::dvec3>;
+using Points = LandmarkPlaces;
 using Values = std::map<std::string, double>;
 
 constexpr double shortest_line_mm = 1e-6;
@@ -83,22 +83,6 @@ class Ruler {
   const CephalometricMeasure& measure_;
   std::vector<glm::dvec3> points_;
 };
-
-/// The landmarks as placed, with those that are means of others.
-Points with_means(const Cephalometry& definitions, Points points) {
-  for (const CephalometricLandmark& landmark : definitions.landmarks) {
-    if (landmark.mean_of.empty() || points.contains(landmark.name)) continue;
-    glm::dvec3 sum(0.0);
-    bool all = true;
-    for (const std::string& name : landmark.mean_of) {
-      const auto found = points.find(name);
-      all = all && found != points.end();
-      if (all) sum += found->second;
-    }
-    if (all) points[landmark.name] = sum / static_cast<double>(landmark.mean_of.size());
-  }
-  return points;
-}
 
 /// The measures that have their points, in the order of their definitions.
 Values values_of(const Cephalometry& definitions, const Points& placed) {

@@ -8,20 +8,9 @@ namespace {
 
 using namespace tests;
 
-/// Caps of the ball above 5 mm and below -5 mm, which are 10 mm apart.
-std::string caps(const std::string& more) {
-  return R"({"id": "high", "do": "mask", "regions": [{"view": "anterior",
-          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
-      {"id": "low", "do": "mask", "regions": [{"view": "anterior",
-          "polygons_mm": [[[-30, -5], [30, -5], [30, -30], [-30, -30]]]}]},
-      {"id": "upper", "do": "combine", "expression": "ball & high"},
-      {"id": "lower", "do": "combine", "expression": "ball & low"}, )" +
-         more;
-}
-
 TEST(AdvanceStep, GoesToContactAndStopsAGapBefore) {
   const TestFolder folder;
-  const Evaluation evaluation = evaluate(ball_plan(folder, caps(R"(
+  const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "met", "do": "advance", "object": "lower", "against": "upper", "towards": "up"},
       {"id": "near", "do": "advance", "object": "lower", "against": "upper", "direction": [0, 0, 7],
           "gap_mm": 2},
@@ -42,7 +31,8 @@ TEST(AdvanceStep, GoesToContactAndStopsAGapBefore) {
 TEST(AdvanceStep, RefusalsPointAtThePlace) {
   const TestFolder folder;
   const auto refusal = [&](const std::string& fields) {
-    return ball_refusal(folder, caps(R"({"id": "a", "do": "advance", "object": "lower", )" + fields + "}"));
+    return ball_refusal(folder,
+                        ball_caps(R"({"id": "a", "do": "advance", "object": "lower", )" + fields + "}"));
   };
   EXPECT_NE(refusal(R"("against": "lower", "towards": "up")").find("step 'a', against: is the object itself"),
             std::string::npos);
@@ -51,7 +41,8 @@ TEST(AdvanceStep, RefusalsPointAtThePlace) {
   EXPECT_NE(refusal(R"("against": "upper", "direction": [0, 0, 0])").find("has no length"),
             std::string::npos);
   try {
-    evaluate(ball_plan(folder, caps(R"({"id": "a", "do": "advance", "object": "lower", "against": "upper",
+    evaluate(
+        ball_plan(folder, ball_caps(R"({"id": "a", "do": "advance", "object": "lower", "against": "upper",
         "towards": "down"})")));
     FAIL();
   } catch (const std::runtime_error& error) {

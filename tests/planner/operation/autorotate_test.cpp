@@ -9,16 +9,7 @@ namespace {
 
 using namespace tests;
 
-/// Caps of the ball above 5 mm and below -5 mm; the hinge lies 40 mm behind, between them.
-std::string jaws(const std::string& more) {
-  return R"({"id": "high", "do": "mask", "regions": [{"view": "anterior",
-          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
-      {"id": "low", "do": "mask", "regions": [{"view": "anterior",
-          "polygons_mm": [[[-30, -5], [30, -5], [30, -30], [-30, -30]]]}]},
-      {"id": "upper", "do": "combine", "expression": "ball & high"},
-      {"id": "lower", "do": "combine", "expression": "ball & low"}, )" +
-         more;
-}
+// The hinge lies 40 mm behind, between the caps.
 
 bool overlap(const Evaluation& evaluation, const std::string& a, const std::string& b) {
   return !voxel::combine(evaluation.universe, voxel::Expression(evaluation.object(a).voxel.octree) &
@@ -28,7 +19,7 @@ bool overlap(const Evaluation& evaluation, const std::string& a, const std::stri
 
 TEST(AutorotateStep, TheLowerJawClosesToFirstContactAndNoFurther) {
   const TestFolder folder;
-  const Evaluation evaluation = evaluate(ball_plan(folder, jaws(R"(
+  const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "closed", "do": "autorotate", "object": "lower", "against": "upper",
           "condyles": [[-20, 40, 0], [20, 40, 0]]},
       {"id": "further", "do": "move", "object": "closed", "rotate": {"degrees": 1,
@@ -46,7 +37,7 @@ TEST(AutorotateStep, TheLowerJawClosesToFirstContactAndNoFurther) {
 
 TEST(AutorotateStep, AJawThatOverlapsOpens) {
   const TestFolder folder;
-  const Evaluation evaluation = evaluate(ball_plan(folder, jaws(R"(
+  const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "deep", "do": "move", "object": "lower", "translate_mm": [0, 0, 12]},
       {"id": "freed", "do": "autorotate", "object": "deep", "against": "upper",
           "condyles": [[-20, 40, 0], [20, 40, 0]]})")));
@@ -58,17 +49,18 @@ TEST(AutorotateStep, AJawThatOverlapsOpens) {
 TEST(AutorotateStep, RefusalsPointAtThePlace) {
   const TestFolder folder;
   EXPECT_NE(
-      ball_refusal(folder, jaws(R"({"id": "c", "do": "autorotate", "object": "lower", "against": "lower",
+      ball_refusal(folder, ball_caps(R"({"id": "c", "do": "autorotate", "object": "lower", "against": "lower",
       "condyles": [[-20, 40, 0], [20, 40, 0]]})"))
           .find("step 'c', against: is the object itself"),
       std::string::npos);
   EXPECT_NE(
-      ball_refusal(folder, jaws(R"({"id": "c", "do": "autorotate", "object": "lower", "against": "upper",
+      ball_refusal(folder, ball_caps(R"({"id": "c", "do": "autorotate", "object": "lower", "against": "upper",
       "condyles": [[0, 40, 0], [1, 40, 0]]})"))
           .find("step 'c', condyles: lie within 10 mm"),
       std::string::npos);
   try {
-    evaluate(ball_plan(folder, jaws(R"({"id": "c", "do": "autorotate", "object": "lower", "against": "upper",
+    evaluate(
+        ball_plan(folder, ball_caps(R"({"id": "c", "do": "autorotate", "object": "lower", "against": "upper",
         "condyles": [[-20, 40, 0], [20, 40, 0]], "most_deg": 2})")));
     FAIL();
   } catch (const std::runtime_error& error) {

@@ -48,4 +48,15 @@ inline std::string ball_refusal(const TestFolder& folder, const std::string& ste
   return "";
 }
 
+/// Steps for the caps "upper", above 5 mm, and "lower", below -5 mm; then further ones.
+inline std::string ball_caps(const std::string& more) {
+  return R"({"id": "high", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "low", "do": "mask", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, -5], [30, -5], [30, -30], [-30, -30]]]}]},
+      {"id": "upper", "do": "combine", "expression": "ball & high"},
+      {"id": "lower", "do": "combine", "expression": "ball & low"}, )" +
+         more;
+}
+
 }  // namespace octotomy::tests
