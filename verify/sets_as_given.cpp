@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "brep/mesh/error.h"
@@ -15,6 +19,7 @@
 #include "convert/voxel/voxelise.h"
 #include "verify/certify_operation.h"
 #include "verify/exact_agreement.h"
+#include "verify/expression_on_meshes.h"
 #include "voxel/codes/cuberille_faces.h"
 #include "voxel/solid/combine.h"
 #include "voxel/space/rounded.h"
@@ -32,29 +37,69 @@ voxel::Octree on_units(const voxel::Octree& set) {
   return {universe, voxel::Block::share(set.root())};
 }
 
+/// The farthest that corefinement moves an operand: three steps of 4e-6 of the extent (brep::Booleans).
+double shifted_units(int side) {
+  return 3.0 * 4e-6 * std::sqrt(3.0) * units * side;
+}
+/// Half of the distance that parts sheets of one set: above the rounding of points and below a shift.
+double parted_units(int side) {
+  return 1e-6 * units * side;
+}
+
+/// Moves corners that share a place with others of the surface into the solid, each along the mean normal of
+/// its own sheet: corefinement takes no operand that touches itself.
+void part_sheets(brep::Triangles& surface, double by) {
+  std::vector<std::size_t> order(surface.points_mm.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto place = [&](std::size_t i) {
+    const glm::dvec3& p = surface.points_mm[i];
+    return std::tie(p.x, p.y, p.z);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return place(i) < place(j); });
+  std::vector<bool> shares(order.size());
+  for (std::size_t k = 1; k < order.size(); ++k)
+    if (place(order[k - 1]) == place(order[k])) shares[order[k - 1]] = shares[order[k]] = true;
+  std::vector<glm::dvec3> normals(order.size());
+  for (const auto& face : surface.faces) {
+    if (!shares[face[0]] && !shares[face[1]] && !shares[face[2]]) continue;
+    const glm::dvec3& p = surface.points_mm[face[0]];
+    const glm::dvec3 normal = glm::cross(surface.points_mm[face[1]] - p, surface.points_mm[face[2]] - p);
+    for (const auto corner : face) normals[corner] += normal;
+  }
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (shares[i] && normals[i] != glm::dvec3(0.0)) surface.points_mm[i] -= by * glm::normalize(normals[i]);
+}
+
 brep::Solid cuberille_of(const voxel::Octree& set, const voxel::Progress& progress) {
   const convert::LatticeSurface surface =
       convert::cuberille(set, convert::Touching::Apart, {progress.stop, {}});
   brep::Triangles triangles;
   triangles.faces = surface.faces;
   for (const glm::ivec3& p_half : surface.points_half) triangles.points_mm.emplace_back(p_half);
+  part_sheets(triangles, parted_units(set.universe().side()));
   return brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
 }
 
-/// The farthest that corefinement moves an operand: three steps of 4e-6 of the extent (brep::Booleans).
-double moved_units(int side) {
-  return 3.0 * 4e-6 * std::sqrt(3.0) * units * side;
-}
-
-/// The corners rounded to whole units, and how far the farthest was from them.
-std::pair<brep::Mesh, double> on_lattice(brep::Mesh mesh) {
+/// Coordinates within `near` of whole units are rounded to them; the others are those of points in the middle
+/// of a face or side, whose volume does not depend on them. And the farthest that a triangle lies from a
+/// plane between voxels.
+std::pair<brep::Mesh, double> on_lattice(brep::Mesh mesh, double near) {
   double farthest = 0.0;
+  for (const auto face : mesh.faces()) {
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const auto v : face.vertices()) {
+      const brep::Mesh::Point& p = mesh.point(v);
+      low = glm::min(low, glm::dvec3(p[0], p[1], p[2]));
+      high = glm::max(high, glm::dvec3(p[0], p[1], p[2]));
+    }
+    const glm::dvec3 planes = units * glm::round(0.5 * (low + high) / units);
+    const glm::dvec3 off = glm::max(glm::abs(low - planes), glm::abs(high - planes));
+    farthest = std::max(farthest, std::min({off.x, off.y, off.z}));
+  }
   for (const auto v : mesh.vertices()) {
     brep::Mesh::Point p = mesh.point(v);
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      farthest = std::max(farthest, std::abs(p[axis] - std::round(p[axis])));
-      p[axis] = std::round(p[axis]);
-    }
+    for (unsigned axis = 0; axis < 3; ++axis)
+      if (std::abs(p[axis] - std::round(p[axis])) <= near) p[axis] = std::round(p[axis]);
     mesh.set_point(v, p);
   }
   return {std::move(mesh), farthest};
@@ -75,14 +120,13 @@ voxel::Expression expression_of(const voxel::Octree& a, brep::Operation operatio
   return voxel::Expression(a) - b;
 }
 
-void compare(const voxel::Octree& octree, const brep::Solid& solid, double unit_mm3,
+void compare(const voxel::Octree& octree, const brep::Solid& solid, double near, double unit_mm3,
              Certificate& certificate) {
   const auto fail = [&](const std::string& reason) { lower(certificate, Verdict::Fail, reason); };
-  const auto [whole, farthest] = on_lattice(solid.mesh());
-  const int side = octree.universe().side();
-  if (farthest > moved_units(side))
-    fail("A corner of the mesh kernel's answer lies " + voxel::rounded(farthest / units) +
-         " voxels off the lattice of both sets.");
+  const auto [whole, farthest] = on_lattice(solid.mesh(), near);
+  if (farthest > near)
+    fail("A triangle of the mesh kernel's answer lies " + voxel::rounded(farthest / units) +
+         " voxels off the planes between voxels.");
   const std::optional<std::int64_t> volume = whole_volume({whole});
   const auto voxels = static_cast<std::int64_t>(octree.voxel_count());
   constexpr auto per_voxel = static_cast<std::int64_t>(units * units * units);
@@ -100,31 +144,35 @@ void compare(const voxel::Octree& octree, const brep::Solid& solid, double unit_
          " mm3 are inside for one kernel only.");
 }
 
-}  // namespace
+/// The mesh kernel's answer in units, and what the corefinements found.
+struct Corefined {
+  brep::Solid solid;
+  std::vector<std::string> findings;
+};
 
-SetsAnswer certify_sets(const voxel::Octree& a, brep::Operation operation, const voxel::Octree& b,
-                        const voxel::Progress& progress) {
-  if (!(a.universe() == b.universe())) throw std::invalid_argument("both sets of voxels need one universe");
+/// The certificate of an octree and what `corefine` gives, which moves operands `shifts` times at most.
+SetsAnswer certified(voxel::Octree octree, const std::string& operation, int shifts,
+                     const std::function<Corefined()>& corefine, const voxel::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const double unit_mm3 = a.universe().lattice().voxel_mm3();
+  const voxel::Universe& universe = octree.universe();
+  const double unit_mm3 = universe.lattice().voxel_mm3();
   const double face_mm2 = std::pow(unit_mm3, 2.0 / 3.0);
-  SetsAnswer answer{voxel::combine(a.universe(), expression_of(a, operation, b)), {}, {}, {}};
+  SetsAnswer answer{std::move(octree), {}, {}, {}};
   Certificate& certificate = answer.certificate;
   certificate.tier = Tier::Exact;
-  certificate.operation = text_of(operation);
+  certificate.operation = operation;
   certificate.voxel = {
       "Boolean of octrees on the sets as given", static_cast<double>(answer.octree.voxel_count()) * unit_mm3,
       static_cast<double>(voxel::cuberille_faces(answer.octree).face_count()) * face_mm2, std::nullopt};
   certificate.mesh = {"corefinement of the same sets' cuberilles", 0.0, 0.0, std::nullopt};
   progress.at(0.1);
-  const voxel::Octree own = on_units(answer.octree);
   try {
-    const brep::BooleanResult result = brep::boolean(cuberille_of(on_units(a), progress), operation,
-                                                     cuberille_of(on_units(b), progress), progress.stop);
+    Corefined corefined = corefine();
     progress.at(0.8);
-    compare(own, result.solid, unit_mm3, certificate);
-    answer.solid = in_patient(result.solid, a.universe().lps_from_voxel);
-    answer.findings = result.findings;
+    const double near = shifts * shifted_units(universe.side()) + parted_units(universe.side());
+    compare(on_units(answer.octree), corefined.solid, near, unit_mm3, certificate);
+    answer.solid = in_patient(corefined.solid, universe.lps_from_voxel);
+    answer.findings = std::move(corefined.findings);
   } catch (const brep::Stopped& stopped) {
     throw voxel::Stopped(stopped.what());
   } catch (const brep::Error& error) {
@@ -136,6 +184,48 @@ SetsAnswer certify_sets(const voxel::Octree& a, brep::Operation operation, const
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   progress.at(1.0);
   return answer;
+}
+
+}  // namespace
+
+SetsAnswer certify_sets(const voxel::Octree& a, brep::Operation operation, const voxel::Octree& b,
+                        const voxel::Progress& progress) {
+  if (!(a.universe() == b.universe())) throw std::invalid_argument("both sets of voxels need one universe");
+  const auto corefine = [&]() -> Corefined {
+    brep::BooleanResult result = brep::boolean(cuberille_of(on_units(a), progress), operation,
+                                               cuberille_of(on_units(b), progress), progress.stop);
+    return {std::move(result.solid), std::move(result.findings)};
+  };
+  return certified(voxel::combine(a.universe(), expression_of(a, operation, b)), text_of(operation), 1,
+                   corefine, progress);
+}
+
+SetsAnswer certify_sets(std::string_view expression,
+                        const std::function<voxel::Octree(std::string_view)>& set,
+                        const voxel::Progress& progress) {
+  std::map<std::string, voxel::Octree, std::less<>> sets;
+  for (const std::string& name : voxel::names_in(expression)) {
+    const auto& [found, added] = sets.emplace(name, set(name));
+    if (!(found->second.universe() == sets.begin()->second.universe()))
+      throw std::invalid_argument("all sets of voxels need one universe");
+  }
+  voxel::Names names;
+  names.object = [&](std::string_view name) { return voxel::Expression(sets.find(name)->second); };
+  const voxel::Expression parsed = voxel::parse_expression(expression, names);
+  const voxel::Universe universe = sets.begin()->second.universe();
+  const auto corefine = [&]() -> Corefined {
+    MeshExpressions meshes(cuberille_of(on_units(voxel::Octree::full(universe)), progress));
+    brep::Solid solid = meshes.evaluate(
+        expression,
+        [&](std::string_view name) { return cuberille_of(on_units(sets.find(name)->second), progress); },
+        progress.stop);
+    return {std::move(solid), meshes.findings()};
+  };
+  // A complement at the end is one more operation, in the universe's box.
+  const auto operators =
+      std::count_if(expression.begin(), expression.end(), [](char c) { return std::strchr("|&^-", c); });
+  return certified(voxel::combine(universe, parsed), std::string(expression),
+                   3 * static_cast<int>(operators) + 1, corefine, progress);
 }
 
 }  // namespace octotomy::verify

@@ -9,6 +9,7 @@
 
 #include "planner/cli/plan_in.h"
 #include "planner/measure/result_json.h"
+#include "planner/report/random_suite.h"
 #include "planner/report/report.h"
 
 // `octotomy verify`: a plan's certificates, or one of the suites that test the verifier itself.
@@ -25,6 +26,7 @@ struct VerifyText : PlanIn {
   int poses = 6;     ///< of --phantoms
   int solids = 400;  ///< of its intervals
   int random_count = 0;
+  std::vector<RandomTier> random_tiers;  ///< none: all
   std::uint64_t seed = 1;
   std::filesystem::path failures = "disagreements";
 };

@@ -17,6 +17,7 @@
 #include "planner/table/json_file.h"
 #include "verify/exact_agreement.h"
 #include "verify/random_expression.h"
+#include "verify/sets_as_given.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/solid/combine.h"
@@ -55,17 +56,17 @@ std::string letter(int leaf) {
   return std::string(1, static_cast<char>('a' + leaf));
 }
 
-/// A question of the exact tier.
+/// A question about sets of voxels.
 struct ExactQuestion {
+  RandomTier tier = RandomTier::Exact;
   verify::ExpressionTree tree;
   std::vector<Octree> sets;
   std::string told;
 
+  const Octree& set(std::string_view name) const { return sets[static_cast<std::size_t>(name[0] - 'a')]; }
   Expression expression() const {
     voxel::Names names;
-    names.object = [this](std::string_view name) {
-      return Expression(sets[static_cast<std::size_t>(name[0] - 'a')]);
-    };
+    names.object = [this](std::string_view name) { return Expression(set(name)); };
     return voxel::parse_expression(text(tree, letter), names);
   }
   /// Neither empty nor one of its sets.
@@ -75,13 +76,19 @@ struct ExactQuestion {
   }
 };
 
-ExactQuestion exact_question(std::uint64_t seed) {
-  // Of large sets fewer, and fewer at a time: triangles grow with the square of the side.
-  struct Size {
-    int per_cent, depth, side, leaves;
-  };
-  static constexpr std::array<Size, 5> sizes{
-      {{40, 3, 8, 7}, {25, 4, 14, 6}, {20, 5, 24, 4}, {10, 5, 32, 3}, {5, 6, 48, 3}}};
+/// Sets of one size: their share of the questions, the universe's depth, their side, leaves at most.
+struct SetSize {
+  int per_cent, depth, side, leaves;
+};
+using SetSizes = std::array<SetSize, 5>;
+// Of large sets fewer, and fewer at a time: triangles grow with the square of the side.
+constexpr SetSizes sizes_in_general{
+    {{40, 3, 8, 7}, {25, 4, 14, 6}, {20, 5, 24, 4}, {10, 5, 32, 3}, {5, 6, 48, 3}}};
+// Eight voxels hold each way in which faces, edges and corners of two sets can meet.
+constexpr SetSizes sizes_as_given{{{40, 2, 2, 4}, {30, 2, 2, 3}, {22, 2, 2, 2}, {6, 2, 3, 3}, {2, 2, 4, 2}}};
+
+ExactQuestion exact_question(std::uint64_t seed, RandomTier tier) {
+  const SetSizes& sizes = tier == RandomTier::AsGiven ? sizes_as_given : sizes_in_general;
   Random random(seed);
   int drawn = verify::random_int(random, 0, 99);
   std::size_t i = 0;
@@ -89,6 +96,7 @@ ExactQuestion exact_question(std::uint64_t seed) {
   voxel::Universe universe;
   universe.depth = sizes[i].depth;
   ExactQuestion question;
+  question.tier = tier;
   for (int leaf = 0; leaf < std::min(sizes[i].leaves, 4); ++leaf) {
     verify::RandomSet set = verify::random_set(random, universe, sizes[i].side);
     question.told += (leaf > 0 ? ", " : "") + letter(leaf) + " = " + set.recipe;
@@ -106,7 +114,13 @@ ExactQuestion exact_question(std::uint64_t seed) {
 Certificate answer_of(const ExactQuestion& question, const std::stop_token& stop) {
   Certificate certificate;
   try {
-    certificate = verify::certify_exact(verify::exact_answers(question.expression(), {stop, {}}));
+    if (question.tier == RandomTier::AsGiven)
+      certificate =
+          verify::certify_sets(text(question.tree, letter),
+                               [&](std::string_view name) { return question.set(name); }, {stop, {}})
+              .certificate;
+    else
+      certificate = verify::certify_exact(verify::exact_answers(question.expression(), {stop, {}}));
   } catch (const Stopped&) {
     throw;
   } catch (const std::exception& error) {
@@ -229,42 +243,58 @@ void write_plan(RandomPlan plan, const std::filesystem::path& folder) {
 /// The suite under way. What a case adds is kept by its number, so that order is the seeds'.
 class Asking {
  public:
-  explicit Asking(const RandomSuiteOptions& options)
-      : options_(options), scans_(write_random_scans(folder_.path())) {}
+  explicit Asking(const RandomSuiteOptions& options) : options_(options) {
+    if (std::count(options.tiers.begin(), options.tiers.end(), RandomTier::Bounded) > 0)
+      scans_ = write_random_scans(folder_.path());
+  }
 
   RandomSuite run() {
-    const auto cases = static_cast<std::size_t>(options_.count);
-    std::vector<RandomSuite> parts(cases);
-    std::atomic<std::size_t> done = 0;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, cases, 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            if (options_.stop.stop_requested()) throw Stopped("stopped between random questions");
-            ask_exact(options_.seed + i, parts[i]);
-            ask_bounded(options_.seed + i, parts[i]);
-            report(++done, cases);
-          }
-        },
-        tbb::simple_partitioner());
     RandomSuite all;
-    for (RandomSuite& part : parts) {
-      add(all.exact, part.exact);
-      add(all.bounded, part.bounded);
-      std::move(part.disagreements.begin(), part.disagreements.end(), std::back_inserter(all.disagreements));
+    const auto cases = static_cast<std::size_t>(options_.count);
+    constexpr std::size_t at_a_time = 4096;
+    for (std::size_t first = 0; first < cases; first += at_a_time) {
+      std::vector<RandomSuite> parts(std::min(at_a_time, cases - first));
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, parts.size(), 1),
+          [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+              if (options_.stop.stop_requested()) throw Stopped("stopped between random questions");
+              ask(options_.seed + first + i, parts[i]);
+              report(++done_, cases);
+            }
+          },
+          tbb::simple_partitioner());
+      for (RandomSuite& part : parts) {
+        add(all.exact, part.exact);
+        add(all.as_given, part.as_given);
+        add(all.bounded, part.bounded);
+        std::move(part.disagreements.begin(), part.disagreements.end(),
+                  std::back_inserter(all.disagreements));
+      }
     }
     all.worst = std::move(worst_);
     return all;
   }
 
  private:
-  static void add(RandomTier& all, RandomTier& part) {
+  static void add(RandomAnswers& all, RandomAnswers& part) {
+    const auto asked_before = static_cast<std::size_t>(all.asked);
     all.verdicts += part.verdicts;
     all.asked += part.asked;
     all.of_substance += part.of_substance;
     all.no_answer += part.no_answer;
     all.refused += part.refused;
-    std::move(part.results.begin(), part.results.end(), std::back_inserter(all.results));
+    for (Certificate& result : part.results)
+      if (asked_before < RandomAnswers::most_told || result.verdict != Verdict::Pass)
+        all.results.push_back(std::move(result));
+  }
+
+  void ask(std::uint64_t seed, RandomSuite& suite) {
+    for (const RandomTier tier : options_.tiers)
+      if (tier == RandomTier::Bounded)
+        ask_bounded(seed, suite);
+      else
+        ask_exact(seed, tier, suite);
   }
 
   void report(std::size_t done, std::size_t of) {
@@ -284,16 +314,18 @@ class Asking {
     worst_seed_ = seed;
   }
 
-  void ask_exact(std::uint64_t seed, RandomSuite& suite) {
-    ExactQuestion question = exact_question(seed);
+  void ask_exact(std::uint64_t seed, RandomTier tier, RandomSuite& suite) {
+    ExactQuestion question = exact_question(seed, tier);
     const Certificate certificate = answer_of(question, options_.stop);
-    suite.exact.asked = 1;
-    suite.exact.of_substance = question.has_substance();
-    planner::add(suite.exact.verdicts, certificate);
-    suite.exact.results.push_back(certificate);
-    if (certificate.verdict != verify::Verdict::Fail) return;
+    RandomAnswers& answers = tier == RandomTier::AsGiven ? suite.as_given : suite.exact;
+    answers.asked = 1;
+    answers.of_substance = question.has_substance();
+    answers.no_answer = certificate.verdict == Verdict::Warn;
+    if (answers.no_answer == 0) planner::add(answers.verdicts, certificate);
+    answers.results.push_back(certificate);
+    if (certificate.verdict != Verdict::Fail) return;
     question = simplified(std::move(question), options_.stop);
-    write("exact", seed, text(question.tree, letter), answer_of(question, options_.stop).reasons, suite,
+    write(name_of(tier), seed, text(question.tree, letter), answer_of(question, options_.stop).reasons, suite,
           [&](const std::filesystem::path& folder) { write_plan(question, folder); });
   }
 
@@ -326,7 +358,7 @@ class Asking {
     if (failure == nullptr) return;
     plan = simplified(std::move(plan), failure->id, options_.stop);
     const PlanAnswer last = answer_of(plan, options_.stop);
-    write("bounded", seed, last.evaluation->objects.back().definition,
+    write(name_of(RandomTier::Bounded), seed, last.evaluation->objects.back().definition,
           last.evaluation->objects.back().certificate->reasons, suite,
           [&](const std::filesystem::path& folder) { write_plan(plan, folder); });
   }
@@ -345,6 +377,7 @@ class Asking {
   const RandomSuiteOptions& options_;
   TemporaryFolder folder_;
   std::vector<RandomScan> scans_;
+  std::atomic<std::size_t> done_ = 0;
   std::mutex reporting_, keeping_;
   std::optional<verify::Contested> worst_;
   std::uint64_t worst_seed_ = 0;
@@ -353,8 +386,16 @@ class Asking {
 }  // namespace
 
 double RandomSuite::substance() const {
-  const int asked = exact.asked + bounded.asked;
-  return asked == 0 ? 0.0 : static_cast<double>(exact.of_substance + bounded.of_substance) / asked;
+  int asked = 0, of_substance = 0;
+  for (const RandomAnswers* answers : {&exact, &as_given, &bounded}) {
+    asked += answers->asked;
+    of_substance += answers->of_substance;
+  }
+  return asked == 0 ? 0.0 : static_cast<double>(of_substance) / asked;
+}
+
+const char* name_of(RandomTier tier) {
+  return tier == RandomTier::Exact ? "exact" : tier == RandomTier::AsGiven ? "as_given" : "bounded";
 }
 
 RandomSuite ask_random(const RandomSuiteOptions& options) {
