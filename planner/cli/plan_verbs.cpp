@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <map>
+
 #include "planner/cli/plan_document.h"
 #include "planner/cli/plan_in.h"
 #include "planner/cli/procedure_verb.h"
@@ -13,9 +15,16 @@
 namespace octotomy::planner::cli {
 namespace {
 
+enum class Certify {
+  Now,
+  Later,  ///< the result is written without certificates first, and again with them
+  Never
+};
+
 struct RunText : PlanIn {
   std::filesystem::path out;
-  bool without_certificates = false, as_pdf = false;
+  Certify certify = Certify::Now;
+  bool as_pdf = false;
 };
 
 struct PreviewText : PlanIn {
@@ -57,6 +66,12 @@ int preview_step(Program& program, PreviewText& text) {
   return done;
 }
 
+/// Writes the result's folder; returns what result.json holds.
+Json written(Program& program, Result& result, const std::filesystem::path& out) {
+  if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
+  return write_result(result, out, {program.stop.get_token(), program.progress()});
+}
+
 int run(Program& program, const RunText& text) {
   Result result;
   result.plan = plan_of(program, text);
@@ -64,18 +79,27 @@ int run(Program& program, const RunText& text) {
   if (text.as_pdf) need_pdf_printer();
   need_result_folder(text.out, result_names(result.plan));
   EvaluateOptions options = evaluate_options(program);
-  options.certify = !text.without_certificates;
+  options.certify = text.certify == Certify::Now;
   result.evaluation = evaluated(program, result.plan, options);
-  if (text.without_certificates)
-    result.findings.push_back({"certificates", voxel::Verdict::Warn,
-                               "left out as asked (--no-certificates): no number here is checked"});
+  if (!options.certify)
+    result.findings.push_back(
+        {"certificates", voxel::Verdict::Warn,
+         text.certify == Certify::Later
+             ? "not made yet (--certify later): no number here is checked until this page is written again"
+             : "left out as asked (--certify never): no number here is checked"});
   result.pictures = plan_pictures(result.plan, result.evaluation);
-  if (program.stop.stop_requested()) throw Stopped("stopped before the result was written");
-  const Json json = write_result(result, text.out, {program.stop.get_token(), program.progress()});
-  std::string measured = verdict_text(result.evaluation);
+  Json json = written(program, result, text.out);
   for (const Exported& exported : result.exported)
     for (const std::string& finding : exported.findings) warn(exported.path + ": " + finding);
-  program.say(json, measured + "written: " + (text.out / "report.html").string() + "\n");
+  if (text.certify == Certify::Later) {
+    warn("written without certificates: " + (text.out / "report.html").string() + "; they follow");
+    result.findings.pop_back();
+    options.certify = true;
+    result.evaluation = evaluate(result.plan, options);
+    json = written(program, result, text.out);
+  }
+  program.say(json,
+              verdict_text(result.evaluation) + "written: " + (text.out / "report.html").string() + "\n");
   return status_of(result.evaluation);
 }
 
@@ -98,8 +122,15 @@ void add_plan_verbs(Program& program) {
   verb.add_option("-o,--out", text->out,
                   "The result's folder: new, empty, or an earlier result; files that you put there stay")
       ->required();
-  verb.add_flag("--no-certificates", text->without_certificates,
-                "Make the objects in both kernels and compare them not: faster, and no number is checked");
+  static const std::map<std::string, Certify> certify{
+      {"now", Certify::Now}, {"later", Certify::Later}, {"never", Certify::Never}};
+  verb.add_option("--certify", text->certify,
+                  "now; later: the result is written without certificates first and again with them; never: "
+                  "faster, and no number is checked. Default: now")
+      ->transform(CLI::Transformer(certify))
+      ->type_name("WHEN");
+  verb.add_flag_callback(
+      "--no-certificates", [text] { text->certify = Certify::Never; }, "The same as --certify never");
   verb.add_flag("--pdf", text->as_pdf,
                 "Print the report as report.pdf, too; takes WeasyPrint or Chromium on the PATH");
   const auto seen = std::make_shared<PreviewText>();

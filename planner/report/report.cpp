@@ -204,8 +204,10 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     add_cephalometry(result);
     check_signatures(result);
   }
-  result.exported =
-      write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);
+  const bool again = !result.exported.empty();
+  if (!again)
+    result.exported =
+        write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);
   {
     const Stopwatch watch(result.evaluation.timings, "write");
     write_pictures(result, output.path() / "views");
@@ -221,6 +223,7 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     write_text(output.path() / name, text);
   }
   write_text(output.path() / "result.json", json_text(json, 2) + "\n");
+  if (again) output.copy_rest();
   output.publish();
   return json;
 }

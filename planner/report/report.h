@@ -76,7 +76,8 @@ std::vector<std::filesystem::path> result_names(const Plan& plan);
 
 /// Writes a result's folder whole or not at all: its exports, views/*.png, tables/*.csv, report.html
 /// and result.json.
-/// Fills `result.exported` and `result.measurements`; returns what result.json holds. Throws as ResultFolder
+/// Fills `result.exported` and `result.measurements`; returns what result.json holds. A result that was
+/// written to the folder before keeps the exports that lie there. Throws as ResultFolder
 /// and the writers do, and Stopped where the stop token is set while an export is filled or written.
 nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder,
                                     const ExportOptions& options = {});

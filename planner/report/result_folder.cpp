@@ -360,6 +360,14 @@ void ResultFolder::keep_beside(const std::string& reason, const fs::path& hidden
   }
 }
 
+void ResultFolder::copy_rest() {
+  for (const auto& [name, sum] : read_list(final_)) {
+    if (is_there(path() / name) || !fs::is_regular_file(fs::symlink_status(final_ / name))) continue;
+    fs::create_directories((path() / name).parent_path());
+    fs::copy_file(final_ / name, path() / name);
+  }
+}
+
 void ResultFolder::publish() {
   write_list(path());
   const PlaceLock held(final_.parent_path());

@@ -35,6 +35,9 @@ class ResultFolder {
 
   /// The folder to write into until publish(); exists.
   const std::filesystem::path& path() const { return staged_->path(); }
+  /// Copies the files of the earlier result that were not written anew; for a result that is written again
+  /// with more in it. Cost: a copy of these files.
+  void copy_rest();
   /// Puts the result in its place. A process that is killed before or within leaves the earlier result whole
   /// under its name; after, the new one. Throws voxel::Error (Input) if a file of the place was changed or
   /// put in the way during the work; the result then stays complete beside it, under the name in the message.

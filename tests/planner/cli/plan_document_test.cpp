@@ -140,6 +140,27 @@ TEST_F(PlanDocument, PreviewDrawsOneStepAndTellsAMaskThatCutsNothing) {
   expect_refused(run("preview my.plan.json cup -o cup.jpg"), ".png");
 }
 
+TEST_F(PlanDocument, CertificatesThatComeLaterAreThoseOfNowAndKeepTheExports) {
+  write("my.plan.json",
+        plan("0", R"(, {"id": "out", "do": "export", "object": "ball", "path": "ball.stl"})"));
+  const auto later = run("run my.plan.json -o later --certify later");
+  ASSERT_EQ(later.status, 0) << later.errors;
+  EXPECT_NE(later.errors.find("written without certificates"), std::string::npos) << later.errors;
+  ASSERT_EQ(run("run my.plan.json -o now").status, 0);
+  ASSERT_EQ(run("run my.plan.json -o never --certify never").status, 0);
+  const auto result = [&](const char* folder) {
+    auto json = tests::Json::parse(tests::bytes_of(folder_ / folder / "result.json"));
+    for (auto& certificate : json.at("certificates")) certificate.erase("timings_ms");
+    return json;
+  };
+  EXPECT_EQ(result("later").at("certificates"), result("now").at("certificates"));
+  EXPECT_EQ(result("later").at("findings"), result("now").at("findings"));
+  EXPECT_EQ(result("later").at("exports"), result("now").at("exports"));
+  EXPECT_EQ(tests::bytes_of(folder_ / "later/ball.stl"), tests::bytes_of(folder_ / "now/ball.stl"));
+  EXPECT_NE(result("now").at("certificates"), result("never").at("certificates"));
+  EXPECT_NE(result("never").at("findings").dump().find("--certify never"), std::string::npos);
+}
+
 TEST_F(PlanDocument, AProcedureIsListedExplainedAndPlanned) {
   EXPECT_NE(run("procedure").out.find("le_fort_i"), std::string::npos);
   EXPECT_NE(run("procedure le_fort_i").out.find("--set forward_mm=0"), std::string::npos);
