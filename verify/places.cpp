@@ -222,8 +222,8 @@ std::vector<glm::ivec3> steps_outward() {
   return steps;
 }
 
-/// The number of voxels of one state, outward from a voxel, until one of them would fail in the other state:
-/// a smaller error of that shape would pass there.
+/// The number of voxels of one state, outward from a voxel, until one of them would differ from the other
+/// kernel's and fail in the other state: a smaller error of that shape would pass there.
 std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
                           const std::vector<glm::ivec3>& steps, const Witness& witness) {
   const bool inside = octree.contains(from);
@@ -235,14 +235,31 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digi
       continue;
     if (octree.contains(at) != inside) continue;
     ++count;
+    if (digitised.contains(at) != inside) continue;
     const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(at)), 0.0);
-    if (fault_of(reading, !inside, digitised.contains(at)) != Fault::None) return count;
+    if (fault_of(reading, !inside, inside) != Fault::None) return count;
   }
   return count;
 }
 
-/// Whether the loss of a piece would be seen: it holds a voxel's centre at which the mesh would fail without
-/// it. Looked for beneath its triangles, up to two voxels deep.
+/// Whether a voxel that is not in the mesh is compared: it is in the octree or beside its boundary.
+bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
+  const int side = octree.universe().side();
+  const auto has = [&](const glm::ivec3& at) {
+    return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
+           glm::all(glm::lessThan(at, glm::ivec3(side))) && octree.contains(at);
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int by : {-1, 1}) {
+      glm::ivec3 neighbour = voxel;
+      neighbour[axis] += by;
+      if (has(neighbour)) return true;
+    }
+  return has(voxel);
+}
+
+/// Whether the loss of a piece would be seen: it holds a voxel's centre that is compared, and at which the
+/// mesh would fail without it. Looked for beneath its triangles, up to two voxels deep.
 bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const voxel::Octree& octree,
              const Witness& witness) {
   constexpr std::size_t most_faces = 4096, most_tried = 64;
@@ -266,7 +283,8 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
       const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
       const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(voxel));
-      if (fault_of(witness(centre, 0.0), octree.contains(voxel), false) != Fault::None &&
+      if (is_compared(octree, voxel) &&
+          fault_of(witness(centre, 0.0), octree.contains(voxel), false) != Fault::None &&
           brep::is_inside(centre, own))
         return true;
     }
