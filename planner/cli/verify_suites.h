@@ -10,8 +10,10 @@ namespace octotomy::planner::cli {
 extern const Suite fault_suite;
 /// --phantoms --poses N
 extern const Suite phantoms_suite;
-/// --random N --seed S --failures FOLDER
+/// --random N --tier NAME --seed S --failures FOLDER
 extern const Suite random_suite;
+/// --self
+extern const Suite self_suite;
 /// --thesis
 extern const Suite thesis_suite;
 

@@ -10,7 +10,7 @@ namespace {
 
 /// The suites there are.
 const std::vector<Suite>& suites() {
-  static const std::vector<Suite> all{fault_suite, phantoms_suite, random_suite, thesis_suite};
+  static const std::vector<Suite> all{fault_suite, phantoms_suite, random_suite, self_suite, thesis_suite};
   return all;
 }
 

@@ -22,7 +22,7 @@ struct VerifyText : PlanIn {
   std::optional<std::filesystem::path> report;  ///< a folder for report.html and result.json
   std::optional<std::filesystem::path> answer;  ///< somebody's, to A OP B
   bool accept_unresolved = false;
-  bool faults = false, phantoms = false, thesis = false;
+  bool faults = false, phantoms = false, self = false, thesis = false;
   int poses = 6;     ///< of --phantoms
   int solids = 400;  ///< of its intervals
   int random_count = 0;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <gtest/gtest.h>
+#include <map>
 
 #include "brep/io/write_mesh.h"
+#include "tests/file_bytes.h"
 #include "tests/planner/cli/command_line.h"
 #include "verify/general_position.h"
 #include "verify/random_expression.h"
@@ -44,6 +48,53 @@ TEST_F(Verify, RandomQuestionsAgreeAndAreTheSameOfTheSameSeed) {
   const tests::Json one = tests::Json::parse(run("verify --random 1 --seed 6 --threads 1 --json").out);
   EXPECT_EQ(one["certificates"][0]["operation"], json["certificates"][1]["operation"]);
   EXPECT_EQ(one["certificates"][0]["mesh"], json["certificates"][1]["mesh"]);
+}
+
+TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
+  const auto sound = run("verify --self --json");
+  EXPECT_EQ(sound.status, 0) << sound.out;
+  const tests::Json parts = tests::Json::parse(sound.out)["parts"];
+  EXPECT_EQ(parts.size(), 5U);
+  const std::filesystem::path helpers = folder_ / "helpers";
+  std::filesystem::create_directory(helpers);
+  for (const tests::Json& part : parts)
+    std::filesystem::copy(part["path"].get<std::string>(), helpers / part["part"].get<std::string>());
+  const auto spoil = [&](const std::string& name, const std::function<void(std::string&, std::size_t)>& how) {
+    std::string bytes = tests::bytes_of(helpers / name);
+    const std::size_t mark = bytes.find("octotomy build mark ");
+    ASSERT_NE(mark, std::string::npos) << name;
+    how(bytes, mark);
+    std::ofstream(helpers / name, std::ios::binary) << bytes;
+  };
+  spoil("octotomy-tetgen", [](std::string& bytes, std::size_t mark) {
+    char& digit = bytes[mark + 25];
+    digit = digit == '0' ? '1' : '0';
+  });
+  spoil("octotomy-mesh3", [](std::string& bytes, std::size_t mark) { bytes.resize(mark); });
+  std::filesystem::remove(helpers / "octotomy_dicom_codec");
+  const auto spoiled = tests::run_command(
+      "OCTOTOMY_HELPERS=" + at("helpers") + " " + OCTOTOMY_BINARY_DIR + "/octotomy verify --self --json",
+      folder_ / "");
+  EXPECT_EQ(spoiled.status, 1) << spoiled.out;
+  std::map<std::string, std::string> troubles;
+  const tests::Json told = tests::Json::parse(spoiled.out)["parts"];
+  for (const tests::Json& part : told)
+    troubles[part["part"]] = part["trouble"].is_null() ? "" : part["trouble"].get<std::string>();
+  EXPECT_NE(troubles["octotomy-tetgen"].find("another build"), std::string::npos);
+  EXPECT_NE(troubles["octotomy-mesh3"].find("no mark"), std::string::npos);
+  EXPECT_NE(troubles["octotomy_dicom_codec"].find("missing"), std::string::npos);
+  EXPECT_EQ(troubles["octotomy_image_io.so"], "");
+}
+
+TEST_F(Verify, OneTierOfRandomQuestionsCanBeAskedAlone) {
+  const auto answer = run("verify --random 50 --tier as_given --seed 3 --json");
+  EXPECT_EQ(answer.status, 0) << answer.errors;
+  const tests::Json json = tests::Json::parse(answer.out);
+  EXPECT_EQ(json["as_given"]["asked"], 50);
+  EXPECT_EQ(json["as_given"]["verdicts"]["FAIL"], 0);
+  EXPECT_EQ(json["exact"]["asked"], 0);
+  EXPECT_EQ(json["bounded"]["asked"], 0);
+  expect_refused(run("verify --random 5 --tier all"), "--tier");
 }
 
 TEST_F(Verify, TheThesissTablesAgree) {
