@@ -19,10 +19,9 @@ namespace octotomy::verify {
 namespace {
 
 /// The distance from a surface within which rounding decides on which side a voxel's centre lies: a few units
-/// in the last place of the largest coordinate, or the distance by which corefinement had to move an operand
-/// (brep::Booleans: 4e-6 of the extent a step, up to three steps).
-double undecided_mm(double reach_mm, bool shifted) {
-  return shifted ? 3.0 * 0x1p-18 * 2.0 * reach_mm : 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
+/// in the last place of the largest coordinate, and the distance by which corefinement moved an operand.
+double undecided_mm(double reach_mm, double shift_mm) {
+  return shift_mm + 64.0 * std::numeric_limits<double>::epsilon() * reach_mm;
 }
 
 /// Voxels' centres on which the kernels differ, further than `within_mm` from the result's surface.
@@ -92,7 +91,7 @@ std::string text_of(brep::Operation operation) {
                                                       : "a - b";
 }
 
-Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid,
+Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid, double shift_mm,
                                const std::vector<std::string>& findings) {
   const voxel::Measures voxels = voxel::measure(octree);
   const brep::Measures& triangles = solid.measures();
@@ -117,11 +116,8 @@ Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& s
   const voxel::Octree differing = voxel::combine(
       octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), solid));
   certificate.symmetric_difference_mm3 = static_cast<double>(differing.voxel_count()) * lattice.voxel_mm3();
-  const bool shifted = std::any_of(findings.begin(), findings.end(), [](const std::string& finding) {
-    return finding.rfind("shifted", 0) == 0;
-  });
   const double reach_mm = glm::length(glm::max(glm::abs(triangles.low_mm), glm::abs(triangles.high_mm)));
-  const DifferingCentres beyond = differing_centres(differing, solid, undecided_mm(reach_mm, shifted));
+  const DifferingCentres beyond = differing_centres(differing, solid, undecided_mm(reach_mm, shift_mm));
   add_comparison(certificate, {.quantity = "centres of voxels on different sides",
                                .unit = "",
                                .difference = static_cast<double>(beyond.count),
@@ -166,8 +162,10 @@ OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operati
   }
   answers.solid = std::move(result.solid);
   progress.at(0.7);
+  answers.shift_mm = result.shift_mm;
   answers.findings = std::move(result.findings);
-  answers.certificate = certify_at_centres(*answers.octree, answers.solid, answers.findings);
+  answers.certificate =
+      certify_at_centres(*answers.octree, answers.solid, answers.shift_mm, answers.findings);
   // An empty result of operands that the voxels miss proves nothing.
   if (answers.certificate.larger_mm3() == 0.0) judge_operands(a, b, answers.certificate);
   answers.certificate.operation = text_of(operation);

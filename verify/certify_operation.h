@@ -14,6 +14,7 @@ namespace octotomy::verify {
 struct OperationAnswers {
   std::optional<voxel::Octree> octree;
   brep::Solid solid;
+  double shift_mm = 0.0;              ///< how far the corefinement moved an operand
   std::vector<std::string> findings;  ///< of the corefinement
   Certificate certificate;
 };
@@ -35,9 +36,9 @@ OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operati
 /// The operation in words: "a | b".
 std::string text_of(brep::Operation operation);
 
-/// An octree and a solid that have the same surfaces, at voxels' centres (tier Bounded). `findings` are those
-/// of the Boolean that made the solid, "shifted" among them.
-Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid,
+/// An octree and a solid that have the same surfaces, at voxels' centres (tier Bounded). `shift_mm` and
+/// `findings` are those of the Boolean that made the solid.
+Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& solid, double shift_mm,
                                const std::vector<std::string>& findings);
 
 }  // namespace octotomy::verify

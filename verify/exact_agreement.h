@@ -26,6 +26,7 @@ struct ExactAnswers {
   double unit_mm3 = 1.0;              ///< volume of a refined voxel in the patient
   glm::dmat4 lps_from_unit{1.0};      ///< to the patient's millimetres, to within a voxel
   bool areas_add_up = true;           ///< no two of the solids share a face
+  double shift_mm = 0.0;              ///< how far the corefinements moved operands: zero if all is well
   std::vector<std::string> findings;  ///< of the corefinements
 };
 

@@ -114,6 +114,7 @@ brep::Solid MeshExpressions::evaluate(std::string_view text,
                                       const std::function<brep::Solid(std::string_view)>& lookup,
                                       const std::stop_token& stop) {
   findings_.clear();
+  shift_mm_ = 0.0;
   stop_ = stop;
   std::vector<std::string> names;
   ExpressionTree tree = expression_tree_of(text, names);
@@ -167,18 +168,18 @@ brep::Solid MeshExpressions::boolean(const brep::Solid& a, brep::Operation opera
   if (b.empty()) return operation == Operation::Intersection ? b : a;
 
   Pair& pair = pairs_.try_emplace({&a.mesh(), &b.mesh()}, Pair{a, b, {}}).first->second;
-  if (const auto found = pair.answers.find(operation); found != pair.answers.end()) return found->second;
-  corefine(a, operation, b, pair.answers);
+  if (!pair.answers.contains(operation)) corefine(operation, pair);
+  shift_mm_ += pair.shift_mm;
   return pair.answers.at(operation);
 }
 
-void MeshExpressions::corefine(const brep::Solid& a, brep::Operation operation, const brep::Solid& b,
-                               Answers& known) {
+void MeshExpressions::corefine(brep::Operation operation, Pair& pair) {
   using brep::Operation;
   const auto learn = [&](const brep::Booleans& answers) {
     const auto keep = [&](Operation of, const std::optional<brep::Solid>& solid) {
-      if (solid) known.try_emplace(of, *solid);
+      if (solid) pair.answers.try_emplace(of, *solid);
     };
+    pair.shift_mm = std::max(pair.shift_mm, answers.shift_mm);
     keep(Operation::Union, answers.united);
     keep(Operation::Intersection, answers.intersection);
     keep(Operation::Difference, answers.a_minus_b);
@@ -186,13 +187,13 @@ void MeshExpressions::corefine(const brep::Solid& a, brep::Operation operation, 
   };
   // A plan that takes a piece out of a skull asks for the rest next, and one that merges for the overlap.
   try {
-    learn(brep::booleans(a, b, {true, true, true, false}, stop_));
-    if (known.contains(operation)) return;
+    learn(brep::booleans(pair.a, pair.b, {true, true, true, false}, stop_));
+    if (pair.answers.contains(operation)) return;
   } catch (const brep::Error& error) {
     // Perhaps only an answer that nobody asked for cannot be represented.
     if (error.code() == brep::ErrorCode::Cancelled) throw;
   }
-  learn(brep::booleans(a, b,
+  learn(brep::booleans(pair.a, pair.b,
                        {operation == Operation::Union, operation == Operation::Intersection,
                         operation == Operation::Difference, false},
                        stop_));

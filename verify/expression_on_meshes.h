@@ -36,6 +36,8 @@ class MeshExpressions {
   brep::Solid evaluate(std::string_view text, const std::function<brep::Solid(std::string_view name)>& lookup,
                        const std::stop_token& stop = {});
 
+  /// How far the corefinements of the last evaluate() moved operands, one added to the other.
+  double shift_mm() const { return shift_mm_; }
   /// Doubts of the corefinements in the last evaluate().
   const std::vector<std::string>& findings() const { return findings_; }
 
@@ -47,8 +49,6 @@ class MeshExpressions {
   Signed value(const ExpressionTree& tree, const std::vector<brep::Solid>& leaves);
   brep::Solid boolean(const brep::Solid& a, brep::Operation operation, const brep::Solid& b);
   using Answers = std::map<brep::Operation, brep::Solid>;
-  /// Adds the answers of one corefinement to the known ones of the pair, `operation` among them.
-  void corefine(const brep::Solid& a, brep::Operation operation, const brep::Solid& b, Answers& known);
   Signed intersection(const Signed& a, const Signed& b);
 
   brep::Solid world_;
@@ -56,8 +56,12 @@ class MeshExpressions {
   struct Pair {
     brep::Solid a, b;
     Answers answers;
+    double shift_mm = 0.0;
   };
+  /// Adds the answers of one corefinement to the known ones of the pair, `operation` among them.
+  void corefine(brep::Operation operation, Pair& pair);
   std::map<std::pair<const brep::Mesh*, const brep::Mesh*>, Pair> pairs_;
+  double shift_mm_ = 0.0;
   std::vector<std::string> findings_;
   std::stop_token stop_;  ///< of the evaluate() under way
 };

@@ -22,13 +22,9 @@ constexpr const char* has_more = "the answer has a part there that it must not h
 
 /// Files hold coordinates in 32 bits, of which a unit in the last place is 2^-23; programs round once when
 /// they compute and once when they write.
-double rounding_mm(const brep::Solid& solid, const std::vector<std::string>& findings) {
+double rounding_mm(const brep::Solid& solid) {
   const brep::Size& size = solid.size();
-  const double reach_mm = glm::length(glm::max(glm::abs(size.low_mm), glm::abs(size.high_mm)));
-  const bool shifted = std::any_of(findings.begin(), findings.end(), [](const std::string& finding) {
-    return finding.rfind("shifted", 0) == 0;
-  });
-  return reach_mm * (0x1p-22 + (shifted ? 3.0 * 0x1p-17 : 0.0));
+  return 0x1p-22 * glm::length(glm::max(glm::abs(size.low_mm), glm::abs(size.high_mm)));
 }
 
 std::vector<glm::dvec3> corners_and_middles(const brep::Triangles& triangles) {
@@ -38,8 +34,7 @@ std::vector<glm::dvec3> corners_and_middles(const brep::Triangles& triangles) {
   return points_mm;
 }
 
-Certificate against_solid(const brep::Solid& solid, const brep::Solid& answer,
-                          const std::vector<std::string>& findings) {
+Certificate against_solid(const brep::Solid& solid, const brep::Solid& answer, double shift_mm) {
   const brep::Measures &truth = solid.measures(), &given = answer.measures();
   Certificate certificate;
   certificate.tier = Tier::Bounded;
@@ -52,15 +47,15 @@ Certificate against_solid(const brep::Solid& solid, const brep::Solid& answer,
             solid.empty() ? "The answer must be empty and is not." : "The answer is empty and must not be.");
     return certificate;
   }
-  const double near_mm = rounding_mm(solid, findings);
+  const double near_mm = rounding_mm(solid) + shift_mm;
   certificate.terms = {{"rounding", "Coordinates are rounded to 32 bits, operands that touch are moved.",
-                        "2^-22 |p| S", near_mm * truth.area_mm2}};
+                        "(2^-22 |p| + shift) S", near_mm * truth.area_mm2}};
   certificate.tolerance_mm3 = near_mm * truth.area_mm2;
   add_comparison(certificate, {.quantity = "volume",
                                .unit = "mm3",
                                .difference = std::abs(certificate.difference_mm3),
                                .tolerance = certificate.tolerance_mm3,
-                               .formula = "2^-22 |p| S",
+                               .formula = "(2^-22 |p| + shift) S",
                                .statement = "The answer's volume is " + voxel::rounded(given.volume_mm3) +
                                             " mm3, % from the mesh kernel's"});
   double farthest_mm = 0.0;
@@ -102,7 +97,7 @@ std::vector<glm::dvec3> decided_centres(const voxel::Octree& set, const KernelAn
         if (set.contains({x, y, z})) centres_mm.push_back(set.universe().lattice().lps_mm({x, y, z}));
   if (!kernels.solid || kernels.solid->empty()) return centres_mm;
   const std::vector<double> distances_mm = kernels.solid->tree().distances_mm(centres_mm);
-  const double near_mm = rounding_mm(*kernels.solid, kernels.findings);
+  const double near_mm = rounding_mm(*kernels.solid) + kernels.shift_mm;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < centres_mm.size(); ++i)
     if (distances_mm[i] > near_mm) centres_mm[kept++] = centres_mm[i];
@@ -127,11 +122,11 @@ std::vector<Certificate> judge_mesh(const KernelAnswers& kernels, const brep::Tr
   if (solid) {
     const brep::Solid given =
         answer.faces.empty() ? brep::Solid() : brep::trusted_solid(answer, brep::Proof::Connection);
-    certificates[0] = certify_at_centres(kernels.octree, given, kernels.findings);
+    certificates[0] = certify_at_centres(kernels.octree, given, kernels.shift_mm, kernels.findings);
     certificates[0].voxel.lineage = "the voxel kernel";
     certificates[0].mesh.lineage = of_others;
     progress.at(0.5);
-    certificates[1] = kernels.solid ? against_solid(*kernels.solid, given, kernels.findings) : no_solid();
+    certificates[1] = kernels.solid ? against_solid(*kernels.solid, given, kernels.shift_mm) : no_solid();
   } else {
     for (Certificate& certificate : certificates)
       for (const std::string& finding : health.findings)
@@ -174,7 +169,7 @@ std::vector<Certificate> judge_voxels(const KernelAnswers& kernels, const voxel:
   }
   Certificate by_mesh = no_solid();
   if (kernels.solid) {
-    by_mesh = certify_at_centres(answer, *kernels.solid, kernels.findings);
+    by_mesh = certify_at_centres(answer, *kernels.solid, kernels.shift_mm, kernels.findings);
     by_mesh.voxel.lineage = of_others;
     by_mesh.mesh.lineage = "the mesh kernel";
   }

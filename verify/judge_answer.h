@@ -14,6 +14,7 @@ namespace octotomy::verify {
 struct KernelAnswers {
   voxel::Octree octree;
   std::optional<brep::Solid> solid;
+  double shift_mm = 0.0;              ///< how far the solid's making moved operands
   std::vector<std::string> findings;  ///< of the solid's making
 };
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "brep/mesh/error.h"
+#include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/triangles.h"
 #include "convert/surface/cuberille.h"
@@ -37,18 +37,14 @@ voxel::Octree on_units(const voxel::Octree& set) {
   return {universe, voxel::Block::share(set.root())};
 }
 
-/// The farthest that corefinement moves an operand: three steps of 4e-6 of the extent (brep::Booleans).
-double shifted_units(int side) {
-  return 3.0 * 4e-6 * std::sqrt(3.0) * units * side;
-}
 /// Half of the distance that parts sheets of one set: above the rounding of points and below a shift.
 double parted_units(int side) {
   return 1e-6 * units * side;
 }
 
-/// Moves corners that share a place with others of the surface into the solid, each along the mean normal of
-/// its own sheet: corefinement takes no operand that touches itself.
-void part_sheets(brep::Triangles& surface, double by) {
+/// Parts corners that share a place with others of the surface: each moves along the mean normal of its own
+/// sheet, into the solid, or out of it where the solid's other side is as near.
+void part_sheets(const voxel::Octree& set, double by, brep::Triangles& surface) {
   std::vector<std::size_t> order(surface.points_mm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto place = [&](std::size_t i) {
@@ -59,15 +55,25 @@ void part_sheets(brep::Triangles& surface, double by) {
   std::vector<bool> shares(order.size());
   for (std::size_t k = 1; k < order.size(); ++k)
     if (place(order[k - 1]) == place(order[k])) shares[order[k - 1]] = shares[order[k]] = true;
+  if (std::find(shares.begin(), shares.end(), true) == shares.end()) return;
   std::vector<glm::dvec3> normals(order.size());
   for (const auto& face : surface.faces) {
-    if (!shares[face[0]] && !shares[face[1]] && !shares[face[2]]) continue;
     const glm::dvec3& p = surface.points_mm[face[0]];
     const glm::dvec3 normal = glm::cross(surface.points_mm[face[1]] - p, surface.points_mm[face[2]] - p);
     for (const auto corner : face) normals[corner] += normal;
   }
-  for (std::size_t i = 0; i < normals.size(); ++i)
-    if (shares[i] && normals[i] != glm::dvec3(0.0)) surface.points_mm[i] -= by * glm::normalize(normals[i]);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (!shares[i] || normals[i] == glm::dvec3(0.0)) continue;
+    const glm::dvec3 outward = glm::normalize(normals[i]);
+    const glm::ivec3 behind(glm::floor((surface.points_mm[i] - outward) / units));
+    const bool is_solid = glm::all(glm::greaterThanEqual(behind, glm::ivec3(0))) &&
+                          glm::all(glm::lessThan(behind, glm::ivec3(set.universe().side()))) &&
+                          set.contains(behind);
+    surface.points_mm[i] += (is_solid ? -by : by) * outward;
+  }
+  if (brep::health(surface).self_intersections > 0)
+    throw brep::Error(brep::ErrorCode::Geometry,
+                      "voxels of a set meet at an edge or corner where its sheets cannot be parted");
 }
 
 brep::Solid cuberille_of(const voxel::Octree& set, const voxel::Progress& progress) {
@@ -76,7 +82,7 @@ brep::Solid cuberille_of(const voxel::Octree& set, const voxel::Progress& progre
   brep::Triangles triangles;
   triangles.faces = surface.faces;
   for (const glm::ivec3& p_half : surface.points_half) triangles.points_mm.emplace_back(p_half);
-  part_sheets(triangles, parted_units(set.universe().side()));
+  part_sheets(set, parted_units(set.universe().side()), triangles);
   return brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
 }
 
@@ -147,17 +153,18 @@ void compare(const voxel::Octree& octree, const brep::Solid& solid, double near,
 /// The mesh kernel's answer in units, and what the corefinements found.
 struct Corefined {
   brep::Solid solid;
+  double shift_units = 0.0;  ///< how far operands were moved
   std::vector<std::string> findings;
 };
 
-/// The certificate of an octree and what `corefine` gives, which moves operands `shifts` times at most.
-SetsAnswer certified(voxel::Octree octree, const std::string& operation, int shifts,
+/// The certificate of an octree and what `corefine` gives.
+SetsAnswer certified(voxel::Octree octree, const std::string& operation,
                      const std::function<Corefined()>& corefine, const voxel::Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const voxel::Universe& universe = octree.universe();
   const double unit_mm3 = universe.lattice().voxel_mm3();
   const double face_mm2 = std::pow(unit_mm3, 2.0 / 3.0);
-  SetsAnswer answer{std::move(octree), {}, {}, {}};
+  SetsAnswer answer{std::move(octree), {}, 0.0, {}, {}};
   Certificate& certificate = answer.certificate;
   certificate.tier = Tier::Exact;
   certificate.operation = operation;
@@ -169,9 +176,10 @@ SetsAnswer certified(voxel::Octree octree, const std::string& operation, int shi
   try {
     Corefined corefined = corefine();
     progress.at(0.8);
-    const double near = shifts * shifted_units(universe.side()) + parted_units(universe.side());
+    const double near = corefined.shift_units + parted_units(universe.side());
     compare(on_units(answer.octree), corefined.solid, near, unit_mm3, certificate);
     answer.solid = in_patient(corefined.solid, universe.lps_from_voxel);
+    answer.shift_mm = near / units * glm::length(universe.lattice().spacing_mm());
     answer.findings = std::move(corefined.findings);
   } catch (const brep::Stopped& stopped) {
     throw voxel::Stopped(stopped.what());
@@ -194,10 +202,10 @@ SetsAnswer certify_sets(const voxel::Octree& a, brep::Operation operation, const
   const auto corefine = [&]() -> Corefined {
     brep::BooleanResult result = brep::boolean(cuberille_of(on_units(a), progress), operation,
                                                cuberille_of(on_units(b), progress), progress.stop);
-    return {std::move(result.solid), std::move(result.findings)};
+    return {std::move(result.solid), result.shift_mm, std::move(result.findings)};
   };
-  return certified(voxel::combine(a.universe(), expression_of(a, operation, b)), text_of(operation), 1,
-                   corefine, progress);
+  return certified(voxel::combine(a.universe(), expression_of(a, operation, b)), text_of(operation), corefine,
+                   progress);
 }
 
 SetsAnswer certify_sets(std::string_view expression,
@@ -219,13 +227,9 @@ SetsAnswer certify_sets(std::string_view expression,
         expression,
         [&](std::string_view name) { return cuberille_of(on_units(sets.find(name)->second), progress); },
         progress.stop);
-    return {std::move(solid), meshes.findings()};
+    return {std::move(solid), meshes.shift_mm(), meshes.findings()};
   };
-  // A complement at the end is one more operation, in the universe's box.
-  const auto operators =
-      std::count_if(expression.begin(), expression.end(), [](char c) { return std::strchr("|&^-", c); });
-  return certified(voxel::combine(universe, parsed), std::string(expression),
-                   3 * static_cast<int>(operators) + 1, corefine, progress);
+  return certified(voxel::combine(universe, parsed), std::string(expression), corefine, progress);
 }
 
 }  // namespace octotomy::verify

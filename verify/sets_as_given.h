@@ -20,6 +20,7 @@ struct SetsAnswer {
   voxel::Octree octree;
   /// In LPS millimetres, as corefined; none: the mesh kernel cannot represent it, the certificate says why.
   std::optional<brep::Solid> solid;
+  double shift_mm = 0.0;              ///< how far the solid's surface lies from the sets' at most
   std::vector<std::string> findings;  ///< of the corefinement
   Certificate certificate;
 };

@@ -132,6 +132,7 @@ struct Attempt {
   std::optional<double> disagreement_mm3;
   std::array<std::size_t, 4> films{};
   std::size_t flat = 0;
+  double shift_mm = 0.0;
   std::vector<std::string> findings;
   std::string failure;  ///< empty where all that was wanted is there and adds up
 };
@@ -245,6 +246,7 @@ void tell_flat(Attempt& attempt) {
 struct Answer {
   Results results;
   std::optional<double> residual;
+  double shift_mm = 0.0;
   std::vector<std::string> findings;
 };
 
@@ -257,6 +259,7 @@ Answer answer_of(const Question& question, Attempt attempt) {
   const double whole = volume_mm3(question.a) + volume_mm3(question.b);
   if (attempt.disagreement_mm3) answer.residual = whole > 0.0 ? *attempt.disagreement_mm3 / whole : 0.0;
   answer.results = std::move(attempt.results);
+  answer.shift_mm = attempt.shift_mm;
   answer.findings = std::move(attempt.findings);
   return answer;
 }
@@ -268,11 +271,12 @@ Answer answer(const Question& question) {
     const glm::dvec3 shift = shift_mm(i, extent);
     Attempt attempt = i == 0 ? best_attempt(question, question.b) : shifted_attempt(question, shift);
     if (attempt.failure.empty()) {
+      attempt.shift_mm = glm::length(shift);
       if (i > 0)
         attempt.findings.push_back(
             "shifted: " + question.names.second + " was moved by (" + short_text(shift.x) + ", " +
             short_text(shift.y) + ", " + short_text(shift.z) + ") mm, which changes a volume by at most " +
-            short_text(glm::length(shift) * question.b.size().area_mm2) + " mm3, as " + first_failure);
+            short_text(attempt.shift_mm * question.b.size().area_mm2) + " mm3, as " + first_failure);
       return answer_of(question, std::move(attempt));
     }
     if (i == 0) first_failure = attempt.failure;
@@ -318,6 +322,7 @@ Booleans booleans(const Solid& a, const Solid& b, const BooleansWanted& wanted, 
   make(of_a_minus_b, booleans.a_minus_b);
   make(of_b_minus_a, booleans.b_minus_a);
   booleans.residual = found.residual;
+  booleans.shift_mm = found.shift_mm;
   booleans.findings = std::move(found.findings);
   return booleans;
 }
@@ -330,7 +335,7 @@ BooleanResult boolean(const Solid& a, Operation operation, const Solid& b, const
   wanted[place] = true;
   Answer found = answer(a, b, wanted, stop);
   return {trusted_solid(std::move(found.results[place].value()), Proof::Rounded), found.residual,
-          std::move(found.findings)};
+          found.shift_mm, std::move(found.findings)};
 }
 
 BooleanResult boolean(const std::vector<Solid>& operands, Operation operation, const std::stop_token& stop) {
@@ -339,6 +344,7 @@ BooleanResult boolean(const std::vector<Solid>& operands, Operation operation, c
   const auto combine = [&](const Solid& a, Operation step, const Solid& b) {
     BooleanResult result = boolean(a, step, b, stop);
     if (result.residual) all.residual = std::max(all.residual.value_or(0.0), *result.residual);
+    all.shift_mm += result.shift_mm;
     all.findings.insert(all.findings.end(), result.findings.begin(), result.findings.end());
     return result.solid;
   };

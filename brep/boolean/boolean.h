@@ -16,6 +16,7 @@ struct BooleanResult {
   Solid solid;
   /// How far the volumes are from adding up, see Booleans; none where too few of them could be computed.
   std::optional<double> residual;
+  double shift_mm = 0.0;              ///< see Booleans; of several steps the sum
   std::vector<std::string> findings;  ///< doubts, see Booleans
 };
 
@@ -55,13 +56,15 @@ struct Booleans {
   /// The largest of |(A + B) - (A u B + A n B)|, |A - (A-B) - (A n B)| and |B - (B-A) - (A n B)|, volumes,
   /// relative to A + B; those of them whose parts were computed.
   std::optional<double> residual;
+  /// How far an operand was moved, as "shifted" tells: some 4e-6 of the operands' extent, about 1 um for a
+  /// head. Each volume is off by at most that times its area.
+  double shift_mm = 0.0;
   /// Doubts. "shifted": the operands touch so that a result would not be manifold (a shared edge or vertex)
-  /// or meet in a way corefinement cannot resolve, so the operand named was moved by the length and direction
-  /// told. It is some 4e-6 of the operands' extent, about 1 um for a head; each volume is off by at most that
-  /// times its area. "touches itself": sheets of a result share a point, which has a vertex for each of them.
-  /// "meets itself": an operand's triangles intersect near the cut, usually by the rounding of an earlier
-  /// one. "film": shells thinner than the rounding of points were left out. "without area": such triangles of
-  /// an operand were cut along another diagonal, which leaves its surface where it is.
+  /// or meet in a way corefinement cannot resolve, so the operand named was moved. "touches itself": sheets
+  /// of a result share a point, which has a vertex for each of them. "meets itself": an operand's triangles
+  /// intersect near the cut, usually by the rounding of an earlier one. "film": shells thinner than the
+  /// rounding of points were left out. "without area": such triangles of an operand were cut along another
+  /// diagonal, which leaves its surface where it is.
   std::vector<std::string> findings;
 };
 

@@ -89,7 +89,8 @@ Answered of_label_maps(Program& program, const Question& asked, Timings& timings
   const voxel::Expression expression = operation == brep::Operation::Union          ? a | b
                                        : operation == brep::Operation::Intersection ? a & b
                                                                                     : a - b;
-  Answered answered{{std::move(given.octree), std::move(given.solid), std::move(given.findings)}, {}, {}};
+  Answered answered{
+      {std::move(given.octree), std::move(given.solid), given.shift_mm, std::move(given.findings)}, {}, {}};
   const std::string question = asked.a.string() + " " + asked.operation + " " + asked.b.string();
   given.certificate.operation = question;
   // Sets that touch themselves at an edge may have no manifold Boolean: then general position alone tells.
@@ -113,7 +114,7 @@ Answered of_meshes(Program& program, const Question& asked, const VerifyText& te
   verify::OperationAnswers answers =
       verify::certify_operation(left, operation_of(asked.operation), right, options);
   answers.certificate.operation = asked.a.string() + " " + asked.operation + " " + asked.b.string();
-  return {{*answers.octree, answers.solid, answers.findings}, {answers.certificate}, {}};
+  return {{*answers.octree, answers.solid, answers.shift_mm, answers.findings}, {answers.certificate}, {}};
 }
 
 /// Reads the answer and holds it against both kernels'.

@@ -21,15 +21,7 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   // What lies outside of the universe has been cut away from both answers.
   const voxel::Box world = voxel::bounds(made.voxel.octree.universe().lattice());
   inputs.witness = verify::both(made.witness, verify::witness_of_box(world));
-  made.bound.shifted =
-      made.bound.shifted || std::any_of(made.findings.begin(), made.findings.end(), [](const auto& finding) {
-        return finding.find("shifted: ") != std::string::npos;
-      });
-  // Corefinement moves an operand by up to three steps of 4e-6 of the operands' extent; the prisms of regions
-  // reach over three times the universe.
-  if (made.bound.shifted)
-    inputs.witness =
-        verify::loosened(inputs.witness, 3.0 * 4e-6 * 4.0 * glm::length(world.high_mm - world.low_mm));
+  if (made.bound.shift_mm > 0.0) inputs.witness = verify::loosened(inputs.witness, made.bound.shift_mm);
   made.certificate = verify::certify_bounded(made.voxel.octree, *made.mesh.within, inputs, progress);
 }
 

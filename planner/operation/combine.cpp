@@ -51,6 +51,7 @@ void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
   made.whole = bench.expressions.evaluate(
       combine.expression, [&](std::string_view name) { return bench.object(std::string(name)); },
       bench.progress.stop);
+  made.shift_mm = bench.expressions.shift_mm();
   made.findings = bench.expressions.findings();
   made.lineage = "corefinement of meshes";
 }

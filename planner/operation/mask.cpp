@@ -95,9 +95,12 @@ void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
     return brep::solid_of(prism_of(region, bench.low_mm, bench.high_mm));
   };
   brep::Solid solid = prism(mask.regions.front());
-  for (std::size_t i = 1; i < mask.regions.size(); ++i)
-    solid = brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop)
-                .solid;
+  for (std::size_t i = 1; i < mask.regions.size(); ++i) {
+    brep::BooleanResult met =
+        brep::boolean(solid, brep::Operation::Intersection, prism(mask.regions[i]), bench.progress.stop);
+    made.shift_mm += met.shift_mm;
+    solid = std::move(met.solid);
+  }
   const auto turned = held(bench.objects);
   made.whole = turned ? brep::moved(solid, *turned) : solid;
   made.lineage = "prisms of the regions";

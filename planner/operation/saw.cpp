@@ -51,6 +51,7 @@ void triangles(const Saw& saw, const MeshBench& bench, MeshSide& made) {
   const brep::Solid& solid = bench.object(saw.object.name);
   brep::BooleanResult rest =
       brep::boolean(solid, brep::Operation::Difference, brep::saw_blade(cut_of(saw)), bench.progress.stop);
+  made.shift_mm = rest.shift_mm;
   made.findings = rest.findings;
   made.details["residuals"] = {
       {"volume_relative", rest.residual ? nlohmann::ordered_json(*rest.residual) : nullptr}};

@@ -26,6 +26,7 @@ void triangles(const Shell& shell, const MeshBench& bench, MeshSide& made) {
                                                 .cell_mm = 0.25 * shell.thickness_mm,
                                                 .progress = {bench.progress.stop, bench.progress.report}});
   brep::BooleanResult rest = brep::boolean(solid, brep::Operation::Difference, core, bench.progress.stop);
+  made.shift_mm = rest.shift_mm;
   made.findings = rest.findings;
   made.whole = rest.solid;
   made.lineage = "the mesh less a level set of the distance to it";

@@ -76,7 +76,7 @@ void inherit(const Object& operand, Object& made) {
   BoundTerms& to = made.bound;
   to.planes.insert(to.planes.end(), from.planes.begin(), from.planes.end());
   to.spacing_mm = glm::max(to.spacing_mm, from.spacing_mm);
-  to.shifted = to.shifted || from.shifted;
+  to.shift_mm += from.shift_mm;
   to.windows.insert(to.windows.end(), from.windows.begin(), from.windows.end());
   if (from.scan_box_mm) to.scan_box_mm = from.scan_box_mm;
 }
@@ -92,7 +92,7 @@ void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel:
   made.bound.spacing_mm = still.bound.spacing_mm;
   made.bound.planes = still.bound.planes;
   made.bound.windows = still.bound.windows;
-  made.bound.shifted = still.bound.shifted;
+  made.bound.shift_mm = still.bound.shift_mm;
   if (still.bound.scan_box_mm) {
     const auto ends =
         ends_of(*still.bound.scan_box_mm, still.bound.spacing_mm, universe.lattice().spacing_mm());

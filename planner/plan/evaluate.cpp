@@ -294,6 +294,7 @@ class Evaluator {
     object.mesh.details.update(told);
     if (!operation.voxel) voxelise(object);
     operation.bound(value, {result_.universe, result_.objects, scan_}, object);
+    object.bound.shift_mm += object.mesh.shift_mm;
     take_within(object);
     object.voxel.measures = voxel::measure(object.voxel.octree);
     const std::vector<std::string> interpolated = interpolated_parts(step, object);
@@ -393,8 +394,10 @@ class Evaluator {
     if (inside) return;
     const Stopwatch watch(result_.timings, "boolean_mesh");
     try {
-      object.mesh.within =
-          brep::boolean(*object.mesh.whole, brep::Operation::Intersection, world_, options_.stop).solid;
+      brep::BooleanResult cut =
+          brep::boolean(*object.mesh.whole, brep::Operation::Intersection, world_, options_.stop);
+      object.mesh.within = std::move(cut.solid);
+      object.bound.shift_mm += cut.shift_mm;
     } catch (const std::runtime_error& error) {
       if (was_stopped(error)) throw Stopped(error.what());
       object.mesh.within.reset();

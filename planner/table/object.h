@@ -37,6 +37,7 @@ struct MeshSide {
   std::optional<brep::Solid> whole;   ///< as far as it reaches; none if the kernel has no answer
   std::optional<brep::Solid> within;  ///< the part of it within the universe
   std::string lineage;
+  double shift_mm = 0.0;  ///< how far Booleans moved operands
   std::vector<std::string> findings;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
 };
@@ -63,7 +64,7 @@ struct BoundTerms {
   glm::dvec3 spacing_mm{0.0};  ///< of the coarsest scan it comes from; zero where it comes from none
   std::optional<voxel::Box> scan_box_mm;  ///< of the scan that it comes from, while it has not moved
   bool voxels_are_samples = false;
-  bool shifted = false;        ///< a Boolean on the way had to move an operand (brep::Booleans::findings)
+  double shift_mm = 0.0;       ///< how far Booleans on the way moved operands (brep::Booleans)
   std::vector<Shown> windows;  ///< of all that it was made of: their bounds decide where its surface lies
 };
 

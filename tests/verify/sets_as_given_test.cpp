@@ -63,20 +63,26 @@ TEST(SetsAsGiven, ExpressionsOfSetsThatShareFacesAndEdgesAreTheSameInBothKernels
   EXPECT_GE(of_substance, 30);
 }
 
-TEST(SetsAsGiven, TwoVoxelsThatMeetAtAnEdgeOrACornerAreCombinedWithTheVoxelBetweenThem) {
+TEST(SetsAsGiven, VoxelsAndHolesThatMeetAtAnEdgeOrACornerAreCombinedWithTheVoxelBetweenThem) {
   voxel::Universe universe;
   universe.depth = 2;
-  const auto voxel_at = [&](const glm::dvec3& p) {
-    const voxel::Lattice lattice = universe.lattice();
-    return voxel::Expression(voxel::Box{lattice.lps_mm(p - 0.5), lattice.lps_mm(p + 0.5)});
+  const voxel::Lattice lattice = universe.lattice();
+  const auto box = [&](const glm::dvec3& low, const glm::dvec3& high) {
+    return voxel::Expression(voxel::Box{lattice.lps_mm(low - 0.5), lattice.lps_mm(high + 0.5)});
   };
+  const voxel::Octree between = voxel::combine(universe, box({2, 1, 1}, {2, 1, 1}));
   for (const glm::dvec3& other : {glm::dvec3(2, 2, 1), glm::dvec3(2, 2, 2)}) {
-    const voxel::Octree pair = voxel::combine(universe, voxel_at({1, 1, 1}) | voxel_at(other)),
-                        between = voxel::combine(universe, voxel_at({2, 1, 1}));
-    const SetsAnswer answer = certify_sets(pair, brep::Operation::Union, between);
-    ASSERT_TRUE(answer.solid);
-    EXPECT_EQ(answer.certificate.verdict, Verdict::Pass);
-    EXPECT_EQ(answer.certificate.mesh.volume_mm3, 3.0);
+    const voxel::Expression pair = box({1, 1, 1}, {1, 1, 1}) | box(other, other);
+    const SetsAnswer voxels = certify_sets(voxel::combine(universe, pair), brep::Operation::Union, between);
+    ASSERT_TRUE(voxels.solid);
+    EXPECT_EQ(voxels.certificate.verdict, Verdict::Pass);
+    EXPECT_EQ(voxels.certificate.mesh.volume_mm3, 3.0);
+    // A sheet around a hole must not move towards the other hole.
+    const SetsAnswer holes = certify_sets(voxel::combine(universe, box({0, 0, 0}, {3, 3, 3}) - pair),
+                                          brep::Operation::Difference, between);
+    ASSERT_TRUE(holes.solid);
+    EXPECT_EQ(holes.certificate.verdict, Verdict::Pass);
+    EXPECT_EQ(holes.certificate.mesh.volume_mm3, 61.0);
   }
 }
 
