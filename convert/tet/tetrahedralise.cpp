@@ -328,6 +328,13 @@ constexpr double most_stuffed_elements() {
   return 2e6;
 }
 
+/// Triangles that are too many for the meshers in a time: Mesh_3 fills about three a millisecond of bones,
+/// and a surface of a million took TetGen with quality more than a minute. Of the surface and the limit
+/// alone, so that the answer is the same on any machine.
+std::size_t most_meshed_triangles(std::chrono::milliseconds time_limit) {
+  return 5 * static_cast<std::size_t>(std::max<std::int64_t>(time_limit.count(), 0));
+}
+
 std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface_mm3,
                                       const TetOptions& options, Attempts& attempts) {
   const brep::Triangles triangles{surface.points_mm, surface.triangles};
@@ -416,7 +423,15 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
 
   std::optional<Tetrahedra> best;
   Attempts attempts;
-  const bool any = options.mesher == Mesher::Best;
+  const bool too_many = surface.triangles.size() > most_meshed_triangles(options.time_limit);
+  if (options.mesher == Mesher::Best && too_many) {
+    attempts.findings.push_back(
+        std::to_string(surface.triangles.size()) +
+        " triangles are more than TetGen and Mesh_3 fill in their time, so they were " +
+        "not tried: simplify the surface, or allow more time");
+    best = by_stuffing(surface, surface_mm3, options, attempts);
+  }
+  const bool any = options.mesher == Mesher::Best && !best;
   const auto reaches = [&](double deg) { return best && quality(*best).min_dihedral_deg >= deg; };
   if (any || options.mesher == Mesher::TetGen) best = by_tetgen(surface, surface_mm3, options, attempts);
   if (options.mesher == Mesher::Mesh3 || (any && !reaches(options.min_dihedral_deg))) {

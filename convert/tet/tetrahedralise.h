@@ -18,7 +18,8 @@ namespace octotomy::convert {
 /// a surface of its own and so has no flat elements. Stuffing (isosurface_stuffing.h) fills a lattice's
 /// cells: it succeeds on any triangles, and loses what is thinner than a cell. Best runs TetGen, and Mesh3 if
 /// TetGen fails or leaves a dihedral angle under `min_dihedral_deg`, and takes the answer whose smallest
-/// angle is larger; Stuffing if neither reaches fit_dihedral_deg().
+/// angle is larger; Stuffing if neither reaches fit_dihedral_deg(), or at once where the surface has over
+/// five triangles a millisecond of the time limit.
 enum class Mesher { TetGen, Mesh3, Stuffing, Best };
 
 struct TetOptions {

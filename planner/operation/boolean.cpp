@@ -3,6 +3,7 @@
 #include "brep/boolean/boolean.h"
 
 #include "brep/boolean/exact_boolean.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "planner/file/mesh_file.h"
@@ -51,9 +52,15 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
     throw std::runtime_error("--exact proves one step at a time: leave --with out");
   std::vector<std::string> mended;
   const auto solid = [&](const ObjectName& path) {
-    if (!asked.mend) return read_solid(path.name, bench.timings);
-    const voxel::Progress progress = bench.progress("repair");
-    return read_mended_solid(path.name, bench.timings, mended, {progress.stop, progress.report});
+    if (asked.mend) {
+      const voxel::Progress progress = bench.progress("repair");
+      return read_mended_solid(path.name, bench.timings, mended, {progress.stop, progress.report});
+    }
+    try {
+      return read_solid(path.name, bench.timings);
+    } catch (const brep::Error& error) {
+      throw brep::Error(error.code(), std::string(error.what()) + "; or take --mend");
+    }
   };
   std::vector<brep::Solid> operands = {solid(asked.a), solid(asked.b)};
   for (const ObjectName& path : asked.further) operands.push_back(solid(path));
