@@ -159,7 +159,7 @@ Operation separate_operation() {
                         "numbered: parts-1.ply.")
                       .required())
       .example(R"({"id": "condyle", "do": "separate", "object": "mandible", "piece": 2})")
-      .on_files("octotomy separate scan.vtp --least-mm2 10 -o parts.ply", on_files)
+      .on_files("octotomy separate scan.vtp --least 10 -o parts.ply", on_files)
       .check(check)
       .object(definition, nullptr, triangles, bound);
 }

@@ -73,8 +73,10 @@ TEST(MaskStep, AStructureThatIsNotThereIsRefusedWithTheOnesThatAre) {
   EXPECT_NE(refusal("Rign").find("did you mean 'Ring'"), std::string::npos) << refusal("Rign");
   EXPECT_NE(refusal("").find("'Ring', 'Plate', 'Point'"), std::string::npos) << refusal("");
   EXPECT_NE(refusal("Point").find("has no closed contour, but 1 points"), std::string::npos);
-  std::ofstream(folder / "rs.dcm", std::ios::binary)
-      << structure_set({{1, "A", {rectangle({0, 0}, {9, 9}, 0), {{0, 0, 4}, {9, 0, 5}, {9, 9, 6}}}}});
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << structure_set(
+      {{1,
+        "A",
+        {rectangle({0, 0}, {9, 9}, 0), rectangle({0, 0}, {9, 9}, 2), {{0, 0, 4}, {3, 0, 5}, {3, 3, 6}}}}});
   EXPECT_NE(refusal("A").find("not parallel"), std::string::npos) << refusal("A");
   std::ofstream(folder / "rs.dcm", std::ios::binary)
       << structure_set({{1, "A", {rectangle({0, 0}, {9, 9}, 0)}}});
