@@ -23,6 +23,11 @@ constexpr double least_width_mm() {
   return 40.0;
 }
 
+/// A board is at least so many times as wide as it is thick.
+constexpr double least_aspect() {
+  return 3.0;
+}
+
 /// The lattice's axes: along the patient, and across it to the back and to a side.
 struct Axes {
   int along = 2, back = 1, side = 0;
@@ -53,10 +58,9 @@ Axes axes_of(const Lattice& lattice) {
 struct Profile {
   std::vector<glm::ivec2> places;  ///< side, back
   std::uint64_t voxels = 0;
-  double area_mm2 = 0.0, outline_mm = 0.0;
+  double thick_mm = 0.0;    ///< side of the largest square within
   int low = 0, high = 0;    ///< along the side
   double back_index = 0.0;  ///< mean
-  double thick_mm() const { return 2.0 * area_mm2 / outline_mm; }
 };
 
 class Finder {
@@ -80,7 +84,7 @@ class Finder {
     const Profile& widest = *std::max_element(boards.begin(), boards.end(), [](const auto& a, const auto& b) {
       return a.high - a.low < b.high - b.low;
     });
-    Board board{Octree::empty(universe_on(scene_.lattice)), 0.0, widest.thick_mm(), width_mm(widest)};
+    Board board{Octree::empty(universe_on(scene_.lattice)), 0.0, widest.thick_mm, width_mm(widest)};
     std::vector<std::uint8_t> in(counts_.size(), 0);
     for (const Profile& profile : boards)
       for (const glm::ivec2& place : profile.places) in[at(place)] = 1;
@@ -157,25 +161,44 @@ class Finder {
       profile.high = std::max(profile.high, place.x);
       profile.back_index += place.y;
       for (int k = 0; k < 4; ++k) {
-        const glm::ivec2 step(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
-        if (!lasts(place + step))
-          profile.outline_mm += step.x != 0 ? spacing_[axes_.back] : spacing_[axes_.side];
-        else if (seen[at(place + step)] == 0) {
-          seen[at(place + step)] = 1;
-          profile.places.push_back(place + step);
-        }
+        const glm::ivec2 beside = place + glm::ivec2(k == 0   ? 1
+                                                     : k == 1 ? -1
+                                                              : 0,
+                                                     k == 2   ? 1
+                                                     : k == 3 ? -1
+                                                              : 0);
+        if (!lasts(beside) || seen[at(beside)] != 0) continue;
+        seen[at(beside)] = 1;
+        profile.places.push_back(beside);
       }
     }
-    const auto count = static_cast<double>(profile.places.size());
-    profile.back_index /= count;
-    profile.area_mm2 = count * spacing_[axes_.back] * spacing_[axes_.side];
+    profile.back_index /= static_cast<double>(profile.places.size());
+    profile.thick_mm = thick_mm(profile);
     return profile;
+  }
+
+  /// The side of the largest square of places, by the largest that ends at each place.
+  double thick_mm(const Profile& profile) const {
+    std::vector<glm::ivec2> places = profile.places;
+    std::sort(places.begin(), places.end(), [](const glm::ivec2& a, const glm::ivec2& b) {
+      return std::pair(a.y, a.x) < std::pair(b.y, b.x);
+    });
+    std::vector<int> square(counts_.size(), 0);
+    int largest = 0;
+    for (const glm::ivec2& p : places) {
+      const auto before = [&](int x, int y) {
+        return p.x < x || p.y < y ? 0 : square[at(p - glm::ivec2(x, y))];
+      };
+      square[at(p)] = 1 + std::min({before(1, 0), before(0, 1), before(1, 1)});
+      largest = std::max(largest, square[at(p)]);
+    }
+    return largest * std::min(spacing_[axes_.back], spacing_[axes_.side]);
   }
 
   bool is_board(const Profile& profile) const {
     const double behind = (profile.back_index - middle_back_) * (axes_.back_grows ? 1.0 : -1.0);
-    return width_mm(profile) >= least_width_mm() && behind > 0.0 && profile.thick_mm() <= options_.thick_mm &&
-           2 * profile.voxels <= solid_;
+    return width_mm(profile) >= std::max(least_width_mm(), least_aspect() * profile.thick_mm) &&
+           behind > 0.0 && profile.thick_mm <= options_.thick_mm && 2 * profile.voxels <= solid_;
   }
 
   const Scene& scene_;

@@ -4,8 +4,11 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+#include "tests/reference_data.h"
 #include "tests/voxel/field_scene.h"
 #include "voxel/filter/headrest.h"
+#include "voxel/filter/slice_work.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::voxel {
@@ -105,6 +108,17 @@ TEST(Board, BesideAHeadThatIsCutAtBothEndsOfTheScanIsFoundAndTheHeadsCoreIsNot) 
   EXPECT_FALSE(board_of(scanned([](const glm::dvec3&) { return false; }, cut_head)));
 }
 
+TEST(Board, IsNotSeenInACoreWithARaggedOutline) {
+  // Airways and folds make a core's outline long for its area; it is as thick as before.
+  const Inside core = [](const glm::dvec3& p) {
+    const glm::dvec3 q = p / glm::dvec3(75, 95, 200);
+    const bool slit = std::abs(std::remainder(p.x, 24.0)) < 2.0 && std::abs(p.y) > 18.0;
+    return glm::dot(q, q) < 1.0 && !slit;
+  };
+  EXPECT_FALSE(board_of(scanned([](const glm::dvec3&) { return false; }, core)));
+  EXPECT_TRUE(board_of(scanned(flat_board, core)));
+}
+
 TEST(Board, IsNotSeenInAHeadAloneAFoamCradleAStrapAFrameOrADrySkullsTube) {
   const Inside nothing = [](const glm::dvec3&) { return false; };
   EXPECT_FALSE(board_of(scanned(nothing)));
@@ -131,6 +145,46 @@ TEST(Board, LiesBehindThePatientForAnyOrderOfTheAxes) {
   ASSERT_TRUE(straight && other);
   EXPECT_DOUBLE_EQ(other->volume_mm3, straight->volume_mm3);
   EXPECT_DOUBLE_EQ(other->wide_mm, straight->wide_mm);
+}
+
+TEST(Board, OfRealHeadsNoneIsSeenAndOneThatIsLaidFlushUnderThemIsTakenOut) {
+  for (const std::string name : {"ct_unc_cthead.nrrd", "ct_invesalius_cranium.nii.gz"}) {
+    SCOPED_TRACE(name);
+    OCTOTOMY_NEEDS_DATA(name);
+    const Scene head = remove_headrest(read_scene(tests::reference_data(name)), {}).scene;
+    EXPECT_FALSE(board_of(head)) << "a head's core is no board";
+    // Two samples deep in the patient's back, 12 mm thick.
+    const glm::dvec3 spacing_mm = head.lattice.spacing_mm();
+    const bool back_grows = head.lattice.lps_from_voxel[1].y > 0.0;
+    int back = -1;
+    for_each_index(head.lattice, 0, [&](const glm::ivec3& p) {
+      if (sample_at(head, p) >= -300) back = std::max(back, back_grows ? p.y : head.lattice.dims.y - 1 - p.y);
+    });
+    Scene laid = head;
+    auto& samples = std::get<Int16Samples>(laid.samples);
+    std::uint64_t board_voxels = 0, head_voxels = 0;
+    std::vector<std::uint8_t> is_board(samples.size(), 0);
+    for_each_index(head.lattice, 0, [&](const glm::ivec3& p) {
+      const int depth = (back_grows ? p.y : head.lattice.dims.y - 1 - p.y) - (back - 1);
+      std::int16_t& sample = samples[sample_index(head.lattice.dims, p)];
+      head_voxels += sample >= -300;
+      if (sample >= -300 || depth < 0 || depth * spacing_mm.y >= 12.0 || p.x < 20 ||
+          p.x >= head.lattice.dims.x - 20)
+        return;
+      sample = 100;
+      is_board[sample_index(head.lattice.dims, p)] = 1;
+      ++board_voxels;
+    });
+    ASSERT_GT(board_voxels, 10000u);
+    const Scene clean = remove_headrest(laid, with_board()).scene;
+    std::uint64_t left = 0, head_left = 0;
+    for_each_index(head.lattice, 0, [&](const glm::ivec3& p) {
+      const bool is_solid = sample_at(clean, p) >= -300;
+      (is_board[sample_index(head.lattice.dims, p)] != 0 ? left : head_left) += is_solid;
+    });
+    EXPECT_LT(static_cast<double>(left), 0.02 * static_cast<double>(board_voxels));
+    EXPECT_GT(static_cast<double>(head_left), 0.999 * static_cast<double>(head_voxels));
+  }
 }
 
 TEST(Board, LengthsThatCannotBeAreRefused) {
