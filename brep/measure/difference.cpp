@@ -43,6 +43,7 @@ void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm
 /// Signed distances of samples, and those of the same surface's vertices.
 struct Distances {
   std::vector<double> areas_mm2, sample_mm, vertex_mm;
+  std::vector<bool> vertex_has_face;  ///< a point of no triangle is not on the surface
   double reach_mm = 0.0;
   std::size_t on_border_count = 0;
 };
@@ -86,6 +87,9 @@ Distances distances_to(const Triangles& from, const OrientedSurface& to, double 
   Distances found;
   const std::vector<SignedFoot> corners = to.feet(from.points_mm);
   found.vertex_mm = signed_mm(corners);
+  found.vertex_has_face.assign(from.points_mm.size(), false);
+  for (const auto& face : from.faces)
+    for (const std::uint32_t v : face) found.vertex_has_face[v] = true;
   const auto add = [&](const SignedFoot& foot, double area_mm2) {
     found.sample_mm.push_back(foot.distance_mm);
     found.areas_mm2.push_back(area_mm2);
@@ -133,7 +137,8 @@ OneWay one_way(const Distances& distances, const std::vector<double>& tolerances
     for (std::size_t k = 0; k < tolerances.size(); ++k)
       if (std::abs(d) <= tolerances[k]) way.within[k] += area;
   }
-  for (const double d : distances.vertex_mm) way.max_mm = std::max(way.max_mm, std::abs(d));
+  for (std::size_t v = 0; v < distances.vertex_mm.size(); ++v)
+    if (distances.vertex_has_face[v]) way.max_mm = std::max(way.max_mm, std::abs(distances.vertex_mm[v]));
   assert(whole > 0.0);
   way.mean_mm /= whole;
   way.signed_mean_mm /= whole;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/distance.h"
 #include "convert/tet/element_faces.h"
 #include "convert/tet/improve_tetrahedra.h"
@@ -123,10 +124,38 @@ struct Try {
   std::vector<std::uint32_t> lost;
 };
 
+/// The parts of a surface connected by points.
+struct Shells {
+  std::vector<std::uint32_t> of_triangle;  ///< a point of the shell, the same for all of its triangles
+  std::vector<std::size_t> triangles;      ///< by that point
+  std::vector<double> mm3;                 ///< likewise; negative inside out
+};
+
+Shells shells_of(const MesherInput& surface) {
+  const std::size_t points = surface.points_mm.size();
+  brep::DisjointSets sets(points);
+  for (const auto& [a, b, c] : surface.triangles) {
+    sets.join(a, b);
+    sets.join(a, c);
+  }
+  Shells shells{{}, std::vector<std::size_t>(points, 0), std::vector<double>(points, 0.0)};
+  for (const auto& [a, b, c] : surface.triangles) {
+    const std::uint32_t shell = sets.set_of(a);
+    const glm::dvec3& tip = surface.points_mm[shell];
+    shells.of_triangle.push_back(shell);
+    ++shells.triangles[shell];
+    shells.mm3[shell] += glm::dot(glm::cross(surface.points_mm[a] - tip, surface.points_mm[b] - tip),
+                                  surface.points_mm[c] - tip) /
+                         6.0;
+  }
+  return shells;
+}
+
 /// The given surface, and the sizes of facets at its points that bind every try.
 struct Given {
   const MesherInput& surface;
   double volume_mm3 = 0.0;
+  Shells shells;
   std::vector<double> facet_mm;
   brep::SurfaceTree tree;
 };
@@ -144,20 +173,56 @@ std::vector<double> play_mm(const Given& given, const std::vector<brep::Foot>& f
   return play;
 }
 
+/// Shells of which every triangle is lost, the smallest first, that together hold no more than the volume
+/// may differ by: films and specks that no element of their triangles' size has room in. Adds a finding.
+std::vector<bool> lost_specks(Try& t, const Given& given, const std::vector<bool>& is_gone) {
+  const Shells& shells = given.shells;
+  std::vector<std::size_t> gone(shells.mm3.size(), 0);
+  for (std::size_t f = 0; f < is_gone.size(); ++f) gone[shells.of_triangle[f]] += is_gone[f];
+  std::vector<std::uint32_t> specks;
+  for (std::uint32_t s = 0; s < gone.size(); ++s)
+    if (gone[s] > 0 && gone[s] == shells.triangles[s]) specks.push_back(s);
+  std::stable_sort(specks.begin(), specks.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::abs(shells.mm3[a]) < std::abs(shells.mm3[b]);
+  });
+  std::vector<bool> is_speck(gone.size(), false);
+  double sum_mm3 = 0.0;
+  std::size_t count = 0;
+  for (; count < specks.size(); ++count) {
+    const double more_mm3 = std::abs(shells.mm3[specks[count]]);
+    if (sum_mm3 + more_mm3 > own_surface_volume_tolerance() * given.volume_mm3) break;
+    sum_mm3 += more_mm3;
+    is_speck[specks[count]] = true;
+  }
+  if (count > 0)
+    t.made.findings.push_back("left out " + std::to_string(count) +
+                              " closed shells too thin for an element of their triangles' size, " +
+                              rounded(sum_mm3) + " mm3 together, the thinnest at " +
+                              rounded(given.surface.points_mm[specks.front()]) + " mm");
+  return is_speck;
+}
+
 /// Finds the points of the given surface that are further from the new one than a facet is large: they stand
-/// on a lost detail. Returns why that is too much, if it is: the tip of a spike may be lost, triangles may
-/// not.
+/// on a lost detail. Returns why that is too much, if it is: the tip of a spike and specks may be lost, other
+/// triangles may not.
 std::optional<std::string> lost_details(Try& t, const Given& given, const std::vector<double>& to_own_mm) {
   std::vector<bool> is_lost(to_own_mm.size(), false);
-  for (std::uint32_t i = 0; i < to_own_mm.size(); ++i)
-    if (to_own_mm[i] > given.facet_mm[i]) {
-      t.lost.push_back(i);
-      is_lost[i] = true;
-    }
+  for (std::uint32_t i = 0; i < to_own_mm.size(); ++i) is_lost[i] = to_own_mm[i] > given.facet_mm[i];
   const auto& triangles = given.surface.triangles;
-  const auto gone = std::count_if(triangles.begin(), triangles.end(), [&](const auto& corners) {
-    return std::all_of(corners.begin(), corners.end(), [&](std::uint32_t v) { return is_lost[v]; });
-  });
+  std::vector<bool> is_gone(triangles.size());
+  for (std::size_t f = 0; f < triangles.size(); ++f)
+    is_gone[f] =
+        std::all_of(triangles[f].begin(), triangles[f].end(), [&](std::uint32_t v) { return is_lost[v]; });
+  const std::vector<bool> is_speck = lost_specks(t, given, is_gone);
+  std::size_t gone = 0;
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    if (is_speck[given.shells.of_triangle[f]])
+      for (const std::uint32_t v : triangles[f]) is_lost[v] = false;
+    else
+      gone += is_gone[f];
+  }
+  for (std::uint32_t i = 0; i < is_lost.size(); ++i)
+    if (is_lost[i]) t.lost.push_back(i);
   if (static_cast<double>(gone) <= lost_share() * static_cast<double>(triangles.size())) return std::nullopt;
   const glm::dvec3& first_mm = given.surface.points_mm[t.lost.front()];
   return "lost details: " + std::to_string(gone) + " of " + std::to_string(triangles.size()) +
@@ -222,7 +287,7 @@ Mesh3Filling fill_by_mesh3(const MesherInput& given, const SizeLimits& limits, d
   for (double& most_mm : by_facets.most_mm) most_mm /= std::sqrt(3.0) * facet_radius_by_side();
   SurfaceSizes sizes(given, Mesh3Sizes{}.grading, by_facets);
   sizes.scale(facet_radius_by_side());
-  const Given first{given, surface_mm3, sizes.at_points_mm(),
+  const Given first{given, surface_mm3, shells_of(given), sizes.at_points_mm(),
                     brep::SurfaceTree(brep::Triangles{given.points_mm, given.triangles})};
   MesherInput surface = given;
   Mesh3Filling filling;

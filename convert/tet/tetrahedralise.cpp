@@ -10,7 +10,10 @@
 #include <stdexcept>
 
 #include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/distance.h"
+#include "convert/tet/element_faces.h"
 #include "convert/tet/improve_tetrahedra.h"
+#include "convert/tet/isosurface_stuffing.h"
 #include "convert/tet/mesh3_tetrahedra.h"
 #include "convert/tet/mesher_process.h"
 #include "convert/tet/surface_sizes.h"
@@ -25,6 +28,7 @@
 // 4 Nodes inside move to improve flat elements. If that is not enough and the surface need not be kept,
 // Mesh_3
 //   makes one of its own.
+// 5 Where that fails, too, or leaves elements that no solver takes, a lattice's cells are cut to the surface.
 
 namespace octotomy::convert {
 namespace {
@@ -309,6 +313,78 @@ SizeLimits refine(MesherInput& surface, const std::vector<Refinement>& finer) {
   return limits;
 }
 
+/// The largest relative difference of the volume that stuffing may leave: as repair's, of what it encloses.
+constexpr double stuffed_volume_tolerance() {
+  return 0.05;
+}
+
+/// Smaller cells are tried until this much of the volume is there: a tenth of a voxel about a thick bone.
+constexpr double stuffed_volume_goal() {
+  return 0.01;
+}
+
+/// Elements that a solver on a workstation takes.
+constexpr double most_stuffed_elements() {
+  return 2e6;
+}
+
+/// Triangles that are too many for the meshers in a time: Mesh_3 fills about three a millisecond of bones,
+/// and a surface of a million took TetGen with quality more than a minute. Of the surface and the limit
+/// alone, so that the answer is the same on any machine.
+std::size_t most_meshed_triangles(std::chrono::milliseconds time_limit) {
+  return 5 * static_cast<std::size_t>(std::max<std::int64_t>(time_limit.count(), 0));
+}
+
+std::optional<Tetrahedra> by_stuffing(const MesherInput& surface, double surface_mm3,
+                                      const TetOptions& options, Attempts& attempts) {
+  const brep::Triangles triangles{surface.points_mm, surface.triangles};
+  double cell_mm = std::max(mean_side_mm(surface), cell_of_elements_mm(surface_mm3, most_stuffed_elements()));
+  if (options.max_volume_mm3) cell_mm = std::min(cell_mm, cell_of_elements_mm(*options.max_volume_mm3, 1.0));
+  constexpr int tries = 3;
+  constexpr double smaller = 0.7;
+  Tetrahedra made;
+  double off = 1.0;
+  for (int i = 0; i < tries; ++i, cell_mm *= smaller) {
+    made = stuff(triangles, {cell_mm, options.progress});
+    off = made.tets.empty() ? 1.0 : std::abs(quality(made).volume_mm3 / surface_mm3 - 1.0);
+    if (off <= stuffed_volume_goal() || i + 1 == tries) break;
+    if (cell_of_elements_mm(surface_mm3, 2.0 * most_stuffed_elements()) > smaller * cell_mm) break;
+  }
+  if (off > stuffed_volume_tolerance()) {
+    attempts.findings.push_back("isosurface stuffing by cells of " + rounded(cell_mm) + " mm misses " +
+                                rounded(100.0 * off) + " % of the volume: the solid is thinner than cells");
+    attempts.code = voxel::ErrorCode::Geometry;
+    return std::nullopt;
+  }
+  std::vector<double> apart_mm = brep::SurfaceTree(surface_of(made)).distances_mm(surface.points_mm);
+  std::sort(apart_mm.begin(), apart_mm.end());
+  made.findings.push_back("the elements are of isosurface stuffing, whose nodes on the surface lie on the " +
+                          std::string("given one, with cells of ") + rounded(cell_mm) + " mm: volume " +
+                          switch_number(quality(made).volume_mm3) + " of " + switch_number(surface_mm3) +
+                          " mm3; 95 % of the given points are within " +
+                          rounded(apart_mm[apart_mm.size() * 95 / 100]) + " mm of it, all within " +
+                          rounded(apart_mm.back()) + " mm");
+  if (!options.finer.empty())
+    made.findings.push_back("elements are not finer where that was asked for: stuffing has one size");
+  return made;
+}
+
+/// Puts elements in place of those that are there, if their smallest angle is larger.
+void take_better(std::optional<Tetrahedra>& best, std::optional<Tetrahedra> other, const std::string& who,
+                 Attempts& attempts) {
+  if (!other) return;
+  if (best) {
+    const double kept_deg = quality(*best).min_dihedral_deg;
+    const bool is_better = kept_deg < quality(*other).min_dihedral_deg;
+    attempts.findings.push_back(best->method.substr(0, best->method.find(' ')) + " reached only " +
+                                rounded(kept_deg) + " degrees" +
+                                (best->method == "Mesh_3" ? "" : " with the surface kept") + ", so " + who +
+                                " remeshed it" + (is_better ? "" : "; its angles were no better"));
+    if (!is_better) return;
+  }
+  best = std::move(other);
+}
+
 }  // namespace
 
 std::optional<std::string> fault_in_filling(const Tetrahedra& tetrahedra, double surface_mm3,
@@ -347,24 +423,25 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
 
   std::optional<Tetrahedra> best;
   Attempts attempts;
-  if (options.mesher != Mesher::Mesh3) best = by_tetgen(surface, surface_mm3, options, attempts);
-  const bool good = best && quality(*best).min_dihedral_deg >= options.min_dihedral_deg;
-  if (options.mesher != Mesher::TetGen && !good) {
+  const bool too_many = surface.triangles.size() > most_meshed_triangles(options.time_limit);
+  if (options.mesher == Mesher::Best && too_many) {
+    attempts.findings.push_back(
+        std::to_string(surface.triangles.size()) +
+        " triangles are more than TetGen and Mesh_3 fill in their time, so they were " +
+        "not tried: simplify the surface, or allow more time");
+    best = by_stuffing(surface, surface_mm3, options, attempts);
+  }
+  const bool any = options.mesher == Mesher::Best && !best;
+  const auto reaches = [&](double deg) { return best && quality(*best).min_dihedral_deg >= deg; };
+  if (any || options.mesher == Mesher::TetGen) best = by_tetgen(surface, surface_mm3, options, attempts);
+  if (options.mesher == Mesher::Mesh3 || (any && !reaches(options.min_dihedral_deg))) {
     Mesh3Filling filling = fill_by_mesh3(starting(surface, parts), limits, surface_mm3, options);
     attempts.findings.insert(attempts.findings.end(), filling.findings.begin(), filling.findings.end());
     attempts.code = filling.code;
-    if (filling.tetrahedra) {
-      if (best) {
-        const double kept_deg = quality(*best).min_dihedral_deg;
-        const bool mesh3_is_better = kept_deg < quality(*filling.tetrahedra).min_dihedral_deg;
-        attempts.findings.push_back("TetGen reached only " + rounded(kept_deg) +
-                                    " degrees with the surface kept, so Mesh_3 remeshed it" +
-                                    (mesh3_is_better ? "" : "; its angles were no better"));
-        if (mesh3_is_better) best.reset();
-      }
-      if (!best) best = std::move(filling.tetrahedra);
-    }
+    take_better(best, std::move(filling.tetrahedra), "Mesh_3", attempts);
   }
+  if (options.mesher == Mesher::Stuffing || (any && !reaches(fit_dihedral_deg())))
+    take_better(best, by_stuffing(surface, surface_mm3, options, attempts), "isosurface stuffing", attempts);
   if (best) {
     best->findings.insert(best->findings.begin(), attempts.findings.begin(), attempts.findings.end());
     return *std::move(best);

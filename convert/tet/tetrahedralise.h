@@ -15,9 +15,12 @@
 namespace octotomy::convert {
 
 /// TetGen keeps the surface, to the bit with `keep_boundary`. Mesh3 (CGAL's Mesh_3, mesh3_tetrahedra.h) makes
-/// a surface of its own and so has no flat elements. Best runs TetGen, and Mesh3 if TetGen fails or leaves a
-/// dihedral angle under `min_dihedral_deg`; it returns the answer whose smallest angle is larger.
-enum class Mesher { TetGen, Mesh3, Best };
+/// a surface of its own and so has no flat elements. Stuffing (isosurface_stuffing.h) fills a lattice's
+/// cells: it succeeds on any triangles, and loses what is thinner than a cell. Best runs TetGen, and Mesh3 if
+/// TetGen fails or leaves a dihedral angle under `min_dihedral_deg`, and takes the answer whose smallest
+/// angle is larger; Stuffing if neither reaches fit_dihedral_deg(), or at once where the surface has over
+/// five triangles a millisecond of the time limit.
+enum class Mesher { TetGen, Mesh3, Stuffing, Best };
 
 struct TetOptions {
   Mesher mesher = Mesher::TetGen;
@@ -49,8 +52,11 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// the surface (-p); `method` and `findings` say which. Nodes inside then move to improve flat elements
 /// (improve_tetrahedra.h). Short edges of an isosurface make quality expensive: run brep::decimate() first.
 /// Refinements divide the surface's triangles in their planes, and elements grow inward from there.
+/// Stuffing's cells are as large as the triangles' mean side, larger where that would be over two million
+/// elements; findings say how far its surface lies from the given one, and where refinements had no effect.
 ///
-/// Guaranteed: all volumes positive; the total volume is the surface's to 1e-9 by TetGen, to 1e-3 by Mesh_3.
+/// Guaranteed: all volumes positive; the total volume is the surface's to 1e-9 by TetGen, to 1e-3 by Mesh_3,
+/// to 5e-2 by Stuffing.
 /// Throws voxel::Error: Geometry if the mesh is open, inside out, flat or tiny, or the meshers fail on it;
 /// Resource if a limit of time or memory ends the last of them, or a mesher is not installed beside the
 /// running program. The message names the switches tried and what to try next. Throws std::invalid_argument

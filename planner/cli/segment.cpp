@@ -63,7 +63,7 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
     segments.push_back({name, segmented(asked, source)});
   };
   if (asked.otsu) add("class " + std::to_string(asked.otsu_class.value_or(*asked.otsu)));
-  if (asked.label) add("label " + std::to_string(*asked.label));
+  if (asked.label) add(asked.named ? *asked.named : "label " + std::to_string(*asked.label));
   if (asked.tolerance) add("grown");
   for (const std::string& window : text.windows) {
     asked.window = window_of(window);
@@ -148,13 +148,14 @@ void write_segments(const Program& program, const SegmentText& text, const voxel
 /// What cannot be said together is refused before anything is read.
 void check_text(const SegmentText& text, const Segment& asked) {
   const int ways = (text.windows.empty() ? 0 : 1) + (asked.otsu ? 1 : 0) + (asked.tolerance ? 1 : 0) +
-                   (asked.label ? 1 : 0);
+                   (asked.label ? 1 : 0) + (asked.named ? 1 : 0);
   if (ways > 1)
-    throw CLI::ValidationError("--window", "give one of --window, --otsu, --tolerance with --seed, --label");
+    throw CLI::ValidationError("--window",
+                               "give one of --window, --otsu, --tolerance with --seed, --label, --named");
   if (ways == 0 && text.objects.empty())
-    throw CLI::ValidationError(
-        "--window",
-        "say what is meant: --window bone, --otsu 3, --seed X,Y,Z --tolerance T, --label N or --object FILE");
+    throw CLI::ValidationError("--window",
+                               "say what is meant: --window bone, --otsu 3, --seed X,Y,Z --tolerance T, "
+                               "--label N, --named NAME or --object FILE");
   if (text.out.empty() && text.contours.empty() && !asked.otsu)
     throw CLI::ValidationError("--out", "only --otsu and --contours need none");
   if (is_octree(text.out) && text.windows.size() + text.objects.size() > 1)
@@ -176,6 +177,7 @@ int segment(const Program& program, const SegmentText& text) {
   program.note_tissues(text.windows);
   const voxel::Scene scene = read_scan(program, text.scan, text.in, timings);
   for (const std::string& window : text.windows) need_hounsfield(window_of(window), scene);
+  if (asked.named) asked.label = label_of_name(asked, text.scan, {});
   Json json{{"source", text.scan.string()}, {"unit", voxel::unit(scene)}};
   if (asked.otsu) {
     const Stopwatch watch(timings, "otsu");
@@ -223,6 +225,7 @@ void add_segment(Program& program) {
       "  octotomy segment head.nrrd -o tissues.nii.gz --window bone --window soft_tissue --window fat\n"
       "  octotomy segment head.nrrd --otsu 3 --json\n"
       "  octotomy segment tissues.nii.gz -o fat.octree --label 3\n"
+      "  octotomy segment organs.nii.gz -o mandible.octree --named mandible --names organs.json\n"
       "  octotomy segment head.nrrd --window bone --contours skull.json",
       [&program, text] { return segment(program, *text); });
   std::string names;

@@ -3,7 +3,10 @@
 
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/health.h"
 #include "brep/mesh/split_fans.h"
+#include "brep/shape/repair.h"
+#include "planner/table/number_format.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
@@ -17,6 +20,37 @@ brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
     throw brep::Error(error.code(), path.string() + ": " + error.what() +
                                         "; mend it first: octotomy repair " + path.filename().string() +
                                         " --solid -o solid.ply");
+  }
+}
+
+brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timings,
+                              std::vector<std::string>& findings, const brep::Progress& progress) {
+  brep::Triangles triangles;
+  brep::Health health;
+  {
+    const Stopwatch watch(timings, "read");
+    triangles = brep::read_triangles(path);
+    health = brep::health(triangles);
+    if (health.solid()) return brep::trusted_solid(triangles, brep::Proof::Health);
+  }
+  const Stopwatch watch(timings, "repair");
+  try {
+    brep::RepairOptions options;
+    options.solid = true;
+    options.progress = progress;
+    const brep::Repair repaired = brep::repair(triangles, options);
+    const brep::RepairEffect effect = brep::repair_effect(triangles, repaired.surface);
+    findings.push_back(
+        path.filename().string() + " is no solid (" + health.findings.front() + "), so it was mended: " +
+        (repaired.enclosed_cell_mm
+             ? "enclosed anew by cells of " + three_figures(*repaired.enclosed_cell_mm) + " mm"
+             : grouped(static_cast<double>(repaired.changes.size()), 0) + " changes") +
+        ", volume from " + grouped(effect.volume_before_mm3, 1) + " to " +
+        grouped(effect.volume_after_mm3, 1) + " mm\u00b3, nowhere further apart than " +
+        three_figures(effect.largest_distance_mm) + " mm; octotomy repair --solid lists each change");
+    return brep::solid_of(repaired.surface);
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(), path.string() + ": " + error.what());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "brep/io/write_mesh.h"
+#include "brep/mesh/progress.h"
 #include "brep/mesh/solid.h"
 #include "planner/file/file_kind.h"
 #include "planner/table/stopwatch.h"
@@ -14,6 +15,11 @@ namespace octotomy::planner {
 /// A mesh file's solid, proven by its health; "read" in the timings. Throws as brep::read_triangles() and
 /// brep::solid_of(), naming the path.
 brep::Solid read_solid(const std::filesystem::path& path, Timings& timings);
+
+/// The same, but triangles that are no solid are made one by brep::repair(), as a finding says with the
+/// volume and the largest distance; "repair" in the timings. Throws as repair(), naming the path.
+brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timings,
+                              std::vector<std::string>& findings, const brep::Progress& progress = {});
 
 /// A mesh of any triangles with finite points, closed or not, joined as brep::joined_surface() does; "read"
 /// in the timings. What was done to join them is appended to the findings, if there are any. Throws

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "voxel/solid/region_mask.h"
 #include "voxel/solid/slice_mask.h"
 
-// Regions drawn elsewhere, as JSON files. Points are [u, v] in the view's millimetres.
+// Regions drawn elsewhere, as JSON files and structure sets. Points are [u, v] in the view's millimetres.
 namespace octotomy::planner {
 
 /// {"polygons_mm": [[[u, v], ...], ...]}, or that list alone. Throws std::runtime_error saying file, place
@@ -16,6 +17,12 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// {"view": "inferior", "between": "shape_based" or "nearest", "slices": [{"position_mm": p . look,
 /// "polygons_mm": [...]}, ...]}; "between" may be left out. Slices are put in order. Throws as read_region(),
 /// and what check(SliceMask) refuses.
-voxel::SliceMask read_slices(const std::filesystem::path& path);
+///
+/// Of a DICOM structure set, the region of this name: its closed contours as polygons of its planes, holes by
+/// the even-odd rule. Planes as far apart as the set's nearest ones; where one of them has no contour,
+/// nothing is there, and the first and last plane speak for half a distance beyond. Throws std::runtime_error
+/// if the name is not one of the set's, or none is given and there are several; if contours lie in no
+/// parallel planes, or all in one plane, which tells no distance.
+voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});
 
 }  // namespace octotomy::planner

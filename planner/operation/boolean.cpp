@@ -3,6 +3,7 @@
 #include "brep/boolean/boolean.h"
 
 #include "brep/boolean/exact_boolean.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "planner/file/mesh_file.h"
@@ -17,7 +18,7 @@ struct Boolean {
   ObjectName a, b;
   std::string operation;
   std::vector<ObjectName> further;
-  bool exact = false;
+  bool exact = false, mend = false;
   std::filesystem::path out;
 };
 
@@ -49,9 +50,20 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
   need_folder_of(asked.out);
   if (asked.exact && !asked.further.empty())
     throw std::runtime_error("--exact proves one step at a time: leave --with out");
-  std::vector<brep::Solid> operands = {read_solid(asked.a.name, bench.timings),
-                                       read_solid(asked.b.name, bench.timings)};
-  for (const ObjectName& path : asked.further) operands.push_back(read_solid(path.name, bench.timings));
+  std::vector<std::string> mended;
+  const auto solid = [&](const ObjectName& path) {
+    if (asked.mend) {
+      const voxel::Progress progress = bench.progress("repair");
+      return read_mended_solid(path.name, bench.timings, mended, {progress.stop, progress.report});
+    }
+    try {
+      return read_solid(path.name, bench.timings);
+    } catch (const brep::Error& error) {
+      throw brep::Error(error.code(), std::string(error.what()) + "; or take --mend");
+    }
+  };
+  std::vector<brep::Solid> operands = {solid(asked.a), solid(asked.b)};
+  for (const ObjectName& path : asked.further) operands.push_back(solid(path));
   const brep::Operation operation = asked.operation == "union"          ? brep::Operation::Union
                                     : asked.operation == "intersection" ? brep::Operation::Intersection
                                                                         : brep::Operation::Difference;
@@ -76,6 +88,7 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
     throw std::runtime_error("the " + asked.operation + " of " + asked.a.name + " and " + asked.b.name +
                              " is empty" + (proof.is_null() ? "" : ", as exact numbers prove") +
                              ": there is no surface to write");
+  result.findings.insert(result.findings.begin(), mended.begin(), mended.end());
   const brep::Health health = brep::health(result.solid);
   const brep::Measures& measures = result.solid.measures();
   write_surface(result.solid, asked.out, bench.timings);
@@ -108,6 +121,8 @@ Operation boolean_operation() {
                    "Further meshes: all are united, intersected, or taken from the first."))
       .takes(field("exact", &Boolean::exact,
                    "New points as exact numbers, and proof that the volumes add up as rationals; slower."))
+      .takes(field("mend", &Boolean::mend,
+                   "Meshes that are no solids are mended first, as repair --solid does."))
       .takes(field("out", &Boolean::out, "A .stl, .ply, .obj, .off, .vtp or .glb file.").required())
       .example(
           R"({"id": "rest", "do": "boolean", "a": "skull", "op": "difference", "b": "cut",

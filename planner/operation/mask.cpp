@@ -68,7 +68,9 @@ std::string definition(const Mask& mask, const Objects&) {
   for (const Mask::Region& region : mask.regions)
     views += (views.empty() ? "regions in " : ", ") + region.view;
   if (mask.slices.empty()) return views;
-  return views + (views.empty() ? "slices of " : ", slices of ") + mask.slices.filename().string();
+  return views + (views.empty() ? "" : ", ") +
+         (mask.structure.empty() ? "slices" : "'" + mask.structure + "'") + " of " +
+         mask.slices.filename().string();
 }
 
 void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
@@ -76,7 +78,7 @@ void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
   if (const auto turned = held(bench.objects); turned && made.symbol)
     made.symbol = moved(*made.symbol, *turned);
   if (!mask.slices.empty()) {
-    const voxel::Expression slices = read_slices(bench.folder / mask.slices);
+    const voxel::Expression slices = read_slices(bench.folder / mask.slices, mask.structure);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
   }
   made.octree = bench.combined(*made.symbol);
@@ -131,8 +133,10 @@ Operation mask_operation() {
                  .in_plans_only())
       .takes(field("slices", &Mask::slices,
                    "A file of regions on parallel slices, {\"view\", \"slices\": [{\"position_mm\", "
-                   "\"polygons_mm\"}]}, which cut the mask too.")
+                   "\"polygons_mm\"}]}, or a DICOM structure set, which cut the mask too.")
                  .a_file())
+      .takes(field("structure", &Mask::structure,
+                   "The name of the structure that is meant, where the slices are a structure set."))
       .verb_takes(field("region", &Mask::region_files,
                         "VIEW:FILE.json, repeated: the mask is what all of their back-projections enclose.")
                       .repeated())
@@ -145,6 +149,7 @@ Operation mask_operation() {
       .on_files(
           "octotomy mask -o cut.octree --region anterior:front.json --region left:side.json --like "
           "head.nrrd\n"
+          "  octotomy mask -o mandible.octree --slices rtstruct.dcm --structure Mandible --like ct\n"
           "  octotomy mask -o less.octree --edit cut.octree --region 35,15:oblique.json\n"
           "A region's file: {\"polygons_mm\": [[[-40,-60],[40,-60],[40,-25],[-40,-25]]]}",
           mask_file)

@@ -19,6 +19,7 @@ struct Mask {
   };
   std::vector<Region> regions;
   std::filesystem::path slices;  ///< a file of regions on parallel slices, which cut the others
+  std::string structure;         ///< the region of a structure set in that file
   // Of the verb.
   std::vector<std::string> region_files;  ///< VIEW:FILE.json
   std::filesystem::path edit, like, out;

@@ -94,7 +94,7 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
   need_octree_extension(asked.out);
   need_folder_of(asked.out);
   if (asked.region_files.empty() && asked.slices.empty())
-    throw std::runtime_error("a mask needs --region VIEW:FILE.json or --slices FILE.json");
+    throw std::runtime_error("a mask needs --region VIEW:FILE.json or --slices FILE");
   voxel::RegionMask regions;
   std::optional<voxel::SliceMask> slices;
   std::optional<voxel::Expression> expression;
@@ -103,7 +103,7 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
   {
     const Stopwatch watch(bench.timings, "read");
     for (const std::string& region : asked.region_files) regions.regions.push_back(region_of(region));
-    if (!asked.slices.empty()) slices = read_slices(asked.slices);
+    if (!asked.slices.empty()) slices = read_slices(asked.slices, asked.structure);
     if (!asked.edit.empty()) {
       const voxel::OctreeFile old = voxel::read_octree(asked.edit);
       const auto* octree = std::get_if<voxel::Octree>(&old.tree);
@@ -129,6 +129,7 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
     findings.emplace_back("the mask holds no voxel: its regions do not overlap, or lie outside the universe");
   Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"regions", asked.region_files}};
   if (slices) made["slices"] = asked.slices.filename().string();
+  if (!asked.structure.empty()) made["structure"] = asked.structure;
   if (!asked.edit.empty()) made["edited"] = asked.edit.filename().string();
   file.metadata = json_text(made);
   return octree_written(file, asked.out, bench.stop, bench.timings, findings);

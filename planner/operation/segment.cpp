@@ -10,6 +10,7 @@
 #include "brep/mesh/triangles.h"
 #include "convert/surface/fill_cavities.h"
 #include "convert/surface/isosurface.h"
+#include "planner/file/label_table.h"
 #include "planner/file/region_file.h"
 #include "planner/operation/parts.h"
 #include "planner/operation/trace.h"
@@ -72,6 +73,7 @@ class Segmenter {
 
  private:
   std::string name() const {
+    if (segment_.named) return *segment_.named;
     if (segment_.label) return "label " + std::to_string(*segment_.label);
     return segment_.window ? words_of(*segment_.window) : "grown";
   }
@@ -153,9 +155,11 @@ class Segmenter {
 
 void check(const Segment& segment, const Place& place) {
   const int ways = (segment.window ? 1 : 0) + (segment.otsu ? 1 : 0) + (segment.tolerance ? 1 : 0) +
-                   (segment.label ? 1 : 0);
+                   (segment.label ? 1 : 0) + (segment.named ? 1 : 0);
   if (ways != 1 && place.scope != nullptr)
-    place.refuse("needs one of 'window', 'otsu', 'tolerance' with 'seeds_mm', and 'label'");
+    place.refuse("needs one of 'window', 'otsu', 'tolerance' with 'seeds_mm', 'label' and 'named'");
+  if (!segment.names.empty() && !segment.named)
+    place.at("names").refuse("is the table of a label that is 'named'");
   if (segment.tolerance && segment.seeds_mm.empty())
     place.at("tolerance").refuse("grows from seeds: add 'seeds_mm'");
   if (segment.otsu_class && (!segment.otsu || *segment.otsu_class > *segment.otsu))
@@ -165,8 +169,12 @@ void check(const Segment& segment, const Place& place) {
 }
 
 Segment settle(const Segment& segment, const SettleBench& bench) {
-  if (!segment.otsu) return segment;
   Segment settled = segment;
+  if (segment.named) {
+    settled.label = label_of_name(segment, bench.scan(segment.scan.name).scene().source, bench.folder);
+    bench.details["label"] = *settled.label;
+  }
+  if (!segment.otsu) return settled;
   OtsuWindow found = otsu_window(bench.scan(segment.scan.name).scene(), *segment.otsu,
                                  segment.otsu_class.value_or(*segment.otsu));
   settled.window = found.window;
@@ -177,7 +185,10 @@ Segment settle(const Segment& segment, const SettleBench& bench) {
 std::string definition(const Segment& segment, const Objects&) {
   std::string text = segment.scan.name;
   if (segment.window) text += " in " + words_of(*segment.window);
-  if (segment.label) text += ", label " + std::to_string(*segment.label);
+  if (segment.named)
+    text += ", '" + *segment.named + "'";
+  else if (segment.label)
+    text += ", label " + std::to_string(*segment.label);
   if (segment.tolerance) text += " grown within " + plain(*segment.tolerance);
   if (!segment.regions.empty()) text += ", within " + segment.regions.filename().string();
   if (segment.open_mm) text += ", opened by " + plain(*segment.open_mm) + " mm";
@@ -191,7 +202,7 @@ std::string definition(const Segment& segment, const Objects&) {
 
 /// Why only voxels know the object; null where the mesh kernel does, too.
 const char* why_voxels_alone(const Segment& segment) {
-  if (segment.label) return "a label map has no samples for an isosurface to run between";
+  if (segment.label || segment.named) return "a label map has no samples for an isosurface to run between";
   if (segment.tolerance) return "growing from seeds goes from voxel to voxel";
   if (!segment.regions.empty()) return "regions on slices choose voxels";
   if (segment.open_mm || segment.close_mm) return "opening and closing go by voxels";
@@ -282,6 +293,12 @@ OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number) {
   return otsu;
 }
 
+int label_of_name(const Segment& segment, const std::filesystem::path& label_map,
+                  const std::filesystem::path& folder) {
+  return (segment.names.empty() ? label_table_of(label_map) : read_label_table(folder / segment.names))
+      .label(*segment.named);
+}
+
 Operation segment_operation() {
   return Describe<Segment>("segment", "Makes an object of a scan, then chooses its parts.", Makes::Object)
       .takes(field("scan", &Segment::scan, "The scan; with a label, a label map.").required())
@@ -299,6 +316,14 @@ Operation segment_operation() {
                  .from(0)
                  .to(65535))
       .takes(field("label", &Segment::label, "The object of that number in a label map.").from(1).to(32767))
+      .takes(
+          field("named", &Segment::named,
+                "The object of that name in a label map with names: DICOM's or 3D Slicer's segmentations, or "
+                "a table beside it."))
+      .takes(field("names", &Segment::names,
+                   "The table of names, in place of the one found: .json, .csv, .tsv, ITK-SNAP's .txt, 3D "
+                   "Slicer's .ctbl.")
+                 .a_file())
       .takes(
           field("regions", &Segment::regions, "Keeps the voxels within regions drawn on slices, a JSON file.")
               .a_file())

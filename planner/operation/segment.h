@@ -22,6 +22,8 @@ struct Segment {
   ScanName scan;
   std::optional<SampleWindow> window;
   std::optional<int> otsu, otsu_class, label;
+  std::optional<std::string> named;  ///< of a label; `names` is its table
+  std::filesystem::path names;
   std::optional<double> tolerance;
   std::filesystem::path regions;
   std::optional<double> open_mm;
@@ -52,6 +54,11 @@ struct Segmented {
 /// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(). Throws
 /// std::runtime_error where nothing is left or a seed lies outside; Stopped between choices.
 Segmented segmented(const Segment& segment, const SegmentSource& source);
+
+/// The label of the name that is asked for, of the given table or that of the label map. Throws
+/// std::runtime_error with the names that there are.
+int label_of_name(const Segment& segment, const std::filesystem::path& label_map,
+                  const std::filesystem::path& folder);
 
 /// The window of one of the classes of least variance (Otsu 1979), from the darkest, 1, and the thresholds
 /// with the histogram that they part.

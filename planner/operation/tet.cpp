@@ -18,6 +18,7 @@
 #include "planner/deck/stiffness.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/landmarks_file.h"
+#include "planner/file/mesh_file.h"
 #include "planner/file/octree_in.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
@@ -34,7 +35,7 @@ struct Tet {
          radius_edge = convert::TetOptions{}.radius_edge;
   std::optional<double> max_volume_mm3, voxel_mm, size_mm;
   std::vector<std::string> finer;
-  bool refine_boundary = false, fallback = false, contact = false, msh_2_2 = false;
+  bool refine_boundary = false, mend = false, fallback = false, contact = false, msh_2_2 = false;
   double seconds = 60.0;
   std::vector<ObjectName> regions;
   int order = 1;
@@ -94,9 +95,10 @@ convert::TetOptions options_of(const Tet& asked, const FileBench& bench) {
   options.radius_edge = asked.radius_edge;
   options.keep_boundary = !asked.refine_boundary;
   options.max_volume_mm3 = asked.max_volume_mm3;
-  options.mesher = asked.mesher == "tetgen"  ? convert::Mesher::TetGen
-                   : asked.mesher == "mesh3" ? convert::Mesher::Mesh3
-                                             : convert::Mesher::Best;
+  options.mesher = asked.mesher == "tetgen"     ? convert::Mesher::TetGen
+                   : asked.mesher == "mesh3"    ? convert::Mesher::Mesh3
+                   : asked.mesher == "stuffing" ? convert::Mesher::Stuffing
+                                                : convert::Mesher::Best;
   options.finer = refinements(asked);
   options.time_limit = std::chrono::seconds(static_cast<long>(asked.seconds));
   options.progress = bench.progress("filling, of the time allowed");
@@ -168,25 +170,39 @@ void fall_back(Filled& filled, convert::Tetrahedra tetrahedra, const voxel::Univ
                      grouped(universe.lattice().spacing_mm().x, 3) + " mm: do not read stresses there"};
 }
 
-Filled of_mesh(const FileBench& bench, const Tet& asked) {
-  Timings& timings = bench.timings;
+/// A mesh and its health: that of a solid, unless the fallback is allowed.
+struct Surface {
   brep::Triangles triangles;
-  {
-    const Stopwatch watch(timings, "read");
-    triangles = brep::read_triangles(asked.file.name);
-  }
-  if (triangles.faces.empty()) throw std::runtime_error(asked.file.name + ": holds no triangles");
   brep::Health health;
-  {
-    const Stopwatch watch(timings, "health");
-    health = brep::health(triangles);
+};
+
+/// Appends to the findings what mending did.
+Surface surface_of(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
+  Surface surface;
+  if (asked.mend) {
+    const voxel::Progress progress = bench.progress("repair");
+    surface.triangles = brep::triangles_of(
+        read_mended_solid(asked.file.name, bench.timings, findings, {progress.stop, progress.report}));
+  } else {
+    const Stopwatch watch(bench.timings, "read");
+    surface.triangles = brep::read_triangles(asked.file.name);
   }
-  if (!health.solid() && !asked.fallback)
-    throw std::runtime_error(asked.file.name + ": is not a solid: " + health.findings.front() +
-                             "; mend it first, octotomy info tells all; or take an octree's elements by "
-                             "--fallback, which need none");
+  if (surface.triangles.faces.empty()) throw std::runtime_error(asked.file.name + ": holds no triangles");
+  const Stopwatch watch(bench.timings, "health");
+  surface.health = brep::health(surface.triangles);
+  if (!surface.health.solid() && !asked.fallback)
+    throw std::runtime_error(asked.file.name + ": is not a solid: " + surface.health.findings.front() +
+                             "; let it be mended by --mend, octotomy info tells all; or take an octree's "
+                             "elements by --fallback, which need none");
+  return surface;
+}
+
+Filled of_mesh(const FileBench& bench, const Tet& asked) {
+  std::vector<std::string> mended;
+  const Surface surface = surface_of(bench, asked, mended);
+  const auto& [triangles, health] = surface;
   Filled filled;
-  const Stopwatch watch(timings, "tetrahedralise");
+  const Stopwatch watch(bench.timings, "tetrahedralise");
   if (health.solid()) {
     const brep::Mesh solid = brep::mesh_of(triangles);
     filled.regions = brep::components(solid).size();
@@ -194,12 +210,15 @@ Filled of_mesh(const FileBench& bench, const Tet& asked) {
   } else {
     filled.fallback = "the mesh is not a solid (" + health.findings.front() + ")";
   }
-  if (!filled.fallback) return filled;
-  const voxel::Octree octree = voxels_of(asked, triangles, health.solid());
-  if (octree.is_empty())
-    throw std::runtime_error(asked.file.name + ": encloses no voxel: take smaller ones by --voxel");
-  fall_back(filled, convert::tetrahedra_of(octree, convert::BoundaryCells::Nodes, bench.progress("elements")),
-            octree.universe());
+  if (filled.fallback) {
+    const voxel::Octree octree = voxels_of(asked, triangles, health.solid());
+    if (octree.is_empty())
+      throw std::runtime_error(asked.file.name + ": encloses no voxel: take smaller ones by --voxel");
+    fall_back(filled,
+              convert::tetrahedra_of(octree, convert::BoundaryCells::Nodes, bench.progress("elements")),
+              octree.universe());
+  }
+  filled.findings.insert(filled.findings.begin(), mended.begin(), mended.end());
   return filled;
 }
 
@@ -333,8 +352,10 @@ Operation tet_operation() {
               .required())
       .takes(field("mesher", &Tet::mesher,
                    "tetgen keeps the surface; mesh3 (CGAL) puts one of its own in place, within a tenth of a "
-                   "triangle's size; best: tetgen, and mesh3 where angles stay under --dihedral.")
-                 .one_of({"tetgen", "mesh3", "best"}))
+                   "triangle's size; stuffing cuts a lattice's cells to the surface, over 10 degrees on any "
+                   "triangles, less what is thinner than a cell; best: tetgen, mesh3 where angles stay under "
+                   "--dihedral, and stuffing where they stay under 5 degrees.")
+                 .one_of({"tetgen", "mesh3", "stuffing", "best"}))
       .takes(field("dihedral_deg", &Tet::dihedral_deg, "Smallest dihedral angle that is aimed at.")
                  .from(0.0)
                  .to(30.0))
@@ -355,6 +376,7 @@ Operation tet_operation() {
                    "Lets TetGen add points on the surface; by default it is kept as it is."))
       .takes(
           field("seconds", &Tet::seconds, "Time that each run of a mesher may take.").from(1.0).to(86400.0))
+      .takes(field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
       .takes(
           field("fallback", &Tet::fallback,
                 "Where the meshers fail or leave flat elements, or the mesh is no solid, takes an octree's "
@@ -402,6 +424,7 @@ Operation tet_operation() {
       .example(R"({"id": "deck", "do": "tet", "file": "maxilla", "out": "maxilla.inp"})")
       .on_files(
           "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
+          "  octotomy tet scan.vtp --mend -o scan.inp\n"
           "  octotomy tet maxilla.stl -o maxilla.inp --finer 12,-80,4=0.5 --finer plate.stl=0.8\n"
           "  octotomy tet maxilla.octree --region rest.octree --size 3 --contact -o head.inp\n"
           "  octotomy tet maxilla.stl -o maxilla.feb --scan head.nrrd --density 0.0009,0.05",

@@ -4,6 +4,7 @@
 
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "voxel/filter/board.h"
 #include "voxel/filter/headrest.h"
 #include "voxel/space/error.h"
 
@@ -16,7 +17,7 @@ struct RemoveHeadrest {
   ScanName scan;
   double threshold = voxel::HeadrestOptions{}.threshold;
   double near_mm = voxel::HeadrestOptions{}.near_mm;
-  std::optional<double> detach_mm;
+  std::optional<double> detach_mm, board_mm;
   std::vector<glm::dvec3> keep_mm;
 };
 
@@ -48,6 +49,7 @@ MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
   options.threshold = step.threshold;
   options.near_mm = step.near_mm;
   options.detach_mm = step.detach_mm;
+  options.board_mm = step.board_mm;
   options.keep_mm = step.keep_mm;
   options.progress = bench.progress;
   voxel::HeadrestRemoval removal = voxel::remove_headrest(bench.samples(step.scan.name), options);
@@ -55,10 +57,23 @@ MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
                 {{"threshold", options.threshold},
                  {"near_mm", options.near_mm},
                  {"detach_mm", options.detach_mm ? Json(*options.detach_mm) : Json(nullptr)},
+                 {"board_mm", options.board_mm ? Json(*options.board_mm) : Json(nullptr)},
                  {"parts_removed", removal.parts},
                  {"volume_removed_mm3", removal.solid_mm3},
                  {"samples_removed", removal.voxels}},
                 std::move(removal.removed)};
+  const std::optional<voxel::Board> board = voxel::board_of(made.scene, {options.threshold});
+  const bool has_board = board && board->volume_mm3 >= least_support_mm3;
+  made.details["board_remains_mm3"] = has_board ? Json(board->volume_mm3) : Json(nullptr);
+  if (has_board)
+    made.findings.push_back("a board of about " + plain(std::round(board->volume_mm3 / 100.0) / 10.0) +
+                            " cm\u00b3, " + plain(std::round(board->wide_mm)) + " mm wide and about " +
+                            plain(std::round(board->thick_mm)) +
+                            " mm thick, runs through the scan behind the patient and remains: "
+                            "remove_headrest=" +
+                            plain(options.threshold) + "," + plain(options.near_mm) + "," +
+                            plain(options.detach_mm.value_or(0.0)) + "," +
+                            plain(voxel::BoardOptions{}.thick_mm) + " takes it out");
   const auto remains = remains_of(made.scene, options);
   made.details["remains_mm3"] = remains ? Json(remains->first) : Json(nullptr);
   if (remains) {
@@ -68,7 +83,7 @@ MadeScan made(const RemoveHeadrest& step, const ScanBench& bench) {
                             " mm and reach farther than " + plain(options.near_mm) +
                             " mm: look whether it is a support; remove_headrest=" + plain(options.threshold) +
                             "," + plain(options.near_mm) + "," + radius + " takes it out");
-  } else if (removal.parts == 0) {
+  } else if (removal.parts == 0 && !has_board) {
     made.findings.emplace_back(
         "nothing was removed: the patient is the only solid part, and no ball of up to 10 mm cuts anything "
         "off; take out a support that lies closely against the head by a crop step or a mask");
@@ -88,9 +103,14 @@ Operation remove_headrest_operation() {
                    "Parts wholly within this distance of the patient stay."))
       .takes(field("detach_mm", &RemoveHeadrest::detach_mm,
                    "Links thinner than a ball of this radius are cut. Default: none is."))
+      .takes(
+          field("board_mm", &RemoveHeadrest::board_mm,
+                "Takes out a board or couch that runs through the scan, flush with the patient or not, up to "
+                "this thickness. Default: none is sought.")
+              .greater_than(0.0))
       .takes(field("keep_mm", &RemoveHeadrest::keep_mm, "Points of parts that stay, LPS."))
       .example(R"({"id": "head", "do": "remove_headrest", "scan": "ct"})")
-      .on_files("remove_headrest=THRESHOLD,NEAR,DETACH (needs --removed)")
+      .on_files("remove_headrest=THRESHOLD,NEAR,DETACH,BOARD (needs --removed)")
       .scan(made);
 }
 

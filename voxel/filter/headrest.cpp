@@ -2,10 +2,10 @@
 //
 // Passes:
 //   1 make the octree of the solid samples, on the scan's own voxels;
-//   2 take its largest part for the patient, after an opening if links are to be cut;
-//   3 mark each other part that has a voxel farther than near_mm from the patient;
-//   4 mark the rim of these parts, except voxels as near to the patient;
-//   5 keep the marked samples as a grey octree and overwrite them with air.
+//   2 take out a board that runs through the scan, if asked for; of the rest take its largest part for the
+//   patient, after an opening if links are to be cut; 3 mark each other part that has a voxel farther than
+//   near_mm from the patient; 4 mark the rim of these parts, except voxels as near to the patient; 5 keep the
+//   marked samples as a grey octree and overwrite them with air.
 #include "voxel/filter/headrest.h"
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "voxel/filter/board.h"
 #include "voxel/filter/components.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/morphology.h"
@@ -28,7 +29,8 @@ namespace {
 void check_options(const HeadrestOptions& options) {
   const auto is_length = [](double value) { return std::isfinite(value) && value >= 0.0; };
   if (!std::isfinite(options.threshold) || !is_length(options.near_mm) || !is_length(options.rim_mm) ||
-      (options.detach_mm && !is_length(*options.detach_mm)))
+      (options.detach_mm && !is_length(*options.detach_mm)) ||
+      (options.board_mm && !(is_length(*options.board_mm) && *options.board_mm > 0.0)))
     throw std::invalid_argument("a headrest's threshold must be finite, its lengths finite and not negative");
 }
 
@@ -127,14 +129,18 @@ HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options) {
     throw std::runtime_error(scene.source + ": no sample is at or above " +
                              std::to_string(options.threshold) + ": choose another threshold");
   options.progress.at(0.05);
-  const Octree patient = components(options.detach_mm ? open(solid, *options.detach_mm) : solid).largest;
+  std::optional<Board> board;
+  if (options.board_mm) board = board_of(scene, {options.threshold, *options.board_mm});
+  const Octree without = board ? combine(universe, Expression(solid) - board->solid) : solid;
+  const Octree patient = components(options.detach_mm ? open(without, *options.detach_mm) : without).largest;
   if (patient.is_empty())
     throw Error(ErrorCode::Geometry, scene.source + ": nothing is left after cutting links of " +
                                          std::to_string(options.detach_mm.value_or(0.0)) +
                                          " mm: choose a smaller radius");
   options.progress.at(0.3);
-  const Octree rest = combine(universe, Expression(solid) - patient);
-  const Octree foreign = foreign_parts(rest, patient, lattice, options);
+  const Octree rest = combine(universe, Expression(without) - patient);
+  Octree foreign = foreign_parts(rest, patient, lattice, options);
+  if (board) foreign = combine(universe, Expression(foreign) | board->solid);
   options.progress.at(0.7);
   const Octree body = combine(universe, Expression(solid) - foreign);
   Octree taken = foreign;

@@ -18,6 +18,9 @@ struct HeadrestOptions {
   /// For a headrest that touches the patient: cuts links thinner than a ball of this radius. None: cuts no
   /// link; parts are the components by voxel faces.
   std::optional<double> detach_mm;
+  /// For a board or couch that lies flush with the patient: what board_of() finds up to this thickness is a
+  /// part of its own. None: no board is sought.
+  std::optional<double> board_mm;
   /// Parts wholly within this distance of the patient belong to the patient, such as an ear that was cut off,
   /// bone fragments or teeth. Parts that reach farther are removed.
   double near_mm = 25.0;

@@ -39,6 +39,15 @@ TEST(Difference, ASurfaceAndItselfDoNotDiffer) {
   EXPECT_GT(d.sample_count, 100'000u);
 }
 
+TEST(Difference, APointThatNoTriangleUsesIsNotOnTheSurface) {
+  Triangles ball = shapes::sphere({1, 2, 3}, 10, 3);
+  ball.points_mm.emplace_back(100, 0, 0);
+  const Difference d = difference(mesh_of(ball), mesh_of(ball));
+  EXPECT_LT(d.hausdorff_mm, 1e-14);
+  EXPECT_EQ(d.vertex_mm.size(), ball.points_mm.size()) << "each vertex has its value";
+  EXPECT_GT(std::abs(d.vertex_mm.back()), 80.0);
+}
+
 TEST(Difference, ABoxInABoxHasItsClosedForm) {
   // Every point of the inner one is 1 from the outer; the outer one's corners are sqrt(3) from the inner.
   const Difference d = difference(box({0, 0, 0}, {8, 8, 8}), box({1, 1, 1}, {7, 7, 7}),

@@ -150,5 +150,27 @@ TEST(Mesh3Tetrahedra, ATimeLimitTooSmallIsNamed) {
   }
 }
 
+TEST(Mesh3Tetrahedra, FilmsOfRealBoneAreLeftOutAndToldAndAThickShellNever) {
+  // Films as welding and splitting leave them where a model's sheets touch.
+  const brep::Triangles film{{{30, 0, 0}, {30.3, 0, 0}, {30, 0.3, 0}, {30.1, 0.1, 5e-4}},
+                             {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  const Tetrahedra t = by_mesh3(together(ball({0, 0, 0}, 20.0, 3), film));
+  EXPECT_GT(quality(t).min_dihedral_deg, 5.0);
+  const auto told = std::find_if(t.findings.begin(), t.findings.end(), [](const std::string& finding) {
+    return finding.find("left out 1 closed shell") != std::string::npos;
+  });
+  EXPECT_NE(told, t.findings.end());
+  EXPECT_EQ(std::count_if(t.boundary_nodes.begin(), t.boundary_nodes.end(),
+                          [&](std::uint32_t v) { return t.nodes_mm[v].x > 25.0; }),
+            0);
+  // The twin that may not be left out: its volume is over the tolerance.
+  const brep::Triangles thick = together(ball({0, 0, 0}, 20.0, 3), box({30, 0, 0}, {40, 10, 1}));
+  const Tetrahedra both = by_mesh3(thick);
+  EXPECT_NEAR(quality(both).volume_mm3 / tests::volume_mm3(thick), 1.0, own_surface_volume_tolerance());
+  EXPECT_GT(std::count_if(both.boundary_nodes.begin(), both.boundary_nodes.end(),
+                          [&](std::uint32_t v) { return both.nodes_mm[v].x > 25.0; }),
+            100);
+}
+
 }  // namespace
 }  // namespace octotomy::convert

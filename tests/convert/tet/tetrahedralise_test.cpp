@@ -199,5 +199,54 @@ TEST(Tetrahedralise, StopsOnRequestWithoutTryingAgain) {
   EXPECT_FALSE(contains_text(message, "-pYQ")) << message;
 }
 
+/// A wedge whose edge is sharper than a solver's smallest angle: no mesher that keeps it can be better.
+brep::Triangles wedge(double degrees) {
+  const double high_mm = 20.0 * std::tan(degrees * M_PI / 180.0);
+  return {{{0, 0, 0}, {20, 0, 0}, {20, 0, high_mm}, {0, 20, 0}, {20, 20, 0}, {20, 20, high_mm}},
+          {{0, 1, 2}, {3, 5, 4}, {0, 4, 1}, {0, 3, 4}, {1, 5, 2}, {1, 4, 5}, {0, 5, 3}, {0, 2, 5}}};
+}
+
+TEST(Tetrahedralise, AnEdgeSharperThanASolverTakesIsStuffedAndTheFindingsSayHowFarTheSurfaceMoved) {
+  ASSERT_FALSE(tests::fault_in_closedness(wedge(3.0)));
+  TetOptions options;
+  options.mesher = Mesher::TetGen;
+  EXPECT_LT(quality(tetrahedralise(brep::mesh_of(wedge(3.0)), options)).min_dihedral_deg, fit_dihedral_deg())
+      << "the wedge is no hard case";
+  options.mesher = Mesher::Stuffing;
+  options.max_volume_mm3 = 0.01;
+  const Tetrahedra t = tetrahedralise(brep::mesh_of(wedge(3.0)), options);
+  EXPECT_EQ(t.method, "isosurface stuffing");
+  EXPECT_GT(quality(t).min_dihedral_deg, 10.0);
+  EXPECT_FALSE(fault_in_shape(t));
+  EXPECT_NEAR(quality(t).volume_mm3 / tests::volume_mm3(wedge(3.0)), 1.0, 0.05);
+  ASSERT_EQ(t.findings.size(), 1u);
+  EXPECT_TRUE(contains_text(t.findings[0], "all within")) << t.findings[0];
+  EXPECT_EQ(t.boundary_nodes, boundary_nodes(t.tets));
+}
+
+TEST(Tetrahedralise, BestIsNeverUnfitWhereStuffingHoldsTheVolume) {
+  TetOptions options;
+  options.mesher = Mesher::Best;
+  options.max_volume_mm3 = 0.01;
+  const Tetrahedra t = tetrahedralise(brep::mesh_of(wedge(3.0)), options);
+  EXPECT_FALSE(fault_in_shape(t)) << *fault_in_shape(t);
+}
+
+TEST(Tetrahedralise, ASurfaceOfMoreTrianglesThanTheTimeAllowsIsStuffedAtOnce) {
+  TetOptions options;
+  options.mesher = Mesher::Best;
+  options.time_limit = std::chrono::milliseconds(100);
+  const Tetrahedra t = tetrahedralise(brep::mesh_of(ball({0, 0, 0}, 20.0, 4)), options);
+  EXPECT_EQ(t.method, "isosurface stuffing");
+  EXPECT_TRUE(contains_text(t.findings.front(), "2048 triangles are more than")) << t.findings.front();
+}
+
+TEST(Tetrahedralise, WhatIsThinnerThanCellsIsRefusedByTheShareThatIsMissing) {
+  TetOptions options;
+  options.mesher = Mesher::Stuffing;
+  EXPECT_TRUE(contains_text(refusal<voxel::Error>(box({0, 0, 0}, {20, 20, 0.01}), options),
+                            "% of the volume: the solid is thinner than cells"));
+}
+
 }  // namespace
 }  // namespace octotomy::convert

@@ -2,7 +2,9 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "planner/file/region_file.h"
 #include "tests/planner/operation/ball_operation.h"
+#include "tests/voxel/scan/structure_set.h"
 
 namespace octotomy::planner {
 namespace {
@@ -27,6 +29,74 @@ TEST(MaskStep, AMaskOfNothingIsRefused) {
   const TestFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "mask"})").find("'regions' is missing"),
             std::string::npos);
+}
+
+/// A ring on four planes, a second block behind a gap of two planes, and a structure of one plane.
+std::string ring_and_block() {
+  std::vector<std::vector<glm::dvec3>> ring;
+  for (const double z : {0.0, 2.0, 4.0, 6.0, 12.0, 14.0}) ring.push_back(rectangle({-10, -10}, {10, 10}, z));
+  for (const double z : {0.0, 2.0, 4.0, 6.0}) ring.push_back(rectangle({-4, -4}, {4, 4}, z));
+  return structure_set({{1, "Ring", ring},
+                        {2, "Plate", {rectangle({-8, -8}, {8, 8}, 4)}},
+                        {3, "Point", {{{0, 0, 0}}}, "POINT"}});
+}
+
+TEST(MaskStep, AStructureSetsRegionHasItsHoleItsGapAndItsOwnSlicesVolume) {
+  const TestFolder folder;
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << ring_and_block();
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "ring", "do": "mask", "slices": "rs.dcm", "structure": "Ring"},
+      {"id": "plate", "do": "mask", "slices": "rs.dcm", "structure": "Plate"})"));
+  // Each plane speaks for 2 mm: four of a ring, two of a block.
+  const double ring_mm3 = 8.0 * (400.0 - 64.0) + 4.0 * 400.0;
+  EXPECT_NEAR(evaluation.object("ring").voxel.measures.volume_mm3 / ring_mm3, 1.0, 0.05);
+  EXPECT_NEAR(evaluation.object("plate").voxel.measures.volume_mm3 / 512.0, 1.0, 0.1);
+  EXPECT_EQ(evaluation.object("ring").definition, "'Ring' of rs.dcm");
+  const voxel::SliceMask mask = read_slices(folder / "rs.dcm", "Ring");
+  const auto at = std::find_if(mask.slices.begin(), mask.slices.end(),
+                               [](const auto& slice) { return slice.position_mm == 8.0; });
+  ASSERT_NE(at, mask.slices.end()) << "the plane after the ring is empty";
+  EXPECT_TRUE(at->polygons_mm.empty());
+}
+
+TEST(MaskStep, AStructureThatIsNotThereIsRefusedWithTheOnesThatAre) {
+  const TestFolder folder;
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << ring_and_block();
+  const auto refusal = [&](const std::string& structure) {
+    try {
+      read_slices(folder / "rs.dcm", structure);
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refusal("Rign").find("did you mean 'Ring'"), std::string::npos) << refusal("Rign");
+  EXPECT_NE(refusal("").find("'Ring', 'Plate', 'Point'"), std::string::npos) << refusal("");
+  EXPECT_NE(refusal("Point").find("has no closed contour, but 1 points"), std::string::npos);
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << structure_set(
+      {{1,
+        "A",
+        {rectangle({0, 0}, {9, 9}, 0), rectangle({0, 0}, {9, 9}, 2), {{0, 0, 4}, {3, 0, 5}, {3, 3, 6}}}}});
+  EXPECT_NE(refusal("A").find("not parallel"), std::string::npos) << refusal("A");
+  std::ofstream(folder / "rs.dcm", std::ios::binary)
+      << structure_set({{1, "A", {rectangle({0, 0}, {9, 9}, 0)}}});
+  EXPECT_NE(refusal("A").find("how thick it is"), std::string::npos) << refusal("A");
+}
+
+TEST(MaskStep, AStructureOnTiltedPlanesKeepsItsPlace) {
+  const TestFolder folder;
+  // Planes of a tilted gantry, 20 degrees about x.
+  const double c = std::cos(0.35), s = std::sin(0.35);
+  std::vector<std::vector<glm::dvec3>> contours;
+  for (const double z : {-4.0, -2.0, 0.0, 2.0, 4.0}) {
+    contours.push_back(rectangle({-8, -6}, {8, 6}, z));
+    for (glm::dvec3& p : contours.back()) p = {p.x, c * p.y - s * p.z, s * p.y + c * p.z};
+  }
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << structure_set({{1, "A", contours}});
+  const Evaluation evaluation =
+      evaluate(ball_plan(folder, R"({"id": "a", "do": "mask", "slices": "rs.dcm"})"));
+  EXPECT_NEAR(evaluation.object("a").voxel.measures.volume_mm3 / (16.0 * 12.0 * 10.0), 1.0, 0.05);
+  EXPECT_LT(glm::length(*evaluation.object("a").voxel.measures.centroid_mm), 0.3);
 }
 
 }  // namespace

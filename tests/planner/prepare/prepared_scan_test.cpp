@@ -89,6 +89,38 @@ TEST(PreparedScan, WarnsOfASupportThatHangsOnTheHeadAndTheAdviceTakesItOut) {
   EXPECT_NE(alone.scans[1].audit.back().detail.find("crop"), std::string::npos);
 }
 
+TEST(PreparedScan, NamesABoardThatIsFlushWithTheHeadAndTheAdviceTakesItOut) {
+  const TestFolder folder;
+  voxel::Scene scene;
+  scene.lattice = voxel::axis_aligned_lattice({80, 80, 40}, {1, 1, 1}, {-39.5, -39.5, -19.5});
+  scene.meaning = voxel::Meaning::Hounsfield;
+  scene.modality = "CT";
+  voxel::Int16Samples samples;
+  for (int z = 0; z < 40; ++z)
+    for (int y = 0; y < 80; ++y)
+      for (int x = 0; x < 80; ++x) {
+        const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
+        samples.push_back(glm::length(p) < 18 || (p.y > 17 && p.y < 25 && std::abs(p.x) < 35) ? 60 : -1000);
+      }
+  scene.samples = std::move(samples);
+  voxel::write_scene(scene, folder / "ct.nrrd");
+  const auto step = [&](const std::string& more) {
+    return evaluate(parse_plan(R"({"octotomy_plan": 1, "name": "n", "scans": {"ct": {"path": "ct.nrrd"}},
+      "steps": [{"id": "head", "do": "remove_headrest", "scan": "ct")" +
+                                   more + R"(},
+                {"id": "skin", "do": "window", "scan": "head", "low": 0}]})",
+                               folder.path()));
+  };
+  const Evaluation flush = step("");
+  EXPECT_NEAR(flush.scans[1].details["board_remains_mm3"].get<double>(), 70 * 8 * 40, 1);
+  EXPECT_TRUE(std::any_of(flush.scans[1].audit.begin(), flush.scans[1].audit.end(), [](const auto& finding) {
+    return finding.detail.find("remove_headrest=-300,25,0,30 takes it out") != std::string::npos;
+  }));
+  const Evaluation followed = step(R"(, "board_mm": 30)");
+  EXPECT_NEAR(followed.object("skin").voxel.measures.volume_mm3, ball_mm3(18.0), 0.03 * ball_mm3(18.0));
+  EXPECT_TRUE(followed.scans[1].details["board_remains_mm3"].is_null());
+}
+
 TEST(PreparedScan, NamesAndValuesThatCannotBeAreRefused) {
   const TestFolder folder;
   EXPECT_NE(

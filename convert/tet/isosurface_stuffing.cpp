@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Source: Labelle and Shewchuk 2007 (isosurface_stuffing.h), with its numbers for a uniform lattice.
+// Departures: the sign and the cut points come from triangles instead of a function, and quadrilaterals are
+// cut from their node that comes first in one order of all nodes (pass 5) in place of the paper's table; the
+// tests put random cuts on every side to hold the bound.
+// 1 Mark the lattice points inside: each row along x crosses the surface, and the parity changes there.
+// 2 On each side between lattice points of either mark, cut where a triangle crosses it.
+// 3 Warp a lattice point to the nearest cut point that lies too near to it for good angles; its sides lose
+//   their cuts.
+// 4 Of each of the lattice's tetrahedra keep what is inside: corners inside, warped ones, and cut points.
+// 5 Where that is a pyramid or a prism, divide it from its first node. As the order of nodes is the same for
+//   all, neighbours divide their common face alike.
+#include "convert/tet/isosurface_stuffing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <unordered_map>
+
+#include "brep/mesh/distance.h"
+#include "voxel/space/rounded.h"
+
+namespace octotomy::convert {
+namespace {
+
+// In halves of a cell, so that corners of cubes are even and their middles odd on all axes.
+using Place = glm::ivec3;
+
+/// The sides that leave a lattice point in the half space of positive directions: three long, four short.
+constexpr std::array<std::array<int, 3>, 7> ways{
+    {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}}};
+constexpr std::size_t long_ways = 3;
+Place way(std::size_t w) {
+  return {ways.at(w)[0], ways.at(w)[1], ways.at(w)[2]};
+}
+
+/// The share of a side within which a cut point is too near to its end: the paper's table 1.
+double too_near(std::size_t w) {
+  return w < long_ways ? 0.24999 : 0.41189;
+}
+
+struct Lattice {
+  glm::dvec3 origin_mm{0.0};
+  double half_mm = 0.5;
+  glm::ivec3 points{0};  ///< along each axis, in halves
+
+  glm::dvec3 at(const Place& p) const { return origin_mm + half_mm * glm::dvec3(p); }
+  bool has(const Place& p) const {
+    return glm::all(glm::greaterThanEqual(p, Place(0))) && glm::all(glm::lessThan(p, points));
+  }
+  std::size_t index(const Place& p) const {
+    return (static_cast<std::size_t>(p.z) * static_cast<std::size_t>(points.y) +
+            static_cast<std::size_t>(p.y)) *
+               static_cast<std::size_t>(points.x) +
+           static_cast<std::size_t>(p.x);
+  }
+};
+
+Lattice lattice_about(const brep::Triangles& surface, double cell_mm) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const auto& face : surface.faces)
+    for (const std::uint32_t v : face) {
+      low = glm::min(low, surface.points_mm[v]);
+      high = glm::max(high, surface.points_mm[v]);
+    }
+  Lattice lattice;
+  lattice.half_mm = 0.5 * cell_mm;
+  // Moved by odd shares of a cell, so that planes of round coordinates do not run along the lattice's.
+  lattice.origin_mm = low - cell_mm * glm::dvec3(1.27182818, 1.31415926, 1.14142135);
+  const glm::dvec3 halves = glm::ceil((high - lattice.origin_mm) / lattice.half_mm) + 4.0;
+  constexpr double most_points = 536870912.0;
+  if (!(halves.x * halves.y * halves.z < most_points))
+    throw voxel::Error(voxel::ErrorCode::Resource, "isosurface stuffing: cells of " +
+                                                       voxel::rounded(cell_mm) +
+                                                       " mm are too many for the surface: take larger ones");
+  lattice.points = glm::ivec3(halves);
+  return lattice;
+}
+
+/// Where the row along x through a point meets a face's plane, within the face.
+double x_of(const brep::Triangles& surface, std::uint32_t face, const glm::dvec3& p) {
+  const auto& corners = surface.faces[face];
+  const glm::dvec3 &a = surface.points_mm[corners[0]], &b = surface.points_mm[corners[1]],
+                   &c = surface.points_mm[corners[2]];
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  const double low = std::min({a.x, b.x, c.x}), high = std::max({a.x, b.x, c.x});
+  if (normal.x == 0.0) return 0.5 * (low + high);
+  return std::clamp(a.x + (normal.y * (a.y - p.y) + normal.z * (a.z - p.z)) / normal.x, low, high);
+}
+
+/// Pass 1. Points that are no lattice points, even on one axis and odd on another, stay outside.
+std::vector<std::uint8_t> marked_inside(const brep::Triangles& surface, const Lattice& lattice,
+                                        const voxel::Progress& progress) {
+  std::vector<std::uint8_t> inside(lattice.index({0, 0, lattice.points.z}), 0);
+  const brep::SurfaceTree tree(surface);
+  tbb::parallel_for(tbb::blocked_range<int>(0, lattice.points.z), [&](const auto& range) {
+    std::vector<double> passed;
+    for (int z = range.begin(); z != range.end() && !progress.stop.stop_requested(); ++z)
+      for (int y = z % 2; y < lattice.points.y; y += 2) {
+        const glm::dvec3 start = lattice.at({0, y, z});
+        passed.clear();
+        for (const brep::Crossing& crossing : tree.crossings(start))
+          passed.push_back(x_of(surface, crossing.face, start));
+        if (passed.empty()) continue;
+        std::sort(passed.begin(), passed.end());
+        std::size_t behind = 0;
+        for (int x = z % 2; x < lattice.points.x; x += 2) {
+          const double at = lattice.at({x, y, z}).x;
+          while (behind < passed.size() && passed[behind] < at) ++behind;
+          inside[lattice.index({x, y, z})] = static_cast<std::uint8_t>(behind % 2);
+        }
+      }
+  });
+  return inside;
+}
+
+/// The triangles by the cubes of the lattice that their boxes meet.
+class CubeLists {
+ public:
+  CubeLists(const brep::Triangles& surface, const Lattice& lattice)
+      : surface_(surface), lattice_(lattice), cubes_((lattice.points + 1) / 2) {
+    begin_.assign(number(glm::ivec3(0, 0, cubes_.z)) + 1, 0);
+    each([&](std::size_t cube, std::uint32_t) { ++begin_[cube + 1]; });
+    for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
+    faces_.resize(begin_.back());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    each([&](std::size_t cube, std::uint32_t f) { faces_[next[cube]++] = f; });
+  }
+
+  /// The share of the way from a point inside to one outside at which the last triangle is crossed.
+  double cut(const Place& inside, const Place& outside) const {
+    const glm::dvec3 a = lattice_.at(inside), along = lattice_.at(outside) - a;
+    const Place low = glm::min(inside, outside) / 2, high = glm::max(inside, outside) / 2;
+    double share = -1.0;
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+          for (std::size_t i = begin_[number({x, y, z})]; i < begin_[number({x, y, z}) + 1]; ++i)
+            if (const auto found = crossing(a, along, surface_.faces[faces_[i]]))
+              share = std::max(share, *found);
+    // Rounding has hidden the crossing: any point of the side is as near as that.
+    return share < 0.0 ? 0.5 : share;
+  }
+
+ private:
+  std::size_t number(const glm::ivec3& cube) const {
+    return (static_cast<std::size_t>(cube.z) * static_cast<std::size_t>(cubes_.y) +
+            static_cast<std::size_t>(cube.y)) *
+               static_cast<std::size_t>(cubes_.x) +
+           static_cast<std::size_t>(cube.x);
+  }
+
+  template <typename Visit>
+  void each(const Visit& visit) const {
+    constexpr double slack = 1e-6;
+    for (std::uint32_t f = 0; f < surface_.faces.size(); ++f) {
+      const auto& face = surface_.faces[f];
+      std::array<glm::dvec3, 3> p;
+      for (std::size_t k = 0; k < 3; ++k)
+        p[k] = (surface_.points_mm[face[k]] - lattice_.origin_mm) / (2.0 * lattice_.half_mm);
+      const glm::ivec3 low(glm::floor(glm::min(p[0], glm::min(p[1], p[2])) - slack));
+      const glm::ivec3 high(glm::floor(glm::max(p[0], glm::max(p[1], p[2])) + slack));
+      for (int z = low.z; z <= high.z; ++z)
+        for (int y = low.y; y <= high.y; ++y)
+          for (int x = low.x; x <= high.x; ++x) visit(number({x, y, z}), f);
+    }
+  }
+
+  std::optional<double> crossing(const glm::dvec3& a, const glm::dvec3& along,
+                                 const std::array<std::uint32_t, 3>& face) const {
+    const glm::dvec3& corner = surface_.points_mm[face[0]];
+    const glm::dvec3 u = surface_.points_mm[face[1]] - corner, v = surface_.points_mm[face[2]] - corner;
+    const glm::dvec3 h = glm::cross(along, v);
+    const double det = glm::dot(u, h);
+    if (det == 0.0) return std::nullopt;
+    const glm::dvec3 from = a - corner, q = glm::cross(from, u);
+    const double s = glm::dot(from, h) / det, r = glm::dot(along, q) / det, share = glm::dot(v, q) / det;
+    constexpr double slack = 1e-9;
+    if (s < -slack || r < -slack || s + r > 1.0 + slack || share < 0.0 || share > 1.0) return std::nullopt;
+    return share;
+  }
+
+  const brep::Triangles& surface_;
+  const Lattice& lattice_;
+  glm::ivec3 cubes_;
+  std::vector<std::size_t> begin_;
+  std::vector<std::uint32_t> faces_;
+};
+
+/// What is left of a lattice tetrahedron, as nodes that come before each other where quadrilaterals are cut:
+/// cut points of long sides, then lattice points, then cut points of short sides.
+struct Node {
+  std::uint64_t order = 0;
+  std::uint32_t number = 0;
+};
+using Nodes = std::array<Node, 4>;
+
+class Stuffing {
+ public:
+  Stuffing(const brep::Triangles& surface, const Lattice& lattice, const voxel::Progress& progress)
+      : lattice_(lattice), progress_(progress), inside_(marked_inside(surface, lattice, progress)) {
+    progress_.at(0.3);
+    cut(CubeLists(surface, lattice));
+    progress_.at(0.6);
+    warp();
+    progress_.at(0.7);
+    for (int z = 0; z < lattice_.points.z; ++z) {
+      progress_.at(0.7 + 0.3 * z / lattice_.points.z);
+      for (int y = z % 2; y < lattice_.points.y; y += 2)
+        for (int x = z % 2; x < lattice_.points.x; x += 2) add_about({x, y, z});
+    }
+  }
+
+  Tetrahedra result() && { return std::move(made_); }
+
+ private:
+  /// A side by its end that the way leaves from.
+  std::uint64_t key(const Place& from, std::size_t w) const { return lattice_.index(from) * 7 + w; }
+  bool is_inside(const Place& p) const { return lattice_.has(p) && inside_[lattice_.index(p)] != 0; }
+
+  template <typename Visit>
+  void each_cut_side(const Visit& visit) const {
+    for (int z = 0; z < lattice_.points.z; ++z)
+      for (int y = z % 2; y < lattice_.points.y; y += 2)
+        for (int x = z % 2; x < lattice_.points.x; x += 2) {
+          const Place from(x, y, z);
+          const bool in = inside_[lattice_.index(from)] != 0;
+          for (std::size_t w = 0; w < ways.size(); ++w)
+            if (const Place to = from + way(w); lattice_.has(to) && in != is_inside(to)) visit(from, to, w);
+        }
+  }
+
+  /// Pass 2: cut points as shares of the way from the side's key end.
+  void cut(const CubeLists& triangles) {
+    struct Side {
+      Place from{0}, to{0};
+      std::size_t w = 0;
+      double share = 0.0;
+    };
+    std::vector<Side> sides;
+    each_cut_side([&](const Place& from, const Place& to, std::size_t w) {
+      sides.push_back({from, to, w, 0.0});
+    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides.size(), 1024), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        Side& side = sides[i];
+        side.share = is_inside(side.from) ? triangles.cut(side.from, side.to)
+                                          : 1.0 - triangles.cut(side.to, side.from);
+      }
+    });
+    cuts_.reserve(sides.size());
+    for (const Side& side : sides) {
+      cuts_.emplace(key(side.from, side.w), Cut{side.share, none});
+      // Ends of cut sides in the order of the sides, each once.
+      for (const Place& end : {side.from, side.to})
+        if (ends_.emplace(lattice_.index(end), end).second) end_order_.push_back(end);
+    }
+  }
+
+  /// Pass 3, in the order in which the lattice points are met.
+  void warp() {
+    for (const Place& p : end_order_) {
+      double nearest_mm = std::numeric_limits<double>::infinity();
+      glm::dvec3 there(0.0);
+      for (std::size_t w = 0; w < ways.size(); ++w)
+        for (const bool leaves : {true, false}) {
+          const Place from = leaves ? p : p - way(w), other = leaves ? p + way(w) : from;
+          if (!lattice_.has(from) || warped_.count(lattice_.index(other)) != 0) continue;
+          const auto found = cuts_.find(key(from, w));
+          if (found == cuts_.end()) continue;
+          const double share = leaves ? found->second.share : 1.0 - found->second.share;
+          const glm::dvec3 along = lattice_.at(other) - lattice_.at(p);
+          if (share >= too_near(w) || share * glm::length(along) >= nearest_mm) continue;
+          nearest_mm = share * glm::length(along);
+          there = lattice_.at(p) + share * along;
+        }
+      if (std::isfinite(nearest_mm)) warped_.emplace(lattice_.index(p), there);
+    }
+  }
+
+  std::uint32_t new_node(const glm::dvec3& p_mm) {
+    made_.nodes_mm.push_back(p_mm);
+    return static_cast<std::uint32_t>(made_.nodes_mm.size() - 1);
+  }
+
+  static constexpr std::uint64_t short_cuts = std::uint64_t{1} << 62, lattice_points = std::uint64_t{1} << 61;
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  Node node_at(const Place& p) {
+    const std::size_t index = lattice_.index(p);
+    const auto [known, is_new] = lattice_nodes_.emplace(index, none);
+    if (is_new) {
+      const auto moved = warped_.find(index);
+      known->second = new_node(moved == warped_.end() ? lattice_.at(p) : moved->second);
+    }
+    return {lattice_points + index, known->second};
+  }
+
+  Node cut_between(const Place& p, const Place& q) {
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+      if (q - p != way(w) && p - q != way(w)) continue;
+      const Place from = q - p == way(w) ? p : q;
+      Cut& cut = cuts_.at(key(from, w));
+      if (cut.node == none)
+        cut.node = new_node(lattice_.at(from) + cut.share * lattice_.half_mm * glm::dvec3(way(w)));
+      return {(w < long_ways ? 0 : short_cuts) + key(from, w), cut.node};
+    }
+    throw std::logic_error("isosurface stuffing: points share no side");
+  }
+
+  void add(const Nodes& n) {
+    std::array<std::uint32_t, 4> tet{n[0].number, n[1].number, n[2].number, n[3].number};
+    const auto& p = made_.nodes_mm;
+    if (glm::dot(glm::cross(p[tet[1]] - p[tet[0]], p[tet[2]] - p[tet[0]]), p[tet[3]] - p[tet[0]]) < 0.0)
+      std::swap(tet[0], tet[1]);
+    made_.tets.push_back(tet);
+  }
+
+  /// A pyramid over the quadrilateral a, b, c, d.
+  void add_pyramid(const Node& a, const Node& b, const Node& c, const Node& d, const Node& tip) {
+    if (std::min(a.order, c.order) < std::min(b.order, d.order)) {
+      add({a, b, c, tip});
+      add({a, c, d, tip});
+    } else {
+      add({b, c, d, tip});
+      add({b, d, a, tip});
+    }
+  }
+
+  /// A prism between the triangles a and b: its first node, then the pyramid or tetrahedron that lies across.
+  void add_prism(std::array<Node, 3> a, std::array<Node, 3> b) {
+    const auto before = [](const Node& p, const Node& q) { return p.order < q.order; };
+    auto first = std::min_element(a.begin(), a.end(), before);
+    if (const auto other = std::min_element(b.begin(), b.end(), before); before(*other, *first)) {
+      std::swap(a, b);
+      first = std::min_element(a.begin(), a.end(), before);
+    }
+    std::rotate(b.begin(), b.begin() + (first - a.begin()), b.end());
+    std::rotate(a.begin(), first, a.end());
+    add({a[0], b[0], b[1], b[2]});
+    add_pyramid(a[1], a[2], b[2], b[1], a[0]);
+  }
+
+  /// Passes 4 and 5 for a tetrahedron of the lattice.
+  void add_inside_of(const std::array<Place, 4>& corners) {
+    std::array<Place, 4> in{}, out{}, zero{};
+    std::size_t ins = 0, outs = 0, zeros = 0;
+    for (const Place& p : corners)
+      if (warped_.count(lattice_.index(p)) != 0)
+        zero.at(zeros++) = p;
+      else if (is_inside(p))
+        in.at(ins++) = p;
+      else
+        out.at(outs++) = p;
+    if (ins == 0) return;
+    if (outs == 0 || ins == 1) {
+      Nodes nodes;
+      std::size_t k = 0;
+      for (std::size_t i = 0; i < ins; ++i) nodes.at(k++) = node_at(in.at(i));
+      for (std::size_t i = 0; i < zeros; ++i) nodes.at(k++) = node_at(zero.at(i));
+      for (std::size_t i = 0; i < outs; ++i) nodes.at(k++) = cut_between(in[0], out.at(i));
+      add(nodes);
+    } else if (ins == 2 && outs == 1) {
+      add_pyramid(node_at(in[0]), node_at(in[1]), cut_between(in[1], out[0]), cut_between(in[0], out[0]),
+                  node_at(zero[0]));
+    } else if (ins == 2) {
+      add_prism({node_at(in[0]), cut_between(in[0], out[0]), cut_between(in[0], out[1])},
+                {node_at(in[1]), cut_between(in[1], out[0]), cut_between(in[1], out[1])});
+    } else {
+      add_prism({node_at(in[0]), node_at(in[1]), node_at(in[2])},
+                {cut_between(in[0], out[0]), cut_between(in[1], out[0]), cut_between(in[2], out[0])});
+    }
+  }
+
+  /// The four tetrahedra about each long side that leaves a point: two of its middles' neighbours on a square
+  /// about the side. Each tetrahedron has two long sides, so the side of the corners of cubes counts.
+  void add_about(const Place& p) {
+    if ((p.x & 1) != 0) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      Place along(0), u(0), v(0);
+      along[axis] = 1;
+      u[(axis + 1) % 3] = 1;
+      v[(axis + 2) % 3] = 1;
+      const Place q = p + 2 * along, middle = p + along;
+      const std::array<Place, 4> ring{middle + u + v, middle - u + v, middle - u - v, middle + u - v};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::array<Place, 4> corners{p, q, ring.at(k), ring.at((k + 1) % 4)};
+        if (std::all_of(corners.begin(), corners.end(), [&](const Place& c) { return lattice_.has(c); }))
+          add_inside_of(corners);
+      }
+    }
+  }
+
+  struct Cut {
+    double share = 0.0;
+    std::uint32_t node = 0;
+  };
+
+  const Lattice& lattice_;
+  const voxel::Progress& progress_;
+  std::vector<std::uint8_t> inside_;
+  std::unordered_map<std::uint64_t, Cut> cuts_;
+  std::unordered_map<std::size_t, Place> ends_;
+  std::vector<Place> end_order_;
+  std::unordered_map<std::size_t, glm::dvec3> warped_;
+  std::unordered_map<std::size_t, std::uint32_t> lattice_nodes_;
+  Tetrahedra made_;
+};
+
+}  // namespace
+
+double cell_of_elements_mm(double volume_mm3, double elements) {
+  return std::cbrt(12.0 * volume_mm3 / elements);
+}
+
+Tetrahedra stuff(const brep::Triangles& surface, const StuffingOptions& options) {
+  if (!(options.cell_mm > 0.0) || !std::isfinite(options.cell_mm))
+    throw std::invalid_argument("isosurface stuffing: cells have an edge above 0 mm");
+  if (surface.faces.empty()) throw std::invalid_argument("isosurface stuffing: the surface has no triangles");
+  const Lattice lattice = lattice_about(surface, options.cell_mm);
+  Tetrahedra made = Stuffing(surface, lattice, options.progress).result();
+  made.boundary_nodes = boundary_nodes(made.tets);
+  made.method = "isosurface stuffing";
+  return made;
+}
+
+}  // namespace octotomy::convert

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/file/label_table.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/planner/cli/command_line.h"
+#include "voxel/scan/write_dicom_seg.h"
+#include "voxel/solid/combine.h"
+
+namespace octotomy::planner {
+namespace {
+
+using tests::CommandAnswer;
+using tests::Json;
+using tests::TestFolder;
+
+using Names = std::map<int, std::string>;
+
+std::filesystem::path put(const TestFolder& folder, const std::string& name, const std::string& text) {
+  std::ofstream(folder / name, std::ios::binary) << text;
+  return folder / name;
+}
+
+TEST(LabelTable, EachProgramsTableGivesTheSameNames) {
+  const TestFolder folder;
+  const Names expected{{2, "left kidney"}, {5, "liver"}};
+  for (const auto& [name, text] : {
+           std::pair<const char*, const char*>{"by_name.json",
+                                               R"({"liver": 5, "left kidney": 2, "background": 0})"},
+           {"by_label.json", R"({"2": "left kidney", "5": "liver"})"},
+           {"nested.json",
+            R"({"labels": {"background": 0, "left kidney": 2, "liver": 5}, "channels": {"0": "CT"}})"},
+           {"list.json", R"([{"label": 5, "name": "liver"}, {"label": 2, "name": "left kidney"}])"},
+           {"plain.csv", "5,liver\n2,left kidney\n"},
+           {"headed.csv", "Color,Name,LabelValue\nred,liver,5\nblue,\"left kidney\",2\n"},
+           {"headed.tsv", "index\tname\n5\tliver\n2\tleft kidney\n"},
+           {"snap.txt",
+            "# ITK-SNAP\n    0     0    0    0        0  0  0    \"Clear Label\"\n"
+            "    5   255    0    0        1  1  1    \"liver\"\n    2 0 9 0 1 1 1 \"left kidney\"\r\n"},
+       })
+    EXPECT_EQ(read_label_table(put(folder, name, text)).names, expected) << name;
+  EXPECT_EQ(
+      read_label_table(put(folder, "slicer.ctbl", "# Color table\n0 background 0 0 0 0\n5 liver 9 9 9 255\n"))
+          .names,
+      (Names{{5, "liver"}}));
+}
+
+TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
+  const TestFolder folder;
+  const auto refusal = [&](const std::string& name, const std::string& text) {
+    try {
+      read_label_table(put(folder, name, text));
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_NE(refusal("a.json", R"({"2": "liver", "5": "liver"})").find("the name of two labels, 2 and 5"),
+            std::string::npos);
+  EXPECT_NE(refusal("b.csv", "5,liver\n5,spleen\n").find("b.csv:2: label 5 has two names"),
+            std::string::npos);
+  EXPECT_NE(refusal("c.csv", "colour,organ\nred,liver\n").find("must name a column"), std::string::npos);
+  EXPECT_NE(refusal("d.txt", "5 255 0 0 1 1 1 \"liver\"\nliver 5\n").find("d.txt:2"), std::string::npos);
+  EXPECT_NE(refusal("e.json", R"({"liver": -1})").find("liver"), std::string::npos);
+  EXPECT_NE(refusal("f.csv", "5,liver\n40000,spleen\n").find("f.csv:2"), std::string::npos);
+}
+
+TEST(LabelTable, OfALabelMapIsItsOwnOrTheOneBesideItAndOfADicomSegmentationItsSegments) {
+  const TestFolder folder;
+  const auto slicer =
+      put(folder, "a.seg.nrrd",
+          "NRRD0004\ntype: short\nSegment0_ID:=S1\nSegment0_Name:=Mandible\nSegment0_LabelValue:=7\n"
+          "Segment1_Name:=Maxilla\nSegment1_LabelValue:=3\n\nSegment2_Name:=samples\n");
+  EXPECT_EQ(label_table_of(slicer).names, (Names{{3, "Maxilla"}, {7, "Mandible"}}));
+  EXPECT_TRUE(label_table_of(put(folder, "b.nii.gz", "")).names.empty());
+  put(folder, "b_labels.csv", "4,hyoid\n");
+  EXPECT_EQ(label_table_of(folder / "b.nii.gz").label("hyoid"), 4);
+  EXPECT_EQ(label_table_of(folder / "b.nii.gz").file, folder / "b_labels.csv");
+  voxel::Universe universe;
+  universe.depth = 3;
+  voxel::write_dicom_seg(voxel::combine(universe, voxel::Sphere{{3, 3, 3}, 2.0}), folder / "c.dcm",
+                         {.label = "Skull"});
+  EXPECT_EQ(label_table_of(folder / "c.dcm").names, (Names{{1, "Skull"}}));
+}
+
+class LabelNames : public tests::CommandLine {};
+
+TEST_F(LabelNames, ANamedLabelIsTheOctreeOfItsNumberUnshiftedAndAnUnknownNameIsRefused) {
+  ASSERT_EQ(
+      run("segment " + at("ball.nrrd") + " --window 0: --window=-2000:-1 -o " + at("map.nii.gz")).status, 0);
+  write("map.json", R"({"ball": 1, "air": 2})");
+  ASSERT_EQ(run("segment " + at("map.nii.gz") + " --named ball -o " + at("named.octree")).status, 0);
+  ASSERT_EQ(run("segment " + at("map.nii.gz") + " --label 1 -o " + at("number.octree")).status, 0);
+  const auto measured = [&](const std::string& file) {
+    return Json::parse(run("measure " + at(file) + " --json").out);
+  };
+  EXPECT_EQ(measured("named.octree")["volume_mm3"], measured("number.octree")["volume_mm3"]);
+  EXPECT_EQ(measured("named.octree")["centroid_mm"], measured("number.octree")["centroid_mm"]);
+  expect_refused(run("segment " + at("map.nii.gz") + " --named bal -o " + at("x.octree")),
+                 "did you mean 'ball'");
+  write("other.csv", "2,ball\n");
+  ASSERT_EQ(run("segment " + at("map.nii.gz") + " --named ball --names " + at("other.csv") + " -o " +
+                at("other.octree"))
+                .status,
+            0);
+  EXPECT_NE(measured("other.octree")["volume_mm3"], measured("number.octree")["volume_mm3"]);
+  write("named.plan.json",
+        R"({ "octotomy_plan": 1, "name": "n", "scans": { "seg": { "path": "map.nii.gz" } },
+      "steps": [ { "id": "ball", "do": "segment", "scan": "seg", "named": "ball" },
+                 { "id": "size", "do": "measure", "object": "ball" } ] })");
+  const CommandAnswer plan = run("run " + at("named.plan.json") + " -o " + at("report") + " --json");
+  EXPECT_EQ(plan.status, 0) << plan.errors;
+}
+
+}  // namespace
+}  // namespace octotomy::planner

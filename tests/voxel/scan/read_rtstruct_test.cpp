@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/read_rtstruct.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/voxel/scan/structure_set.h"
+#include "tests/voxel/scratch_folder.h"
+#include "voxel/space/error.h"
+
+namespace octotomy::voxel {
+namespace {
+
+using tests::rectangle;
+using tests::ScratchFolder;
+using tests::structure_set;
+
+std::filesystem::path written(const ScratchFolder& folder, const std::string& bytes) {
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << bytes;
+  return folder / "rs.dcm";
+}
+
+TEST(ReadRtstruct, NamesNumbersAndPointsAreTheFilesAndLinesAreCountedApart) {
+  const ScratchFolder folder;
+  const auto path = written(
+      folder,
+      structure_set({{7, "Mandible", {rectangle({-1.5, 2.25}, {3, 4}, -10), rectangle({0, 0}, {1, 1}, -8)}},
+                     {3, "Isocentre", {{{1, 2, 3}}}, "POINT"},
+                     {9, "Empty", {}}}));
+  ASSERT_TRUE(is_rtstruct(path));
+  const std::vector<Structure> all = read_rtstruct(path);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].name, "Mandible");
+  EXPECT_EQ(all[0].number, 7);
+  ASSERT_EQ(all[0].contours_mm.size(), 2u);
+  EXPECT_EQ(all[0].contours_mm[0], rectangle({-1.5, 2.25}, {3, 4}, -10));
+  EXPECT_EQ(all[1].others, 1u);
+  EXPECT_TRUE(all[1].contours_mm.empty());
+  EXPECT_TRUE(all[2].contours_mm.empty());
+}
+
+TEST(ReadRtstruct, AContourOverSixtyFourKilobytesIsReadWhole) {
+  const ScratchFolder folder;
+  std::vector<glm::dvec3> circle;
+  for (int i = 0; i < 5000; ++i) circle.emplace_back(50 * std::cos(i * 2e-4 * M_PI * 2), i % 7, 5);
+  const auto all = read_rtstruct(written(folder, structure_set({{1, "Body", {circle}}})));
+  EXPECT_EQ(all[0].contours_mm[0].size(), 5000u);
+}
+
+TEST(ReadRtstruct, ASpoiledFileIsRefusedByNameOrReadAndNeverMore) {
+  const ScratchFolder folder;
+  const std::string whole = structure_set({{1, "A", {rectangle({0, 0}, {9, 9}, 0)}}});
+  std::size_t refused = 0;
+  for (std::size_t at = 132; at < whole.size(); ++at)
+    for (const bool cut : {true, false}) {
+      std::string mutant = cut ? whole.substr(0, at) : whole;
+      if (!cut) mutant[at] = static_cast<char>(mutant[at] ^ 0x7f);
+      try {
+        read_rtstruct(written(folder, mutant));
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::Input) << error.what();
+        EXPECT_NE(std::string(error.what()).find("rs.dcm: "), std::string::npos) << error.what();
+        ++refused;
+      }
+    }
+  EXPECT_GT(refused, whole.size() / 2);
+  EXPECT_THROW(read_rtstruct(written(folder, structure_set({}))), Error);
+  EXPECT_THROW(read_rtstruct(written(folder, structure_set({{1, "A", {{{0, 0, 0}, {1, 1, 1}}}}}))), Error);
+}
+
+}  // namespace
+}  // namespace octotomy::voxel

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace octotomy::voxel {
+
+/// The names that a label map's own file has for its labels, in UTF-8: those of a DICOM segmentation's
+/// segments, and of 3D Slicer's (Segment0_Name with Segment0_LabelValue in the header of .seg.nrrd). Empty
+/// where the file has none or is of another kind. Throws Error, Input, with path and reason, where a DICOM
+/// segmentation is damaged. Cost: the header; of DICOM the file.
+std::map<int, std::string> label_names(const std::filesystem::path& path);
+
+}  // namespace octotomy::voxel
