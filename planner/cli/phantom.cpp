@@ -6,6 +6,7 @@
 #include "planner/table/number_format.h"
 #include "verify/head_phantom.h"
 #include "verify/implicit_solid.h"
+#include "verify/leg_phantom.h"
 #include "verify/sample_volume.h"
 #include "verify/solid_phantom.h"
 #include "voxel/scan/write_scene.h"
@@ -28,14 +29,35 @@ struct PhantomText {
   std::string digitise = "centre";
 };
 
+/// Writes a phantom's scan by the kind of path that is named. Throws std::runtime_error before the scan is
+/// made where there is no such kind.
+class ScanOut {
+ public:
+  ScanOut(const PhantomText& text, std::string series) : path_(text.out), series_(std::move(series)) {
+    const std::string name = path_.filename().string();
+    const bool image = name.ends_with(".nrrd") || name.ends_with(".nhdr") || name.ends_with(".nii") ||
+                       name.ends_with(".nii.gz") || name.ends_with(".mha") || name.ends_with(".mhd");
+    is_folder_ = text.dicom || !path_.has_extension();
+    if (!image && !is_folder_)
+      throw std::runtime_error(path_.string() +
+                               ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
+  }
+  void write(const voxel::Scene& scene, Timings& timings) const {
+    const Stopwatch watch(timings, "write");
+    if (!is_folder_) return voxel::write_scene(scene, path_);
+    voxel::DicomOptions dicom;
+    dicom.series_description = series_;
+    voxel::write_dicom_series(scene, path_, dicom);
+  }
+
+ private:
+  std::filesystem::path path_;
+  std::string series_;
+  bool is_folder_ = false;
+};
+
 int head(const Program& program, const PhantomText& text) {
-  const std::string name = text.out.filename().string();
-  const bool image = name.ends_with(".nrrd") || name.ends_with(".nhdr") || name.ends_with(".nii") ||
-                     name.ends_with(".nii.gz") || name.ends_with(".mha") || name.ends_with(".mhd");
-  const bool folder = text.dicom || !text.out.has_extension();
-  if (!image && !folder)
-    throw std::runtime_error(text.out.string() +
-                             ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
+  const ScanOut out(text, "Octotomy head phantom");
   Timings timings;
   voxel::Scene scene;
   {
@@ -50,16 +72,7 @@ int head(const Program& program, const PhantomText& text) {
       return verify::head_contains(verify::HeadPart::Bone, p_mm);
     });
   }
-  {
-    const Stopwatch watch(timings, "write");
-    if (folder) {
-      voxel::DicomOptions dicom;
-      dicom.series_description = "Octotomy head phantom";
-      voxel::write_dicom_series(scene, text.out, dicom);
-    } else {
-      voxel::write_scene(scene, text.out);
-    }
-  }
+  out.write(scene, timings);
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
   json["truth"] = {{"object", "bone"},
@@ -68,6 +81,34 @@ int head(const Program& program, const PhantomText& text) {
                    {"area_mm2", nullptr}};
   json["findings"] = {
       "truth.area_mm2: the bone's closed form is a Boolean of solids, which has no closed area"};
+  program.say(json, lines({{"phantom", text.out.string()}, {"samples", dims_text(scene.lattice.dims)}}));
+  return done;
+}
+
+int leg(const Program& program, const PhantomText& text) {
+  const ScanOut out(text, "Octotomy leg phantom");
+  Timings timings;
+  voxel::Scene scene;
+  {
+    const Stopwatch watch(timings, "phantom");
+    verify::LegOptions options;
+    options.voxel_mm = text.head.voxel_mm;
+    options.noise_sigma_hu = text.head.noise_sigma_hu;
+    options.seed = text.head.seed;
+    scene = verify::leg_phantom(options);
+  }
+  out.write(scene, timings);
+  const verify::LegFibula fibula;
+  Json json = scan_answer(scene, timings);
+  json["path"] = text.out.string();
+  json["truth"] = {{"object", "the fibula's shaft"},
+                   {"volume_mm3", fibula.section_mm2() * fibula.length_mm()},
+                   {"area_mm2", nullptr},
+                   {"section_mm2", fibula.section_mm2()},
+                   {"axis_from_mm", to_json(fibula.from_mm)},
+                   {"axis_to_mm", to_json(fibula.to_mm)},
+                   {"face_mm", to_json(fibula.from_mm + fibula.across_mm * fibula.face())}};
+  json["findings"] = {"truth.area_mm2: head and malleolus join the shaft, which has no closed area"};
   program.say(json, lines({{"phantom", text.out.string()}, {"samples", dims_text(scene.lattice.dims)}}));
   return done;
 }
@@ -126,26 +167,31 @@ int solid(const Program& program, const PhantomText& text) {
 }
 
 constexpr const char* head_group = "head";
+constexpr const char* scan_group = "head and leg";
 constexpr const char* solid_group = "solids";
 
 int phantom(const Program& program, const PhantomText& text) {
-  const std::string others = text.kind == "head" ? solid_group : head_group;
-  for (const CLI::Option* option : text.verb->get_options())
-    if (option->get_group() == others && option->count() > 0)
+  const bool is_scan = text.kind == "head" || text.kind == "leg";
+  for (const CLI::Option* option : text.verb->get_options()) {
+    const std::string& group = option->get_group();
+    const bool is_idle = is_scan ? group == solid_group || (group == head_group && text.kind != "head")
+                                 : group == head_group || group == scan_group;
+    if (is_idle && option->count() > 0)
       throw CLI::ValidationError(option->get_name(), "means nothing for " + text.kind + ": leave it out");
+  }
   need_folder_of(text.out);
-  return text.kind == "head" ? head(program, text) : solid(program, text);
+  return text.kind == "head" ? head(program, text) : is_scan ? leg(program, text) : solid(program, text);
 }
 
 std::string kinds_said() {
-  std::string said = "head: a CT of a head; or an octree of a solid:";
+  std::string said = "head: a CT of a head; leg: a CT of a lower leg; or an octree of a solid:";
   for (const verify::SolidPhantomKind& kind : verify::solid_phantom_kinds())
     said.append("\n").append(kind.name).append(": ").append(kind.what);
   return said;
 }
 
 std::vector<std::string> kind_names() {
-  std::vector<std::string> names{"head"};
+  std::vector<std::string> names{"head", "leg"};
   for (const verify::SolidPhantomKind& kind : verify::solid_phantom_kinds()) names.emplace_back(kind.name);
   return names;
 }
@@ -159,16 +205,16 @@ void add_head_options(CLI::App& verb, PhantomText& text) {
       ->group(head_group);
   verb.add_option("--noise", text.head.noise_sigma_hu, "Standard deviation of Gaussian noise, HU")
       ->check(between(0.0, 1000.0))
-      ->group(head_group);
+      ->group(scan_group);
   verb.add_option("--blur", text.head.point_spread_sigma_mm, "Standard deviation of the point spread, mm")
       ->check(between(0.0, 10.0))
       ->group(head_group);
-  verb.add_option("--seed", text.head.seed, "Seed of the noise")->group(head_group);
+  verb.add_option("--seed", text.head.seed, "Seed of the noise")->group(scan_group);
   verb.add_option("--truth-step", text.truth_step_mm, "Step at which the true volume is sampled, mm")
       ->check(between(0.1, 5.0))
       ->capture_default_str()
       ->group(head_group);
-  verb.add_flag("--dicom", text.dicom, "Write a DICOM series into the folder")->group(head_group);
+  verb.add_flag("--dicom", text.dicom, "Write a DICOM series into the folder")->group(scan_group);
 }
 
 void add_solid_options(CLI::App& verb, PhantomText& text) {
@@ -202,7 +248,7 @@ void add_phantom(Program& program) {
   text->verb = &verb;
   verb.add_option("kind", text->kind, kinds_said())->required()->check(CLI::IsMember(kind_names()));
   verb.add_option("-o,--out", text->out,
-                  "A .octree file; of head a .nrrd, .nii.gz or .mha file, or a folder for DICOM")
+                  "A .octree file; of head and leg a .nrrd, .nii.gz or .mha file, or a folder for DICOM")
       ->required();
   verb.add_option("--voxel", text->head.voxel_mm, "Edge of a voxel, mm")
       ->check(between(0.1, 20.0))

@@ -6,6 +6,7 @@
 #include "planner/plan/difference.h"
 #include "planner/plan/history.h"
 #include "planner/plan/merge.h"
+#include "planner/plan/rebase.h"
 #include "planner/plan/sha256.h"
 #include "planner/plan/signature.h"
 
@@ -34,7 +35,10 @@ int diff(const Program& program, const Paths& paths) {
 
 int merge_plans(const Program& program, const Paths& paths) {
   need_folder_of(paths.out);
-  const Merged merged = merge(read_plan(paths.base), read_plan(paths.a), read_plan(paths.b));
+  const auto read = [folder = fs::absolute(paths.out).parent_path()](const fs::path& path) {
+    return rebased(read_plan(path), folder);
+  };
+  const Merged merged = merge(read(paths.base), read(paths.a), read(paths.b));
   Json json = answer({});
   json["path"] = merged.conflicts.empty() ? Json(paths.out.string()) : Json(nullptr);
   json["conflicts"] = Json::array();
@@ -54,7 +58,7 @@ int merge_plans(const Program& program, const Paths& paths) {
     return bad_input;
   }
   write_whole(paths.out, merged.text);
-  const PlanDifference from_base = difference(read_plan(paths.base), read_plan(paths.out));
+  const PlanDifference from_base = difference(read(paths.base), read_plan(paths.out));
   json["changes"] = to_json(from_base);
   program.say(json, "written: " + paths.out.string() + "\n" + text_of(from_base));
   return done;
@@ -195,7 +199,9 @@ void add_plan_document(Program& program) {
   add_plan(merged, "base", paths->base, "The .plan.json that both come from");
   add_plan(merged, "a", paths->a, "A .plan.json that was made of it");
   add_plan(merged, "b", paths->b, "Another .plan.json that was made of it");
-  merged.add_option("-o,--out", paths->out, "The merged .plan.json; relative paths in it stay as they are")
+  merged
+      .add_option("-o,--out", paths->out,
+                  "The merged .plan.json; relative paths in it name the same files from its folder")
       ->required();
   add_history(program);
   add_sign(program);

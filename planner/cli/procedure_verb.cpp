@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 
 struct ProcedureText {
   std::string name;
-  fs::path scan, landmarks, out;
+  fs::path scan, donor, out;
+  std::vector<fs::path> landmarks;
   std::vector<std::string> values;
   double voxel_mm = 1.0;
 };
@@ -44,6 +45,10 @@ int explain(const Program& program, const ProcedureText& text) {
     json["landmarks"].push_back({{"name", landmark.name}, {"says", landmark.says}});
     rows.emplace_back(landmark.name, landmark.says);
   }
+  for (const ProcedureScan& scan : procedure.scans) {
+    json["scans"].push_back({{"name", scan.name}, {"says", scan.says}});
+    rows.emplace_back("--" + scan.name, scan.says);
+  }
   for (const ProcedureValue& value : procedure.values) {
     json["values"].push_back({{"name", value.name},
                               {"says", value.says},
@@ -62,8 +67,15 @@ ProcedureInput input_of(const ProcedureText& text) {
         "to plan it, give --scan, --landmarks and -o; without all three it is explained");
   need_folder_of(text.out);
   ProcedureInput input;
-  input.scan = {{"path", fs::absolute(text.scan).lexically_normal().string()}};
-  input.landmarks = read_landmarks(text.landmarks);
+  const auto entry = [](const fs::path& path) {
+    return Json{{"path", fs::absolute(path).lexically_normal().string()}};
+  };
+  input.scan = entry(text.scan);
+  if (!text.donor.empty()) input.further_scans["donor"] = entry(text.donor);
+  for (const fs::path& path : text.landmarks) {
+    const std::vector<brep::Landmark> read = read_landmarks(path);
+    input.landmarks.insert(input.landmarks.end(), read.begin(), read.end());
+  }
   input.voxel_mm = text.voxel_mm;
   input.folder = fs::absolute(text.out).parent_path();
   for (const std::string& value : text.values) {
@@ -98,11 +110,18 @@ void add_procedure(Program& program) {
       "Plans an operation by its name, from landmarks and a few values; alone it lists what there is",
       "octotomy procedure le_fort_i\n"
       "  octotomy procedure le_fort_i --scan head.nrrd --landmarks marks.mrk.json --set forward_mm=6 "
-      "--set up_mm=2 -o my.plan.json",
+      "--set up_mm=2 -o my.plan.json\n"
+      "  octotomy procedure fibula_flap --scan head.nrrd --landmarks jaw.json --donor leg.nrrd "
+      "--landmarks leg.json -o flap.plan.json",
       [&program, text] { return procedure(program, *text); });
   verb.add_option("name", text->name, "The procedure, or a .json file of one");
   verb.add_option("--scan", text->scan, "The scan")->check(scan_path());
-  verb.add_option("--landmarks", text->landmarks, "Named points: JSON, or 3D Slicer's .mrk.json")
+  verb.add_option("--donor", text->donor, "The scan of a donor bone, of a flap")->check(scan_path());
+  verb.add_option("--landmarks", text->landmarks,
+                  "Named points: JSON, or 3D Slicer's .mrk.json; repeated, as one file a scan")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
   verb.add_option("--set", text->values, "NAME=NUMBER, repeated: a value of the procedure")
       ->expected(1)

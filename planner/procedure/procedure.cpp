@@ -52,6 +52,24 @@ void need_landmarks(const Procedure& procedure, const std::vector<brep::Landmark
     throw std::runtime_error("procedure " + procedure.name + " lacks landmarks: " + missing + ": place them");
 }
 
+/// The plan's scans.
+Json scans_of(const Procedure& procedure, const ProcedureInput& input) {
+  Json scans{{"ct", input.scan}};
+  std::vector<std::string> known;
+  for (const ProcedureScan& scan : procedure.scans) {
+    known.push_back(scan.name);
+    const auto given = input.further_scans.find(scan.name);
+    if (given == input.further_scans.end())
+      throw std::runtime_error("procedure " + procedure.name + " lacks a scan: '" + scan.name + "', " +
+                               scan.says + ": give it by --" + scan.name);
+    scans[scan.name] = given->second;
+  }
+  for (const auto& [name, unused] : input.further_scans)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw std::runtime_error("procedure " + procedure.name + " takes no scan '" + name + "': leave it out");
+  return scans;
+}
+
 Values values_of(const Procedure& procedure, const ProcedureInput& input) {
   Values values;
   std::vector<std::string> known;
@@ -106,7 +124,7 @@ Procedure parse_procedure(const std::string& text) {
     throw std::runtime_error(std::string("is no JSON: ") + error.what());
   }
   const Plain plain = root;
-  check_keys(plain, "procedure", {"procedure", "says", "landmarks", "values", "steps"});
+  check_keys(plain, "procedure", {"procedure", "says", "landmarks", "scans", "values", "steps"});
   Procedure procedure;
   procedure.name = word_of(need(plain, "procedure", "procedure"), "procedure");
   procedure.says = word_of(need(plain, "says", "procedure"), "says");
@@ -116,6 +134,13 @@ Procedure parse_procedure(const std::string& text) {
     procedure.landmarks.push_back(
         {word_of(need(entry, "name", where), where), word_of(need(entry, "says", where), where)});
   }
+  if (plain.contains("scans"))
+    for (const Plain& entry : plain.at("scans")) {
+      const std::string where = "scans[" + std::to_string(procedure.scans.size()) + "]";
+      check_keys(entry, where, {"name", "says"});
+      procedure.scans.push_back(
+          {word_of(need(entry, "name", where), where), word_of(need(entry, "says", where), where)});
+    }
   for (const Plain& entry : need(plain, "values", "procedure")) {
     const std::string where = "values[" + std::to_string(procedure.values.size()) + "]";
     check_keys(entry, where, {"name", "says", "preset", "least", "most"});
@@ -160,7 +185,7 @@ Json plan_of(const Procedure& procedure, const ProcedureInput& input) {
   Values names = values_of(procedure, input);
   Json plan{{"octotomy_plan", 1},
             {"name", procedure.says.substr(0, procedure.says.find('.'))},
-            {"scans", {{"ct", input.scan}}},
+            {"scans", scans_of(procedure, input)},
             {"universe", {{"voxel_mm", input.voxel_mm}}},
             {"steps", first_steps(input.landmarks)}};
   // Read once for the head's directions, and to refuse landmarks that cannot be.

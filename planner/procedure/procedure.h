@@ -22,12 +22,18 @@ struct ProcedureLandmark {
   std::string name;
   std::string says;  ///< its definition
 };
+/// A scan beside the patient's, as that of a donor bone.
+struct ProcedureScan {
+  std::string name;
+  std::string says;
+};
 
 /// An operation by its landmarks and typed values; its steps hold formulas.
 struct Procedure {
   std::string name;
   std::string says;
   std::vector<ProcedureLandmark> landmarks;
+  std::vector<ProcedureScan> scans;  ///< beside the patient's, which is "ct"
   std::vector<ProcedureValue> values;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
 };
@@ -44,7 +50,8 @@ Procedure read_procedure(const std::string& name_or_path);
 std::vector<std::string> procedures();
 
 struct ProcedureInput {
-  nlohmann::ordered_json scan;  ///< as a plan's entry: {"path": ...}
+  nlohmann::ordered_json scan;                                  ///< as a plan's entry: {"path": ...}
+  std::map<std::string, nlohmann::ordered_json> further_scans;  ///< by the procedure's names
   std::vector<brep::Landmark> landmarks;
   std::map<std::string, double> values;  ///< those that are not the preset
   double voxel_mm = 1.0;
@@ -53,9 +60,9 @@ struct ProcedureInput {
 
 /// The plan of a procedure on one head, as JSON that stands alone. Where the landmarks hold both porions and
 /// an orbitale, the head is held by the Frankfort plane, and along nasion and basion where they are there.
-/// Throws std::runtime_error where a landmark is missing, with its definition; a value is unknown or out of
-/// its range; a formula or the plan that comes of it is refused, as where landmarks of left and right are
-/// interchanged.
+/// Throws std::runtime_error where a landmark or scan is missing, with its definition; a value is unknown or
+/// out of its range; a formula or the plan that comes of it is refused, as where landmarks of left and right
+/// are interchanged.
 nlohmann::ordered_json plan_of(const Procedure& procedure, const ProcedureInput& input);
 
 }  // namespace octotomy::planner

@@ -9,6 +9,7 @@
 #include "planner/cephalometry/cephalogram.h"
 #include "planner/cephalometry/measured.h"
 #include "planner/measure/result_json.h"
+#include "planner/report/credibility.h"
 #include "planner/report/pdf.h"
 #include "planner/report/report_page.h"
 #include "planner/report/result_folder.h"
@@ -188,7 +189,8 @@ Json result_json(const Result& result) {
 }
 
 std::vector<std::filesystem::path> result_names(const Plan& plan) {
-  std::vector<std::filesystem::path> names{"report.html", "report.pdf", "result.json"};
+  std::vector<std::filesystem::path> names{"report.html", "report.pdf", "result.json", "credibility.html",
+                                           "credibility.json"};
   for (const Step& step : plan.steps)
     if (std::filesystem::path path = path_written(step.action); !path.empty())
       names.push_back(std::move(path));
@@ -222,6 +224,9 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     std::filesystem::create_directories((output.path() / name).parent_path());
     write_text(output.path() / name, text);
   }
+  const Json credibility = credibility_json(json);
+  write_text(output.path() / "credibility.json", json_text(credibility, 2) + "\n");
+  write_text(output.path() / "credibility.html", credibility_html(credibility));
   write_text(output.path() / "result.json", json_text(json, 2) + "\n");
   if (again) output.copy_rest();
   output.publish();

@@ -74,8 +74,8 @@ nlohmann::ordered_json result_json(const Result& result);
 /// Paths in the result's folder that need_result_folder() is asked about before a plan is evaluated.
 std::vector<std::filesystem::path> result_names(const Plan& plan);
 
-/// Writes a result's folder whole or not at all: its exports, views/*.png, tables/*.csv, report.html
-/// and result.json.
+/// Writes a result's folder whole or not at all: its exports, views/*.png, tables/*.csv, report.html,
+/// credibility.html and .json, and result.json.
 /// Fills `result.exported` and `result.measurements`; returns what result.json holds. A result that was
 /// written to the folder before keeps the exports that lie there. Throws as ResultFolder
 /// and the writers do, and Stopped where the stop token is set while an export is filled or written.

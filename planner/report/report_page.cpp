@@ -13,6 +13,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/operation/mask.h"
 #include "planner/picture/colour.h"
+#include "planner/report/flap_tables.h"
 #include "planner/report/html.h"
 #include "planner/table/number_format.h"
 #include "voxel/view/annotation.h"
@@ -247,7 +248,8 @@ std::string lengths(const Json& measurements) {
 
 std::string measurements(const Result& result) {
   if (result.measurements.empty()) return "";
-  return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements);
+  return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements) +
+         flap_tables(result.measurements);
 }
 
 /// A point's displacement as cells, signed along the head's directions.
@@ -503,7 +505,8 @@ std::string footer(const Result& result) {
   for (const auto& [stage, milliseconds] : result.evaluation.timings)
     times += (times.empty() ? "" : " \u00b7 ") + stage + " " + grouped(milliseconds, 0) + " ms";
   return element("footer", "Octotomy " OCTOTOMY_VERSION
-                           ". A planning and research tool, not a medical device. Times: " +
+                           ". A planning and research tool, not a medical device. Which checks support which "
+                           "number: <a href=\"credibility.html\">credibility</a>. Times: " +
                                times + ".");
 }
 

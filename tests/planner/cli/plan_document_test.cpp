@@ -53,6 +53,20 @@ TEST_F(PlanDocument, MergeWritesWhatAgreesAndNothingWhereItDoesNot) {
   EXPECT_EQ(tests::Json::parse(told.out).at("conflicts")[0].at("field"), "low");
 }
 
+TEST_F(PlanDocument, PlansOfOtherFoldersMergeAndFindTheirScan) {
+  std::filesystem::create_directories(folder_ / "mine");
+  write("base.plan.json", plan("0"));
+  auto mine = tests::Json::parse(plan("10"));
+  mine["scans"]["ct"]["path"] = "../ball.nrrd";
+  write("mine/a.plan.json", mine.dump());
+  ASSERT_EQ(run("plan merge base.plan.json mine/a.plan.json base.plan.json -o mine/merged.plan.json").status,
+            0);
+  const auto merged = tests::Json::parse(tests::bytes_of(folder_ / "mine/merged.plan.json"));
+  EXPECT_EQ(merged.at("scans").at("ct").at("path"), "../ball.nrrd");
+  EXPECT_EQ(merged.at("steps")[0].at("low"), 10);
+  EXPECT_EQ(run("run mine/merged.plan.json -o report --no-certificates").status, 0);
+}
+
 TEST_F(PlanDocument, ASignatureHoldsUntilThePlanOrItsScanChanges) {
   write("my.plan.json", plan("0"));
   EXPECT_NE(run("plan sign my.plan.json").out.find("nobody"), std::string::npos);

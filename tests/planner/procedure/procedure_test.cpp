@@ -47,7 +47,25 @@ std::vector<brep::Landmark> head_landmarks() {
           {"ramus_border_left", {50, -24, -78}},
           {"ramus_border_right", {-50, -24, -78}},
           {"condyle_left", {50, -6, -13}},
-          {"coronoid_left", {47, -37, -22}}};
+          {"coronoid_left", {47, -37, -22}},
+          {"coronoid_front_left", {46, -43, -55}},
+          {"frontonasal", {0, -84, 14}},
+          {"lateral_rim_left", {51, -66, 13}},
+          {"lateral_rim_right", {-51, -66, 13}},
+          {"zygoma_left", {60, -42, -13}},
+          {"zygoma_right", {-60, -42, -13}},
+          {"cheek_left", {47, -64, -12}},
+          {"cheek_right", {-47, -64, -12}},
+          {"brow", {0, -84, 27}},
+          {"flap_1", {-38, -55, -80}},
+          {"flap_2", {-24, -76, -86}},
+          {"flap_3", {24, -76, -86}},
+          {"flap_4", {38, -55, -80}},
+          {"flap_before", {-44.5, -38, -74}},
+          {"flap_after", {44.5, -38, -74}},
+          {"donor_from", {30, 12, 105}},
+          {"donor_to", {33, 16, -105}},
+          {"donor_face", {45, 12, 105}}};
 }
 
 ProcedureInput head_input() {
@@ -73,7 +91,9 @@ TEST(Procedure, EachOfTheProgramMakesAPlanThatReadsAndTakesFewValues) {
     const Procedure procedure = read_procedure(name);
     EXPECT_EQ(procedure.name, name);
     EXPECT_LE(procedure.values.size(), most_values) << name;
-    const Json plan = plan_of(procedure, head_input());
+    ProcedureInput input = head_input();
+    for (const ProcedureScan& scan : procedure.scans) input.further_scans[scan.name] = {{"path", "leg.nrrd"}};
+    const Json plan = plan_of(procedure, input);
     const Plan read = parse_plan(plan.dump(), ".");
     EXPECT_EQ(plan.dump().find("\"="), std::string::npos) << name << " keeps a formula";
     EXPECT_EQ(read.landmarks.size(), head_landmarks().size());
@@ -154,7 +174,25 @@ TEST(Procedure, OnTheHeadPhantomEachTakesItsOwnPieceAndLeavesTheOthers) {
              45,
              110,
              {"incisor", "molar_left", "piriform_left", "piriform_right"},
-             {"menton", "lower_incisor"}}}) {
+             {"menton", "lower_incisor"}},
+        Case{"le_fort_iii",
+             "midface",
+             60,
+             140,
+             {"incisor", "molar_left", "piriform_left", "cheek_left", "cheek_right", "orbital_rim_left"},
+             {"menton", "lower_incisor", "coronoid_left", "coronoid_front_left", "brow", "condyle_left"}},
+        Case{"kufner",
+             "midface",
+             50,
+             120,
+             {"incisor", "molar_left", "cheek_left", "cheek_right"},
+             {"menton", "lower_incisor", "coronoid_left", "coronoid_front_left", "frontonasal", "brow"}},
+        Case{"zygoma_left",
+             "zygoma",
+             6,
+             25,
+             {"cheek_left"},
+             {"cheek_right", "incisor", "molar_left", "coronoid_left", "brow", "piriform_left"}}}) {
     const Json plan = plan_of(read_procedure(each.name), input);
     const Evaluation evaluation = evaluate(parse_plan(plan.dump(), folder.path()), quick);
     const double cm3 = evaluation.object(each.piece).voxel.measures.volume_mm3 / 1000.0;
@@ -169,6 +207,33 @@ TEST(Procedure, OnTheHeadPhantomEachTakesItsOwnPieceAndLeavesTheOthers) {
     EXPECT_NEAR(evaluation.object(moved).voxel.measures.centroid_mm->y,
                 evaluation.object(each.piece).voxel.measures.centroid_mm->y - 6.0, 0.3);
   }
+}
+
+TEST(Procedure, ZygomasOfBothSidesAreMirrorImages) {
+  const auto corners = [](const char* name, double side) {
+    std::vector<glm::dvec2> points;
+    const Json plan = plan_of(read_procedure(name), head_input());
+    for (const Json& step : plan["steps"])
+      if (step["id"] == "zygoma_region_and_kerf")
+        for (const Json& point : step["regions"][0]["polygons_mm"][0])
+          points.emplace_back(side * point[0].get<double>(), point[1].get<double>());
+    return points;
+  };
+  const auto left = corners("zygoma_left", 1.0), right = corners("zygoma_right", -1.0);
+  ASSERT_EQ(left.size(), 6u);
+  EXPECT_EQ(left, right);
+}
+
+TEST(Procedure, AFlapTakesItsDonorsScanAndRefusesToDoWithout) {
+  EXPECT_NE(refusal("fibula_flap", head_input())
+                .find("lacks a scan: 'donor', the donor's scan: give it by --donor"),
+            std::string::npos);
+  ProcedureInput input = head_input();
+  input.further_scans["donor"] = {{"path", "leg.nrrd"}};
+  EXPECT_EQ(refusal("fibula_flap", input), "");
+  EXPECT_NE(refusal("le_fort_i", input).find("takes no scan 'donor'"), std::string::npos);
+  input.values = {{"start_mm", 150}};
+  EXPECT_NE(refusal("fibula_flap", input).find("mm more"), std::string::npos);
 }
 
 TEST(Procedure, AHeadThatLiesAskewGetsTheSameRegionsInItsOwnDirections) {

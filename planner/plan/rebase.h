@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "planner/plan/plan.h"
+
+namespace octotomy::planner {
+
+/// The same plan as it reads in another folder: relative paths of scans, and of the files that steps read,
+/// name the same files from there. Paths of files that the plan writes stay, as they lie in the result's
+/// folder; so do absolute ones. A plan of the same folder keeps its text to the byte. Throws
+/// std::runtime_error where the two folders share no root.
+Plan rebased(const Plan& plan, const std::filesystem::path& folder);
+
+}  // namespace octotomy::planner
