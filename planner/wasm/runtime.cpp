@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// There are no exceptions: what would be thrown ends the instance. Its message goes to standard error, as
-// WASI has it; a page then makes a new instance. Every type that the voxel kernel throws is a std::exception.
+// What the kernel asks of the language's runtime, where that knows neither exceptions nor threads.
+//
+// What would be thrown ends the instance; its message goes to WASI's standard error. A page then makes a new
+// instance. Every type that the voxel kernel throws is a std::exception.
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -19,6 +21,11 @@ void __cxa_free_exception(void* memory) noexcept {  // NOLINT(bugprone-reserved-
   std::fprintf(stderr, "%s\n", static_cast<std::exception*>(thrown)->what());
   std::fflush(stderr);
   std::_Exit(2);
+}
+
+/// The only thread does not end.
+int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept {  // NOLINT(bugprone-reserved-identifier)
+  return 0;
 }
 
 }  // extern "C"
