@@ -61,17 +61,24 @@ Json agreement_json(const Agreement& agreement) {
           {"limits_of_agreement", {agreement.low, agreement.high}}};
 }
 
+/// "mm³" for a table's "mm3".
+std::string shown_unit(const std::string& unit) {
+  if (unit == "mm3") return "mm³";
+  return unit == "mm2" ? "mm²" : unit;
+}
+
 /// The numbers, plots and outliers of a column.
 GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& subjects,
                        const std::optional<CohortTable>& other) {
-  GroupColumn made{column.name(), column.unit, {}, {}, {}};
+  const std::string unit = shown_unit(column.unit);
+  GroupColumn made{column.name(), unit, {}, {}, {}};
   std::vector<double> numbers;
   for (const CohortValue& value : column.values) numbers.push_back(value.value);
   const Spread spread = spread_of(numbers);
   for (const CohortValue& value : column.values)
     if (value.value < spread.lower_fence || value.value > spread.upper_fence)
       made.outliers.push_back({value.subject, value.value});
-  made.plots.emplace_back("distribution", distribution_svg(column.name(), column.unit, numbers));
+  made.plots.emplace_back("distribution", distribution_svg(column.name(), unit, numbers));
   Json outliers = Json::array();
   for (const auto& [subject, value] : made.outliers)
     outliers.push_back({{"subject", subjects[subject].label}, {"value", value}});
@@ -90,7 +97,7 @@ GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& s
     if (answers.size() < 2) return;
     const Agreement agreement = agreement_of(answers);
     made.summary[of] = agreement_json(agreement);
-    made.plots.emplace_back(of, agreement_svg(column.name() + ": " + title, column.unit, agreement));
+    made.plots.emplace_back(of, agreement_svg(column.name() + ": " + title, unit, agreement));
   };
   add("kernels", "mesh less voxel kernel", of_kernels(column));
   if (other) add("observers", "other less this observer", of_observers(column, *other));

@@ -20,6 +20,11 @@ std::string number(double value) {
   return text.data();
 }
 
+/// For people: a true minus sign.
+std::string tick_label(double value) {
+  return value < 0.0 ? "−" + number(-value) : number(value);
+}
+
 /// One axis: numbers to pixels.
 struct Axis {
   double low, high, from_px, to_px;
@@ -67,11 +72,11 @@ std::string framed(const std::string& title, const Axis& x, const Axis& y, const
   const std::string faint = "stroke='currentColor' stroke-opacity='0.25'";
   for (const double tick : x.ticks()) {
     svg += line(x.at(tick), height - bottom, x.at(tick), height - bottom + 4.0, "stroke='currentColor'");
-    svg += text(x.at(tick), height - bottom + 16.0, "middle", number(tick));
+    svg += text(x.at(tick), height - bottom + 16.0, "middle", tick_label(tick));
   }
   for (const double tick : y.ticks()) {
     svg += line(left, y.at(tick), width - right, y.at(tick), faint);
-    svg += text(left - 5.0, y.at(tick) + 4.0, "end", number(tick));
+    svg += text(left - 5.0, y.at(tick) + 4.0, "end", tick_label(tick));
   }
   svg += inside + line(left, height - bottom, width - right, height - bottom, "stroke='currentColor'");
   svg += text((left + width - right) / 2.0, height - 10.0, "middle", x_name);

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
-#include <oneapi/tbb/parallel_for.h>
+#include <tbb/parallel_for.h>
 
 #include "voxel/tree/octree_node.h"
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """A cohort through a real Slurm of one node on this machine's loopback, set up for the test and taken down again."""
 import os
-import random
 import shutil
 import socket
 import subprocess
@@ -11,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import octotomy
-from cohort_test import PROGRAM, SUBJECTS, ball
+from cohort_test import PROGRAM, SUBJECTS, assert_complete, ball, kill_at_random
 
 SBIN = [shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin") for name in ("munged", "slurmctld", "slurmd")]
 
@@ -53,7 +52,7 @@ def free_ports():
     return ports
 
 
-@unittest.skipUnless(all(SBIN) and os.geteuid() == 0, "needs root, munge, slurmctld, slurmd and slurm-client")
+@unittest.skipUnless(all(SBIN) and os.geteuid() == 0, "needs root and Slurm (apt-get install munge slurm-client slurmctld slurmd)")
 class Slurm(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="slurm"))
@@ -104,7 +103,7 @@ class Slurm(unittest.TestCase):
     def queue(self):
         return self.slurm("squeue", "-h", "-o", "%i %T").split()
 
-    def test_killed_workers_and_two_submissions_leave_the_serial_table(self):
+    def test_two_submissions_leave_the_serial_table_though_workers_are_killed(self):
         place = self.folder / "cohort"
         plan = octotomy.Plan({"ct": "any.nrrd"}, name="ball")
         plan.window("ball", scan="ct", low=0)
@@ -120,21 +119,14 @@ class Slurm(unittest.TestCase):
         submit = [*verb, "--engine", "slurm", "--slurm=--mem=0"]
         for _ in range(2):
             subprocess.run(submit, env=self.environment, check=True, capture_output=True)
-        random.seed(3)
-        kills = 0
-        for _ in range(40):
-            time.sleep(random.uniform(0.02, 0.3))
-            if not self.queue():
-                break
-            kills += subprocess.run(["pkill", "-9", "-o", "-f", f"{place}/out.*participant-label"], check=False).returncode == 0
-        self.wait_for(lambda: not self.queue(), "jobs do not end")
+        kills = kill_at_random(place / "out", self.queue, 3)
         self.assertGreater(kills, 0)
         subprocess.run(submit, env=self.environment, check=True, capture_output=True)  # completes what was killed
         self.wait_for(lambda: not self.queue(), "jobs do not end")
         subprocess.run([*map(str, verb[:3]), place / "serial", *verb[4:]], check=True, capture_output=True)
         subprocess.run([PROGRAM, "cohort", table, place / "serial", "group"], check=True, capture_output=True)
-        self.assertEqual((place / "out/group/measurements.csv").read_bytes(),
-                         (place / "serial/group/measurements.csv").read_bytes())
+        assert_complete(self, place / "out", place / "serial")
+        print(f"Slurm: {SUBJECTS} subjects, {kills} workers killed")
 
 
 if __name__ == "__main__":

@@ -2,11 +2,13 @@
 """Plans in Python are plans of the program."""
 import json
 import os
+import runpy
 import signal
 import subprocess
 import tempfile
 import threading
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +93,25 @@ class Plans(unittest.TestCase):
             told = {each["id"]: each["voxel"]["volume_mm3"] for each in json.loads(out.stdout)["objects"]}
             self.assertGreater(told["maxilla"], 1000)
             self.assertEqual({made.id: made.octree.measures()["volume_mm3"] for made in result.values()}, told)
+
+    def test_fifteen_lines_make_the_objects_of_the_real_heads_plan_bit_for_bit(self):
+        if not HEADS[0].exists():
+            self.skipTest(f"{HEADS[0].name} is not there")
+        script = Path(__file__).with_name("unc_head.py")
+        self.assertLessEqual(len(script.read_text().splitlines()) - 2, 15)  # without licence and docstring
+        with unittest.mock.patch("sys.argv", [str(script), str(HEADS[0]), str(self.folder / "lines")]):
+            own = runpy.run_path(str(script))["made"]
+        document = octotomy.Plan.read(script.parents[1] / "data/unc_cthead.plan.json")
+        document.document["steps"] = [step for step in document.document["steps"] if step["id"] not in ("deck", "grid")]
+        document.document["scans"]["ct"]["path"] = str(HEADS[0])
+        told = document.run(certify=False)
+        self.assertEqual(list(own), list(told))
+        for made in told.values():
+            self.assertEqual(own[made.id].octree, made.octree, made.id)
+            np.testing.assert_array_equal(own[made.id].solid.vertices_mm, made.solid.vertices_mm)
+            np.testing.assert_array_equal(own[made.id].solid.triangles, made.solid.triangles)
+        told.write(self.folder / "told")
+        self.assertEqual(*((self.folder / name / "maxilla.stl").read_bytes() for name in ("lines", "told")))
 
     def test_text_goes_there_and_back(self):
         plan = le_fort_i("head.nrrd", None)

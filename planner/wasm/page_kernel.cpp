@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the page calls: one scan at a time, a window of it as an octree, its measures and pictures. Pointers
+// stay valid until the next call of the same function. A refusal ends the instance (runtime.cpp).
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "voxel/measure/measure.h"
+#include "voxel/solid/combine.h"
+#include "voxel/space/lattice.h"
+#include "voxel/space/scene.h"
+#include "voxel/tree/build.h"
+#include "voxel/tree/grey_octree.h"
+#include "voxel/view/render.h"
+
+namespace {
+
+using namespace octotomy::voxel;
+
+struct Desk {
+  Scene scene;
+  std::optional<GreyOctree> grey;
+  Octree object = Octree::empty({});
+  double low = 0.0;
+  std::array<double, 8> numbers{};
+  std::vector<std::uint8_t> rgba;
+};
+
+Desk& desk() {
+  static Desk only;
+  return only;
+}
+
+}  // namespace
+
+extern "C" {
+
+/// Room for the samples of a scan, x fastest; the scan before it is gone.
+[[clang::export_name("new_scan")]] std::int16_t* new_scan(int x, int y, int z) {
+  desk() = Desk();
+  desk().scene.lattice.dims = {x, y, z};
+  desk().scene.samples = Int16Samples(desk().scene.lattice.sample_count());
+  return std::get<Int16Samples>(desk().scene.samples).data();
+}
+
+/// Room for lps_from_voxel, 16 numbers by columns.
+[[clang::export_name("lps_from_voxel")]] double* lps_from_voxel() {
+  return &desk().scene.lattice.lps_from_voxel[0][0];
+}
+
+/// Takes the samples and the matrix that were written. Voxels keep the scan's lattice.
+[[clang::export_name("open_scan")]] void open_scan() {
+  Scene& scene = desk().scene;
+  check(scene);
+  Universe universe;
+  universe.lps_from_voxel = scene.lattice.lps_from_voxel;
+  const int longest = std::max({scene.lattice.dims.x, scene.lattice.dims.y, scene.lattice.dims.z});
+  for (universe.depth = 2; universe.side() < longest; ++universe.depth) {
+  }
+  desk().grey = grey_octree_of(universe, scene);
+  scene.samples = Int16Samples();
+}
+
+/// The octree of the samples low..high. Returns the number of voxels, volume in mm³, area by Crofton's
+/// formula in mm², the centroid in LPS mm, bytes of nodes, and 1 if there is any voxel.
+[[clang::export_name("choose_window")]] const double* choose_window(double low, double high) {
+  Desk& the = desk();
+  the.low = low;
+  the.object = combine(the.grey->universe(), Window{*the.grey, low, high});
+  const Measures measures = measure(the.object);
+  const glm::dvec3 centre = measures.centroid_mm.value_or(glm::dvec3(0.0));
+  the.numbers = {static_cast<double>(measures.voxel_count),
+                 measures.volume_mm3,
+                 measures.area_crofton13_mm2,
+                 centre.x,
+                 centre.y,
+                 centre.z,
+                 static_cast<double>(bytes_memory(the.object)),
+                 measures.centroid_mm ? 1.0 : 0.0};
+  return the.numbers.data();
+}
+
+/// The object seen along `look` with `up`, unit vectors in LPS at right angles: rows of RGBA from the top
+/// left. Traced by nodes if the view is along the scan's axes, else by rays.
+[[clang::export_name("draw")]] const std::uint8_t* draw(int width_px, int height_px, double look_x,
+                                                        double look_y, double look_z, double up_x,
+                                                        double up_y, double up_z) {
+  Desk& the = desk();
+  RenderOptions options;
+  options.size_px = {width_px, height_px};
+  options.view.look = {look_x, look_y, look_z};
+  options.view.up = {up_x, up_y, up_z};
+  options.view.right = glm::cross(options.view.look, options.view.up);
+  options.background = glm::vec3(0.07f, 0.09f, 0.11f);
+  DrawnObject object{"object", the.object};
+  object.grey = the.grey;
+  object.threshold = the.low;
+  const Picture picture = render({object}, options);
+  the.rgba.resize(picture.rgb.size() / 3 * 4);
+  for (std::size_t i = 0; i < picture.rgb.size() / 3; ++i) {
+    std::copy_n(&picture.rgb[3 * i], 3, &the.rgba[4 * i]);
+    the.rgba[4 * i + 3] = 255;
+  }
+  return the.rgba.data();
+}
+
+}  // extern "C"

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the kernel asks of the language's runtime, where that knows neither exceptions nor threads.
+//
+// What would be thrown ends the instance; its message goes to WASI's standard error. A page then makes a new
+// instance. Every type that the voxel kernel throws is a std::exception.
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <typeinfo>
+
+extern "C" {
+
+void* __cxa_allocate_exception(std::size_t bytes) noexcept {  // NOLINT(bugprone-reserved-identifier)
+  return std::malloc(bytes);
+}
+void __cxa_free_exception(void* memory) noexcept {  // NOLINT(bugprone-reserved-identifier)
+  std::free(memory);
+}
+[[noreturn]] void __cxa_throw(void* thrown, std::type_info*, void (*)(void*)) {  // NOLINT
+  std::fprintf(stderr, "%s\n", static_cast<std::exception*>(thrown)->what());
+  std::fflush(stderr);
+  std::_Exit(2);
+}
+
+/// The only thread does not end.
+int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept {  // NOLINT(bugprone-reserved-identifier)
+  return 0;
+}
+
+}  // extern "C"
