@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <string_view>
+#include <utility>
 
 #include "convert/deck/deck_format.h"
 
@@ -13,11 +15,35 @@ namespace {
 /// Entries a line of a set: the most that both solvers take.
 constexpr std::size_t set_line_entries = 16;
 
-/// Free text of the header, but a line that begins with '*' would be a keyword.
+/// Free text of the header in ASCII, which is all that Abaqus and CalculiX promise to read. A line that
+/// begins with '*' would be a keyword.
 std::string one_line(const std::string& text) {
-  std::string line = text;
-  for (char& c : line)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 10> known{
+      {{"\u00b2", "2"},
+       {"\u00b3", "3"},
+       {"\u00b0", " degrees"},
+       {"\u00b1", "+-"},
+       {"\u00b7", "."},
+       {"\u2212", "-"},
+       {"\u2013", "-"},
+       {"\u00a0", " "},
+       {"\u2009", " "},
+       {"\u202f", " "}}};
+  std::string line;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte < 0x80) {
+      line += byte < ' ' ? ' ' : text[i];
+      ++i;
+      continue;
+    }
+    const auto found = std::find_if(known.begin(), known.end(), [&](const auto& pair) {
+      return std::string_view(text).substr(i).starts_with(pair.first);
+    });
+    line += found == known.end() ? "?" : found->second;
+    // To the next character's first byte.
+    for (++i; i < text.size() && (static_cast<unsigned char>(text[i]) & 0xc0u) == 0x80u;) ++i;
+  }
   return line;
 }
 

@@ -15,6 +15,7 @@
 #include "convert/voxel/voxelise.h"
 #include "convert/voxel/winding_number.h"
 #include "planner/deck/filling.h"
+#include "planner/deck/node_sets.h"
 #include "planner/deck/stiffness.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/landmarks_file.h"
@@ -34,7 +35,7 @@ struct Tet {
   double dihedral_deg = convert::TetOptions{}.min_dihedral_deg,
          radius_edge = convert::TetOptions{}.radius_edge;
   std::optional<double> max_volume_mm3, voxel_mm, size_mm;
-  std::vector<std::string> finer;
+  std::vector<std::string> finer, nodes, fixed, moved;
   bool refine_boundary = false, mend = false, fallback = false, contact = false, msh_2_2 = false;
   double seconds = 60.0;
   std::vector<ObjectName> regions;
@@ -46,18 +47,6 @@ struct Tet {
   double surface_depth_mm = Stiffness{}.surface_depth_mm, poisson_ratio = Stiffness{}.poisson_ratio;
 };
 
-/// Finite numbers between commas; none where the text is anything else.
-std::vector<double> numbers_in(const std::string& text) {
-  std::vector<double> numbers;
-  for (const char* at = text.c_str();;) {
-    char* end = nullptr;
-    numbers.push_back(std::strtod(at, &end));
-    if (end == at || !std::isfinite(numbers.back()) || (*end != ',' && *end != '\0')) return {};
-    if (*end == '\0') return numbers;
-    at = end + 1;
-  }
-}
-
 /// Places of --finer: WHERE=SIZE, where a place is a point, a landmark's name or a mesh file.
 std::vector<convert::Refinement> refinements(const Tet& asked) {
   std::vector<brep::Landmark> landmarks;
@@ -66,7 +55,7 @@ std::vector<convert::Refinement> refinements(const Tet& asked) {
   for (const std::string& word : asked.finer) {
     const std::size_t equals = word.rfind('=');
     const std::vector<double> size_mm =
-        equals == std::string::npos ? std::vector<double>{} : numbers_in(word.substr(equals + 1));
+        equals == std::string::npos ? std::vector<double>{} : comma_numbers(word.substr(equals + 1));
     if (size_mm.size() != 1 || size_mm[0] <= 0.0)
       throw std::runtime_error("--finer: '" + word +
                                "' says no size: for example 12,-80,4=0.5 or cut.stl=0.5");
@@ -77,7 +66,7 @@ std::vector<convert::Refinement> refinements(const Tet& asked) {
     place.size_mm = size_mm[0];
     if (landmark != landmarks.end())
       place.points_mm = {landmark->p_mm};
-    else if (const std::vector<double> p = numbers_in(where); p.size() == 3)
+    else if (const std::vector<double> p = comma_numbers(where); p.size() == 3)
       place.points_mm = {{p[0], p[1], p[2]}};
     else if (std::filesystem::exists(where))
       place.surface = brep::read_triangles(where);
@@ -278,6 +267,10 @@ convert::DeckOptions deck_of(const FileBench& bench, const Tet& asked, Filled& f
     deck.contacts.push_back({there, back, there});
   }
   if (asked.contact) filled.tetrahedra = convert::separate_regions(filled.tetrahedra);
+  std::vector<brep::Landmark> landmarks;
+  if (!asked.landmarks.empty()) landmarks = read_landmarks(asked.landmarks);
+  deck.node_sets = picked_node_sets(asked.nodes, landmarks, filled.tetrahedra);
+  deck.prescribed = prescribed_of(asked.fixed, asked.moved, deck.node_sets);
   deck.notes = {std::string("octotomy ") + OCTOTOMY_VERSION};
   for (std::string& note : quality_notes(quality)) deck.notes.push_back(std::move(note));
   for (const std::string& finding : filled.findings) deck.notes.push_back(finding);
@@ -314,6 +307,8 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
     deck.progress = bench.progress("writing");
     convert::write_deck(tetrahedra, asked.out, deck);
   }
+  Json node_sets = Json::object();
+  for (const convert::NodeSet& set : deck.node_sets) node_sets[set.name] = set.nodes.size();
   FileAnswer answer{{{"path", asked.out.string()},
                      {"nodes", tetrahedra.nodes_mm.size()},
                      {"tets", tetrahedra.tets.size()},
@@ -324,6 +319,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
                      {"method", tetrahedra.method},
                      {"fallback", filled.fallback.has_value()},
                      {"materials", deck.materials.size()},
+                     {"node_sets", node_sets},
                      {"findings", filled.findings}}};
   answer.findings = filled.findings;
   answer.rows = {{"written", asked.out.string()},
@@ -369,9 +365,21 @@ Operation tet_operation() {
                    "a mesh "
                    "file's surface, growing from there; repeated.")
                  .repeated())
+      .takes(field("nodes", &Tet::nodes,
+                   "NAME=WHERE: a set of surface nodes at a point x,y,z or a landmark, within a ball "
+                   "x,y,z,r, on a "
+                   "plane x,y,z,u,v,w through a point with a normal, or on a mesh file's surface; repeated.")
+                 .repeated())
       .takes(
-          field("landmarks", &Tet::landmarks, "Landmarks that --finer names: JSON, or 3D Slicer's markups.")
-              .a_file())
+          field("fixed", &Tet::fixed, "A set of nodes that stays: the deck ends in a static step; repeated.")
+              .repeated()
+              .called("fix"))
+      .takes(field("moved", &Tet::moved, "NAME=DX,DY,DZ: a set of nodes that moves by so many mm; repeated.")
+                 .repeated()
+                 .called("move"))
+      .takes(field("landmarks", &Tet::landmarks,
+                   "Landmarks that --finer and --nodes name: JSON, or 3D Slicer's markups.")
+                 .a_file())
       .takes(field("refine_boundary", &Tet::refine_boundary,
                    "Lets TetGen add points on the surface; by default it is kept as it is."))
       .takes(
@@ -425,6 +433,8 @@ Operation tet_operation() {
       .on_files(
           "octotomy tet maxilla.stl -o maxilla.inp --radius-edge 1.4 --json\n"
           "  octotomy tet scan.vtp --mend -o scan.inp\n"
+          "  octotomy tet plate.stl -o plate.inp --nodes CUT=0,0,-40,0,0,1 --nodes PIN=12,-80,4,3 --fix CUT "
+          "--move PIN=0,0,-0.5\n"
           "  octotomy tet maxilla.stl -o maxilla.inp --finer 12,-80,4=0.5 --finer plate.stl=0.8\n"
           "  octotomy tet maxilla.octree --region rest.octree --size 3 --contact -o head.inp\n"
           "  octotomy tet maxilla.stl -o maxilla.feb --scan head.nrrd --density 0.0009,0.05",

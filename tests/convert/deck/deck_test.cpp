@@ -145,6 +145,18 @@ TEST(Deck, ATitleCannotBecomeAKeywordOrASecondLine) {
   EXPECT_EQ(deck.tetrahedra.nodes_mm.size(), 8U);
 }
 
+TEST(Deck, AnAbaqusDeckIsAsciiHoweverItsNotesArePrinted) {
+  const Folder folder;
+  DeckOptions options = titled("Sch\u00e4del");
+  options.notes = {"volume 36\u202f938 mm\u00b3 \u00b1 5\u00b0, \u2212 \xff\u00b3 \U0001F480"};
+  write_deck(cube_in_five(), folder / "d.inp", options);
+  const std::string deck = content(folder / "d.inp");
+  EXPECT_NE(deck.find("\n Sch?del\n"), std::string::npos) << deck.substr(0, 200);
+  EXPECT_NE(deck.find("** volume 36 938 mm3 +- 5 degrees, - ?3 ?\n"), std::string::npos)
+      << deck.substr(0, 300);
+  for (const char c : deck) ASSERT_LT(static_cast<unsigned char>(c), 0x80);
+}
+
 TEST(Deck, ATitleCannotEndACommentAndKeepsItsHyphens) {
   const Folder folder;
   for (const char* name : {"cube.vtu", "cube.feb"}) {

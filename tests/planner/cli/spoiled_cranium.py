@@ -4,8 +4,8 @@
 
 spoiled_cranium.py SCAN.nii.gz OUT.vtp
 
-Decimation leaves open edges and triangles without area; here 200 triangles are taken out, 60 edges get a third
-triangle, and 150 points are pushed through the surface behind them. Prints one JSON object: triangles,
+Decimation leaves open edges and triangles without area; here 200 triangles are taken out, 60 edges get a
+third triangle, and 150 points are pushed through the surface behind them. Prints one JSON object: triangles,
 open_edges, fans. Status 77 where VTK's or NumPy's packages are missing.
 """
 import json

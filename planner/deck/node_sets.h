@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "brep/align/register_landmarks.h"
+#include "convert/deck/deck.h"
+
+namespace octotomy::planner {
+
+/// Finite numbers between commas; none where the text is anything else.
+std::vector<double> comma_numbers(const std::string& text);
+
+/// Sets of nodes of the elements' surface, in LPS millimetres, each as NAME=WHERE:
+///   x,y,z          the node nearest to a point, as x,y,z,0
+///   x,y,z,r        the nodes within r mm of a point
+///   x,y,z,u,v,w    the nodes on a plane through a point with a normal, as a saw left them
+///   TEXT           the node nearest to a landmark of that name, or the nodes on the surface of a mesh file
+/// On a plane or surface means nearer than a quarter of the mean side of the elements' surface triangles.
+/// Throws std::runtime_error where the text is none of these, a name comes twice, or a set is empty.
+std::vector<convert::NodeSet> picked_node_sets(const std::vector<std::string>& words,
+                                               const std::vector<brep::Landmark>& landmarks,
+                                               const convert::Tetrahedra& tetrahedra);
+
+/// The static step: sets that stay, and sets that move, NAME=DX,DY,DZ in mm. Throws std::runtime_error where
+/// a name is not one of the sets', sets that stay and move share a node, or something moves and nothing
+/// stays.
+std::vector<convert::Prescribed> prescribed_of(const std::vector<std::string>& fixed,
+                                               const std::vector<std::string>& moved,
+                                               const std::vector<convert::NodeSet>& sets);
+
+}  // namespace octotomy::planner
