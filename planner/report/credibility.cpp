@@ -189,8 +189,7 @@ Json factors_of(const Json& result) {
       factor(calculation, "discretization error", certificate_evidence(result),
              "no certificate was asked for, or no object has one"),
       factor(calculation, "numerical solver error", none,
-             "Booleans use exact predicates and no iterative solver; their residuals stand with the objects "
-             "and are no separate check"),
+             "no solver was checked by itself: residuals of Booleans stand with the objects"),
       factor(calculation, "use error", reader_evidence(result), "no reader signed this plan as it is"),
       factor(model, "model form", none,
              "bone is what lies in a window of samples: this run did not test that"),

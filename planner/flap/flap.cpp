@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planner/flap/fields.h"
 #include "planner/measure/result_json.h"
-#include "planner/operation/flap_fields.h"
 #include "planner/table/operation.h"
 #include "verify/certificate.h"
 

@@ -5,7 +5,7 @@
 //     along one segment then meets the bisector where the same line along the next does.
 //   3 Positions on the donor: one after another, each as near to the one before as saw and wedge allow.
 // A cut is described by its slope: at an offset o from the axis it lies dot(slope, o) further along.
-#include "planner/anatomy/flap_design.h"
+#include "planner/flap/design.h"
 
 #include <algorithm>
 #include <cmath>

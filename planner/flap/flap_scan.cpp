@@ -3,7 +3,7 @@
 // that nothing is interpolated twice and both kernels read the placed bone as they read any scan.
 #include <algorithm>
 
-#include "planner/operation/flap_fields.h"
+#include "planner/flap/fields.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/crop.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/anatomy/flap_design.h"
+#include "planner/flap/design.h"
 #include "planner/table/field.h"
 #include "planner/table/scope.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/operation/flap_fields.h"
+#include "planner/flap/fields.h"
 
 #include <stdexcept>
 

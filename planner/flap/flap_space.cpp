@@ -3,8 +3,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "planner/operation/flap_fields.h"
-#include "planner/operation/trace.h"
+#include "planner/flap/fields.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "verify/witness.h"

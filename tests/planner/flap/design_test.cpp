@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/anatomy/flap_design.h"
+#include "planner/flap/design.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -106,7 +106,9 @@ TEST(FlapDesign, LengthsAnglesAndOrderAreThoseOfTheCurve) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(segments[i].donor_end_mm - segments[i].donor_start_mm, segments[i].length_mm, 1e-12);
     EXPECT_NEAR(glm::determinant(glm::dmat3(segments[i].placed_from_donor)), 1.0, 1e-12);
-    if (i > 0) EXPECT_GT(segments[i].donor_start_mm, segments[i - 1].donor_end_mm);
+    if (i > 0) {
+      EXPECT_GT(segments[i].donor_start_mm, segments[i - 1].donor_end_mm);
+    }
   }
 }
 
