@@ -45,7 +45,7 @@ def kill_at_random(out, is_running, seed):
     choice = random.Random(seed)
     kills = 0
     while is_running():
-        time.sleep(choice.uniform(0.05, 0.5))
+        time.sleep(choice.uniform(0.05, 0.5) if SUBJECTS < 50 else choice.uniform(0.2, 3.0))
         found = subprocess.run(["pgrep", "-f", f"{out}.*participant-label.? '?[0-9]"], capture_output=True, text=True,
                                check=False).stdout.split()
         try:

@@ -93,7 +93,7 @@ class Slurm(unittest.TestCase):
     def slurm(self, *command):
         return subprocess.run(command, env=self.environment, capture_output=True, text=True, check=False).stdout
 
-    def wait_for(self, holds, what, seconds=300):
+    def wait_for(self, holds, what, seconds=300 + 10 * SUBJECTS):
         end = time.monotonic() + seconds
         while not holds():
             logs = "".join(path.read_text(errors="replace")[-2000:] for path in self.folder.glob("*.log"))
