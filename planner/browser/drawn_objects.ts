@@ -54,8 +54,8 @@ export function is_overlap(step: Step, all: Step[]): boolean {
 }
 
 /// What lies inside a mask: a piece, which has its colour before it moves.
-const is_piece = (step: Step): boolean => step.do === "combine" && typeof step.expression === "string" &&
-    /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
+export const is_piece = (step: Step): boolean => step.do === "combine" &&
+    typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
 
 function is_used_up(id: string, all: Step[]): boolean {
   return all.some((step) => {

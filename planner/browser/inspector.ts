@@ -4,7 +4,7 @@
 import {add_step, replace_step, try_to} from "./actions";
 import {badge, measured_text} from "./certificate_badge";
 import {certify_all} from "./commands";
-import {is_overlap, makes_shape, object_ids} from "./drawn_objects";
+import {is_overlap, is_piece, makes_shape, object_ids} from "./drawn_objects";
 import {button, Child, el, fill} from "./html";
 import {icon, is_icon} from "./icons";
 import {movement_fields} from "./move_tool";
@@ -66,9 +66,11 @@ function inspector(): Child {
                {class: "primary"}),
            button("Cancel", "Adds nothing", () => set({draft_step: null}))));
   const step = selected_step();
+  const motion =
+      step?.do === "move" || state.tool === "move" || (step && is_piece(step)) ? movement_fields() : null;
   return [
-    tool_card(), state.cut_plane ? cut_plane_card() : null, state.compare ? compare_card() : null,
-    step || state.tool === "move" ? movement_fields() : null, step ? step_card(step) : hint()
+    tool_card(), state.cut_plane ? cut_plane_card() : null, state.compare ? compare_card() : null, motion,
+    step ? step_card(step, motion !== null && step.do === "move") : hint()
   ];
 }
 
@@ -87,7 +89,7 @@ function tool_card(): Child {
       el("p", {class: "says"}, tool.says), tool.panel?.() ?? null);
 }
 
-function step_card(step: Step): Child {
+function step_card(step: Step, has_motion: boolean): Child {
   const object = state.plan?.objects.find((one) => one.id === step.id);
   const certificate = object?.certificate;
   const is_number = step.do === "measure";
@@ -104,7 +106,9 @@ function step_card(step: Step): Child {
       found ? el("p", {class: "reading"}, el("b", {}, measured_text(found))) : null,
       certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
                     null,
-      step_form(step, (next) => void replace_step(step.id, next, `${step.id} changed`)));
+      step_form(
+          step, (next) => void replace_step(step.id, next, `${step.id} changed`),
+          has_motion ? ["by", "turn"] : []));
 }
 
 function cut_plane_card(): Child {

@@ -2,7 +2,7 @@
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
 // marks and the handles of the tool that is in hand.
 import type {Pane} from "./panes";
-import {Json, Step} from "./protocol";
+import {Json, Measurement, Step} from "./protocol";
 import {state, steps, step_of} from "./state";
 import {active_tool} from "./tool";
 import {Vec2, Vec3, add, dot, scaled} from "./vector";
@@ -18,18 +18,22 @@ export const ink = {
   faint: "rgba(255,255,255,.55)",
 };
 
+// Boxes of the words that a pane has so far: names and numbers make room for each other.
+let labelled: {low: Vec2; high: Vec2}[] = [];
+
 // Views stand on white on a light page; words are dark with a light outline there.
 let is_on_white = false;
 
 export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): void {
   if (!state.plan) return;
   is_on_white = !pane.is_slice && !is_dark_page();
+  labelled = [];
   const ratio = pane.ratio;
   context.lineJoin = "round";
   draw_cross(pane, context);
   draw_regions(pane, context);
-  draw_measures(pane, context);
   draw_landmarks(pane, context);
+  draw_measures(pane, context);
   if (state.marked) draw_mark(pane, context, state.marked.at_mm);
   active_tool()?.draw?.(pane, context);
   draw_letters(pane, context);
@@ -82,6 +86,29 @@ export function text(
   context.strokeText(words, x, at[1]);
   context.fillStyle = is_on_white ? dark_of[colour] ?? colour : colour;
   context.fillText(words, x, at[1]);
+}
+
+/// Words beside a point: at its right, or its left, or as far up or down as there is room.
+function label(
+    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook): void {
+  const px = (look.px ?? 12) * ratio;
+  context.font = `500 ${px}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
+  const width = context.measureText(words).width;
+  const gap = 7 * ratio;
+  const rows = [0, -1, 1, -2, 2, -3, 3];
+  const places = rows.flatMap((row): Vec2[] => [gap, -gap - width].map((x) => [at[0] + x, at[1] + row * px]));
+  const box = ([x, y]: Vec2): {low: Vec2; high: Vec2} =>
+      ({low: [x, y - px / 2], high: [x + width, y + px / 2]});
+  const is_free = (place: Vec2): boolean => {
+    const {low, high} = box(place);
+    return low[0] >= 0 && high[0] <= context.canvas.width &&
+        labelled.every(
+            (one) =>
+                one.low[0] > high[0] || one.high[0] < low[0] || one.low[1] > high[1] || one.high[1] < low[1]);
+  };
+  const place = places.find(is_free) ?? places[0]!;
+  labelled.push(box(place));
+  text(context, words, place, ratio, {...look, align: "left"});
 }
 
 export function line(
@@ -172,35 +199,43 @@ export function mark_mm(mark: Json|undefined): Vec3|null {
   return state.plan?.landmarks.find((one) => one.name === mark)?.point ?? null;
 }
 
+// A slice shows what lies within a few millimetres of it; a view shows everything.
+const near_slice_mm = 6;
+const is_near = (pane: Pane, p_mm: Vec3): boolean => !pane.is_slice ||
+    Math.abs(dot(p_mm, pane.frame.look) - dot(state.cross_mm, pane.frame.look)) <= near_slice_mm;
+
+// The handles of a moving piece stand where names and numbers would.
+const is_handled = (): boolean => state.tool === "move";
+
+const measured_words = (found: Measurement): string =>
+    found.unit === "deg" ? `${found.value.toFixed(1)}°` : `${found.value.toFixed(2)} ${found.unit}`;
+
 function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
   for (const step of steps()) {
     const marks = step.do === "measure" && Array.isArray(step.points_mm) ? step.points_mm : [];
     const points = marks.map(mark_mm).filter((p): p is Vec3 => p !== null);
-    if (points.length < 2) continue;
+    if (points.length < 2 || !points.every((p) => is_near(pane, p))) continue;
     const at = points.map((p) => pane.pixel_at(p));
     line(context, at, ink.measure, 1.5 * pane.ratio);
     for (const p of at) dot_at(context, p, 3 * pane.ratio, ink.measure);
     const found = state.plan?.measurements?.find((one) => one.id === step.id);
     const middle = at[Math.floor(at.length / 2)]!;
     const before = at[Math.floor(at.length / 2) - 1]!;
-    const words = found ? `${found.value.toFixed(found.unit === "mm" ? 2 : 1)} ${found.unit}` : step.id;
-    if (Math.hypot(middle[0] - before[0], middle[1] - before[1]) < 24 * pane.ratio) continue;
-    text(
-        context, words,
-        [(middle[0] + before[0]) / 2 + 6 * pane.ratio, (middle[1] + before[1]) / 2 - 9 * pane.ratio],
-        pane.ratio, {colour: ink.measure});
+    const words = found ? measured_words(found) : step.id;
+    if (is_handled() || Math.hypot(middle[0] - before[0], middle[1] - before[1]) < 24 * pane.ratio) continue;
+    label(
+        context, words, [(middle[0] + before[0]) / 2, (middle[1] + before[1]) / 2], pane.ratio,
+        {colour: ink.measure});
   }
 }
 
 function draw_landmarks(pane: Pane, context: CanvasRenderingContext2D): void {
-  const plane = dot(state.cross_mm, pane.frame.look);
   for (const landmark of state.plan?.landmarks ?? []) {
-    if (pane.is_slice && Math.abs(dot(landmark.point, pane.frame.look) - plane) > 6) continue;
+    if (!is_near(pane, landmark.point)) continue;
     const at = pane.pixel_at(landmark.point);
     dot_at(context, at, 3.5 * pane.ratio, ink.landmark);
-    text(
-        context, landmark.name.replace(/_/g, " "), [at[0] + 7 * pane.ratio, at[1]], pane.ratio,
-        {colour: ink.landmark, px: 11});
+    if (is_handled()) continue;
+    label(context, landmark.name.replace(/_/g, " "), at, pane.ratio, {colour: ink.landmark, px: 11});
   }
 }
 

@@ -56,6 +56,10 @@ export class Pane {
   get size(): Vec2 {
     return [this.canvas.width, this.canvas.height];
   }
+  /// Whether a newer picture than the shown one is wanted or under way.
+  get is_busy(): boolean {
+    return this.is_wanted || this.in_flight > 0;
+  }
   /// Whether a picture takes so long that the person is told.
   get is_slow(): boolean {
     return this.in_flight > 0 && performance.now() - this.waiting_since > slow_after_ms;
@@ -285,6 +289,7 @@ export class Pane {
 
   private redraw_now(): void {
     this.is_dirty = false;
+    this.canvas.setAttribute("aria-busy", String(this.is_busy));
     const context = this.canvas.getContext("2d", {alpha: false});
     if (!context) return;
     const [width, height] = this.size;

@@ -26,15 +26,17 @@ export function operations(): Schema[] {
 const object_fields = new Set(["object", "onto", "against", "to", "a", "b", "with"]);
 const label_of = (field: string): string => field.replace(/_(mm|deg|mm2|mm3)$/, "").replace(/_/g, " ");
 
-/// A form for a step's fields; `changed` gets the whole step anew.
-export function step_form(step: Step, changed: (step: Step) => void): Child {
+/// A form for a step's fields; `changed` gets the whole step anew. `elsewhere` are fields that stand in
+/// another card.
+export function step_form(
+    step: Step, changed: (step: Step) => void, elsewhere: readonly string[] = []): Child {
   const schema = schema_of(step);
   if (!schema?.properties) return el("p", {class: "says"}, "This operation is unknown to the page.");
   const required = new Set(schema.required ?? []);
   const given: Child[] = [];
   const more: Child[] = [];
   for (const [field, about] of Object.entries(schema.properties)) {
-    if (field === "id" || field === "do") continue;
+    if (field === "id" || field === "do" || elsewhere.includes(field)) continue;
     const set_value = (value: Json|undefined): void => {
       const {[field]: _before, ...rest} = step;
       changed((value === undefined ? rest : {...rest, [field]: value}) as Step);

@@ -200,10 +200,28 @@ test('no console error, no WebGL context, a small bundle', async (context) => {
   assert.ok(bytes < most_bundle_bytes);
 });
 
+test('a server that stands still, as behind a network that stalls or a tab asleep, is waited for', async () => {
+  const listed = names();
+  server.process.kill('SIGSTOP');
+  for (let i = 0; i < 8; ++i) await one.page.keyboard.press('ArrowLeft');
+  await one.page.waitForTimeout(3000);
+  server.process.kill('SIGCONT');
+  await one.at_rest();
+  assert.deepEqual(names(), listed);
+  assert.equal(await one.page.locator('div.lost').isVisible(), false);
+});
+
 test('the server is killed: the page says so, and goes on with everything when it is back', async () => {
   const url = new URL(server.url);
   const listed = await one.page.locator('.lists .name').allInnerTexts();
+  // In mid-drag, so that pictures are under way.
+  const at = await one.position(0, [0, 0]);
+  await one.page.mouse.move(at.x, at.y);
+  await one.page.mouse.down();
+  await one.page.mouse.move(at.x + 15, at.y);
   server.stop();
+  for (let i = 0; i < 5; ++i) await one.page.mouse.move(at.x + 20 + i, at.y);
+  await one.page.mouse.up();
   await one.page.locator('div.lost').waitFor({ state: 'visible' });
   const token = path.join(folder, 'token');
   fs.writeFileSync(token, url.searchParams.get('token'), { mode: 0o600 });

@@ -116,8 +116,9 @@ export class PlannerWindow {
     await this.page.waitForTimeout(350);
     await this.page.waitForFunction(() => {
       const shown = [...document.querySelectorAll('.pane')].filter((pane) => !pane.hidden).map((pane) => pane.dataset.pane);
+      if (document.querySelector('.pane:not([hidden]) canvas[aria-busy="true"]')) return false;
       return shown.every((pane) => window.pictures.filter((one) => one.pane === pane).pop()?.quality === 'rest');
-    }, undefined, { timeout: 20000 });
+    }, undefined, { timeout: 60000 });
   }
   /// Waits until a pane at rest shows an object.
   async shows(pane, object) {
