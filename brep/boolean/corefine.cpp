@@ -33,6 +33,18 @@ inline bool Constrained_Delaunay_triangulation_2<CutTraits, CutLinks>::is_valid(
                                                                                 int level) const {
   return this->tds().is_valid(verbose, level);
 }
+
+namespace Box_intersection_d {
+/// The boxes by which corefinement finds edges and faces that meet. CGAL orders equal ones by their addresses
+/// and computes a point on several of them from the pair that it finds first, so the last places of points
+/// would hang on the heap. These are numbered as they are made.
+template <>
+class Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_FROM_BOX_ADDRESS>
+    : public Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_EXPLICIT> {
+ public:
+  using Box_with_info_d<double, 3, OpenMesh::HalfedgeHandle, ID_EXPLICIT>::Box_with_info_d;
+};
+}  // namespace Box_intersection_d
 }  // namespace CGAL
 
 namespace octotomy::brep {
@@ -191,7 +203,7 @@ bool has_uncut_part(const Mesh& mesh, const std::vector<bool>& on_cut) {
 }
 
 /// A result in an order of its own, without triangles that rounding left without area: a further Boolean
-/// would break off at them. From the first ordering on, nothing hangs on addresses.
+/// would break off at them.
 Triangles finished(const Mesh& mesh) {
   Triangles triangles = in_coordinate_order(mesh);
   if (!has_flat_triangles(triangles)) return triangles;

@@ -7,12 +7,19 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <tbb/global_control.h>
+#include <thread>
 
+#include "brep/boolean/boolean.h"
 #include "brep/mesh/health.h"
+#include "brep/shape/prism.h"
 #include "tests/convert/surfaces.h"
+#include "tests/reference_data.h"
+#include "voxel/scan/read_scene.h"
 
 namespace octotomy::convert {
 namespace {
@@ -344,6 +351,43 @@ TEST(Isosurface, HasTheSameBitsOnOneThreadAndMany) {
   EXPECT_EQ(many.faces, single.faces);
   EXPECT_EQ(0, std::memcmp(many.points_mm.data(), single.points_mm.data(),
                            many.points_mm.size() * sizeof(glm::dvec3)));
+}
+
+/// Corefinement computes a point on several edges from the pair of triangles that it finds first.
+TEST(Isosurface, OfARealSkullIsCutToTheSameBitsWhereverMemoryLies) {
+  OCTOTOMY_NEEDS_DATA("ct_unc_cthead.nrrd");
+  const brep::Solid skull = brep::trusted_solid(
+      isosurface(voxel::read_scene(tests::reference_data("ct_unc_cthead.nrrd")), 300.0, 1e9),
+      brep::Proof::Construction);
+  const glm::dvec3 middle = 0.5 * (skull.size().low_mm + skull.size().high_mm);
+  const auto prism = [&](const glm::dvec3& look, const glm::dvec3& right, double low, double high) {
+    brep::Prism drawn{look, {0, 0, 1}, right, {{{low, -40}, {high, -40}, {high, -5}, {low, -5}}}, -700, 700};
+    for (glm::dvec2& p : drawn.polygons_mm.front()) p += glm::dvec2(glm::dot(middle, right), middle.z);
+    return brep::solid_of(drawn);
+  };
+  const brep::Solid cut = brep::boolean(prism({0, 1, 0}, {1, 0, 0}, -40, 40), brep::Operation::Intersection,
+                                        prism({-1, 0, 0}, {0, 1, 0}, -90, -20))
+                              .solid;
+  std::mt19937 random(1);
+  std::optional<brep::Triangles> first;
+  for (int i = 0; i < 8; ++i) {
+    std::vector<std::unique_ptr<char[]>> held;
+    for (int k = 0; k < 300; ++k) held.push_back(std::make_unique<char[]>(std::size_t{1} << random() % 22));
+    for (auto& block : held)
+      if (random() % 2 == 0) block.reset();
+    brep::Triangles piece;
+    const auto take = [&] {
+      piece = brep::boolean(skull, brep::Operation::Intersection, cut).solid.triangles();
+    };
+    // Another thread has a heap of its own.
+    if (i % 2 == 0)
+      take();
+    else
+      std::thread(take).join();
+    if (!first) first = piece;
+    ASSERT_EQ(piece.points_mm, first->points_mm) << "in round " << i;
+    ASSERT_EQ(piece.faces, first->faces) << "in round " << i;
+  }
 }
 
 }  // namespace
