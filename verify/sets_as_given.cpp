@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -42,8 +43,9 @@ double parted_units(int side) {
   return 1e-6 * units * side;
 }
 
-/// Parts corners that share a place with others of the surface: each moves along the mean normal of its own
-/// sheet, into the solid, or out of it where the solid's other side is as near.
+/// Parts corners that share a place with others of the surface, and points half way on an edge, which lie on
+/// another sheet's: each moves along the mean normal of its own sheet, into the solid, or out of it where the
+/// solid's other side is as near.
 void part_sheets(const voxel::Octree& set, double by, brep::Triangles& surface) {
   std::vector<std::size_t> order(surface.points_mm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -53,6 +55,10 @@ void part_sheets(const voxel::Octree& set, double by, brep::Triangles& surface) 
   };
   std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return place(i) < place(j); });
   std::vector<bool> shares(order.size());
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const glm::dvec3 corner = units * glm::round(surface.points_mm[i] / units);
+    shares[i] = surface.points_mm[i] != corner;
+  }
   for (std::size_t k = 1; k < order.size(); ++k)
     if (place(order[k - 1]) == place(order[k])) shares[order[k - 1]] = shares[order[k]] = true;
   if (std::find(shares.begin(), shares.end(), true) == shares.end()) return;
@@ -176,7 +182,9 @@ SetsAnswer certified(voxel::Octree octree, const std::string& operation,
   try {
     Corefined corefined = corefine();
     progress.at(0.8);
-    const double near = corefined.shift_units + parted_units(universe.side());
+    // Points are rounded to some units in the last place of the largest coordinate.
+    const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * units * universe.side();
+    const double near = corefined.shift_units + parted_units(universe.side()) + rounding;
     compare(on_units(answer.octree), corefined.solid, near, unit_mm3, certificate);
     answer.solid = in_patient(corefined.solid, universe.lps_from_voxel);
     answer.shift_mm = near / units * glm::length(universe.lattice().spacing_mm());

@@ -158,7 +158,7 @@ Operation separate_operation() {
                         "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's is "
                         "numbered: parts-1.ply.")
                       .required())
-      .example(R"({"id": "condyle", "do": "separate", "object": "mandible", "piece": 2})")
+      .example(R"({"id": "condyle", "do": "separate", "object": "rest", "piece": 2})")
       .on_files("octotomy separate scan.vtp --least 10 -o parts.ply", on_files)
       .check(check)
       .object(definition, nullptr, triangles, bound);
