@@ -164,7 +164,7 @@ function compare_card(): Child {
              icon("close", 14), "Back to the objects' own colours", () => set({compare: null}),
              {class: "ghost small"})),
       el("p", {class: "says"},
-         "Colours the first object by its surface's distance outside (orange) or inside (blue) the second."),
+         "Colours each surface point of the first object by its distance to the nearest of the second: orange outside of it, blue inside."),
       choose("object", "Object"), choose("reference", "Compared with"),
       el("label", {class: "field"}, el("span", {}, "Last colours at"), el("input", {
            type: "number",

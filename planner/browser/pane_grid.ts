@@ -48,7 +48,8 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
       if (about)
         fill(
             legend, el("div", {class: "ramp"}), el("span", {}, `${about.low_mm} mm`), el("span", {}, "0"),
-            el("span", {}, `+${about.high_mm} mm`), el("p", {}, about.definition));
+            el("span", {}, `+${about.high_mm} mm`));
+      legend.title = about?.definition ?? "";
     });
     legend.hidden = true;
   }

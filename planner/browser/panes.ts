@@ -185,9 +185,9 @@ export class Pane {
       this.last_asked = "";
       if (error instanceof Refusal && error.code !== "cancelled" && error.code !== "lost") {
         this.problem = error.message;
-        this.redraw();
       }
       this.pump();
+      this.redraw();
     });
   }
 
@@ -205,6 +205,7 @@ export class Pane {
     const started = this.sent.get(header.id);
     this.sent.delete(header.id);
     this.pump();
+    this.redraw();
     const image = header.parts.findIndex((part) => part.kind === "jpeg" || part.kind === "png");
     const type = header.parts[image]?.kind === "png" ? "image/png" : "image/jpeg";
     const bitmap = await createImageBitmap(new Blob([parts[image]!], {type}));
