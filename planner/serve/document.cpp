@@ -53,6 +53,16 @@ void change_steps(Json& steps, const Json& said) {
   if (said.contains("landmarks")) set_landmarks(steps, said["landmarks"]);
 }
 
+/// A landmarks step reads its file while it is parsed: a refusal that quotes the file would come too late.
+void need_landmarks_within(const Json& plan, const std::filesystem::path& folder, const Folders& folders) {
+  const auto steps = plan.find("steps");
+  if (steps == plan.end() || !steps->is_array()) return;
+  for (const Json& step : *steps)
+    if (step.is_object() && step.value("do", Json()) == "landmarks" && step.contains("file") &&
+        step["file"].is_string())
+      folders.need_within(folder / step["file"].get<std::string>());
+}
+
 }  // namespace
 
 Document::Document(const std::filesystem::path& path, const Folders& folders)
@@ -69,6 +79,7 @@ void Document::read_again() {
 }
 
 Plan Document::parsed(const Json& json) const {
+  need_landmarks_within(json, path_.parent_path(), folders_);
   Plan plan = parse_plan(json_text(json, 2) + "\n", path_.parent_path());
   for (const auto& [name, scan] : plan.scans) folders_.need_within(scan_path(plan, scan));
   for (const Step& step : plan.steps)

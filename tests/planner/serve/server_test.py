@@ -92,7 +92,9 @@ class Gate(Served):
                 self.window.ask("list", folder=folder)
         for said in ({"scans": {"ct": {"path": "/etc/passwd"}}}, {"scans": {"ct": {"path": "link/passwd"}}},
                      {"add": {"step": {"id": "read", "do": "import", "path": "/etc/machine-id.stl"}}},
-                     {"add": {"step": {"id": "read", "do": "import", "path": "../../../etc/machine-id.stl"}}}):
+                     {"add": {"step": {"id": "read", "do": "import", "path": "../../../etc/machine-id.stl"}}},
+                     {"add": {"step": {"id": "read", "do": "landmarks", "file": "/etc/passwd"}}},
+                     {"add": {"step": {"id": "read", "do": "landmarks", "file": "link/passwd"}}}):
             with self.assertRaisesRegex(RuntimeError, "no folder that is open", msg=said):
                 self.window.ask("edit", what="reads elsewhere", **said)
         token = self.server.token
