@@ -58,8 +58,13 @@ std::array<double, Count> numbers_of(const std::string& what, const std::string&
     char* end = nullptr;
     numbers[i] = std::strtod(at, &end);
     if (end == at || !std::isfinite(numbers[i]) || *end != (i + 1 < Count ? ',' : '\0'))
-      throw std::runtime_error(what + ": '" + text + "' is not " + std::to_string(Count) +
-                               " numbers between commas, for example " + example);
+      throw std::runtime_error(std::string(what)
+                                   .append(": '")
+                                   .append(text)
+                                   .append("' is not ")
+                                   .append(std::to_string(Count))
+                                   .append(" numbers between commas, for example ")
+                                   .append(example));
     at = end + 1;
   }
   return numbers;
