@@ -6,12 +6,17 @@
 
 namespace octotomy::planner::serve {
 
-std::optional<PaneQueue::Asked> PaneQueue::ask(Asked asked) {
+void PaneQueue::ask(Asked asked) {
   const std::lock_guard lock(mutex_);
   Pane& pane = panes_[asked.name];
-  std::optional<Asked> replaced = std::exchange(pane.waiting, std::move(asked));
+  pane.waiting = std::move(asked);
   changed_.notify_all();
-  return replaced;
+}
+
+std::optional<PaneQueue::Asked> PaneQueue::withdraw(const PaneName& name) {
+  const std::lock_guard lock(mutex_);
+  const auto pane = panes_.find(name);
+  return pane == panes_.end() ? std::nullopt : std::exchange(pane->second.waiting, std::nullopt);
 }
 
 std::map<PaneName, PaneQueue::Pane>::iterator PaneQueue::ready() {

@@ -35,8 +35,11 @@ class PaneQueue {
     bool is_moving = false;
   };
 
-  /// Lets a request wait; the one that it replaces.
-  std::optional<Asked> ask(Asked asked);
+  /// Lets a request wait in the place of an older one. Whoever must answer the older one calls withdraw()
+  /// before: here it would go without a word.
+  void ask(Asked asked);
+  /// Takes a pane's waiting request out.
+  std::optional<Asked> withdraw(const PaneName& name);
   /// The next request whose pane is free; waits for one. None: stopped.
   std::optional<Asked> next(const std::stop_token& stop);
   /// The page shows a frame.

@@ -118,8 +118,9 @@ void Service::take(std::uint64_t window, Request request) {
     const int number = said.value("pane", 0);
     if (number < 0 || number > 15) throw voxel::Error(voxel::ErrorCode::Input, "pane: must be 0 to 15");
     const bool is_moving = said.value("dragging", false);
-    if (const auto replaced = panes_.ask({pane(), std::move(request), is_moving})) drop(*replaced);
-    return;
+    // The older request is refused before the newer can be drawn: a pane's answers come in their order.
+    if (const auto older = panes_.withdraw(pane())) drop(*older);
+    return panes_.ask({pane(), std::move(request), is_moving});
   }
   const Word& word = find_word(request.what);
   const auto of_window = find(window);

@@ -21,10 +21,19 @@ std::int64_t next_id(PaneQueue& queue) {
 
 TEST(PaneQueue, OnlyTheNewestOfAPaneWaits) {
   PaneQueue queue;
-  EXPECT_FALSE(queue.ask(asked(1)));
-  EXPECT_EQ(queue.ask(asked(2))->request.id, 1);
-  EXPECT_EQ(queue.ask(asked(3))->request.id, 2);
+  for (const std::int64_t id : {1, 2, 3}) queue.ask(asked(id));
   EXPECT_EQ(next_id(queue), 3);
+  EXPECT_EQ(next_id(queue), 0);
+}
+
+TEST(PaneQueue, AWithdrawnRequestIsNotServed) {
+  PaneQueue queue;
+  EXPECT_FALSE(queue.withdraw({1, 0}));
+  queue.ask(asked(1));
+  queue.ask(asked(2, 1));
+  EXPECT_EQ(queue.withdraw({1, 0})->request.id, 1);
+  EXPECT_FALSE(queue.withdraw({1, 0}));
+  EXPECT_EQ(next_id(queue), 2);
   EXPECT_EQ(next_id(queue), 0);
 }
 

@@ -190,6 +190,7 @@ class Wire(Served):
             message = self.window.receive()
             if isinstance(message, tuple):
                 drawn.append(message[0]["id"])
+                self.assertLessEqual({one for one in asked if one < drawn[-1]}, {*drawn, *cancelled})
                 self.window.send_bytes(json.dumps({"do": "shown", "pane": 3, "frame": drawn[-1]}).encode())
             elif message.get("id") in asked:
                 self.assertEqual(message["error"]["code"], "cancelled")
