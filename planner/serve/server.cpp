@@ -6,6 +6,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/strand.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
@@ -289,8 +290,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<http::request_parser<http::file_body>> upload_;
 };
 
+/// Each connection has a strand: a message that another thread posts must not pass one that the connection's
+/// own handler posted before, and without a strand asio keeps the handler's back until it has ended.
 void accept(Tcp::acceptor& acceptor, Context& context) {
-  acceptor.async_accept([&](beast::error_code failed, Tcp::socket socket) {
+  const net::any_io_executor strand = net::make_strand(acceptor.get_executor());
+  acceptor.async_accept(strand, [&](beast::error_code failed, Tcp::socket socket) {
     if (failed == net::error::operation_aborted) return;
     if (!failed) {
       beast::error_code ignored;
