@@ -6,30 +6,56 @@
 #include <cassert>
 #include <cstdint>
 #include <numeric>
+#include <unordered_map>
 #include <vector>
 
 namespace octotomy::brep {
 
+namespace {
+
+using Place = std::array<double, 3>;
+
+Place place_of(const Triangles& triangles, std::uint32_t v) {
+  const glm::dvec3& p = triangles.points_mm[v];
+  return {p.x, p.y, p.z};
+}
+
+/// The places of the neighbours, in order, of the vertices that share their place with another. Read from the
+/// faces, as a walk about a vertex of a mesh that a Boolean left broken need not end.
+std::unordered_map<std::uint32_t, std::vector<Place>> rings_of_shared(
+    const Triangles& triangles, const std::vector<std::uint32_t>& order) {
+  std::unordered_map<std::uint32_t, std::vector<Place>> rings;
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (place_of(triangles, order[i - 1]) == place_of(triangles, order[i]))
+      for (const std::uint32_t v : {order[i - 1], order[i]}) rings[v];
+  if (rings.empty()) return rings;
+  for (const auto& face : triangles.faces)
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      if (const auto ring = rings.find(face[corner]); ring != rings.end())
+        for (const std::size_t other : {(corner + 1) % 3, (corner + 2) % 3})
+          ring->second.push_back(place_of(triangles, face[other]));
+  for (auto& [v, ring] : rings) {
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  }
+  return rings;
+}
+
+}  // namespace
+
 Triangles in_coordinate_order(const Mesh& mesh) {
   Triangles triangles = triangles_of(mesh);
   check_joins(triangles);
-  const auto place = [&](std::uint32_t v) {
-    const glm::dvec3& p = triangles.points_mm[v];
-    return std::array<double, 3>{p.x, p.y, p.z};
-  };
-  const auto ring = [&](std::uint32_t v) {
-    std::vector<std::array<double, 3>> places;
-    for (const auto neighbour : mesh.vv_range(Mesh::VertexHandle(static_cast<int>(v))))
-      places.push_back(place(static_cast<std::uint32_t>(neighbour.idx())));
-    std::sort(places.begin(), places.end());
-    return places;
-  };
   std::vector<std::uint32_t> order(triangles.points_mm.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
-    const auto at_v = place(v), at_w = place(w);
-    return at_v != at_w ? at_v < at_w : v != w && ring(v) < ring(w);
+    return place_of(triangles, v) < place_of(triangles, w);
   });
+  if (const auto rings = rings_of_shared(triangles, order); !rings.empty())
+    std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
+      const Place at_v = place_of(triangles, v), at_w = place_of(triangles, w);
+      return at_v != at_w ? at_v < at_w : v != w && rings.at(v) < rings.at(w);
+    });
 
   Triangles sorted;
   std::vector<std::uint32_t> rank(order.size());

@@ -27,6 +27,14 @@ Triangles shuffled(const Triangles& triangles, std::uint64_t seed) {
   return other;
 }
 
+/// Two tetrahedra whose tips stand at one place and are two vertices.
+Triangles tip_to_tip() {
+  return shapes::together(
+      Triangles{{{0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}},
+      Triangles{{{0, 0, 0}, {-1, 0, -1}, {0, -1, -1}, {0, 0, -1}},
+                {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}});
+}
+
 TEST(CoordinateOrder, TheSameSurfaceInAnyOrderComesOutTheSame) {
   const Triangles ball = shapes::sphere({1, 2, 3}, 5, 2);
   const Triangles wanted = in_coordinate_order(mesh_of(ball));
@@ -39,14 +47,21 @@ TEST(CoordinateOrder, TheSameSurfaceInAnyOrderComesOutTheSame) {
 }
 
 TEST(CoordinateOrder, PointsAtOnePlaceGoByTheirNeighbours) {
-  // Two tetrahedra tip to tip: the tips stand at one place and are two vertices.
-  const Triangles tip = shapes::together(
-      Triangles{{{0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}},
-      Triangles{{{0, 0, 0}, {-1, 0, -1}, {0, -1, -1}, {0, 0, -1}},
-                {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}});
+  const Triangles tip = tip_to_tip();
   const Triangles wanted = in_coordinate_order(mesh_of(tip));
   for (std::uint64_t seed = 0; seed < 5; ++seed)
     EXPECT_EQ(in_coordinate_order(mesh_of(shuffled(tip, seed))).faces, wanted.faces) << "seed " << seed;
+}
+
+TEST(CoordinateOrder, AMeshWhoseWalkAboutATipNeverEndsIsOrderedToo) {
+  Mesh mesh = mesh_of(tip_to_tip());
+  const auto wanted = in_coordinate_order(mesh).faces;
+  // Of the three halfedges out of the tip, in the walk's order, the last leads to the second again.
+  const auto first = mesh.halfedge_handle(Mesh::VertexHandle(0));
+  const auto second = mesh.cw_rotated_halfedge_handle(first), third = mesh.cw_rotated_halfedge_handle(second);
+  mesh.set_halfedge_handle(mesh.face_handle(first), first);  // so that the face's corners stay
+  mesh.set_next_halfedge_handle(mesh.opposite_halfedge_handle(third), second);
+  EXPECT_EQ(in_coordinate_order(mesh).faces, wanted);
 }
 
 }  // namespace
