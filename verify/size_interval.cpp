@@ -201,19 +201,37 @@ double normal_distribution(double z) {
 /// How far beyond the surface nothing is left of it, in samples.
 constexpr double beyond = 2.5;
 
-/// The step over one sample at the face of a sheet that a Gaussian of this deviation has blurred, as a share
-/// of the contrast between a depth and `beyond`; all in samples.
+/// The mean step across a face over distances of up to one sample on either side; `level` is taken at a
+/// depth in samples. Over a whole sample the ripple of linear interpolation cancels, which at a face along
+/// the lattice would hang on where between two samples the face lies.
+template <typename Level>
+double mean_step(const Level& level) {
+  constexpr int parts = 4;
+  double sum = 0.0;
+  for (int part = 0; part < parts; ++part) {
+    const double depth = (part + 0.5) / parts;
+    sum += level(depth) - level(-depth);
+  }
+  return sum / parts;
+}
+
+/// The mean step at the face of a sheet that a Gaussian of this deviation has blurred, as a share of the
+/// contrast between a depth and `beyond`; all in samples.
 double step_share(double deviation, double depth, double thickness) {
   const auto level = [&](double at) {
     return normal_distribution(at / deviation) - normal_distribution((at - thickness) / deviation);
   };
-  return (level(0.5) - level(-0.5)) / (level(depth) - level(-beyond));
+  return mean_step(level) / (level(depth) - level(-beyond));
 }
 
 Interval summed(double value, std::vector<DoubtSource> sources) {
-  double squares = 0.0;
-  for (const DoubtSource& source : sources) squares += source.half_width * source.half_width;
-  return {value, std::sqrt(squares), std::move(sources)};
+  double biases = 0.0, squares = 0.0;
+  for (const DoubtSource& source : sources)
+    if (source.is_bias)
+      biases += source.half_width;
+    else
+      squares += source.half_width * source.half_width;
+  return {value, biases + std::sqrt(squares), std::move(sources)};
 }
 
 /// What a sheet's half level loses on either side because the other side's blur reaches it.
@@ -235,10 +253,10 @@ SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from) 
   std::vector<DoubtSource> volume{
       {"digitisation", "0.3 * 0.28 |B|", 0.3 * lost * shape.bent_without_sign_mm3},
       {"blur", "b^2 (|B + C| / 2 + 0.3 |B|)",
-       b2 * (0.5 * std::abs(shape.bent_mm3 + shape.chord_mm3) + 0.3 * shape.bent_without_sign_mm3)},
+       b2 * (0.5 * std::abs(shape.bent_mm3 + shape.chord_mm3) + 0.3 * shape.bent_without_sign_mm3), true},
       {"flat", "0.2 s * area of parts along the lattice", 0.2 * shape.flat_mm3},
       {"sheet", "S d sqrt(pi / 2) (1 - Phi(2 V / S / d)), d the blur's deviation",
-       0.5 * sheet_mm3(shape, b2, s_mm)}};
+       0.5 * sheet_mm3(shape, b2, s_mm), true}};
   std::vector<DoubtSource> area{
       {"digitisation", "5.5 * 0.28^2 E", 5.5 * lost * lost * shape.sharp_mm2},
       {"blur", "7 b^2 E", 7.0 * b2 * shape.sharp_mm2},
@@ -276,7 +294,7 @@ double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,
     const double half_thickness = half_thickness_mm / glm::length(one);
     const double deep = std::clamp(half_thickness, 0.5, beyond);
     contrast += sample_at(at - deep * one) - sample_at(at + beyond * one);
-    step += sample_at(at - 0.5 * one) - sample_at(at + 0.5 * one);
+    step += mean_step([&](double depth) { return sample_at(at - depth * one); });
     depth += deep;
     thickness += 2.0 * half_thickness;
     ++points;

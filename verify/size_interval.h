@@ -18,12 +18,13 @@ struct DoubtSource {
   std::string name;     ///< "digitisation", "window", ...
   std::string formula;  ///< its size, in symbols that the source explains
   double half_width = 0.0;
+  bool is_bias = false;  ///< errs to one side, as blur does, and often by all of it
 };
 
 struct Interval {
   double value = 0.0;  ///< recommended
   double half_width = 0.0;
-  std::vector<DoubtSource> sources;  ///< added by their squares
+  std::vector<DoubtSource> sources;  ///< the biases' sum, and the root of the others' squares
 };
 /// The share of cases that an interval's claim holds in.
 inline constexpr double claimed_coverage = 0.99;
