@@ -48,7 +48,6 @@
 #include <tbb/parallel_sort.h>
 #include <utility>
 
-#include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/sample_surface.h"
@@ -56,8 +55,7 @@
 #include "convert/voxel/voxelise.h"
 #include "verify/boundary_model.h"
 #include "verify/places.h"
-#include "voxel/filter/components.h"
-#include "voxel/measure/cell_counts.h"
+#include "verify/topology.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/space/rounded.h"
@@ -463,28 +461,6 @@ void judge_by_witness(Certificate& certificate, const Evidence& evidence, const 
                  most);
 }
 
-/// Both objects must have one topology if the voxels are the mesh's samples. The mesh parts inside corners
-/// that meet at edges and corners, and outside corners that meet at a cell's corners only. The voxels' Euler
-/// number by faces joins the latter, by a tunnel each.
-void compare_topology(Certificate& certificate, const voxel::Octree& octree, const brep::Solid& solid) {
-  std::int64_t solid_euler = voxel::euler_numbers(octree).by_faces;
-  const std::array<std::uint64_t, 256> cells = voxel::cell_counts(octree);
-  for (unsigned corner = 0; corner < 4; ++corner)
-    solid_euler += static_cast<std::int64_t>(cells[255U - (1U << corner) - (1U << (7U - corner))]);
-  const auto twice = 2.0 * static_cast<double>(solid_euler);
-  const auto surface = static_cast<double>(brep::euler_number(solid.triangles()));
-  add_comparison(certificate, {"euler", "", twice, surface, std::abs(twice - surface), 0.0,
-                               "0: one topology; a surface has twice its solid's Euler number",
-                               "The Euler numbers of the two surfaces differ by %"});
-  const auto parts = static_cast<double>(voxel::components(octree).voxel_counts.size());
-  const std::vector<brep::Component>& shells = solid.components();
-  const auto solids = static_cast<double>(std::count_if(
-      shells.begin(), shells.end(), [](const brep::Component& shell) { return shell.volume_mm3 > 0.0; }));
-  add_comparison(certificate, {"components", "", parts, solids, std::abs(parts - solids), 0.0,
-                               "0: parts of voxels that touch by faces, and outer shells",
-                               "The numbers of connected parts differ by %"});
-}
-
 /// Sets `unresolved`, independent of the verdict.
 void judge_extent(Certificate& certificate, const Evidence& evidence) {
   double extent_voxels = std::numeric_limits<double>::infinity();
@@ -590,12 +566,13 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
     judge_by_witness(certificate, evidence,
                      judge_places(octree, digitised, solid, inputs.witness, {progress.stop, {}}));
   judge_volume(certificate, evidence);
+  compare_topology(certificate, octree, digitised);
   if (!octree.is_empty() && evidence.mesh.area_mm2 > 0.0) {
     progress.at(0.5);
     compare_surfaces(certificate, evidence, octree, solid);
     progress.at(0.9);
     compare_inertia(certificate, evidence, solid);
-    if (inputs.voxels_are_samples) compare_topology(certificate, octree, solid);
+    if (inputs.voxels_are_samples) compare_same_topology(certificate, octree, solid);
   }
   judge_extent(certificate, evidence);
   judge_evidence(certificate);

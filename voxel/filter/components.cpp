@@ -168,6 +168,13 @@ Components components(const Octree& octree, Neighbours neighbours) {
   return result;
 }
 
+std::size_t component_count(const Octree& octree, Neighbours neighbours) {
+  const Parts parts = parts_of(octree, neighbours);
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < parts.part.size(); ++i) count += parts.part[i] == i;
+  return count;
+}
+
 Octree components_at(const Octree& octree, const std::vector<glm::ivec3>& seeds, Neighbours neighbours) {
   const Parts parts = parts_of(octree, neighbours);
   std::vector<bool> wanted(parts.part.size(), false);
@@ -177,6 +184,23 @@ Octree components_at(const Octree& octree, const std::vector<glm::ivec3>& seeds,
     while (parts.runs.runs[run].last < seed.x) ++run;
     wanted[parts.part[run]] = true;
   }
+  return octree_of_parts(octree, parts, wanted);
+}
+
+Octree components_that_meet(const Octree& octree, const Octree& other, Neighbours neighbours) {
+  assert(octree.universe() == other.universe());
+  const Parts parts = parts_of(octree, neighbours);
+  const Runs others = runs_of(other);
+  std::vector<bool> wanted(parts.part.size(), false);
+  for (int z = 0; z < others.side; ++z)
+    for (int y = 0; y < others.side; ++y) {
+      std::size_t own = parts.runs.begin(y, z), theirs = others.begin(y, z);
+      while (own < parts.runs.end(y, z) && theirs < others.end(y, z)) {
+        const Run &a = parts.runs.runs[own], &b = others.runs[theirs];
+        if (a.first <= b.last && b.first <= a.last) wanted[parts.part[own]] = true;
+        a.last < b.last ? ++own : ++theirs;
+      }
+    }
   return octree_of_parts(octree, parts, wanted);
 }
 

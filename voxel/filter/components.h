@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -20,9 +21,15 @@ struct Components {
 /// Memory, here and below: 20 bytes per run of voxels along x; the number of runs grows with the boundary.
 Components components(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
 
+std::size_t component_count(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
+
 /// The components that contain a seed. Seeds outside the object are ignored.
 Octree components_at(const Octree& octree, const std::vector<glm::ivec3>& seeds,
                      Neighbours neighbours = Neighbours::Faces);
+
+/// The components that hold a voxel of another octree, which has the same universe.
+Octree components_that_meet(const Octree& octree, const Octree& other,
+                            Neighbours neighbours = Neighbours::Faces);
 
 /// The components of at least `voxel_count` voxels.
 Octree components_of_at_least(const Octree& octree, std::uint64_t voxel_count,
