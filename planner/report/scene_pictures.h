@@ -26,6 +26,9 @@ struct PictureGroup {
   std::string title;  ///< for people
   std::vector<voxel::DrawnObject> objects;
   std::vector<ScenePicture> pictures;
+  /// Numbers of places, from 1, written on the pictures.
+  std::vector<glm::dvec3> marks_mm = {};
+  double most_mm = 0.0;  ///< colours by distance end there; 0: colours name objects
 };
 
 /// The pieces a plan ends with and, in the same colours, what they were before they were moved.
