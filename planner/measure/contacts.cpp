@@ -185,6 +185,54 @@ double least_distance_mm(const brep::Solid& one, const brep::Solid& other, doubl
   return *std::min_element(points.distances_mm.begin(), points.distances_mm.end());
 }
 
+std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& other, double spacing_mm) {
+  // Errors of planning move pieces by some millimetres: what is farther does not come nearest.
+  constexpr double reach_mm = 5.0;
+  constexpr std::size_t most_points = 400;
+  const double least_mm = least_distance_mm(one, other, spacing_mm);
+  const double within_mm = std::max(least_mm, 0.0) + reach_mm;
+  const Points points = mesh_points(one, other, within_mm, spacing_mm);
+  std::vector<double> areas(points.p_mm.size(), 0.0);
+  for (const auto& face : points.faces)
+    for (const auto corner : face)
+      areas[corner] += glm::length(glm::cross(points.p_mm[face[1]] - points.p_mm[face[0]],
+                                              points.p_mm[face[2]] - points.p_mm[face[0]])) /
+                       6.0;
+  std::vector<NearPoint> all;
+  std::vector<glm::dvec3> places;
+  for (std::size_t i = 0; i < points.p_mm.size(); ++i) {
+    const double length = glm::length(points.normals[i]);
+    if (points.distances_mm[i] > within_mm || !(length > 0.0)) continue;
+    all.push_back({points.p_mm[i], -points.normals[i] / length, points.distances_mm[i], areas[i]});
+    places.push_back(points.p_mm[i]);
+  }
+  const std::vector<brep::Foot> feet = other.tree().feet(places);
+  // Nearer than that a foot's direction is rounding; there the two surfaces face each other.
+  constexpr double touching_mm = 1e-6;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!(feet[i].distance_mm > touching_mm)) continue;
+    const glm::dvec3 inward = all[i].away;
+    all[i].away = (all[i].p_mm - feet[i].p_mm) / std::copysign(feet[i].distance_mm, all[i].distance_mm);
+    all[i].area_mm2 *= std::max(0.0, glm::dot(inward, all[i].away));
+  }
+  for (double width_mm = spacing_mm;; width_mm *= 1.25) {
+    std::map<std::array<int, 3>, NearPoint> cells;
+    for (const NearPoint& point : all) {
+      const glm::dvec3 cell = glm::floor(point.p_mm / width_mm);
+      const auto [found, is_new] = cells.emplace(
+          std::array{static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)}, point);
+      if (is_new) continue;
+      const double area_mm2 = found->second.area_mm2 + point.area_mm2;
+      if (point.distance_mm < found->second.distance_mm) found->second = point;
+      found->second.area_mm2 = area_mm2;
+    }
+    if (cells.size() > most_points) continue;
+    std::vector<NearPoint> near;
+    for (const auto& [cell, point] : cells) near.push_back(point);
+    return near;
+  }
+}
+
 std::vector<glm::dvec3> points_about(const brep::Solid& solid, const glm::dvec3& place_mm, double radius_mm,
                                      double spacing_mm) {
   std::vector<glm::dvec3> points = solid.triangles().points_mm;

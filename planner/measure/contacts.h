@@ -48,6 +48,17 @@ std::vector<double> signed_distances_mm(const brep::Solid& solid, const std::vec
 /// where they are near.
 double least_distance_mm(const brep::Solid& one, const brep::Solid& other, double spacing_mm);
 
+/// A point of one surface that may come nearest to another one.
+struct NearPoint {
+  glm::dvec3 p_mm{0.0};
+  glm::dvec3 away{0.0};      ///< unit, along which its distance grows fastest
+  double distance_mm = 0.0;  ///< signed
+  double area_mm2 = 0.0;     ///< of the surface that it stands for, seen along `away`
+};
+/// The nearest points of a surface to another one, those of each place, and all that overlap; a place is as
+/// wide as the spacing or, where there are more than some hundred, wider. Preconditions: neither is empty.
+std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& other, double spacing_mm);
+
 /// Points of a surface within a radius about a place, no farther apart than the spacing, corners included.
 std::vector<glm::dvec3> points_about(const brep::Solid& solid, const glm::dvec3& place_mm, double radius_mm,
                                      double spacing_mm);
