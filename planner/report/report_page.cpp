@@ -13,6 +13,7 @@
 #include "planner/measure/result_json.h"
 #include "planner/operation/mask.h"
 #include "planner/picture/colour.h"
+#include "planner/report/airway_tables.h"
 #include "planner/report/contact_report.h"
 #include "planner/report/flap_tables.h"
 #include "planner/report/html.h"
@@ -263,7 +264,7 @@ std::string measurements(const Result& result) {
   if (result.measurements.empty()) return "";
   return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements) +
          flap_tables(result.measurements) + contact_tables(result.measurements) +
-         trial_tables(result.measurements);
+         airway_tables(result.measurements) + trial_tables(result.measurements);
 }
 
 /// A point's displacement as cells, signed along the head's directions.
