@@ -41,7 +41,8 @@ struct FinalScene {
 /// The last union of named pieces (`rest | advanced`), each piece in a colour of its own; where the plan has
 /// none, its last object that is neither a mask nor empty, if any. Moved pieces keep their colour in
 /// `before`; a piece that was cut from what an earlier step had moved is shown there as the bone that all of
-/// it was made of, so that `before` is the untouched patient.
+/// it was made of, so that `before` is the untouched patient. Where a plan adds bone, a flap's or a mirrored
+/// one, `before` is what the other pieces were made of.
 FinalScene final_scene(const Plan& plan, const Evaluation& evaluation);
 
 /// A picture before it is encoded, and its frame.
