@@ -31,6 +31,22 @@ EvaluateOptions evaluate_options(Program& program);
 /// The plan evaluated; its scans are noted.
 Evaluation evaluated(Program& program, const Plan& plan, const EvaluateOptions& options);
 
+/// When a replay's certificates are made.
+enum class Certify {
+  Now,
+  Later,  ///< the result is written without certificates first, and again with them
+  Never
+};
+struct RunText : PlanIn {
+  std::filesystem::path out;
+  Certify certify = Certify::Now;
+  bool as_pdf = false;
+};
+/// Replays a plan into a result's folder and says what came of it; the exit status.
+int run(Program& program, const RunText& text);
+/// Adds --certify to a verb that replays a plan.
+void add_certify(CLI::App& verb, Certify& certify);
+
 /// A line an object for people: its verdict with both answers. Findings go to standard error.
 std::string verdict_text(const Evaluation& evaluation);
 /// The exit status that the verdicts make; says so on standard error where the kernels disagree.

@@ -15,18 +15,6 @@
 namespace octotomy::planner::cli {
 namespace {
 
-enum class Certify {
-  Now,
-  Later,  ///< the result is written without certificates first, and again with them
-  Never
-};
-
-struct RunText : PlanIn {
-  std::filesystem::path out;
-  Certify certify = Certify::Now;
-  bool as_pdf = false;
-};
-
 struct PreviewText : PlanIn {
   std::string step;
   std::filesystem::path out;
@@ -72,6 +60,8 @@ Json written(Program& program, Result& result, const std::filesystem::path& out)
   return write_result(result, out, {program.stop.get_token(), program.progress()});
 }
 
+}  // namespace
+
 int run(Program& program, const RunText& text) {
   Result result;
   result.plan = plan_of(program, text);
@@ -103,7 +93,17 @@ int run(Program& program, const RunText& text) {
   return status_of(result.evaluation);
 }
 
-}  // namespace
+void add_certify(CLI::App& verb, Certify& certify) {
+  static const std::map<std::string, Certify> words{
+      {"now", Certify::Now}, {"later", Certify::Later}, {"never", Certify::Never}};
+  verb.add_option("--certify", certify,
+                  "now; later: the result is written without certificates first and again with them; never: "
+                  "faster, and no number is checked. Default: now")
+      ->transform(CLI::Transformer(words))
+      ->type_name("WHEN");
+  verb.add_flag_callback(
+      "--no-certificates", [&certify] { certify = Certify::Never; }, "The same as --certify never");
+}
 
 void add_plan_verbs(Program& program) {
   program.verb("schema", "The JSON schema of plans, from the table of operations",
@@ -122,15 +122,7 @@ void add_plan_verbs(Program& program) {
   verb.add_option("-o,--out", text->out,
                   "The result's folder: new, empty, or an earlier result; files that you put there stay")
       ->required();
-  static const std::map<std::string, Certify> certify{
-      {"now", Certify::Now}, {"later", Certify::Later}, {"never", Certify::Never}};
-  verb.add_option("--certify", text->certify,
-                  "now; later: the result is written without certificates first and again with them; never: "
-                  "faster, and no number is checked. Default: now")
-      ->transform(CLI::Transformer(certify))
-      ->type_name("WHEN");
-  verb.add_flag_callback(
-      "--no-certificates", [text] { text->certify = Certify::Never; }, "The same as --certify never");
+  add_certify(verb, text->certify);
   verb.add_flag("--pdf", text->as_pdf,
                 "Print the report as report.pdf, too; takes WeasyPrint or Chromium on the PATH");
   const auto seen = std::make_shared<PreviewText>();

@@ -2,6 +2,7 @@
 #include "planner/cli/procedure_verb.h"
 
 #include "planner/cli/numbers.h"
+#include "planner/cli/plan_in.h"
 #include "planner/cli/scan_in.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/landmarks_file.h"
@@ -16,7 +17,8 @@ namespace fs = std::filesystem;
 
 struct ProcedureText {
   std::string name;
-  fs::path scan, donor, out;
+  fs::path scan, donor, out, report;
+  Certify certify = Certify::Now;
   std::vector<fs::path> landmarks;
   std::vector<std::string> values;
   double voxel_mm = 1.0;
@@ -89,11 +91,18 @@ ProcedureInput input_of(const ProcedureText& text) {
   return input;
 }
 
-int procedure(const Program& program, const ProcedureText& text) {
+int procedure(Program& program, const ProcedureText& text) {
   if (text.scan.empty() && text.landmarks.empty() && text.out.empty()) return explain(program, text);
   if (text.name.empty()) throw std::runtime_error("name the procedure: octotomy procedure lists them");
   const Json plan = plan_of(read_procedure(text.name), input_of(text));
   write_whole(text.out, plan.dump(2) + "\n");
+  if (!text.report.empty()) {
+    RunText replay;
+    replay.plan = text.out;
+    replay.out = text.report;
+    replay.certify = text.certify;
+    return run(program, replay);
+  }
   Json json = answer({});
   json["path"] = text.out.string();
   json["plan"] = plan;
@@ -130,6 +139,8 @@ void add_procedure(Program& program) {
       ->type_name("NAME=NUMBER");
   verb.add_option("--voxel", text->voxel_mm, "Edge of the plan's voxels, mm; default 1")->check(above_zero());
   verb.add_option("-o,--out", text->out, "The .plan.json, which stands alone and may be edited");
+  verb.add_option("--report", text->report, "Replays the plan into this folder at once, as run does");
+  add_certify(verb, text->certify);
 }
 
 }  // namespace octotomy::planner::cli

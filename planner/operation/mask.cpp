@@ -137,9 +137,18 @@ Operation mask_operation() {
                  .a_file())
       .takes(field("structure", &Mask::structure,
                    "The name of the structure that is meant, where the slices are a structure set."))
-      .verb_takes(field("region", &Mask::region_files,
-                        "VIEW:FILE.json, repeated: the mask is what all of their back-projections enclose.")
-                      .repeated())
+      .verb_takes(
+          field("region", &Mask::region_files,
+                "VIEW:FILE, repeated: the mask is what all of their back-projections enclose. The file "
+                "is JSON, an SVG drawing in mm, or closed curves of Slicer (.mrk.json); an SVG drawn "
+                "over a .png of render or slice takes no view.")
+              .repeated())
+      .verb_takes(
+          field("region_pixels", &Mask::region_pixels,
+                "PICTURE.png:X,Y X,Y X,Y, repeated: a region in pixels of a .png that render or slice "
+                "wrote, from its top left; a semicolon begins another polygon.")
+              .repeated()
+              .called("region-pixels"))
       .verb_takes(field("edit", &Mask::edit, "A mask's .octree that the regions cut further.").a_file())
       .verb_takes(field("like", &Mask::like, "A scan or .octree whose voxels the mask has."))
       .verb_takes(field("voxel_mm", &Mask::voxel_mm,
@@ -151,6 +160,8 @@ Operation mask_operation() {
           "head.nrrd\n"
           "  octotomy mask -o mandible.octree --slices rtstruct.dcm --structure Mandible --like ct\n"
           "  octotomy mask -o less.octree --edit cut.octree --region 35,15:oblique.json\n"
+          "  octotomy mask -o cut.octree --region-pixels \"front.png:120,80 300,80 300,200\" --region "
+          "left.svg\n"
           "A region's file: {\"polygons_mm\": [[[-40,-60],[40,-60],[40,-25],[-40,-25]]]}",
           mask_file)
       .example(R"({"id": "cut", "do": "mask", "regions": [

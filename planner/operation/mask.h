@@ -21,7 +21,8 @@ struct Mask {
   std::filesystem::path slices;  ///< a file of regions on parallel slices, which cut the others
   std::string structure;         ///< the region of a structure set in that file
   // Of the verb.
-  std::vector<std::string> region_files;  ///< VIEW:FILE.json
+  std::vector<std::string> region_files;   ///< VIEW:FILE
+  std::vector<std::string> region_pixels;  ///< PICTURE.png:X,Y X,Y X,Y
   std::filesystem::path edit, like, out;
   std::optional<double> voxel_mm;
 };

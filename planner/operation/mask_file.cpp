@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planner/file/drawn_region.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/octree_in.h"
 #include "planner/file/region_file.h"
@@ -16,18 +17,6 @@ namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-
-voxel::Region region_of(const std::string& text) {
-  const auto colon = text.find(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == text.size())
-    throw std::runtime_error("--region: '" + text +
-                             "' is no region: give VIEW:FILE.json, as anterior:cut.json");
-  try {
-    return read_region(voxel::parse_view(text.substr(0, colon)), text.substr(colon + 1));
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(std::string("--region: ") + error.what());
-  }
-}
 
 /// The mask's bounds along the patient's axes, from views along them.
 class Bounds {
@@ -88,21 +77,39 @@ voxel::Universe universe_around(const voxel::RegionMask& regions,
   return voxel::universe_around(bounds.box(), voxel_mm);
 }
 
+/// The regions as a plan's step; null where no step says the same.
+Json step_of(const std::vector<DrawnRegion>& drawn, bool is_cut_further) {
+  Json regions = Json::array();
+  for (const DrawnRegion& each : drawn) {
+    if (each.view.empty()) return nullptr;
+    Json polygons = Json::array();
+    for (const auto& polygon : each.region.polygons_mm) {
+      polygons.push_back(Json::array());
+      for (const glm::dvec2& p : polygon) polygons.back().push_back({p.x, p.y});
+    }
+    regions.push_back({{"view", each.view}, {"polygons_mm", polygons}});
+  }
+  if (drawn.empty() || is_cut_further) return nullptr;
+  return {{"id", "mask"}, {"do", "mask"}, {"regions", regions}};
+}
+
 }  // namespace
 
 FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
   need_octree_extension(asked.out);
   need_folder_of(asked.out);
-  if (asked.region_files.empty() && asked.slices.empty())
-    throw std::runtime_error("a mask needs --region VIEW:FILE.json or --slices FILE");
-  voxel::RegionMask regions;
+  if (asked.region_files.empty() && asked.region_pixels.empty() && asked.slices.empty())
+    throw std::runtime_error(
+        "a mask needs --region VIEW:FILE.json, --region-pixels PICTURE.png:X,Y... or --slices FILE");
+  std::vector<DrawnRegion> drawn;
   std::optional<voxel::SliceMask> slices;
   std::optional<voxel::Expression> expression;
   std::optional<voxel::Universe> universe;
   if (!asked.like.empty()) universe = universe_of_file(asked.like, asked.voxel_mm, bench);
   {
     const Stopwatch watch(bench.timings, "read");
-    for (const std::string& region : asked.region_files) regions.regions.push_back(region_of(region));
+    for (const std::string& region : asked.region_files) drawn.push_back(read_drawn_region(region));
+    for (const std::string& pixels : asked.region_pixels) drawn.push_back(region_of_pixels(pixels));
     if (!asked.slices.empty()) slices = read_slices(asked.slices, asked.structure);
     if (!asked.edit.empty()) {
       const voxel::OctreeFile old = voxel::read_octree(asked.edit);
@@ -113,6 +120,8 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
       expression = *octree;
     }
   }
+  voxel::RegionMask regions;
+  for (const DrawnRegion& each : drawn) regions.regions.push_back(each.region);
   const auto also = [&](const voxel::Expression& part) {
     expression = expression ? *expression & part : part;
   };
@@ -125,14 +134,19 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
     file.tree = voxel::combine(*universe, *expression);
   }
   std::vector<std::string> findings;
+  for (const DrawnRegion& each : drawn)
+    findings.insert(findings.end(), each.findings.begin(), each.findings.end());
   if (std::get<voxel::Octree>(file.tree).is_empty())
     findings.emplace_back("the mask holds no voxel: its regions do not overlap, or lie outside the universe");
   Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION}, {"regions", asked.region_files}};
+  if (!asked.region_pixels.empty()) made["region_pixels"] = asked.region_pixels;
   if (slices) made["slices"] = asked.slices.filename().string();
   if (!asked.structure.empty()) made["structure"] = asked.structure;
   if (!asked.edit.empty()) made["edited"] = asked.edit.filename().string();
   file.metadata = json_text(made);
-  return octree_written(file, asked.out, bench.stop, bench.timings, findings);
+  FileAnswer answer = octree_written(file, asked.out, bench.stop, bench.timings, findings);
+  answer.json["step"] = step_of(drawn, slices || !asked.edit.empty());
+  return answer;
 }
 
 }  // namespace octotomy::planner

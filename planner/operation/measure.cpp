@@ -3,8 +3,8 @@
 // with its half-width and the terms that make it.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
+#include "planner/measure/digitised.h"
 #include "planner/measure/gap.h"
 #include "planner/measure/recommended.h"
 #include "planner/measure/result_json.h"
@@ -12,7 +12,6 @@
 #include "planner/operation/measure_file.h"
 #include "planner/operation/trace.h"
 #include "planner/table/operation.h"
-#include "voxel/measure/flat_parts.h"
 
 namespace octotomy::planner {
 namespace {
@@ -35,28 +34,6 @@ void check(const Measure& measure, const Place& place) {
   if (measure.points_mm.size() == 3 &&
       (measure.points_mm[1] == measure.points_mm[0] || measure.points_mm[1] == measure.points_mm[2]))
     points.refuse("has its second point twice: an angle needs two legs");
-}
-
-/// How finely the plan's universe and its scans tell places apart.
-Digitised digitised_of(const AnswerBench& bench) {
-  Digitised digitised{bench.universe.lattice().spacing_mm()};
-  for (const ScanRecord& scan : bench.scans)
-    digitised.sample_mm = glm::max(digitised.sample_mm, scan.lattice.spacing_mm());
-  return digitised;
-}
-
-/// What the object's scans, windows and flat parts make doubtful. A part is no surer than the windows that
-/// its whole was made of.
-Digitised digitised_of(const AnswerBench& bench, const Object& object) {
-  Digitised digitised = digitised_of(bench);
-  digitised.flat_mm2 = voxel::flat_parts_mm2(object.voxel.octree);
-  std::set<std::pair<std::string, double>> known;
-  for (const Shown& window : object.bound.windows) {
-    if (!known.emplace(window.scan, window.threshold).second) continue;
-    const std::optional<double> shift_mm = window_shift_mm({window.grey, window.threshold});
-    if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), *shift_mm);
-  }
-  return digitised;
 }
 
 /// The recommended volume and area. The mesh's, where there is one: motions keep it and cuts are exact in it,

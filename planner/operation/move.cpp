@@ -12,6 +12,7 @@
 #include "brep/mesh/move.h"
 #include "planner/anatomy/head_directions.h"
 #include "planner/anatomy/motion_of_points.h"
+#include "planner/operation/motion.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
@@ -62,23 +63,22 @@ std::string name_of(const Mark& mark) {
   return mark.landmark + (mark.object.empty() ? "" : "@" + mark.object);
 }
 
-std::vector<WantedPoint> wanted_points(const Move& move, const Objects& objects) {
+std::vector<WantedPoint> wanted_points(const Move& move, const MarkPlaces& places) {
   std::vector<WantedPoint> wanted;
   for (const Move::Point& point : move.points) {
-    const glm::dvec3 from_mm = mark_mm(point.at, objects);
-    wanted.push_back(
-        {name_of(point.at), from_mm,
-         point.to ? mark_mm(*point.to, objects) : from_mm + lps_mm(point, objects.lps_from_head)});
+    const glm::dvec3 from_mm = places.mark_mm(point.at);
+    wanted.push_back({name_of(point.at), from_mm,
+                      point.to ? places.mark_mm(*point.to) : from_mm + lps_mm(point, places.lps_from_head)});
   }
   return wanted;
 }
 
 /// The directions of 'by': the head's, or of a plane through a front point and one at each side, right then
 /// left, as the occlusal plane. Throws std::invalid_argument where the three lie on one line.
-glm::dmat3 directions_of(const Move& move, const Objects& objects) {
-  if (move.along.empty()) return objects.lps_from_head;
-  const glm::dvec3 right = mark_mm(move.along[1], objects), left = mark_mm(move.along[2], objects);
-  const glm::dvec3 front = mark_mm(move.along[0], objects) - 0.5 * (right + left);
+glm::dmat3 directions_of(const Move& move, const MarkPlaces& places) {
+  if (move.along.empty()) return places.lps_from_head;
+  const glm::dvec3 right = places.mark_mm(move.along[1]), left = places.mark_mm(move.along[2]);
+  const glm::dvec3 front = places.mark_mm(move.along[0]) - 0.5 * (right + left);
   const glm::dvec3 up = glm::cross(front, left - right);
   if (!(glm::length(up) > 1e-3 * glm::length(front) * glm::length(left - right)))
     throw std::invalid_argument("'along' has its three points on one line, through which no plane is fixed");
@@ -97,31 +97,31 @@ glm::dmat4 about_point(const glm::dmat3& turn, const glm::dvec3& p_mm) {
 }
 
 /// The turn about its own axis or pivot.
-glm::dmat4 turn_of(const Move& move, const Objects& objects) {
+glm::dmat4 turn_of(const Move& move, const MarkPlaces& places) {
   if (move.turn)
-    return about_point(rotation_of(*move.turn, objects.lps_from_head), mark_mm(move.turn->about_mm, objects));
+    return about_point(rotation_of(*move.turn, places.lps_from_head), places.mark_mm(move.turn->about_mm));
   if (!move.rotate) return glm::dmat4(1.0);
   voxel::Motion motion;
   motion.degrees = move.rotate->degrees;
   if (move.rotate->through.empty()) {
     motion.axis = *move.rotate->axis;
-    motion.about_mm = mark_mm(move.rotate->about_mm, objects);
+    motion.about_mm = places.mark_mm(move.rotate->about_mm);
   } else {
-    motion.about_mm = mark_mm(move.rotate->through[0], objects);
-    motion.axis = mark_mm(move.rotate->through[1], objects) - motion.about_mm;
+    motion.about_mm = places.mark_mm(move.rotate->through[0]);
+    motion.axis = places.mark_mm(move.rotate->through[1]) - motion.about_mm;
   }
   return voxel::moved_from_still(motion);
 }
 
 /// Throws std::invalid_argument where points or an axis leave the motion open.
-glm::dmat4 motion_of(const Move& move, const Objects& objects) {
+glm::dmat4 motion_of(const Move& move, const MarkPlaces& places) {
   if (move.matrix) return *move.matrix;
-  if (move.with) return objects.at(move.with->name).moved->motion;
+  if (move.with) return places.motion_of(move.with->name);
   if (!move.points.empty())
-    return motion_of_points(wanted_points(move, objects), fit_of(move)).moved_from_still;
+    return motion_of_points(wanted_points(move, places), fit_of(move)).moved_from_still;
   glm::dvec3 by_mm = move.translate_mm.value_or(glm::dvec3(0.0));
-  if (move.by) by_mm += lps_mm(*move.by, directions_of(move, objects));
-  if (move.from) by_mm += mark_mm(*move.to, objects) - mark_mm(*move.from, objects);
+  if (move.by) by_mm += lps_mm(*move.by, directions_of(move, places));
+  if (move.from) by_mm += places.mark_mm(*move.to) - places.mark_mm(*move.from);
   if (!is_turned(move) || (move.rotate && move.rotate->through.empty())) {
     // One call, so that a plan of numbers alone keeps its bits.
     voxel::Motion motion;
@@ -129,11 +129,11 @@ glm::dmat4 motion_of(const Move& move, const Objects& objects) {
     if (move.rotate) {
       motion.degrees = move.rotate->degrees;
       motion.axis = *move.rotate->axis;
-      motion.about_mm = mark_mm(move.rotate->about_mm, objects);
+      motion.about_mm = places.mark_mm(move.rotate->about_mm);
     }
     return voxel::moved_from_still(motion);
   }
-  return glm::translate(glm::dmat4(1.0), by_mm) * turn_of(move, objects);
+  return glm::translate(glm::dmat4(1.0), by_mm) * turn_of(move, places);
 }
 
 /// The largest part by which a matrix may miss a rigid motion: its numbers are copied with six decimals.
@@ -202,8 +202,9 @@ void check(const Move& move, const Place& place) {
   }
   for (const Mark& mark : marks)
     if (!mark.object.empty()) return;
+  const Objects none;
   try {
-    motion_of(move, {});
+    motion_of(move, places_of(none));
   } catch (const std::invalid_argument& error) {
     (move.points.empty() ? place : place.at("points")).refuse(error.what());
   }
@@ -234,16 +235,16 @@ std::string definition(const Move& move, const Objects&) {
 }
 
 void voxels(const Move& move, const VoxelBench& bench, VoxelSide& made) {
-  move_voxels(move.object.name, motion_of(move, bench.objects), bench, made);
+  move_voxels(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
 }
 
 void triangles(const Move& move, const MeshBench& bench, MeshSide& made) {
-  move_triangles(move.object.name, motion_of(move, bench.objects), bench, made);
+  move_triangles(move.object.name, motion_of(move, places_of(bench.objects)), bench, made);
 }
 
 /// Where each point was wanted, where it comes, and what is left between.
 Json points_json(const Move& move, const Objects& objects) {
-  const std::vector<WantedPoint> wanted = wanted_points(move, objects);
+  const std::vector<WantedPoint> wanted = wanted_points(move, places_of(objects));
   const PointMotion found = motion_of_points(wanted, fit_of(move));
   Json points = Json::array();
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -262,11 +263,22 @@ Json points_json(const Move& move, const Objects& objects) {
 }
 
 void bound(const Move& move, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(move.object.name), motion_of(move, bench.objects), bench.universe, made);
+  carry(bench.objects.at(move.object.name), motion_of(move, places_of(bench.objects)), bench.universe, made);
   if (!move.points.empty()) made.moved->details = points_json(move, bench.objects);
 }
 
 }  // namespace
+
+MarkPlaces places_of(const Objects& objects) {
+  return {[&objects](const Mark& mark) { return mark_mm(mark, objects); }, objects.lps_from_head,
+          [&objects](const std::string& name) { return objects.at(name).moved->motion; }};
+}
+
+std::optional<glm::dmat4> motion_of(const Action& action, const MarkPlaces& places) {
+  const Move* move = action.get_if<Move>();
+  if (move == nullptr) return std::nullopt;
+  return motion_of(*move, places);
+}
 
 void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, const VoxelBench& bench,
                  VoxelSide& made) {

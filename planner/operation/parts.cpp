@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The connected parts of an object that are large enough.
+// The connected parts of an object that are large enough, or that hold points.
 #include "planner/operation/parts.h"
 
 #include <algorithm>
@@ -21,21 +21,50 @@ struct Parts {
   ObjectName object;
   std::optional<int> largest;
   std::optional<double> at_least_mm3;
+  std::vector<Mark> at_mm;
 };
 
 void check(const Parts& parts, const Place& place) {
-  if (parts.largest.has_value() == parts.at_least_mm3.has_value())
-    place.refuse("needs one of 'largest', a number of parts, and 'at_least_mm3', a volume");
+  if (int{parts.largest.has_value()} + int{parts.at_least_mm3.has_value()} + int{!parts.at_mm.empty()} != 1)
+    place.refuse("needs one of 'largest', a number of parts, 'at_least_mm3', a volume, and 'at_mm', points");
 }
 
 std::string definition(const Parts& parts, const Objects&) {
+  if (!parts.at_mm.empty())
+    return "the parts of " + parts.object.name + " that hold " + std::to_string(parts.at_mm.size()) +
+           (parts.at_mm.size() == 1 ? " point" : " points");
   return parts.largest
              ? "the " + std::to_string(*parts.largest) + " largest parts of " + parts.object.name
              : "parts of " + parts.object.name + " of at least " + plain(*parts.at_least_mm3) + " mm\u00b3";
 }
 
+[[noreturn]] void refuse_point(const Parts& parts, const glm::dvec3& p_mm) {
+  throw std::runtime_error("no part of '" + parts.object.name + "' holds (" + plain(p_mm.x) + ", " +
+                           plain(p_mm.y) + ", " + plain(p_mm.z) + ") mm: give a point within it");
+}
+
+voxel::Octree parts_at(const Parts& parts, const voxel::Octree& octree, const Objects& objects) {
+  const glm::dmat4 voxel_from_lps = glm::inverse(octree.universe().lps_from_voxel);
+  std::vector<glm::ivec3> seeds;
+  for (const Mark& mark : parts.at_mm) {
+    const glm::dvec3 p_mm = mark_mm(mark, objects);
+    const glm::ivec3 seed(glm::round(glm::dvec3(voxel_from_lps * glm::dvec4(p_mm, 1.0))));
+    const bool is_within = glm::all(glm::greaterThanEqual(seed, glm::ivec3(0))) &&
+                           glm::all(glm::lessThan(seed, glm::ivec3(octree.universe().side())));
+    if (!is_within || !octree.contains(seed)) refuse_point(parts, p_mm);
+    seeds.push_back(seed);
+  }
+  return voxel::components_at(octree, seeds);
+}
+
 void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
   const VoxelSide& object = bench.object(parts.object.name);
+  if (!parts.at_mm.empty()) {
+    made.octree = parts_at(parts, object.octree, bench.objects);
+    made.symbol = symbol_of_parts(*object.symbol, object.octree, made.octree);
+    made.lineage = "voxels that touch by faces";
+    return;
+  }
   const std::vector<std::uint64_t> counts = voxel::components(object.octree).voxel_counts;
   if (counts.empty()) throw std::runtime_error("'" + parts.object.name + "' is empty: it has no parts");
   const std::size_t wanted = std::min(static_cast<std::size_t>(parts.largest.value_or(1)), counts.size());
@@ -52,10 +81,33 @@ void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
   made.lineage = "voxels that touch by faces";
 }
 
+KeptParts kept_parts_at(const Parts& parts, const brep::Solid& solid, const Objects& objects) {
+  const std::vector<brep::Component>& all = solid.components();
+  KeptParts kept{{}, 0, all.size()};
+  std::vector<std::uint32_t> faces;
+  std::vector<bool> holds(parts.at_mm.size(), false);
+  for (const brep::Component& part : all) {
+    brep::Triangles of_part{solid.triangles().points_mm, {}};
+    for (const std::uint32_t face : part.faces) of_part.faces.push_back(solid.triangles().faces[face]);
+    bool is_kept = false;
+    for (std::size_t i = 0; i < holds.size(); ++i)
+      if (brep::is_inside(mark_mm(parts.at_mm[i], objects), of_part)) holds[i] = is_kept = true;
+    if (!is_kept) continue;
+    faces.insert(faces.end(), part.faces.begin(), part.faces.end());
+    ++kept.kept;
+  }
+  for (std::size_t i = 0; i < holds.size(); ++i)
+    if (!holds[i]) refuse_point(parts, mark_mm(parts.at_mm[i], objects));
+  std::sort(faces.begin(), faces.end());
+  kept.mesh = brep::part_of(solid, faces);
+  return kept;
+}
+
 void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "components");
   const brep::Solid& solid = bench.object(parts.object.name);
-  KeptParts kept = kept_parts(solid, parts.largest, parts.at_least_mm3);
+  KeptParts kept = parts.at_mm.empty() ? kept_parts(solid, parts.largest, parts.at_least_mm3)
+                                       : kept_parts_at(parts, solid, bench.objects);
   made.details = {{"parts", kept.kept}, {"of", kept.of}};
   made.whole = brep::trusted_solid(kept.mesh, brep::proof_of_part(solid.proof()));
   made.lineage = "triangles that share vertices";
@@ -104,12 +156,16 @@ voxel::Expression symbol_of_filled(const voxel::Expression& symbol, const voxel:
 }
 
 Operation parts_operation() {
-  return Describe<Parts>("parts", "Keeps the connected parts of an object that are large enough.",
+  return Describe<Parts>("parts",
+                         "Keeps the connected parts of an object that are large enough or hold a point.",
                          Makes::Object)
       .takes(field("object", &Parts::object, "The object.").required().positional("solid"))
       .takes(field("largest", &Parts::largest, "Keep this many of the largest parts.").from(1).to(1000000))
       .takes(field("at_least_mm3", &Parts::at_least_mm3, "Keep the parts of at least this volume.")
                  .greater_than(0.0))
+      .takes(field("at_mm", &Parts::at_mm, "Keep the parts that hold these points, LPS, or landmarks.")
+                 .from(1)
+                 .in_plans_only())
       .example(R"({"id": "bone", "do": "parts", "object": "skull", "largest": 1})")
       .on_files("octotomy parts skull.stl --largest 1 -o bone.stl")
       .check(check)

@@ -112,11 +112,6 @@ RenderedPicture render_rays(const Render& render, const std::vector<voxel::Drawn
       picture = picture_of(render.shading == "mip" ? voxel::maximum_intensity(grey, plane, progress)
                                                    : voxel::radiograph(grey, plane, progress));
   }
-  if (render.annotate) {
-    voxel::Annotation annotation = annotation_of(render, objects);
-    annotation.legend.clear();
-    voxel::annotate(picture.rgb, plane, annotation);
-  }
   made.rgb = std::move(picture.rgb);
   made.pixel_mm = plane.pixel_mm;
   made.centre_mm = plane.centre_mm;
@@ -129,6 +124,12 @@ RenderedPicture render_rays(const Render& render, const std::vector<voxel::Drawn
                {"depth_range_mm", picture.depth_range_mm ? range(*picture.depth_range_mm) : Json(nullptr)},
                {"objects", {{{"name", objects.front().name}, {"lit_pixels", picture.lit_pixels}}}}};
   if (picture.values) made.said["values"] = range(*picture.values);
+  std::optional<voxel::Annotation> annotation;
+  if (render.annotate) {
+    annotation = annotation_of(render, objects);
+    annotation->legend.clear();
+  }
+  finish(made, plane, render, annotation);
   return made;
 }
 

@@ -16,6 +16,7 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/scan/image_file.h"
+#include "voxel/view/grid.h"
 #include "voxel/view/render.h"
 
 namespace octotomy::planner {
@@ -94,13 +95,13 @@ glm::ivec2 pixel_of(const std::string& text, const glm::ivec2& size_px) {
   return glm::ivec2(pixel);
 }
 
-void annotate(voxel::Picture& picture, const Render& render, const Scene& scene) {
+voxel::Annotation annotation_of(const Render& render, const Scene& scene) {
   voxel::Annotation annotation = annotation_of(render, scene.objects);
   if (const auto& scalar = scene.objects.front().scalar) {
     annotation.bar = voxel::ColourBar{"mm from " + scene.coloured_by, -scalar->most, scalar->most,
                                       voxel::diverging_colours(128)};
   }
-  voxel::annotate(picture.rgb, picture.plane(), annotation);
+  return annotation;
 }
 
 /// Two pictures of one size, the left eye's at the left: for parallel viewing, or a stereoscope.
@@ -150,13 +151,16 @@ RenderedPicture rendered(const Render& render, std::vector<voxel::DrawnObject> d
     made.said["colour_by"] = distances_json(objects.front(), scene.coloured_by, picture);
   if (!picks.empty()) made.said["picks"] = picks_json(picks, objects, picture);
   if (picture.visits) add_visits(made.said, *picture.visits);
-  if (render.annotate) annotate(picture, render, scene);
+  std::optional<voxel::Annotation> annotation;
+  if (render.annotate) annotation = annotation_of(render, scene);
   if (render.stereo_deg) {
-    if (render.annotate) annotate(right_eye, render, scene);
+    for (voxel::Picture* eye : {&picture, &right_eye})
+      if (annotation) voxel::annotate(eye->rgb, eye->plane(), *annotation);
     made.rgb = side_by_side(picture, right_eye);
     made.size_px.x *= 2;
   } else {
     made.rgb = std::move(picture.rgb);
+    finish(made, picture.plane(), render, annotation);
   }
   return made;
 }
@@ -169,6 +173,8 @@ void check(const Render& render, const Place& place) {
   if (!render.tones.empty() && render.cut_face != "grey")
     refuse("tones", "is of grey cut faces: add 'cut_face'");
   if (!render.title.empty() && !render.annotate) refuse("title", "is of annotated pictures: add 'annotate'");
+  if (render.grid_mm && (render.eye_mm || render.stereo_deg))
+    refuse("grid_mm", "is of pictures in true scale: leave out 'eye_mm' and 'stereo_deg'");
   for (const std::string& colour : render.colours) need_colour(colour);
   for (const double opacity : render.opacities)
     if (!(opacity >= 0.0 && opacity <= 1.0)) refuse("opacities", "are from 0, hidden, to 1");
@@ -196,6 +202,12 @@ std::vector<std::string> uses(const Render& render) {
   return {other_of(render.colour_by)};
 }
 
+void write(const std::filesystem::path& path, const RenderedPicture& picture) {
+  std::optional<voxel::ImageText> text;
+  if (picture.frame) text = image_text(*picture.frame);
+  voxel::write_image(path, picture.size_px, picture.rgb, text);
+}
+
 void write(const Render& render, const AnswerBench& bench, Exported& made) {
   made.path = output_path(render.path).generic_string();
   std::vector<voxel::DrawnObject> objects;
@@ -204,7 +216,7 @@ void write(const Render& render, const AnswerBench& bench, Exported& made) {
   if (!render.colour_by.empty())
     objects.push_back(drawn(bench.objects.at(other_of(render.colour_by)), glm::vec3(1.0f)));
   RenderedPicture picture = rendered(render, std::move(objects), bench.timings, bench.stop);
-  voxel::write_image(output_file(bench.folder, made.path), picture.size_px, picture.rgb);
+  write(output_file(bench.folder, made.path), picture);
   made.written = true;
   made.content = "a picture from " + render.view + ", " + std::to_string(picture.size_px.x) + " x " +
                  std::to_string(picture.size_px.y) + " pixels";
@@ -227,7 +239,7 @@ FileAnswer on_files(const Render& asked, const FileBench& bench) {
       rendered(render, drawn_of_files(render, files, bench), bench.timings, bench.stop);
   {
     const Stopwatch watch(bench.timings, "write");
-    voxel::write_image(render.out, picture.size_px, picture.rgb);
+    write(render.out, picture);
   }
   FileAnswer answer{{{"path", render.out.string()}}};
   answer.json.update(picture.said);
@@ -279,6 +291,21 @@ voxel::RenderOptions options_of(const Render& render) {
   options.count = render.count;
   if (!render.algorithm.empty()) options.algorithm = algorithms.at(render.algorithm);
   return options;
+}
+
+void finish(RenderedPicture& picture, const voxel::ImagePlane& plane, const Render& render,
+            const std::optional<voxel::Annotation>& annotation) {
+  std::optional<voxel::Grid> grid;
+  if (render.grid_mm) grid = voxel::grid_of(plane, *render.grid_mm);
+  if (grid) voxel::draw_grid({plane.size_px, &picture.rgb}, *grid);
+  if (annotation) voxel::annotate(picture.rgb, plane, *annotation);
+  if (grid) picture.size_px = voxel::add_grid_margin(picture.rgb, plane.size_px, *grid);
+  picture.said["size_px"] = {picture.size_px.x, picture.size_px.y};
+  picture.said["lps_from_pixel"] = nullptr;
+  if (plane.eye) return;
+  picture.frame = frame_of(plane);
+  picture.frame->size_px = picture.size_px;
+  picture.said["lps_from_pixel"] = to_json(picture.frame->lps_from_pixel);
 }
 
 glm::ivec2 size_of(const Render& render) {
@@ -403,6 +430,12 @@ Operation render_operation() {
       .takes(field("annotate", &Render::annotate,
                    "Writes a scale, the patient's sides, a legend and a title on the picture."))
       .takes(field("title", &Render::title, "Of an annotated picture. Default: the view."))
+      .takes(field("grid_mm", &Render::grid_mm,
+                   "Draws lines at multiples of so many millimetres; a margin that is added at the right and "
+                   "below tells their places in the view.")
+                 .from(0.1)
+                 .to(1000.0)
+                 .called("grid"))
       .takes(field("count", &Render::count, "Counts the octree nodes that the algorithm visits."))
       .verb_takes(field("out", &Render::out, "A .png, .jpg or .webp file.").required())
       .verb_takes(field("window", &Render::window, "LOW:HIGH or LOW: in sample units, or a tissue."))

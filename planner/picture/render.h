@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "planner/file/picture_frame.h"
 #include "planner/table/bench.h"
 #include "planner/table/field.h"
 #include "voxel/view/annotation.h"
@@ -32,6 +33,7 @@ struct Render {
   std::vector<std::string> picks;
   bool annotate = false;
   std::string title;
+  std::optional<double> grid_mm;
   bool count = false;
   // Of the verb.
   std::filesystem::path out;
@@ -44,7 +46,8 @@ struct RenderedPicture {
   glm::ivec2 size_px{0};
   std::vector<std::uint8_t> rgb;
   double pixel_mm = 1.0;
-  glm::dvec2 centre_mm{0.0};  ///< of pictures along rays, in the view's millimetres
+  glm::dvec2 centre_mm{0.0};               ///< of pictures along rays, in the view's millimetres
+  std::optional<PictureFrame> frame = {};  ///< of pictures in true scale
   nlohmann::ordered_json said = nlohmann::ordered_json::object();
 };
 
@@ -80,6 +83,9 @@ voxel::CutTones cut_tones_of(const Render& render, const std::vector<voxel::Draw
 glm::ivec2 size_of(const Render& render);
 /// Normals are made unit.
 std::vector<voxel::Cutaway> cuts_of(const Render& render);
+/// Writes what is asked for on the pixels: a grid, whose margin makes the picture larger, and the annotation.
+void finish(RenderedPicture& picture, const voxel::ImagePlane& plane, const Render& render,
+            const std::optional<voxel::Annotation>& annotation);
 /// Title, sides, scale, and a legend of the objects that are neither hidden nor coloured by a scalar.
 voxel::Annotation annotation_of(const Render& render, const std::vector<voxel::DrawnObject>& objects);
 

@@ -18,6 +18,7 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/scan/image_file.h"
+#include "voxel/view/grid.h"
 #include "voxel/view/reformat.h"
 
 namespace octotomy::planner {
@@ -272,9 +273,9 @@ Json draw_outlines(const Slice& slice, const std::vector<Outlined>& objects, con
   return list;
 }
 
-/// From (column, row, 0, 1) to LPS; null for a curve.
-Json lps_from_pixel(const CutSheet& cut) {
-  if (!cut.position_mm) return nullptr;
+/// From (column, row, 0, 1) to LPS; none for a curve.
+std::optional<glm::dmat4> lps_from_pixel(const CutSheet& cut) {
+  if (!cut.position_mm) return std::nullopt;
   const voxel::Sheet& sheet = cut.sheet;
   const glm::dvec3 right = sheet.columns_mm.size() > 1
                                ? (sheet.columns_mm.back() - sheet.columns_mm.front()) /
@@ -286,7 +287,7 @@ Json lps_from_pixel(const CutSheet& cut) {
   glm::dmat4 matrix(glm::dvec4(right, 0), glm::dvec4(down, 0), glm::dvec4(across, 0),
                     glm::dvec4(sheet.columns_mm.front(), 1));
   for (int column = 0; column < 4; ++column) matrix[column] += 0.0;  // takes the sign from -0
-  return to_json(matrix);
+  return matrix;
 }
 
 Json said_of(const Slice& slice, const Subject& subject, const CutSheet& cut,
@@ -295,7 +296,8 @@ Json said_of(const Slice& slice, const Subject& subject, const CutSheet& cut,
   json["position_mm"] = cut.position_mm ? Json(*cut.position_mm) : Json(nullptr);
   json["pixel_mm"] = cut.sheet.pixel_mm;
   json["size_px"] = {samples.image.size_px.x, samples.image.size_px.y};
-  json["lps_from_pixel"] = lps_from_pixel(cut);
+  const std::optional<glm::dmat4> matrix = lps_from_pixel(cut);
+  json["lps_from_pixel"] = matrix ? to_json(*matrix) : Json(nullptr);
   const voxel::EdgeLetters letters = voxel::edge_letters(cut.sheet);
   json["letters"] = {
       {"left", letters.left}, {"right", letters.right}, {"top", letters.top}, {"bottom", letters.bottom}};
@@ -314,10 +316,33 @@ Json said_of(const Slice& slice, const Subject& subject, const CutSheet& cut,
   return json;
 }
 
+/// The grid of a plane, in the millimetres of the view in which it is looked at.
+voxel::Grid grid_of(const CutSheet& cut, double spacing_mm) {
+  const std::optional<glm::dmat4> matrix = lps_from_pixel(cut);
+  if (!matrix || cut.sheet.columns_mm.size() < 2)
+    throw std::runtime_error("--grid: a grid is of planes; a curved picture has none");
+  const glm::dmat3 mm_from_pixel = PictureFrame{cut.sheet.size_px(), *matrix}.view_mm_from_pixel();
+  return {spacing_mm, glm::dvec2(mm_from_pixel * glm::dvec3(-0.5, -0.5, 1.0)), cut.sheet.pixel_mm};
+}
+
+/// Letters, a scale and a legend.
+void annotate(SlicePicture& picture, const Slice& slice, const CutSheet& cut,
+              const std::vector<Outlined>& objects) {
+  voxel::ImagePlane plane;
+  plane.size_px = picture.sheet.size_px();
+  plane.pixel_mm = cut.sheet.pixel_mm;
+  voxel::Annotation annotation;
+  annotation.letters = voxel::edge_letters(cut.sheet);
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    annotation.legend.push_back({fs::path(objects[i].name).stem().string(), outline_colour(slice, i)});
+  voxel::annotate(picture.rgb, plane, annotation);
+  picture.said["scale_bar_mm"] = voxel::round_length(0.25 * plane.size_px.x * cut.sheet.pixel_mm);
+}
+
 SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector<Outlined>& objects,
                    Timings& timings, const std::stop_token& stop) {
   const CutSheet cut = cut_of(slice, subject.lattice);
-  SlicePicture picture{cut.sheet, {}, {}, {}};
+  SlicePicture picture{cut.sheet, {}, cut.sheet.size_px(), {}, {}, {}};
   voxel::SheetSamples& samples = picture.samples;
   {
     const Stopwatch watch(timings, "slice");
@@ -331,16 +356,14 @@ SlicePicture drawn(const Slice& slice, const Subject& subject, const std::vector
     if (samples.inside[i] == 0) std::fill_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, 0);
   picture.said["outlines"] = draw_outlines(slice, objects, cut.sheet, picture.rgb, timings);
   picture.said["scale_bar_mm"] = nullptr;
-  if (slice.plain) return picture;
-  voxel::ImagePlane plane;
-  plane.size_px = picture.sheet.size_px();
-  plane.pixel_mm = cut.sheet.pixel_mm;
-  voxel::Annotation annotation;
-  annotation.letters = voxel::edge_letters(cut.sheet);
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    annotation.legend.push_back({fs::path(objects[i].name).stem().string(), outline_colour(slice, i)});
-  voxel::annotate(picture.rgb, plane, annotation);
-  picture.said["scale_bar_mm"] = voxel::round_length(0.25 * plane.size_px.x * cut.sheet.pixel_mm);
+  std::optional<voxel::Grid> grid;
+  if (slice.grid_mm) grid = grid_of(cut, *slice.grid_mm);
+  if (grid) voxel::draw_grid({picture.size_px, &picture.rgb}, *grid);
+  if (!slice.plain) annotate(picture, slice, cut, objects);
+  if (grid) picture.size_px = voxel::add_grid_margin(picture.rgb, picture.size_px, *grid);
+  picture.said["size_px"] = {picture.size_px.x, picture.size_px.y};
+  if (const auto matrix = lps_from_pixel(cut); matrix && cut.sheet.columns_mm.size() > 1)
+    picture.frame = PictureFrame{picture.size_px, *matrix};
   return picture;
 }
 
@@ -349,6 +372,8 @@ void check(const Slice& slice, const Place& place) {
     place.at("level").refuse("says the same as 'window': leave one out");
   if (!slice.size.empty() && !slice.curve_mm.empty())
     place.at("size").refuse("is of planes; a curve's picture is as long as the curve");
+  if (slice.grid_mm && !slice.curve_mm.empty())
+    place.at("grid_mm").refuse("is of planes; a curved picture has none");
   if (slice.centre_mm && slice.size.empty())
     place.at("centre_mm").refuse("is of pictures of a 'size': add it");
   if (slice.colours.size() > slice.objects.size()) place.at("colours").refuse("give at most one an object");
@@ -358,6 +383,12 @@ void check(const Slice& slice, const Place& place) {
   if (place.scope != nullptr) check_output_path(slice.path, {".png", ".jpg", ".webp"}, place.at("path"));
 }
 
+void write(const fs::path& path, const SlicePicture& picture) {
+  std::optional<voxel::ImageText> text;
+  if (picture.frame) text = image_text(*picture.frame);
+  voxel::write_image(path, picture.size_px, picture.rgb, text);
+}
+
 void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
   made.path = output_path(slice.path).generic_string();
   std::vector<Outlined> objects;
@@ -365,11 +396,10 @@ void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
     objects.push_back({name.name, bench.objects.at(name.name).voxel.octree});
   SlicePicture picture =
       drawn(slice, subject_of(bench.samples(slice.scan.name), slice), objects, bench.timings, bench.stop);
-  voxel::write_image(output_file(bench.folder, made.path), picture.sheet.size_px(), picture.rgb);
+  write(output_file(bench.folder, made.path), picture);
   made.written = true;
   made.content = "a " + picture.said["plane"].get<std::string>() + " picture, " +
-                 std::to_string(picture.sheet.size_px().x) + " x " +
-                 std::to_string(picture.sheet.size_px().y) + " pixels";
+                 std::to_string(picture.size_px.x) + " x " + std::to_string(picture.size_px.y) + " pixels";
   made.details = std::move(picture.said);
 }
 
@@ -401,7 +431,7 @@ FileAnswer on_files(const Slice& asked, const FileBench& bench) {
   const SlicePicture picture = drawn(slice, subject, objects, bench.timings, bench.stop);
   {
     const Stopwatch watch(bench.timings, "write");
-    voxel::write_image(asked.out, picture.sheet.size_px(), picture.rgb);
+    write(asked.out, picture);
   }
   FileAnswer answer{{{"path", asked.out.string()}, {"source", file.string()}}};
   answer.json.update(picture.said);
@@ -474,6 +504,12 @@ Operation slice_operation() {
       .takes(field("interpolate", &Slice::interpolate, "Between samples.")
                  .one_of({"nearest", "linear", "cubic"}))
       .takes(field("plain", &Slice::plain, "No letters and no scale bar."))
+      .takes(field("grid_mm", &Slice::grid_mm,
+                   "Draws lines at multiples of so many millimetres; a margin that is added at the right and "
+                   "below tells their places in the view that looks at the plane.")
+                 .from(0.1)
+                 .to(1000.0)
+                 .called("grid"))
       .verb_takes(field("out", &Slice::out, "A .png, .jpg or .webp file.").required())
       .verb_takes(
           field("curve", &Slice::curve,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/file/picture_frame.h"
 #include "planner/table/bench.h"
 #include "planner/table/field.h"
 #include "voxel/tree/octree.h"
@@ -31,6 +32,7 @@ struct Slice {
   std::optional<glm::dvec3> centre_mm;
   std::string interpolate = "linear";
   bool plain = false;
+  std::optional<double> grid_mm;
   // Of the verb.
   std::filesystem::path out;
   std::vector<std::string> curve;
@@ -46,7 +48,9 @@ struct Outlined {
 struct SlicePicture {
   voxel::Sheet sheet;
   voxel::SheetSamples samples;
+  glm::ivec2 size_px{0};  ///< with a grid's margin
   std::vector<std::uint8_t> rgb;
+  std::optional<PictureFrame> frame;  ///< of a plane
   nlohmann::ordered_json said;
 };
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planner/plan/sha256.h"
+#include "planner/plan/trial.h"
 
 namespace octotomy::planner {
 namespace {
@@ -41,6 +42,8 @@ Json measurements_json(const Plan& plan, const Evaluation& evaluation) {
     if (step.action.operation().makes != Makes::Measurement) continue;
     Json json{{"id", step.id}};
     json.update(step.action.operation().measure(step.action.value(), bench));
+    if (const auto* trials = step.action.get_if<Trials>())
+      json.update(trials_json(plan, evaluation, *trials));
     all.push_back(std::move(json));
   }
   return all;

@@ -6,6 +6,9 @@
 #include <cstdio>
 
 #include "planner/measure/result_json.h"
+#include "planner/picture/colour.h"
+#include "planner/table/number_format.h"
+#include "voxel/view/surface_scalar.h"
 
 namespace octotomy::planner {
 namespace {
@@ -165,6 +168,18 @@ std::string overall_verdict(const VerdictCounts& counts) {
   if (counts.not_resolved > 0) lines += "; " + std::to_string(counts.not_resolved) + " not resolved";
   return element("div class=\"verdict " + css + "\"",
                  element("b", title) + element("span class=\"soft\"", lines));
+}
+
+std::string colour_scale(double most_mm) {
+  std::string stops;
+  constexpr int steps = 8;
+  for (int i = 0; i <= steps; ++i)
+    stops += (i == 0 ? "" : ",") + text_of_colour(voxel::diverging_colour(-1.0 + 2.0 * i / steps));
+  return element("div class=\"legend\"",
+                 three_figures(-most_mm) +
+                     " mm, inside<span style=\"display:inline-block;width:220px;height:14px;"
+                     "background:linear-gradient(90deg," +
+                     stops + ")\"></span>outside, " + three_figures(most_mm) + " mm");
 }
 
 }  // namespace octotomy::planner

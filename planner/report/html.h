@@ -39,6 +39,8 @@ std::string pill(voxel::Verdict verdict);
 std::string pill(voxel::Verdict verdict, bool resolved);
 /// A bar as long as a value's share of what is allowed.
 std::string gauge(double value, double allowed, voxel::Verdict verdict);
+/// The colours of signed distances up to that one, with their ends named.
+std::string colour_scale(double most_mm);
 /// A sentence and the counts on the whole of the certificates; nothing where there are none.
 std::string overall_verdict(const VerdictCounts& counts);
 

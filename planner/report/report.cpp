@@ -9,6 +9,7 @@
 #include "planner/cephalometry/cephalogram.h"
 #include "planner/cephalometry/measured.h"
 #include "planner/measure/result_json.h"
+#include "planner/report/contact_report.h"
 #include "planner/report/credibility.h"
 #include "planner/report/pdf.h"
 #include "planner/report/report_page.h"
@@ -205,6 +206,7 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     result.movements = movements_json(result.evaluation.objects, result.plan.landmarks);
     add_cephalometry(result);
     check_signatures(result);
+    add_contact_pictures(result);
   }
   const bool again = !result.exported.empty();
   if (!again)

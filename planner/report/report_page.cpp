@@ -13,8 +13,11 @@
 #include "planner/measure/result_json.h"
 #include "planner/operation/mask.h"
 #include "planner/picture/colour.h"
+#include "planner/report/airway_tables.h"
+#include "planner/report/contact_report.h"
 #include "planner/report/flap_tables.h"
 #include "planner/report/html.h"
+#include "planner/report/trial_tables.h"
 #include "planner/table/number_format.h"
 #include "voxel/view/annotation.h"
 
@@ -117,6 +120,7 @@ struct Placed {
   std::string title;
   bool outlined = false;  ///< with the outlines of mask regions
   double letters = 13.0;  ///< in the picture's pixels
+  std::vector<glm::dvec3> marks_mm = {};
 };
 
 std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& placed) {
@@ -126,6 +130,15 @@ std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& 
                     "\" href=\"data:image/png;base64," + base64(picture.png) + "\"/>";
   if (placed.outlined) svg += outlines(plan, picture, size);
   svg += scale_bar(picture, letters);
+  for (std::size_t i = 0; i < placed.marks_mm.size(); ++i) {
+    const glm::dvec2 p =
+        (picture.axes.project(placed.marks_mm[i]) - picture.centre_mm) * (size / picture.width_mm);
+    const glm::dvec2 at(0.5 * size + p.x, 0.5 * size - p.y);
+    svg += "<circle cx=\"" + fixed(at.x) + "\" cy=\"" + fixed(at.y) + "\" r=\"" + fixed(0.25 * letters) +
+           "\" fill=\"none\" stroke=\"#222\"/>" +
+           svg_text(at + glm::dvec2(0.4 * letters, -0.3 * letters), 0.9 * letters, "start",
+                    std::to_string(i + 1));
+  }
   svg += svg_text({0.6 * letters, 0.5 * size}, letters, "start", voxel::patient_side(-picture.axes.right));
   svg +=
       svg_text({size - 0.6 * letters, 0.5 * size}, letters, "end", voxel::patient_side(picture.axes.right));
@@ -149,9 +162,10 @@ constexpr double small_letters = 24.0;
 std::string group_section(const Result& result, const PictureGroup& group) {
   std::string figures;
   for (const ScenePicture& picture : group.pictures)
-    figures += figure(result.plan, picture, {view_title(picture), false, small_letters});
-  return element("h2", escaped(group.title)) + legend(group) +
-         element("div class=\"pictures four\"", figures);
+    figures += figure(result.plan, picture, {view_title(picture), false, small_letters, group.marks_mm});
+  return element("h2", escaped(group.title)) +
+         (group.most_mm > 0.0 ? colour_scale(group.most_mm) : legend(group)) +
+         element(group.most_mm > 0.0 ? "div class=\"pictures two\"" : "div class=\"pictures four\"", figures);
 }
 
 /// Pictures of one view before and after stand side by side; what remains is a grid of views.
@@ -249,7 +263,8 @@ std::string lengths(const Json& measurements) {
 std::string measurements(const Result& result) {
   if (result.measurements.empty()) return "";
   return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements) +
-         flap_tables(result.measurements);
+         flap_tables(result.measurements) + contact_tables(result.measurements) +
+         airway_tables(result.measurements) + trial_tables(result.measurements);
 }
 
 /// A point's displacement as cells, signed along the head's directions.

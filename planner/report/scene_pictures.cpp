@@ -76,6 +76,23 @@ const Object* untouched(const Plan& plan, const Evaluation& evaluation, const st
   return moved ? first : nullptr;
 }
 
+/// Whether a piece is bone that the patient has not there: a flap's, or what a mirror made.
+bool is_added(const Plan& plan, const std::string& id) {
+  const std::set<std::string> needed = needed_for(plan, {id});
+  return std::any_of(plan.steps.begin(), plan.steps.end(), [&](const Step& step) {
+    const std::string& name = step.action.operation().name;
+    return needed.contains(step.id) && (name == "flap_scan" || name == "mirror");
+  });
+}
+
+/// What a piece was first made of, masks apart.
+const Object& origin_of(const Plan& plan, const Evaluation& evaluation, const std::string& id) {
+  const std::set<std::string> needed = needed_for(plan, {id});
+  for (const Object& object : evaluation.objects)
+    if (needed.contains(object.id) && !object.is_tool) return object;
+  return evaluation.object(id);
+}
+
 struct Frame {
   glm::dvec2 centre_mm{0.0};
   double width_mm = 1.0;
@@ -136,19 +153,29 @@ Frame frame_of(const std::vector<voxel::DrawnObject>& objects, const voxel::View
 
 FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
   FinalScene scene;
+  const std::vector<std::string> pieces = final_pieces(plan, evaluation);
+  const bool adds =
+      pieces.size() > 1 &&
+      std::any_of(pieces.begin(), pieces.end(), [&](const std::string& id) { return is_added(plan, id); }) &&
+      !std::all_of(pieces.begin(), pieces.end(), [&](const std::string& id) { return is_added(plan, id); });
   std::size_t accent = 0;
   bool bone_taken = false;
-  for (const std::string& id : final_pieces(plan, evaluation)) {
+  const auto show_before = [&](const Object& first) {
+    const bool is_there = std::any_of(scene.before.begin(), scene.before.end(),
+                                      [&](const auto& object) { return object.name == first.id; });
+    if (!is_there) scene.before.push_back(drawn(first, bone));
+    scene.moves = true;
+  };
+  for (const std::string& id : pieces) {
     const std::string still = still_of(evaluation, id);
     const bool plain = still == id && !bone_taken;
     const glm::vec3 colour = plain ? bone : accents[accent++ % accents.size()];
     bone_taken = bone_taken || plain;
     scene.moves = scene.moves || still != id;
-    if (const Object* first = untouched(plan, evaluation, still)) {
-      const bool is_there = std::any_of(scene.before.begin(), scene.before.end(),
-                                        [&](const auto& object) { return object.name == first->id; });
-      if (!is_there) scene.before.push_back(drawn(*first, bone));
-      scene.moves = true;
+    if (adds) {
+      if (!is_added(plan, id)) show_before(origin_of(plan, evaluation, id));
+    } else if (const Object* first = untouched(plan, evaluation, still)) {
+      show_before(*first);
     } else {
       scene.before.push_back(drawn(evaluation.object(still), colour));
     }

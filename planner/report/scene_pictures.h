@@ -26,6 +26,9 @@ struct PictureGroup {
   std::string title;  ///< for people
   std::vector<voxel::DrawnObject> objects;
   std::vector<ScenePicture> pictures;
+  /// Numbers of places, from 1, written on the pictures.
+  std::vector<glm::dvec3> marks_mm = {};
+  double most_mm = 0.0;  ///< colours by distance end there; 0: colours name objects
 };
 
 /// The pieces a plan ends with and, in the same colours, what they were before they were moved.
@@ -38,7 +41,8 @@ struct FinalScene {
 /// The last union of named pieces (`rest | advanced`), each piece in a colour of its own; where the plan has
 /// none, its last object that is neither a mask nor empty, if any. Moved pieces keep their colour in
 /// `before`; a piece that was cut from what an earlier step had moved is shown there as the bone that all of
-/// it was made of, so that `before` is the untouched patient.
+/// it was made of, so that `before` is the untouched patient. Where a plan adds bone, a flap's or a mirrored
+/// one, `before` is what the other pieces were made of.
 FinalScene final_scene(const Plan& plan, const Evaluation& evaluation);
 
 /// A picture before it is encoded, and its frame.

@@ -132,18 +132,6 @@ std::string quantities(const Shares& shares) {
                  "out.");
 }
 
-std::string colour_scale(double most_mm) {
-  std::string stops;
-  constexpr int steps = 8;
-  for (int i = 0; i <= steps; ++i)
-    stops += (i == 0 ? "" : ",") + text_of_colour(voxel::diverging_colour(-1.0 + 2.0 * i / steps));
-  return element("div class=\"legend\"",
-                 three_figures(-most_mm) +
-                     " mm, inside<span style=\"display:inline-block;width:220px;height:14px;"
-                     "background:linear-gradient(90deg," +
-                     stops + ")\"></span>outside, " + three_figures(most_mm) + " mm");
-}
-
 std::string worst_pictures(const Verification& verification) {
   const auto& worst = verification.worst;
   if (!worst || worst->octree.is_empty() || !worst->solid || worst->solid->empty()) return "";

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "voxel/scan/image_file_oiio.h"
+#include "voxel/scan/png_text.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/helper_file.h"
 #include "voxel/space/quiet_errors.h"
@@ -72,13 +73,15 @@ std::vector<StoredImage> read_images(const fs::path& path) {
   return images;
 }
 
-void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb) {
+void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb,
+                 const std::optional<ImageText>& text) {
   std::string format = extension_of(path);
   if (!format.empty()) format.erase(0, 1);
   if (format == "jpg") format = "jpeg";
   std::vector<std::uint8_t> encoded;
   try {
     encoded = encode_image(format, size_px, rgb);
+    if (text && format == "png") encoded = with_png_text(encoded, text->keyword, text->text);
   } catch (const Error& error) {
     throw Error(error.code(), path.string() + ": " + error.what());
   }

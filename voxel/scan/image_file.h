@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,16 @@ namespace octotomy::voxel {
 std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
                                        const std::vector<std::uint8_t>& rgb);
 
+/// ASCII, in pictures of formats that take it.
+struct ImageText {
+  std::string keyword, text;
+};
+
 /// Writes a picture in the format of the extension (.png, .jpg, .jpeg, .webp); written beside and renamed
-/// into place. Throws as encode_image(), with the path; Error, Resource, if the disk gives out.
+/// into place. A PNG also takes a text (png_text.h). Throws as encode_image(), with the path; Error,
+/// Resource, if the disk gives out.
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
-                 const std::vector<std::uint8_t>& rgb);
+                 const std::vector<std::uint8_t>& rgb, const std::optional<ImageText>& text = std::nullopt);
 
 /// Reads the pages of a file, as grey images, in any format that OpenImageIO reads. Throws Error with path
 /// and reason: Input, or Resource if the library cannot be loaded. Memory: at most 64 MiB or 1100 times the

@@ -30,6 +30,23 @@ TEST(PartsStep, TheLargerOfTwoCapsIsKeptByBothKernels) {
   EXPECT_EQ(evaluation.object("one").mesh.details["of"], 2u);
 }
 
+TEST(PartsStep, ThePartThatHoldsAPointIsKeptByBothKernels) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, two_caps + R"(
+      {"id": "low", "do": "parts", "object": "caps", "at_mm": [[0, 0, -15]]},
+      {"id": "both", "do": "parts", "object": "caps", "at_mm": [[0, 0, -15], [3, 0, 12]]})"));
+  const double larger = cap_mm3(ball_radius_mm, 4.0), smaller = cap_mm3(ball_radius_mm, 10.0);
+  expect_certified(evaluation.object("low"), smaller, 0.04);
+  expect_certified(evaluation.object("both"), larger + smaller, 0.04);
+  try {
+    evaluate(ball_plan(folder,
+                       two_caps + R"({"id": "p", "do": "parts", "object": "caps", "at_mm": [[0, 0, 0]]})"));
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("no part of 'caps' holds (0, 0, 0) mm"), std::string::npos);
+  }
+}
+
 TEST(PartsStep, NeitherOrBothWaysToChooseAreRefused) {
   const TestFolder folder;
   for (const char* ways : {"", R"(, "largest": 1, "at_least_mm3": 3)"})

@@ -52,5 +52,14 @@ TEST(ScenePictures, BeforeATwoJawPlanIsTheUntouchedPatient) {
   EXPECT_TRUE(scene.moves);
 }
 
+TEST(ScenePictures, BeforeAddedBoneIsThePatientWithoutIt) {
+  const FinalScene scene = scene_of(first_jaw.substr(0, first_jaw.find("{\"id\": \"cap_moved\"")) + R"(
+      {"id": "mirrored", "do": "mirror", "object": "cap", "normal": [0, 0, 1]},
+      {"id": "filled", "do": "combine", "expression": "rest | mirrored"})");
+  EXPECT_EQ(names(scene.before), "ball ");
+  EXPECT_EQ(names(scene.after), "rest mirrored ");
+  EXPECT_TRUE(scene.moves);
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <string_view>
+
+#include "voxel/scan/image_file.h"
+#include "voxel/space/view.h"
+#include "voxel/view/camera.h"
+
+// Where the pixels of a picture lie. Pictures in true scale that the program writes as PNG hold it, so that a
+// region can be told by their pixels.
+namespace octotomy::planner {
+
+struct PictureFrame {
+  glm::ivec2 size_px{0};
+  glm::dmat4 lps_from_pixel{1.0};  ///< of (column, row, 0, 1); whole numbers are pixels' centres
+
+  /// Looking at the picture.
+  voxel::View view() const;
+  /// From (column, row, 1) to (u, v, 1) in the view's millimetres.
+  glm::dmat3 view_mm_from_pixel() const;
+};
+
+/// The frame of an orthographic picture, in the plane of depth 0.
+PictureFrame frame_of(const voxel::ImagePlane& plane);
+
+/// What a PNG holds of its frame; `size_px` is that of the whole picture, with a grid's margin.
+voxel::ImageText image_text(const PictureFrame& frame);
+
+/// The frame that a PNG's bytes hold. Throws std::runtime_error beginning with `where` if they are no PNG,
+/// hold no frame, or have another size than when they were drawn.
+PictureFrame read_frame(std::string_view png, const std::string& where);
+PictureFrame read_frame(const std::filesystem::path& path);
+
+/// The name by which parse_view() knows a view, "AZ,EL" where it has none; empty where that looks otherwise,
+/// as of a picture turned in its own plane.
+std::string name_of(const voxel::View& view);
+
+}  // namespace octotomy::planner

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace octotomy::planner {
+
+/// The picture that an SVG file was drawn over: the first image of it.
+struct SvgPicture {
+  std::string link;             ///< as the file says it: a path relative to the file, or data:image/png
+  glm::dvec2 shown_units{0.0};  ///< width and height that the file gives it
+  bool keeps_aspect = true;     ///< it is fitted into them, in their middle
+  glm::dmat3 user_from_shown{
+      1.0};  ///< from a place within its rectangle, in its own units, from the top left
+  std::size_t line = 0;
+};
+
+/// Where user units lie: a map to millimetres of a view, affine.
+using SvgPlacement = std::function<glm::dmat3(double mm_per_unit, const std::optional<SvgPicture>& picture)>;
+
+struct SvgOutlines {
+  std::vector<std::vector<glm::dvec2>> polygons_mm;
+  std::vector<std::string> findings;  ///< what was left out, and what a unit is taken for
+};
+
+/// The closed outlines of an SVG file: path, polygon, polyline, rect, circle and ellipse with their
+/// transforms, of all groups that are displayed. Open outlines close as they do when filled; curves become
+/// lines that are nowhere farther than `tolerance_mm` from them. User units are the length that the root's
+/// width and viewBox give them, else 1/96 inch, which a finding tells. Throws std::runtime_error saying file,
+/// line and reason for what is no SVG, for shapes that cannot be read, and where there is no outline.
+SvgOutlines read_svg_outlines(const std::filesystem::path& path, const SvgPlacement& place,
+                              double tolerance_mm);
+
+}  // namespace octotomy::planner
