@@ -160,8 +160,9 @@ class Part {
     for (std::size_t i = 0; i < sides_; ++i) {
       const double turn = k.x * side_[0][i] + k.y * side_[1][i] + k.z * side_[2][i];
       const double weight = k.x * outward_[0][i] + k.y * outward_[1][i] + k.z * outward_[2][i];
-      const double over = std::abs(turn) < small_turn ? 0.0 : weight / turn;
-      small += std::abs(turn) < small_turn ? 1 : 0;
+      const bool is_small = std::abs(turn) < small_turn;
+      const double over = (is_small ? 0.0 : weight) / (is_small ? 1.0 : turn);
+      small += is_small ? 1 : 0;
       turn_[i] = turn;
       weight_[i] = weight;
       re_[i] = over * (phase_.im[i] - phase_.im[i + 1]);
