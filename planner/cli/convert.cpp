@@ -4,8 +4,10 @@
 
 #include "planner/cli/octree_out.h"
 #include "planner/cli/scan_in.h"
+#include "planner/file/label_table.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
+#include "voxel/filter/label_map.h"
 #include "voxel/scan/write_dicom_seg.h"
 #include "voxel/scan/write_scene.h"
 
@@ -72,7 +74,50 @@ int convert_octree(const Program& program, const ConvertText& text) {
   return done;
 }
 
+/// A label map as a DICOM segmentation of its labels on its own slices, under the names that it has.
+int convert_labels(const Program& program, const ConvertText& text) {
+  need_folder_of(text.out);
+  Timings timings;
+  const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
+  const std::vector<voxel::Label> labels = voxel::labels(scene);
+  constexpr std::size_t most_labels = 1024;
+  if (labels.empty() || labels.size() > most_labels)
+    throw std::runtime_error(text.in.string() + ": holds " + std::to_string(labels.size()) +
+                             " labels, which is no label map: octotomy segment makes objects of a scan");
+  const LabelTable table = label_table_of(text.in);
+  const voxel::Universe universe = voxel::universe_on(scene.lattice);
+  std::vector<voxel::DicomSegment> segments;
+  Json said = Json::array();
+  std::vector<std::pair<std::string, std::string>> rows{{"written", text.out.string()}};
+  for (const voxel::Label& label : labels) {
+    const auto named = table.names.find(label.number);
+    const std::string name =
+        named == table.names.end() ? "label " + std::to_string(label.number) : named->second.substr(0, 64);
+    segments.push_back({name, voxel::octree_of_label(universe, scene, label.number)});
+    said.push_back(
+        {{"segment", segments.size()}, {"label", label.number}, {"name", name}, {"samples", label.samples}});
+    rows.emplace_back(name, std::to_string(label.samples) + " samples");
+  }
+  voxel::DicomSegOptions options;
+  options.label = text.label.empty() ? "Objects" : text.label;
+  options.series_description = "Octotomy, segmented";
+  options.progress.stop = program.stop.get_token();
+  options.source = source_of(program, text, false);
+  if (!options.source) warn("no --source: the segmentation is of a study of its own and refers to no images");
+  {
+    const Stopwatch watch(timings, "write");
+    voxel::write_dicom_seg(segments, text.out, options);
+  }
+  Json json = scan_answer(scene, timings);
+  json["path"] = text.out.string();
+  json["segments"] = std::move(said);
+  json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
+  program.say(json, lines(rows));
+  return done;
+}
+
 int convert(const Program& program, const ConvertText& text) {
+  if (text.out.extension() == ".dcm" && !text.dicom) return convert_labels(program, text);
   const bool folder = text.dicom || !text.out.has_extension();
   if (!folder && !is_volume(text.out))
     throw std::runtime_error(text.out.string() +
@@ -102,23 +147,24 @@ int convert(const Program& program, const ConvertText& text) {
 
 void add_convert(Program& program) {
   const auto text = std::make_shared<ConvertText>();
-  CLI::App& verb = program.verb(
-      "convert",
-      "Writes a scan in another format, straightened to a lattice where it has to be; an octree as a "
-      "DICOM segmentation",
-      "octotomy convert dicom_folder -o head.nii.gz\n"
-      "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
-      "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd\n"
-      "  octotomy convert skull.octree -o skull.dcm --source dicom_folder --label Skull",
-      [&program, text] {
-        return is_octree(text->in) ? convert_octree(program, *text) : convert(program, *text);
-      });
+  CLI::App& verb =
+      program.verb("convert",
+                   "Writes a scan in another format, straightened to a lattice where it has to be; an octree "
+                   "or a label map as a DICOM segmentation",
+                   "octotomy convert dicom_folder -o head.nii.gz\n"
+                   "  octotomy convert 'slices/*.tif' --spacing 0.5,0.5,1 -o head.nrrd\n"
+                   "  octotomy convert head.raw --raw 512x512x300 int16 --spacing 0.5,0.5,1 -o head.nrrd\n"
+                   "  octotomy convert skull.octree -o skull.dcm --source dicom_folder --label Skull\n"
+                   "  octotomy convert organs.nii.gz -o organs.dcm --source dicom_folder",
+                   [&program, text] {
+                     return is_octree(text->in) ? convert_octree(program, *text) : convert(program, *text);
+                   });
   verb.add_option("scan", text->in,
                   "A DICOM folder or file, NIfTI, NRRD, MetaImage, images, a raw file, or a binary .octree")
       ->required()
       ->check(scan_path());
   verb.add_option("-o,--out", text->out,
-                  "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; of an .octree a .dcm")
+                  "A .nrrd, .nii.gz or .mha file, or a folder for DICOM; of an .octree or a label map a .dcm")
       ->required();
   verb.add_flag("--dicom", text->dicom, "Write a DICOM series into the folder");
   verb.add_option("--source", text->source,

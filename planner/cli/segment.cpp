@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The segment operation on files: an object for each window, octrees beside them, as an octree or a label
-// map.
+// The segment operation on files: an object for each window, octrees beside them, as an octree, a label map
+// or a DICOM segmentation.
 #include "planner/operation/segment.h"
 
 #include "planner/cli/numbers.h"
@@ -9,12 +9,14 @@
 #include "planner/cli/scan_in.h"
 #include "planner/file/slice_contours.h"
 #include "planner/measure/octree_summary.h"
+#include "planner/operation/trace.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/slice_contour.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/scan/volume_header.h"
+#include "voxel/scan/write_dicom_seg.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner::cli {
@@ -31,11 +33,16 @@ struct SegmentText {
   ScanIn in;
 };
 
-/// An object and what was done to it.
+/// An object and what was done to it; for a label map at the scan's own samples, too.
 struct Named {
   std::string name;
   Segmented made;
+  std::optional<voxel::Octree> on_samples = std::nullopt;
 };
+
+bool is_dicom_seg(const fs::path& path) {
+  return path.extension() == ".dcm";
+}
 
 SampleWindow window_of(const std::string& text) {
   try {
@@ -46,21 +53,32 @@ SampleWindow window_of(const std::string& text) {
 }
 
 /// An object for each window, or the one of the class, seeds or label; then the octrees.
+/// One set for both kinds of file: the octree's voxels choose the parts, a label map's samples are of them.
 std::vector<Named> segments_of(const Program& program, const SegmentText& text, Segment asked,
-                               const voxel::Scene& scene, const voxel::Universe& universe, Timings& timings) {
-  std::optional<voxel::GreyOctree> kept;
-  const auto grey = [&]() -> const voxel::GreyOctree& {
-    if (kept) return *kept;
-    const Stopwatch watch(timings, "octree");
-    // Beyond the scan is what no window means: less than any of its samples.
-    const double low = std::max(-32768.0, std::floor(std::min(voxel::range(scene).low - 1.0, -1024.0)));
-    return kept.emplace(voxel::grey_octree_of(universe, scene, static_cast<std::int16_t>(low)));
+                               const voxel::Scene& scene, Timings& timings) {
+  const voxel::Universe universe = universe_of(scene.lattice, text.voxel_mm);
+  const auto grey_in = [&](const voxel::Universe& where, std::optional<voxel::GreyOctree>& kept) {
+    return [&]() -> const voxel::GreyOctree& {
+      if (kept) return *kept;
+      const Stopwatch watch(timings, "octree");
+      // Beyond the scan is what no window means: less than any of its samples.
+      const double low = std::max(-32768.0, std::floor(std::min(voxel::range(scene).low - 1.0, -1024.0)));
+      return kept.emplace(voxel::grey_octree_of(where, scene, static_cast<std::int16_t>(low)));
+    };
   };
-  const SegmentSource source{text.scan.string(), scene, universe, grey, {}, program.stop.get_token()};
+  std::optional<voxel::GreyOctree> grey, own_grey;
+  const std::stop_token stop = program.stop.get_token();
+  const SegmentSource source{text.scan.string(), scene, universe, grey_in(universe, grey), {}, stop};
   std::vector<Named> segments;
   const auto add = [&](const std::string& name) {
     const Stopwatch watch(timings, "segment");
     segments.push_back({name, segmented(asked, source)});
+    // Voxels that are samples already stand where the label map has its own.
+    if (is_octree(text.out)) return;
+    if (!is_dicom_seg(text.out) && on_samples(scene.lattice, universe.lattice())) return;
+    const voxel::Universe own = voxel::universe_on(scene.lattice);
+    segments.back().on_samples = on_own_samples(
+        asked, {text.scan.string(), scene, own, grey_in(own, own_grey), {}, stop}, segments.back().made);
   };
   if (asked.otsu) add("class " + std::to_string(asked.otsu_class.value_or(*asked.otsu)));
   if (asked.label) add(asked.named ? *asked.named : "label " + std::to_string(*asked.label));
@@ -105,12 +123,47 @@ Json write_contours(const Program& program, const SegmentText& text, const voxel
           {"points", points}};
 }
 
+/// What was written, and beside a label map's samples the octree of the same set.
 Json said_of(const Named& segment) {
-  const double voxel_mm3 = segment.made.octree.universe().lattice().voxel_mm3();
-  return {{"name", segment.name},
-          {"voxels", segment.made.octree.voxel_count()},
-          {"volume_mm3", static_cast<double>(segment.made.octree.voxel_count()) * voxel_mm3},
-          {"steps", segment.made.steps}};
+  const auto put = [](Json& json, const voxel::Octree& octree) {
+    json["voxels"] = octree.voxel_count();
+    json["volume_mm3"] = static_cast<double>(octree.voxel_count()) * octree.universe().lattice().voxel_mm3();
+  };
+  Json said{{"name", segment.name}};
+  put(said, segment.on_samples.value_or(segment.made.octree));
+  said["steps"] = segment.made.steps;
+  if (segment.on_samples) put(said["octree"], segment.made.octree);
+  return said;
+}
+
+/// The objects as named segments on the scan's own slices.
+void write_seg(const Program& program, const SegmentText& text, const voxel::Scene& scene,
+               const std::vector<Named>& segments, Timings& timings, Json& json) {
+  const Stopwatch watch(timings, "write");
+  const voxel::Octree none = voxel::Octree::empty(voxel::universe_on(scene.lattice));
+  std::vector<voxel::DicomSegment> written;
+  json["kind"] = "DICOM segmentation";
+  json["labels"] = Json::array();
+  for (const Named& segment : segments) {
+    const voxel::Octree& voxels = segment.made.octree;
+    written.push_back(
+        {segment.name.substr(0, 64),
+         segment.on_samples
+             ? *segment.on_samples
+             : voxel::chosen_samples(scene.lattice, none, voxel::Octree::empty(voxels.universe()), voxels)});
+    const voxel::Octree& object = written.back().object;
+    if (object.is_empty())
+      throw std::runtime_error("'" + segment.name + "' holds none of the scan's samples: leave it out");
+    json["labels"].push_back(
+        {{"label", written.size()}, {"name", segment.name}, {"samples", object.voxel_count()}});
+  }
+  voxel::DicomSegOptions options;
+  options.label = written.size() == 1 ? written.front().label : "Objects";
+  options.series_description = "Octotomy, segmented";
+  options.progress.stop = program.stop.get_token();
+  if (is_dicom(scene)) options.source = voxel::dicom_source(text.scan, read_options(program, text.in));
+  json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
+  voxel::write_dicom_seg(written, text.out, options);
 }
 
 /// Writes the objects: one as an octree, any number as a label map on the scan's own lattice.
@@ -125,9 +178,11 @@ void write_segments(const Program& program, const SegmentText& text, const voxel
     const Stopwatch watch(timings, "write");
     voxel::write_octree(file, text.out);
     json.update(octree_answer(file, fs::file_size(text.out), timings));
+  } else if (is_dicom_seg(text.out)) {
+    write_seg(program, text, scene, segments, timings, json);
   } else {
     std::vector<voxel::Octree> octrees;
-    for (const Named& segment : segments) octrees.push_back(segment.made.octree);
+    for (const Named& segment : segments) octrees.push_back(segment.on_samples.value_or(segment.made.octree));
     const Stopwatch watch(timings, "write");
     const voxel::LabelMap map = voxel::label_map(scene.lattice, octrees, {program.stop.get_token(), {}});
     voxel::write_scene(map.scene, text.out);
@@ -160,9 +215,10 @@ void check_text(const SegmentText& text, const Segment& asked) {
     throw CLI::ValidationError("--out", "only --otsu and --contours need none");
   if (is_octree(text.out) && text.windows.size() + text.objects.size() > 1)
     throw CLI::ValidationError("--out", "an .octree holds one object: write several as a label map, .nrrd");
-  if (!text.out.empty() && !is_octree(text.out) && !voxel::volume_format(text.out))
+  if (!text.out.empty() && !is_octree(text.out) && !is_dicom_seg(text.out) && !voxel::volume_format(text.out))
     throw std::runtime_error(text.out.string() +
-                             ": write an .octree, or a label map as .nrrd, .nii.gz or .mha");
+                             ": write an .octree, a label map as .nrrd, .nii.gz or .mha, or a DICOM "
+                             "segmentation, .dcm");
   if (!text.out.empty()) need_folder_of(text.out);
   if (!text.contours.empty()) need_folder_of(text.contours);
 }
@@ -187,9 +243,7 @@ int segment(const Program& program, const SegmentText& text) {
   }
   std::string written;
   if (!text.out.empty()) {
-    const voxel::Universe universe =
-        is_octree(text.out) ? universe_of(scene.lattice, text.voxel_mm) : voxel::universe_on(scene.lattice);
-    const std::vector<Named> segments = segments_of(program, text, asked, scene, universe, timings);
+    const std::vector<Named> segments = segments_of(program, text, asked, scene, timings);
     write_segments(program, text, scene, segments, timings, json);
     json["objects"] = Json::array();
     for (const Named& each : segments) json["objects"].push_back(said_of(each));
@@ -207,9 +261,12 @@ int segment(const Program& program, const SegmentText& text) {
   std::vector<std::pair<std::string, std::string>> rows;
   if (!written.empty()) rows.emplace_back("written", written);
   if (json.contains("suggestion")) rows.emplace_back("thresholds", json["suggestion"]["thresholds"].dump());
-  for (const Json& object : json.value("objects", Json::array()))
-    rows.emplace_back(object["name"].get<std::string>(),
-                      grouped(object["volume_mm3"].get<double>(), 1) + " mm\u00b3");
+  for (const Json& object : json.value("objects", Json::array())) {
+    std::string volume = grouped(object["volume_mm3"].get<double>(), 1) + " mm\u00b3";
+    if (object.contains("octree"))
+      volume += " of samples, " + grouped(object["octree"]["volume_mm3"].get<double>(), 1) + " as an octree";
+    rows.emplace_back(object["name"].get<std::string>(), volume);
+  }
   program.say(whole, lines(rows));
   return done;
 }
@@ -223,6 +280,7 @@ void add_segment(Program& program) {
       "Makes objects of a scan: by window or tissue, by suggestion, from seeds; parts chosen, filled",
       "octotomy segment head.nrrd -o skull.octree --window bone --largest\n"
       "  octotomy segment head.nrrd -o tissues.nii.gz --window bone --window soft_tissue --window fat\n"
+      "  octotomy segment dicom_folder -o tissues.dcm --window bone --window soft_tissue\n"
       "  octotomy segment head.nrrd --otsu 3 --json\n"
       "  octotomy segment tissues.nii.gz -o fat.octree --label 3\n"
       "  octotomy segment organs.nii.gz -o mandible.octree --named mandible --names organs.json\n"
@@ -234,7 +292,8 @@ void add_segment(Program& program) {
   verb.add_option("scan", text->scan, "A scan, or with --label a label map")->required()->check(scan_path());
   verb.add_option(
       "-o,--out", text->out,
-      "An .octree file for one object, or a label map (.nrrd, .nii.gz, .mha) on the scan's lattice");
+      "An .octree file for one object; a label map (.nrrd, .nii.gz, .mha) or a DICOM segmentation (.dcm) on "
+      "the scan's lattice");
   verb.add_option("--window", text->windows,
                   "LOW:HIGH or LOW: in sample units, or a tissue: " + names + "; again for more objects")
       ->expected(1)
@@ -251,8 +310,10 @@ void add_segment(Program& program) {
   verb.add_option(
       "--contours", text->contours,
       "Writes the contours of the first window's lower bound on every slice, a JSON file of regions");
-  verb.add_option("--voxel", text->voxel_mm,
-                  "Edge of an octree's voxels, mm; default: as fine as the scan, at most 512 a side")
+  verb.add_option(
+          "--voxel", text->voxel_mm,
+          "Edge of the voxels that choose parts, and of an octree's, mm; default: as fine as the scan, "
+          "at most 512 a side")
       ->check(above_zero());
   text->words["scan"] = {"scan"};
   add_scan_options(verb, text->in);

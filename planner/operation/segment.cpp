@@ -60,7 +60,7 @@ class Segmenter {
   Segmenter(const Segment& segment, const SegmentSource& source) : segment_(segment), source_(source) {}
 
   Segmented run() {
-    begin();
+    base();
     refine();
     if (made_.octree.is_empty())
       throw std::runtime_error(
@@ -69,6 +69,17 @@ class Segmenter {
                ? " after its " + std::to_string(made_.steps.size()) + " steps: leave some out"
                : ": choose another window, or see what --otsu 3 suggests"));
     return std::move(made_);
+  }
+
+  /// What choices begin with.
+  const voxel::Octree& base() {
+    begin();
+    if (!segment_.regions.empty())
+      become(voxel::combine(source_.universe,
+                            voxel::Expression(made_.octree) & read_slices(source_.folder / segment_.regions)),
+             {{"do", "regions"}, {"path", segment_.regions.string()}});
+    if (!segment_.tolerance) made_.base = made_.octree;
+    return made_.octree;
   }
 
  private:
@@ -112,10 +123,6 @@ class Segmenter {
   void refine() {
     const voxel::Neighbours neighbours = neighbours_of(segment_);
     const double voxel_mm3 = source_.universe.lattice().voxel_mm3();
-    if (!segment_.regions.empty())
-      become(voxel::combine(source_.universe,
-                            voxel::Expression(made_.octree) & read_slices(source_.folder / segment_.regions)),
-             {{"do", "regions"}, {"path", segment_.regions.string()}});
     go_on();
     if (segment_.open_mm)
       become(voxel::open(made_.octree, *segment_.open_mm),
@@ -277,6 +284,15 @@ void bound(const Segment& segment, const BoundBench& bench, Object& made) {
 Segmented segmented(const Segment& segment, const SegmentSource& source) {
   if (segment.window) need_hounsfield(*segment.window, source.scene);
   return Segmenter(segment, source).run();
+}
+
+voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source, const Segmented& made) {
+  const voxel::Lattice& lattice = source.scene.lattice;
+  if (made.base)
+    return voxel::chosen_samples(lattice, Segmenter(segment, source).base(), *made.base, made.octree);
+  // Nothing but voxels says where a grown object ends.
+  return voxel::chosen_samples(lattice, voxel::Octree::empty(source.universe),
+                               voxel::Octree::empty(made.octree.universe()), made.octree);
 }
 
 OtsuWindow otsu_window(const voxel::Scene& scene, int classes, int number) {

@@ -45,15 +45,23 @@ struct SegmentSource {
   std::stop_token stop = {};
 };
 
-/// The voxels, and each choice with what it left.
+/// The voxels, and each choice with what it left. `base` is what the choices began with: the window or label,
+/// within regions; growing has none.
 struct Segmented {
   voxel::Octree octree;
   nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+  std::optional<voxel::Octree> base = std::nullopt;
 };
 
 /// The voxel kernel's answer. Precondition: `window` in place of `otsu`, see otsu_window(). Throws
 /// std::runtime_error where nothing is left or a seed lies outside; Stopped between choices.
 Segmented segmented(const Segment& segment, const SegmentSource& source);
+
+/// The same object at the scan's own samples, in a universe whose first voxels are they: voxels of `made`, of
+/// segmented() in any universe, say which parts are the object's, and the samples where it ends.
+/// Precondition: `source` is on voxel::universe_on() of the scan. Throws Stopped. See
+/// voxel::chosen_samples().
+voxel::Octree on_own_samples(const Segment& segment, const SegmentSource& source, const Segmented& made);
 
 /// The label of the name that is asked for, of the given table or that of the label map. Throws
 /// std::runtime_error with the names that there are.

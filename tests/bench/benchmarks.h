@@ -21,6 +21,7 @@ void register_move();
 void register_read();
 void register_render();
 void register_verbs();    ///< whole verbs of the program beside
+void register_verify();   ///< what certificates reckon
 void register_openvdb();  ///< peers; defined where OpenVDB is installed
 
 }  // namespace octotomy::bench

@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   octotomy::bench::register_read();
   octotomy::bench::register_render();
   octotomy::bench::register_verbs();
+  octotomy::bench::register_verify();
 #ifdef OCTOTOMY_HAS_OPENVDB
   octotomy::bench::register_openvdb();
 #endif

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "verify/facet_count.h"
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -84,6 +86,61 @@ TEST(FacetCount, ErrsInStepAlongALatticeAxis) {
   const Block along{{7.3, 9.1, 24.5}, turned({0, 0, 17})}, across{{7.3, 9.1, 24.5}, turned({31, 47, 17})};
   // As many layers as are alike: the variance grows with their square, not with their number.
   EXPECT_GT(count_variance(facets_of(along)), 5.0 * count_variance(facets_of(across)));
+}
+
+/// The transform of one facet at k as the definition has it, side by side with a sine and a cosine each.
+std::complex<double> plain_transform(const Facet& facet, const glm::dvec3& k) {
+  const double area = glm::length(facet.area);
+  const glm::dvec3 normal = facet.area / area;
+  const double along = glm::dot(k, normal);
+  const glm::dvec3 tangent = k - along * normal;
+  std::complex<double> sum = 0.0;
+  for (const auto& [from, to] : facet.sides) {
+    const glm::dvec3 side = to - from;
+    const double half = M_PI * glm::dot(k, side);
+    sum += glm::dot(tangent, glm::cross(side, normal)) * (half == 0.0 ? 1.0 : std::sin(half) / half) *
+           std::polar(1.0, -M_PI * glm::dot(k, from + to));
+  }
+  return std::complex<double>(0.0, along / (2.0 * M_PI * glm::dot(tangent, tangent))) * sum;
+}
+
+TEST(FacetCount, IsTheSumThatItsDefinitionSaysUpToRounding) {
+  // A slanted star far from the origin, of fewer and more sides than are taken at once; some sides are at
+  // right angles to many k.
+  const glm::dmat3 axes = turned({0.0, 37.0, 11.0});
+  for (const int corners : {4, 47, 48, 49, 200}) {
+    Facet facet;
+    std::vector<glm::dvec3> rim;
+    for (int i = 0; i < corners; ++i) {
+      const double turn = 2.0 * M_PI * i / corners, radius = i % 3 == 0 ? 9.0 : 8.0;
+      rim.push_back(glm::dvec3(900.0, 1200.0, 300.0) +
+                    axes * glm::dvec3(radius * std::cos(turn), radius * std::sin(turn), 0.0));
+    }
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+      const std::size_t j = (i + 1) % rim.size();
+      facet.sides.push_back({rim[i], rim[j]});
+      facet.area += 0.5 * glm::cross(rim[i] - rim[0], rim[j] - rim[0]);
+    }
+    std::reverse(facet.sides.begin(), facet.sides.end());
+    Facet back = facet;
+    back.area = -back.area;
+    for (auto& [from, to] : back.sides) std::swap(from, to);
+    EXPECT_LT(count_variance({facet, back}), 1e-15 * count_variance({facet})) << corners;
+    for (auto& [from, to] : back.sides) {
+      from.x += 0.25;
+      to.x += 0.25;
+    }
+    double plain = 0.0;
+    const std::vector<glm::ivec3> vectors = count_vectors({facet, back});
+    for (const glm::ivec3& k : vectors) {
+      const glm::dvec3 at(k);
+      const double square = glm::dot(at, at);
+      const std::complex<double> total = plain_transform(facet, at) + plain_transform(back, at);
+      plain += 2.0 * std::norm(total) / (4.0 * M_PI * M_PI * square * square);
+    }
+    EXPECT_GT(vectors.size(), 1098U);
+    EXPECT_NEAR(count_variance({facet, back}), plain, 1e-9 * plain) << corners;
+  }
 }
 
 TEST(FacetCount, SplittingAFacetChangesNothing) {

@@ -38,6 +38,38 @@ Universe universe_on(const Lattice& lattice) {
   return universe;
 }
 
+Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& base, const Octree& made) {
+  if (made == base) return own;
+  const glm::ivec3 dims = lattice.dims;
+  const glm::dmat4 voxel_from_index = glm::inverse(made.universe().lps_from_voxel) * lattice.lps_from_voxel;
+  // Whether a voxel around the sample is made, or, of those that were no base, added.
+  const auto is_near = [&](const glm::dvec3& p_voxel, bool only_added) {
+    constexpr double rounding = 0x1p-20;  // a sample this near a voxel's centre is that centre
+    const glm::ivec3 low(glm::floor(p_voxel + rounding)), high(glm::ceil(p_voxel - rounding));
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+          if (made.contains({x, y, z}) && !(only_added && base.contains({x, y, z}))) return true;
+    return false;
+  };
+  return octree_of_blocks(own.universe(), [&](const glm::ivec3& block) -> Block {
+    std::array<std::uint64_t, 64> words{};
+    for (int z = 0; z < 16; ++z)
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+          const glm::ivec3 index = 16 * block + glm::ivec3(x, y, z);
+          if (!holds(dims, index)) continue;
+          const glm::dvec3 p_voxel(voxel_from_index * glm::dvec4(index, 1));
+          const glm::ivec3 at = nearest(p_voxel);
+          const bool is_own = own.contains(index), is_base = base.contains(at);
+          if (is_own == is_base ? made.contains(at) : is_near(p_voxel, is_base))
+            words[static_cast<std::size_t>(child_index(x >> 2, y >> 2, z >> 2))] |=
+                std::uint64_t{1} << child_index(x & 3, y & 3, z & 3);
+        }
+    return make_leaf_block(0, all_children, words.data());
+  });
+}
+
 LabelMap label_map(const Lattice& lattice, std::span<const Octree> objects, const Progress& progress) {
   if (objects.size() > 32767)
     throw std::invalid_argument("a label map holds at most 32767 objects, not " +

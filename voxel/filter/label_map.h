@@ -16,6 +16,15 @@ namespace octotomy::voxel {
 /// std::length_error if it needs more than 2^Universe::max_depth voxels a side.
 Universe universe_on(const Lattice& lattice);
 
+/// The samples of a lattice that an object holds which was chosen, opened, closed or filled from a base in a
+/// universe of its own. `own` is the base at the samples themselves, on universe_on(lattice); `base` and
+/// `made` share one universe. A sample is in the object as its nearest voxel is, if sample and voxel are both
+/// of the base or neither is. Else one of the up to eight voxels around a sample of the base must be in the
+/// object, or around another one must have been added to the base. So a sample that is a voxel's centre is in
+/// the object exactly if that voxel is, and a base from which nothing was chosen keeps its samples to the
+/// last. Parallel over blocks.
+Octree chosen_samples(const Lattice& lattice, const Octree& own, const Octree& base, const Octree& made);
+
 /// The label map of objects on a lattice: a sample is i + 1 if objects[i] is the first object with a voxel at
 /// its position. `overlaps` counts the samples in several objects. Throws std::invalid_argument for more than
 /// 32767 objects; Stopped. Parallel over slices.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
-// 1 find the planes that hold a voxel and the rectangle around them; 2 pack their pixels, one bit each, and
-// describe each plane as a frame; 3 describe the segment, the dimensions (segment and position) and the
-// origin.
+// 1 find each segment's planes that hold a voxel and the rectangle around all; 2 pack their pixels, one bit
+// each, and describe each plane as a frame; 3 describe the segments, the dimensions (segment and position)
+// and the origin.
 #include "voxel/scan/write_dicom_seg.h"
 
 #include <algorithm>
@@ -25,22 +25,32 @@ using Items = std::vector<DicomAttributes>;
 
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
 
-/// The planes that hold a voxel, and the smallest rectangle that holds the voxels of all.
+using Segments = std::span<const DicomSegment>;
+
+/// A plane of a segment that holds a voxel.
+struct Plane {
+  std::size_t segment;  ///< from 0
+  int z;
+};
+
+/// The planes that hold a voxel, segment by segment, and the smallest rectangle that holds all voxels.
 struct Extent {
-  std::vector<int> planes;
+  std::vector<Plane> planes;
   glm::ivec2 low{0};
   glm::ivec2 high{-1};  ///< inclusive
   glm::ivec2 size_px() const { return high - low + 1; }
 };
 
 /// Adds every plane's words to the digest on the way.
-Extent extent_of(const Octree& object, const Progress& progress, DicomDigest& digest) {
+void add_planes(Segments segments, std::size_t segment, const Progress& progress, Extent& extent,
+                DicomDigest& digest) {
+  const Octree& object = segments[segment].object;
   const int side = object.universe().side();
-  Extent extent;
-  extent.low = glm::ivec2(side);
+  const std::size_t before = extent.planes.size();
   SliceBits slice;
   for (int z = 0; z < side; ++z) {
-    progress.at(0.5 * z / side);
+    progress.at(0.5 * (static_cast<double>(segment) + static_cast<double>(z) / side) /
+                static_cast<double>(segments.size()));
     read_slice(object, z, slice);
     bool held = false;
     for (int y = 0; y < side; ++y)
@@ -52,17 +62,16 @@ Extent extent_of(const Octree& object, const Progress& progress, DicomDigest& di
         extent.high = glm::max(extent.high, glm::ivec2(64 * word + 63 - std::countl_zero(bits), y));
       }
     if (!held) continue;
-    extent.planes.push_back(z);
+    extent.planes.push_back({segment, z});
     digest.add(&z, sizeof z);
     digest.add(slice.words.data(), slice.words.size() * sizeof slice.words[0]);
   }
-  if (extent.planes.empty())
+  if (extent.planes.size() == before)
     throw std::invalid_argument("the object is empty: choose an object with at least one voxel");
-  return extent;
 }
 
 /// The frames' pixels without gaps between rows or frames, the first in the lowest bit (PS3.5, 8.1.1).
-std::string packed_pixels(const Octree& object, const Extent& extent, const Progress& progress) {
+std::string packed_pixels(Segments segments, const Extent& extent, const Progress& progress) {
   const auto area =
       static_cast<std::uint64_t>(extent.size_px().x) * static_cast<std::uint64_t>(extent.size_px().y);
   const std::uint64_t bytes = (area * extent.planes.size() + 7) / 8;
@@ -75,7 +84,7 @@ std::string packed_pixels(const Octree& object, const Extent& extent, const Prog
   std::size_t bit = 0;
   for (std::size_t i = 0; i < extent.planes.size(); ++i) {
     progress.at(0.5 + 0.5 * static_cast<double>(i) / static_cast<double>(extent.planes.size()));
-    read_slice(object, extent.planes[i], slice);
+    read_slice(segments[extent.planes[i].segment].object, extent.planes[i].z, slice);
     for (int y = extent.low.y; y <= extent.high.y; ++y)
       for (int x = extent.low.x; x <= extent.high.x; ++x, ++bit)
         if ((slice.row(y)[x / 64] >> (x % 64)) & 1)
@@ -92,18 +101,21 @@ Items item(Fill fill) {
   return items;
 }
 
-void put_segment(DicomAttributes& file, const std::string& label) {
+void put_segments(DicomAttributes& file, Segments segments, const std::string& label) {
   // The object's anatomy is unknown; SNOMED's tissue holds for every object.
   const Items tissue{dicom_code("85756007", "SCT", "Tissue")};
   file.put(0x00620001, "CS", "BINARY");
-  file.put_sequence(0x00620002, item([&](DicomAttributes& segment) {
-                      segment.put_sequence(0x00620003, tissue);
-                      segment.put_short(0x00620004, 1);
-                      segment.put(0x00620005, "LO", label);
-                      segment.put(0x00620008, "CS", "SEMIAUTOMATIC");
-                      segment.put(0x00620009, "LO", "Octotomy");
-                      segment.put_sequence(0x0062000f, tissue);
-                    }));
+  Items items;
+  for (const DicomSegment& each : segments) {
+    DicomAttributes& segment = items.emplace_back();
+    segment.put_sequence(0x00620003, tissue);
+    segment.put_short(0x00620004, static_cast<std::uint16_t>(items.size()));
+    segment.put(0x00620005, "LO", each.label);
+    segment.put(0x00620008, "CS", "SEMIAUTOMATIC");
+    segment.put(0x00620009, "LO", "Octotomy");
+    segment.put_sequence(0x0062000f, tissue);
+  }
+  file.put_sequence(0x00620002, items);
   file.put(0x00700080, "CS", "OCTOTOMY");
   file.put(0x00700081, "LO", label);
   file.put(0x00700084, "PN", "Octotomy^Planner");
@@ -139,8 +151,8 @@ void put_shared_groups(DicomAttributes& file, const glm::dmat3& axes, const glm:
   file.put_sequence(0x52009229, {shared});
 }
 
-/// The groups of one frame, number from 1.
-DicomAttributes frame_groups(std::uint32_t number, const glm::dvec3& first_mm,
+/// The groups of one frame of a segment, at a place among its universe's planes with frames; both from 1.
+DicomAttributes frame_groups(std::uint16_t segment, std::uint32_t place, const glm::dvec3& first_mm,
                              const std::vector<DicomSource::Image>& images) {
   DicomAttributes frame;
   if (!images.empty())
@@ -151,13 +163,14 @@ DicomAttributes frame_groups(std::uint32_t number, const glm::dvec3& first_mm,
                        }));
   frame.put_sequence(0x00209111, item([&](DicomAttributes& content) {
                        content.put(0x00209056, "SH", "1");
-                       content.put_longs(0x00209057, {number});
-                       content.put_longs(0x00209157, {1, number});
+                       content.put_longs(0x00209057, {place});
+                       content.put_longs(0x00209157, {segment, place});
                      }));
   frame.put_sequence(0x00209113, item([&](DicomAttributes& position) {
                        position.put(0x00200032, "DS", dicom_decimals(first_mm));
                      }));
-  frame.put_sequence(0x0062000a, item([](DicomAttributes& segment) { segment.put_short(0x0062000b, 1); }));
+  frame.put_sequence(0x0062000a,
+                     item([&](DicomAttributes& identified) { identified.put_short(0x0062000b, segment); }));
   return frame;
 }
 
@@ -167,12 +180,15 @@ void put_frames(DicomAttributes& file, const Lattice& lattice, const Extent& ext
   Items frames;
   std::vector<DicomSource::Image> referenced;
   std::set<std::string> known;
-  for (const int z : extent.planes) {
+  std::set<int> places;
+  for (const Plane& plane : extent.planes) places.insert(plane.z);
+  for (const auto& [segment, z] : extent.planes) {
     std::vector<DicomSource::Image> images;
     if (source) images = images_behind(*source, lattice, z);
     for (const DicomSource::Image& image : images)
       if (known.insert(image.instance_uid).second) referenced.push_back(image);
-    frames.push_back(frame_groups(static_cast<std::uint32_t>(frames.size() + 1),
+    const auto place = std::distance(places.begin(), places.find(z)) + 1;
+    frames.push_back(frame_groups(static_cast<std::uint16_t>(segment + 1), static_cast<std::uint32_t>(place),
                                   lattice.lps_mm(glm::dvec3(extent.low, z)), images));
   }
   file.put_sequence(0x52009230, frames);
@@ -201,8 +217,8 @@ void put_image(DicomAttributes& file, const glm::ivec2& size_px) {
   file.put(0x00282110, "CS", "00");
 }
 
-DicomAttributes segmentation(const Octree& object, const DicomSegOptions& options) {
-  const Universe& universe = object.universe();
+DicomAttributes segmentation(Segments segments, const DicomSegOptions& options) {
+  const Universe& universe = segments.front().object.universe();
   const Lattice lattice = universe.lattice();
   const glm::dvec3 edge_mm = lattice.spacing_mm();
   glm::dmat3 axes(universe.lps_from_voxel);
@@ -217,30 +233,50 @@ DicomAttributes segmentation(const Octree& object, const DicomSegOptions& option
   digest.add(options.label);
   digest.add(options.series_description);
   if (options.source) digest.add(options.source->series_uid);
-  const Extent extent = extent_of(object, options.progress, digest);
+  Extent extent;
+  extent.low = glm::ivec2(universe.side());
+  bool in_utf8 = !is_ascii(options.label) || !is_ascii(options.series_description);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (i > 0 || segments[i].label != options.label) digest.add(segments[i].label);
+    add_planes(segments, i, options.progress, extent, digest);
+    in_utf8 = in_utf8 || !is_ascii(segments[i].label);
+  }
   DicomAttributes file;
-  const bool in_utf8 = !is_ascii(options.label) || !is_ascii(options.series_description);
   DicomOptions study{.series_description = options.series_description, .source = options.source};
   if (study.source) study.patient_name.clear();
   put_study(file, study, digest, in_utf8);
   put_image(file, extent.size_px());
   file.put(0x00080018, "UI", digest.uid("segmentation"));
-  put_segment(file, options.label);
+  put_segments(file, segments, options.label);
   put_dimensions(file, digest.uid("dimensions"));
   put_shared_groups(file, axes, edge_mm);
   put_frames(file, lattice, extent, options.source);
-  file.put(0x7fe00010, "OB", packed_pixels(object, extent, options.progress));
+  file.put(0x7fe00010, "OB", packed_pixels(segments, extent, options.progress));
   return file;
 }
 
 }  // namespace
 
 void write_dicom_seg(const Octree& object, const fs::path& path, const DicomSegOptions& options) {
+  const DicomSegment segment{options.label, object};
+  write_dicom_seg({&segment, 1}, path, options);
+}
+
+void write_dicom_seg(Segments segments, const fs::path& path, const DicomSegOptions& options) {
+  if (segments.empty() || segments.size() > 65535)
+    throw std::invalid_argument("a segmentation has 1 to 65535 segments, not " +
+                                std::to_string(segments.size()));
   check_dicom_text(options.label, "label");
   check_dicom_text(options.series_description, "series_description");
   if (options.label.empty() || options.series_description.empty())
     throw std::invalid_argument("a segmentation's label and series_description must not be empty");
-  const DicomAttributes file = segmentation(object, options);
+  for (const DicomSegment& each : segments) {
+    check_dicom_text(each.label, "label");
+    if (each.label.empty()) throw std::invalid_argument("a segment's label must not be empty");
+    if (each.object.universe() != segments.front().object.universe())
+      throw std::invalid_argument("the segments of a file must lie in one universe");
+  }
+  const DicomAttributes file = segmentation(segments, options);
   StagedFiles staging(path.parent_path());
   write_dicom_file(staging.folder() / path.filename(), path, file);
   staging.commit();

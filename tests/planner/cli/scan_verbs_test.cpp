@@ -192,6 +192,88 @@ TEST_F(Segments, LabelMapsHoldSeveralObjectsAndGiveThemBack) {
   EXPECT_EQ(again["findings"].size(), 1u);
 }
 
+TEST_F(Segments, AnOctreeAndALabelMapAreOneSetOnSlicesOfAnyDistance) {
+  const auto voxels_of = [&](const std::string& how) {
+    EXPECT_EQ(run("segment " + at("thick.nrrd") + " -o " + at("set.octree") + how).status, 0);
+    const Json octree = json("segment " + at("thick.nrrd") + " -o " + at("set.octree") + how);
+    const Json map = json("segment " + at("thick.nrrd") + " -o " + at("set.nrrd") + how);
+    const Json &one = octree["objects"][0], &other = map["objects"][0];
+    EXPECT_EQ(other["octree"]["volume_mm3"], one["volume_mm3"]) << how;
+    EXPECT_EQ(other["steps"], one["steps"]) << how;
+    EXPECT_EQ(other["voxels"], map["labels"][0]["samples"]) << how;
+    EXPECT_EQ(json("segment " + at("thick.nrrd") + " -o " + at("again.nrrd") + " --object " +
+                   at("set.octree"))["overlaps"],
+              0);
+    return std::pair(std::get<voxel::Int16Samples>(voxel::read_scene(folder_ / "set.nrrd").samples),
+                     std::get<voxel::Int16Samples>(voxel::read_scene(folder_ / "again.nrrd").samples));
+  };
+  // Three balls whose rims take several millimetres, as a scanner's do.
+  for (const double slice_mm : {3.0, 2.7}) {
+    voxel::Scene scene;
+    scene.lattice = voxel::axis_aligned_lattice({48, 40, 14}, {1, 1, slice_mm}, {-23.5, -19.5, -20});
+    scene.meaning = voxel::Meaning::Hounsfield;
+    scene.modality = "CT";
+    voxel::Int16Samples samples;
+    std::uint64_t in_window = 0;
+    for (int z = 0; z < 14; ++z)
+      for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 48; ++x) {
+          const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
+          const double out = std::min(glm::distance(p, glm::dvec3(-12, 0, 0)) - 9,
+                                      std::min(glm::distance(p, glm::dvec3(10, 2, 0)) - 7,
+                                               glm::distance(p, glm::dvec3(0, -14, 12)) - 4));
+          samples.push_back(static_cast<std::int16_t>(std::lround(300 - 200 * std::clamp(out, -5.0, 5.0))));
+          in_window += samples.back() >= 300 ? 1 : 0;
+        }
+    const voxel::Int16Samples values = samples;
+    scene.samples = std::move(samples);
+    voxel::write_scene(scene, folder_ / "thick.nrrd");
+    const auto [all, of_octree] = voxels_of(" --window 300:");
+    for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(all[i] != 0, values[i] >= 300) << i;
+    EXPECT_GT(in_window, 500U);
+    for (const char* how : {" --window 300: --largest", " --window 300: --largest --fill",
+                            " --window 300: --open 2", " --seed -12,0,0 --tolerance 600"}) {
+      const auto [map, sampled] = voxels_of(how);
+      std::size_t differ = 0;
+      for (std::size_t i = 0; i < map.size(); ++i) differ += map[i] != sampled[i] ? 1 : 0;
+      // Slices that are whole voxels apart lie on voxels' centres; others up to half a voxel beside them.
+      EXPECT_LE(differ, slice_mm == 3.0 ? 0U : in_window / 20) << how << ", slices of " << slice_mm;
+      EXPECT_NE(map, all) << how;
+    }
+  }
+}
+
+TEST_F(Segments, SeveralBecomeADicomSegmentationAndComeBackUnshiftedUnderTheirNames) {
+  const Json map = json(segment("map.nrrd") + "--window 600: --window 200:600");
+  const Json seg = json(segment("seg.dcm") + "--window 600: --window 200:600");
+  EXPECT_EQ(seg["labels"], map["labels"]);
+  write("map.json", R"({"Balls": 1, "Cube": 2})");
+  EXPECT_EQ(run("convert " + at("map.nrrd") + " -o " + at("named.dcm")).status, 0);
+  const auto index_of = [](const glm::ivec3& dims, const glm::ivec3& at) {
+    return static_cast<std::size_t>(at.x + dims.x * (at.y + dims.y * at.z));
+  };
+  for (const char* name : {"seg.dcm", "named.dcm"}) {
+    const voxel::Scene was = voxel::read_scene(folder_ / "map.nrrd"), is = voxel::read_scene(folder_ / name);
+    const auto& before = std::get<voxel::Int16Samples>(was.samples);
+    const auto& after = std::get<voxel::Int16Samples>(is.samples);
+    std::size_t labelled = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      if (after[i] == 0) continue;
+      ++labelled;
+      const auto dims = is.lattice.dims;
+      const int n = static_cast<int>(i);
+      const glm::ivec3 at{n % dims.x, n / dims.x % dims.y, n / dims.x / dims.y};
+      const glm::dvec3 p = was.lattice.voxel(is.lattice.lps_mm(at)), nearest = glm::round(p);
+      ASSERT_LT(glm::distance(p, nearest), 1e-6);
+      ASSERT_EQ(before[index_of(was.lattice.dims, glm::ivec3(nearest))], after[i]);
+    }
+    EXPECT_EQ(labelled, std::count_if(before.begin(), before.end(), [](auto each) { return each != 0; }));
+  }
+  const Json cube = json("segment " + at("named.dcm") + " --named Cube -o " + at("back.nrrd"));
+  EXPECT_EQ(cube["labels"][0]["samples"], 20 * 8 * 8);
+  expect_refused(run("convert " + at("scan.nrrd") + " -o " + at("x.dcm")), "label");
+}
+
 TEST_F(Segments, ContoursComeBackAsTheMaskTheyBound) {
   const Json followed =
       json("segment " + at("scan.nrrd") + " --window=-50: --contours " + at("regions.json"));

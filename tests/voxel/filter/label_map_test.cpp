@@ -46,6 +46,27 @@ TEST(LabelMap, ComesBackAsTheObjectsItWasMadeOf) {
   }
 }
 
+TEST(ChosenSamples, AreTheBasesOwnWhereNothingWasChosenAndTheChosenPartsWhereSomethingWas) {
+  for (const bool left_handed : {false, true}) {
+    // Finer voxels beside an oblique lattice: no sample is a voxel's centre.
+    const Lattice lattice = tests::oblique_lattice(left_handed);
+    const Universe own = universe_on(lattice), fine = universe_around(bounds(lattice), 0.4);
+    const glm::dvec3 a = lattice.lps_mm({12, 10, 8}), b = lattice.lps_mm({28, 18, 12});
+    const Expression balls = Expression(Sphere{a, 4.0}) | Sphere{b, 5.0};
+    const Octree samples = combine(own, balls), base = combine(fine, balls);
+    EXPECT_TRUE(chosen_samples(lattice, samples, base, base) == samples);
+    const Octree one = chosen_samples(lattice, samples, base, combine(fine, Sphere{b, 5.0}));
+    EXPECT_TRUE(one == combine(own, Sphere{b, 5.0}));
+    EXPECT_GT(one.voxel_count(), 100U);
+    // What was added has no samples of its own: its nearest voxels say where it is.
+    const Octree more = chosen_samples(lattice, samples, base, combine(fine, balls | Sphere{a, 5.0}));
+    EXPECT_TRUE(combine(own, Expression(samples) - more).is_empty());
+    EXPECT_TRUE(combine(own, Expression(more) - (balls | Sphere{a, 5.5})).is_empty());
+    EXPECT_TRUE(combine(own, Expression(Sphere{a, 4.5}) - more).is_empty());
+    EXPECT_FALSE(chosen_samples(lattice, combine(own, Sphere{a, 4.0}), base, base) == samples);  // spoiled
+  }
+}
+
 TEST(LabelMap, GivesVoxelsOfSeveralObjectsToTheFirstAndCountsThem) {
   const Lattice lattice = axis_aligned_lattice({20, 20, 20}, {1, 1, 1}, {0, 0, 0});
   const Universe universe = universe_on(lattice);
