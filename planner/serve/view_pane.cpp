@@ -207,19 +207,22 @@ struct ViewPane::Drawing {
   }
 };
 
-voxel::DrawnObject ViewPane::threshold(const Evaluation& evaluation, const Json& window) {
-  const auto scan = evaluation.loaded.find(window.value("scan", "ct"));
-  if (scan == evaluation.loaded.end()) throw std::runtime_error("window: there is no such scan");
+voxel::DrawnObject ViewPane::threshold(Desk& desk, const Snapshot& snapshot, const Json& window) {
+  const std::string name = window.value("scan", "ct");
+  const auto scan = snapshot.evaluation->loaded.find(name);
+  if (scan == snapshot.evaluation->loaded.end()) throw std::runtime_error("window: there is no such scan");
+  const voxel::GreyOctree grey =
+      window.value("alone", false) ? desk.alone(snapshot, name) : scan->second->grey;
   const std::string text = window.dump();
   SampleWindow samples{number_of(window, "low").value_or(-std::numeric_limits<double>::infinity())};
   samples.high = number_of(window, "high");
-  if (threshold_of_ != text || !threshold_ || threshold_->universe() != evaluation.universe) {
+  if (threshold_of_ != text || !threshold_ || threshold_->universe() != grey.universe()) {
     threshold_ = std::make_shared<const voxel::Octree>(
-        voxel::combine(evaluation.universe, voxel::Expression(window_on(scan->second->grey, samples))));
+        voxel::combine(grey.universe(), voxel::Expression(window_on(grey, samples))));
     threshold_of_ = text;
   }
   voxel::DrawnObject object{"", *threshold_};
-  if (!samples.high && std::isfinite(samples.low)) object.grey = scan->second->grey;
+  if (!samples.high && std::isfinite(samples.low)) object.grey = grey;
   if (object.grey) object.threshold = samples.low;
   return object;
 }
@@ -239,7 +242,7 @@ void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const
   for (const Json& entry : said.value("objects", Json::array())) {
     if (entry.contains("window")) {
       drawing.is_of_plan = false;
-      drawing.add(threshold(evaluation, entry.at("window")), "", entry);
+      drawing.add(threshold(desk, drawing.snapshot, entry.at("window")), "", entry);
       continue;
     }
     const std::string id = entry.at("id");

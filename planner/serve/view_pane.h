@@ -25,8 +25,8 @@ class ViewPane {
   void add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop);
   /// Colours one of them by its distance to another.
   void colour(const Json& colour_by, Drawing& drawing);
-  /// A window of a scan that is no step yet.
-  voxel::DrawnObject threshold(const Evaluation& evaluation, const Json& window);
+  /// A window of a scan that is no step yet; with "alone" about the scan itself, wherever it lies.
+  voxel::DrawnObject threshold(Desk& desk, const Snapshot& snapshot, const Json& window);
   Message moving(Drawing& drawing, double most_ms);
 
   voxel::Renderer renderer_;
