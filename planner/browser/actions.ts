@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
-import {drawn_objects} from "./drawn_objects";
+import {objects_of_plan} from "./drawn_objects";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
-import {first_scan, kept_view, notify, set, State, state, steps, usual_panes} from "./state";
+import {first_scan, kept_view, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
 import {add, scaled, Vec3} from "./vector";
 import {Refusal, Wire} from "./wire";
 
@@ -37,7 +37,7 @@ export function take_plan(plan: PlanState|null): void {
       jobs: plan.jobs ?? state.jobs
     });
   const kept = kept_view(plan.path);
-  const before: Partial<State> = kept ?? {
+  const before: Partial<State> = kept ? {...kept, panes: with_usual(kept.panes)} : {
     ...fitted(plan),
     looks: {},
     selected: null,
@@ -50,6 +50,7 @@ export function take_plan(plan: PlanState|null): void {
   set({
     ...before,
     plan,
+    scan: null,
     page: needs_audit ? "audit" : "plan",
     preview: null,
     overlap_mm3: null,
@@ -59,6 +60,10 @@ export function take_plan(plan: PlanState|null): void {
   void evaluate();
 }
 
+// A kept pane of an earlier page may lack a field.
+const with_usual = (panes: PaneSetting[]|undefined): PaneSetting[] =>
+    usual_panes().map((usual, index) => ({...usual, ...panes?.[index]}));
+
 // What was measured before, of the steps that are still as they were.
 function known_measurements(plan: PlanState): Measurement[] {
   const before = new Map(steps().map((step) => [step.id, JSON.stringify(step)]));
@@ -67,9 +72,10 @@ function known_measurements(plan: PlanState): Measurement[] {
   return (state.plan?.measurements ?? []).filter((found) => unchanged.has(found.id));
 }
 
-/// Panes that show the whole scan, and the cross-hair in its middle.
-export function fitted(plan: PlanState): Pick<State, "panes"|"cross_mm"|"grey"> {
-  const bounds = plan.scans[0]?.bounds_mm ?? [[-100, -120, -130], [100, 120, 120]];
+/// Panes that show the whole of a scan, and the cross-hair in its middle.
+export function fitted(plan: PlanState, name?: string): Pick<State, "panes"|"cross_mm"|"grey"> {
+  const scan = plan.scans.find((one) => one.name === name) ?? plan.scans[0];
+  const bounds = scan?.bounds_mm ?? [[-100, -120, -130], [100, 120, 120]];
   const [low, high] = bounds as [Vec3, Vec3];
   const middle = scaled(add(low, high), 0.5);
   const hosts = document.querySelectorAll<HTMLElement>(".pane canvas");
@@ -79,7 +85,7 @@ export function fitted(plan: PlanState): Pick<State, "panes"|"cross_mm"|"grey"> 
     const side = host ? Math.min(host.clientWidth, host.clientHeight) : 0;
     return {...pane, centre_mm: middle, pixel_mm: (extent * 1.08) / (side || 360)};
   });
-  return {panes, cross_mm: middle, grey: plan.scans[0]?.window_suggestion ?? [500, 2000]};
+  return {panes, cross_mm: middle, grey: scan?.window_suggestion ?? [500, 2000]};
 }
 
 export async function greet(): Promise<void> {
@@ -132,7 +138,7 @@ export async function change_history(
 /// Evaluates what is drawn and measured. Answers come as the event `objects`.
 export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
-  const objects = drawn_objects().flatMap((object) => (object.id ? [object.id] : []));
+  const objects = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
   const measures = steps().filter((step) => step.do === "measure").map((step) => step.id);
   await try_to("evaluate", certify ? {certify: true} : {objects: [...objects, ...measures]});
 }

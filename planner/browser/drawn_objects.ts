@@ -2,7 +2,7 @@
 // Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they
 // have in common.
 import {DrawnObject, Step} from "./protocol";
-import {state, steps} from "./state";
+import {is_elsewhere, shown_scan, state, steps} from "./state";
 
 const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
@@ -104,8 +104,15 @@ export function look_of(id: string): Shown {
 /// The ids of the plan's objects, in the order of its steps.
 export const object_ids = (): string[] => steps().filter(makes_shape).map((step) => step.id);
 
-/// What the panes ask the server to draw.
+/// What the panes ask the server to draw: the plan's objects, or the bone of a scan that lies elsewhere.
 export function drawn_objects(): DrawnObject[] {
+  if (!is_elsewhere()) return objects_of_plan();
+  const low = state.hello?.tissues.find((tissue) => tissue.name === "bone")?.low ?? 300;
+  return [{window: {scan: shown_scan(), low, alone: true}, colour: bone[0]!, opacity: 1}];
+}
+
+/// The plan's objects that are turned on, and a window that is being set.
+export function objects_of_plan(): DrawnObject[] {
   const drawn: DrawnObject[] = [];
   const failed =
       new Set((state.plan?.objects ?? []).filter((object) => object.error).map((object) => object.id));

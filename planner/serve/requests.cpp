@@ -125,7 +125,8 @@ Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
   const bool certify = said.value("certify", false);
   const Snapshot made = desk.evaluate(said.value("objects", std::vector<std::string>{}), certify, watched);
   const Json state = desk.state();
-  return {{"objects", state.at("objects")}, {"measurements", made.measurements}};
+  return {
+      {"objects", state.at("objects")}, {"measurements", made.measurements}, {"scans", state.at("scans")}};
 }
 
 /// Whether a step names what later ones use: it stands before them, and there is one of its kind.

@@ -104,6 +104,8 @@ void Service::take(std::uint64_t window, Request request) {
   const Json& said = request.said;
   const auto pane = [&] { return PaneName{window, said.value("pane", 0)}; };
   if (request.what == "shown") return panes_.shown(pane(), said.value("frame", std::int64_t{0}));
+  // So that a page knows a silent line from a cut one.
+  if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
   if (request.what == "cancel") {
     const std::int64_t target = said.value("target", std::int64_t{0});
     bool is_here = false;

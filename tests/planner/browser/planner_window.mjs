@@ -23,7 +23,13 @@ export function start_server(folder, more = []) {
   });
 }
 
-const axes = { anterior: [[1, 0, 0], [0, 0, 1]], left: [[0, 1, 0], [0, 0, 1]], superior: [[-1, 0, 0], [0, -1, 0]] };
+const axes = {
+  anterior: [[1, 0, 0], [0, 0, 1]], left: [[0, 1, 0], [0, 0, 1]], superior: [[-1, 0, 0], [0, -1, 0]],
+  coronal: [[1, 0, 0], [0, 0, 1]], sagittal: [[0, 1, 0], [0, 0, 1]], axial: [[1, 0, 0], [0, -1, 0]],
+};
+const axial_pane = 2; // of the layout "Views and slices"
+/// A hand turns the wheel by so many notches at once.
+const notches_of_a_turn = 20;
 
 export class PlannerWindow {
   actions = 0;
@@ -84,16 +90,30 @@ export class PlannerWindow {
   async position(pane, uv) {
     const setting = await this.setting(pane);
     const box = await this.page.locator('.pane canvas').nth(pane).boundingBox();
-    const [right, up] = axes[setting.view];
+    const [right, up] = axes[setting.mode === 'slice' ? setting.plane : setting.view];
     const of = (axis) => setting.centre_mm.reduce((sum, value, i) => sum + value * axis[i], 0);
     return { x: box.x + box.width / 2 + (uv[0] - of(right)) / setting.pixel_mm, y: box.y + box.height / 2 - (uv[1] - of(up)) / setting.pixel_mm };
   }
-  /// How the window looks at its pane, as the browser keeps it.
-  setting(pane) {
-    return this.page.evaluate((index) => {
+  /// How the window looks at its plan, as the browser keeps it.
+  look() {
+    return this.page.evaluate(() => {
       const key = Object.keys(localStorage).find((name) => name.startsWith('octotomy:'));
-      return JSON.parse(localStorage.getItem(key)).panes[index];
-    }, pane);
+      return JSON.parse(localStorage.getItem(key));
+    });
+  }
+  async setting(pane) {
+    return (await this.look()).panes[pane];
+  }
+  /// Clicks a point in the axial slice, after the wheel has brought its height.
+  async click_in_axial(point, spacing_mm) {
+    const { cross_mm } = await this.look();
+    const notches = Math.round((point[2] - cross_mm[2]) / spacing_mm);
+    const { x, y } = await this.position(axial_pane, [point[0], -point[1]]);
+    await this.page.mouse.move(x, y);
+    for (let i = 0; i < Math.abs(notches); ++i) await this.page.mouse.wheel(0, Math.sign(notches) * 100);
+    this.actions += Math.ceil(Math.abs(notches) / notches_of_a_turn) + 1;
+    await this.page.waitForTimeout(80);
+    await this.page.mouse.click(x, y);
   }
   async click_at(pane, uv) {
     this.actions++;

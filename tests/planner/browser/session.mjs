@@ -4,6 +4,7 @@
 //   OCTOTOMY_PROGRAM=build/release/octotomy node session.mjs SCAN MINUTES [TABLE.tsv]
 // Prints after every round the server's resident memory, the page's heap after a collection, and the page's nodes; at the
 // end the growth of each by a straight line through what came after the first ten minutes.
+import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -116,11 +117,10 @@ async function work(one, round) {
   await one.tab('History');
   await page.locator('[data-key="branch"]').selectOption('main');
   await one.until(() => page.locator('.bar', { hasText: 'New branch beside main' }).count().then(() => page.getByRole('button', { name: 'New branch beside main' }).count()), 'main');
-  while (one.plan(plan_path).steps.length > 1) {
-    const before = one.plan(plan_path).steps.length;
+  for (let left = () => one.plan(plan_path).steps.length, presses = 0; left() > 1; ++presses) {
+    assert.ok(presses < 60, `undo leaves ${left()} steps`);
     await one.press('Control+z');
-    await page.waitForTimeout(120);
-    if (one.plan(plan_path).steps.length === before) await page.waitForTimeout(200);
+    await page.waitForTimeout(150);
   }
   await one.tab('Steps');
   await one.at_rest();
@@ -145,8 +145,12 @@ try {
     const { per_hour, mean } = growth_per_hour(name);
     say(`${name}: mean ${mean.toFixed(1)}, ${per_hour >= 0 ? '+' : ''}${per_hour.toFixed(1)} an hour, ${rows.length} measurements, ${one.actions} actions`);
   }
-  if (one.problems.length) say(`problems: ${one.problems.slice(0, 5).join(' | ')}`);
+} catch (error) {
+  await one.page.screenshot({ path: path.resolve('session_failed.png') });
+  say(`failed: ${error.message}; the last picture is session_failed.png`);
+  process.exitCode = 1;
 } finally {
+  if (one.problems.length) say(`problems: ${one.problems.slice(0, 5).join(' | ')}`);
   await one.close();
   server.stop();
   fs.rmSync(folder, { recursive: true, force: true });
