@@ -13,16 +13,17 @@ export function use_wire(one: Wire): void {
 export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
     wire.ask<Answer>(word, fields);
 
-/// Asks, and shows a refusal to the person; null then.
-export async function try_to<Answer>(word: string, fields: object = {}): Promise<Answer|null> {
+/// Asks, and shows a refusal to the person; null then. Where the line broke, what `lost` answers.
+export async function try_to<Answer>(
+    word: string, fields: object = {},
+    lost: () => Promise<Answer|null> = async () => null): Promise<Answer|null> {
   try {
     return await wire.ask<Answer>(word, fields);
   } catch (error) {
-    if (error instanceof Refusal) {
-      if (error.code !== "cancelled" && error.code !== "lost") notify(error.message, "error");
-      return null;
-    }
-    throw error;
+    if (!(error instanceof Refusal)) throw error;
+    if (error.code === "lost") return lost();
+    if (error.code !== "cancelled") notify(error.message, "error");
+    return null;
   }
 }
 
@@ -88,17 +89,21 @@ export function fitted(plan: PlanState, name?: string): Pick<State, "panes"|"cro
   return {panes, cross_mm: middle, grey: scan?.window_suggestion ?? [500, 2000]};
 }
 
+let waiting_for_greeting: (() => void)[] = [];
+/// Done when the line is there again and the plan is as the server has it.
+const next_greeting = (): Promise<void> => new Promise((resolve) => waiting_for_greeting.push(resolve));
+
 export async function greet(): Promise<void> {
   const hello = await try_to<Hello>("hello");
   if (!hello) return;
   set({hello, link: "open"});
-  if (hello.plan_state) return take_plan(hello.plan_state);
   // The program was started anew without the plan that this window shows: its file and history are on the
   // disk.
-  if (state.plan) {
-    const plan = await try_to<PlanState>("open", {path: state.plan.path});
-    if (plan) take_plan(plan);
-  }
+  const plan = hello.plan_state ?? (state.plan && await try_to<PlanState>("open", {path: state.plan.path}));
+  if (plan) take_plan(plan);
+  const waiting = waiting_for_greeting;
+  waiting_for_greeting = [];
+  for (const go_on of waiting) go_on();
 }
 
 export async function open_plan(what: {path?: string; phantom?: string}): Promise<void> {
@@ -110,9 +115,15 @@ export async function open_plan(what: {path?: string; phantom?: string}): Promis
   if (plan && state.plan === null) take_plan(plan);
 }
 
-/// One change of the plan, said in words for its history.
+/// One change of the plan, said in words for its history. Where the line breaks, it waits for the next.
 export async function edit(change: object, what: string, select?: string|null): Promise<boolean> {
-  const plan = await try_to<PlanState>("edit", {...change, what});
+  const before = state.plan?.edit;
+  const plan = await try_to<PlanState>("edit", {...change, what}, async () => {
+    await next_greeting();
+    const last = state.plan?.history.find((one) => one.id === state.plan?.edit);
+    const is_done = state.plan?.edit !== before && last?.what === what;  // only its answer was lost
+    return is_done ? state.plan : try_to<PlanState>("edit", {...change, what});
+  });
   if (!plan) return false;
   take_plan(plan);
   if (select !== undefined) set({selected: select});

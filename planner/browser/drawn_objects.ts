@@ -57,8 +57,15 @@ export function is_overlap(step: Step, all: Step[]): boolean {
 export const is_piece = (step: Step): boolean => step.do === "combine" &&
     typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
 
+/// A piece that a later union leaves out: bone that is taken away, or a contact that is only measured.
+function is_left_out(step: Step, all: Step[]): boolean {
+  return is_piece(step) && !is_overlap(step, all) &&
+      all.slice(all.indexOf(step)).some((later) => is_union(later) && !operands(later).includes(step.id));
+}
+
 function is_used_up(id: string, all: Step[]): boolean {
   return all.some((step) => {
+    if (step.id === id) return is_left_out(step, all);
     if (!operands(step).includes(id)) return false;
     if (step.do === "combine") return !is_union(step) && !is_overlap(step, all);
     return makes_shape(step) && step.do !== "mirror" && step.object === id;
@@ -79,7 +86,10 @@ export function look_of(id: string): Shown {
   const look = state.looks[id] ?? {};
   let usual: Shown = {colour: bone[0]!, opacity: 1, visible: false};
   if (step) {
-    const number = all.slice(0, index).filter((other) => moves.has(other.do)).length;
+    const earlier = all.slice(0, index);
+    const number = Math.max(
+        earlier.filter((other) => moves.has(other.do)).length,
+        is_piece(step) ? earlier.filter((other) => is_piece(other) && !is_left_out(other, all)).length : 0);
     const visible = !is_used_up(id, all);
     if (step.do === "mask")
       usual = {colour: mask_colour, opacity: 0.35, visible};

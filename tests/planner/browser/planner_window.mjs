@@ -3,6 +3,8 @@
 // person would: a click, a drag, a key, a typed field.
 import { spawn } from 'node:child_process';
 import fs from 'node:fs';
+import http from 'node:http';
+import net from 'node:net';
 import { chromium } from 'playwright-core';
 
 export const program = process.env.OCTOTOMY_PROGRAM ?? 'build/release/octotomy';
@@ -23,6 +25,46 @@ export function start_server(folder, more = []) {
   });
 }
 
+/// A proxy between window and server that can be cut: bytes of both directions are dropped then, and nobody is told.
+export function start_proxy() {
+  let is_cut = false;
+  const sockets = new Set();
+  const proxy = http.createServer((request, response) => {
+    if (is_cut) return;
+    const asked = http.request(request.url, { method: request.method, headers: request.headers }, (answer) => {
+      response.writeHead(answer.statusCode, answer.headers);
+      answer.pipe(response);
+    });
+    asked.on('error', () => response.destroy());
+    request.pipe(asked);
+  });
+  proxy.on('connect', (request, near) => {
+    if (is_cut) return;
+    const [host, port] = request.url.split(':');
+    let is_dead = false;
+    const far = net.connect(Number(port), host, () => near.write('HTTP/1.1 200 Connection established\r\n\r\n'));
+    for (const [from, to] of [[near, far], [far, near]]) {
+      sockets.add(from);
+      from.on('data', (bytes) => {
+        is_dead ||= is_cut;
+        if (!is_dead) to.write(bytes);
+      });
+      from.on('error', () => {});
+      from.on('close', () => { if (!is_dead) to.destroy(); });
+    }
+  });
+  return new Promise((resolve) => proxy.listen(0, '127.0.0.1', () => resolve({
+    url: `http://127.0.0.1:${proxy.address().port}`,
+    cut: () => { is_cut = true; },
+    mend: () => { is_cut = false; },
+    stop: () => {
+      for (const socket of sockets) socket.destroy();
+      proxy.closeAllConnections();
+      proxy.close();
+    },
+  })));
+}
+
 const axes = {
   anterior: [[1, 0, 0], [0, 0, 1]], left: [[0, 1, 0], [0, 0, 1]], superior: [[-1, 0, 0], [0, -1, 0]],
   coronal: [[1, 0, 0], [0, 0, 1]], sagittal: [[0, 1, 0], [0, 0, 1]], axial: [[1, 0, 0], [0, -1, 0]],
@@ -36,10 +78,12 @@ export class PlannerWindow {
   problems = [];
   frames = []; // headers and pictures that came over the wire, the newest last
 
-  /// Opens the page. `size` is the window's; `theme` light or dark.
-  static async open(url, { size = { width: 1440, height: 900 }, theme = 'dark' } = {}) {
+  /// Opens the page. `size` is the window's; `theme` light or dark; `proxy` the URL of one between.
+  static async open(url, { size = { width: 1440, height: 900 }, theme = 'dark', proxy } = {}) {
     const one = new PlannerWindow();
-    one.browser = await chromium.launch({ executablePath: browser_path, args: ['--disable-gpu', '--disable-software-rasterizer', '--no-sandbox'] });
+    one.browser = await chromium.launch({
+      executablePath: browser_path, proxy: proxy && { server: proxy, bypass: '<-loopback>' }, args: ['--disable-gpu', '--disable-software-rasterizer', '--no-sandbox'],
+    });
     one.context = await one.browser.newContext({ viewport: size, colorScheme: theme, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'] });
     one.page = await one.context.newPage();
     one.page.on('console', (message) => { if (message.type() === 'error') one.problems.push(message.text()); });
@@ -144,6 +188,12 @@ export class PlannerWindow {
   async shows(pane, object) {
     await this.until(() => this.frames.filter(({ header }) => header.pane === pane).pop()?.header.objects?.includes(object), `${object} in pane ${pane}`);
     await this.page.waitForTimeout(150);
+  }
+  /// Runs a command of the palette by its name.
+  async command(name) {
+    await this.press('Control+k');
+    await this.page.locator('.palette-field').fill(name);
+    await this.press('Enter');
   }
   select(step) {
     return this.click(this.page.locator('.lists .name', { hasText: new RegExp(`^${step.replace(/_/g, ' ')}$`) }));

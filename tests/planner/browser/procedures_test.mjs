@@ -55,6 +55,8 @@ async function place(one, plan, marks, spacing_mm) {
     await one.click_in_axial(point, spacing_mm);
     const placed = await one.until(() => points_of(plan()).find((mark) => mark.name === name), name);
     assert.ok(Math.hypot(...placed.point_mm.map((x, i) => x - point[i])) < 2, `${name}: ${placed.point_mm}`);
+    // The last one's panes go on to another scan, or back to the first.
+    if (name === Object.keys(marks).pop()) return;
     await one.until(async () => Math.abs((await one.look()).cross_mm[2] - placed.point_mm[2]) < 0.1, 'the cross-hair on it');
   }
 }
@@ -63,7 +65,7 @@ async function certify_and_report(one, least) {
   await one.press('Control+Enter');
   await one.until(async () => (await one.page.locator('.numbers .badge:not(.none)').count()) >= least, 'badges', 600000);
   console.log(`badges: ${(await one.page.locator('.numbers .badge:not(.none)').allInnerTexts()).join(' ')}`);
-  assert.equal(await one.page.locator('.numbers .badge.fail').count(), 0);
+  assert.deepEqual(await one.page.locator('.numbers tr', { has: one.page.locator('.badge.fail') }).locator('th').allInnerTexts(), []);
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Report' }));
   await one.page.locator('dialog.report iframe').waitFor({ timeout: 600000 });
   await one.press('Escape');

@@ -51,11 +51,6 @@ function growth_per_hour(name) {
 async function work(one, round) {
   const { page } = one;
   const step = (name) => one.plan(plan_path).steps.find((each) => each.id === name);
-  const command = async (name) => {
-    await one.press('Control+k');
-    await page.locator('.palette-field').fill(name);
-    await one.press('Enter');
-  };
   const drag_canvas = async (pane, from, to) => {
     const box = await page.locator('.pane canvas').nth(pane).boundingBox();
     const at = ([x, y]) => [box.x + x * box.width, box.y + y * box.height];
@@ -66,11 +61,11 @@ async function work(one, round) {
   };
   // Views turned, and slices walked through.
   for (const pane of [3, 3, 3]) await drag_canvas(pane, [0.3, 0.5], [0.8, 0.4 + 0.01 * (round % 20)]);
-  await command('Views and slices');
+  await one.command('Views and slices');
   for (const pane of [1, 2, 3]) await drag_canvas(pane, [0.4, 0.4], [0.6, 0.6]);
   await page.mouse.wheel(0, 400);
   await one.at_rest();
-  await command('Four views');
+  await one.command('Four views');
   await one.at_rest();
   // A region, the cut and a moved piece, a little different in every round.
   const shift = (round % 17) * 0.5;
@@ -106,9 +101,9 @@ async function work(one, round) {
     await page.locator('dialog.report iframe').waitFor({ timeout: 600000 });
     await one.press('Escape');
   }
-  await command('Compare in colours');
+  await one.command('Compare in colours');
   await one.at_rest();
-  await command('Compare in colours');
+  await one.command('Compare in colours');
   if (round % 4 === 0) {
     await page.reload();
     await one.at_rest();
