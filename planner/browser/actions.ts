@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What a person does to the plan: each is a request to the server, whose answer is the plan's new state.
-import {drawn_objects} from "./drawn_objects";
+import {objects_of_plan} from "./drawn_objects";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
-import {first_scan, kept_view, notify, set, State, state, steps, usual_panes} from "./state";
+import {first_scan, kept_view, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
 import {add, scaled, Vec3} from "./vector";
 import {Refusal, Wire} from "./wire";
 
@@ -13,16 +13,17 @@ export function use_wire(one: Wire): void {
 export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
     wire.ask<Answer>(word, fields);
 
-/// Asks, and shows a refusal to the person; null then.
-export async function try_to<Answer>(word: string, fields: object = {}): Promise<Answer|null> {
+/// Asks, and shows a refusal to the person; null then. Where the line broke, what `lost` answers.
+export async function try_to<Answer>(
+    word: string, fields: object = {},
+    lost: () => Promise<Answer|null> = async () => null): Promise<Answer|null> {
   try {
     return await wire.ask<Answer>(word, fields);
   } catch (error) {
-    if (error instanceof Refusal) {
-      if (error.code !== "cancelled" && error.code !== "lost") notify(error.message, "error");
-      return null;
-    }
-    throw error;
+    if (!(error instanceof Refusal)) throw error;
+    if (error.code === "lost") return lost();
+    if (error.code !== "cancelled") notify(error.message, "error");
+    return null;
   }
 }
 
@@ -37,7 +38,7 @@ export function take_plan(plan: PlanState|null): void {
       jobs: plan.jobs ?? state.jobs
     });
   const kept = kept_view(plan.path);
-  const before: Partial<State> = kept ?? {
+  const before: Partial<State> = kept ? {...kept, panes: with_usual(kept.panes)} : {
     ...fitted(plan),
     looks: {},
     selected: null,
@@ -50,6 +51,7 @@ export function take_plan(plan: PlanState|null): void {
   set({
     ...before,
     plan,
+    scan: null,
     page: needs_audit ? "audit" : "plan",
     preview: null,
     overlap_mm3: null,
@@ -59,6 +61,10 @@ export function take_plan(plan: PlanState|null): void {
   void evaluate();
 }
 
+// A kept pane of an earlier page may lack a field.
+const with_usual = (panes: PaneSetting[]|undefined): PaneSetting[] =>
+    usual_panes().map((usual, index) => ({...usual, ...panes?.[index]}));
+
 // What was measured before, of the steps that are still as they were.
 function known_measurements(plan: PlanState): Measurement[] {
   const before = new Map(steps().map((step) => [step.id, JSON.stringify(step)]));
@@ -67,9 +73,10 @@ function known_measurements(plan: PlanState): Measurement[] {
   return (state.plan?.measurements ?? []).filter((found) => unchanged.has(found.id));
 }
 
-/// Panes that show the whole scan, and the cross-hair in its middle.
-export function fitted(plan: PlanState): Pick<State, "panes"|"cross_mm"|"grey"> {
-  const bounds = plan.scans[0]?.bounds_mm ?? [[-100, -120, -130], [100, 120, 120]];
+/// Panes that show the whole of a scan, and the cross-hair in its middle.
+export function fitted(plan: PlanState, name?: string): Pick<State, "panes"|"cross_mm"|"grey"> {
+  const scan = plan.scans.find((one) => one.name === name) ?? plan.scans[0];
+  const bounds = scan?.bounds_mm ?? [[-100, -120, -130], [100, 120, 120]];
   const [low, high] = bounds as [Vec3, Vec3];
   const middle = scaled(add(low, high), 0.5);
   const hosts = document.querySelectorAll<HTMLElement>(".pane canvas");
@@ -79,20 +86,24 @@ export function fitted(plan: PlanState): Pick<State, "panes"|"cross_mm"|"grey"> 
     const side = host ? Math.min(host.clientWidth, host.clientHeight) : 0;
     return {...pane, centre_mm: middle, pixel_mm: (extent * 1.08) / (side || 360)};
   });
-  return {panes, cross_mm: middle, grey: plan.scans[0]?.window_suggestion ?? [500, 2000]};
+  return {panes, cross_mm: middle, grey: scan?.window_suggestion ?? [500, 2000]};
 }
+
+let waiting_for_greeting: (() => void)[] = [];
+/// Done when the line is there again and the plan is as the server has it.
+const next_greeting = (): Promise<void> => new Promise((resolve) => waiting_for_greeting.push(resolve));
 
 export async function greet(): Promise<void> {
   const hello = await try_to<Hello>("hello");
   if (!hello) return;
   set({hello, link: "open"});
-  if (hello.plan_state) return take_plan(hello.plan_state);
   // The program was started anew without the plan that this window shows: its file and history are on the
   // disk.
-  if (state.plan) {
-    const plan = await try_to<PlanState>("open", {path: state.plan.path});
-    if (plan) take_plan(plan);
-  }
+  const plan = hello.plan_state ?? (state.plan && await try_to<PlanState>("open", {path: state.plan.path}));
+  if (plan) take_plan(plan);
+  const waiting = waiting_for_greeting;
+  waiting_for_greeting = [];
+  for (const go_on of waiting) go_on();
 }
 
 export async function open_plan(what: {path?: string; phantom?: string}): Promise<void> {
@@ -104,9 +115,15 @@ export async function open_plan(what: {path?: string; phantom?: string}): Promis
   if (plan && state.plan === null) take_plan(plan);
 }
 
-/// One change of the plan, said in words for its history.
+/// One change of the plan, said in words for its history. Where the line breaks, it waits for the next.
 export async function edit(change: object, what: string, select?: string|null): Promise<boolean> {
-  const plan = await try_to<PlanState>("edit", {...change, what});
+  const before = state.plan?.edit;
+  const plan = await try_to<PlanState>("edit", {...change, what}, async () => {
+    await next_greeting();
+    const last = state.plan?.history.find((one) => one.id === state.plan?.edit);
+    const is_done = state.plan?.edit !== before && last?.what === what;  // only its answer was lost
+    return is_done ? state.plan : try_to<PlanState>("edit", {...change, what});
+  });
   if (!plan) return false;
   take_plan(plan);
   if (select !== undefined) set({selected: select});
@@ -132,7 +149,7 @@ export async function change_history(
 /// Evaluates what is drawn and measured. Answers come as the event `objects`.
 export async function evaluate(certify = false): Promise<void> {
   if (!steps().length) return;
-  const objects = drawn_objects().flatMap((object) => (object.id ? [object.id] : []));
+  const objects = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
   const measures = steps().filter((step) => step.do === "measure").map((step) => step.id);
   await try_to("evaluate", certify ? {certify: true} : {objects: [...objects, ...measures]});
 }

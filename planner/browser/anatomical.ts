@@ -27,6 +27,7 @@ export const word_of = (field: Direction|Turn, value: number): string => words[f
 
 /// "6.0 mm forward, 2.0 mm up; 3.0° front up"
 export function motion_words(move: Motion): string {
+  if (move.points) return `by ${move.points.length === 1 ? "one mark" : `${move.points.length} marks`}`;
   const said =
       (fields: readonly(Direction | Turn)[], values: {[field: string]: number|undefined}, unit: string):
           string =>

@@ -2,15 +2,16 @@
 // Everything that can be asked for by name: the palette, the keys and the menus read this one table.
 import {add_step, change_history, edit, evaluate, free_id, try_to} from "./actions";
 import {ask_text} from "./dialog";
-import {makes_shape} from "./drawn_objects";
+import {makes_shape, objects_of_plan} from "./drawn_objects";
 import {all_panes, fit_all, show_in} from "./pane_grid";
 import {change_pane} from "./panes";
 import {Step} from "./protocol";
 import {cut_selected} from "./region_tool";
 import {new_step, operations} from "./schema_form";
-import {notify, selected_step, set, state, usual_panes} from "./state";
+import {notify, selected_step, set, state, step_of, usual_panes} from "./state";
+import {change_theme} from "./theme";
 import {all_tools, take_tool} from "./tool";
-import {view_names} from "./view_frame";
+import {plane_names, view_names} from "./view_frame";
 
 export interface Command {
   name: string;
@@ -28,6 +29,7 @@ export const dialogs = {
   procedure: (_name?: string): void => undefined,
   export: (): void => undefined,
   report: (): void => undefined,
+  outcome: (): void => undefined,
   screenshot: (): void => undefined,
   tour: (): void => undefined,
 };
@@ -67,13 +69,53 @@ export function mirror_selected(): void {
 
 export function compare_selected(): void {
   const step = selected_step();
-  if (state.compare) return set({compare: null});
+  if (state.compare) return clear_compare();
   if (!step || !makes_shape(step)) return notify("Select the object to compare first.", "warning");
   const reference = typeof step.object === "string" ?
       step.object :
       state.plan?.plan.steps.find((one) => makes_shape(one) && one.id !== step.id)?.id;
   if (!reference) return notify("A second object is needed to compare with.", "warning");
   set({compare: {object: step.id, reference, range_mm: 5}, right_tab: "inspector"});
+}
+
+const contact_range_mm = 2;
+/// Colours two objects by their distance to each other, from the front, the left, and each alone from where
+/// the other one lies.
+export function map_contacts(): void {
+  if (state.compare) return clear_compare();
+  const step = selected_step();
+  const middle = (id: string): number|null => {
+    const bounds = state.plan?.objects.find((one) => one.id === id)?.bounds_mm;
+    return bounds ? (bounds[0][2] + bounds[1][2]) / 2 : null;
+  };
+  const shown =
+      objects_of_plan().flatMap((one) => (one.id ? [one.id] : [])).filter((id) => step_of(id)?.do !== "mask");
+  const object = step && shown.includes(step.id) ? step.id : shown[shown.length - 1];
+  const reference = shown.find((id) => id !== object);
+  if (!object || !reference)
+    return notify("Contacts take two objects that are shown, as the two jaws.", "warning");
+  const is_upper = (middle(object) ?? 0) > (middle(reference) ?? 0);
+  const [upper, lower] = is_upper ? [object, reference] : [reference, object];
+  for (const [index, view] of (["anterior", "left", "superior", "inferior"] as const).entries())
+    change_pane(index, {
+      mode: "view",
+      view,
+      shading: "partial_volume",
+      only: index === 2 ? lower :
+          index === 3   ? upper :
+                          undefined
+    });
+  set({
+    compare: {object, reference, range_mm: contact_range_mm, mutual: true},
+    right_tab: "inspector",
+    maximised: null
+  });
+  for (const pane of all_panes()) pane.want(false);
+}
+
+export function clear_compare(): void {
+  set({compare: null, panes: state.panes.map((pane) => ({...pane, only: undefined}))});
+  for (const pane of all_panes()) pane.want(false);
 }
 
 export function all_commands(): Command[] {
@@ -122,6 +164,12 @@ export function all_commands(): Command[] {
       run: compare_selected
     },
     {
+      name: "Contact map",
+      says: "Colours two objects, as the jaws, by their distance to each other.",
+      key: "t",
+      run: map_contacts
+    },
+    {
       name: "Cut plane",
       says: "Takes away what lies on one side of a plane, to look inside.",
       key: "k",
@@ -138,6 +186,11 @@ export function all_commands(): Command[] {
       says: "Surfaces for print, decks of finite elements, label maps.",
       key: "ctrl+e",
       run: () => dialogs.export()
+    },
+    {
+      name: "Outcome of the operation",
+      says: "Holds the plan against a scan after the operation: what was achieved, with intervals.",
+      run: () => dialogs.outcome()
     },
     {name: "Report", says: "Writes the report with every certificate.", run: () => dialogs.report()},
     {name: "Screenshot of the panes", run: () => dialogs.screenshot()},
@@ -165,9 +218,11 @@ export function all_commands(): Command[] {
     ...view_names.map(
         (view, index) =>
             ({name: `View: ${view}`, key: String(index + 1), run: () => show_in(state.active_pane, view)})),
-    ...["axial", "coronal", "sagittal"].map(
-        (plane, index) => (
-            {name: `Slice: ${plane}`, key: String(index + 7), run: () => show_in(state.active_pane, plane)})),
+    ...plane_names.map((plane, index) => ({
+                         name: `Slice: ${plane}`,
+                         key: index < 3 ? String(index + 7) : "o",
+                         run: () => show_in(state.active_pane, plane)
+                       })),
     {
       name: "Next pane",
       key: "n",
@@ -213,12 +268,6 @@ export function all_commands(): Command[] {
                    {draft_step: new_step(schema, free_id(schema.title ?? "step")), right_tab: "inspector"}),
              })),
   ];
-}
-
-export function change_theme(): void {
-  const is_now_dark = state.theme === "dark" ||
-      (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
-  set({theme: is_now_dark ? "light" : "dark"});
 }
 
 function show_cephalometry(): void {

@@ -2,7 +2,7 @@
 // Which objects of the plan are drawn, in what colour: by default the pieces as they end up, and what they
 // have in common.
 import {DrawnObject, Step} from "./protocol";
-import {state, steps} from "./state";
+import {is_elsewhere, shown_scan, state, steps} from "./state";
 
 const bone = ["#ede3cc", "#d9c7a0", "#cfd3d6"];
 const moved = ["#e08a3c", "#3fa7a0", "#a678de", "#d0649b", "#7fae3e"];
@@ -57,8 +57,15 @@ export function is_overlap(step: Step, all: Step[]): boolean {
 export const is_piece = (step: Step): boolean => step.do === "combine" &&
     typeof step.expression === "string" && /^[^|^~-]*&[^|^~-]*$/.test(step.expression);
 
+/// A piece that a later union leaves out: bone that is taken away, or a contact that is only measured.
+function is_left_out(step: Step, all: Step[]): boolean {
+  return is_piece(step) && !is_overlap(step, all) &&
+      all.slice(all.indexOf(step)).some((later) => is_union(later) && !operands(later).includes(step.id));
+}
+
 function is_used_up(id: string, all: Step[]): boolean {
   return all.some((step) => {
+    if (step.id === id) return is_left_out(step, all);
     if (!operands(step).includes(id)) return false;
     if (step.do === "combine") return !is_union(step) && !is_overlap(step, all);
     return makes_shape(step) && step.do !== "mirror" && step.object === id;
@@ -79,7 +86,10 @@ export function look_of(id: string): Shown {
   const look = state.looks[id] ?? {};
   let usual: Shown = {colour: bone[0]!, opacity: 1, visible: false};
   if (step) {
-    const number = all.slice(0, index).filter((other) => moves.has(other.do)).length;
+    const earlier = all.slice(0, index);
+    const number = Math.max(
+        earlier.filter((other) => moves.has(other.do)).length,
+        is_piece(step) ? earlier.filter((other) => is_piece(other) && !is_left_out(other, all)).length : 0);
     const visible = !is_used_up(id, all);
     if (step.do === "mask")
       usual = {colour: mask_colour, opacity: 0.35, visible};
@@ -104,8 +114,15 @@ export function look_of(id: string): Shown {
 /// The ids of the plan's objects, in the order of its steps.
 export const object_ids = (): string[] => steps().filter(makes_shape).map((step) => step.id);
 
-/// What the panes ask the server to draw.
+/// What the panes ask the server to draw: the plan's objects, or the bone of a scan that lies elsewhere.
 export function drawn_objects(): DrawnObject[] {
+  if (!is_elsewhere()) return objects_of_plan();
+  const low = state.hello?.tissues.find((tissue) => tissue.name === "bone")?.low ?? 300;
+  return [{window: {scan: shown_scan(), low, alone: true}, colour: bone[0]!, opacity: 1}];
+}
+
+/// The plan's objects that are turned on, and a window that is being set.
+export function objects_of_plan(): DrawnObject[] {
   const drawn: DrawnObject[] = [];
   const failed =
       new Set((state.plan?.objects ?? []).filter((object) => object.error).map((object) => object.id));

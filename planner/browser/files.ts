@@ -12,13 +12,15 @@ interface Entry {
   size?: number;
 }
 
-/// The folder picker: the server shows only folders that were opened with it.
-export function open_picker(): void {
-  const dialog = open_dialog("Open a scan or plan", "picker");
+/// The folder picker: the server shows only folders that were opened with it. What is chosen is opened,
+/// unless it is wanted for something else.
+export function open_picker(
+    title = "Open a scan or plan", take: (path: string) => void = (path) => void open_plan({path})): void {
+  const dialog = open_dialog(title, "picker");
   const folders = state.hello?.folders ?? [];
   const choose = (path: string): void => {
     dialog.close();
-    void open_plan({path});
+    take(path);
   };
   const show = async(folder: string): Promise<void> => {
     const answer = await try_to<{entries: Entry[]}>("list", {folder});

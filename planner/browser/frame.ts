@@ -2,11 +2,12 @@
 // The page's frame: the bar on top, the rail of tools, the status line, jobs, notices and the word of a lost
 // connection.
 import {change_history, try_to} from "./actions";
-import {certify_all, change_theme, compare_selected, dialogs, mirror_selected, new_branch} from "./commands";
+import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, new_branch} from "./commands";
 import {button, Child, el, fill} from "./html";
 import {icon, IconName, is_icon} from "./icons";
 import {cut_selected} from "./region_tool";
 import {dismiss, set, state, watch} from "./state";
+import {change_theme} from "./theme";
 import {active_tool, all_tools, take_tool} from "./tool";
 
 export function make_bar(host: HTMLElement): void {
@@ -82,7 +83,10 @@ export function make_rail(host: HTMLElement): void {
             false, mirror_selected),
         rail_button(
             "compare", "Compare (C). Colours the selected object by its distance from another",
-            state.compare !== null, compare_selected),
+            state.compare !== null && !state.compare.mutual, compare_selected),
+        rail_button(
+            "contact", "Contacts (T). Colours two objects, as the jaws, by their distance to each other",
+            state.compare?.mutual === true, map_contacts),
         rail_button(
             "plane", "Cut plane (K). Takes away what lies on one side, to look inside",
             state.cut_plane !== null,

@@ -3,22 +3,26 @@
 // state.
 import {evaluate, greet, take_plan, use_wire} from "./actions";
 import {command_of, dialogs} from "./commands";
-import {drawn_objects} from "./drawn_objects";
+import {objects_of_plan} from "./drawn_objects";
 import {open_picker, take_drops} from "./files";
 import {make_bar, make_lost, make_notices, make_rail, make_status} from "./frame";
 import {el} from "./html";
 import {make_inspector} from "./inspector";
+import {marks_tool} from "./marks_tool";
 import {move_tool} from "./move_tool";
+import {open_outcome} from "./outcome_dialog";
 import {open_help, open_palette} from "./palette";
 import {make_panes, reconnected, take_picture} from "./pane_grid";
 import {use_picture_asker} from "./panes";
-import {open_audit, open_export, open_procedure, take_screenshot, write_report} from "./plan_dialogs";
+import {open_audit, open_export, take_screenshot, write_report} from "./plan_dialogs";
 import {angle_tool, arch_tool, distance_tool, landmark_tool, segment_tool, surface_tool} from "./point_tools";
-import {Job, Json, Measurement, Notice, ObjectState, PlanState} from "./protocol";
+import {open_procedure} from "./procedure_dialog";
+import {Job, Json, Measurement, Notice, ObjectState, PlanState, ScanState} from "./protocol";
 import {region_tool} from "./region_tool";
 import {make_start} from "./start_page";
 import {notify, set, state, watch} from "./state";
 import {make_lists} from "./step_lists";
+import {follow_theme} from "./theme";
 import {register_tools, take_tool, Tool} from "./tool";
 import {attach_tips} from "./tool_tip";
 import {make_tour, start_tour} from "./tour";
@@ -39,7 +43,8 @@ function take_event(word: string, message: {[key: string]: Json}): void {
   else if (word === "objects")
     take_objects(message as unknown as {
       objects: ObjectState[];
-      measurements?: Measurement[]
+      measurements?: Measurement[];
+      scans?: ScanState[]
     });
   else if (word === "progress")
     take_progress(message);
@@ -49,14 +54,20 @@ function take_event(word: string, message: {[key: string]: Json}): void {
     notify(String(message.message), (message.level as Notice["level"]) ?? "info");
 }
 
-function take_objects(found: {objects: ObjectState[]; measurements?: Measurement[]}): void {
+function take_objects(found: {objects: ObjectState[]; measurements?: Measurement[]; scans?: ScanState[]}):
+    void {
   const plan = state.plan;
   if (!plan) return;
   const news = new Map(found.objects.map((object) => [object.id, object]));
   const known = plan.objects.map((object) => ({...object, ...news.get(object.id)}));
   const more = found.objects.filter((object) => !plan.objects.some((one) => one.id === object.id));
   set({
-    plan: {...plan, objects: [...known, ...more], measurements: found.measurements ?? plan.measurements},
+    plan: {
+      ...plan,
+      objects: [...known, ...more],
+      measurements: found.measurements ?? plan.measurements,
+      scans: found.scans ?? plan.scans
+    },
     evaluations: state.evaluations + 1
   });
 }
@@ -90,20 +101,6 @@ function make_page(): void {
   make_lost(part("lost", "div", "Connection"));
   attach_tips();
   take_drops();
-}
-
-function follow_theme(): void {
-  const again = (): void => {
-    const is_dark = state.theme === "dark" ||
-        (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
-    document.documentElement.dataset.theme = is_dark ? "dark" : "light";
-    localStorage.setItem("octotomy-theme", state.theme);
-  };
-  const kept = localStorage.getItem("octotomy-theme");
-  if (kept === "light" || kept === "dark") set({theme: kept});
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => set({theme: state.theme}));
-  watch(["theme"], again);
-  again();
 }
 
 function follow_keys(): void {
@@ -143,17 +140,18 @@ const wire = new Wire(socket_url, {
 use_wire(wire);
 use_picture_asker((fields, on_id) => wire.ask("pane", fields, on_id));
 register_tools([
-  navigate, window_tool, region_tool, move_tool, landmark_tool, distance_tool, angle_tool, surface_tool,
-  segment_tool, arch_tool
+  navigate, window_tool, region_tool, move_tool, marks_tool, landmark_tool, distance_tool, angle_tool,
+  surface_tool, segment_tool, arch_tool
 ]);
 Object.assign(dialogs, {
   palette: open_palette,
   help: open_help,
-  open: open_picker,
+  open: () => open_picker(),
   audit: open_audit,
   procedure: open_procedure,
   export: open_export,
   report: () => void write_report(),
+  outcome: open_outcome,
   screenshot: take_screenshot,
   tour: () => void start_tour(),
 });
@@ -162,7 +160,7 @@ make_page();
 follow_keys();
 let shown_ids = "";
 watch(["looks"], () => {
-  const ids = drawn_objects().map((object) => object.id).join();
+  const ids = objects_of_plan().map((object) => object.id).join();
   if (ids !== shown_ids) void evaluate();
   shown_ids = ids;
 });

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moves and turns a piece: by handles in a pane, or by numbers in the head's words; the overlap is told and
-// drawn meanwhile.
-import {add_steps, free_id, replace_step} from "./actions";
+// Moves and turns a piece by handles in a pane; the overlap is told and drawn meanwhile.
 import {Direction, directions, lps, motion_words, Turn, turns, word_of} from "./anatomical";
-import {is_overlap, look_of, makes_shape, overlap_colour} from "./drawn_objects";
-import {Child, el} from "./html";
-import {dot_at, ink, mark_mm, text} from "./overlay";
-
+import {el} from "./html";
+import {dot_at, ink, text} from "./ink";
 import type {Pane} from "./panes";
-import {Json, Motion, Step} from "./protocol";
-import {selected_step, set, state, steps} from "./state";
+import {centre_of, commit_motion, current, piece, pivot_mm, preview_motion} from "./piece_motion";
+import {Motion, Step} from "./protocol";
+import {notify, set, state} from "./state";
 import {Tool} from "./tool";
-import {Vec2, Vec3, add, dot, scaled} from "./vector";
+import {add, dot, scaled, Vec2, Vec3} from "./vector";
 
 type Handle = Direction|"turn"|"free";
 interface Held {
@@ -29,81 +26,6 @@ const turn_axes: Record<Turn, [Vec3, Vec3]> = {
   yaw_deg: [[0, -1, 0], [1, 0, 0]],    // the front goes to the left
   roll_deg: [[1, 0, 0], [0, 0, 1]],    // the left side goes up
 };
-
-/// The piece that the tool moves: the selected move's, or the selected object itself.
-function piece(): {source: string; step: Step | undefined}|null {
-  const step = selected_step();
-  if (!step || !makes_shape(step) || step.do === "mask") return null;
-  if (step.do === "move" && typeof step.object === "string") return {source: step.object, step};
-  const moved = steps().find((one) => one.do === "move" && one.object === step.id);
-  return moved ? {source: step.id, step: moved} : {source: step.id, step: undefined};
-}
-
-const motion_of = (step: Step|undefined): Motion => ({
-  by: {...((step?.by as Motion["by"]) ?? {})},
-  ...(step?.turn ? {turn: {...(step.turn as unknown as NonNullable<Motion["turn"]>)}} : {}),
-});
-const current = (): Motion => state.preview?.move ?? motion_of(piece()?.step);
-
-/// Where a piece's handles stand: its pivot, moved along.
-function pivot_mm(source: string, move: Motion): Vec3 {
-  const about = mark_mm(move.turn?.about_mm as Json | undefined) ?? centre_of(source);
-  return directions.reduce<Vec3>((p, word) => add(p, scaled(lps[word], move.by?.[word] ?? 0)), about);
-}
-function centre_of(id: string): Vec3 {
-  const bounds = state.plan?.objects.find((object) => object.id === id)?.bounds_mm;
-  return bounds ? scaled(add(bounds[0], bounds[1]), 0.5) : state.cross_mm;
-}
-
-/// What a piece must not run into: the shown objects that stay.
-function others(source: string, moved: string|undefined): string[] {
-  return steps()
-      .filter((step) => makes_shape(step) && step.do !== "mask" && step.id !== source && step.id !== moved)
-      .filter((step) => look_of(step.id).visible && !is_overlap(step, steps()) && step.object !== source)
-      .map((step) => step.id);
-}
-
-export function preview_motion(move: Motion): void {
-  const one = piece();
-  if (!one) return;
-  const object = one.step?.id ?? `${one.source}_moved`;
-  set({
-    preview: {object: one.step?.id ?? one.source, of: one.source, move, against: others(one.source, object)}
-  });
-}
-
-export async function commit_motion(move: Motion): Promise<void> {
-  const one = piece();
-  if (!one) return;
-  const fields = {
-    by: clean(move.by ?? {}),
-    ...(move.turn ? {turn: {...clean(move.turn as {[f: string]: Json}), about_mm: move.turn.about_mm}} : {})
-  };
-  const what = `${one.source}: ${motion_words(move)}`;
-  if (one.step) {
-    const {by: _by, turn: _turn, ...kept} = one.step;
-    await replace_step(one.step.id, {...kept, ...fields} as Step, what);
-  } else {
-    const id = free_id(`${one.source}_moved`);
-    const stays = others(one.source, id);
-    const more: Step[] = [{id, do: "move", object: one.source, ...fields} as Step];
-    // What both have in common, and last the operation's outcome, which the report shows.
-    if (stays.length)
-      more.push(
-          {
-            id: free_id("overlap"),
-            do: "combine",
-            expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}`
-          },
-          {id: free_id("planned"), do: "combine", expression: `${stays.join(" | ")} | ${id}`});
-    await add_steps(more, what);
-    set({selected: id});
-  }
-  set({preview: null, overlap_mm3: null});
-}
-const clean = (values: {[field: string]: Json|undefined}): {[field: string]: Json} =>
-    Object.fromEntries(Object.entries(values).filter(
-        ([, value]) => typeof value === "number" && value !== 0)) as {[field: string]: Json};
 
 const arrow_end = (pane: Pane, word: Direction): Vec2|null => {
   const frame = pane.frame;
@@ -134,6 +56,10 @@ export const move_tool: Tool = {
     const one = piece();
     if (!one) return false;
     const before = current();
+    if (before.points) {
+      notify("This piece is moved by marks. Change them with Move by marks (J).", "warning");
+      return false;
+    }
     const centre = pane.pixel_at(pivot_mm(one.source, before));
     const handle = handle_at(pane, at, centre, one);
     if (!handle) return false;
@@ -161,7 +87,7 @@ export const move_tool: Tool = {
       b: ["forward_mm", -0.5],
     };
     const hit = event.ctrlKey || event.metaKey ? undefined : keys[event.key];
-    if (!hit || !piece()) return false;
+    if (!hit || !piece() || current().points) return false;
     const move = current();
     void commit_motion({...move, by: {...move.by, [hit[0]]: (move.by?.[hit[0]] ?? 0) + hit[1]}});
     return true;
@@ -225,7 +151,7 @@ const half = (value: number, to: number): number => Math.round(Math.round(value 
 
 function draw_handles(pane: Pane, context: CanvasRenderingContext2D): void {
   const one = piece();
-  if (!one || pane.setting.mode === "panoramic") return;
+  if (!one || pane.setting.mode === "panoramic" || current().points) return;
   const move = current();
   const [x, y] = pane.pixel_at(pivot_mm(one.source, move));
   const ratio = pane.ratio;
@@ -285,80 +211,3 @@ function arrow(context: CanvasRenderingContext2D, from: Vec2, to: Vec2, colour: 
     context.stroke();
   }
 }
-
-const titles: Record<Direction|Turn, [string, string]> = {
-  forward_mm: ["Forward", "negative: back"],
-  left_mm: ["Left", "to the patient's left; negative: right"],
-  up_mm: ["Up", "negative: down"],
-  pitch_deg: ["Pitch", "the front goes up"],
-  yaw_deg: ["Yaw", "the front goes to the patient's left"],
-  roll_deg: ["Roll", "the patient's left side goes up"],
-};
-
-/// The fields of a piece's motion in the head's words; null where the selected step is no piece.
-export function movement_fields(): Child {
-  const one = piece();
-  if (!one) return null;
-  if (one.step && !one.step.by && !one.step.turn &&
-      Object.keys(one.step).some((key) => !["id", "do", "object"].includes(key)))
-    return null;
-  const move = current();
-  const field = (word: Direction|Turn): Child => {
-    const unit = word.endsWith("mm") ? "mm" : "°";
-    const values = (unit === "mm" ? move.by : move.turn) as {[field: string]: number | undefined} | undefined;
-    const changed = (value: number): Motion => unit === "mm" ? {...move, by: {...move.by, [word]: value}} : {
-      ...move,
-      turn: {...move.turn, about_mm: move.turn?.about_mm ?? centre_of(one.source), [word]: value}
-    };
-    const take = (event: Event, end: boolean): void => {
-      const value = Number((event.target as HTMLInputElement).value);
-      if (!Number.isFinite(value)) return;
-      if (end)
-        void commit_motion(changed(value));
-      else
-        preview_motion(changed(value));
-    };
-    return el(
-        "label", {class: "number-field", "data-tip": `${titles[word][0]}: ${titles[word][1]}`},
-        el("span", {}, titles[word][0]), el("input", {
-          type: "number",
-          step: unit === "mm" ? 0.5 : 0.5,
-          value: (values?.[word] ?? 0).toString(),
-          "data-key": `move-${word}`,
-          name: word,
-          "aria-label": `${titles[word][0]}, ${titles[word][1]}`,
-          oninput: (event: Event) => take(event, false),
-          onchange: (event: Event) => take(event, true),
-        }),
-        el("i", {}, unit));
-  };
-  const landmarks = state.plan?.landmarks ?? [];
-  const about = move.turn?.about_mm;
-  return el(
-      "section", {class: "card"}, el("h3", {}, one.step ? `Motion of ${one.source}` : `Move ${one.source}`),
-      el("div", {class: "grid-3"}, directions.map(field)), el("div", {class: "grid-3"}, turns.map(field)),
-      el("label", {class: "field"}, el("span", {}, "Turn about"),
-         el("select", {
-           "data-key": "move-about",
-           onchange: (event: Event) => {
-             const value = (event.target as HTMLSelectElement).value;
-             const about_mm = value === "" ? centre_of(one.source) :
-                 value === "cross"         ? state.cross_mm :
-                                             value;
-             void commit_motion({...move, turn: {...move.turn, about_mm}});
-           },
-         },
-            el("option", {value: "", selected: typeof about !== "string"}, "its middle"),
-            el("option", {value: "cross"}, "the cross-hair"),
-            landmarks.map(
-                (mark) =>
-                    el("option", {value: mark.name, selected: about === mark.name},
-                       mark.name.replace(/_/g, " "))))),
-      el("p", {class: "reading", role: "status"}, motion_words(move),
-         state.preview && state.overlap_mm3 !== null ?
-             el("b", {style: `color:${state.overlap_mm3 > 0.5 ? overlap_colour : "var(--good)"}`},
-                ` overlap ${state.overlap_mm3.toFixed(0)} mm³`) :
-             null));
-}
-
-export const can_move = (): boolean => piece() !== null;

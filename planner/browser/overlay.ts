@@ -1,39 +1,26 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
 // marks and the handles of the tool that is in hand.
+import {begin_ink, dot_at, ink, label, line, text, TextLook} from "./ink";
+import {draw_trace} from "./oblique";
 import type {Pane} from "./panes";
 import {Json, Measurement, Step} from "./protocol";
-import {state, steps, step_of} from "./state";
+import {is_elsewhere, shown_scan, state, step_of, steps} from "./state";
+import {is_dark} from "./theme";
 import {active_tool} from "./tool";
-import {Vec2, Vec3, add, dot, scaled} from "./vector";
+import {add, dot, scaled, Vec2, Vec3} from "./vector";
 import {edge_letters, view_of_plane, view_text} from "./view_frame";
-
-export const ink = {
-  cross: ["#ff8a65", "#7bd88f", "#64b5f6"] as const,  // sagittal, coronal, axial
-  region: "#5b9dff",
-  landmark: "#ffd166",
-  measure: "#7ee0d0",
-  mark: "#ff5d8f",
-  text: "rgba(255,255,255,.92)",
-  faint: "rgba(255,255,255,.55)",
-};
-
-// Boxes of the words that a pane has so far: names and numbers make room for each other.
-let labelled: {low: Vec2; high: Vec2}[] = [];
-
-// Views stand on white on a light page; words are dark with a light outline there.
-let is_on_white = false;
 
 export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): void {
   if (!state.plan) return;
-  is_on_white = !pane.is_slice && !is_dark_page();
-  labelled = [];
+  begin_ink(!pane.is_slice && !is_dark());
   const ratio = pane.ratio;
   context.lineJoin = "round";
   draw_cross(pane, context);
-  draw_regions(pane, context);
+  draw_trace(pane, context);
+  if (!is_elsewhere()) draw_regions(pane, context);
   draw_landmarks(pane, context);
-  draw_measures(pane, context);
+  if (!is_elsewhere()) draw_measures(pane, context);
   if (state.marked) draw_mark(pane, context, state.marked.at_mm);
   active_tool()?.draw?.(pane, context);
   draw_letters(pane, context);
@@ -51,89 +38,6 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
                                        "Choose a tissue to begin.",
         [pane.size[0] / 2, pane.size[1] / 2], ratio, {align: "center", colour: ink.faint});
   }
-}
-
-const is_dark_page = (): boolean => document.documentElement.dataset.theme !== "light";
-
-interface TextLook {
-  align?: CanvasTextAlign;
-  colour?: string;
-  px?: number;
-  plate?: boolean;
-}
-const dark_of: {[colour: string]: string} = {
-  [ink.text]: "#18212b",
-  [ink.faint]: "#52606e",
-  [ink.landmark]: "#7a4b00",
-  [ink.measure]: "#005e50",
-  "#ff8f93": "#b3212a",
-  "#9be7b0": "#14713c"
-};
-
-/// Words with an outline, so that they are legible on bone and on the ground; they stay within the picture.
-export function text(
-    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
-  context.font = `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
-  context.textAlign = look.align ?? "left";
-  context.textBaseline = "middle";
-  context.lineWidth = 3 * ratio;
-  const colour = look.colour ?? ink.text;
-  const half = context.measureText(words).width / 2 + 4 * ratio;
-  const x = look.align === "center" && 2 * half < context.canvas.width ?
-      Math.max(half, Math.min(context.canvas.width - half, at[0])) :
-      at[0];
-  context.strokeStyle = is_on_white ? "rgba(255,255,255,.85)" : "rgba(0,0,0,.75)";
-  context.strokeText(words, x, at[1]);
-  context.fillStyle = is_on_white ? dark_of[colour] ?? colour : colour;
-  context.fillText(words, x, at[1]);
-}
-
-/// Words beside a point: at its right, or its left, or as far up or down as there is room.
-function label(
-    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook): void {
-  const px = (look.px ?? 12) * ratio;
-  context.font = `500 ${px}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
-  const width = context.measureText(words).width;
-  const gap = 7 * ratio;
-  const rows = [0, -1, 1, -2, 2, -3, 3];
-  const places = rows.flatMap((row): Vec2[] => [gap, -gap - width].map((x) => [at[0] + x, at[1] + row * px]));
-  const box = ([x, y]: Vec2): {low: Vec2; high: Vec2} =>
-      ({low: [x, y - px / 2], high: [x + width, y + px / 2]});
-  const is_free = (place: Vec2): boolean => {
-    const {low, high} = box(place);
-    return low[0] >= 0 && high[0] <= context.canvas.width &&
-        labelled.every(
-            (one) =>
-                one.low[0] > high[0] || one.high[0] < low[0] || one.low[1] > high[1] || one.high[1] < low[1]);
-  };
-  const place = places.find(is_free) ?? places[0]!;
-  labelled.push(box(place));
-  text(context, words, place, ratio, {...look, align: "left"});
-}
-
-export function line(
-    context: CanvasRenderingContext2D, points: Vec2[], colour: string, width: number, closed = false): void {
-  if (!points.length) return;
-  context.beginPath();
-  points.forEach((p, i) => (i ? context.lineTo(p[0], p[1]) : context.moveTo(p[0], p[1])));
-  if (closed) context.closePath();
-  context.strokeStyle = is_on_white ? "rgba(255,255,255,.8)" : "rgba(0,0,0,.55)";
-  context.lineWidth = width + 2;
-  context.stroke();
-  context.strokeStyle = is_on_white ? dark_of[colour] ?? colour : colour;
-  context.lineWidth = width;
-  context.stroke();
-}
-
-export function dot_at(
-    context: CanvasRenderingContext2D, at: Vec2, radius: number, colour: string, hollow = false): void {
-  context.beginPath();
-  context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
-  context.fillStyle = hollow ? "rgba(0,0,0,.35)" : colour;
-  context.fill();
-  context.lineWidth = Math.max(1, radius * 0.35);
-  context.strokeStyle = hollow ? colour : "rgba(0,0,0,.7)";
-  context.stroke();
 }
 
 // Each line is the trace of the other panes' planes; a gap in the middle leaves the point itself free to be
@@ -165,8 +69,9 @@ function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
 }
 
 /// The name under which a region drawn in the pane is kept: a view, or the view of the slice's plane.
-export const region_view = (pane: Pane): string =>
-    pane.is_slice ? view_of_plane[pane.setting.plane] : view_text(pane.setting.view);
+export const region_view = (pane: Pane): string => pane.is_slice ?
+    view_text(view_of_plane(pane.setting.plane, pane.setting.tilt)) :
+    view_text(pane.setting.view);
 
 export const uv_pixel = (pane: Pane, uv: Vec2): Vec2 => {
   const frame = pane.frame;
@@ -229,9 +134,20 @@ function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
   }
 }
 
+/// The scan beside the patient's on which procedures place a landmark; empty: the patient's.
+const scan_of_landmark = (name: string): string => (state.hello?.procedures ?? [])
+                                                       .flatMap((one) => one.landmarks)
+                                                       .find((mark) => mark.name === name)
+                                                       ?.scan ??
+    "";
+
+/// Whether a landmark is drawn in a pane: one of the scan that is shown, and near a slice.
+export const is_drawn = (pane: Pane, mark: {name: string; point: Vec3}): boolean =>
+    scan_of_landmark(mark.name) === (is_elsewhere() ? shown_scan() : "") && is_near(pane, mark.point);
+
 function draw_landmarks(pane: Pane, context: CanvasRenderingContext2D): void {
   for (const landmark of state.plan?.landmarks ?? []) {
-    if (!is_near(pane, landmark.point)) continue;
+    if (!is_drawn(pane, landmark)) continue;
     const at = pane.pixel_at(landmark.point);
     dot_at(context, at, 3.5 * pane.ratio, ink.landmark);
     if (is_handled()) continue;

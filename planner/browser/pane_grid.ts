@@ -6,10 +6,10 @@ import {button, el, fill} from "./html";
 import {icon} from "./icons";
 import {change_pane, Pane} from "./panes";
 import {FrameHeader} from "./protocol";
-import {PaneSetting, set, state, watch} from "./state";
+import {first_scan, PaneSetting, set, shown_scan, State, state, watch} from "./state";
 import {active_tool} from "./tool";
 import {Vec2, Vec3} from "./vector";
-import {PlaneName, turned, view_names, ViewName} from "./view_frame";
+import {plane_names, PlaneName, turned, view_names, ViewName} from "./view_frame";
 import {attach_input} from "./view_input";
 
 const panes: Pane[] = [];
@@ -55,7 +55,9 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
   }
   watch(["plan", "looks", "draft_window", "compare", "cut_plane", "theme"], () => want_all(false));
   watch(["preview"], follow_preview);
-  watch(["selected", "marked", "tool", "cross_mm", "arch_mm"], () => panes.forEach((pane) => pane.redraw()));
+  watch(
+      ["panes", "selected", "marked", "tool", "cross_mm", "arch_mm"],
+      () => panes.forEach((pane) => pane.redraw()));
   watch(["tool"], () => panes.forEach((pane) => {
     pane.canvas.style.cursor = active_tool()?.cursor ?? "default";
   }));
@@ -91,9 +93,30 @@ export function reconnected(): void {
 /// Fits every pane to the scan, once the page has laid them out.
 export function fit_all(): void {
   requestAnimationFrame(() => {
-    if (state.plan) set({panes: fitted(state.plan).panes});
+    if (state.plan) set({panes: fitted(state.plan, shown_scan()).panes});
     want_all(false);
   });
+}
+
+const left_at = new Map<string, Pick<State, "panes"|"cross_mm"|"grey">>();
+/// Shows a scan of the plan in all panes, as it was looked at last; null: the patient's.
+export function show_scan(name: string|null): void {
+  const before = shown_scan();
+  const next = name ?? first_scan();
+  if (next === before || !state.plan) return;
+  left_at.set(before, {panes: state.panes, cross_mm: state.cross_mm, grey: state.grey});
+  const {panes: fits, ...looked} = left_at.get(next) ?? fitted(state.plan, next);
+  set({
+    scan: name,
+    preview: null,
+    ...looked,
+    panes: state.panes.map(
+        (pane, index) => ({...pane, centre_mm: fits[index]!.centre_mm, pixel_mm: fits[index]!.pixel_mm})),
+  });
+  for (const pane of panes) {
+    pane.forget();
+    pane.want(false);
+  }
 }
 
 /// Brings the cross-hair and every pane to a place, and marks it.
@@ -132,13 +155,15 @@ function head_of(pane: Pane): Node[] {
          el("optgroup", {label: "Views"},
             [...view_names, "free" as const].map(
                 (name) => option(name, name === "free" ? "Free view" : capital(name)))),
-         el("optgroup", {label: "Slices"},
-            ["axial", "coronal", "sagittal"].map((name) => option(name, capital(name))),
+         el("optgroup", {label: "Slices"}, plane_names.map((name) => option(name, capital(name))),
             option("panoramic", "Panoramic")));
-  const angles = setting.mode === "view" && typeof setting.view !== "string" ?
-      el("span", {class: "angles"},
-         `${setting.view.azimuth.toFixed(0)}°, ${setting.view.elevation.toFixed(0)}°`) :
+  const turned_by = pane.is_oblique                               ? setting.tilt :
+      setting.mode === "view" && typeof setting.view !== "string" ? setting.view :
+                                                                    null;
+  const angles = turned_by ?
+      el("span", {class: "angles"}, `${turned_by.azimuth.toFixed(0)}°, ${turned_by.elevation.toFixed(0)}°`) :
       "";
+  const only = setting.only ? el("span", {class: "angles"}, `${setting.only.replace(/_/g, " ")} alone`) : "";
   const shading =
       el("select", {
         class: "pane-choice faint",
@@ -158,6 +183,7 @@ function head_of(pane: Pane): Node[] {
   return [
     choose,
     angles as Node,
+    only as Node,
     shading,
     el("span", {class: "spring"}),
     button(
@@ -174,7 +200,7 @@ export function show_in(index: number, name: string): void {
     change_pane(index, {mode: "panoramic"});
   else if (name === "free")
     change_pane(index, {mode: "view", view: turned(state.panes[index]!.view)});
-  else if (["axial", "coronal", "sagittal"].includes(name))
+  else if (plane_names.some((plane) => plane === name))
     change_pane(index, {mode: "slice", plane: name as PlaneName});
   else
     change_pane(index, {mode: "view", view: name as ViewName});
@@ -185,7 +211,7 @@ export function show_in(index: number, name: string): void {
 function tell_pointer(pane: Pane, at: Vec2): void {
   const picked = pane.pick(at);
   const value = pane.value_at(at);
-  const unit = state.plan?.scans[0]?.unit ?? "HU";
+  const unit = state.plan?.scans.find((scan) => scan.name === shown_scan())?.unit ?? "HU";
   const words = picked ? `${picked.point.map((x) => x.toFixed(1).replace("-", "−")).join("  ")} mm${
                              value === null ? "" : `   ${value.toFixed(0).replace("-", "−")} ${unit}`}${
                              picked.object ? `   ${picked.object}` : ""}` :

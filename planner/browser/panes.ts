@@ -2,19 +2,17 @@
 // A pane: a 2D canvas that shows the newest picture of the server, asks for the next, and picks by the depth
 // and object planes of the picture at rest. At most two pictures are under way; the latest setting wins.
 import {ask} from "./actions";
-import {drawn_objects, is_overlap, makes_shape} from "./drawn_objects";
+import {drawn_objects} from "./drawn_objects";
 import {el} from "./html";
 import {draw_overlay} from "./overlay";
+import {is_pending, request_of, shapes} from "./pane_request";
+import {Planes, planes_of} from "./picture_planes";
 import {FrameHeader, PaneRequest} from "./protocol";
-import {first_scan, PaneSetting, set, state, step_of} from "./state";
+import {PaneSetting, set, state} from "./state";
+import {dark_ground, is_dark} from "./theme";
 import {add, dot, scaled, sub, Vec2, Vec3} from "./vector";
 import {directions_of, pixel_of, point_of, uv_of, view_of_plane, ViewFrame} from "./view_frame";
 import {Refusal} from "./wire";
-
-/// The ground of views on a dark page; on a light one they stand on white, as `octotomy render` draws them.
-export const dark_ground = "#0b0f14";
-export const is_dark = (): boolean => state.theme === "dark" ||
-    (state.theme === "system" && matchMedia("(prefers-color-scheme: dark)").matches);
 
 const most_in_flight = 2;
 const rest_after_ms = 140;
@@ -23,15 +21,13 @@ const slow_after_ms = 500;
 interface Picture {
   header: FrameHeader;
   bitmap: ImageBitmap;
+  planes: Planes|null;  // they come a little later, and at rest alone
 }
 
 export class Pane {
   readonly canvas = el("canvas", {tabindex: 0, role: "img"});
   picture: Picture|null = null;
   problem = "";
-  private depth: Float32Array|null = null;
-  private object: Uint16Array|null = null;
-  private value: Float32Array|null = null;
   private is_wanted = false;
   private in_flight = 0;
   private rest_timer = 0;
@@ -67,13 +63,16 @@ export class Pane {
   get is_slice(): boolean {
     return this.setting.mode !== "view";
   }
+  get is_oblique(): boolean {
+    return this.setting.mode === "slice" && this.setting.plane === "oblique";
+  }
 
   /// The frame of what is wanted now; the picture's own directions where it has them, since a held head turns
   /// them.
   get frame(): ViewFrame {
     const setting = this.setting;
     const own = this.picture?.header.view_frame;
-    const wanted = directions_of(this.is_slice ? view_of_plane[setting.plane] : setting.view);
+    const wanted = directions_of(this.is_slice ? view_of_plane(setting.plane, setting.tilt) : setting.view);
     const turned_little = own && dot(own.look, wanted.look) > 0.7 && this.picture_is_of(setting);
     return {
       ...(turned_little ? {right: own.right, up: own.up, look: own.look} : wanted),
@@ -112,52 +111,6 @@ export class Pane {
     this.redraw();
   }
 
-  private request(): PaneRequest {
-    const setting = this.setting;
-    const objects = drawn_objects();
-    const request: PaneRequest = {
-      pane: this.index,
-      kind: this.is_slice ? "slice" : "view",
-      centre_mm: setting.centre_mm,
-      size: [this.canvas.width, this.canvas.height],
-      pixel_mm: setting.pixel_mm / this.ratio,
-      objects,
-      dragging: this.is_dragging,
-    };
-    if (setting.mode === "view") {
-      request.view = setting.view;
-      if (is_dark()) request.background = dark_ground;
-      if (setting.shading !== "partial_volume") request.shading = setting.shading;
-      const cut = state.cut_plane;
-      if (cut) {
-        const normal: [number, number, number] = [0, 0, 0];
-        normal[cut.axis] = cut.side;
-        request.cut_planes = [[...normal, cut.offset_mm * cut.side]];
-        request.cut_face = "grey";
-      }
-      if (state.compare) request.colour_by = state.compare;
-    } else {
-      request.scan = first_scan();
-      request.window = state.grey;
-      request.at_mm = state.cross_mm;
-      request.plane = setting.mode === "panoramic" && state.arch_mm.length > 1 ?
-          {curve_mm: state.arch_mm, height_mm: 70} :
-          setting.plane;
-      if (state.draft_window) request.threshold = [state.draft_window.low, state.draft_window.high ?? 32767];
-    }
-    if (state.preview) {
-      request.preview = state.preview;
-      request.overlap = true;
-      request.objects = objects.filter((object) => !object.id || !this.is_stale(object.id));
-    }
-    return request;
-  }
-  // While a piece is dragged, the overlap that was evaluated before says nothing.
-  private is_stale(id: string): boolean {
-    const step = step_of(id);
-    return step !== undefined && is_overlap(step, state.plan?.plan.steps ?? []);
-  }
-
   private pump(): void {
     if (!this.is_wanted || this.in_flight >= (this.is_dragging ? most_in_flight : 1) ||
         state.link !== "open" || !state.plan)
@@ -172,7 +125,7 @@ export class Pane {
     if (!this.is_slice && is_pending()) return;
     this.is_wanted = false;
     const started = performance.now();
-    const fields = this.request();
+    const fields = request_of(this, this.is_dragging);
     const asked = JSON.stringify(fields) + shapes();
     if (asked === this.last_asked) return;
     this.last_asked = asked;
@@ -213,27 +166,15 @@ export class Pane {
     if (header.id < this.newest_decoded) return bitmap.close();
     this.newest_decoded = header.id;
     this.picture?.bitmap.close();
-    this.picture = {header, bitmap};
+    const picture: Picture = {header, bitmap, planes: null};
+    this.picture = picture;
     this.problem = "";
-    this.depth = this.object = this.value = null;
     this.redraw_now();
     const latency_ms = started === undefined ? null : performance.now() - started;
     this.canvas.dispatchEvent(
         new CustomEvent("picture", {bubbles: true, detail: {latency_ms, quality: header.quality}}));
     if (header.overlap_mm3 !== undefined && state.preview) set({overlap_mm3: header.overlap_mm3});
-    if (header.quality === "rest") await this.take_planes(header, parts);
-  }
-
-  private async take_planes(header: FrameHeader, parts: Uint8Array[]): Promise<void> {
-    const plane = async(kind: "depth"|"object"|"value"): Promise<ArrayBuffer|null> => {
-      const at = header.parts.findIndex((part) => part.kind === kind);
-      return at < 0 ? null : inflated(parts[at]!);
-    };
-    const [depth, object, value] = [await plane("depth"), await plane("object"), await plane("value")];
-    if (this.picture?.header !== header) return;
-    this.depth = depth ? new Float32Array(depth) : null;
-    this.object = object ? new Uint16Array(object) : null;
-    this.value = value ? new Float32Array(value) : null;
+    if (header.quality === "rest") picture.planes = await planes_of(header, parts);
   }
 
   /// What a pixel position of the canvas shows: a point of a surface or of the slice, and the object. Null
@@ -242,25 +183,26 @@ export class Pane {
     const frame = this.frame;
     if (this.is_slice)
       return {point: point_of(frame, this.size, at, dot(state.cross_mm, frame.look)), object: null};
-    const header = this.picture?.header;
-    if (!header || !this.depth || header.quality !== "rest") return null;
+    const {header, planes} = this.picture ?? {};
+    if (!header || header.quality !== "rest") return null;
+    const pixel = this.picture_pixel(header, at);
+    const depth = planes?.depth?.[pixel.index];
+    if (depth === undefined || Number.isNaN(depth)) return null;
+    const number = planes?.object?.[pixel.index] ?? 0;
+    const point =
+        point_of(header.view_frame, [header.width, header.height], [pixel.x + 0.5, pixel.y + 0.5], depth);
+    return {point, object: number ? header.objects?.[number - 1] ?? null : null};
+  }
+  private picture_pixel(header: FrameHeader, at: Vec2): {x: number; y: number; index: number} {
     const x = Math.floor((at[0] * header.width) / this.canvas.width);
     const y = Math.floor((at[1] * header.height) / this.canvas.height);
-    const depth = this.depth[y * header.width + x];
-    if (depth === undefined || Number.isNaN(depth)) return null;
-    const number = this.object?.[y * header.width + x] ?? 0;
-    const size: Vec2 = [header.width, header.height];
-    const point = point_of(header.view_frame, size, [x + 0.5, y + 0.5], depth);
-    return {point, object: number ? header.objects?.[number - 1] ?? null : null};
+    return {x, y, index: y * header.width + x};
   }
 
   /// The sample of a slice at rest at a position.
   value_at(at: Vec2): number|null {
-    const header = this.picture?.header;
-    if (!header || !this.value) return null;
-    const x = Math.floor((at[0] * header.width) / this.canvas.width);
-    const y = Math.floor((at[1] * header.height) / this.canvas.height);
-    const value = this.value[y * header.width + x];
+    const {header, planes} = this.picture ?? {};
+    const value = header && planes?.value?.[this.picture_pixel(header, at).index];
     return value === undefined || Number.isNaN(value) ? null : value;
   }
 
@@ -269,7 +211,6 @@ export class Pane {
     this.last_asked = "";
     this.picture?.bitmap.close();
     this.picture = null;
-    this.depth = this.object = this.value = null;
   }
 
   /// The point that a position shows, on the plane through the cross-hair where there is no surface.
@@ -341,21 +282,6 @@ export class Pane {
   }
 }
 
-/// The steps that make shapes: what pictures depend on besides their own request.
-const shapes = (): string => JSON.stringify([
-  state.plan?.path, state.evaluations,
-  (state.plan?.plan.steps ?? []).filter((step) => makes_shape(step) || step.do === "head_position")
-]);
-
-/// Whether an object that is to be drawn is still being evaluated: the picture before stays until it is
-/// there.
-function is_pending(): boolean {
-  const pending = new Set((state.plan?.objects ?? [])
-                              .filter((object) => object.evaluated === false && !object.error)
-                              .map((object) => object.id));
-  return drawn_objects().some((object) => object.id !== undefined && pending.has(object.id));
-}
-
 export function change_pane(index: number, change: Partial<PaneSetting>): void {
   set({panes: state.panes.map((pane, number) => (number === index ? {...pane, ...change} : pane))});
 }
@@ -367,15 +293,3 @@ export function use_picture_asker(asker: typeof picture_asker): void {
 }
 const ask_picture = (fields: PaneRequest, on_id: (id: number) => void): Promise<unknown> =>
     picture_asker ? picture_asker(fields, on_id) : ask("pane", fields);
-
-// Browsers have it; the compiler's list of their names does not yet.
-declare class DecompressionStream implements GenericTransformStream {
-  constructor(format: "deflate");
-  readonly readable: ReadableStream;
-  readonly writable: WritableStream;
-}
-
-async function inflated(bytes: Uint8Array): Promise<ArrayBuffer> {
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Response(stream).arrayBuffer();
-}

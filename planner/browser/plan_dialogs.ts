@@ -1,102 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Dialogs about the plan: procedures placed by landmarks, export and print, the report, the audit, the
-// screenshot.
-import {add_step, busy, done, download, evaluate, file_url, free_id, take_plan, try_to} from "./actions";
-import {Dialog, open_dialog} from "./dialog";
+// Dialogs about the plan: export and print, the report, the audit, the screenshot.
+import {add_step, busy, done, download, file_url, free_id, try_to} from "./actions";
+import {open_dialog} from "./dialog";
 import {look_of, object_ids} from "./drawn_objects";
-import {button, Child, el} from "./html";
+import {button, el} from "./html";
 import {icon} from "./icons";
 import {all_panes} from "./pane_grid";
-import {ask_for_landmarks} from "./point_tools";
-import {PlanState, ProcedureSays} from "./protocol";
 import {audit_rows, scan_facts} from "./start_page";
 import {notify, state, step_of} from "./state";
-import {Vec3} from "./vector";
-
-const values: {[name: string]: number} = {};
-let pending_procedure: string|null = null;
-
-/// Chooses a procedure, has its landmarks placed, takes its values and adds its steps.
-export function open_procedure(name?: string): void {
-  const dialog = open_dialog("Procedure from landmarks", "procedure");
-  const show = (chosen: ProcedureSays|undefined): void => dialog.refill(
-      el("div", {class: "presets"},
-         (state.hello?.procedures ??
-          []).map((one) => button(one.name.replace(/_/g, " "), one.says, () => show(one), {
-                    class: one === chosen ? "on" : ""
-                  }))),
-      chosen ?
-          procedure_form(dialog, chosen) :
-          el("p", {class: "says"},
-             "Each procedure is placed by named landmarks and a few values. What it writes are ordinary steps that you can change."));
-  show(state.hello?.procedures.find((one) => one.name === name));
-}
-
-function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
-  const placed = new Map((state.plan?.landmarks ?? []).map((mark) => [mark.name, mark.point]));
-  const missing = chosen.landmarks.filter((mark) => !placed.has(mark.name));
-  const place = (): void => {
-    pending_procedure = chosen.name;
-    dialog.close();
-    ask_for_landmarks(chosen.landmarks);
-  };
-  const perform = async(): Promise<void> => {
-    const landmarks: {[mark: string]: Vec3} = {};
-    for (const mark of chosen.landmarks) landmarks[mark.name] = placed.get(mark.name)!;
-    const set_values = Object.fromEntries(
-        chosen.values.map((one) => [one.name, values[`${chosen.name}.${one.name}`] ?? one.default]));
-    dialog.close();
-    const plan = await try_to<PlanState>("procedure", {name: chosen.name, landmarks, values: set_values});
-    if (plan) {
-      take_plan(plan);
-      void evaluate();
-    }
-  };
-  return [
-    el("p", {class: "says"}, chosen.says),
-    el("ul", {class: "marks"},
-       chosen.landmarks.map(
-           (mark) =>
-               el("li", {class: placed.has(mark.name) ? "placed" : ""},
-                  el("b", {}, mark.name.replace(/_/g, " ")), ` ${mark.says}`))),
-    missing.length ?
-        el("div", {class: "row"},
-           button(
-               `Place ${missing.length} landmarks`, "Click them one after the other in the panes", place,
-               {class: "primary"})) :
-        [
-          el("div", {class: "grid-2"},
-             chosen.values.map(
-                 (one) =>
-                     el("label", {class: "field", "data-tip": `${one.says}. From ${one.low} to ${one.high}.`},
-                        el("span", {}, one.name.replace(/_(mm|deg)$/, "").replace(/_/g, " ")), el("input", {
-                          type: "number",
-                          step: "any",
-                          min: one.low,
-                          max: one.high,
-                          name: one.name,
-                          value: values[`${chosen.name}.${one.name}`] ?? one.default,
-                          onchange: (event: Event) => {
-                            values[`${chosen.name}.${one.name}`] =
-                                Number((event.target as HTMLInputElement).value);
-                          }
-                        }),
-                        el("i", {},
-                           one.unit ??
-                               (one.name.endsWith("_mm")      ? "mm" :
-                                    one.name.endsWith("_deg") ? "°" :
-                                                                ""))))),
-          el("div", {class: "row end"},
-             button(
-                 "Plan it", "Adds the procedure's steps to the plan", () => void perform(),
-                 {class: "primary"})),
-        ],
-  ];
-}
-addEventListener("landmarks-placed", () => {
-  if (pending_procedure) open_procedure(pending_procedure);
-  pending_procedure = null;
-});
 
 const kinds: [string, string, string][] = [
   ["stl", "STL", "Surface for print"],

@@ -3,17 +3,26 @@
 // segmentation, the dental arch.
 import {add_step, free_id, put_landmark} from "./actions";
 import {button, el} from "./html";
-import {dot_at, ink, line, text} from "./overlay";
+import {dot_at, ink, line, text} from "./ink";
+import {is_drawn} from "./overlay";
+import {show_scan} from "./pane_grid";
+import type {Pane} from "./panes";
 import {change_pane} from "./panes";
 import {Json} from "./protocol";
-import {first_scan, notify, selected_step, set, state} from "./state";
+import {first_scan, is_elsewhere, notify, selected_step, set, state} from "./state";
 import {take_tool, Tool} from "./tool";
-import {angle_deg, distance, hundredths, Vec3} from "./vector";
+import {angle_deg, distance, hundredths, Vec2, Vec3} from "./vector";
 
 let taken: Vec3[] = [];
 let pointed: Vec3|null = null;
 let landmark_name = "";
-let procedure_wants: {name: string; says: string}[] = [];
+interface Wanted {
+  name: string;
+  says: string;
+  scan?: string;
+}
+let procedure_wants: Wanted[] = [];
+let held: {name: string; point: Vec3}|null = null;  // a landmark that is dragged
 let is_snapping = true;
 
 const named = (p: Vec3): Json =>
@@ -21,6 +30,16 @@ const named = (p: Vec3): Json =>
 
 /// A landmark that is nearer than this on the screen is meant when its place is clicked.
 const near_px = 10;
+
+function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefined {
+  return state.plan?.landmarks.find((mark) => {
+    if (!is_drawn(pane, mark)) return false;
+    const p = pane.pixel_at(mark.point);
+    return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
+  });
+}
+/// Points of slices stay where they are clicked; a donor's surface is no object of the plan.
+const snaps = (pane: Pane): boolean => is_snapping && !pane.is_slice && !is_elsewhere();
 
 function point_tool(
     kind: "distance"|"angle"|"surface_distance", count: number, title: string, says: string,
@@ -32,11 +51,7 @@ function point_tool(
     key,
     cursor: "crosshair",
     down({pane, at}) {
-      const mark = state.plan?.landmarks.find((one) => {
-        const p = pane.pixel_at(one.point);
-        return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
-      });
-      taken.push(mark?.point ?? hundredths(pane.point_at(at)));
+      taken.push(landmark_at(pane, at)?.point ?? hundredths(pane.point_at(at)));
       pointed = null;
       if (taken.length === count) {
         const points = taken;
@@ -98,7 +113,7 @@ export const surface_tool = point_tool(
     "");
 
 /// Landmarks that a procedure waits for: clicked one after the other.
-export function ask_for_landmarks(wanted: {name: string; says: string}[]): void {
+export function ask_for_landmarks(wanted: Wanted[]): void {
   procedure_wants = wanted;
   next_wanted();
   take_tool("landmark");
@@ -108,8 +123,11 @@ function next_wanted(placed = ""): void {
   const missing = procedure_wants.find(
       (one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
   landmark_name = missing?.name ?? "";
+  if (missing) show_scan(missing.scan || null);
+  set({tool: state.tool});  // so that the panel asks for it
   if (procedure_wants.length && !missing) {
     procedure_wants = [];
+    show_scan(null);
     take_tool("navigate");
     window.dispatchEvent(new Event("landmarks-placed"));
   }
@@ -123,19 +141,42 @@ export const landmark_tool: Tool = {
   key: "l",
   cursor: "crosshair",
   down({pane, at}) {
+    const known = landmark_at(pane, at);
+    if (known) {
+      held = {...known};
+      return true;
+    }
     const point = hundredths(pane.point_at(at));
     const name =
         landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
     void (async () => {
-      const place = await put_landmark(name, point, is_snapping && !pane.is_slice);
+      const place = await put_landmark(name, point, snaps(pane));
       if (!place) return;
+      set({cross_mm: hundredths(place)});
       if (procedure_wants.length)
         next_wanted(name);
       else
         landmark_name = "";
-      set({cross_mm: hundredths(place)});
     })();
     return true;
+  },
+  move({pane, at}) {
+    if (!held) return;
+    held.point = hundredths(pane.point_at(at));
+    pane.redraw();
+  },
+  up({pane}) {
+    if (!held) return;
+    const {name, point} = held;
+    held = null;
+    if (distance(point, state.plan?.landmarks.find((mark) => mark.name === name)?.point ?? point) < 0.01)
+      return;
+    void put_landmark(name, point, snaps(pane)).then((place) => {
+      if (place) set({cross_mm: hundredths(place)});
+    });
+  },
+  draw(pane, context) {
+    if (held) dot_at(context, pane.pixel_at(held.point), 6 * pane.ratio, ink.landmark, true);
   },
   panel: () => {
     const wanted = procedure_wants.find((one) => one.name === landmark_name);
@@ -168,6 +209,7 @@ export const landmark_tool: Tool = {
   },
   left() {
     procedure_wants = [];
+    held = null;
   },
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What the planner's server and its page say to each other.
 import {Vec3} from "./vector";
-import {PlaneName, View, ViewFrame} from "./view_frame";
+import {View, ViewFrame} from "./view_frame";
 
 export type Json = null|boolean|number|string|Json[]|{[key: string]: Json};
 export interface Step {
@@ -93,7 +93,8 @@ export interface PlanState {
 export interface ProcedureSays {
   name: string;
   says: string;
-  landmarks: {name: string; says: string}[];
+  landmarks: {name: string; says: string; scan?: string}[];
+  scans: {name: string; says: string}[];
   values: {name: string; unit?: string; default: number; says: string; low: number; high: number}[];
 }
 export interface Tissue {
@@ -130,14 +131,19 @@ export interface Hello {
   folders: string[];
 }
 
+/// A point of a piece and where it is wanted.
+export type MarkPair = {
+  at: Vec3; to: Vec3
+};
 export interface Motion {
   by?: {forward_mm?: number; left_mm?: number; up_mm?: number};
   turn?: {pitch_deg?: number; yaw_deg?: number; roll_deg?: number; about_mm: Vec3 | string};
+  points?: MarkPair[];
   [field: string]: Json|undefined;
 }
 export interface DrawnObject {
   id?: string;
-  window?: {scan: string; low: number; high?: number};
+  window?: {scan: string; low: number; high?: number; alone?: boolean};
   colour: string;
   opacity: number;
 }
@@ -145,7 +151,7 @@ export interface PaneRequest {
   pane: number;
   kind: "view"|"slice";
   view?: View;
-  plane?: PlaneName|{
+  plane?: string|{
     normal: Vec3;
     up: Vec3
   }
@@ -163,7 +169,7 @@ export interface PaneRequest {
   objects: DrawnObject[];
   preview?: {object: string; of: string; move: Motion; against: string[]};
   overlap?: boolean;
-  colour_by?: {object: string; reference: string; range_mm: number};
+  colour_by?: {object: string; reference: string; range_mm: number; mutual?: boolean};
   cut_planes?: [number, number, number, number][];
   cut_face?: "plain"|"grey";
   shading?: string;

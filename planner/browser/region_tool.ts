@@ -4,7 +4,8 @@
 import {add_step, add_steps, edit, free_id, replace_step} from "./actions";
 import {look_of, makes_shape, operands} from "./drawn_objects";
 import {button, el} from "./html";
-import {dot_at, ink, line, region_view, regions_of, text, uv_pixel} from "./overlay";
+import {dot_at, ink, line, text} from "./ink";
+import {region_view, regions_of, uv_pixel} from "./overlay";
 import type {Pane} from "./panes";
 import {Json, Step} from "./protocol";
 import {notify, selected_step, set, state, step_of, steps} from "./state";

@@ -3,12 +3,14 @@
 // watched by key.
 import {Hello, Job, Motion, Notice, PlanState, Step} from "./protocol";
 import {Vec3} from "./vector";
-import {PlaneName, View} from "./view_frame";
+import {PlaneName, Turned, View} from "./view_frame";
 
 export interface PaneSetting {
   mode: "view"|"slice"|"panoramic";
   view: View;
   plane: PlaneName;
+  tilt: Turned;   // of the oblique plane: where it is looked along
+  only?: string;  // the one object that the pane shows
   shading: string;
   centre_mm: Vec3;
   pixel_mm: number;  // of a CSS pixel
@@ -40,12 +42,14 @@ export interface Compare {
   object: string;
   reference: string;
   range_mm: number;
+  mutual?: boolean;  // both are coloured: a map of their contacts
 }
 
 export interface State {
   link: "opening"|"open"|"lost";
   hello: Hello|null;
   plan: PlanState|null;
+  scan: string|null;  // the scan that panes show; null: the patient's
   page: "start"|"audit"|"plan";
   theme: "system"|"light"|"dark";
   panes: PaneSetting[];
@@ -77,6 +81,7 @@ const pane = (mode: PaneSetting["mode"], view: View, plane: PlaneName): PaneSett
   mode,
   view,
   plane,
+  tilt: {azimuth: 45, elevation: 0},
   shading: "partial_volume",
   centre_mm: [0, 0, 0],
   pixel_mm: 0.6,
@@ -94,6 +99,7 @@ const first: State = {
   link: "opening",
   hello: null,
   plan: null,
+  scan: null,
   page: "start",
   theme: "system",
   panes: usual_panes(),
@@ -187,6 +193,11 @@ export const steps = (): Step[] => state.plan?.plan.steps ?? [];
 export const step_of = (id: string|null): Step|undefined => steps().find((step) => step.id === id);
 export const selected_step = (): Step|undefined => step_of(state.selected);
 export const first_scan = (): string => state.plan?.scans[0]?.name ?? "ct";
+export const shown_scan = (): string =>
+    state.plan?.scans.find((scan) => scan.name === state.scan)?.name ?? first_scan();
+/// Whether panes show a scan that lies in a frame of its own, as a donor's: the plan's objects are not in it.
+export const is_elsewhere = (): boolean =>
+    shown_scan() !== first_scan() && shown_scan() in (state.plan?.plan.scans ?? {});
 
 let next_notice = 1;
 /// Tells the person something; an error stays until it is closed.

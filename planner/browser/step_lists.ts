@@ -7,8 +7,9 @@ import {copy_command, name_version, new_branch, remove_step} from "./commands";
 import {look_of, makes_shape, object_ids} from "./drawn_objects";
 import {button, Child, el, fill} from "./html";
 import {icon} from "./icons";
+import {show_scan} from "./pane_grid";
 import {Json, Motion, ObjectState, Step} from "./protocol";
-import {ObjectLook, set, state, steps, watch} from "./state";
+import {ObjectLook, set, shown_scan, state, steps, watch} from "./state";
 
 const object_of = (id: string): ObjectState|undefined =>
     state.plan?.objects.find((object) => object.id === id);
@@ -30,12 +31,30 @@ export function make_lists(host: HTMLElement): void {
         tab("objects", "Objects", "Objects: colour, visibility, opacity"),
         tab("history", "History", "History: every change, branches and versions"));
     fill(
-        body,
+        body, scan_choice(),
         state.left_tab === "objects"   ? objects() :
             state.left_tab === "steps" ? step_rows() :
                                          history());
   };
-  watch(["plan", "looks", "selected", "left_tab"], again);
+  watch(["plan", "looks", "selected", "left_tab", "scan"], again);
+}
+
+/// Which scan the panes show, where the plan has several.
+function scan_choice(): Child {
+  const names = (state.plan?.scans ?? []).map((scan) => scan.name);
+  if (names.length < 2) return null;
+  return el(
+      "label",
+      {class: "field", "data-tip": "The scan whose slices are shown. A donor's lies in a frame of its own."},
+      el("span", {}, "Scan"),
+      el("select", {
+        "data-key": "scan",
+        name: "scan",
+        onchange: (event: Event) => show_scan((event.target as HTMLSelectElement).value),
+      },
+         names.map(
+             (name) =>
+                 el("option", {value: name, selected: name === shown_scan()}, name.replace(/_/g, " ")))));
 }
 
 function change_look(id: string, change: ObjectLook): void {
@@ -103,9 +122,9 @@ export function step_words(step: Step): string {
       return String(step.expression);
     case "move":
       return `${String(step.object)}: ${
-          step.by || step.turn  ? motion_words(step as unknown as Motion) :
-              step.translate_mm ? `by ${(step.translate_mm as number[]).join(", ")} mm` :
-                                  "moved"}`;
+          step.by || step.turn || step.points ? motion_words(step as unknown as Motion) :
+              step.translate_mm               ? `by ${(step.translate_mm as number[]).join(", ")} mm` :
+                                                "moved"              }`;
     case "measure":
       return step.points_mm ? list(step.points_mm) || "points" :
           step.to           ? `${String(step.object)} to ${String(step.to)}` :

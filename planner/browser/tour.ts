@@ -4,7 +4,7 @@
 import {add_step, free_id, open_plan, replace_step} from "./actions";
 import {certify_all, dialogs} from "./commands";
 import {button, Child, el, fill} from "./html";
-import {commit_motion} from "./move_tool";
+import {commit_motion} from "./piece_motion";
 import {Step} from "./protocol";
 import {cut_selected} from "./region_tool";
 import {set, state, steps, watch} from "./state";

@@ -16,6 +16,10 @@ export const cross = (a: Vec3, b: Vec3): Vec3 =>
 ];
 export const length = (a: Vec3): number => Math.hypot(a[0], a[1], a[2]);
 export const normalised = (a: Vec3): Vec3 => scaled(a, 1 / (length(a) || 1));
+/// A vector turned about a unit axis, right-handed.
+export const turned_about = (v: Vec3, axis: Vec3, rad: number): Vec3 =>
+    add(add(scaled(v, Math.cos(rad)), scaled(cross(axis, v), Math.sin(rad))),
+        scaled(axis, dot(axis, v) * (1 - Math.cos(rad))));
 export const distance = (a: Vec3, b: Vec3): number => length(sub(a, b));
 
 /// The angle at `corner` between two points, in degrees.

@@ -17,7 +17,8 @@ export interface Turned {
 }
 export type ViewName = "anterior"|"posterior"|"left"|"right"|"superior"|"inferior";
 export type View = ViewName|Turned;
-export type PlaneName = "axial"|"coronal"|"sagittal";
+export const plane_names = ["axial", "coronal", "sagittal", "oblique"] as const;
+export type PlaneName = typeof plane_names[number];
 
 const directions: Record<ViewName, [Vec3, Vec3]> = {
   anterior: [[0, 1, 0], [0, 0, 1]],
@@ -29,12 +30,10 @@ const directions: Record<ViewName, [Vec3, Vec3]> = {
 };
 export const view_names = Object.keys(directions) as ViewName[];
 
-/// The view from which a slice's plane is seen; a region drawn on the slice is one of that view.
-export const view_of_plane: Record<PlaneName, ViewName> = {
-  axial: "inferior",
-  coronal: "anterior",
-  sagittal: "left"
-};
+/// The view from which a slice's plane is seen; a region drawn on the slice is one of that view. An oblique
+/// plane is seen along its normal, which a view's angles say.
+export const view_of_plane = (plane: PlaneName, tilt: Turned): View =>
+    plane === "oblique" ? tilt : ({axial: "inferior", coronal: "anterior", sagittal: "left"} as const)[plane];
 
 const turned_of: Record<ViewName, Turned> = {
   anterior: {azimuth: 0, elevation: 0},
@@ -60,9 +59,19 @@ export function directions_of(view: View): {right: Vec3; up: Vec3; look: Vec3} {
   return {look, up, right: cross(look, up)};
 }
 
+/// The angles of the view that looks in a direction.
+export function turned_towards(look: Vec3): Turned {
+  const tenth = (rad: number): number => Math.round((rad * 1800) / Math.PI) / 10;
+  const elevation = tenth(Math.asin(Math.max(-1, Math.min(1, -look[2]))));
+  return {
+    azimuth: tenth(Math.atan2(-look[0], look[1])),
+    elevation: Math.max(-89.9, Math.min(89.9, elevation))
+  };
+}
+
 /// A view as the plan says it: its name, or AZ,EL.
 export const view_text = (view: View): string =>
-    typeof view === "string" ? view : `${Math.round(view.azimuth)},${Math.round(view.elevation)}`;
+    typeof view === "string" ? view : `${view.azimuth},${view.elevation}`;
 
 /// Where a point lies in a picture of the size, in pixels from the top left.
 export function pixel_of(frame: ViewFrame, size: Vec2, p_mm: Vec3): Vec2 {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Pointer, pen, touch, wheel and keys in a pane: the tool in hand first, then turning, panning, zooming,
 // slices, the cross-hair.
+import {tilt_from} from "./oblique";
 import type {Pane} from "./panes";
 import {change_pane} from "./panes";
-import {set, state} from "./state";
+import {set, shown_scan, state} from "./state";
 import {Pointer, active_tool} from "./tool";
 import {Vec2, Vec3, add, dot, hundredths, scaled} from "./vector";
 import {turned} from "./view_frame";
@@ -11,7 +12,7 @@ import {turned} from "./view_frame";
 const turn_deg_per_px = 0.45;
 const click_px = 4;
 
-type Drag = "turn"|"pan"|"zoom"|"grey"|"cross"|"tool";
+type Drag = "turn"|"pan"|"zoom"|"grey"|"cross"|"tilt"|"tool";
 
 export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane, at: Vec2) => void): void {
   const canvas = pane.canvas;
@@ -21,6 +22,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   let start: Vec2 = [0, 0];
   let has_moved = false;
   let pinch = 0;
+  let tilt: ((to: Vec2) => void)|null = null;
 
   const at_of = (event: PointerEvent|WheelEvent|MouseEvent): Vec2 => {
     const box = canvas.getBoundingClientRect();
@@ -30,6 +32,12 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   const want_slices = (): void => {
     for (const other of all())
       if (other.is_slice) other.want(true);
+  };
+  const want_oblique = (): void => {
+    for (const other of all()) {
+      if (other.is_oblique) other.want(true);
+      other.redraw();
+    }
   };
   const put_cross = (at: Vec2): void => {
     set({cross_mm: hundredths(pane.point_at(at))});
@@ -57,7 +65,8 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       return;
     }
     const is_plain = event.button === 0 && !event.shiftKey && !event.ctrlKey && !event.metaKey;
-    drag = is_plain && active_tool()?.down?.(pointer(event)) ? "tool" : drag_of(event);
+    tilt = is_plain ? tilt_from(pane, last) : null;
+    drag = tilt ? "tilt" : is_plain && active_tool()?.down?.(pointer(event)) ? "tool" : drag_of(event);
     if (drag === "cross") put_cross(last);
   });
 
@@ -79,6 +88,10 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     if (drag === "pan") pane.pan(by);
     if (drag === "zoom") pane.zoom(Math.exp(by[1] * 0.006), start);
     if (drag === "cross") put_cross(at);
+    if (drag === "tilt") {
+      tilt?.(at);
+      want_oblique();
+    }
     if (drag === "grey") {
       const width = Math.max(1, state.grey[1] + (by[0] / pane.ratio) * 8);
       set({grey: [Math.round(state.grey[0] - (by[1] / pane.ratio) * 5), Math.round(width)]});
@@ -131,7 +144,14 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     const arrow = arrows[event.key];
     if (arrow && pane.is_slice && arrow[1])
       step_slice(pane, arrow[1] * (event.shiftKey ? 5 : 1), want_slices);
-    else if (arrow && !pane.is_slice)
+    else if (arrow && pane.is_oblique) {
+      const {azimuth, elevation} = pane.setting.tilt;
+      change_pane(pane.index, {
+        tilt: event.shiftKey ? {azimuth, elevation: within(elevation + 5 * arrow[0])} :
+                               {azimuth: round_about(azimuth + 5 * arrow[0]), elevation}
+      });
+      want_oblique();
+    } else if (arrow && !pane.is_slice)
       turn(pane, (arrow[0] * step) / turn_deg_per_px, (arrow[1] * step) / turn_deg_per_px);
     else if (event.key === "+" || event.key === "=")
       pane.zoom(1 / 1.15, [pane.size[0] / 2, pane.size[1] / 2]);
@@ -152,12 +172,14 @@ function spread(fingers: Map<number, Vec2>): number {
   return a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
 }
 
+const round_about = (azimuth: number): number => ((((azimuth + 180) % 360) + 360) % 360) - 180;
+const within = (elevation: number): number => Math.max(-90, Math.min(90, elevation));
+
 /// Turns a view by CSS pixels of the pointer: the surface follows it.
 export function turn(pane: Pane, by_x: number, by_y: number): void {
   const from = turned(pane.setting.view);
-  let azimuth = from.azimuth - by_x * turn_deg_per_px;
-  azimuth = ((((azimuth + 180) % 360) + 360) % 360) - 180;
-  const elevation = Math.max(-90, Math.min(90, from.elevation + by_y * turn_deg_per_px));
+  const azimuth = round_about(from.azimuth - by_x * turn_deg_per_px);
+  const elevation = within(from.elevation + by_y * turn_deg_per_px);
   const tenth = (value: number): number => Math.round(value * 10) / 10;
   change_pane(pane.index, {view: {azimuth: tenth(azimuth), elevation: tenth(elevation)}});
   pane.want(true);
@@ -165,7 +187,7 @@ export function turn(pane: Pane, by_x: number, by_y: number): void {
 
 /// Moves the cross-hair through the slices by their distance.
 function step_slice(pane: Pane, by: number, want_slices: () => void): void {
-  const spacing = state.plan?.scans[0]?.spacing_mm ?? [1, 1, 1];
+  const spacing = state.plan?.scans.find((scan) => scan.name === shown_scan())?.spacing_mm ?? [1, 1, 1];
   const look = pane.frame.look;
   const step = Math.max(0.2, Math.abs(dot(spacing as Vec3, look.map(Math.abs) as Vec3)));
   set({cross_mm: hundredths(add(state.cross_mm, scaled(look, by * step)))});

@@ -26,10 +26,17 @@ interface Waiting {
 const first_retry_ms = 400;
 const last_retry_ms = 5000;
 
+/// How often the page asks whether the line is there, and after what silence it is taken for cut: a network
+/// that drops what is sent tells nobody.
+const ask_alive_ms = 2000;
+const longest_silence_ms = 8000;
+
 export class Wire {
   private socket: WebSocket|null = null;
   private next_id = 1;
   private retry_ms = first_retry_ms;
+  private heard_at = 0;
+  private asked_at = 0;
   private readonly waiting = new Map<number, Waiting>();
 
   constructor(private readonly url: string, private readonly events: WireEvents) {}
@@ -38,13 +45,41 @@ export class Wire {
     const socket = new WebSocket(this.url);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
+    this.heard_at = this.asked_at = performance.now();
     socket.onopen = () => {
       this.retry_ms = first_retry_ms;
+      this.heard_at = performance.now();
       this.events.opened();
     };
-    socket.onmessage = (message: MessageEvent<string|ArrayBuffer>) =>
-        typeof message.data === "string" ? this.hear(message.data) : this.see(message.data);
+    socket.onmessage = (message: MessageEvent<string|ArrayBuffer>) => {
+      this.heard_at = performance.now();
+      if (typeof message.data === "string")
+        this.hear(message.data);
+      else
+        this.see(message.data);
+    };
     socket.onclose = () => this.closed();
+    const alive = window.setInterval(() => {
+      if (this.socket === socket)
+        this.ask_alive(socket);
+      else
+        window.clearInterval(alive);
+    }, ask_alive_ms);
+  }
+
+  private ask_alive(socket: WebSocket): void {
+    const now = performance.now();
+    // A tab that slept asks first, and waits for the answer.
+    if (now - this.asked_at > 2 * ask_alive_ms) this.heard_at = now;
+    this.asked_at = now;
+    if (now - this.heard_at > longest_silence_ms) {
+      // The socket's own closing would wait for the other side.
+      socket.onopen = socket.onmessage = socket.onclose = null;
+      socket.close();
+      this.closed();
+    } else if (socket.readyState === WebSocket.OPEN) {
+      socket.send(JSON.stringify({id: this.next_id++, do: "alive"}));
+    }
   }
 
   /// Asks the server; the promise is refused with a Refusal. Its id is told at once where `on_id` is given.
@@ -102,6 +137,7 @@ export class Wire {
   }
 
   private closed(): void {
+    this.socket = null;
     for (const asked of this.waiting.values()) asked.reject(new Refusal("The connection was lost.", "lost"));
     this.waiting.clear();
     this.events.lost(this.retry_ms / 1000);

@@ -114,8 +114,8 @@ class Evaluator {
     if (options_.progress) options_.progress(doing, fraction);
   }
 
-  /// The plan's scans that steps use, the first step's first: it fixes the universe. Those that steps make
-  /// are counted, too.
+  /// The plan's scans that steps use, or all where they are kept, the first step's first: it fixes the
+  /// universe. Those that steps make are counted, too.
   std::vector<std::string> scans_in_use() {
     std::vector<std::string> names;
     std::string first;  // of all steps, wanted or not
@@ -127,6 +127,9 @@ class Evaluator {
       }
     if (first.empty()) first = plan_.scans.begin()->first;
     if (std::find(names.begin(), names.end(), first) == names.end()) names.insert(names.begin(), first);
+    if (options_.keep_scans)
+      for (const auto& [name, source] : plan_.scans)
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     return names;
   }
 

@@ -7,6 +7,31 @@
 #include "voxel/scan/read_image_stack.h"
 
 namespace octotomy::planner {
+namespace {
+
+/// A triangle of a solid: 36 bytes of its own, 150 of the search tree, and in the mesh its face, three half
+/// edges of 16 bytes, and half a vertex with point, normal and status.
+constexpr std::uint64_t triangle_bytes = 36 + 150 + 100;
+
+std::uint64_t bytes_of(const std::optional<brep::Solid>& solid) {
+  return solid ? triangle_bytes * solid->triangles().faces.size() : 0;
+}
+
+}  // namespace
+
+std::uint64_t ObjectCache::bytes_of(const Object& object) {
+  const MeshSide& mesh = object.mesh;
+  std::uint64_t bytes = sizeof(Object) + bytes_memory(object.voxel.octree) + planner::bytes_of(mesh.whole);
+  if (!mesh.whole || !mesh.within || !mesh.within->is_same(*mesh.whole))
+    bytes += planner::bytes_of(mesh.within);
+  for (const CutWall& wall : object.walls) bytes += planner::bytes_of(wall.wall);
+  return bytes;
+}
+
+std::uint64_t ObjectCache::bytes_of(const Scan& scan) {
+  const auto of_samples = [](const auto& samples) { return samples.size() * sizeof(samples[0]); };
+  return scan.loaded.grey.bytes_memory() + std::visit(of_samples, scan.loaded.scene().samples);
+}
 
 std::optional<std::string> ObjectCache::sum(const std::string& state) const {
   const std::lock_guard lock(mutex_);

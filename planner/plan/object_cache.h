@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <map>
 #include <memory>
@@ -29,11 +30,15 @@ class ObjectCache {
   std::shared_ptr<const Object> object(const std::string& key) { return objects_.find(key, *this); }
   std::shared_ptr<const Scan> scan(const std::string& key) { return scans_.find(key, *this); }
   void keep(const std::string& key, const Object& object) {
-    objects_.keep(key, std::make_shared<const Object>(object), *this);
+    objects_.keep(key, std::make_shared<const Object>(object), bytes_of(object), *this);
   }
   void keep(const std::string& key, Scan scan) {
-    scans_.keep(key, std::make_shared<const Scan>(std::move(scan)), *this);
+    const std::uint64_t bytes = bytes_of(scan);
+    scans_.keep(key, std::make_shared<const Scan>(std::move(scan)), bytes, *this);
   }
+  /// Memory of an answer when all that is computed of it at need has been. What answers share counts in each.
+  static std::uint64_t bytes_of(const Object& object);
+  static std::uint64_t bytes_of(const Scan& scan);
   /// The SHA-256 of a scan's files that have not changed since it was computed: `state` says their sizes and
   /// times.
   std::optional<std::string> sum(const std::string& state) const;
@@ -56,27 +61,37 @@ class ObjectCache {
       order_.splice(order_.begin(), order_, found->second.place);
       return found->second.value;
     }
-    void keep(const std::string& key, std::shared_ptr<const Value> value, ObjectCache& cache) {
+    void keep(const std::string& key, std::shared_ptr<const Value> value, std::uint64_t bytes,
+              ObjectCache& cache) {
       const std::lock_guard lock(cache.mutex_);
-      if (const auto found = values_.find(key); found != values_.end()) order_.erase(found->second.place);
+      drop(key);
       order_.push_front(key);
-      values_.insert_or_assign(key, Entry{std::move(value), order_.begin()});
-      while (order_.size() > cache.most_) {
-        values_.erase(order_.back());
-        order_.pop_back();
-      }
+      values_.emplace(key, Entry{std::move(value), bytes, order_.begin()});
+      bytes_ += bytes;
+      while (order_.size() > cache.most_ || (bytes_ > cache.most_bytes_ && order_.size() > 1))
+        drop(std::string(order_.back()));
     }
 
    private:
     struct Entry {
       std::shared_ptr<const Value> value;
+      std::uint64_t bytes = 0;
       std::list<std::string>::iterator place;
     };
+    void drop(const std::string& key) {
+      const auto found = values_.find(key);
+      if (found == values_.end()) return;
+      bytes_ -= found->second.bytes;
+      order_.erase(found->second.place);
+      values_.erase(found);
+    }
     std::map<std::string, Entry> values_;
     std::list<std::string> order_;  ///< used last first
+    std::uint64_t bytes_ = 0;
   };
 
   std::size_t most_;
+  std::uint64_t most_bytes_;
   mutable std::mutex mutex_;
   Shelf<Object> objects_;
   Shelf<Scan> scans_;

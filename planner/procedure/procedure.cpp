@@ -130,9 +130,10 @@ Procedure parse_procedure(const std::string& text) {
   procedure.says = word_of(need(plain, "says", "procedure"), "says");
   for (const Plain& entry : need(plain, "landmarks", "procedure")) {
     const std::string where = "landmarks[" + std::to_string(procedure.landmarks.size()) + "]";
-    check_keys(entry, where, {"name", "says"});
-    procedure.landmarks.push_back(
-        {word_of(need(entry, "name", where), where), word_of(need(entry, "says", where), where)});
+    check_keys(entry, where, {"name", "says", "scan"});
+    procedure.landmarks.push_back({word_of(need(entry, "name", where), where),
+                                   word_of(need(entry, "says", where), where),
+                                   entry.contains("scan") ? word_of(entry["scan"], where) : ""});
   }
   if (plain.contains("scans"))
     for (const Plain& entry : plain.at("scans")) {

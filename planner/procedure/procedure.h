@@ -21,6 +21,7 @@ struct ProcedureValue {
 struct ProcedureLandmark {
   std::string name;
   std::string says;  ///< its definition
+  std::string scan;  ///< of those beside the patient's the one that it is placed on; empty: the patient's
 };
 /// A scan beside the patient's, as that of a donor bone.
 struct ProcedureScan {

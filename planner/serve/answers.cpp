@@ -3,15 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "planner/anatomy/movement.h"
 #include "planner/measure/result_json.h"
+#include "planner/outcome/outcome.h"
 #include "planner/plan/answers.h"
+#include "planner/plan/dependence.h"
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
 #include "planner/serve/pane_fields.h"
 #include "planner/serve/told_measurement.h"
+#include "planner/table/json_file.h"
 #include "voxel/measure/measure.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -237,6 +242,24 @@ Json report(Desk& desk, const Json&, const Watched& watched) {
           {"counts", planner::to_json(verdict_counts(result.evaluation))}};
 }
 
+Json outcome(Desk& desk, const Json& said, const Watched& watched) {
+  const fs::path path = desk.folders.need_within(said.at("path").get<std::string>());
+  const Plan plan = desk.with_document([](const Document& document) { return *document.plan(); });
+  const Evaluation before = desk.evaluate(plan, {}, true, watched);
+  const voxel::Progress progress{watched.stop, [&](double share) {
+                                   if (watched.progress) watched.progress("pieces on the later scan", share);
+                                 }};
+  voxel::ReadOptions reading;
+  reading.progress = progress;
+  OutcomeOptions options;
+  options.low = number_of(said, "low");
+  options.unmoved = said.value("unmoved", "");
+  options.progress = progress;
+  Json json = planner::to_json(outcome_of(plan, before, voxel::read_scene(path, reading), options));
+  json["path"] = path.string();
+  return json;
+}
+
 namespace {
 
 /// A word of a shell.
@@ -249,6 +272,28 @@ std::string quoted(const std::string& text) {
       safe += symbol;
   }
   return safe + "'";
+}
+
+/// The plan that makes this step and what it needs, and is evaluated in the same voxels.
+Json plan_to(const std::string& id, const Plan& plan) {
+  std::set<std::string> kept = needed_for(plan, {id});
+  bool has_first_scan = false;
+  for (const Step& step : plan.steps) {
+    const std::string& word = verb(step);
+    if (word == "landmarks" || word == "head_position") kept.insert(step.id);
+    // The first scan that any step uses fixes the voxels.
+    if (!has_first_scan && !scans_used(step.action).empty()) {
+      kept.insert(step.id);
+      has_first_scan = true;
+    }
+  }
+  Json json = Json::parse(plan.text);
+  for (auto& [name, scan] : json.at("scans").items())
+    scan["path"] = scan_path(plan, plan.scans.at(name)).string();
+  Json& steps = json.at("steps");
+  for (std::size_t i = steps.size(); i-- > 0;)
+    if (!kept.contains(steps[i].at("id").get<std::string>())) steps.erase(i);
+  return json;
 }
 
 /// JSON as Python writes it.
@@ -278,8 +323,11 @@ Json command_of_step(Desk& desk, const Json& said, const Watched&) {
       std::string call = "plan." + step.value("do", "") + "(" + Json(id).dump();
       for (const auto& [key, value] : step.items())
         if (key != "id" && key != "do") call += ", " + key + "=" + python_of(value);
-      const std::string path = document.path().string();
-      return {{"shell", "octotomy preview " + quoted(path) + " " + id + " -o " + quoted(id + ".png")},
+      const std::string folder = document.path().parent_path().string(),
+                        name = quoted(id + ".step.plan.json");
+      return {{"shell", "cd " + quoted(folder) + " &&\ncat > " + name + " <<'PLAN' &&\n" +
+                            json_text(plan_to(id, *document.plan()), 2) + "\nPLAN\noctotomy run " + name +
+                            " -o " + quoted(id + " result") + "\n"},
               {"python", call + ")"}};
     }
     refuse("the plan has no step '" + id + "'");

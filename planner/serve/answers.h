@@ -22,7 +22,9 @@ Json place_landmark(Desk& desk, const Json& said, const Watched& watched);
 Json export_file(Desk& desk, const Json& said, const Watched& watched);
 /// {} -> {"folder", "file"}.
 Json report(Desk& desk, const Json& said, const Watched& watched);
-/// {"step"} -> {"shell", "python"}.
+/// {"path", "low", "unmoved"} -> the outcome's JSON: what a later scan shows of the plan.
+Json outcome(Desk& desk, const Json& said, const Watched& watched);
+/// {"step"} -> {"shell", "python"}: what makes the step and what it needs, and adds it to a plan.
 Json command_of_step(Desk& desk, const Json& said, const Watched& watched);
 
 /// Where the open plan's exports and reports are written: "NAME files" beside it.

@@ -11,6 +11,7 @@
 #include "planner/serve/new_plan.h"
 #include "planner/serve/told_measurement.h"
 #include "planner/table/number_format.h"
+#include "planner/table/plan_universe.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -196,7 +197,9 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
   if (certify) keep_certified(*made.plan, *made.evaluation);
   made.measurements = measurements_of(*made.plan, *made.evaluation);
   const std::lock_guard lock(mutex_);
-  if (opened == opened_ && (!certify || steps.empty())) snapshot_ = made;
+  // What was certified of an earlier state of the plan is no picture of the present one.
+  const bool is_present = opened == opened_ && (!certify || document_->plan() == made.plan);
+  if (is_present && (!certify || steps.empty())) snapshot_ = made;
   return made;
 }
 
@@ -224,6 +227,18 @@ void Desk::keep_certified(const Plan& plan, const Evaluation& evaluation) {
 Snapshot Desk::snapshot() const {
   const std::lock_guard lock(mutex_);
   return snapshot_;
+}
+
+voxel::GreyOctree Desk::alone(const Snapshot& snapshot, const std::string& scan) {
+  const auto loaded = snapshot.evaluation->loaded.find(scan);
+  if (loaded == snapshot.evaluation->loaded.end())
+    throw voxel::Error(voxel::ErrorCode::Input, "there is no scan '" + scan + "'");
+  const auto& [shared, grey] = *loaded->second;
+  const std::lock_guard lock(alone_mutex_);
+  if (!alone_ || alone_->first != shared)
+    alone_.emplace(shared, voxel::grey_octree_of(universe_of(shared->lattice, snapshot.plan->voxel_mm),
+                                                 *shared, grey.background()));
+  return alone_->second;
 }
 
 Desk::Preview Desk::preview(const std::string& object, const Json& move, const std::vector<std::string>& with,

@@ -66,6 +66,10 @@ class Desk {
                       const Watched& watched, bool only_look_up = false);
   Snapshot snapshot() const;
 
+  /// A scan in a universe about itself: that of a donor lies elsewhere than the patient's. The newest is
+  /// kept.
+  voxel::GreyOctree alone(const Snapshot& snapshot, const std::string& scan);
+
   /// A plan's object moved as a step "move" would, in voxels alone, and what of it lies in other objects.
   struct Preview {
     std::shared_ptr<const Evaluation> evaluation;
@@ -97,6 +101,9 @@ class Desk {
     Json said;  ///< "certificate", "volume", "area"
   };
   std::map<std::string, Certified> certified_;
+
+  std::mutex alone_mutex_;
+  std::optional<std::pair<std::shared_ptr<const voxel::Scene>, voxel::GreyOctree>> alone_;
 
   std::mutex preview_mutex_;
   /// The newest last, by the text of their plans: panes of one window ask for the same.

@@ -22,10 +22,16 @@ Json procedures_json() {
   Json list = Json::array();
   for (const std::string& name : procedures()) {
     const Procedure procedure = read_procedure(name);
-    Json json{
-        {"name", name}, {"says", procedure.says}, {"landmarks", Json::array()}, {"values", Json::array()}};
+    Json json{{"name", name},
+              {"says", procedure.says},
+              {"landmarks", Json::array()},
+              {"scans", Json::array()},
+              {"values", Json::array()}};
     for (const ProcedureLandmark& landmark : procedure.landmarks)
-      json["landmarks"].push_back({{"name", landmark.name}, {"says", landmark.says}});
+      json["landmarks"].push_back(
+          {{"name", landmark.name}, {"says", landmark.says}, {"scan", landmark.scan}});
+    for (const ProcedureScan& scan : procedure.scans)
+      json["scans"].push_back({{"name", scan.name}, {"says", scan.says}});
     for (const ProcedureValue& value : procedure.values)
       json["values"].push_back({{"name", value.name},
                                 {"unit", value.name.ends_with("_deg") ? "deg" : "mm"},
@@ -119,7 +125,8 @@ Json evaluate(Desk& desk, const Json& said, const Watched& watched) {
   const bool certify = said.value("certify", false);
   const Snapshot made = desk.evaluate(said.value("objects", std::vector<std::string>{}), certify, watched);
   const Json state = desk.state();
-  return {{"objects", state.at("objects")}, {"measurements", made.measurements}};
+  return {
+      {"objects", state.at("objects")}, {"measurements", made.measurements}, {"scans", state.at("scans")}};
 }
 
 /// Whether a step names what later ones use: it stands before them, and there is one of its kind.
@@ -163,6 +170,8 @@ Json procedure(Desk& desk, const Json& said, const Watched&) {
     ProcedureInput input;
     input.folder = document.path().parent_path();
     input.scan = whole.at("scans").front();
+    for (const ProcedureScan& scan : procedure.scans)
+      if (whole["scans"].contains(scan.name)) input.further_scans[scan.name] = whole["scans"][scan.name];
     input.voxel_mm = document.plan()->voxel_mm.value_or(1.0);
     for (const auto& [name, point] : said.at("landmarks").items())
       if (const auto p_mm = point_of(said.at("landmarks"), name.c_str()))
@@ -212,6 +221,7 @@ const std::vector<Word>& words() {
       {"certify", Lane::Long, false, certify, true},
       {"export", Lane::Long, false, export_file},
       {"report", Lane::Long, false, report},
+      {"outcome", Lane::Long, false, outcome},
   };
   return all;
 }

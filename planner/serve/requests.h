@@ -12,8 +12,9 @@
 namespace octotomy::planner::serve {
 
 /// Which of the server's threads answers: edits wait for no long work, and of some words only the newest
-/// request is wanted.
-enum class Lane { Desk, Evaluate, Overlap, Long };
+/// request is wanted. An evaluation that certifies has a thread of its own, so that the quick one that
+/// follows an edit does not stop it.
+enum class Lane { Desk, Evaluate, Certify, Overlap, Long };
 
 struct Word {
   std::string name;

@@ -40,8 +40,8 @@ void guarded(const Work& work, const Refuse& refuse) noexcept {
 }  // namespace
 
 Service::Service(Desk& desk) : desk_(desk) {
-  for (const Lane lane : {Lane::Desk, Lane::Evaluate, Lane::Overlap, Lane::Long})
-    lanes_[lane] = std::make_unique<LaneQueue>(lane == Lane::Evaluate || lane == Lane::Overlap);
+  for (const Lane lane : {Lane::Desk, Lane::Evaluate, Lane::Certify, Lane::Overlap, Lane::Long})
+    lanes_[lane] = std::make_unique<LaneQueue>(lane != Lane::Desk && lane != Lane::Long);
   drawing_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });
 }
 
@@ -104,6 +104,8 @@ void Service::take(std::uint64_t window, Request request) {
   const Json& said = request.said;
   const auto pane = [&] { return PaneName{window, said.value("pane", 0)}; };
   if (request.what == "shown") return panes_.shown(pane(), said.value("frame", std::int64_t{0}));
+  // So that a page knows a silent line from a cut one.
+  if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
   if (request.what == "cancel") {
     const std::int64_t target = said.value("target", std::int64_t{0});
     bool is_here = false;
@@ -123,6 +125,7 @@ void Service::take(std::uint64_t window, Request request) {
     return panes_.ask({pane(), std::move(request), is_moving});
   }
   const Word& word = find_word(request.what);
+  const bool certifies = word.lane == Lane::Evaluate && said.value("certify", false);
   const auto of_window = find(window);
   if (of_window == nullptr) return;
   if (of_window->waiting >= most_waiting)
@@ -130,13 +133,14 @@ void Service::take(std::uint64_t window, Request request) {
   ++of_window->waiting;
   const auto asked = std::make_shared<const Request>(std::move(request));
   const auto leave = std::shared_ptr<void>(nullptr, [of_window](void*) { --of_window->waiting; });
-  lanes_.at(word.lane)->put({window, asked->id,
-                             [this, window, asked, &word, leave](const std::stop_token& stop) {
-                               answer(window, *asked, word, stop);
-                             },
-                             [this, window, asked, leave] {
-                               send(window, refusal_to(asked->id, Stopped("a newer request took its place")));
-                             }});
+  lanes_.at(certifies ? Lane::Certify : word.lane)
+      ->put({window, asked->id,
+             [this, window, asked, &word, leave](const std::stop_token& stop) {
+               answer(window, *asked, word, stop);
+             },
+             [this, window, asked, leave] {
+               send(window, refusal_to(asked->id, Stopped("a newer request took its place")));
+             }});
 }
 
 void Service::answer(std::uint64_t window, const Request& request, const Word& word,

@@ -20,8 +20,8 @@
 namespace octotomy::planner::serve {
 
 /// The windows that look at one desk, and the threads that answer them: one draws, one edits, one evaluates,
-/// one tells overlaps, one does long work. Every request is answered once, also where it fails. All members
-/// may be called from any thread.
+/// one certifies, one tells overlaps, one does long work. Every request is answered once, also where it
+/// fails. All members may be called from any thread.
 class Service {
  public:
   /// Takes a message for a window's socket; may be called from any thread and must not wait.

@@ -207,19 +207,22 @@ struct ViewPane::Drawing {
   }
 };
 
-voxel::DrawnObject ViewPane::threshold(const Evaluation& evaluation, const Json& window) {
-  const auto scan = evaluation.loaded.find(window.value("scan", "ct"));
-  if (scan == evaluation.loaded.end()) throw std::runtime_error("window: there is no such scan");
+voxel::DrawnObject ViewPane::threshold(Desk& desk, const Snapshot& snapshot, const Json& window) {
+  const std::string name = window.value("scan", "ct");
+  const auto scan = snapshot.evaluation->loaded.find(name);
+  if (scan == snapshot.evaluation->loaded.end()) throw std::runtime_error("window: there is no such scan");
+  const voxel::GreyOctree grey =
+      window.value("alone", false) ? desk.alone(snapshot, name) : scan->second->grey;
   const std::string text = window.dump();
   SampleWindow samples{number_of(window, "low").value_or(-std::numeric_limits<double>::infinity())};
   samples.high = number_of(window, "high");
-  if (threshold_of_ != text || !threshold_ || threshold_->universe() != evaluation.universe) {
+  if (threshold_of_ != text || !threshold_ || threshold_->universe() != grey.universe()) {
     threshold_ = std::make_shared<const voxel::Octree>(
-        voxel::combine(evaluation.universe, voxel::Expression(window_on(scan->second->grey, samples))));
+        voxel::combine(grey.universe(), voxel::Expression(window_on(grey, samples))));
     threshold_of_ = text;
   }
   voxel::DrawnObject object{"", *threshold_};
-  if (!samples.high && std::isfinite(samples.low)) object.grey = scan->second->grey;
+  if (!samples.high && std::isfinite(samples.low)) object.grey = grey;
   if (object.grey) object.threshold = samples.low;
   return object;
 }
@@ -239,7 +242,7 @@ void ViewPane::add_objects(Desk& desk, const Json& said, Drawing& drawing, const
   for (const Json& entry : said.value("objects", Json::array())) {
     if (entry.contains("window")) {
       drawing.is_of_plan = false;
-      drawing.add(threshold(evaluation, entry.at("window")), "", entry);
+      drawing.add(threshold(desk, drawing.snapshot, entry.at("window")), "", entry);
       continue;
     }
     const std::string id = entry.at("id");
@@ -262,26 +265,32 @@ void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
   const std::string of = colour_by.at("object"), reference = colour_by.at("reference");
   const double range_mm = number_of(colour_by, "range_mm").value_or(5.0);
   if (!(range_mm > 0.0)) throw std::runtime_error("range_mm: must be above zero");
-  const Object* other = find(*drawing.snapshot.evaluation, reference);
-  if (other == nullptr) throw std::runtime_error("colour_by: '" + reference + "' is not evaluated");
-  for (voxel::DrawnObject& object : drawing.objects) {
-    if (object.name != of) continue;
-    const std::string key = of + " " + reference + " " + exact(range_mm);
-    if (scalar_of_ != key || scalar_evaluation_ != drawing.snapshot.evaluation)
-      scalar_ = std::make_shared<const voxel::SurfaceScalar>(
-          voxel::distance_to(other->voxel.octree, object.octree, range_mm));
-    scalar_of_ = key;
-    scalar_evaluation_ = drawing.snapshot.evaluation;
-    object.scalar = scalar_;
-  }
-  drawing.header["legend"] = {{"low_mm", -range_mm},
-                              {"high_mm", range_mm},
-                              {"definition", "distance of each surface point to the nearest of '" +
-                                                 reference + "', positive outside of it"}};
+  const bool is_mutual = colour_by.value("mutual", false);
+  if (scalar_evaluation_ != drawing.snapshot.evaluation) scalars_.clear();
+  scalar_evaluation_ = drawing.snapshot.evaluation;
+  const auto by = [&](const std::string& coloured, const std::string& to) {
+    const Object* other = find(*drawing.snapshot.evaluation, to);
+    if (other == nullptr) throw std::runtime_error("colour_by: '" + to + "' is not evaluated");
+    for (voxel::DrawnObject& object : drawing.objects) {
+      if (object.name != coloured) continue;
+      auto& scalar = scalars_[coloured + " " + to + " " + exact(range_mm)];
+      if (!scalar)
+        scalar = std::make_shared<const voxel::SurfaceScalar>(
+            voxel::distance_to(other->voxel.octree, object.octree, range_mm));
+      object.scalar = scalar;
+    }
+  };
+  by(of, reference);
+  if (is_mutual) by(reference, of);
+  drawing.header["legend"] = {
+      {"low_mm", -range_mm},
+      {"high_mm", range_mm},
+      {"definition", "distance of each surface point to the nearest of '" + reference + "'" +
+                         (is_mutual ? ", and the reverse" : "") + ", positive outside of it"}};
   drawing.render.colour_by = "distance:" + reference;
   drawing.render.range_mm = range_mm;
   // The operation colours its first object.
-  if (drawing.objects.front().name != of) drawing.is_of_plan = false;
+  if (is_mutual || drawing.objects.front().name != of) drawing.is_of_plan = false;
 }
 
 Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const std::stop_token& stop) {

@@ -23,19 +23,18 @@ class ViewPane {
   struct Drawing;
   /// The objects of a request, one that is dragged in its new place.
   void add_objects(Desk& desk, const Json& said, Drawing& drawing, const std::stop_token& stop);
-  /// Colours one of them by its distance to another.
+  /// Colours one of them by its distance to another; "mutual": both by each other.
   void colour(const Json& colour_by, Drawing& drawing);
-  /// A window of a scan that is no step yet.
-  voxel::DrawnObject threshold(const Evaluation& evaluation, const Json& window);
+  /// A window of a scan that is no step yet; with "alone" about the scan itself, wherever it lies.
+  voxel::DrawnObject threshold(Desk& desk, const Snapshot& snapshot, const Json& window);
   Message moving(Drawing& drawing, double most_ms);
 
   voxel::Renderer renderer_;
   double full_frame_ms_ = 0.0;  ///< of a frame of all pixels, as the last ones took
   std::string threshold_of_;
   std::shared_ptr<const voxel::Octree> threshold_;
-  std::string scalar_of_;
   std::shared_ptr<const Evaluation> scalar_evaluation_;
-  std::shared_ptr<const voxel::SurfaceScalar> scalar_;
+  std::map<std::string, std::shared_ptr<const voxel::SurfaceScalar>> scalars_;  ///< by objects and range
 };
 
 }  // namespace octotomy::planner::serve

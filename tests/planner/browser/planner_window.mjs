@@ -3,6 +3,8 @@
 // person would: a click, a drag, a key, a typed field.
 import { spawn } from 'node:child_process';
 import fs from 'node:fs';
+import http from 'node:http';
+import net from 'node:net';
 import { chromium } from 'playwright-core';
 
 export const program = process.env.OCTOTOMY_PROGRAM ?? 'build/release/octotomy';
@@ -23,17 +25,65 @@ export function start_server(folder, more = []) {
   });
 }
 
-const axes = { anterior: [[1, 0, 0], [0, 0, 1]], left: [[0, 1, 0], [0, 0, 1]], superior: [[-1, 0, 0], [0, -1, 0]] };
+/// A proxy between window and server that can be cut: bytes of both directions are dropped then, and nobody is told.
+export function start_proxy() {
+  let is_cut = false;
+  const sockets = new Set();
+  const proxy = http.createServer((request, response) => {
+    if (is_cut) return;
+    const asked = http.request(request.url, { method: request.method, headers: request.headers }, (answer) => {
+      response.writeHead(answer.statusCode, answer.headers);
+      answer.pipe(response);
+    });
+    asked.on('error', () => response.destroy());
+    request.pipe(asked);
+  });
+  proxy.on('connect', (request, near) => {
+    if (is_cut) return;
+    const [host, port] = request.url.split(':');
+    let is_dead = false;
+    const far = net.connect(Number(port), host, () => near.write('HTTP/1.1 200 Connection established\r\n\r\n'));
+    for (const [from, to] of [[near, far], [far, near]]) {
+      sockets.add(from);
+      from.on('data', (bytes) => {
+        is_dead ||= is_cut;
+        if (!is_dead) to.write(bytes);
+      });
+      from.on('error', () => {});
+      from.on('close', () => { if (!is_dead) to.destroy(); });
+    }
+  });
+  return new Promise((resolve) => proxy.listen(0, '127.0.0.1', () => resolve({
+    url: `http://127.0.0.1:${proxy.address().port}`,
+    cut: () => { is_cut = true; },
+    mend: () => { is_cut = false; },
+    stop: () => {
+      for (const socket of sockets) socket.destroy();
+      proxy.closeAllConnections();
+      proxy.close();
+    },
+  })));
+}
+
+const axes = {
+  anterior: [[1, 0, 0], [0, 0, 1]], left: [[0, 1, 0], [0, 0, 1]], superior: [[-1, 0, 0], [0, -1, 0]],
+  coronal: [[1, 0, 0], [0, 0, 1]], sagittal: [[0, 1, 0], [0, 0, 1]], axial: [[1, 0, 0], [0, -1, 0]],
+};
+const axial_pane = 2; // of the layout "Views and slices"
+/// A hand turns the wheel by so many notches at once.
+const notches_of_a_turn = 20;
 
 export class PlannerWindow {
   actions = 0;
   problems = [];
   frames = []; // headers and pictures that came over the wire, the newest last
 
-  /// Opens the page. `size` is the window's; `theme` light or dark.
-  static async open(url, { size = { width: 1440, height: 900 }, theme = 'dark' } = {}) {
+  /// Opens the page. `size` is the window's; `theme` light or dark; `proxy` the URL of one between.
+  static async open(url, { size = { width: 1440, height: 900 }, theme = 'dark', proxy } = {}) {
     const one = new PlannerWindow();
-    one.browser = await chromium.launch({ executablePath: browser_path, args: ['--disable-gpu', '--disable-software-rasterizer', '--no-sandbox'] });
+    one.browser = await chromium.launch({
+      executablePath: browser_path, proxy: proxy && { server: proxy, bypass: '<-loopback>' }, args: ['--disable-gpu', '--disable-software-rasterizer', '--no-sandbox'],
+    });
     one.context = await one.browser.newContext({ viewport: size, colorScheme: theme, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'] });
     one.page = await one.context.newPage();
     one.page.on('console', (message) => { if (message.type() === 'error') one.problems.push(message.text()); });
@@ -84,16 +134,30 @@ export class PlannerWindow {
   async position(pane, uv) {
     const setting = await this.setting(pane);
     const box = await this.page.locator('.pane canvas').nth(pane).boundingBox();
-    const [right, up] = axes[setting.view];
+    const [right, up] = axes[setting.mode === 'slice' ? setting.plane : setting.view];
     const of = (axis) => setting.centre_mm.reduce((sum, value, i) => sum + value * axis[i], 0);
     return { x: box.x + box.width / 2 + (uv[0] - of(right)) / setting.pixel_mm, y: box.y + box.height / 2 - (uv[1] - of(up)) / setting.pixel_mm };
   }
-  /// How the window looks at its pane, as the browser keeps it.
-  setting(pane) {
-    return this.page.evaluate((index) => {
+  /// How the window looks at its plan, as the browser keeps it.
+  look() {
+    return this.page.evaluate(() => {
       const key = Object.keys(localStorage).find((name) => name.startsWith('octotomy:'));
-      return JSON.parse(localStorage.getItem(key)).panes[index];
-    }, pane);
+      return JSON.parse(localStorage.getItem(key));
+    });
+  }
+  async setting(pane) {
+    return (await this.look()).panes[pane];
+  }
+  /// Clicks a point in the axial slice, after the wheel has brought its height.
+  async click_in_axial(point, spacing_mm) {
+    const { cross_mm } = await this.look();
+    const notches = Math.round((point[2] - cross_mm[2]) / spacing_mm);
+    const { x, y } = await this.position(axial_pane, [point[0], -point[1]]);
+    await this.page.mouse.move(x, y);
+    for (let i = 0; i < Math.abs(notches); ++i) await this.page.mouse.wheel(0, Math.sign(notches) * 100);
+    this.actions += Math.ceil(Math.abs(notches) / notches_of_a_turn) + 1;
+    await this.page.waitForTimeout(80);
+    await this.page.mouse.click(x, y);
   }
   async click_at(pane, uv) {
     this.actions++;
@@ -124,6 +188,12 @@ export class PlannerWindow {
   async shows(pane, object) {
     await this.until(() => this.frames.filter(({ header }) => header.pane === pane).pop()?.header.objects?.includes(object), `${object} in pane ${pane}`);
     await this.page.waitForTimeout(150);
+  }
+  /// Runs a command of the palette by its name.
+  async command(name) {
+    await this.press('Control+k');
+    await this.page.locator('.palette-field').fill(name);
+    await this.press('Enter');
   }
   select(step) {
     return this.click(this.page.locator('.lists .name', { hasText: new RegExp(`^${step.replace(/_/g, ' ')}$`) }));

@@ -40,11 +40,6 @@ try {
       await save(start, 'start');
       await start.close();
       const one = await PlannerWindow.open(server.url, { size, theme });
-      const command = async (name) => {
-        await one.press('Control+k');
-        await one.page.locator('.palette-field').fill(name);
-        await one.press('Enter');
-      };
       await one.page.locator('.lists .name').first().waitFor();
       if (await one.page.getByRole('button', { name: 'Continue' }).isVisible()) await one.click('Continue');
       await one.at_rest();
@@ -53,20 +48,20 @@ try {
       await one.at_rest();
       await save(one, 'planning');
       await one.press('Escape');
-      await command('Views and slices');
+      await one.command('Views and slices');
       await one.at_rest();
       await save(one, 'slices');
-      await command('Four views');
+      await one.command('Four views');
       await one.select('maxilla_moved');
-      await command('Compare in colours');
+      await one.command('Compare in colours');
       await one.at_rest();
       await save(one, 'compare');
-      await command('Compare in colours');
-      await command('Radiograph and landmarks');
+      await one.command('Compare in colours');
+      await one.command('Radiograph and landmarks');
       await one.at_rest();
       await save(one, 'cephalometry');
       await one.press('Escape');
-      await command('Four views');
+      await one.command('Four views');
       await one.click(one.page.locator('.bar').getByRole('button', { name: 'Report' }));
       await one.page.locator('dialog.report iframe').waitFor({ timeout: 600000 });
       await one.page.waitForTimeout(1500);

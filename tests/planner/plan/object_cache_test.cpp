@@ -151,5 +151,25 @@ TEST(ObjectCache, TheOneUsedLongestAgoGoesFirst) {
   EXPECT_FALSE(cache.object("2"));
 }
 
+TEST(ObjectCache, AnswersOfManyBytesMakeRoomForEachOther) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, steps(5.0)));
+  const Object& object = evaluation.object("ball");
+  const std::uint64_t bytes = ObjectCache::bytes_of(object);
+  EXPECT_GT(bytes, 36 * object.mesh.within->triangles().faces.size() + bytes_memory(object.voxel.octree));
+  ObjectCache cache(512, 2 * bytes);
+  for (const char* key : {"1", "2", "3"}) cache.keep(key, object);
+  EXPECT_FALSE(cache.object("1"));
+  EXPECT_TRUE(cache.object("2"));
+  EXPECT_TRUE(cache.object("3"));
+  // The newest stays, however large.
+  ObjectCache narrow(512, bytes / 2);
+  narrow.keep("1", object);
+  EXPECT_TRUE(narrow.object("1"));
+  narrow.keep("2", object);
+  EXPECT_FALSE(narrow.object("1"));
+  EXPECT_TRUE(narrow.object("2"));
+}
+
 }  // namespace
 }  // namespace octotomy::planner

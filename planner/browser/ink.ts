@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How overlays draw: the colours of the page's marks, and words, lines and dots that are seen on bone and on
+// the ground.
+import {Vec2} from "./vector";
+
+export const ink = {
+  cross: ["#ff8a65", "#7bd88f", "#64b5f6"] as const,  // sagittal, coronal, axial
+  region: "#5b9dff",
+  landmark: "#ffd166",
+  measure: "#7ee0d0",
+  mark: "#ff5d8f",
+  oblique: "#c792ea",
+  text: "rgba(255,255,255,.92)",
+  faint: "rgba(255,255,255,.55)",
+};
+
+// Boxes of the words that a pane has so far: names and numbers make room for each other.
+let labelled: {low: Vec2; high: Vec2}[] = [];
+
+// Views stand on white on a light page; words are dark with a light outline there.
+let is_on_white = false;
+
+/// Begins a pane's overlay, with no words so far.
+export function begin_ink(on_white: boolean): void {
+  is_on_white = on_white;
+  labelled = [];
+}
+
+export interface TextLook {
+  align?: CanvasTextAlign;
+  colour?: string;
+  px?: number;
+  plate?: boolean;
+}
+const dark_of: {[colour: string]: string} = {
+  [ink.text]: "#18212b",
+  [ink.faint]: "#52606e",
+  [ink.landmark]: "#7a4b00",
+  [ink.measure]: "#005e50",
+  [ink.oblique]: "#7b3fa0",
+  "#ff8f93": "#b3212a",
+  "#9be7b0": "#14713c"
+};
+
+/// Words with an outline, so that they are legible on bone and on the ground; they stay within the picture.
+export function text(
+    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
+  context.font = `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
+  context.textAlign = look.align ?? "left";
+  context.textBaseline = "middle";
+  context.lineWidth = 3 * ratio;
+  const colour = look.colour ?? ink.text;
+  const half = context.measureText(words).width / 2 + 4 * ratio;
+  const x = look.align === "center" && 2 * half < context.canvas.width ?
+      Math.max(half, Math.min(context.canvas.width - half, at[0])) :
+      at[0];
+  context.strokeStyle = is_on_white ? "rgba(255,255,255,.85)" : "rgba(0,0,0,.75)";
+  context.strokeText(words, x, at[1]);
+  context.fillStyle = is_on_white ? dark_of[colour] ?? colour : colour;
+  context.fillText(words, x, at[1]);
+}
+
+/// Words beside a point: at its right, or its left, or as far up or down as there is room.
+export function label(
+    context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook): void {
+  const px = (look.px ?? 12) * ratio;
+  context.font = `500 ${px}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
+  const width = context.measureText(words).width;
+  const gap = 7 * ratio;
+  const rows = [0, -1, 1, -2, 2, -3, 3];
+  const places = rows.flatMap((row): Vec2[] => [gap, -gap - width].map((x) => [at[0] + x, at[1] + row * px]));
+  const box = ([x, y]: Vec2): {low: Vec2; high: Vec2} =>
+      ({low: [x, y - px / 2], high: [x + width, y + px / 2]});
+  const is_free = (place: Vec2): boolean => {
+    const {low, high} = box(place);
+    return low[0] >= 0 && high[0] <= context.canvas.width &&
+        labelled.every(
+            (one) =>
+                one.low[0] > high[0] || one.high[0] < low[0] || one.low[1] > high[1] || one.high[1] < low[1]);
+  };
+  const place = places.find(is_free) ?? places[0]!;
+  labelled.push(box(place));
+  text(context, words, place, ratio, {...look, align: "left"});
+}
+
+export function line(
+    context: CanvasRenderingContext2D, points: Vec2[], colour: string, width: number, closed = false): void {
+  if (!points.length) return;
+  context.beginPath();
+  points.forEach((p, i) => (i ? context.lineTo(p[0], p[1]) : context.moveTo(p[0], p[1])));
+  if (closed) context.closePath();
+  context.strokeStyle = is_on_white ? "rgba(255,255,255,.8)" : "rgba(0,0,0,.55)";
+  context.lineWidth = width + 2;
+  context.stroke();
+  context.strokeStyle = is_on_white ? dark_of[colour] ?? colour : colour;
+  context.lineWidth = width;
+  context.stroke();
+}
+
+export function dot_at(
+    context: CanvasRenderingContext2D, at: Vec2, radius: number, colour: string, hollow = false): void {
+  context.beginPath();
+  context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
+  context.fillStyle = hollow ? "rgba(0,0,0,.35)" : colour;
+  context.fill();
+  context.lineWidth = Math.max(1, radius * 0.35);
+  context.strokeStyle = hollow ? colour : "rgba(0,0,0,.7)";
+  context.stroke();
+}

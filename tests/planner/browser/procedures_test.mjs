@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operations by landmarks on the UNC head, from opening the scan to a certified report, counted: a bilateral sagittal split,
+// and a jaw rebuilt of a fibula whose scan is given beside the head's. OCTOTOMY_SHARED_DATA names the folder of the
+// reference scans; OCTOTOMY_PICTURES a folder for pictures to look at.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { test } from 'node:test';
+import { PlannerWindow, program, start_server } from './planner_window.mjs';
+
+const scan = path.join(process.env.OCTOTOMY_SHARED_DATA ?? '.', 'ct_unc_cthead.nrrd');
+const skip = fs.existsSync(scan) ? false : `there is no ${scan}`;
+const head_spacing_mm = 2, leg_spacing_mm = 1;
+if (skip) console.log(`Skipped: ${skip}`);
+
+const split_marks = {
+  split_front_left: [12, -48, 50], split_front_right: [-53, -48, 50], split_back_left: [25.5, -29, 80], split_back_right: [-68, -29, 80],
+  lower_incisor: [-18, -93, 64], lower_molar_left: [8, -58, 65], lower_molar_right: [-46, -52, 65], menton: [-18, -82, 26],
+};
+const jaw_marks = { flap_1: [-56, -44, 45], flap_2: [-37, -70, 43], flap_3: [-8, -79, 41], flap_4: [7, -62, 43], flap_before: [-63, -32, 50], flap_after: [14, -50, 46] };
+const donor_marks = { donor_from: [30, 12, 105], donor_to: [33, 16, -105], donor_face: [45, 12, 105] };
+
+/// A planner on the head, with bone set, a view and three slices.
+async function opened(context, prepare = () => {}) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-procedure-'));
+  fs.copyFileSync(scan, path.join(folder, 'head.nrrd'));
+  prepare(folder);
+  const server = await start_server(folder);
+  const one = await PlannerWindow.open(server.url);
+  context.after(async () => {
+    await picture(one, `last_${context.name.split(' ')[1]}`, false);
+    await one.close();
+    server.stop();
+    fs.rmSync(folder, { recursive: true, force: true });
+  });
+  const began = Date.now();
+  await one.click('Scan or plan');
+  await one.click(one.page.locator('.file', { hasText: 'head.nrrd' }));
+  await one.page.locator('.audit li').first().waitFor();
+  await one.click('Continue');
+  await one.click('bone', { exact: true });
+  await one.click('Set bone');
+  await one.press('Shift+2');
+  await one.at_rest();
+  return { folder, one, plan: () => one.plan(path.join(folder, 'head.plan.json')), began };
+}
+
+const points_of = (plan) => plan.steps.filter((step) => step.do === 'landmarks').flatMap((step) => step.points);
+
+async function place(one, plan, marks, spacing_mm) {
+  for (const [name, point] of Object.entries(marks)) {
+    await one.until(async () => (await one.page.locator('[data-key="landmark-name"]').inputValue()) === name, `${name} asked for`);
+    await one.click_in_axial(point, spacing_mm);
+    const placed = await one.until(() => points_of(plan()).find((mark) => mark.name === name), name);
+    assert.ok(Math.hypot(...placed.point_mm.map((x, i) => x - point[i])) < 2, `${name}: ${placed.point_mm}`);
+    // The last one's panes go on to another scan, or back to the first.
+    if (name === Object.keys(marks).pop()) return;
+    await one.until(async () => Math.abs((await one.look()).cross_mm[2] - placed.point_mm[2]) < 0.1, 'the cross-hair on it');
+  }
+}
+
+async function certify_and_report(one, least) {
+  await one.press('Control+Enter');
+  await one.until(async () => (await one.page.locator('.numbers .badge:not(.none)').count()) >= least, 'badges', 600000);
+  console.log(`badges: ${(await one.page.locator('.numbers .badge:not(.none)').allInnerTexts()).join(' ')}`);
+  assert.deepEqual(await one.page.locator('.numbers tr', { has: one.page.locator('.badge.fail') }).locator('th').allInnerTexts(), []);
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Report' }));
+  await one.page.locator('dialog.report iframe').waitFor({ timeout: 600000 });
+  await one.press('Escape');
+}
+
+async function picture(one, name, at_rest = true) {
+  if (!process.env.OCTOTOMY_PICTURES) return;
+  if (at_rest) await one.at_rest();
+  await one.page.screenshot({ path: path.join(process.env.OCTOTOMY_PICTURES, `${name}.png`) });
+}
+
+/// The page's plan has the steps that the command line writes for the same landmarks.
+function same_as_command(folder, name, plan, more) {
+  const marks = path.join(folder, 'marks.json'), out = path.join(folder, 'typed.plan.json');
+  fs.writeFileSync(marks, JSON.stringify({ landmarks: points_of(plan) }));
+  execFileSync(program, ['procedure', name, '--scan', path.join(folder, 'head.nrrd'), '--landmarks', marks, ...more, '-o', out], { stdio: 'ignore' });
+  const typed = JSON.parse(fs.readFileSync(out, 'utf8')).steps.filter((step) => step.do !== 'landmarks');
+  assert.deepEqual(plan.steps.filter((step) => typed.some((each) => each.id === step.id)), typed);
+}
+
+test('a bilateral sagittal split takes at most 100 actions', { skip }, async (context) => {
+  const { folder, one, plan, began } = await opened(context);
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click('bilateral sagittal split');
+  await one.click('Place 8 landmarks');
+  await place(one, plan, split_marks, head_spacing_mm);
+  await one.page.locator('dialog input[name="forward_mm"]').fill('6');
+  one.actions++;
+  await one.click('Plan it');
+  await one.until(() => plan().steps.some((step) => step.id === 'distal_moved'), 'the plan');
+  assert.equal(plan().steps.find((step) => step.id === 'distal_moved').by.forward_mm, 6);
+  same_as_command(folder, 'bilateral_sagittal_split', plan(), ['--set', 'forward_mm=6']);
+  await one.press('Shift+1');
+  await one.shows(1, 'distal_moved');
+  await picture(one, 'split');
+  await certify_and_report(one, 5);
+  await picture(one, 'split_certified');
+  console.log(`bilateral split: ${one.actions} actions, ${((Date.now() - began) / 1000).toFixed(0)} s`);
+  assert.ok(one.actions <= 100, `${one.actions} actions`);
+  assert.deepEqual(one.problems, []);
+});
+
+test('a jaw rebuilt of a fibula takes at most 300 actions', { skip }, async (context) => {
+  const { folder, one, plan, began } = await opened(context, (place) => execFileSync(program, ['phantom', 'leg', '-o', path.join(place, 'leg.nrrd')]));
+  await one.click(one.page.locator('.bar').getByRole('button', { name: 'Procedure' }));
+  await one.click('fibula flap');
+  await one.click("Choose the donor's scan");
+  await one.click(one.page.locator('.file', { hasText: 'leg.nrrd' }));
+  await one.click('Place 9 landmarks');
+  await place(one, plan, jaw_marks, head_spacing_mm);
+  await one.until(async () => Math.abs((await one.look()).cross_mm[2]) < 2, 'the donor in the panes');
+  await one.at_rest();
+  await picture(one, 'donor');
+  await place(one, plan, donor_marks, leg_spacing_mm);
+  for (const [name, value] of [['start_mm', 20], ['aside_mm', 20]]) {
+    await one.page.locator(`dialog input[name="${name}"]`).fill(String(value));
+    one.actions++;
+  }
+  await one.click('Plan it');
+  await one.until(() => plan().steps.some((step) => step.id === 'rebuilt'), 'the plan');
+  same_as_command(folder, 'fibula_flap', plan(), ['--donor', path.join(folder, 'leg.nrrd'), '--set', 'start_mm=20', '--set', 'aside_mm=20']);
+  await one.press('Shift+1');
+  await one.shows(1, 'segment_2');
+  await picture(one, 'flap');
+  await certify_and_report(one, 8);
+  await picture(one, 'flap_certified');
+  console.log(`fibula flap: ${one.actions} actions, ${((Date.now() - began) / 1000).toFixed(0)} s`);
+  assert.ok(one.actions <= 300, `${one.actions} actions`);
+  assert.deepEqual(one.problems, []);
+});

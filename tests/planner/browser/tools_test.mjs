@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// On the head phantom: the guided tour to its last step, a step as a command that makes it again, an oblique slice that is
+// tilted, a piece moved by marks in two views, the contacts of two objects, a later scan, and a network that is cut.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { PlannerWindow, program, start_proxy, start_server } from './planner_window.mjs';
+
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-tools-'));
+const plan_path = path.join(folder, 'head_phantom.plan.json');
+const pictures = process.env.OCTOTOMY_PICTURES;
+let server;
+let one;
+const plan = () => one.plan(plan_path);
+const step = (name) => plan().steps.find((each) => each.id === name);
+const picture = async (name) => {
+  if (pictures) await one.page.screenshot({ path: path.join(pictures, `${name}.png`) });
+};
+const newest = (pane) => one.frames.filter(({ header }) => header.pane === pane).pop()?.header;
+
+before(async () => {
+  execFileSync(program, ['phantom', 'head', '-o', path.join(folder, 'head_phantom.nrrd')]);
+  server = await start_server(folder);
+  one = await PlannerWindow.open(server.url);
+});
+after(async () => {
+  if (pictures && one) await picture('last_tools');
+  await one?.close();
+  server?.stop();
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+test('the guided tour goes to its last step, and ends with a report', async () => {
+  await one.click('Guided tour');
+  const card = one.page.locator('.tour-card');
+  for (let stop = 1; stop <= 7; ++stop) {
+    await card.getByText(`${stop} of 7`).waitFor({ timeout: 60000 });
+    await one.click(card.getByRole('button', { name: 'Do it for me' }));
+  }
+  await card.getByRole('button', { name: 'Write the report' }).waitFor({ timeout: 400000 });
+  await one.click(card.getByRole('button', { name: 'Write the report' }));
+  await one.page.locator('dialog.report iframe').waitFor({ timeout: 400000 });
+  await one.press('Escape');
+  await one.click(card.getByRole('button', { name: 'End the tour' }));
+  await card.waitFor({ state: 'hidden' });
+  assert.equal(step('piece_moved').by.forward_mm, 6);
+  assert.ok((await one.page.locator('.numbers .badge.pass').count()) >= 3);
+});
+
+test('a step as a command makes that step again', async () => {
+  await one.tab('Steps');
+  const row = one.page.locator('.lists .step', { hasText: 'piece moved' }).first();
+  await one.click(row.getByRole('button', { name: 'More for piece_moved' }));
+  await one.click(row.getByRole('menuitem', { name: 'Copy as command' }));
+  const command = await one.until(async () => (await one.page.evaluate(() => navigator.clipboard.readText())) || null, 'the command');
+  assert.match(command, /octotomy run 'piece_moved.step.plan.json'/);
+  execFileSync('bash', ['-c', command], { env: { ...process.env, PATH: `${path.dirname(path.resolve(program))}:${process.env.PATH}` }, stdio: 'ignore' });
+  const made = JSON.parse(fs.readFileSync(path.join(folder, 'piece_moved result', 'result.json'), 'utf8'));
+  const object = made.objects.find((each) => each.id === 'piece_moved');
+  assert.deepEqual(made.objects.map((each) => each.id).includes('rest'), false);
+  await one.select('piece_moved');
+  const shown = await one.page.locator('.inspector .reading b').filter({ hasText: 'mm³' }).first().innerText();
+  const volume = object.measures?.volume?.value ?? object.volume?.value ?? object.voxel?.volume_mm3;
+  assert.ok(volume > 0, JSON.stringify(object).slice(0, 400));
+  assert.ok(Math.abs(Number(shown.replace(/[^\d.]/g, '')) / volume - 1) < 0.02, `${shown} and ${volume}`);
+});
+
+test('an oblique slice is tilted by a handle in another pane', async () => {
+  await one.press('Shift+2');
+  await one.page.getByLabel('What pane 4 shows').selectOption('oblique');
+  await one.at_rest();
+  const before_tilt = (await one.setting(3)).tilt;
+  const box = await one.page.locator('.pane canvas').nth(2).boundingBox();
+  const { cross_mm } = await one.look();
+  const at = await one.position(2, [cross_mm[0], -cross_mm[1]]);
+  // The trace of the plane in the axial slice: along the plane's right.
+  const turn = (azimuth) => [Math.cos((azimuth * Math.PI) / 180), Math.sin((azimuth * Math.PI) / 180)];
+  const reach = 0.36 * Math.min(box.width, box.height);
+  const end = (azimuth) => ({ x: at.x + reach * turn(azimuth)[0], y: at.y + reach * turn(azimuth)[1] });
+  const [from, to] = [end(before_tilt.azimuth), end(before_tilt.azimuth - 20)];
+  await one.page.mouse.move(from.x, from.y);
+  await one.page.mouse.down();
+  for (let i = 1; i <= 8; ++i) await one.page.mouse.move(from.x + ((to.x - from.x) * i) / 8, from.y + ((to.y - from.y) * i) / 8);
+  await one.page.mouse.up();
+  await one.at_rest();
+  const { tilt } = await one.setting(3);
+  assert.ok(Math.abs(tilt.azimuth - (before_tilt.azimuth - 20)) < 1, `${before_tilt.azimuth} -> ${tilt.azimuth}`);
+  assert.equal(tilt.elevation, 0);
+  const { look } = newest(3).view_frame;
+  const wanted = [-turn(tilt.azimuth)[1], turn(tilt.azimuth)[0], 0];
+  assert.ok(Math.hypot(...look.map((x, i) => x - wanted[i])) < 0.01, `${look} and ${wanted}`);
+  // The plane goes through the cross-hair.
+  const { centre_mm } = newest(3).view_frame;
+  assert.ok(Math.abs(cross_mm.reduce((sum, x, i) => sum + (x - centre_mm[i]) * look[i], 0)) < 0.01);
+  assert.equal(newest(3).step.do, 'slice');
+  await picture('oblique');
+});
+
+test('a piece is moved by a mark and its target, set in one view and refined in another', async () => {
+  await one.press('Shift+1');
+  await one.select('piece_moved');
+  await one.at_rest();
+  await one.press('j');
+  await one.page.locator('.tool-card', { hasText: 'Move by marks' }).waitFor();
+  await one.until(async () => newest(1)?.step === undefined, 'the piece in its own place');
+  await one.at_rest();
+  await one.click_at(1, [-75, -45]);
+  await one.click_at(1, [-80, -44]);
+  await one.page.locator('.tool-card li', { hasText: 'Mark 1' }).waitFor();
+  const { cross_mm } = await one.look();
+  await one.at_rest();
+  await one.drag(0, [cross_mm[0], -44], [cross_mm[0] + 3, -44]);
+  await one.at_rest();
+  await picture('marks');
+  await one.page.locator('.pane canvas').nth(0).focus();
+  await one.press('Enter');
+  await one.until(() => step('piece_moved').points, 'the marks in the plan');
+  const moved = step('piece_moved');
+  assert.equal(moved.by, undefined);
+  const [{ at, to }] = moved.points;
+  for (const [axis, mm] of [3, -5, 1].entries()) assert.ok(Math.abs(to[axis] - at[axis] - mm) < 0.8, `${at} to ${to}`);
+  await one.until(() => one.page.locator('.lists .words', { hasText: 'by one mark' }).count(), 'said in words');
+});
+
+test('two objects are coloured by their distance to each other', async () => {
+  await one.select('piece_moved');
+  await one.at_rest();
+  await one.press('t');
+  await one.until(() => newest(2)?.legend && newest(2).objects.length === 1 && newest(3)?.objects.length === 1, 'each jaw alone');
+  await one.at_rest();
+  assert.equal(newest(0).legend.high_mm, 2);
+  assert.match(newest(0).legend.definition, /and the reverse/);
+  assert.notDeepEqual(newest(2).objects, newest(3).objects);
+  await picture('contacts');
+  await one.click('Measure the gap');
+  await one.until(() => plan().steps.some((each) => each.do === 'measure' && each.to), 'the gap as a step');
+  await one.press('t');
+  await one.at_rest();
+  assert.equal(newest(0).legend, undefined);
+  assert.ok(newest(2).objects.length > 1);
+});
+
+test('the plan is held against a later scan, here one on which nothing was done', async () => {
+  await one.command('Outcome of the operation');
+  await one.click(one.page.locator('.file', { hasText: 'head_phantom.nrrd' }));
+  await one.page.locator('.outcome-table').waitFor({ timeout: 300000 });
+  const row = await one.page.locator('.outcome-table tr', { hasText: 'forward' }).first().innerText();
+  const [planned, achieved, half_width] = row.replace(/−/g, '-').match(/-?\d+\.\d+/g).map(Number);
+  assert.ok(Math.abs(planned - 5) < 0.8, row);
+  assert.ok(Math.abs(achieved) < 0.3 && half_width < 0.5, row);
+  assert.ok(await one.page.locator('.outcome-table tr.missed').count());
+  await picture('outcome');
+  await one.press('Escape');
+});
+
+test('a network that is cut in mid-drag is noticed, and nothing is lost', async () => {
+  const proxy = await start_proxy();
+  const far = await PlannerWindow.open(server.url, { proxy: proxy.url, size: { width: 1200, height: 900 } });
+  try {
+    await far.at_rest();
+    // Back to a motion that is dragged.
+    await far.select('piece_moved');
+    await far.press('Control+z');
+    await far.until(() => step('piece_moved').points === undefined || step('piece_moved').by, 'undone', 20000).catch(() => {});
+    while (step('piece_moved').points) await far.press('Control+z').then(() => far.page.waitForTimeout(200));
+    await far.at_rest();
+    await far.press('g');
+    await far.page.locator('[data-key="move-forward_mm"]').waitFor();
+    const { forward_mm } = step('piece_moved').by;
+    const [from, to] = [await far.position(1, [-80, -45]), await far.position(1, [-84, -45])];
+    await far.page.mouse.move(from.x, from.y);
+    await far.page.mouse.down();
+    await far.page.mouse.move((from.x + to.x) / 2, from.y, { steps: 4 });
+    proxy.cut();
+    await far.page.mouse.move(to.x, to.y, { steps: 4 });
+    await far.page.mouse.up();
+    await far.page.locator('div.lost').waitFor({ state: 'visible', timeout: 20000 });
+    assert.equal(step('piece_moved').by.forward_mm, forward_mm);
+    proxy.mend();
+    await far.page.locator('div.lost').waitFor({ state: 'hidden', timeout: 30000 });
+    await far.until(() => Math.abs(step('piece_moved').by.forward_mm - forward_mm - 4) < 0.5, 'the motion of the drag');
+    await far.at_rest();
+    assert.deepEqual(far.problems.filter((problem) => !/WebSocket|ERR_/.test(problem)), []);
+  } finally {
+    await far.close();
+    proxy.stop();
+  }
+});
+
+test('no console error, no WebGL context', async () => {
+  assert.deepEqual(one.problems, []);
+  assert.deepEqual(Object.keys(await one.page.evaluate(() => window.asked_contexts)), ['2d']);
+});
