@@ -20,8 +20,10 @@ namespace octotomy::planner {
 /// members may be called from any thread.
 class ObjectCache {
  public:
-  /// Keeps so many answers; the one that was used longest ago goes first.
-  explicit ObjectCache(std::size_t most = 512) : most_(most) {}
+  /// Keeps so many objects and as many scans, each kind of so many bytes, and always the newest; the one that
+  /// was used longest ago goes first.
+  explicit ObjectCache(std::size_t most = 512, std::uint64_t most_bytes = std::uint64_t{2} << 30)
+      : most_(most), most_bytes_(most_bytes) {}
 
   struct Scan {
     LoadedScan loaded;
