@@ -20,6 +20,7 @@ void register_mesh_boolean();
 void register_move();
 void register_read();
 void register_render();
+void register_replan();   ///< a plan whose last motion changes
 void register_verbs();    ///< whole verbs of the program beside
 void register_verify();   ///< what certificates reckon
 void register_openvdb();  ///< peers; defined where OpenVDB is installed

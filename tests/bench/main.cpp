@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   octotomy::bench::register_move();
   octotomy::bench::register_read();
   octotomy::bench::register_render();
+  octotomy::bench::register_replan();
   octotomy::bench::register_verbs();
   octotomy::bench::register_verify();
 #ifdef OCTOTOMY_HAS_OPENVDB

@@ -107,7 +107,8 @@ TEST(TrialsStep, ASawsWidthWidensTheGapItMade) {
       {"id": "upper", "do": "combine", "expression": "cut & high"},
       {"id": "lower", "do": "combine", "expression": "cut - high"},
       {"id": "width", "do": "measure", "object": "upper", "to": "lower"},
-      {"id": "doubt", "do": "trials", "kerf_mm": 0.1, "segmentation_mm": 0, "seating_mm": 0, "seating_deg": 0})");
+      {"id": "doubt", "do": "trials", "kerf_mm": 0.1, "segmentation_mm": 0,
+       "seating_mm": 0, "seating_deg": 0})");
   const Json trials = measurements_json(plan, evaluate(plan)).back();
   EXPECT_NEAR(doubt_of(trials, "gap", "upper and lower").at("value").get<double>(), 2.0, 0.3);
   EXPECT_NEAR(width_of(trials, "gap", "upper and lower"), 0.1 * normal_99, 0.02);

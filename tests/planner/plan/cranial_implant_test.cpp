@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+//
+// A hole in a real skull, filled by the other side's bone.
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "planner/measure/contacts.h"
+#include "planner/plan/evaluate.h"
+#include "tests/planner/ball_scan.h"
+#include "tests/reference_data.h"
+#include "voxel/solid/combine.h"
+#include "voxel/solid/region_mask.h"
+
+namespace octotomy::planner {
+namespace {
+
+/// The hole's outline from the front, two millimetres wider.
+const std::vector<glm::dvec2> hole_mm{{80, 108},  {84, 93},   {86, 80},  {102, 81}, {104, 95},
+                                      {103, 110}, {100, 132}, {96, 131}, {85, 119}};
+
+std::string plan_text() {
+  std::string polygon;
+  for (const glm::dvec2& p : hole_mm)
+    polygon += (polygon.empty() ? "[" : ", [") + std::to_string(p.x) + ", " + std::to_string(p.y) + "]";
+  return R"({"octotomy_plan": 1, "name": "implant", "scans": {"ct": {"path": ")" +
+         std::filesystem::absolute(tests::reference_data("ct_invesalius_cranium.nii.gz")).string() +
+         R"("}}, "universe": {"voxel_mm": 1.0}, "steps": [
+    {"id": "clean", "do": "remove_headrest", "scan": "ct"},
+    {"id": "bone", "do": "window", "scan": "clean", "low": 300},
+    {"id": "mirrored", "do": "mirror", "object": "bone", "point_mm": [121, -100, 80], "normal": [1, 0, 0],
+     "fit": true},
+    {"id": "about", "do": "mask", "regions": [{"view": "anterior", "polygons_mm": [[)" +
+         polygon + R"(]]},
+      {"view": "right", "polygons_mm": [[[130, 75], [210, 75], [210, 140], [130, 140]]]}]},
+    {"id": "lacking", "do": "combine", "expression": "(mirrored - bone) & about"},
+    {"id": "implant", "do": "parts", "object": "lacking", "largest": 1}]})";
+}
+
+TEST(CranialImplant, FillsTheHoleToItsRimWithoutOverlap) {
+  OCTOTOMY_NEEDS_DATA("ct_invesalius_cranium.nii.gz");
+  EvaluateOptions options;
+  options.certify = false;
+  const Evaluation evaluation = evaluate(parse_plan(plan_text(), "."), options);
+  const Object &bone = evaluation.object("bone"), &implant = evaluation.object("implant"),
+               &mirrored = evaluation.object("mirrored");
+  EXPECT_TRUE(voxel::combine(evaluation.universe,
+                             voxel::Expression(bone.voxel.octree) & voxel::Expression(implant.voxel.octree))
+                  .is_empty());
+  EXPECT_GT(least_distance_mm(*implant.mesh.within, *bone.mesh.within, 0.5), -0.01);
+  EXPECT_NEAR(implant.mesh.within->measures().volume_mm3, 7500.0, 1500.0);
+  // The rim: bone within the outline that faces the hole's middle, as far as it is as thick as the other
+  // side's bone.
+  const brep::Triangles& triangles = bone.mesh.within->triangles();
+  std::vector<glm::dvec3> rim_mm;
+  const glm::dvec2 middle(93.0, 106.0);
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
+                     &c = triangles.points_mm[face[2]];
+    const glm::dvec3 p = (a + b + c) / 3.0, across = glm::cross(b - a, c - a);
+    const glm::dvec2 inward = middle - glm::dvec2(p.x, p.z);
+    if (p.y > -130.0 || p.y < -210.0 || !voxel::contains({hole_mm}, {p.x, p.z})) continue;
+    if (glm::dot(glm::dvec2(across.x, across.z), inward) > 0.7 * glm::length(across) * glm::length(inward))
+      rim_mm.push_back(p);
+  }
+  const std::vector<double> depths_mm = signed_distances_mm(*mirrored.mesh.within, rim_mm);
+  std::vector<glm::dvec3> covered_mm;
+  for (std::size_t i = 0; i < rim_mm.size(); ++i)
+    if (depths_mm[i] < -0.3) covered_mm.push_back(rim_mm[i]);
+  ASSERT_GT(covered_mm.size(), 500u);
+  std::vector<double> gaps_mm = implant.mesh.within->tree().distances_mm(covered_mm);
+  std::sort(gaps_mm.begin(), gaps_mm.end());
+  RecordProperty("rim_points", static_cast<int>(gaps_mm.size()));
+  RecordProperty("largest_gap_um", static_cast<int>(1000.0 * gaps_mm.back()));
+  EXPECT_LT(gaps_mm.back(), 0.5) << gaps_mm.size() << " points, median " << gaps_mm[gaps_mm.size() / 2];
+}
+
+}  // namespace
+}  // namespace octotomy::planner
