@@ -36,7 +36,7 @@ struct OperationText {
   FieldWords words;
   fs::path out;
   std::optional<double> voxel_mm;
-  bool certify = false;
+  bool certify = false, mend = false;
   ScanIn scan;
 };
 

@@ -146,7 +146,8 @@ class Evaluator {
                                ", the plan wants " + *source.sha256 + ": it is another scan");
     voxel::ReadOptions options = source.read;
     options.progress.stop = options_.stop;
-    voxel::Scene scene = voxel::read_scene(path, options);
+    voxel::Scene scene =
+        options_.read_scene ? options_.read_scene(path, options) : voxel::read_scene(path, options);
     voxel::check(scene);
     return scene;
   }

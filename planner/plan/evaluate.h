@@ -47,6 +47,8 @@ struct EvaluateOptions {
   ObjectCache* cache = nullptr;
   /// Adds no objects to the cache, as for a piece that is dragged, of which none comes again.
   bool only_look_up = false;
+  /// Reads a scan; whoever has read one already hands it out here. Default: voxel::read_scene().
+  std::function<voxel::Scene(const std::filesystem::path&, const voxel::ReadOptions&)> read_scene = nullptr;
 };
 
 /// Evaluates every step that makes an object or a scan, objects in the voxel kernel and in the mesh kernel,

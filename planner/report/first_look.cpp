@@ -2,6 +2,7 @@
 #include "planner/report/first_look.h"
 
 #include <cmath>
+#include <memory>
 
 #include "planner/measure/result_json.h"
 #include "planner/table/json_file.h"
@@ -40,8 +41,13 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
   Result result;
   double bone_low = options.bone_low.value_or(*voxel::tissue("bone")->low),
          skin_low = options.skin_low.value_or(*voxel::tissue("skin")->low);
+  EvaluateOptions evaluation = options.evaluation;
   if (!options.bone_low || !options.skin_low) {
-    const voxel::Scene scene = voxel::read_scene(scan, options.read);
+    if (evaluation.progress) evaluation.progress("read scan", 0.0);
+    voxel::ReadOptions read = options.read;
+    read.progress.stop = evaluation.stop;
+    const auto read_once = std::make_shared<std::optional<voxel::Scene>>(voxel::read_scene(scan, read));
+    const voxel::Scene& scene = **read_once;
     if (scene.meaning != voxel::Meaning::Hounsfield) {
       const Thresholds thresholds = thresholds_of(scene);
       bone_low = options.bone_low.value_or(thresholds.upper);
@@ -54,6 +60,14 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
                "--skin" +
                (scene.modality == "MR" ? "; in MR, bone is as dark as air and this is no bone" : "")});
     }
+    evaluation.read_scene = [read_once, scan](const std::filesystem::path& path,
+                                              const voxel::ReadOptions& how) {
+      if (!*read_once) return voxel::read_scene(path, how);
+      voxel::Scene taken = std::move(**read_once);
+      read_once->reset();
+      if (taken.source == scan.string()) taken.source = path.string();
+      return taken;
+    };
   }
   const std::string name =
       scan.filename().empty() ? scan.parent_path().filename().string() : scan.filename().string();
@@ -68,7 +82,7 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
   result.plan = parse_plan(json_text(plan, 2), std::filesystem::current_path());
   // A name need not be UTF-8, as JSON must.
   result.plan.scans.at("scan").path = scan;
-  result.evaluation = evaluate(result.plan, options.evaluation);
+  result.evaluation = evaluate(result.plan, evaluation);
 
   {
     const Stopwatch watch(result.evaluation.timings, "components");

@@ -28,7 +28,7 @@ Thresholds thresholds_of(const voxel::Scene& scene);
 
 /// What a scan without a plan shows: its audit, bone and skin in all views, the parts of the bone,
 /// volumes and areas by both kernels, certified. The result's plan is one that run replays. Throws as
-/// evaluate() does. Cost: the scan is read twice where thresholds must be found.
+/// evaluate() does.
 Result first_look(const std::filesystem::path& scan, const LookOptions& options = {});
 
 }  // namespace octotomy::planner

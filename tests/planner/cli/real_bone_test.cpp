@@ -83,6 +83,23 @@ TEST_F(RealBone, UnmendedIsRefusedByNameAndTold) {
   expect_refused(run("tet " + hyoid + " -o " + at("hyoid.inp")), "--mend");
   expect_refused(run("boolean " + hyoid + " union " + hyoid + " -o " + at("twice.ply")), "--mend");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "hyoid.inp"));
+  const std::string offset = "offset " + hyoid + " --by 1 -o " + at("margin.ply");
+  expect_refused(run(offset), "--mend");
+  const Json margin = json_of(offset + " --mend");
+  EXPECT_NE(margin["findings"][0].get<std::string>().find("so it was mended: "), std::string::npos);
+  EXPECT_GT(margin["volume_change_mm3"], 0.0);
+  const Json whole = json_of("repair " + hyoid + " --solid -o " + at("solid.ply"));
+  const Json box = json_of("measure " + at("solid.ply"))["extents_mm"];
+  std::ostringstream line;
+  line << " --line";
+  for (const std::size_t end : {0, 1})
+    line << " " << box[end][0].get<double>() + (end == 0 ? -5.0 : 5.0) << "," << box[0][1].get<double>() - 5.0
+         << "," << 0.5 * (box[0][2].get<double>() + box[1][2].get<double>());
+  const Json sawn = json_of("saw " + hyoid + " --mend" + line.str() +
+                            " --direction 0,1,0 --depth 300 --kerf 1 -o " + at("sawn.ply"));
+  EXPECT_GT(sawn["sawn_away_mm3"], 0.0);
+  EXPECT_NEAR(sawn["sawn_away_mm3"].get<double>() + sawn["volume_mm3"].get<double>(),
+              whole["volume_after_mm3"].get<double>(), 1e-3 * whole["volume_after_mm3"].get<double>());
 }
 
 TEST_F(RealBone, ASkullOf400000TrianglesOfVtkGoesThroughEveryVerb) {
