@@ -52,11 +52,11 @@ export function open_palette(): void {
         chosen = Math.min(found.length - 1, 39, chosen + 1);
       else if (event.key === "ArrowUp")
         chosen = Math.max(0, chosen - 1);
-      else if (event.key === "Enter")
-        return run(found[chosen]);
-      else
+      else if (event.key !== "Enter")
         return;
+      // Else the key would press a button of the dialog that the command opens.
       event.preventDefault();
+      if (event.key === "Enter") return run(found[chosen]);
       again();
     },
   });
