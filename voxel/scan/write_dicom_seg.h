@@ -18,7 +18,7 @@ struct DicomSegOptions {
   /// The series that the object was made from. The segmentation takes over its patient, study and frame of
   /// reference, and each frame refers to the images behind it. None: a phantom in a study of its own.
   std::optional<DicomSource> source = std::nullopt;
-  Progress progress;
+  Progress progress = {};
 };
 
 /// An object of a segmentation; several may share voxels.
