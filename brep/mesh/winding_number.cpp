@@ -8,7 +8,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -43,7 +42,6 @@ struct WindingTree::Tree {
   struct Node {
     glm::dvec3 centre_mm{0.0};
     double radius_mm = 0.0;  ///< of a ball about the centre that holds all corners
-    glm::dvec3 low_mm{std::numeric_limits<double>::infinity()}, high_mm{-low_mm};  ///< of all corners
     double area_mm2 = 0.0;
     glm::dvec3 normal{0.0};  ///< sum of area vectors
     glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
@@ -95,11 +93,8 @@ struct WindingTree::Tree {
       const Corners& t = triangles[i];
       const glm::dvec3 area = 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]), middle = (t[0] + t[1] + t[2]) / 3.0;
       node.moment += glm::outerProduct(area, middle - node.centre_mm);
-      for (const glm::dvec3& p : t) {
+      for (const glm::dvec3& p : t)
         node.radius_mm = std::max(node.radius_mm, glm::distance(p, node.centre_mm));
-        node.low_mm = glm::min(node.low_mm, p);
-        node.high_mm = glm::max(node.high_mm, p);
-      }
     }
   }
 
@@ -113,12 +108,7 @@ struct WindingTree::Tree {
       node.moment += half->moment + glm::outerProduct(half->normal, half->centre_mm - node.centre_mm);
       node.radius_mm =
           std::max(node.radius_mm, half->radius_mm + glm::distance(half->centre_mm, node.centre_mm));
-      node.low_mm = glm::min(node.low_mm, half->low_mm);
-      node.high_mm = glm::max(node.high_mm, half->high_mm);
     }
-    // Radii of halves in a ball add up from level to level; the box's farthest corner does not.
-    node.radius_mm = std::min(
-        node.radius_mm, glm::length(glm::max(node.centre_mm - node.low_mm, node.high_mm - node.centre_mm)));
   }
 
   double at(const glm::dvec3& p) const {

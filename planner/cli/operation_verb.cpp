@@ -114,6 +114,7 @@ class OperationRun {
     }
     if (!wants_octree || text_.certify) answer_by_mesh(made);
     if (text_.certify) certify_answer(made);
+    made.findings.insert(made.findings.begin(), mended_.begin(), mended_.end());
     return wants_octree ? write_voxels(made) : write_mesh(made);
   }
 
@@ -135,10 +136,22 @@ class OperationRun {
         universe_ = object.voxel.octree.universe();
         has_octree_ = true;
       } else {
-        object.mesh.whole = read_solid(path, timings_);
+        object.mesh.whole = solid_of(path);
         object.mesh.lineage = "triangles of " + object.definition;
       }
       inputs_.push_back(std::move(object));
+    }
+  }
+
+  brep::Solid solid_of(const fs::path& path) {
+    if (text_.mend) {
+      const voxel::Progress mending = progress();
+      return read_mended_solid(path, timings_, mended_, {mending.stop, mending.report});
+    }
+    try {
+      return read_solid(path, timings_);
+    } catch (const brep::Error& error) {
+      throw brep::Error(error.code(), std::string(error.what()) + "; or take --mend");
     }
   }
 
@@ -239,6 +252,7 @@ class OperationRun {
   Timings timings_;
   voxel::Universe universe_;
   bool has_octree_ = false;
+  std::vector<std::string> mended_;  ///< what was done to meshes that are no solids
   std::vector<Object> inputs_;
   Objects objects_;
 };
@@ -262,6 +276,7 @@ void add_object_options(CLI::App& verb, OperationText& text) {
   verb.add_option("--voxel", text.voxel_mm,
                   "Edge of a voxel, mm, for the voxel kernel; default: a 128th of the objects' extent")
       ->check(above_zero());
+  verb.add_flag("--mend", text.mend, "Meshes that are no solids are mended first, as repair --solid does");
   verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
 }
 
