@@ -64,17 +64,17 @@ function piece_table(piece: Outcome["pieces"][number]): Child {
        head("", "", "Planned", "Achieved", "Off"),
        el("tbody", {},
           piece.points.map(
-              (point) => (["forward_mm", "up_mm", "left_mm"] as const)
-                             .map(
-                                 (word, row) => result_row(
-                                     row ? "" : spoken(point.name), word, "mm", point.planned[word],
-                                     point.achieved[word], point.half_width[word],
-                                     row ? "" : `${point.off_mm.toFixed(1)} mm in all`))),
+              (point) =>
+                  (["forward_mm", "up_mm", "left_mm"] as const)
+                      .map(
+                          (word, row) => result_row(
+                              row ? "" : `${spoken(point.name)}, ${point.off_mm.toFixed(1)} mm off`, word,
+                              "mm", point.planned[word], point.achieved[word], point.half_width[word]))),
           (["pitch_deg", "yaw_deg", "roll_deg"] as const)
               .map(
                   (word, row) => result_row(
                       row ? "" : "turn", word, "°", piece.planned[word], piece.achieved[word],
-                      piece.half_width[word], "")))),
+                      piece.half_width[word])))),
     findings(piece.findings),
   ];
 }
@@ -82,13 +82,12 @@ function piece_table(piece: Outcome["pieces"][number]): Child {
 type Word = Parameters<typeof word_of>[0];
 /// A direction's row; amber where the interval leaves the planned value out.
 function result_row(
-    name: string, word: Word, unit: string, planned: number, achieved: number, half_width: number,
-    off: string): Child {
+    name: string, word: Word, unit: string, planned: number, achieved: number, half_width: number): Child {
   const is_met = Math.abs(planned - achieved) <= half_width;
-  const said = (value: number): string => value.toFixed(2).replace("-", "−");
+  const said = (value: number): string => value.toFixed(2).replace(/^-(?=0\.00$)/, "").replace("-", "−");
   return el(
       "tr", {class: is_met ? "met" : "missed"}, el("th", {scope: "row"}, name),
       el("td", {class: "words-cell"}, word_of(word, 1)), el("td", {}, `${said(planned)} ${unit}`),
       el("td", {}, `${said(achieved)} ± ${half_width.toFixed(2)} ${unit}`),
-      el("td", {}, off || (is_met ? "" : `${said(achieved - planned)} ${unit}`)));
+      el("td", {}, is_met ? "" : `${said(achieved - planned)} ${unit}`));
 }

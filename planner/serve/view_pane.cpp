@@ -25,6 +25,9 @@ using Clock = std::chrono::steady_clock;
 /// Coarser than this share along each side, a moving picture shows nothing of a plan.
 constexpr double least_scale = 0.375;
 
+/// Distances of a pane that are kept, of both objects for a few ranges.
+constexpr std::size_t most_scalars = 8;
+
 constexpr const char* overlap_colour = "#e5484d";
 
 double ms_since(const Clock::time_point& start) {
@@ -266,7 +269,7 @@ void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
   const double range_mm = number_of(colour_by, "range_mm").value_or(5.0);
   if (!(range_mm > 0.0)) throw std::runtime_error("range_mm: must be above zero");
   const bool is_mutual = colour_by.value("mutual", false);
-  if (scalar_evaluation_ != drawing.snapshot.evaluation) scalars_.clear();
+  if (scalar_evaluation_ != drawing.snapshot.evaluation || scalars_.size() > most_scalars) scalars_.clear();
   scalar_evaluation_ = drawing.snapshot.evaluation;
   const auto by = [&](const std::string& coloured, const std::string& to) {
     const Object* other = find(*drawing.snapshot.evaluation, to);
