@@ -12,7 +12,6 @@
 #include "brep/mesh/move.h"
 #include "planner/anatomy/head_directions.h"
 #include "planner/anatomy/motion_of_points.h"
-#include "planner/operation/motion.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"

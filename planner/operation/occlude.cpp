@@ -12,7 +12,7 @@
 
 #include "brep/mesh/move.h"
 #include "planner/anatomy/head_directions.h"
-#include "planner/measure/contacts.h"
+#include "planner/measure/near_surfaces.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/first_contact.h"
 #include "planner/operation/move.h"

@@ -15,9 +15,9 @@
 
 #include "planner/anatomy/head_directions.h"
 #include "planner/anatomy/movement.h"
-#include "planner/measure/contacts.h"
+#include "planner/measure/near_surfaces.h"
 #include "planner/operation/combine.h"
-#include "planner/operation/motion.h"
+#include "planner/operation/move.h"
 #include "planner/plan/dependence.h"
 #include "verify/chance.h"
 #include "verify/size_interval.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "planner/measure/contacts.h"
+#include "planner/measure/near_surfaces.h"
 #include "planner/plan/evaluate.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"

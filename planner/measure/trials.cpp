@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // How far errors reach into the numbers of a plan. The numbers are of all of the plan, so the plan's room
 // goes through the trials (planner/plan/trial.h); here is what they are asked for.
-#include "planner/operation/trials.h"
+#include "planner/measure/trials.h"
 
 #include <nlohmann/json.hpp>
 

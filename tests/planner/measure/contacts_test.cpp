@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/measure/contacts.h"
+#include "planner/measure/near_surfaces.h"
 
 #include <gtest/gtest.h>
 #include <numbers>

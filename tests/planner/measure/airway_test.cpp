@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/measure/airway.h"
+#include "planner/measure/passage.h"
 
 #include <functional>
 #include <gtest/gtest.h>
