@@ -45,8 +45,8 @@ Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
   if (!reading.voxel.allows(in_voxels)) return in_voxels ? Fault::VoxelsHave : Fault::VoxelsLack;
   if (!reading.mesh.allows(in_mesh)) return in_mesh ? Fault::MeshHas : Fault::MeshLacks;
   const bool near = reading.voxel.near || reading.mesh.near;
-  const bool told = reading.voxel != untold && reading.mesh != untold;
-  // Two certain words that differ: the kernels' interpolations part there.
+  // A kernel that keeps a certain word is right, whatever the other does: their interpolations part there.
+  const bool told = reading.voxel != untold || reading.mesh != untold;
   return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
 }
 

@@ -13,6 +13,7 @@
 #include "voxel/measure/cell_counts.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/rounded.h"
 #include "voxel/tree/slice_build.h"
 
 namespace octotomy::verify {
@@ -134,19 +135,18 @@ void compare_topology(Certificate& certificate, const Octree& octree, const Octr
   const Topology of_voxels = topology(octree, voxels.cavities);
   const Topology of_mesh = are_equal ? of_voxels : topology(digitised, mesh.cavities);
   const auto add = [&](const char* quantity, std::int64_t in_voxels, std::int64_t in_mesh,
-                       const Unmatched& unmatched, const char* statement) {
-    if (unmatched.largest &&
-        (!certificate.worst || certificate.worst->volume_mm3 < unmatched.largest->volume_mm3))
-      certificate.worst = unmatched.largest;
-    add_comparison(certificate,
-                   {quantity, "", static_cast<double>(in_voxels), static_cast<double>(in_mesh),
-                    static_cast<double>(unmatched.count), 0.0,
-                    "0 that hold three voxels a side and share none with the other kernel's", statement});
+                       const Unmatched& unmatched, const std::string& of_one_alone) {
+    const std::string where =
+        unmatched.largest ? ", the largest near " + voxel::rounded(unmatched.largest->at_mm) : "";
+    add_comparison(certificate, {quantity, "", static_cast<double>(in_voxels), static_cast<double>(in_mesh),
+                                 static_cast<double>(unmatched.count), 0.0,
+                                 "0 that hold three voxels a side and share none with the other kernel's",
+                                 of_one_alone + where + ": %"});
   };
   add("parts", of_voxels.parts, of_mesh.parts, are_equal ? Unmatched() : unmatched_parts(octree, digitised),
-      "Parts that one kernel alone has: %");
+      "Parts that one kernel alone has");
   add("cavities", of_voxels.cavities, of_mesh.cavities,
-      are_equal ? Unmatched() : unmatched_cavities(voxels, mesh), "Cavities that one kernel alone has: %");
+      are_equal ? Unmatched() : unmatched_cavities(voxels, mesh), "Cavities that one kernel alone has");
   add_comparison(certificate,
                  {.quantity = "tunnels",
                   .unit = "",

@@ -55,14 +55,16 @@ PictureFrame frame_of(const voxel::ImagePlane& plane) {
   return {plane.size_px, matrix};
 }
 
-voxel::ImageText image_text(const PictureFrame& frame) {
+std::optional<voxel::ImageText> image_text(const std::optional<PictureFrame>& frame) {
+  if (!frame) return {};
   Json rows = Json::array();
   for (int row = 0; row < 4; ++row) {
     rows.push_back(Json::array());
-    for (int column = 0; column < 4; ++column) rows.back().push_back(frame.lps_from_pixel[column][row]);
+    for (int column = 0; column < 4; ++column) rows.back().push_back(frame->lps_from_pixel[column][row]);
   }
-  return {keyword, Json{{"size_px", {frame.size_px.x, frame.size_px.y}}, {"lps_from_pixel", rows}}.dump(
-                       -1, ' ', true)};
+  return voxel::ImageText{
+      keyword,
+      Json{{"size_px", {frame->size_px.x, frame->size_px.y}}, {"lps_from_pixel", rows}}.dump(-1, ' ', true)};
 }
 
 PictureFrame read_frame(std::string_view png, const std::string& where) {

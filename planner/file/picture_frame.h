@@ -28,7 +28,7 @@ struct PictureFrame {
 PictureFrame frame_of(const voxel::ImagePlane& plane);
 
 /// What a PNG holds of its frame; `size_px` is that of the whole picture, with a grid's margin.
-voxel::ImageText image_text(const PictureFrame& frame);
+std::optional<voxel::ImageText> image_text(const std::optional<PictureFrame>& frame);
 
 /// The frame that a PNG's bytes hold. Throws std::runtime_error beginning with `where` if they are no PNG,
 /// hold no frame, or have another size than when they were drawn.

@@ -12,7 +12,7 @@ namespace {
 
 struct Airway {
   ObjectName object;
-  Mark from, to;
+  Mark begin, end;
   double step_mm = 1.0;
 };
 
@@ -32,8 +32,8 @@ Json section_json(const PassageSection& section, const Digitised& digitised) {
 Json measure(const Airway& asked, const AnswerBench& bench) {
   const Stopwatch watch(bench.timings, "airway");
   const Object& object = bench.objects.at(asked.object.name);
-  const Passage found = passage(object.voxel.octree, object.mesh.within, mark_mm(asked.from, bench.objects),
-                                mark_mm(asked.to, bench.objects), asked.step_mm);
+  const Passage found = passage(object.voxel.octree, object.mesh.within, mark_mm(asked.begin, bench.objects),
+                                mark_mm(asked.end, bench.objects), asked.step_mm);
   const Digitised digitised = digitised_of(bench, object);
   const HalfWidth of_volume = volume_half_width(object.voxel.measures, digitised);
   const PassageSection& least = found.sections[found.narrowest];
@@ -66,10 +66,11 @@ Operation airway_operation() {
       .takes(field("object", &Airway::object,
                    "The air: a window of air within its limits, and of that the part at a point.")
                  .required())
-      .takes(field("from", &Airway::from, "Its beginning: a point or a landmark in it.").required())
-      .takes(field("to", &Airway::to, "Its end.").required())
+      .takes(field("begin", &Airway::begin, "Its beginning: a point or a landmark in it.").required())
+      .takes(field("end", &Airway::end, "Its end.").required())
       .takes(field("step_mm", &Airway::step_mm, "From section to section.").from(0.1).to(20.0))
-      .example(R"({"id": "narrow", "do": "airway", "object": "rest", "from": [0, 0, 20], "to": [0, 0, -20]})")
+      .example(
+          R"({"id": "narrow", "do": "airway", "object": "rest", "begin": [0, 0, 20], "end": [0, 0, -20]})")
       .measure(measure);
 }
 

@@ -203,9 +203,7 @@ std::vector<std::string> uses(const Render& render) {
 }
 
 void write(const std::filesystem::path& path, const RenderedPicture& picture) {
-  std::optional<voxel::ImageText> text;
-  if (picture.frame) text = image_text(*picture.frame);
-  voxel::write_image(path, picture.size_px, picture.rgb, text);
+  voxel::write_image(path, picture.size_px, picture.rgb, image_text(picture.frame));
 }
 
 void write(const Render& render, const AnswerBench& bench, Exported& made) {

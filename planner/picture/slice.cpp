@@ -384,9 +384,7 @@ void check(const Slice& slice, const Place& place) {
 }
 
 void write(const fs::path& path, const SlicePicture& picture) {
-  std::optional<voxel::ImageText> text;
-  if (picture.frame) text = image_text(*picture.frame);
-  voxel::write_image(path, picture.size_px, picture.rgb, text);
+  voxel::write_image(path, picture.size_px, picture.rgb, image_text(picture.frame));
 }
 
 void write(const Slice& slice, const AnswerBench& bench, Exported& made) {

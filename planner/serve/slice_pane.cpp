@@ -152,7 +152,8 @@ Message draw_slice(Desk& desk, const Request& request, const std::stop_token& st
   std::vector<float>& values = picture.samples.image.values;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (picture.samples.inside[i] == 0) values[i] = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<std::uint8_t> png = voxel::encode_image("png", size_px, picture.rgb);
+  const std::vector<std::uint8_t> png =
+      voxel::encode_image("png", size_px, picture.rgb, image_text(picture.frame));
   return packed(header, {{"png", std::string(png.begin(), png.end())},
                          {"value", deflated(values.data(), 4 * values.size())}});
 }

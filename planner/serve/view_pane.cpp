@@ -73,10 +73,11 @@ const Object* find(const Evaluation& evaluation, const std::string& id) {
   return nullptr;
 }
 
-/// A picture without depths.
-Part flat_part(bool is_moving, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb) {
+/// A picture without depths. One at rest holds its frame, as those of the verbs do.
+Part flat_part(bool is_moving, const glm::ivec2& size_px, const std::vector<std::uint8_t>& rgb,
+               const std::optional<PictureFrame>& frame = {}) {
   if (is_moving) return {"jpeg", jpeg_of(size_px, rgb)};
-  const std::vector<std::uint8_t> png = voxel::encode_image("png", size_px, rgb);
+  const std::vector<std::uint8_t> png = voxel::encode_image("png", size_px, rgb, image_text(frame));
   return {"png", std::string(png.begin(), png.end())};
 }
 
@@ -171,7 +172,7 @@ struct ViewPane::Drawing {
     const RenderedPicture picture = render_rays(render, {*first}, timings, stop);
     const voxel::View view = voxel::parse_view(render.view);
     set_frame(header, is_moving, picture.size_px, view, on_plane(view, picture.centre_mm), picture.pixel_mm);
-    return packed(header, {flat_part(is_moving, picture.size_px, picture.rgb)});
+    return packed(header, {flat_part(is_moving, picture.size_px, picture.rgb, picture.frame)});
   }
 
   voxel::RenderOptions options() {
@@ -204,7 +205,7 @@ struct ViewPane::Drawing {
                      : std::numeric_limits<float>::quiet_NaN();
       object[i] = static_cast<std::uint16_t>(picture.object[i] + 1);
     }
-    return packed(header, {flat_part(false, picture.size_px, picture.rgb),
+    return packed(header, {flat_part(false, picture.size_px, picture.rgb, frame_of(picture.plane())),
                            {"depth", deflated(depth.data(), 4 * depth.size())},
                            {"object", deflated(object.data(), 2 * object.size())}});
   }

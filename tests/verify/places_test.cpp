@@ -271,6 +271,34 @@ std::uint64_t errors_of_each() {
   return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : kinds;
 }
 
+/// A box that the mesh kernel's interpolation leaves out a layer of, from x = 2 to 5 mm.
+TEST(Places, OfPartsAKernelThatKeepsACertainWordIsRight) {
+  voxel::Universe universe;
+  universe.depth = 5;
+  const auto box = [](double high_x) {
+    return Expression(voxel::Box{{-8.5, -8.5, -8.5}, {high_x, 3.5, 3.5}});
+  };
+  const brep::Solid surface = brep::solid_of(brep::Prism{
+      {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {{{-8.5, -8.5}, {1.5, -8.5}, {1.5, 3.5}, {-8.5, 3.5}}}, -8.5, 3.5});
+  const voxel::Octree voxels = voxel::combine(universe, box(5.5)), fewer = voxel::combine(universe, box(1.5));
+  const Witness whole = [](const glm::dvec3& p_mm, double) -> Reading {
+    const auto depth = [&](double high_x) {
+      const glm::dvec3 inward = glm::min(p_mm - glm::dvec3(-8.5), glm::dvec3(high_x, 3.5, 3.5) - p_mm);
+      return std::min({inward.x, inward.y, inward.z});
+    };
+    if (std::abs(depth(1.5)) < 0.01) return {on_surface, on_surface, 3};
+    return {depth(5.5) > 0.0 ? certainly_in : certainly_out, depth(1.5) > 0.0 ? certainly_in : certainly_out};
+  };
+  const auto contradicted = [&](const Witness& witness, const voxel::Octree& octree,
+                                const brep::Solid& mesh) {
+    return judge_places(octree, convert::voxelise(universe, mesh), mesh, witness).voxel_count;
+  };
+  EXPECT_EQ(contradicted(whole, voxels, surface), 0U);
+  EXPECT_EQ(contradicted(witness_of_parts(whole), voxels, surface), 0U);
+  EXPECT_EQ(contradicted(witness_of_parts(whole), fewer, surface), 0U) << "the layer may be a part left out";
+  EXPECT_GT(contradicted(witness_of_parts(whole), voxels, brep::Solid()), 1000U) << "one has lost the part";
+}
+
 TEST(Places, OfErrorsOverTheLimitAreAlwaysFound) {
   std::map<std::string, int> over;
   for (const double voxel_mm : {1.0, 2.0})

@@ -37,7 +37,8 @@ void* symbol_of_library(const char* name) {
 }  // namespace
 
 std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
-                                       const std::vector<std::uint8_t>& rgb) {
+                                       const std::vector<std::uint8_t>& rgb,
+                                       const std::optional<ImageText>& text) {
   if (size_px.x < 1 || size_px.y < 1 ||
       rgb.size() !=
           std::size_t{3} * static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y))
@@ -51,7 +52,7 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
   std::string error;
   if (!encode(format.c_str(), size_px.x, size_px.y, rgb.data(), &encoded, &error))
     throw Error(ErrorCode::Resource, "a picture cannot be encoded as " + format + ": " + error);
-  return encoded;
+  return text && format == "png" ? with_png_text(encoded, text->keyword, text->text) : encoded;
 }
 
 std::vector<StoredImage> read_images(const fs::path& path) {
@@ -80,8 +81,7 @@ void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vec
   if (format == "jpg") format = "jpeg";
   std::vector<std::uint8_t> encoded;
   try {
-    encoded = encode_image(format, size_px, rgb);
-    if (text && format == "png") encoded = with_png_text(encoded, text->keyword, text->text);
+    encoded = encode_image(format, size_px, rgb, text);
   } catch (const Error& error) {
     throw Error(error.code(), path.string() + ": " + error.what());
   }

@@ -12,21 +12,22 @@
 
 namespace octotomy::voxel {
 
-/// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). JPEG and
-/// WebP are lossy, at quality 92 of 100. OpenImageIO is in octotomy_image_io.so, loaded on first use: linked
-/// in, it would add 0.2 s to every start of the program. Throws std::invalid_argument if the size is not
-/// positive or not that of the pixels; Error, Input, if the format is another; Error, Resource, if the
-/// library cannot be loaded. Safe from several threads.
-std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
-                                       const std::vector<std::uint8_t>& rgb);
-
 /// ASCII, in pictures of formats that take it.
 struct ImageText {
   std::string keyword, text;
 };
 
+/// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). JPEG and
+/// WebP are lossy, at quality 92 of 100. A PNG also takes a text (png_text.h). OpenImageIO is in
+/// octotomy_image_io.so, loaded on first use: linked in, it would add 0.2 s to every start of the program.
+/// Throws std::invalid_argument if the size is not positive or not that of the pixels; Error, Input, if the
+/// format is another; Error, Resource, if the library cannot be loaded. Safe from several threads.
+std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ivec2& size_px,
+                                       const std::vector<std::uint8_t>& rgb,
+                                       const std::optional<ImageText>& text = std::nullopt);
+
 /// Writes a picture in the format of the extension (.png, .jpg, .jpeg, .webp); written beside and renamed
-/// into place. A PNG also takes a text (png_text.h). Throws as encode_image(), with the path; Error,
+/// into place. Throws as encode_image(), with the path; Error,
 /// Resource, if the disk gives out.
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
                  const std::vector<std::uint8_t>& rgb, const std::optional<ImageText>& text = std::nullopt);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/measure/passage.h"
-
 #include <functional>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "planner/measure/passage.h"
 #include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
 #include "tests/planner/ball_scan.h"
@@ -52,8 +51,8 @@ double waisted_depth_mm(const glm::dvec3& p_mm) {
 
 TEST(AirwayStep, FindsAWaistOnAnObliqueAxisInBothKernels) {
   const TestFolder folder;
-  const Json airway = measured(folder, waisted_depth_mm, R"("object": "air", "from": [-7, 5, -23],
-      "to": [7, -5, 23])");
+  const Json airway = measured(folder, waisted_depth_mm, R"("object": "air", "begin": [-7, 5, -23],
+      "end": [7, -5, 23])");
   const Json& least = airway.at("narrowest");
   const double truth_mm2 = std::numbers::pi * 25.0, half_width = least.at("half_width_mm2");
   EXPECT_NEAR(least.at("mesh_mm2").get<double>(), truth_mm2, half_width);
@@ -90,7 +89,7 @@ TEST(AirwayStep, ABentTubeIsCutSquareToItsBend) {
     return std::min(to_ring, std::max(p.z, -p.x));
   };
   const Json airway =
-      measured(folder, depth_mm, R"("object": "air", "from": [22, 0, 1], "to": [-1, 0, -22])");
+      measured(folder, depth_mm, R"("object": "air", "begin": [22, 0, 1], "end": [-1, 0, -22])");
   EXPECT_NEAR(airway.at("narrowest").at("area_mm2").get<double>(), std::numbers::pi * 25.0,
               airway.at("narrowest").at("half_width_mm2").get<double>());
   EXPECT_NEAR(airway.at("length_mm").get<double>(), 1.5 * std::numbers::pi * 22.0, 7.0);
@@ -107,11 +106,11 @@ TEST(AirwayStep, RefusesEndsBesideItAndPartsThatDoNotMeet) {
     }
     return "";
   };
-  EXPECT_NE(refusal(R"("object": "air", "from": [0, 0, -10], "to": [0, 0, 10])").find("no way through"),
+  EXPECT_NE(refusal(R"("object": "air", "begin": [0, 0, -10], "end": [0, 0, 10])").find("no way through"),
             std::string::npos);
-  EXPECT_NE(refusal(R"("object": "air", "from": [0, 0, -10], "to": [90, 0, 10])").find("farther than 5 mm"),
+  EXPECT_NE(refusal(R"("object": "air", "begin": [0, 0, -10], "end": [90, 0, 10])").find("farther than 5 mm"),
             std::string::npos);
-  EXPECT_NE(refusal(R"("object": "air", "from": [0, 0, 10], "to": [1, 0, 10])").find("shorter than"),
+  EXPECT_NE(refusal(R"("object": "air", "begin": [0, 0, 10], "end": [1, 0, 10])").find("shorter than"),
             std::string::npos);
 }
 
