@@ -48,7 +48,7 @@ TEST(PictureFrameTest, RefusesPicturesWithoutOneOrOfAnotherSize) {
   voxel::write_image(folder / "scaled.png", {10, 20}, rgb, image_text(frame_of(plane_of("left"))));
   EXPECT_NE(refusal("scaled.png").find("was 20 x 10 pixels when it was drawn and is 10 x 20"),
             std::string::npos);
-  voxel::ImageText text = image_text(frame_of(plane_of("left")));
+  voxel::ImageText text = image_text(frame_of(plane_of("left"))).value();
   text.text.resize(60);
   voxel::write_image(folder / "cut.png", {20, 10}, rgb, text);
   EXPECT_NE(refusal("cut.png").find("cannot be read"), std::string::npos);
