@@ -50,10 +50,20 @@ Fault fault_of(const Reading& reading, bool in_voxels, bool in_mesh) {
   return in_voxels == in_mesh || near || told ? Fault::None : Fault::Apart;
 }
 
+/// Where a part hangs on by less than a voxel, as thin bone does, chance decides whether a kernel takes it
+/// with the rest. So fewer voxels than a block of three a side are no fault where they are Apart and no face
+/// connects them with what the kernel that lacks them has.
+constexpr std::size_t chance_voxels = 27;
+
 struct FailedVoxel {
   glm::ivec3 at{0};
   Fault fault = Fault::None;
 };
+
+bool is_within(const glm::ivec3& voxel, const voxel::Octree& octree) {
+  return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
+         glm::all(glm::lessThan(voxel, glm::ivec3(octree.universe().side())));
+}
 
 /// The voxels of a set, in the order of its blocks.
 void collect(const voxel::BlockRef& block, int height, const glm::ivec3& low,
@@ -122,9 +132,27 @@ std::vector<FailedVoxel> failed_voxels(const voxel::Octree& octree, const voxel:
   return failed;
 }
 
-/// Joins failed voxels, which are sorted, and keeps the largest group.
-void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Lattice& lattice, Places& places) {
-  places.voxel_count = failed.size();
+/// Whether no face connects a voxel that one kernel lacks with a part of which it might be. What certainly is
+/// there is another object's.
+bool hangs_on_no_face(const glm::ivec3& voxel, const voxel::Octree& octree, const voxel::Octree& digitised,
+                      const Witness& witness) {
+  const bool in_voxels = octree.contains(voxel);
+  const voxel::Octree& lacking = in_voxels ? digitised : octree;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int by : {-1, 1}) {
+      glm::ivec3 neighbour = voxel;
+      neighbour[axis] += by;
+      if (!is_within(neighbour, octree) || !lacking.contains(neighbour)) continue;
+      const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(neighbour)), 0.0);
+      if ((in_voxels ? reading.mesh : reading.voxel) == untold) return false;
+    }
+  return true;
+}
+
+/// Joins failed voxels, which are sorted, leaves out groups by chance, and keeps the largest group.
+void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Octree& octree,
+                const voxel::Octree& digitised, const Witness& witness, Places& places) {
+  const voxel::Lattice lattice = octree.universe().lattice();
   std::vector<std::uint8_t> seen(failed.size(), 0);
   const auto index_of = [&](const glm::ivec3& at) {
     const auto found =
@@ -145,6 +173,13 @@ void add_groups(const std::vector<FailedVoxel>& failed, const voxel::Lattice& la
         seen[i] = 1;
         group.push_back(i);
       }
+    const bool is_chance =
+        group.size() < chance_voxels && std::all_of(group.begin(), group.end(), [&](std::size_t i) {
+          return failed[i].fault == Fault::Apart &&
+                 hangs_on_no_face(failed[i].at, octree, digitised, witness);
+        });
+    if (is_chance) continue;
+    places.voxel_count += group.size();
     if (group.size() <= places.largest_count) continue;
     places.largest_count = group.size();
     glm::dvec3 middle(0.0);
@@ -227,13 +262,10 @@ std::vector<glm::ivec3> steps_outward() {
 std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digitised, const glm::ivec3& from,
                           const std::vector<glm::ivec3>& steps, const Witness& witness) {
   const bool inside = octree.contains(from);
-  const int side = octree.universe().side();
   std::size_t count = 0;
   for (const glm::ivec3& step : steps) {
     const glm::ivec3 at = from + step;
-    if (glm::any(glm::lessThan(at, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(at, glm::ivec3(side))))
-      continue;
-    if (octree.contains(at) != inside) continue;
+    if (!is_within(at, octree) || octree.contains(at) != inside) continue;
     ++count;
     if (digitised.contains(at) != inside) continue;
     const Reading reading = witness(octree.universe().lattice().lps_mm(glm::dvec3(at)), 0.0);
@@ -244,11 +276,7 @@ std::size_t unseen_voxels(const voxel::Octree& octree, const voxel::Octree& digi
 
 /// Whether a voxel that is not in the mesh is compared: it is in the octree or beside its boundary.
 bool is_compared(const voxel::Octree& octree, const glm::ivec3& voxel) {
-  const int side = octree.universe().side();
-  const auto has = [&](const glm::ivec3& at) {
-    return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
-           glm::all(glm::lessThan(at, glm::ivec3(side))) && octree.contains(at);
-  };
+  const auto has = [&](const glm::ivec3& at) { return is_within(at, octree) && octree.contains(at); };
   for (int axis = 0; axis < 3; ++axis)
     for (const int by : {-1, 1}) {
       glm::ivec3 neighbour = voxel;
@@ -272,6 +300,7 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
   }
   const voxel::Lattice lattice = octree.universe().lattice();
   const glm::dvec3 voxel_mm = lattice.spacing_mm();
+  const bool is_small = std::abs(piece.volume_mm3) < chance_voxels * lattice.voxel_mm3();
   const std::size_t stride = 1 + own.faces.size() / most_tried;
   for (std::size_t i = 0; i < own.faces.size(); i += stride)
     for (const double voxels : {0.5, 1.0, 2.0}) {
@@ -283,9 +312,9 @@ bool is_seen(const brep::Triangles& mesh, const brep::Component& piece, const vo
       const glm::dvec3 beneath = (p + q + r) / 3.0 - voxels / length * across * voxel_mm;
       const glm::ivec3 voxel(glm::round(lattice.voxel(beneath)));
       const glm::dvec3 centre = lattice.lps_mm(glm::dvec3(voxel));
-      if (is_compared(octree, voxel) &&
-          fault_of(witness(centre, 0.0), octree.contains(voxel), false) != Fault::None &&
-          brep::is_inside(centre, own))
+      if (!is_compared(octree, voxel)) continue;
+      const Fault fault = fault_of(witness(centre, 0.0), octree.contains(voxel), false);
+      if (fault != Fault::None && !(fault == Fault::Apart && is_small) && brep::is_inside(centre, own))
         return true;
     }
   return false;
@@ -358,7 +387,7 @@ Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised,
   const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
   progress.at(0.2);
   const voxel::Lattice lattice = octree.universe().lattice();
-  add_groups(failed_voxels(octree, digitised, voxels, witness, progress), lattice, places);
+  add_groups(failed_voxels(octree, digitised, voxels, witness, progress), octree, digitised, witness, places);
   add_stray_triangles(mesh, witness, progress, places);
   const glm::dvec3 voxel_mm = lattice.spacing_mm();
   places.limit.volume_mm3 = piece_limit_mm3(solid, mesh, octree, witness);

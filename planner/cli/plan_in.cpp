@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/plan_in.h"
 
+#include <cmath>
+
 #include "planner/report/report.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
@@ -50,6 +52,12 @@ Evaluation evaluated(Program& program, const Plan& plan, const EvaluateOptions& 
   return evaluation;
 }
 
+/// Whether the volumes differ by more than counts do, and the places say that it is no error.
+bool is_told_alone(const verify::Certificate& certificate) {
+  return certificate.limit && certificate.verdict == verify::Verdict::Pass &&
+         std::abs(certificate.difference_mm3) > certificate.tolerance_mm3;
+}
+
 std::string verdict_text(const Evaluation& evaluation) {
   std::vector<std::pair<std::string, std::string>> rows;
   for (const Object& object : evaluation.objects) {
@@ -58,7 +66,8 @@ std::string verdict_text(const Evaluation& evaluation) {
       const verify::Certificate& c = *object.certificate;
       line = verify::verdict_text(c) + "  voxel " + grouped(c.voxel.volume_mm3, 1) + ", mesh " +
              grouped(c.mesh.volume_mm3, 1) + " mm\u00b3, difference " + grouped(c.difference_mm3, 1) +
-             " of " + grouped(c.tolerance_mm3, 1) + " allowed";
+             (is_told_alone(c) ? ", and no place contradicts the scan"
+                               : " of " + grouped(c.tolerance_mm3, 1) + " allowed");
       for (const std::string& reason : c.reasons) line += "; " + reason;
     }
     if (!object.is_tool || object.certificate) rows.emplace_back(object.id, line);

@@ -271,23 +271,25 @@ std::uint64_t errors_of_each() {
   return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : kinds;
 }
 
-/// A box that the mesh kernel's interpolation leaves out a layer of, from x = 2 to 5 mm.
+/// A box of which the mesh kernel's interpolation leaves out a layer, from x = 19 to 22 mm.
 TEST(Places, OfPartsAKernelThatKeepsACertainWordIsRight) {
   voxel::Universe universe;
   universe.depth = 5;
   const auto box = [](double high_x) {
-    return Expression(voxel::Box{{-8.5, -8.5, -8.5}, {high_x, 3.5, 3.5}});
+    return Expression(voxel::Box{glm::dvec3(8.5), {high_x, 20.5, 20.5}});
   };
   const brep::Solid surface = brep::solid_of(brep::Prism{
-      {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {{{-8.5, -8.5}, {1.5, -8.5}, {1.5, 3.5}, {-8.5, 3.5}}}, -8.5, 3.5});
-  const voxel::Octree voxels = voxel::combine(universe, box(5.5)), fewer = voxel::combine(universe, box(1.5));
+      {0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {{{8.5, 8.5}, {18.5, 8.5}, {18.5, 20.5}, {8.5, 20.5}}}, -20.5, -8.5});
+  const voxel::Octree voxels = voxel::combine(universe, box(22.5)),
+                      fewer = voxel::combine(universe, box(18.5));
   const Witness whole = [](const glm::dvec3& p_mm, double) -> Reading {
     const auto depth = [&](double high_x) {
-      const glm::dvec3 inward = glm::min(p_mm - glm::dvec3(-8.5), glm::dvec3(high_x, 3.5, 3.5) - p_mm);
+      const glm::dvec3 inward = glm::min(p_mm - 8.5, glm::dvec3(high_x, 20.5, 20.5) - p_mm);
       return std::min({inward.x, inward.y, inward.z});
     };
-    if (std::abs(depth(1.5)) < 0.01) return {on_surface, on_surface, 3};
-    return {depth(5.5) > 0.0 ? certainly_in : certainly_out, depth(1.5) > 0.0 ? certainly_in : certainly_out};
+    if (std::abs(depth(18.5)) < 0.01) return {on_surface, on_surface, 3};
+    return {depth(22.5) > 0.0 ? certainly_in : certainly_out,
+            depth(18.5) > 0.0 ? certainly_in : certainly_out};
   };
   const auto contradicted = [&](const Witness& witness, const voxel::Octree& octree,
                                 const brep::Solid& mesh) {
@@ -297,6 +299,39 @@ TEST(Places, OfPartsAKernelThatKeepsACertainWordIsRight) {
   EXPECT_EQ(contradicted(witness_of_parts(whole), voxels, surface), 0U);
   EXPECT_EQ(contradicted(witness_of_parts(whole), fewer, surface), 0U) << "the layer may be a part left out";
   EXPECT_GT(contradicted(witness_of_parts(whole), voxels, brep::Solid()), 1000U) << "one has lost the part";
+}
+
+/// Crumbs of 26 voxels and of 27 that the mesh has left out, and a bite of eight.
+TEST(Places, OfPartsACrumbThatNoFaceHoldsIsChanceAndABiteIsNone) {
+  voxel::Universe universe;
+  universe.depth = 5;
+  const auto box = [](const glm::dvec3& low, const glm::dvec3& high) {
+    return Expression(voxel::Box{low, high});
+  };
+  const Expression body = box(glm::dvec3(8.5), glm::dvec3(20.5)),
+                   crumb = box(glm::dvec3(24.5), glm::dvec3(27.5)),
+                   corner = box(glm::dvec3(26.5), glm::dvec3(27.5)),
+                   bite = box(glm::dvec3(18.5), glm::dvec3(20.5));
+  const brep::Solid surface = brep::solid_of(brep::Prism{
+      {0, 0, -1}, {0, 1, 0}, {1, 0, 0}, {{{8.5, 8.5}, {20.5, 8.5}, {20.5, 20.5}, {8.5, 20.5}}}, -20.5, -8.5});
+  const Witness whole = [](const glm::dvec3& p_mm, double) -> Reading {
+    const auto depth = [&](double low, double high) {
+      const glm::dvec3 inward = glm::min(p_mm - low, high - p_mm);
+      return std::min({inward.x, inward.y, inward.z});
+    };
+    if (std::abs(depth(8.5, 20.5)) < 0.01) return {on_surface, on_surface, 3};
+    const Word word = std::max(depth(8.5, 20.5), depth(24.5, 27.5)) > 0.0 ? certainly_in : certainly_out;
+    return {word, word};
+  };
+  const auto contradicted = [&](const Expression& octree) {
+    return judge_places(voxel::combine(universe, octree), convert::voxelise(universe, surface), surface,
+                        witness_of_parts(whole))
+        .voxel_count;
+  };
+  EXPECT_EQ(contradicted(body), 0U);
+  EXPECT_EQ(contradicted(body | (crumb - corner)), 0U);
+  EXPECT_EQ(contradicted(body | crumb), 27U);
+  EXPECT_EQ(contradicted(body - bite), 8U);
 }
 
 TEST(Places, OfErrorsOverTheLimitAreAlwaysFound) {
