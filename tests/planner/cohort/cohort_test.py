@@ -214,6 +214,32 @@ class Cohort(unittest.TestCase):
         self.assertEqual((self.group(table, "out") / "measurements.csv").read_bytes(), whole)
         self.assert_no_leftovers("out")
 
+    @unittest.skipUnless(os.geteuid() == 0, "a small disk (tmpfs) needs root")
+    def test_a_full_disk_leaves_a_table_that_can_be_completed(self):
+        table, out = self.cohort(5), self.folder / "out"
+        self.participants(table, "whole")
+        self.group(table, "whole")
+        one = sum(path.stat().st_blocks * 512 for path in (self.folder / "whole/sub-0000").rglob("*"))
+        out.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={3 * one}", "none", out], capture_output=True,
+                                 check=False)
+        if mounted.returncode != 0:
+            self.skipTest("no small disk can be mounted here")
+        try:
+            run = self.participants(table, "out", check=False)
+            self.assertNotEqual(run.returncode, 0)
+            self.assertIn("No space left", run.stderr)
+            self.assertTrue(0 < len(list(out.glob("sub-*/result.json"))) < 5)
+            alone = self.participants(table, "out", "--participant-label", "0004", check=False)
+            self.assertEqual(alone.returncode, 3, alone.stderr)
+            subprocess.run(["mount", "-o", f"remount,size={100 * one}", out], check=True)
+            self.participants(table, "out")
+            self.group(table, "out")
+            assert_complete(self, out, self.folder / "whole", 5)
+            self.assert_no_leftovers("out")
+        finally:
+            subprocess.run(["umount", out], check=True)
+
     def test_twice_at_once_is_once(self):
         table = self.cohort()
         self.participants(table, "whole")
