@@ -8,6 +8,7 @@
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::planner {
 
@@ -28,9 +29,9 @@ void check_output_path(const std::filesystem::path& path, const std::vector<std:
 }
 
 std::filesystem::path output_file(const std::filesystem::path& folder, const std::filesystem::path& path) {
-  const std::filesystem::path file = folder / output_path(path);
-  std::filesystem::create_directories(file.parent_path());
-  return file;
+  const std::filesystem::path name = output_path(path);
+  voxel::create_folders_in(folder, name.parent_path());
+  return folder / name;
 }
 
 std::filesystem::path output_path(const std::filesystem::path& path) {

@@ -46,7 +46,6 @@ Json exported_json(const Exported& exported) {
 }
 
 void write_pictures(const Result& result, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
   for (const PictureGroup& group : result.pictures)
     for (const ScenePicture& picture : group.pictures) {
       std::string view = picture.view;
@@ -214,6 +213,7 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
         write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);
   {
     const Stopwatch watch(result.evaluation.timings, "write");
+    voxel::create_folders_in(output.path(), "views");
     write_pictures(result, output.path() / "views");
     if (!result.cephalogram.empty())
       write_text(output.path() / "views/cephalogram.png",
@@ -223,7 +223,7 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
   }
   Json json = result_json(result);
   for (const auto& [name, text] : result_tables(json)) {
-    std::filesystem::create_directories((output.path() / name).parent_path());
+    voxel::create_folders_in(output.path(), std::filesystem::path(name).parent_path());
     write_text(output.path() / name, text);
   }
   const Json credibility = credibility_json(json);

@@ -236,10 +236,10 @@ void take_over(const fs::path& old, const List& list, const fs::path& made, cons
       const auto first = list.lower_bound(prefix);
       if (first != list.end() && first->first.starts_with(prefix)) continue;
       if (!fs::is_directory(made / name)) need_free(made, {}, name, named);
-      fs::create_directories(made / name);
+      voxel::create_folders_in(made, name);
     } else {
       need_free(made, {}, name, named);
-      fs::create_directories((made / name).parent_path());
+      voxel::create_folders_in(made, name.parent_path());
       // If a file system has no links, or a file is another user's, step 4 moves it.
       [[maybe_unused]] const int linked =
           ::linkat(AT_FDCWD, entry.path().c_str(), AT_FDCWD, (made / name).c_str(), 0);
@@ -363,7 +363,7 @@ void ResultFolder::keep_beside(const std::string& reason, const fs::path& hidden
 void ResultFolder::copy_rest() {
   for (const auto& [name, sum] : read_list(final_)) {
     if (is_there(path() / name) || !fs::is_regular_file(fs::symlink_status(final_ / name))) continue;
-    fs::create_directories((path() / name).parent_path());
+    voxel::create_folders_in(path(), fs::path(name).parent_path());
     fs::copy_file(final_ / name, path() / name);
   }
 }

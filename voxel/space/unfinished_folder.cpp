@@ -99,6 +99,11 @@ fs::path UnfinishedFolder::keep() {
   return std::exchange(path_, {});
 }
 
+void create_folders_in(const fs::path& folder, const fs::path& name) {
+  fs::path made = folder;
+  for (const fs::path& part : name) fs::create_directory(made /= part);
+}
+
 bool if_abandoned(const fs::path& folder, void (*work)(const fs::path&, void*), void* argument) {
   const int file = locked(folder, LOCK_EX | LOCK_NB);
   if (file < 0) return false;

@@ -28,6 +28,10 @@ class UnfinishedFolder {
   int lock_ = -1;
 };
 
+/// Makes the folders that a name in a folder leads through, and that folder itself never: it may have been
+/// removed for good meanwhile, by remove_unfinished(). Throws std::filesystem::filesystem_error.
+void create_folders_in(const std::filesystem::path& folder, const std::filesystem::path& name);
+
 /// Whether the owner of an unfinished folder is gone; then `work` is called while nobody else can find the
 /// same. False, too, where the file system knows no locks.
 bool if_abandoned(const std::filesystem::path& folder, void (*work)(const std::filesystem::path&, void*),

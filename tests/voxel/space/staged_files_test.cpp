@@ -141,6 +141,16 @@ TEST(StagedFiles, WhatAKilledProcessLeftIsRemovedAndWhatALivingOneHasIsNot) {
   EXPECT_EQ(entries(folder.path()), 2);
 }
 
+TEST(UnfinishedFolder, FoldersInItAreMadeOnlyWhileItIsThere) {
+  const tests::ScratchFolder folder;
+  create_folders_in(folder.path(), "a/b/c");
+  create_folders_in(folder.path(), "a/b/d");
+  EXPECT_TRUE(fs::is_directory(folder / "a/b/c"));
+  EXPECT_TRUE(fs::is_directory(folder / "a/b/d"));
+  EXPECT_THROW(create_folders_in(folder / "gone", "a/b"), fs::filesystem_error);
+  EXPECT_FALSE(fs::exists(folder / "gone"));
+}
+
 TEST(UnfinishedFolder, AnEndingWithoutDestructorsRemovesAll) {
   const tests::ScratchFolder folder;
   const pid_t child = ::fork();
