@@ -53,7 +53,7 @@ bool set_centres_of_blocks(const std::array<SliceBits, 3>& slices, SliceBits& ce
 
 /// The parts that hold a block of three voxels a side.
 Octree with_blocks(const Octree& octree, Neighbours neighbours) {
-  const Octree large = voxel::components_of_at_least(octree, 27, neighbours);
+  Octree large = voxel::components_of_at_least(octree, 27, neighbours);
   if (large.is_empty()) return large;
   const int side = large.universe().side();
   std::array<SliceBits, 3> slices;  // below, middle and above

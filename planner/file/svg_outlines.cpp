@@ -290,6 +290,7 @@ class Pencil {
   /// Bezier curves, whose second derivative is at most degree * (degree - 1) times the second differences).
   void bezier(const std::vector<glm::dvec2>& controls) {
     std::vector<glm::dvec2> p;
+    p.reserve(controls.size());
     for (const glm::dvec2& control : controls) p.push_back(at(map_, control));
     const std::size_t degree = p.size() - 1;
     double bend = 0.0;

@@ -228,6 +228,7 @@ std::vector<NearPoint> near_points(const brep::Solid& one, const brep::Solid& ot
     }
     if (cells.size() > most_points) continue;
     std::vector<NearPoint> near;
+    near.reserve(cells.size());
     for (const auto& [cell, point] : cells) near.push_back(point);
     return near;
   }

@@ -235,7 +235,7 @@ class Through {
     for (const auto& [word, part] :
          {std::pair("forward", &Displacement::forward_mm), std::pair("left", &Displacement::left_mm),
           std::pair("up", &Displacement::up_mm)})
-      numbers_.push_back({word, of, "mm", [by, part](const Errors& errors, const Motions& motions) {
+      numbers_.push_back({word, of, "mm", [by, part = part](const Errors& errors, const Motions& motions) {
                             return by(errors, motions).*part;
                           }});
   }
@@ -247,10 +247,10 @@ class Through {
       for (const auto& [word, part] :
            {std::pair("pitch", &Turns::pitch_deg), std::pair("yaw", &Turns::yaw_deg),
             std::pair("roll", &Turns::roll_deg)})
-        numbers_.push_back(
-            {word, object.id, "deg", [this, id = object.id, part](const Errors&, const Motions& motions) {
-               return turns_of(glm::dmat3(motions.own.at(id)), head_).*part;
-             }});
+        numbers_.push_back({word, object.id, "deg",
+                            [this, id = object.id, part = part](const Errors&, const Motions& motions) {
+                              return turns_of(glm::dmat3(motions.own.at(id)), head_).*part;
+                            }});
       if (const auto& centre = still.voxel.measures.centroid_mm)
         add_point(object, "", carried(glm::inverse(moved_since_made(objects_, still.id)), *centre), false);
       for (const Json& on : moved.at("landmarks"))
