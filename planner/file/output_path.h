@@ -14,7 +14,8 @@ namespace octotomy::planner {
 void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
                        const Place& place);
 
-/// The file that a path names below a result's folder; makes the folders that it lies in.
+/// The file that a path names below a result's folder; makes the folders that it leads through, and the
+/// result's own folder never: where that was removed, nothing brings it back.
 std::filesystem::path output_file(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 /// The path without "." and "..", as it is written and told.

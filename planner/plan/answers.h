@@ -25,13 +25,13 @@ nlohmann::ordered_json measurements_json(const Plan& plan, const Evaluation& eva
 /// Writes one file of a plan's result below `folder`. Decks of one object share a filling where the calls
 /// share `kept`. An object that is empty, has no mesh, or that no mesher can fill is not written; a finding
 /// says why. Throws as the writers do where the disk does not take it, and Stopped; then the file is not
-/// there. Precondition: the step makes a file.
+/// there. Preconditions: the step makes a file, and `folder` is there.
 Exported write_file(const Plan& plan, const Evaluation& evaluation, const Step& step,
                     const std::filesystem::path& folder, Timings& timings,
                     std::map<std::string, std::shared_ptr<const void>>& kept,
                     const ExportOptions& options = {});
 
-/// Writes all files of a plan's result. The time is added to `timings`.
+/// Writes all files of a plan's result below `folder`, which is there. The time is added to `timings`.
 std::vector<Exported> write_files(const Plan& plan, const Evaluation& evaluation,
                                   const std::filesystem::path& folder, Timings& timings,
                                   const ExportOptions& options = {});

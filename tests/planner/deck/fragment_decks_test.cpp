@@ -33,6 +33,7 @@ Plan with_deck(const RandomPlan& random, const std::filesystem::path& folder) {
 }
 
 Exported deck_of(const Plan& plan, const Evaluation& evaluation, const std::filesystem::path& folder) {
+  std::filesystem::create_directory(folder);
   Timings timings;
   return write_files(plan, evaluation, folder, timings).back();
 }
@@ -145,6 +146,7 @@ TEST(FragmentDecks, AStepOfOrderTwoWritesElementsOfTenNodes) {
 
 TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
   const BallFolder folder;
+  std::filesystem::create_directory(folder / "out");
   std::stop_source source;
   source.request_stop();
   for (const char* keys : {"", R"(, "fallback": true)", R"(, "regions": ["lower"])",

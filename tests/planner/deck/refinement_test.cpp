@@ -35,7 +35,7 @@ TEST_F(RefinementOfDecks, DecksOfOneObjectMayBeGradedEachInItsOwnWay) {
   Timings timings;
   std::map<std::string, std::shared_ptr<const void>> kept;
   const auto tets = [&](const Plan& plan) {
-    return write_file(plan, evaluation, plan.steps.back(), folder_ / "out", timings, kept)
+    return write_file(plan, evaluation, plan.steps.back(), folder_.path(), timings, kept)
         .details["tets"]
         .get<double>();
   };
@@ -50,7 +50,7 @@ TEST_F(RefinementOfDecks, AnObjectWithoutAMeshIsNamedAndNothingIsWritten) {
   Evaluation evaluation = evaluate(along_cut);
   evaluation.objects.change(1).mesh.within.reset();
   Timings timings;
-  const Exported deck = write_files(along_cut, evaluation, folder_ / "out", timings).back();
+  const Exported deck = write_files(along_cut, evaluation, folder_.path(), timings).back();
   EXPECT_FALSE(deck.written);
   EXPECT_NE(deck.findings.front().find("finer at 'cut'"), std::string::npos) << deck.findings.front();
 }
