@@ -28,11 +28,8 @@
 // Area: the voxels' Crofton estimate against the same formula on the mesh's triangles, so that both lose
 // alike on flats. 3 % of S for ripple (marching cubes adds up to 2.6 % to the formula's answer), 0.3 h M for
 // displaced edges, M the mean curvature integral, and the strips that displaced planes add beside their rims.
-// Distances: from the centres of the octree's boundary faces to the triangles, and from points spread over
-// the triangles to the boundary faces, weighted by area. The 95th percentile is the smallest distance that at
-// least 95 % of the area does not exceed, the larger of both directions. A right face lies anywhere within
-// half a voxel of the surface along its axis: at most half a voxel's diagonal, a quarter of an edge on
-// average.
+// Distances: as surface_distances.h defines them. A right face lies anywhere within half a voxel of the
+// surface along its axis: at most half a voxel's diagonal, a quarter of an edge on average.
 
 #include "verify/certify_bounded.h"
 
@@ -43,23 +40,19 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <optional>
-#include <tbb/parallel_sort.h>
 #include <utility>
 
-#include "brep/mesh/distance.h"
 #include "brep/mesh/measure.h"
-#include "brep/mesh/sample_surface.h"
 #include "brep/mesh/triangles.h"
 #include "convert/voxel/voxelise.h"
 #include "verify/boundary_model.h"
 #include "verify/places.h"
+#include "verify/surface_distances.h"
 #include "verify/topology.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/space/rounded.h"
-#include "voxel/tree/voxel_boundary.h"
 
 namespace octotomy::verify {
 namespace {
@@ -74,8 +67,6 @@ constexpr double edge_shift = 0.3;
 constexpr double resolved_voxels = 6.0;
 /// Relative error of a sum of many terms of one sign: some units in the last place in each kernel.
 constexpr double rounded_sums = 64.0 * std::numeric_limits<double>::epsilon();
-/// Spacing of the samples on the mesh. An isosurface's triangles are smaller and have one sample each.
-constexpr double sample_voxels = 2.0;
 /// A surface has no counterpart if the other is this many times further away than digitisation explains.
 /// Parts thinner than a voxel may be lost over two or three voxels, so this is a doubt and not a failure.
 constexpr double lost = 3.0;
@@ -88,144 +79,6 @@ double longest(const glm::dvec3& edges_mm) {
 glm::dvec3 seen_spacing_mm(const glm::dvec3& sample_mm, const glm::dvec3& voxel_mm) {
   const double finest_mm = std::min({sample_mm.x, sample_mm.y, sample_mm.z});
   return glm::min(glm::min(sample_mm, 2.0 * voxel_mm), glm::dvec3(3.0 * finest_mm));
-}
-
-/// Distances from points to a surface, with the area that each point stands for.
-struct Weighted {
-  std::vector<glm::dvec3> points_mm;
-  std::vector<double> distances_mm, areas_mm2;
-
-  double largest() const { return distances_mm.empty() ? 0.0 : distances_mm[farthest()]; }
-  /// Precondition: there are points. Of equal ones the first.
-  std::size_t farthest() const {
-    assert(!distances_mm.empty());
-    return static_cast<std::size_t>(std::max_element(distances_mm.begin(), distances_mm.end()) -
-                                    distances_mm.begin());
-  }
-  double mean() const {
-    double sum = 0.0, area = 0.0;
-    for (std::size_t i = 0; i < distances_mm.size(); ++i) {
-      sum += distances_mm[i] * areas_mm2[i];
-      area += areas_mm2[i];
-    }
-    return area > 0.0 ? sum / area : 0.0;
-  }
-  double percentile95() const {
-    struct Share {
-      double distance_mm;
-      std::size_t number;
-    };
-    std::vector<Share> order(distances_mm.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = {distances_mm[i], i};
-    tbb::parallel_sort(order.begin(), order.end(), [](const Share& a, const Share& b) {
-      return a.distance_mm != b.distance_mm ? a.distance_mm < b.distance_mm : a.number < b.number;
-    });
-    const double total = std::accumulate(areas_mm2.begin(), areas_mm2.end(), 0.0);
-    double reached = 0.0;
-    for (const Share& share : order) {
-      reached += areas_mm2[share.number];
-      if (reached >= 0.95 * total) return share.distance_mm;
-    }
-    return largest();
-  }
-};
-
-/// The boundary faces as two triangles each, and their centres.
-struct Boundary {
-  brep::Triangles triangles;
-  std::vector<glm::dvec3> centres_mm;
-  std::vector<double> areas_mm2;
-};
-
-Boundary boundary_of(const voxel::Octree& octree) {
-  const voxel::Lattice lattice = octree.universe().lattice();
-  Boundary boundary;
-  for (const voxel::VoxelFace& face : voxel::voxel_boundary(octree)) {
-    const int u = (face.axis + 1) % 3, v = (face.axis + 2) % 3;
-    glm::dvec3 centre(face.voxel);
-    centre[face.axis] += 0.5 * face.side;
-    const auto first = static_cast<std::uint32_t>(boundary.triangles.points_mm.size());
-    for (const glm::dvec2& corner : {glm::dvec2(-0.5, -0.5), {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
-      glm::dvec3 p = centre;
-      p[u] += corner.x;
-      p[v] += corner.y;
-      boundary.triangles.points_mm.push_back(lattice.lps_mm(p));
-    }
-    boundary.triangles.faces.push_back({first, first + 1, first + 2});
-    boundary.triangles.faces.push_back({first, first + 2, first + 3});
-    boundary.centres_mm.push_back(lattice.lps_mm(centre));
-    boundary.areas_mm2.push_back(glm::length(
-        glm::cross(glm::dvec3(lattice.lps_from_voxel[u]), glm::dvec3(lattice.lps_from_voxel[v]))));
-  }
-  return boundary;
-}
-
-/// Both directions: voxel faces to triangles, points spread over the triangles to voxel faces.
-struct Distances {
-  Weighted from_voxels, from_mesh;
-  brep::SurfaceSamples samples;  ///< of the mesh
-  double mean_mm() const { return std::max(from_voxels.mean(), from_mesh.mean()); }
-  double percentile95_mm() const { return std::max(from_voxels.percentile95(), from_mesh.percentile95()); }
-  double largest_mm() const { return std::max(from_voxels.largest(), from_mesh.largest()); }
-};
-
-Distances surface_distances(const voxel::Octree& octree, const brep::Mesh& mesh,
-                            const brep::SurfaceTree& tree) {
-  Boundary boundary = boundary_of(octree);
-  Distances distances;
-  distances.samples =
-      brep::sample_surface(mesh, sample_voxels * longest(octree.universe().lattice().spacing_mm()));
-  const brep::SurfaceSamples& samples = distances.samples;
-  distances.from_mesh = {
-      samples.points_mm,
-      brep::SurfaceTree(boundary.triangles, brep::SurfaceTree::Build::Hasty).distances_mm(samples.points_mm),
-      samples.areas_mm2};
-  std::vector<double> from_centres_mm = tree.distances_mm(boundary.centres_mm);
-  distances.from_voxels = {std::move(boundary.centres_mm), std::move(from_centres_mm),
-                           std::move(boundary.areas_mm2)};
-  return distances;
-}
-
-/// The place where the surfaces are farthest apart, and which kernel has a part there.
-WorstPlace worst_of(const Distances& distances, const voxel::Octree& octree, const brep::SurfaceTree& tree) {
-  const bool of_voxels = distances.from_voxels.largest() >= distances.from_mesh.largest();
-  const Weighted& farther = of_voxels ? distances.from_voxels : distances.from_mesh;
-  const std::size_t i = farther.farthest();
-  const glm::dvec3 p_mm = farther.points_mm[i];
-  const glm::dvec3 p_voxel = glm::inverse(octree.universe().lps_from_voxel) * glm::dvec4(p_mm, 1.0);
-  // A point of one surface is inside the other object if that has more there.
-  const bool mesh_has_more =
-      of_voxels ? tree.inside({p_mm}).front() != 0 : !octree.contains(glm::ivec3(glm::round(p_voxel)));
-  return {p_mm, farther.distances_mm[i], mesh_has_more ? part_of_mesh_only : part_of_voxels_only};
-}
-
-/// Removes from the mesh's side what voxels cannot show, sheets and gaps thinner than a voxel. Returns their
-/// area. A slab holds a voxel's centre near each of its points if it is as wide as the voxel's projection on
-/// its normal.
-double leave_out_thin(Distances& distances, const brep::SurfaceTree& tree, const voxel::Lattice& lattice) {
-  const brep::SurfaceSamples& samples = distances.samples;
-  std::vector<glm::dvec3> within_mm, beyond_mm;
-  for (std::size_t i = 0; i < samples.points_mm.size(); ++i) {
-    double width_mm = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-      width_mm += std::abs(glm::dot(glm::dvec3(lattice.lps_from_voxel[axis]), samples.normals[i]));
-    within_mm.push_back(samples.points_mm[i] - width_mm * samples.normals[i]);
-    beyond_mm.push_back(samples.points_mm[i] + width_mm * samples.normals[i]);
-  }
-  const std::vector<std::uint8_t> thick = tree.inside(within_mm), closing = tree.inside(beyond_mm);
-  double thin_mm2 = 0.0;
-  Weighted kept;
-  for (std::size_t i = 0; i < thick.size(); ++i) {
-    if (!thick[i] || closing[i]) {
-      thin_mm2 += samples.areas_mm2[i];
-      continue;
-    }
-    kept.points_mm.push_back(samples.points_mm[i]);
-    kept.distances_mm.push_back(distances.from_mesh.distances_mm[i]);
-    kept.areas_mm2.push_back(samples.areas_mm2[i]);
-  }
-  distances.from_mesh = std::move(kept);
-  return thin_mm2;
 }
 
 /// Both answers and the bound's ingredients.
@@ -393,43 +246,39 @@ DistanceBounds distance_bounds(const Evidence& evidence) {
 }
 
 /// Compares area and distances: with a witness without a verdict, as it has judged every place of the
-/// surfaces. Looks for parts thinner than a voxel only if these leave a doubt.
+/// surfaces, and by a sample of their points. Looks for parts thinner than a voxel only if these leave a
+/// doubt.
 void compare_surfaces(Certificate& certificate, const Evidence& evidence, const voxel::Octree& octree,
                       const brep::Solid& solid) {
-  const brep::SurfaceTree& tree = solid.tree();
-  Distances distances = surface_distances(octree, solid, tree);
-  double percentile95_mm = distances.percentile95_mm(), mean_mm = distances.mean_mm();
+  SurfaceDistances distances(octree, solid, evidence.witnessed);
   certificate.hausdorff_mm = distances.largest_mm();
-  certificate.hausdorff95_mm = percentile95_mm;
-  if (!certificate.worst) certificate.worst = worst_of(distances, octree, tree);
+  certificate.hausdorff95_mm = distances.percentile95_mm();
+  if (!certificate.worst) certificate.worst = distances.worst();
   const DistanceBounds bounds = distance_bounds(evidence);
   const double far_mm = lost * 0.5 * (glm::length(evidence.voxel_mm) + glm::length(evidence.sample_mm));
   Comparison area = area_of(evidence, 0.0);
   if (!evidence.witnessed &&
-      !(area.difference <= *area.tolerance && percentile95_mm <= bounds.percentile95_mm &&
-        mean_mm <= bounds.mean_mm && distances.largest_mm() <= far_mm)) {
-    area = area_of(evidence, leave_out_thin(distances, tree, octree.universe().lattice()));
-    percentile95_mm = distances.percentile95_mm();
-    mean_mm = distances.mean_mm();
-  }
+      !(area.difference <= *area.tolerance && distances.percentile95_mm() <= bounds.percentile95_mm &&
+        distances.mean_mm() <= bounds.mean_mm && distances.largest_mm() <= far_mm))
+    area = area_of(evidence, distances.leave_out_thin());
   // Sheets thinner than a voxel lose their area before their volume shows it: never more than a doubt.
   compare(certificate, evidence, std::move(area), Verdict::Warn);
   compare(certificate, evidence,
           {.quantity = "hausdorff95",
            .unit = "mm",
-           .difference = percentile95_mm,
+           .difference = distances.percentile95_mm(),
            .tolerance = bounds.percentile95_mm,
            .formula = "half a voxel's diagonal + 0.1 s; in doubt, without parts thinner than a voxel",
            .statement = "Five per cent of one surface is % or more from the other"});
   compare(certificate, evidence,
           {.quantity = "mean distance",
            .unit = "mm",
-           .difference = mean_mm,
+           .difference = distances.mean_mm(),
            .tolerance = bounds.mean_mm,
            .formula = "h/4 on curved boundary + displacement of flats + 0.1 s; in doubt, as above",
            .statement = "The surfaces are % apart on average"});
   if (!evidence.witnessed && distances.largest_mm() > far_mm)
-    lower(certificate, Verdict::Warn, text_of(worst_of(distances, octree, tree)));
+    lower(certificate, Verdict::Warn, text_of(distances.worst()));
 }
 
 /// Every place at which the witness contradicts a kernel is an error: interpolation and rounding are in its

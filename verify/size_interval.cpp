@@ -304,7 +304,7 @@ double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,
     const double half_thickness = half_thickness_mm / glm::length(one);
     const double deep = std::clamp(half_thickness, 0.5, beyond);
     contrast += sample_at(at - deep * one) - sample_at(at + beyond * one);
-    step += mean_step([&](double depth) { return sample_at(at - depth * one); });
+    step += mean_step([&](double inwards) { return sample_at(at - inwards * one); });
     depth += deep;
     thickness += 2.0 * half_thickness;
     ++points;

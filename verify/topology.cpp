@@ -168,7 +168,7 @@ void compare_same_topology(Certificate& certificate, const Octree& octree, const
   add_comparison(certificate, {"euler", "", twice, surface, std::abs(twice - surface), 0.0,
                                "0: one topology; a surface has twice its solid's Euler number",
                                "The Euler numbers of the two surfaces differ by %"});
-  const auto parts = static_cast<double>(voxel::components(octree).voxel_counts.size());
+  const auto parts = static_cast<double>(voxel::component_count(octree));
   const std::vector<brep::Component>& shells = solid.components();
   const auto solids = static_cast<double>(std::count_if(
       shells.begin(), shells.end(), [](const brep::Component& shell) { return shell.volume_mm3 > 0.0; }));

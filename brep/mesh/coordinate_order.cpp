@@ -51,11 +51,15 @@ Triangles in_coordinate_order(const Mesh& mesh) {
   std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
     return place_of(triangles, v) < place_of(triangles, w);
   });
-  if (const auto rings = rings_of_shared(triangles, order); !rings.empty())
-    std::sort(order.begin(), order.end(), [&](std::uint32_t v, std::uint32_t w) {
-      const Place at_v = place_of(triangles, v), at_w = place_of(triangles, w);
-      return at_v != at_w ? at_v < at_w : v != w && rings.at(v) < rings.at(w);
+  const auto rings = rings_of_shared(triangles, order);
+  for (auto first = order.begin(); !rings.empty() && first != order.end();) {
+    const auto last = std::find_if(first + 1, order.end(), [&](std::uint32_t v) {
+      return place_of(triangles, v) != place_of(triangles, *first);
     });
+    if (last - first > 1)
+      std::sort(first, last, [&](std::uint32_t v, std::uint32_t w) { return rings.at(v) < rings.at(w); });
+    first = last;
+  }
 
   Triangles sorted;
   std::vector<std::uint32_t> rank(order.size());

@@ -197,18 +197,23 @@ struct SurfaceTree::Tree {
     build_run(build_run, 0, count);
   }
 
-  /// `nearest_triangle` is where to look first, and becomes the one found: neighbours in a list of points are
-  /// often neighbours in space.
-  double distance(const glm::dvec3& p, std::uint32_t& nearest_triangle) const {
+  void check_not_empty() const {
+    if (nodes.empty())
+      throw std::invalid_argument(
+          "there is no distance to a surface without triangles; ask whether it is empty first");
+  }
+
+  /// The least of what squared_distance_to_triangle() says of all triangles, wherever the search starts.
+  double distance(const glm::dvec3& p, std::uint32_t& nearest_triangle, double enough_mm = 0.0) const {
     assert(nearest_triangle < triangles.size());
     double nearest = squared_distance_to_triangle(p, triangles[nearest_triangle]);
     const double rounding_mm2 = squared_rounding(p, nodes[0].box);
     std::array<std::pair<std::uint32_t, double>, most_waiting> waiting;
     std::size_t top = 0;
     waiting[top++] = {0, nodes[0].box.squared_distance(p)};
-    while (top > 0) {
+    while (top > 0 && nearest >= enough_mm * enough_mm) {
       const auto [index, bound] = waiting[--top];
-      if (bound >= nearest) continue;
+      if (bound > surely_farther(nearest, rounding_mm2)) continue;
       const Node& node = nodes[index];
       if (node.count > 0) {
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -233,9 +238,7 @@ struct SurfaceTree::Tree {
   /// Calls found(i, distance, triangle) for each point, in parallel.
   template <typename Found>
   void search(const std::vector<glm::dvec3>& points_mm, const Found& found) const {
-    if (nodes.empty())
-      throw std::invalid_argument(
-          "there is no distance to a surface without triangles; ask whether it is empty first");
+    check_not_empty();
     // Blocks are fixed, so that where each search starts does not depend on the threads.
     constexpr std::size_t block = 256;
     tbb::parallel_for(std::size_t{0}, (points_mm.size() + block - 1) / block, [&](std::size_t b) {
@@ -283,6 +286,11 @@ std::vector<double> SurfaceTree::distances_mm(const std::vector<glm::dvec3>& poi
   std::vector<double> distances(points_mm.size());
   tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t) { distances[i] = distance; });
   return distances;
+}
+
+double SurfaceTree::distance_mm(const glm::dvec3& p_mm, std::uint32_t& triangle, double enough_mm) const {
+  tree_->check_not_empty();
+  return tree_->distance(p_mm, triangle, enough_mm);
 }
 
 std::vector<Foot> SurfaceTree::feet(const std::vector<glm::dvec3>& points_mm) const {

@@ -49,6 +49,11 @@ class SurfaceTree {
   /// where the surface has no triangles. Cost: about log n a point, parallel.
   std::vector<double> distances_mm(const std::vector<glm::dvec3>& points_mm) const;
 
+  /// The same of one point. The search starts with `triangle`, a place in the tree (0 will do), and leaves
+  /// there the nearest one: neighbours in space find theirs at once. Any number below `enough_mm` stands for
+  /// all of them: the search ends with the first that it finds.
+  double distance_mm(const glm::dvec3& p_mm, std::uint32_t& triangle, double enough_mm = 0.0) const;
+
   /// The foot of each point, by the same search. Throws as distances_mm() and costs as much.
   std::vector<Foot> feet(const std::vector<glm::dvec3>& points_mm) const;
 

@@ -136,7 +136,7 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& m
   const Stopwatch watch(timings, "measure");
   measures = voxel::measure(octree);
   Json json = to_json(measures);
-  json["components"] = voxel::components(octree).voxel_counts.size();
+  json["components"] = voxel::component_count(octree);
   json["euler"] = voxel::euler_numbers(octree).by_faces;
   json["euler_of"] = "voxels that touch by faces";
   json["findings"] = Json::array();

@@ -21,6 +21,7 @@ struct Components {
 /// Memory, here and below: 20 bytes per run of voxels along x; the number of runs grows with the boundary.
 Components components(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
 
+/// How many connected components there are; none is built.
 std::size_t component_count(const Octree& octree, Neighbours neighbours = Neighbours::Faces);
 
 /// The components that contain a seed. Seeds outside the object are ignored.

@@ -154,7 +154,7 @@ HeadrestRemoval remove_headrest(Scene scene, const HeadrestOptions& options) {
   }
   options.progress.at(0.9);
   HeadrestRemoval result{{}, kept_samples(taken, lattice, samples), foreign};
-  result.parts = foreign.is_empty() ? 0 : components(foreign).voxel_counts.size();
+  result.parts = component_count(foreign);
   result.voxels = taken.voxel_count();
   result.solid_mm3 = static_cast<double>(foreign.voxel_count()) * lattice.voxel_mm3();
   for_each_voxel(taken, [&](const glm::ivec3& p) { samples[sample_index(lattice.dims, p)] = options.fill; });
