@@ -120,7 +120,7 @@ Field record(std::string name, std::optional<Record> Owner::*member, std::string
                    held ? 1u : 0u,
                    [&held](std::size_t) -> void* { return &*held; },
                    {},
-                   [&held](const std::string&) -> void* { return &held.emplace(); }};
+                   [&held](const std::string&) -> void* { return &held.emplace(Record{}); }};
   };
   return {std::move(name), std::move(says), slot, std::move(fields)};
 }
