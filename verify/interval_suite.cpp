@@ -13,6 +13,7 @@
 
 #include "convert/surface/isosurface.h"
 #include "verify/phantom_scan.h"
+#include "voxel/scan/upright.h"
 #include "voxel/space/shared_progress.h"
 
 namespace octotomy::verify {
@@ -24,7 +25,7 @@ struct SpacingName {
 };
 const std::array<SpacingName, 4> spacings{
     {{{1, 1, 1}, "1:1:1"}, {{1, 1, 2}, "2:1:1"}, {{1, 1, 3}, "3:1:1"}, {{1, 1, 5}, "5:1:1"}}};
-constexpr std::array<const char*, 2> samplings{"shares", "blurred, noise"};
+constexpr std::array<const char*, 3> samplings{"shares", "blurred, noise", "tilted, noise"};
 
 /// An error over the truth, and over its half-width.
 struct Error {
@@ -62,6 +63,17 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::Scene& scan) {
   };
 }
 
+/// The same solid in slices that lean by 5 to 25 degrees in a direction by chance, about the same middle.
+SolidPhantom with_tilted_slices(SolidPhantom solid, Chance& chance) {
+  voxel::Universe& universe = solid.universe;
+  const double lean = std::tan(glm::radians(chance.between(5.0, 25.0))), towards = chance.between(0.0, 6.3);
+  glm::dmat4& axes = universe.lps_from_voxel;
+  axes[2] += glm::dvec4(std::cos(towards), std::sin(towards), 0.0, 0.0) * lean * axes[2].z;
+  ++universe.depth;  // leaning slices take more room
+  axes[3] = glm::dvec4(-0.5 * (universe.side() - 1) * glm::dvec3(axes[0] + axes[1] + axes[2]), 1.0);
+  return solid;
+}
+
 Errors errors_of(std::uint64_t seed, std::size_t number) {
   const std::size_t groups = measured_groups().size();
   Errors errors;
@@ -70,12 +82,16 @@ Errors errors_of(std::uint64_t seed, std::size_t number) {
   errors.group = number / (samplings.size() * spacings.size()) % groups;
   const std::uint64_t kind = number / (samplings.size() * spacings.size() * groups);
   Chance chance((seed << 32) + number);
-  const SolidPhantom solid =
+  SolidPhantom solid =
       measured_solid(measured_groups()[errors.group], kind, spacings[errors.spacing].mm, chance);
   PhantomScanOptions sampling;
   sampling.near_slices_only = true;
-  if (errors.sampling == 1) sampling.blur_voxels = 0.7, sampling.noise_share = 0.05;
-  const voxel::Scene scan = phantom_scan(digitise_partial(solid), sampling, chance);
+  if (errors.sampling == 1) sampling.blur_voxels = 0.7;
+  if (errors.sampling > 0) sampling.noise_share = 0.05;
+  const bool is_tilted = errors.sampling == 2;
+  if (is_tilted) solid = with_tilted_slices(std::move(solid), chance);
+  voxel::Scene scan = phantom_scan(digitise_partial(solid), sampling, chance);
+  if (is_tilted) scan = voxel::upright(scan);
   const brep::Solid surface = brep::trusted_solid(
       convert::isosurface(scan, 0.0, std::numeric_limits<double>::infinity()), brep::Proof::Construction);
   SampledFrom from;

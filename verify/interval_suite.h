@@ -28,9 +28,10 @@ struct IntervalSuiteOptions {
   voxel::Progress progress = {};
 };
 
-/// Solids of measured_groups() in random poses at spacings 1:1:1 to 5:1:1, as shares and as a blurred scan
-/// with noise; a row for each, and in front one for each quantity of all. Throws std::invalid_argument
-/// without a solid; voxel::Stopped. Parallel; same answer on any thread count. Cost: about 0.2 s a solid.
+/// Solids of measured_groups() in random poses at spacings 1:1:1 to 5:1:1, as shares, as a blurred scan with
+/// noise, and as one with noise and a tilted gantry, straightened; a row for each, and in front one for each
+/// quantity of all. Throws std::invalid_argument without a solid; voxel::Stopped. Parallel; same answer on
+/// any thread count. Cost: about 0.2 s a solid.
 std::vector<IntervalCoverage> interval_suite(const IntervalSuiteOptions& options = {});
 
 /// What is asked of them.

@@ -22,6 +22,7 @@
 #include "voxel/scan/audit.h"
 #include "voxel/scan/dicom_series.h"
 #include "voxel/scan/slice_plan.h"
+#include "voxel/scan/upright.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 
@@ -49,8 +50,12 @@ class SeriesReader {
     audit_rescale(stack);
     audit_padding(stack);
     audit_contents(stack);
-    if (!plan.is_copy())
-      std::visit([&](auto& samples) { samples = resample(stack, plan, samples); }, scene_.samples);
+    if (!plan.is_copy()) {
+      std::vector<glm::dvec2> aside_px(stack.slices.size(), glm::dvec2(0.0));
+      if (plan.leans)
+        for (std::size_t i = 0; i < aside_px.size(); ++i) aside_px[i] = stack.aside_px(stack.slices[i]);
+      scene_.samples = upright_samples(plan, stack.first().size_px, aside_px, scene_.samples);
+    }
     scene_.lattice = lattice_of(stack, plan);
     scene_.modality = stack.first().modality;
     audit_steps();
@@ -228,49 +233,6 @@ class SeriesReader {
            print("%td samples have the padding value %g, which is no measurement; they are kept: choose "
                  "windows without that value",
                  count, *padding));
-  }
-
-  template <typename Sample>
-  static Samples<Sample> resample(const Stack& stack, const Plan& plan, const Samples<Sample>& stored) {
-    const glm::ivec2 from_px = stack.first().size_px;
-    const std::size_t from_area = static_cast<std::size_t>(from_px.x) * static_cast<std::size_t>(from_px.y);
-    const std::size_t width = static_cast<std::size_t>(plan.size_px.x);
-    const std::size_t area = width * static_cast<std::size_t>(plan.size_px.y);
-    const double fill = static_cast<double>(*std::min_element(stored.begin(), stored.end()));
-    const auto in_slice = [&](std::size_t slice, glm::dvec2 p_px) {
-      // The slice ends half a pixel beyond the centres of its outer pixels.
-      if (p_px.x < -0.5 || p_px.y < -0.5 || p_px.x > from_px.x - 0.5 || p_px.y > from_px.y - 0.5) return fill;
-      p_px = glm::clamp(p_px, glm::dvec2(0.0), glm::dvec2(from_px - 1));
-      const glm::ivec2 low = glm::min(glm::ivec2(p_px), glm::max(from_px - 2, 0));
-      const glm::dvec2 t = p_px - glm::dvec2(low);
-      const auto at = [&](int x, int y) {
-        const glm::ivec2 i = glm::min(low + glm::ivec2(x, y), from_px - 1);
-        return static_cast<double>(
-            stored[slice * from_area + static_cast<std::size_t>(i.y) * static_cast<std::size_t>(from_px.x) +
-                   static_cast<std::size_t>(i.x)]);
-      };
-      const double lower = at(0, 0) * (1.0 - t.x) + at(1, 0) * t.x;
-      return t.y == 0.0 ? lower : lower * (1.0 - t.y) + (at(0, 1) * (1.0 - t.x) + at(1, 1) * t.x) * t.y;
-    };
-    std::vector<glm::dvec2> aside_px(stack.slices.size(), glm::dvec2(0.0));
-    if (plan.leans)
-      for (std::size_t i = 0; i < aside_px.size(); ++i) aside_px[i] = stack.aside_px(stack.slices[i]);
-    Samples<Sample> samples(area * plan.sources.size());
-    tbb::parallel_for(std::size_t{0}, plan.sources.size(), [&](std::size_t k) {
-      const Plan::Source source = plan.sources[k];
-      for (std::size_t i = 0; i < area; ++i) {
-        const glm::dvec2 p_px = glm::dvec2(plan.low_px) +
-                                glm::dvec2(static_cast<double>(i % width), static_cast<double>(i / width));
-        double value = in_slice(source.below, p_px - aside_px[source.below]);
-        if (source.above != source.below)
-          value += source.share_above * (in_slice(source.above, p_px - aside_px[source.above]) - value);
-        if constexpr (std::is_integral_v<Sample>)
-          samples[k * area + i] = static_cast<Sample>(std::floor(value + 0.5));
-        else
-          samples[k * area + i] = static_cast<Sample>(value);
-      }
-    });
-    return samples;
   }
 
   fs::path path_;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/upright.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <tbb/parallel_for.h>
+#include <type_traits>
+
+namespace octotomy::voxel {
+namespace {
+
+template <typename Stored>
+Stored interpolated(const SlicePlan& plan, const glm::ivec2& from_px, const std::vector<glm::dvec2>& aside_px,
+                    const Stored& stored) {
+  using Sample = typename Stored::value_type;
+  const std::size_t from_area = static_cast<std::size_t>(from_px.x) * static_cast<std::size_t>(from_px.y);
+  const std::size_t width = static_cast<std::size_t>(plan.size_px.x);
+  const std::size_t area = width * static_cast<std::size_t>(plan.size_px.y);
+  assert(stored.size() == from_area * aside_px.size() && !stored.empty());
+  const double fill = static_cast<double>(*std::min_element(stored.begin(), stored.end()));
+  const auto in_slice = [&](std::size_t slice, glm::dvec2 p_px) {
+    // The slice ends half a pixel beyond the centres of its outer pixels.
+    if (p_px.x < -0.5 || p_px.y < -0.5 || p_px.x > from_px.x - 0.5 || p_px.y > from_px.y - 0.5) return fill;
+    p_px = glm::clamp(p_px, glm::dvec2(0.0), glm::dvec2(from_px - 1));
+    const glm::ivec2 low = glm::min(glm::ivec2(p_px), glm::max(from_px - 2, 0));
+    const glm::dvec2 t = p_px - glm::dvec2(low);
+    const auto at = [&](int x, int y) {
+      const glm::ivec2 i = glm::min(low + glm::ivec2(x, y), from_px - 1);
+      return static_cast<double>(
+          stored[slice * from_area + static_cast<std::size_t>(i.y) * static_cast<std::size_t>(from_px.x) +
+                 static_cast<std::size_t>(i.x)]);
+    };
+    const double lower = at(0, 0) * (1.0 - t.x) + at(1, 0) * t.x;
+    return t.y == 0.0 ? lower : lower * (1.0 - t.y) + (at(0, 1) * (1.0 - t.x) + at(1, 1) * t.x) * t.y;
+  };
+  Stored samples(area * plan.sources.size());
+  tbb::parallel_for(std::size_t{0}, plan.sources.size(), [&](std::size_t k) {
+    const SlicePlan::Source source = plan.sources[k];
+    for (std::size_t i = 0; i < area; ++i) {
+      const glm::dvec2 p_px = glm::dvec2(plan.low_px) +
+                              glm::dvec2(static_cast<double>(i % width), static_cast<double>(i / width));
+      double value = in_slice(source.below, p_px - aside_px[source.below]);
+      if (source.above != source.below)
+        value += source.share_above * (in_slice(source.above, p_px - aside_px[source.above]) - value);
+      if constexpr (std::is_integral_v<Sample>)
+        samples[k * area + i] = static_cast<Sample>(std::floor(value + 0.5));
+      else
+        samples[k * area + i] = static_cast<Sample>(value);
+    }
+  });
+  return samples;
+}
+
+}  // namespace
+
+SceneSamples upright_samples(const SlicePlan& plan, const glm::ivec2& slice_px,
+                             const std::vector<glm::dvec2>& aside_px, const SceneSamples& stored) {
+  return std::visit(
+      [&](const auto& samples) -> SceneSamples { return interpolated(plan, slice_px, aside_px, samples); },
+      stored);
+}
+
+Scene upright(const Scene& scene) {
+  const glm::dmat4& axes = scene.lattice.lps_from_voxel;
+  const glm::dvec3 row_mm(axes[0]), column_mm(axes[1]), step_mm(axes[2]);
+  assert(std::abs(glm::dot(row_mm, column_mm)) < 1e-6 * glm::length(row_mm) * glm::length(column_mm));
+  const glm::dvec2 lean_px(glm::dot(step_mm, row_mm) / glm::dot(row_mm, row_mm),
+                           glm::dot(step_mm, column_mm) / glm::dot(column_mm, column_mm));
+  const int slices = scene.lattice.dims.z;
+  const glm::dvec2 last_px = lean_px * static_cast<double>(slices - 1);
+  SlicePlan plan;
+  plan.low_px = glm::ivec2(glm::floor(glm::min(last_px, 0.0)));
+  plan.size_px = glm::ivec2(scene.lattice.dims) + glm::ivec2(glm::ceil(glm::max(last_px, 0.0))) - plan.low_px;
+  std::vector<glm::dvec2> aside_px;
+  for (int k = 0; k < slices; ++k) {
+    aside_px.push_back(lean_px * static_cast<double>(k));
+    plan.sources.push_back({static_cast<std::size_t>(k), static_cast<std::size_t>(k), 0.0});
+  }
+  Scene made = scene;
+  made.samples = upright_samples(plan, glm::ivec2(scene.lattice.dims), aside_px, scene.samples);
+  made.lattice.dims = {plan.size_px, slices};
+  made.lattice.lps_from_voxel[2] = glm::dvec4(step_mm - lean_px.x * row_mm - lean_px.y * column_mm, 0.0);
+  made.lattice.lps_from_voxel[3] = axes * glm::dvec4(glm::dvec2(plan.low_px), 0.0, 1.0);
+  return made;
+}
+
+}  // namespace octotomy::voxel
