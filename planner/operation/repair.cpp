@@ -127,7 +127,8 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
   need_mesh_extension(repair.out);
   need_folder_of(repair.out);
   const Mended made = mended(repair, repair.path, bench.progress("repair"), bench.timings);
-  const auto& [read, repaired] = made;
+  const brep::Triangles& read = made.read;
+  const brep::Repair& repaired = made.repaired;
   if (repaired.surface.faces.empty())
     throw std::runtime_error(repair.path.string() + ": no triangle is left of it, so nothing is written");
   const auto timed = [&](const char* stage, const auto& run) {
