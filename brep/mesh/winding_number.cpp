@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 halve the triangles at the median centre along the longest axis; 2 sum the moments of each half from its
-// own; 3 for a point, descend where it is within `nearness` radii of a cluster, else take the moments.
-// Departure from the source: no third order, as only the level of a half is looked for.
+// own; 3 for eight neighbouring points along a Morton curve, descend where a cluster is within `nearness`
+// radii of their ball, else take the moments. Departure from the source: no third order, as only the level of
+// a half is looked for.
 #include "brep/mesh/winding_number.h"
 
 #include <algorithm>
@@ -9,10 +10,12 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "brep/mesh/halving.h"
+#include "brep/mesh/morton_tree.h"
 
 namespace octotomy::brep {
 namespace {
@@ -32,6 +35,10 @@ double solid_angle(const Corners& triangle, const glm::dvec3& p) {
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
   const double below = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
   const double above = glm::dot(a, glm::cross(b, c));
+  if (below > 4.0 * std::abs(above)) {  // a small angle: the series, to 1e-7
+    const double t = above / below, t2 = t * t;
+    return 2.0 * t * (1.0 - t2 * (1.0 / 3.0 - t2 * (1.0 / 5.0 - t2 * (1.0 / 7.0 - t2 / 9.0))));
+  }
   return above == 0.0 && below == 0.0 ? 0.0 : 2.0 * std::atan2(above, below);
 }
 
@@ -111,32 +118,66 @@ struct WindingTree::Tree {
     }
   }
 
-  double at(const glm::dvec3& p) const {
-    if (nodes.empty()) return 0.0;
-    double sum = 0.0;
+  /// Points near each other, which are answered by one descent.
+  struct Packet {
+    static constexpr std::size_t size = 8;
+    std::array<double, size> x, y, z, sum{};
+    glm::dvec3 centre_mm{0.0};
+    double radius_mm = 0.0;  ///< of a ball about the centre that holds all
+
+    /// Places beyond the last number repeat the first.
+    Packet(const std::vector<glm::dvec3>& points_mm, std::span<const std::uint32_t> numbers) {
+      glm::dvec3 low = points_mm[numbers.front()], high = low;
+      for (std::size_t k = 0; k < size; ++k) {
+        const glm::dvec3& p = points_mm[numbers[k < numbers.size() ? k : 0]];
+        x[k] = p.x, y[k] = p.y, z[k] = p.z;
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+      }
+      centre_mm = 0.5 * (low + high);
+      radius_mm = 0.5 * glm::distance(low, high);
+    }
+    glm::dvec3 at(std::size_t k) const { return {x[k], y[k], z[k]}; }
+  };
+
+  /// Adds what a cluster covers of the sphere about each point: the gradient of 1 / r and its derivative, on
+  /// the area vectors and their first moment.
+  static void add_moments(const Node& node, Packet& packet) {
+    const glm::dmat3& m = node.moment;
+    const double trace = m[0][0] + m[1][1] + m[2][2];
+    const double xy = m[1][0] + m[0][1], yz = m[2][1] + m[1][2], zx = m[0][2] + m[2][0];
+    for (std::size_t k = 0; k < Packet::size; ++k) {
+      const double x = node.centre_mm.x - packet.x[k], y = node.centre_mm.y - packet.y[k],
+                   z = node.centre_mm.z - packet.z[k];
+      const double by_r2 = 1.0 / (x * x + y * y + z * z), by_r3 = by_r2 * std::sqrt(by_r2);
+      const double moments =
+          x * (m[0][0] * x + xy * y) + y * (m[1][1] * y + yz * z) + z * (m[2][2] * z + zx * x);
+      packet.sum[k] +=
+          by_r3 * (node.normal.x * x + node.normal.y * y + node.normal.z * z + trace - 3.0 * by_r2 * moments);
+    }
+  }
+
+  void descend(Packet& packet) const {
     std::array<std::uint32_t, 64> waiting;
     std::size_t top = 0;
     waiting[top++] = 0;
     while (top > 0) {
       const std::uint32_t index = waiting[--top];
       const Node& node = nodes[index];
-      const glm::dvec3 r = node.centre_mm - p;
-      const double r2 = glm::dot(r, r), reach = nearness() * node.radius_mm;
-      if (r2 > reach * reach) {
-        // The gradient of 1 / (4 pi r) and its derivative, on the area vectors and their first moment.
-        const double r1 = std::sqrt(r2), r3 = r2 * r1;
-        const double trace = node.moment[0][0] + node.moment[1][1] + node.moment[2][2];
-        sum += glm::dot(node.normal, r) / r3 + trace / r3 - 3.0 * glm::dot(r, node.moment * r) / (r3 * r2);
+      const glm::dvec3 r = node.centre_mm - packet.centre_mm;
+      const double reach = nearness() * node.radius_mm + packet.radius_mm;
+      if (glm::dot(r, r) > reach * reach) {
+        add_moments(node, packet);
       } else if (node.count > 0) {
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-          sum += solid_angle(triangles[i], p);
+          for (std::size_t k = 0; k < Packet::size; ++k)
+            packet.sum[k] += solid_angle(triangles[i], packet.at(k));
       } else {
         assert(top + 2 <= waiting.size());
         waiting[top++] = node.first;
         waiting[top++] = index + 1;
       }
     }
-    return sum / (4.0 * std::numbers::pi);
   }
 };
 
@@ -146,11 +187,21 @@ WindingTree::WindingTree(WindingTree&&) noexcept = default;
 WindingTree& WindingTree::operator=(WindingTree&&) noexcept = default;
 
 std::vector<double> WindingTree::at(const std::vector<glm::dvec3>& points_mm) const {
-  std::vector<double> numbers(points_mm.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points_mm.size(), 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) numbers[i] = tree_->at(points_mm[i]);
-  });
-  return numbers;
+  std::vector<double> winding(points_mm.size(), 0.0);
+  if (tree_->nodes.empty()) return winding;
+  const std::vector<std::uint32_t> order = morton_order(points_mm).numbers;
+  constexpr std::size_t size = Tree::Packet::size;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, (order.size() + size - 1) / size, 32), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          const auto numbers = std::span(order).subspan(i * size, std::min(size, order.size() - i * size));
+          Tree::Packet packet(points_mm, numbers);
+          tree_->descend(packet);
+          for (std::size_t k = 0; k < numbers.size(); ++k)
+            winding[numbers[k]] = packet.sum[k] / (4.0 * std::numbers::pi);
+        }
+      });
+  return winding;
 }
 
 }  // namespace octotomy::brep

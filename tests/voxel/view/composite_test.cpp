@@ -16,8 +16,6 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int side = 32;
-
 Universe universe_about_origin() {
   return universe_around({glm::dvec3(-16.0), glm::dvec3(16.0)}, 1.0);
 }
