@@ -32,11 +32,11 @@ foreach(pair "app.js=text/javascript; charset=utf-8" "app.css=text/css; charset=
     continue()
   endif()
   file(READ ${FOLDER}/${name} hex HEX)
-  string(REGEX REPLACE "(..)" "\\\\x\\1" hex "${hex}")
-  # A literal in pieces: compilers take no line that long.
-  string(REGEX REPLACE "(................................................................................................)" "\\1\"\n\"" hex "${hex}")
+  # Character by character: a literal may have 65,536 of them.
+  string(REGEX REPLACE "(..)" "'\\\\x\\1'," hex "${hex}")
+  string(REGEX REPLACE "(.....................................................................................................)," "\\1,\n" hex "${hex}")
   file(SIZE ${FOLDER}/${name} size)
-  string(APPEND arrays "const char file_${number}[] =\n\"${hex}\";\n")
+  string(APPEND arrays "const char file_${number}[] = {\n${hex}};\n")
   string(APPEND entries "      {\"/${name}\", \"${type}\", {file_${number}, ${size}}},\n")
   math(EXPR number "${number} + 1")
 endforeach()
