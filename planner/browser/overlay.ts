@@ -84,7 +84,8 @@ interface Region {
 }
 /// Whether a mask's views are the panes': where the head is held, a mask of the scan's views has others.
 export const is_of_panes = (step: Step|undefined): boolean =>
-    step?.do === "mask" && !(step.views_of === "scan" && steps().some(({do: word}) => word === "head_position"));
+    step?.do === "mask" &&
+    !(step.views_of === "scan" && steps().some(({do: word}) => word === "head_position"));
 export const regions_of = (step: Step|undefined): Region[] =>
     is_of_panes(step) && Array.isArray(step?.regions) ? (step?.regions as unknown as Region[]) : [];
 
