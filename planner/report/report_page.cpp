@@ -83,13 +83,13 @@ std::string scale_bar(const ScenePicture& picture, double letters) {
                   grouped(bar_mm, bar_mm < 1.0 ? 1 : 0) + " mm");
 }
 
-/// The outlines of the plan's mask regions that were drawn in this picture's view.
+/// The outlines of the plan's mask regions that were drawn in this picture's view, of the head as it is held.
 std::string outlines(const Plan& plan, const ScenePicture& picture, double size) {
   std::string paths;
   for (const Step& step : plan.steps)
     if (const auto* mask = step.action.get_if<Mask>())
       for (const Mask::Region& region : mask->regions) {
-        if (region.view != picture.view) continue;
+        if (region.view != picture.view || (mask->views_of == "scan" && plan.lps_from_head)) continue;
         for (const auto& polygon : region.polygons_mm) {
           paths +=
               "<path fill=\"#c8452f\" fill-opacity=\".07\" stroke=\"#c8452f\" stroke-width=\"1.5\" "
@@ -160,12 +160,16 @@ std::string legend(const PictureGroup& group) {
 constexpr double small_letters = 24.0;
 
 std::string group_section(const Result& result, const PictureGroup& group) {
+  const bool two_in_a_row = group.most_mm > 0.0;
   std::string figures;
-  for (const ScenePicture& picture : group.pictures)
-    figures += figure(result.plan, picture, {view_title(picture), false, small_letters, group.marks_mm});
-  return element("h2", escaped(group.title)) +
-         (group.most_mm > 0.0 ? colour_scale(group.most_mm) : legend(group)) +
-         element(group.most_mm > 0.0 ? "div class=\"pictures two\"" : "div class=\"pictures four\"", figures);
+  for (const ScenePicture& picture : group.pictures) {
+    Placed placed{view_title(picture)};
+    if (!two_in_a_row) placed.letters = small_letters;
+    placed.marks_mm = group.marks_mm;
+    figures += figure(result.plan, picture, placed);
+  }
+  return element("h2", escaped(group.title)) + (two_in_a_row ? colour_scale(group.most_mm) : legend(group)) +
+         element(two_in_a_row ? "div class=\"pictures two\"" : "div class=\"pictures four\"", figures);
 }
 
 /// Pictures of one view before and after stand side by side; what remains is a grid of views.
