@@ -118,6 +118,7 @@ std::string view_title(const ScenePicture& picture) {
 /// How a picture stands on the page.
 struct Placed {
   std::string title;
+  std::string says;       ///< before the view's name, for who cannot see it
   bool outlined = false;  ///< with the outlines of mask regions
   double letters = 13.0;  ///< in the picture's pixels
   std::vector<glm::dvec3> marks_mm = {};
@@ -126,7 +127,8 @@ struct Placed {
 std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& placed) {
   const double size = picture.size_px, letters = placed.letters;
   std::string svg = "<svg viewBox=\"0 0 " + fixed(size) + " " + fixed(size) +
-                    "\" role=\"img\"><image width=\"" + fixed(size) + "\" height=\"" + fixed(size) +
+                    "\" role=\"img\" aria-label=\"" + escaped(placed.says + view_title(picture)) +
+                    "\"><image width=\"" + fixed(size) + "\" height=\"" + fixed(size) +
                     "\" href=\"data:image/png;base64," + base64(picture.png) + "\"/>";
   if (placed.outlined) svg += outlines(plan, picture, size);
   svg += scale_bar(picture, letters);
@@ -148,6 +150,13 @@ std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& 
   return element("figure", svg + "</svg>" + element("figcaption", placed.title));
 }
 
+/// "rest, maxilla".
+std::string names_of(const PictureGroup& group) {
+  std::string names;
+  for (const voxel::DrawnObject& object : group.objects) names += (names.empty() ? "" : ", ") + object.name;
+  return names;
+}
+
 std::string legend(const PictureGroup& group) {
   std::string items;
   for (const voxel::DrawnObject& object : group.objects)
@@ -163,7 +172,7 @@ std::string group_section(const Result& result, const PictureGroup& group) {
   const bool two_in_a_row = group.most_mm > 0.0;
   std::string figures;
   for (const ScenePicture& picture : group.pictures) {
-    Placed placed{view_title(picture)};
+    Placed placed{view_title(picture), names_of(group) + ", "};
     if (!two_in_a_row) placed.letters = small_letters;
     placed.marks_mm = group.marks_mm;
     figures += figure(result.plan, picture, placed);
@@ -185,8 +194,11 @@ std::string pictures(const Result& result) {
     for (const ScenePicture& picture : before->pictures)
       for (const ScenePicture& same : after->pictures)
         if (same.view == picture.view)
-          pairs += figure(result.plan, picture, {"<b>Before</b>, " + view_title(picture), true}) +
-                   figure(result.plan, same, {"<b>After</b>, " + view_title(same)});
+          pairs +=
+              figure(result.plan, picture,
+                     {"<b>Before</b>, " + view_title(picture), "before: " + names_of(*before) + ", ", true}) +
+              figure(result.plan, same,
+                     {"<b>After</b>, " + view_title(same), "after: " + names_of(*after) + ", "});
     html += element("h2", "Before and after") + legend(*after) + element("div class=\"pictures two\"", pairs);
   }
   for (const PictureGroup& group : result.pictures)
