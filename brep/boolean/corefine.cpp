@@ -176,30 +176,34 @@ Films drop_films(Mesh& mesh, double thickness) {
   return films;
 }
 
-/// Whether some part connected across edges has none on the cut.
-bool has_uncut_part(const Mesh& mesh, const std::vector<bool>& on_cut) {
+/// A point that the operand had, of `known` ones, of each part connected across edges that has none on the
+/// cut.
+std::vector<std::uint32_t> uncut_parts(const Mesh& mesh, const std::vector<bool>& on_cut, std::size_t known) {
   std::vector<bool> seen(mesh.n_faces(), false);
   std::vector<Mesh::FaceHandle> flood;
+  std::vector<std::uint32_t> uncut;
   for (const auto seed : mesh.faces()) {
     if (seen[static_cast<std::size_t>(seed.idx())]) continue;
     seen[static_cast<std::size_t>(seed.idx())] = true;
     flood.assign(1, seed);
     bool is_cut = false;
+    std::size_t point = known;
     while (!flood.empty()) {
       const Mesh::FaceHandle face = flood.back();
       flood.pop_back();
       for (auto side = mesh.cfh_begin(face); side != mesh.cfh_end(face); ++side) {
         const auto edge = static_cast<std::size_t>(mesh.edge_handle(*side).idx());
         is_cut = is_cut || (edge < on_cut.size() && on_cut[edge]);
+        point = std::min(point, static_cast<std::size_t>(mesh.to_vertex_handle(*side).idx()));
         const Mesh::FaceHandle beyond = mesh.opposite_face_handle(*side);
         if (!beyond.is_valid() || seen[static_cast<std::size_t>(beyond.idx())]) continue;
         seen[static_cast<std::size_t>(beyond.idx())] = true;
         flood.push_back(beyond);
       }
     }
-    if (!is_cut) return true;
+    if (!is_cut) uncut.push_back(static_cast<std::uint32_t>(point));
   }
-  return false;
+  return uncut;
 }
 
 /// A result in an order of its own, without triangles that rounding left without area: a further Boolean
@@ -233,6 +237,7 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
     if (wanted[i]) output[i] = &meshes[i];
   const auto to = [&](std::size_t i) { return CGAL::parameters::vertex_point_map(PointMap{&meshes[i]}); };
   const double thickness = film_thickness(a, b);
+  const std::array<std::size_t, 2> points{a.n_vertices(), b.n_vertices()};
   std::vector<bool> cut_a, cut_b;
   StepBudget::left = step_limit(a, b);
   const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
@@ -253,7 +258,7 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
     corefined.has_open_film = corefined.has_open_film || films.has_open;
     corefined.results[i] = finished(meshes[i]);
   }
-  corefined.has_uncut_part = has_uncut_part(a, cut_a) || has_uncut_part(b, cut_b);
+  corefined.uncut = {uncut_parts(a, cut_a, points[0]), uncut_parts(b, cut_b, points[1])};
   return corefined;
 }
 

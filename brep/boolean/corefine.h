@@ -28,9 +28,10 @@ struct Corefined {
   /// coincide but for their last places.
   std::array<std::size_t, 4> films{};
   bool has_open_film = false;  ///< a part that thin ends at a border, so that it is not known for a film
-  /// Some connected part of a surface has no edge on the cut, though its triangles may touch the other
-  /// surface: such parts count as outside where the other surface is open.
-  bool has_uncut_part = false;
+  /// A point of each part of the operands that is connected across edges and has no edge on the cut, though
+  /// its triangles may touch the other surface: such parts count as outside where the other surface is open.
+  /// Points are numbered as in the operand if `flat` is 0.
+  std::array<std::vector<std::uint32_t>, 2> uncut;
   /// Triangles of the operands without area that another diagonal took out, see flat_triangles.h.
   std::size_t flat = 0;
   bool meets_itself = false;  ///< an operand's triangles intersect near the cut; the results are a guess

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/intersecting_triangles.h"
 #include "brep/mesh/measure.h"
 
@@ -31,6 +32,7 @@ constexpr std::size_t probes_worth_a_tree = 64;
 
 using Place = std::array<double, 3>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
+using EdgePlace = std::pair<Place, Place>;
 
 Place place_of(const glm::dvec3& p) {
   return {p.x, p.y, p.z};
@@ -40,11 +42,18 @@ Edge edge_of(std::uint32_t v, std::uint32_t w) {
   return {std::min(v, w), std::max(v, w)};
 }
 
-/// A solid's parts at hand, for loops over all triangles.
+/// Where an edge lies, and its points in the order of their places.
+std::pair<EdgePlace, Edge> placed(const Triangles& triangles, const Edge& edge) {
+  const Place p = place_of(triangles.points_mm[edge.first]), q = place_of(triangles.points_mm[edge.second]);
+  if (q < p) return {{q, p}, {edge.second, edge.first}};
+  return {{p, q}, edge};
+}
+
+/// A solid and its triangles as they are to be cut: its own, or others of the same surface.
 struct Operand {
   const Solid& solid;
-  const Mesh& mesh = solid.mesh();
-  const Triangles& triangles = solid.triangles();
+  const Mesh& mesh;
+  const Triangles& triangles;
 };
 
 /// What keeps a Boolean from being made near the cut only.
@@ -54,15 +63,16 @@ struct Obstacle : std::runtime_error {
 
 /// One operand, told apart into near triangles and far parts.
 struct Side {
-  std::vector<std::uint8_t> near;         ///< 1 for each near triangle
-  std::vector<std::uint32_t> near_faces;  ///< ascending
-  std::vector<std::uint32_t> part;        ///< of each point that far triangles have; none else
-  std::vector<std::uint32_t> first;       ///< a point of each part
-  std::vector<double> volumes_mm3;        ///< of the cones over each part
-  std::map<Edge, std::uint32_t> border;   ///< the part beyond each edge between near and far, by its points
-  std::map<Place, std::uint32_t> border_points;
-  std::vector<std::uint8_t> inside;  ///< 1 for each part inside the other solid
-  std::vector<std::uint8_t> known;   ///< 1 for each part that a border has placed
+  std::vector<std::uint8_t> near;          ///< 1 for each near triangle
+  std::vector<std::uint32_t> near_faces;   ///< ascending
+  std::vector<std::uint32_t> part;         ///< of each point that far triangles have; none else
+  std::vector<std::uint32_t> first;        ///< a point of each part, off the other surface
+  std::vector<std::uint8_t> touching;      ///< 1 for each far point that may lie on the other surface
+  std::vector<double> volumes_mm3;         ///< of the cones over each part
+  std::map<Edge, std::uint32_t> border;    ///< the part beyond each edge between near and far, by its points
+  std::map<EdgePlace, Edge> border_edges;  ///< the same edges by where they lie, points in that order
+  std::vector<std::uint8_t> inside;        ///< 1 for each part inside the other solid
+  std::vector<std::uint8_t> known;         ///< 1 for each part that a border has placed
 
   /// Of a far triangle.
   std::uint32_t part_of(const std::array<std::uint32_t, 3>& face) const { return part[face[0]]; }
@@ -80,6 +90,7 @@ void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting
   const Mesh& mesh = operand.mesh;
   assert(operand.triangles.faces.size() == mesh.n_faces());
   side.near.assign(operand.triangles.faces.size(), 0);
+  side.touching.assign(operand.triangles.points_mm.size(), 0);
   std::vector<std::uint32_t> unseen;
   const auto mark = [&](std::uint32_t f) {
     assert(f < side.near.size());
@@ -103,8 +114,8 @@ void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting
   std::sort(side.near_faces.begin(), side.near_faces.end());
 }
 
-/// Joins the far triangles into parts wherever they share a point: no far point lies on the other surface, so
-/// each is wholly inside or outside, and so are all triangles about it.
+/// Joins the far triangles into parts wherever they share a point: the other surface cuts none of them, so
+/// each part is wholly inside or outside.
 void find_parts(const Operand& operand, Side& side) {
   const auto& faces = operand.triangles.faces;
   DisjointSets parts(operand.triangles.points_mm.size());
@@ -116,22 +127,29 @@ void find_parts(const Operand& operand, Side& side) {
     for (const std::uint32_t v : faces[f]) side.part[v] = 0;
   }
   // A part is named by its least point, so it is numbered before the others.
+  side.first.clear();
   for (std::uint32_t v = 0; v < side.part.size(); ++v) {
     if (side.part[v] == none) continue;
     if (parts.set_of(v) == v) {
       side.part[v] = static_cast<std::uint32_t>(side.first.size());
-      side.first.push_back(v);
+      side.first.push_back(none);
     } else {
       assert(parts.set_of(v) < v);
       side.part[v] = side.part[parts.set_of(v)];
     }
+    std::uint32_t& first = side.first[side.part[v]];
+    if (first == none && !side.touching[v]) first = v;
   }
+  if (std::find(side.first.begin(), side.first.end(), none) != side.first.end())
+    throw Obstacle("a part of an operand touches the other surface with all its points");
   side.inside.assign(side.first.size(), 0);
   side.known.assign(side.first.size(), 0);
 }
 
 void find_border(const Operand& operand, Side& side) {
   const Mesh& mesh = operand.mesh;
+  side.border.clear();
+  side.border_edges.clear();
   for (const std::uint32_t f : side.near_faces) {
     Mesh::HalfedgeHandle h = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
     for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
@@ -140,11 +158,9 @@ void find_border(const Operand& operand, Side& side) {
       const auto to = static_cast<std::uint32_t>(mesh.to_vertex_handle(h).idx());
       assert(side.part[from] != none && side.part[from] == side.part[to]);
       side.border[edge_of(from, to)] = side.part[from];
-      for (const std::uint32_t v : {from, to}) {
-        const auto [known, is_new] =
-            side.border_points.try_emplace(place_of(operand.triangles.points_mm[v]), v);
-        if (known->second != v) throw Obstacle("sheets of an operand touch at a border");
-      }
+      const auto [place, edge] = placed(operand.triangles, {from, to});
+      if (!side.border_edges.try_emplace(place, edge).second)
+        throw Obstacle("sheets of an operand touch along a border");
     }
   }
 }
@@ -166,21 +182,51 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
   for (std::size_t part = 0; part < lost.size(); ++part) side.volumes_mm3[part] += lost[part];
 }
 
-Mesh patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) {
+/// Some triangles of an operand by themselves.
+struct Patch {
+  Mesh mesh;
+  std::vector<std::uint32_t> points;  ///< of the operand, in the order of the mesh's
+};
+
+Patch patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) {
   Triangles patch;
-  std::vector<std::uint32_t> number(operand.triangles.points_mm.size(), none);
+  std::vector<std::uint32_t> number(operand.triangles.points_mm.size(), none), points;
   for (const std::uint32_t f : faces) {
     std::array<std::uint32_t, 3> face = operand.triangles.faces[f];
     for (std::uint32_t& v : face) {
       if (number[v] == none) {
         number[v] = static_cast<std::uint32_t>(patch.points_mm.size());
         patch.points_mm.push_back(operand.triangles.points_mm[v]);
+        points.push_back(v);
       }
       v = number[v];
     }
     patch.faces.push_back(face);
   }
-  return mesh_of(patch);
+  return {mesh_of(patch), std::move(points)};
+}
+
+/// Takes the near triangles that hang together with the points for far ones: they touch the other surface,
+/// and it does not cut them.
+void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& points, Side& side) {
+  const Mesh& mesh = operand.mesh;
+  std::vector<std::uint32_t> flood;
+  const auto take = [&](Mesh::FaceHandle face) {
+    const auto f = static_cast<std::uint32_t>(face.idx());
+    if (!side.near[f]) return;
+    side.near[f] = 0;
+    flood.push_back(f);
+  };
+  for (const std::uint32_t v : points)
+    for (auto face = mesh.cvf_begin(Mesh::VertexHandle(static_cast<int>(v))); face.is_valid(); ++face)
+      take(*face);
+  while (!flood.empty()) {
+    const Mesh::FaceHandle face(static_cast<int>(flood.back()));
+    for (const std::uint32_t v : operand.triangles.faces[flood.back()]) side.touching[v] = 1;
+    flood.pop_back();
+    for (auto beyond = mesh.cff_begin(face); beyond.is_valid(); ++beyond) take(*beyond);
+  }
+  std::erase_if(side.near_faces, [&](std::uint32_t f) { return !side.near[f]; });
 }
 
 /// A near result's points that lie on a border, as points of an operand.
@@ -193,25 +239,25 @@ Seam seam_of(const Triangles& result, const Side& a, const Side& b) {
   Seam seam;
   seam.on_a.assign(result.points_mm.size(), none);
   seam.on_b.assign(result.points_mm.size(), none);
-  const auto find = [&](const Side& side, std::uint32_t v) {
-    const auto found = side.border_points.find(place_of(result.points_mm[v]));
-    return found == side.border_points.end() ? none : found->second;
-  };
   std::map<Edge, int> sides;
   for (const auto& face : result.faces)
     for (std::size_t k = 0; k < 3; ++k) ++sides[edge_of(face[k], face[(k + 1) % 3])];
+  // Points are known by the edges that end there: where sheets touch in a point, one has it twice, and a new
+  // point may have been rounded to its place.
+  const auto know = [](std::vector<std::uint32_t>& on, std::uint32_t v, std::uint32_t point) {
+    if (on[v] != none && on[v] != point) throw Obstacle("sheets of an operand touch at a border");
+    on[v] = point;
+  };
   for (const auto& [edge, count] : sides) {
     if (count != 1) continue;
-    // Only ends of such edges: a new point may have been rounded to the place of one.
-    for (const std::uint32_t v : {edge.first, edge.second}) {
-      seam.on_a[v] = find(a, v);
-      seam.on_b[v] = find(b, v);
-    }
-    const Edge in_a = edge_of(seam.on_a[edge.first], seam.on_a[edge.second]);
-    const Edge in_b = edge_of(seam.on_b[edge.first], seam.on_b[edge.second]);
-    const bool is_a = a.border.contains(in_a), is_b = b.border.contains(in_b);
+    const auto [place, ends] = placed(result, edge);
+    const auto in_a = a.border_edges.find(place), in_b = b.border_edges.find(place);
+    const bool is_a = in_a != a.border_edges.end(), is_b = in_b != b.border_edges.end();
     if (is_a == is_b) throw Obstacle("a result ends where no border is");
-    (is_a ? seam.edges_a : seam.edges_b).insert(is_a ? in_a : in_b);
+    const Edge& known = is_a ? in_a->second : in_b->second;
+    know(is_a ? seam.on_a : seam.on_b, ends.first, known.first);
+    know(is_a ? seam.on_a : seam.on_b, ends.second, known.second);
+    (is_a ? seam.edges_a : seam.edges_b).insert(edge_of(known.first, known.second));
   }
   return seam;
 }
@@ -319,33 +365,44 @@ std::array<Side, 2> sides_of(const Operand& a, const Operand& b) {
   const std::size_t near = sides[0].near_faces.size() + sides[1].near_faces.size();
   if (2 * near > a.triangles.faces.size() + b.triangles.faces.size())
     throw Obstacle("more than half of the triangles are near the cut");
-  for (std::size_t s = 0; s < 2; ++s) {
-    find_parts(s == 0 ? a : b, sides[s]);
-    find_border(s == 0 ? a : b, sides[s]);
-  }
   return sides;
 }
 
-Corefined corefine_near(const Operand& a, const Operand& b, const std::array<Side, 2>& sides,
+/// Corefines the near triangles. Those that only touch the other surface become far ones.
+Corefined corefine_near(const std::array<Operand, 2>& operands, std::array<Side, 2>& sides,
                         const Wanted& wanted, const std::stop_token& stop) {
   Corefined corefined;
-  if (sides[0].near_faces.empty() && sides[1].near_faces.empty()) {
-    corefined.results.fill(Triangles());
-    return corefined;
+  for (const bool again : {false, true}) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      find_parts(operands[s], sides[s]);
+      find_border(operands[s], sides[s]);
+    }
+    if (sides[0].near_faces.empty() && sides[1].near_faces.empty()) {
+      if (again) throw Obstacle("the surfaces touch without cutting");
+      corefined.results.fill(Triangles());
+      return corefined;
+    }
+    const Patch a = patch_of(operands[0], sides[0].near_faces),
+                b = patch_of(operands[1], sides[1].near_faces);
+    corefined = corefine(a.mesh, b.mesh, {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
+    if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
+    if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
+      throw Obstacle("faces coincide but for rounding, near the cut and perhaps beyond");
+    if (corefined.uncut[0].empty() && corefined.uncut[1].empty()) return corefined;
+    if (again || corefined.flat > 0) throw Obstacle("the surfaces touch without cutting");
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Patch& patch = s == 0 ? a : b;
+      for (std::uint32_t& v : corefined.uncut[s]) v = patch.points.at(v);
+      take_as_far(operands[s], corefined.uncut[s], sides[s]);
+    }
   }
-  corefined = corefine(patch_of(a, sides[0].near_faces), patch_of(b, sides[1].near_faces),
-                       {true, true, wanted[of_a_minus_b], wanted[of_b_minus_a]}, stop);
-  if (!corefined.failure.empty()) throw Obstacle(corefined.failure);
-  if (corefined.has_open_film || corefined.films != decltype(corefined.films){})
-    throw Obstacle("faces coincide but for rounding, near the cut and perhaps beyond");
-  if (corefined.has_uncut_part) throw Obstacle("the surfaces touch without cutting");
   return corefined;
 }
 
 void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::stop_token& stop,
          NearBoolean& answer) {
   std::array<Side, 2> sides = sides_of(a, b);
-  const Corefined corefined = corefine_near(a, b, sides, wanted, stop);
+  const Corefined corefined = corefine_near({a, b}, sides, wanted, stop);
   answer.meets_itself = corefined.meets_itself;
   answer.flat = corefined.flat;
 
@@ -378,18 +435,51 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
   }
 }
 
+/// A solid's surface without the triangles that have no area: where one of them reaches over the border it
+/// breaks a corefinement off.
+struct Flattened {
+  explicit Flattened(const Solid& solid) : mesh(solid.mesh()), taken(take_out_flat_triangles(mesh).taken()) {
+    triangles = triangles_of(mesh);
+  }
+  Mesh mesh;
+  std::size_t taken;
+  Triangles triangles;
+};
+
+/// Sews the same surfaces cut into other triangles, if they have any without area.
+void sew_flattened(const Solid& a, const Solid& b, const Wanted& wanted, const std::stop_token& stop,
+                   NearBoolean& answer) {
+  std::array<std::optional<Flattened>, 2> flattened;
+  const auto operand = [&](const Solid& solid, std::optional<Flattened>& made) -> Operand {
+    if (has_flat_triangles(solid.triangles())) made.emplace(solid);
+    if (!made) return {solid, solid.mesh(), solid.triangles()};
+    return {solid, made->mesh, made->triangles};
+  };
+  const Operand of_a = operand(a, flattened[0]), of_b = operand(b, flattened[1]);
+  const std::size_t taken =
+      (flattened[0] ? flattened[0]->taken : 0) + (flattened[1] ? flattened[1]->taken : 0);
+  if (taken == 0) return;
+  answer = {};
+  sew(of_a, of_b, wanted, stop, answer);
+  answer.flat += taken;
+}
+
 }  // namespace
 
 NearBoolean near_boolean(const Solid& a, const Solid& b, const Wanted& wanted, const std::stop_token& stop) {
   NearBoolean answer;
-  try {
-    sew({a}, {b}, wanted, stop, answer);
-    return answer;
-  } catch (const Obstacle& obstacle) {
-    answer = {};
-    answer.obstacle = obstacle.what();
-    return answer;
-  }
+  const auto attempt = [&](const auto& sew_them) {
+    try {
+      sew_them();
+    } catch (const Obstacle& obstacle) {
+      answer = {};
+      answer.obstacle = obstacle.what();
+    }
+  };
+  attempt([&] { sew({a, a.mesh(), a.triangles()}, {b, b.mesh(), b.triangles()}, wanted, stop, answer); });
+  if (!answer.obstacle.empty() || answer.meets_itself)
+    attempt([&] { sew_flattened(a, b, wanted, stop, answer); });
+  return answer;
 }
 
 }  // namespace octotomy::brep

@@ -21,9 +21,9 @@ struct NearBoolean {
 /// corefined as open surfaces and sewn back along borders that nothing has touched, point by point; what is
 /// left falls into parts wholly inside or outside, which the borders tell and a ray confirms. A wanted
 /// result's volume is that of its triangles; a witness's is the near triangles' and the parts'. Gives up,
-/// with the reason, where that is no gain or not certain: more than half of the triangles are near, a part
-/// only touches, faces all but coincide, a result is not manifold, or border, ray and seam disagree. Cost:
-/// linear in all triangles, some 0.2 us each, and corefine()'s for the near ones.
+/// with the reason, where that is no gain or not certain: more than half of the triangles are near, the
+/// surfaces only touch, faces all but coincide, a result is not manifold, or border, ray and seam disagree.
+/// Cost: linear in all triangles, some 0.2 us each, and corefine()'s for the near ones.
 NearBoolean near_boolean(const Solid& a, const Solid& b, const Wanted& wanted,
                          const std::stop_token& stop = {});
 

@@ -14,10 +14,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double reach_mm = 3.0;
 
-glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
-  return glm::dvec3(motion * glm::dvec4(p_mm, 1.0));
-}
-
 Json point_json(const glm::dvec3& p) {
   return {p.x, p.y, p.z};
 }

@@ -10,6 +10,11 @@
 
 namespace octotomy::planner {
 
+/// The point after a motion.
+inline glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
+  return glm::dvec3(motion * glm::dvec4(p_mm, 1.0));
+}
+
 /// What each moved object's last step moved, in the order of the objects: the motion, its turns, the
 /// displacement of the object's centroid and of the landmarks that lie on it, in words and along the head's
 /// directions; where earlier steps moved the object, too, the displacements since the scan. Landmarks go with

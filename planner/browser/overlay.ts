@@ -82,8 +82,12 @@ interface Region {
   view: string;
   polygons_mm: Vec2[][];
 }
+/// Whether a mask's views are the panes': where the head is held, a mask of the scan's views has others.
+export const is_of_panes = (step: Step|undefined): boolean =>
+    step?.do === "mask" &&
+    !(step.views_of === "scan" && steps().some(({do: word}) => word === "head_position"));
 export const regions_of = (step: Step|undefined): Region[] =>
-    step?.do === "mask" && Array.isArray(step.regions) ? (step.regions as unknown as Region[]) : [];
+    is_of_panes(step) && Array.isArray(step?.regions) ? (step?.regions as unknown as Region[]) : [];
 
 function draw_regions(pane: Pane, context: CanvasRenderingContext2D): void {
   const step = step_of(state.selected);

@@ -5,7 +5,7 @@ import {add_step, add_steps, edit, free_id, replace_step} from "./actions";
 import {look_of, makes_shape, operands} from "./drawn_objects";
 import {button, el} from "./html";
 import {dot_at, ink, line, text} from "./ink";
-import {region_view, regions_of, uv_pixel} from "./overlay";
+import {is_of_panes, region_view, regions_of, uv_pixel} from "./overlay";
 import type {Pane} from "./panes";
 import {Json, Step} from "./protocol";
 import {notify, selected_step, set, state, step_of, steps} from "./state";
@@ -160,7 +160,7 @@ async function close(): Promise<void> {
   drawn = [];
   pointed = null;
   const step = selected_step();
-  if (step?.do !== "mask") {
+  if (!step || !is_of_panes(step)) {
     await add_step(
         {id: free_id("cut"), do: "mask", regions: [{view, polygons_mm: [polygon]}]}, `region in ${view}`);
     return;

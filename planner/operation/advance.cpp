@@ -8,7 +8,6 @@
 #include "planner/measure/result_json.h"
 #include "planner/operation/first_contact.h"
 #include "planner/operation/move.h"
-#include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 
@@ -71,16 +70,8 @@ std::string definition(const Advance& asked, const Objects&) {
          asked.against.name;
 }
 
-void voxels(const Advance& asked, const VoxelBench& bench, VoxelSide& made) {
-  move_voxels(asked.object.name, asked.moved_from_still, bench, made);
-}
-
-void triangles(const Advance& asked, const MeshBench& bench, MeshSide& made) {
-  move_triangles(asked.object.name, asked.moved_from_still, bench, made);
-}
-
 void bound(const Advance& asked, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(asked.object.name), asked.moved_from_still, bench.universe, made);
+  move_bound(asked, bench, made);
   made.moved->details = {{"contact_after_mm", asked.contact_after_mm},
                          {"contact_mm", to_json(asked.contact_mm)}};
 }
@@ -106,7 +97,7 @@ Operation advance_operation() {
       .of_head()
       .check(check)
       .settle(settle)
-      .object(definition, voxels, triangles, bound);
+      .object(definition, moved_voxels<Advance>, moved_triangles<Advance>, bound);
 }
 
 }  // namespace octotomy::planner

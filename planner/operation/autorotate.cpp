@@ -8,7 +8,6 @@
 #include "planner/measure/result_json.h"
 #include "planner/operation/first_contact.h"
 #include "planner/operation/move.h"
-#include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/measure/measure.h"
@@ -84,16 +83,8 @@ std::string definition(const Autorotate& asked, const Objects&) {
          asked.against.name;
 }
 
-void voxels(const Autorotate& asked, const VoxelBench& bench, VoxelSide& made) {
-  move_voxels(asked.object.name, asked.moved_from_still, bench, made);
-}
-
-void triangles(const Autorotate& asked, const MeshBench& bench, MeshSide& made) {
-  move_triangles(asked.object.name, asked.moved_from_still, bench, made);
-}
-
 void bound(const Autorotate& asked, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(asked.object.name), asked.moved_from_still, bench.universe, made);
+  move_bound(asked, bench, made);
   made.moved->details = {{"closed_deg", asked.closed_deg}, {"contact_mm", to_json(asked.contact_mm)}};
 }
 
@@ -117,7 +108,7 @@ Operation autorotate_operation() {
         "condyles": [[-50, -5, -15], [50, -5, -15]]})")
       .check(check)
       .settle(settle)
-      .object(definition, voxels, triangles, bound);
+      .object(definition, moved_voxels<Autorotate>, moved_triangles<Autorotate>, bound);
 }
 
 }  // namespace octotomy::planner

@@ -37,9 +37,9 @@ brep::Prism prism_of(const Mask::Region& region, const glm::dvec3& low_mm, const
           middle_mm + 1.6 * size_mm};
 }
 
-/// The motion from views of the scan to views of the head as it is held; none where they are the same.
-std::optional<glm::dmat4> held(const Objects& objects) {
-  if (objects.lps_from_head == glm::dmat3(1.0)) return std::nullopt;
+/// The motion from views of the scan to those of the mask; none where they are the same.
+std::optional<glm::dmat4> held(const Mask& mask, const Objects& objects) {
+  if (mask.views_of == "scan" || objects.lps_from_head == glm::dmat3(1.0)) return std::nullopt;
   return glm::dmat4(objects.lps_from_head);
 }
 
@@ -75,7 +75,7 @@ std::string definition(const Mask& mask, const Objects&) {
 
 void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
   if (!mask.regions.empty()) made.symbol = voxel::Expression(mask_of(mask));
-  if (const auto turned = held(bench.objects); turned && made.symbol)
+  if (const auto turned = held(mask, bench.objects); turned && made.symbol)
     made.symbol = moved(*made.symbol, *turned);
   if (!mask.slices.empty()) {
     const voxel::Expression slices = read_slices(bench.folder / mask.slices, mask.structure);
@@ -103,14 +103,14 @@ void triangles(const Mask& mask, const MeshBench& bench, MeshSide& made) {
     made.shift_mm += met.shift_mm;
     solid = std::move(met.solid);
   }
-  const auto turned = held(bench.objects);
+  const auto turned = held(mask, bench.objects);
   made.whole = turned ? brep::moved(solid, *turned) : solid;
   made.lineage = "prisms of the regions";
 }
 
 void bound(const Mask& mask, const BoundBench& bench, Object& made) {
   if (mask.regions.empty()) return;
-  const auto turned = held(bench.objects);
+  const auto turned = held(mask, bench.objects);
   if (!turned) made.bound.planes = planes_of(mask_of(mask));
   std::vector<verify::DrawnRegion> drawn;
   for (const Mask::Region& region : mask.regions) drawn.push_back({region.view, region.polygons_mm});
@@ -130,6 +130,11 @@ Operation mask_operation() {
                             "Closed polygons of points [u, v] in the view's millimetres.")
                           .required()})
                  .from(1)
+                 .in_plans_only())
+      .takes(field("views_of", &Mask::views_of,
+                   "Whose views they are: of the head as it is held, or of the scan as it lies, which a head "
+                   "position does not turn.")
+                 .one_of({"head", "scan"})
                  .in_plans_only())
       .takes(field("slices", &Mask::slices,
                    "A file of regions on parallel slices, {\"view\", \"slices\": [{\"position_mm\", "

@@ -18,8 +18,9 @@ struct Mask {
     Polygons polygons_mm;
   };
   std::vector<Region> regions;
-  std::filesystem::path slices;  ///< a file of regions on parallel slices, which cut the others
-  std::string structure;         ///< the region of a structure set in that file
+  std::string views_of = "head";  ///< as it is held; or "scan", whatever holds the head
+  std::filesystem::path slices;   ///< a file of regions on parallel slices, which cut the others
+  std::string structure;          ///< the region of a structure set in that file
   // Of the verb.
   std::vector<std::string> region_files;   ///< VIEW:FILE
   std::vector<std::string> region_pixels;  ///< PICTURE.png:X,Y X,Y X,Y

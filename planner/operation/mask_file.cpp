@@ -77,7 +77,8 @@ voxel::Universe universe_around(const voxel::RegionMask& regions,
   return voxel::universe_around(bounds.box(), voxel_mm);
 }
 
-/// The regions as a plan's step; null where no step says the same.
+/// The regions as a step that encloses the same in any plan of the scan, however it holds the head; null
+/// where no step does.
 Json step_of(const std::vector<DrawnRegion>& drawn, bool is_cut_further) {
   Json regions = Json::array();
   for (const DrawnRegion& each : drawn) {
@@ -90,7 +91,7 @@ Json step_of(const std::vector<DrawnRegion>& drawn, bool is_cut_further) {
     regions.push_back({{"view", each.view}, {"polygons_mm", polygons}});
   }
   if (drawn.empty() || is_cut_further) return nullptr;
-  return {{"id", "mask"}, {"do", "mask"}, {"regions", regions}};
+  return {{"id", "mask"}, {"do", "mask"}, {"regions", regions}, {"views_of", "scan"}};
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 // fit is settled first, so that both kernels mirror about the same plane.
 #include "brep/align/mirror.h"
 
+#include <array>
+
 #include "planner/file/mesh_file.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/fit_rows.h"
@@ -17,6 +19,7 @@ namespace {
 struct Mirror {
   ObjectName object;
   std::optional<glm::dvec3> point_mm, normal;
+  std::vector<Mark> through;
   bool fit = false;
   double overlap = brep::MirrorFitOptions{}.overlap;
   int rounds = brep::MirrorFitOptions{}.max_rounds;
@@ -65,15 +68,32 @@ void check(const Mirror& mirror, const Place& place) {
     place.at("exactly").refuse("mirrors about a plane as it stands: add 'plane'");
   if (!mirror.plane.empty() && mirror.plane[1] == glm::dvec3(0.0))
     place.at("plane").refuse("its normal has no length");
+  if (!mirror.through.empty() && (mirror.point_mm || mirror.normal))
+    place.at("through").refuse("says the plane, as 'point_mm' and 'normal' do: keep one of the two");
+}
+
+/// The plane through three marks. Throws std::runtime_error where they stand on one line.
+void take_plane_through(const std::array<glm::dvec3, 3>& p_mm, Mirror& mirror) {
+  const glm::dvec3 a = p_mm[1] - p_mm[0], b = p_mm[2] - p_mm[0], across = glm::cross(a, b);
+  // A hundredth of the sides is a tenth of a millimetre in ten, which nobody places better.
+  if (!(glm::length(across) > 0.01 * glm::length(a) * glm::length(b)))
+    throw std::runtime_error(
+        "the three points of 'through' stand on one line: take one that is farther off it");
+  mirror.point_mm = p_mm[0];
+  mirror.normal = glm::normalize(across);
 }
 
 Mirror settle(const Mirror& mirror, const SettleBench& bench) {
-  if (!mirror.fit) return mirror;
+  Mirror settled = mirror;
+  if (!mirror.through.empty())
+    take_plane_through({mark_mm(mirror.through[0], bench.objects), mark_mm(mirror.through[1], bench.objects),
+                        mark_mm(mirror.through[2], bench.objects)},
+                       settled);
+  if (!mirror.fit) return settled;
   const Stopwatch watch(bench.timings, "fit");
-  const brep::MirrorFit found = fit(bench.object(mirror.object.name), mirror, bench.progress);
+  const brep::MirrorFit found = fit(bench.object(mirror.object.name), settled, bench.progress);
   bench.details = fit_json(found.plane, found);
   bench.findings.insert(bench.findings.end(), found.findings.begin(), found.findings.end());
-  Mirror settled = mirror;
   settled.point_mm = found.plane.point_mm;
   settled.normal = found.plane.normal;
   return settled;
@@ -162,6 +182,11 @@ Operation mirror_operation() {
                  .in_plans_only())
       .takes(field("normal", &Mirror::normal, "The plane's normal, LPS. Default: the patient's left.")
                  .direction()
+                 .in_plans_only())
+      .takes(field("through", &Mirror::through,
+                   "Three points of the plane instead: [x, y, z] or landmarks of the mid-line.")
+                 .from(3)
+                 .to(3)
                  .in_plans_only())
       .takes(field("fit", &Mirror::fit,
                    "Takes the plane that fits the object best, near the one given or about its own axes.")

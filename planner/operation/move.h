@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "planner/operation/trace.h"
 #include "planner/table/bench.h"
 #include "planner/table/operation.h"
 
@@ -29,5 +30,20 @@ void move_voxels(const std::string& object, const glm::dmat4& moved_from_still, 
                  VoxelSide& made);
 void move_triangles(const std::string& object, const glm::dmat4& moved_from_still, const MeshBench& bench,
                     MeshSide& made);
+
+// What an operation does whose motion was settled: its value says `object` and `moved_from_still`.
+
+template <typename Settled>
+void moved_voxels(const Settled& settled, const VoxelBench& bench, VoxelSide& made) {
+  move_voxels(settled.object.name, settled.moved_from_still, bench, made);
+}
+template <typename Settled>
+void moved_triangles(const Settled& settled, const MeshBench& bench, MeshSide& made) {
+  move_triangles(settled.object.name, settled.moved_from_still, bench, made);
+}
+template <typename Settled>
+void move_bound(const Settled& settled, const BoundBench& bench, Object& made) {
+  carry(bench.objects.at(settled.object.name), settled.moved_from_still, bench.universe, made);
+}
 
 }  // namespace octotomy::planner

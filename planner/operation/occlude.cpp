@@ -16,7 +16,6 @@
 #include "planner/measure/result_json.h"
 #include "planner/operation/first_contact.h"
 #include "planner/operation/move.h"
-#include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 
@@ -154,16 +153,8 @@ std::string definition(const Occlude& asked, const Objects&) {
          std::to_string(asked.places.size()) + (asked.places.size() == 1 ? " place" : " places");
 }
 
-void voxels(const Occlude& asked, const VoxelBench& bench, VoxelSide& made) {
-  move_voxels(asked.object.name, asked.moved_from_still, bench, made);
-}
-
-void triangles(const Occlude& asked, const MeshBench& bench, MeshSide& made) {
-  move_triangles(asked.object.name, asked.moved_from_still, bench, made);
-}
-
 void bound(const Occlude& asked, const BoundBench& bench, Object& made) {
-  carry(bench.objects.at(asked.object.name), asked.moved_from_still, bench.universe, made);
+  move_bound(asked, bench, made);
   made.moved->details = {{"distances_at_places_mm", asked.residuals_mm}, {"deepest_mm", asked.deepest_mm}};
   const double allowed_mm = voxel_mm(made);
   for (std::size_t i = 0; i < asked.residuals_mm.size(); ++i)
@@ -204,7 +195,7 @@ Operation occlude_operation() {
       .of_head()
       .check(check)
       .settle(settle)
-      .object(definition, voxels, triangles, bound);
+      .object(definition, moved_voxels<Occlude>, moved_triangles<Occlude>, bound);
 }
 
 }  // namespace octotomy::planner

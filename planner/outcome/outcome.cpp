@@ -118,15 +118,11 @@ Laid laid(const brep::Solid& moving, const brep::Mesh& fixed, const std::optiona
   }
 }
 
-glm::dvec3 through(const glm::dmat4& motion, const glm::dvec3& p_mm) {
-  return glm::dvec3(motion * glm::dvec4(p_mm, 1.0));
-}
-
 PointOutcome point_outcome(const std::string& name, const glm::dvec3& p_mm, const PieceOutcome& piece,
                            const glm::dmat3& head, const Laid& whole, const Laid& part) {
-  const glm::dvec3 planned = through(piece.planned, p_mm), achieved = through(piece.achieved, p_mm);
+  const glm::dvec3 planned = carried(piece.planned, p_mm), achieved = carried(piece.achieved, p_mm);
   const glm::dmat3 turned(whole.fit.fixed_from_moving);
-  const glm::dvec3 at = through(whole.fit.fixed_from_moving, achieved);
+  const glm::dvec3 at = carried(whole.fit.fixed_from_moving, achieved);
   const auto half_width = [&](const glm::dvec3& direction) {
     const glm::dvec3 along = turned * direction;
     return std::hypot(whole.half_width_mm(at, along), part.half_width_mm(at, along));

@@ -28,10 +28,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-glm::dvec3 carried(const glm::dmat4& motion, const glm::dvec3& p_mm) {
-  return glm::dvec3(motion * glm::dvec4(p_mm, 1.0));
-}
-
 /// What is wrong in one trial.
 struct Errors {
   std::map<std::string, glm::dvec3> landmarks_mm;

@@ -126,9 +126,13 @@ class Parser {
       refuse("there is no function '" + name + "': use min, max or abs");
     }
     need(',');
-    const double second = sum();
+    double value = first;
+    do {
+      const double next = sum();
+      value = name == "min" ? std::min(value, next) : std::max(value, next);
+    } while (take(','));
     need(')');
-    return name == "min" ? std::min(first, second) : std::max(first, second);
+    return value;
   }
 
   std::string_view text_;

@@ -27,10 +27,13 @@ double rounded(double value) {
   return std::round(value * 1e4) / 1e4 + 0.0;
 }
 
-/// The value with each formula in it answered.
+/// The value with each formula in it answered: "=" makes a number, "=?" whether it is other than 0.
 Json answered(const Json& value, const Values& names) {
-  if (value.is_string() && value.get_ref<const std::string&>().starts_with('='))
-    return rounded(value_of(std::string_view(value.get_ref<const std::string&>()).substr(1), names));
+  if (value.is_string() && value.get_ref<const std::string&>().starts_with('=')) {
+    const std::string_view formula = std::string_view(value.get_ref<const std::string&>()).substr(1);
+    if (formula.starts_with('?')) return value_of(formula.substr(1), names) != 0.0;
+    return rounded(value_of(formula, names));
+  }
   if (!value.is_structured()) return value;
   Json made = value;
   for (Json& part : made) part = answered(part, names);

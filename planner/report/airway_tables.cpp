@@ -35,16 +35,17 @@ std::string plot(const Json& airway) {
   };
   const auto text = [&](const std::string& at_x, const std::string& at_y, const char* anchor,
                         const std::string& words) {
-    return "<text font-size=\"12\" font-family=\"sans-serif\" fill=\"#44525a\" x=\"" + at_x + "\" y=\"" +
+    return "<text font-size=\"12\" font-family=\"sans-serif\" fill=\"var(--soft)\" x=\"" + at_x + "\" y=\"" +
            at_y + "\" text-anchor=\"" + anchor + "\">" + words + "</text>";
   };
   const Json& least = airway.at("narrowest");
   return "<svg role=\"img\" aria-label=\"Area of the airway along its centre line\" viewBox=\"0 0 " +
          fixed(width) + " " + fixed(height) + "\" style=\"max-width:" + fixed(width) +
-         "px\"><path stroke=\"#9aa7ae\" d=\"M" + fixed(left) + " " + fixed(above) + "V" +
+         "px\"><path stroke=\"var(--soft)\" d=\"M" + fixed(left) + " " + fixed(above) + "V" +
          fixed(height - below) + "H" + fixed(width) + "\" fill=\"none\"/>" +
-         line("voxel_mm2", "#c97b2a", "stroke-dasharray=\"4 3\"") + line("mesh_mm2", "#1f5f7a", "") +
-         "<circle r=\"4\" fill=\"none\" stroke=\"#b3261e\" stroke-width=\"2\" cx=\"" +
+         line("voxel_mm2", "var(--second)", "stroke-dasharray=\"4 3\"") +
+         line("mesh_mm2", "var(--accent)", "") +
+         "<circle r=\"4\" fill=\"none\" stroke=\"var(--fail)\" stroke-width=\"2\" cx=\"" +
          x(least.at("along_mm")) + "\" cy=\"" + y(least.at("area_mm2")) + "\"/>" +
          text(fixed(left - 6.0), fixed(above + 8.0), "end", three_figures(most)) +
          text(fixed(left - 6.0), fixed(height - below), "end", "0") +
@@ -75,11 +76,14 @@ std::string airway_tables(const Json& measurements) {
                     three_figures(least.at("half_width_mm2").get<double>())) +
         figure_cell(number(least.at("voxel_mm2"), 1)) + figure_cell(number(least.at("mesh_mm2"), 1)) +
         "</tr>";
-    made += element("h3", "Airway " + escaped(one.at("id").get<std::string>())) + element("table", rows) +
-            element("p", "Narrowest " + number(least.at("along_mm"), 1) + " mm along its centre line of " +
-                             number(airway.at("length_mm"), 1) + " mm, at x " + number(at.at(0), 1) + ", y " +
-                             number(at.at(1), 1) + ", z " + number(at.at(2), 1) + " mm.") +
-            plot(airway) + list(one.at("findings").get<std::vector<std::string>>());
+    made +=
+        element("h3", "Airway " + escaped(one.at("id").get<std::string>())) + element("table", rows) +
+        element("p", "Narrowest " + number(least.at("along_mm"), 1) + " mm along its centre line of " +
+                         number(airway.at("length_mm"), 1) + " mm, at x " + number(at.at(0), 1) + ", y " +
+                         number(at.at(1), 1) + ", z " + number(at.at(2), 1) +
+                         " mm. What lies nearer to an end than the passage's radius does not count: the line "
+                         "is not settled there.") +
+        plot(airway) + list(one.at("findings").get<std::vector<std::string>>());
   }
   return made;
 }

@@ -4,7 +4,10 @@
 // gradation of factors is left to people, as it follows from a model risk that only they can state.
 #include "planner/report/credibility.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include "planner/report/html.h"
@@ -66,6 +69,31 @@ class Number {
                                      {"sources", names},
                                      {"factor", "calculation verification: discretization error"}});
   }
+  /// The other kernel's answer to the same question, which agrees within the half-width or contradicts.
+  void by_other_kernel(const Json& answer, const Json& half_width) {
+    const Json& value = json_.at("value");
+    if (!answer.is_number() || !value.is_number() || !half_width.is_number())
+      return gap("one kernel alone answered");
+    const double difference = std::abs(value.get<double>() - answer.get<double>());
+    const bool agrees = difference <= half_width.get<double>();
+    json_[agrees ? "supported_by" : "contradicted_by"].push_back(
+        {{"check", "the other kernel's answer"},
+         {"value", answer},
+         {"difference", difference},
+         {"factor", "calculation verification: discretization error"}});
+  }
+  /// How far typed errors reach into the number, of trials.
+  void by_trials(const Json& trials, const Json& doubt) {
+    Json names = Json::array();
+    for (const Json& source : doubt.at("sources")) names.push_back(source.at("name"));
+    json_["supported_by"].push_back({{"check", "trials"},
+                                     {"trials", trials.at("trials")},
+                                     {"seed", trials.at("seed")},
+                                     {"half_width", doubt.at("half_width")},
+                                     {"coverage", doubt.at("coverage")},
+                                     {"sources", names},
+                                     {"factor", "validation: model inputs"}});
+  }
   void gap(const std::string& text) { json_["gaps"].push_back(text); }
   Json json() && { return std::move(json_); }
 
@@ -97,6 +125,106 @@ void add_contacts(const Json& flap, const std::map<std::string, Json>& certifica
   }
 }
 
+/// Where two objects touch: both kernels tell how near, one alone how much.
+void add_contact_map(const Json& map, const std::map<std::string, Json>& certificates, Json& numbers) {
+  const std::string id = map.at("id").get<std::string>();
+  const std::string pair =
+      map.at("object").get<std::string>() + " and " + map.at("against").get<std::string>();
+  const auto add = [&](Number number) {
+    for (const char* key : {"object", "against"})
+      number.by_certificate(certificates, map.at(key).get<std::string>());
+    numbers.push_back(std::move(number).json());
+  };
+  std::size_t place = 0;
+  for (const Json& contact : map.at("contacts")) {
+    Number number(id, "nearest at contact " + std::to_string(++place) + " of " + pair,
+                  contact.at("nearest_mm"), "mm");
+    number.by_half_width(contact.at("half_width_mm"), Json());
+    // Areas are told of meshes alone: without one the voxels' distance is the number itself.
+    number.by_other_kernel(map.at("area_mm2").is_number() ? contact.at("voxel_nearest_mm") : Json(),
+                           contact.at("half_width_mm"));
+    add(std::move(number));
+  }
+  if (map.at("certain_count").is_number()) {
+    Number number(id, "contacts of " + pair + " that are certain", map.at("certain_count"), "");
+    number.gap(
+        "a count of contacts whose half-width reaches no farther than the limit: nothing else checks it");
+    add(std::move(number));
+  }
+  for (const auto& [key, what, unit] : {std::tuple("area_mm2", "area in contact of ", "mm2"),
+                                        std::tuple("overlap_mm3", "overlap of ", "mm3")})
+    if (map.contains(key) && map.at(key).is_number()) {
+      Number number(id, what + pair, map.at(key), unit);
+      number.gap("one kernel alone tells it, without a half-width");
+      add(std::move(number));
+    }
+}
+
+void add_airway(const Json& one, const std::map<std::string, Json>& certificates, Json& numbers) {
+  const Json &airway = one.at("airway"), &least = airway.at("narrowest");
+  const std::string object = one.at("object").get<std::string>();
+  const auto add = [&](const std::string& what, const Json& value, const char* unit, const Json& half_width,
+                       const Json& terms, const Json& other) {
+    Number number(one.at("id").get<std::string>(), what + " of " + object, value, unit);
+    number.by_half_width(half_width, terms);
+    number.by_other_kernel(other, half_width);
+    number.by_certificate(certificates, object);
+    numbers.push_back(std::move(number).json());
+  };
+  add("airway volume", airway.at("volume_mm3"), "mm3", airway.at("volume_half_width_mm3"), Json(),
+      airway.at("volume_mesh_mm3"));
+  // The mesh's area is the one told where there is one; it must not vouch for itself.
+  add("narrowest section", least.at("area_mm2"), "mm2", least.at("half_width_mm2"),
+      least.value("half_width_terms", Json()),
+      least.at("mesh_mm2").is_number() ? least.at("voxel_mm2") : Json());
+  add("centre line's length", airway.at("length_mm"), "mm", Json(), Json(), Json());
+}
+
+void add_trials(const Json& trials, Json& numbers) {
+  for (const Json& doubt : trials.at("doubts")) {
+    Number number(trials.at("id").get<std::string>(),
+                  doubt.at("what").get<std::string>() + " of " + doubt.at("of").get<std::string>(),
+                  doubt.at("value"), doubt.at("unit").get<std::string>());
+    number.by_trials(trials, doubt);
+    number.gap("how large the errors are was typed, and no kernel made the objects of a trial");
+    numbers.push_back(std::move(number).json());
+  }
+}
+
+/// What pieces moved: the plan's own motion, which the pieces' certificates saw from both kernels.
+void add_movements(const Json& result, const std::map<std::string, Json>& certificates, Json& numbers) {
+  for (const Json& moved : result.value("movements", Json::array())) {
+    const std::string object = moved.at("object").get<std::string>();
+    const auto add = [&](const std::string& what, const Json& value, const char* unit) {
+      Number number(object, what, value, unit);
+      number.by_certificate(certificates, object);
+      number.gap("it is what the plan says: how near the operation comes, octotomy outcome tells");
+      numbers.push_back(std::move(number).json());
+    };
+    const auto add_all = [&](const Json& from, const char* unit, const std::vector<std::string>& names) {
+      for (const std::string& name : names) add(name, from.at(name + "_" + unit), unit);
+    };
+    if (!moved.at("centroid").is_null()) add_all(moved.at("centroid"), "mm", {"forward", "left", "up"});
+    add_all(moved, "deg", {"pitch", "yaw", "roll"});
+  }
+}
+
+/// Values of landmarks: their own placement is all that stands behind them.
+void add_cephalometry(const Json& result, Json& numbers) {
+  if (!result.contains("cephalometry") || !result.at("cephalometry").is_object()) return;
+  for (const Json& measure : result.at("cephalometry").at("measures"))
+    for (const char* when : {"before", "after"}) {
+      const Json& told = measure.at(when);
+      if (told.is_null()) continue;
+      Number number("cephalometry", measure.at("name").get<std::string>() + " " + when, told.at("value"),
+                    measure.at("unit").get<std::string>());
+      number.by_half_width(told.value("half_width", Json()), Json::array({{{"name", "landmarks"}}}),
+                           result.at("cephalometry").at("coverage"));
+      number.gap("the landmarks were placed by people: how well is an assumption of this run");
+      numbers.push_back(std::move(number).json());
+    }
+}
+
 Json numbers_of(const Json& result) {
   const std::map<std::string, Json> certificates = certificates_of(result);
   Json numbers = Json::array();
@@ -120,7 +248,12 @@ Json numbers_of(const Json& result) {
         numbers.push_back(std::move(number).json());
       }
     if (one.contains("osteotomies")) add_contacts(one, certificates, numbers);
+    if (one.contains("contacts")) add_contact_map(one, certificates, numbers);
+    if (one.contains("airway")) add_airway(one, certificates, numbers);
+    if (one.contains("doubts")) add_trials(one, numbers);
   }
+  add_movements(result, certificates, numbers);
+  add_cephalometry(result, numbers);
   return numbers;
 }
 
@@ -152,6 +285,25 @@ Json scan_evidence(const Json& result) {
                           {"of", check.at("check")},
                           {"verdict", check.at("verdict")}});
   return evidence;
+}
+
+/// The audit of the scans, and the errors of what else goes in that trials were told.
+Json input_evidence(const Json& result) {
+  Json evidence = scan_evidence(result);
+  for (const Json& one : result.at("measurements"))
+    if (one.contains("doubts"))
+      evidence.push_back({{"check", "trials"},
+                          {"step", one.at("id")},
+                          {"trials", one.at("trials")},
+                          {"seed", one.at("seed")},
+                          {"errors", one.at("errors")}});
+  return evidence;
+}
+
+bool has_trials(const Json& result) {
+  for (const Json& one : result.at("measurements"))
+    if (one.contains("doubts")) return true;
+  return false;
 }
 
 Json reader_evidence(const Json& result) {
@@ -193,8 +345,13 @@ Json factors_of(const Json& result) {
       factor(calculation, "use error", reader_evidence(result), "no reader signed this plan as it is"),
       factor(model, "model form", none,
              "bone is what lies in a window of samples: this run did not test that"),
-      factor(model, "model inputs", scan_evidence(result),
-             "also: errors of landmarks, typed numbers and segmentation were not told to this run"),
+      factor(
+          model, "model inputs", input_evidence(result),
+          has_trials(result)
+              ? "also: how large the errors of landmarks, saw, segmentation and seating are was typed, not "
+                "measured"
+              : "also: errors of landmarks, typed numbers and segmentation were not told to this run: a step "
+                "of trials tells how far they reach"),
       factor(comparator, "test samples", none, no_comparison),
       factor(comparator, "test conditions", none, no_comparison),
       factor(assessment, "equivalency of input parameters", none, no_comparison),
@@ -245,15 +402,30 @@ std::string text(const Json& json) {
   return escaped(json.is_string() ? json.get<std::string>() : json.dump());
 }
 
-/// "certificate of skull, PASS" in a list.
+std::string spaced(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  return key;
+}
+
+/// A value within a sentence.
+std::string in_line(const Json& value) {
+  if (value.is_number_float()) return three_figures(value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_structured()) return value.dump();
+  std::string line;
+  for (const auto& [key, one] : value.items())
+    line += (line.empty() ? "" : ", ") + (value.is_object() ? spaced(key) + " " : "") + in_line(one);
+  return line;
+}
+
+/// "certificate, object skull, verdict PASS" in a list.
 std::string lines_of(const Json& evidence) {
   std::vector<std::string> lines;
   for (const Json& one : evidence) {
     std::string line;
     for (const auto& [key, value] : one.items()) {
-      if (key == "factor" || value.is_null()) continue;
-      line += (line.empty() ? "" : ", ") + (key == "check" ? "" : key + " ") +
-              (value.is_string() ? value.get<std::string>() : value.dump());
+      if (key == "factor" || value.is_null() || (value.is_structured() && value.empty())) continue;
+      line += (line.empty() ? "" : ", ") + (key == "check" ? "" : spaced(key) + " ") + in_line(value);
     }
     lines.push_back(line);
   }

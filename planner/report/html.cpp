@@ -15,15 +15,17 @@ namespace {
 
 constexpr std::string_view style = R"css(
 :root{--ink:#1c2327;--soft:#5d6a72;--line:#d9dfe2;--wash:#f5f7f8;--accent:#1f5f7a;
---pass:#1d7a4c;--warn:#a56a00;--fail:#b3261e;--below:#50637a}
+--pass:#1d7a4c;--warn:#a56a00;--fail:#b3261e;--below:#50637a;--paper:#fff;--track:#e4e9eb;--second:#c97b2a}
+@media screen and (prefers-color-scheme:dark){:root{color-scheme:dark;--ink:#e6ebee;--soft:#a3b0b8;--line:#38434a;--wash:#1f272c;
+--accent:#7cc0de;--paper:#14191c;--track:#38434a;--second:#e0a25c}}
 *{box-sizing:border-box}
-body{margin:0;background:#fff;color:var(--ink);font:14px/1.5 "Inter","Segoe UI","Helvetica Neue",Helvetica,Arial,"DejaVu Sans",sans-serif;
+body{margin:0;background:var(--paper);color:var(--ink);font:14px/1.5 "Inter","Segoe UI","Helvetica Neue",Helvetica,Arial,"DejaVu Sans",sans-serif;
 -webkit-print-color-adjust:exact;print-color-adjust:exact}
 main{max-width:1080px;margin:0 auto;padding:36px 32px 48px}
-header{display:flex;gap:32px;justify-content:space-between;align-items:flex-start;border-bottom:2px solid var(--ink);padding-bottom:18px}
+header{display:flex;gap:32px;justify-content:space-between;align-items:flex-start;border-bottom:2px solid var(--ink);padding-bottom:18px;margin-bottom:14px}
 h1{font-size:27px;line-height:1.2;font-weight:600;letter-spacing:-.01em;margin:0 0 6px}
 h2{font-size:13px;font-weight:600;letter-spacing:.07em;text-transform:uppercase;color:var(--accent);margin:34px 0 10px}
-h3{font-size:14px;font-weight:600;margin:0 0 8px}
+h3{font-size:14px;font-weight:600;margin:20px 0 8px}
 p{margin:0 0 8px}.soft{color:var(--soft)}.small{font-size:12px}
 .verdict{min-width:250px;border-left:5px solid;padding:3px 0 3px 14px}.verdict b{display:block;font-size:17px}
 .pass{border-color:var(--pass)}.warn{border-color:var(--warn)}.fail{border-color:var(--fail)}.below{border-color:var(--below)}
@@ -34,6 +36,7 @@ th{font-size:12px;font-weight:600;color:var(--soft);text-align:left;vertical-ali
 td{border-bottom:1px solid var(--line);padding:5px 10px 5px 0;vertical-align:top}
 th.n,td.n{text-align:right}td.n{white-space:nowrap}th:last-child,td:last-child{padding-right:0}
 .group{border-bottom:1px solid var(--line);text-align:center}
+img{max-width:100%;height:auto}
 code,pre{font:12px/1.5 "JetBrains Mono","SF Mono",Consolas,"DejaVu Sans Mono",monospace}
 pre{background:var(--wash);padding:12px 14px;overflow:auto;white-space:pre-wrap;margin:8px 0 0}
 .pictures{display:grid;gap:12px}.two{grid-template-columns:1fr 1fr}.four{grid-template-columns:repeat(4,1fr)}
@@ -42,7 +45,7 @@ figcaption{font-size:12px;color:var(--soft);padding-top:3px}figcaption b{color:v
 .legend{display:flex;gap:18px;flex-wrap:wrap;margin:8px 0 12px;font-size:13px}.legend i{display:inline-block;width:12px;height:12px;border-radius:2px;margin-right:6px;vertical-align:-1px;border:1px solid rgba(0,0,0,.25)}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:0;margin-top:18px;border-bottom:1px solid var(--line)}
 .tiles div{padding:0 14px 12px 0}.tiles b{display:block;font-size:20px;font-weight:600;white-space:nowrap}.tiles span{font-size:12px;color:var(--soft)}
-.gauge{display:inline-block;width:64px;height:7px;background:#e4e9eb;vertical-align:1px;margin-left:8px}.gauge i{display:block;height:7px;background:var(--pass)}
+.gauge{display:inline-block;width:64px;height:7px;background:var(--track);vertical-align:1px;margin-left:8px}.gauge i{display:block;height:7px;background:var(--pass)}
 .gauge.warn i{background:var(--warn)}.gauge.fail i{background:var(--fail)}.gauge.below i{background:var(--below)}
 details{margin:2px 0 6px}summary code{color:var(--ink)}summary{cursor:pointer;color:var(--accent);font-size:12px}
 details table{margin:4px 0 8px;font-size:12px}
@@ -50,7 +53,8 @@ details table{margin:4px 0 8px;font-size:12px}
 .facts{display:grid;grid-template-columns:repeat(4,auto);gap:2px 22px;font-size:13px;margin-bottom:12px;justify-content:start}.facts dt{color:var(--soft)}.facts dd{margin:0}
 tr.terms td{padding-top:0;border-bottom:1px solid var(--line)}tr.lead td{border-bottom:0}
 footer{margin-top:36px;padding-top:10px;border-top:1px solid var(--line);color:var(--soft);font-size:12px}
-@media (max-width:760px){.two,.four{grid-template-columns:1fr 1fr}.facts{grid-template-columns:auto auto}header{flex-direction:column}main{padding:20px 16px}}
+@media (max-width:760px){.two,.four{grid-template-columns:1fr 1fr}.facts{grid-template-columns:auto auto}header{flex-direction:column}main{padding:20px 16px}table{display:block;overflow-x:auto}}
+@media (max-width:480px){.two{grid-template-columns:1fr}}
 @media print{@page{size:A4;margin:14mm 12mm}body{font-size:11px}main{max-width:none;padding:0}h2{margin-top:20px;break-after:avoid}tr,figure,.verdict{break-inside:avoid}h1{font-size:21px}.tiles b{font-size:15px}pre{font-size:9px}}
 )css";
 

@@ -83,13 +83,13 @@ std::string scale_bar(const ScenePicture& picture, double letters) {
                   grouped(bar_mm, bar_mm < 1.0 ? 1 : 0) + " mm");
 }
 
-/// The outlines of the plan's mask regions that were drawn in this picture's view.
+/// The outlines of the plan's mask regions that were drawn in this picture's view, of the head as it is held.
 std::string outlines(const Plan& plan, const ScenePicture& picture, double size) {
   std::string paths;
   for (const Step& step : plan.steps)
     if (const auto* mask = step.action.get_if<Mask>())
       for (const Mask::Region& region : mask->regions) {
-        if (region.view != picture.view) continue;
+        if (region.view != picture.view || (mask->views_of == "scan" && plan.lps_from_head)) continue;
         for (const auto& polygon : region.polygons_mm) {
           paths +=
               "<path fill=\"#c8452f\" fill-opacity=\".07\" stroke=\"#c8452f\" stroke-width=\"1.5\" "
@@ -118,6 +118,7 @@ std::string view_title(const ScenePicture& picture) {
 /// How a picture stands on the page.
 struct Placed {
   std::string title;
+  std::string says;       ///< before the view's name, for who cannot see it
   bool outlined = false;  ///< with the outlines of mask regions
   double letters = 13.0;  ///< in the picture's pixels
   std::vector<glm::dvec3> marks_mm = {};
@@ -126,7 +127,8 @@ struct Placed {
 std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& placed) {
   const double size = picture.size_px, letters = placed.letters;
   std::string svg = "<svg viewBox=\"0 0 " + fixed(size) + " " + fixed(size) +
-                    "\" role=\"img\"><image width=\"" + fixed(size) + "\" height=\"" + fixed(size) +
+                    "\" role=\"img\" aria-label=\"" + escaped(placed.says + view_title(picture)) +
+                    "\"><image width=\"" + fixed(size) + "\" height=\"" + fixed(size) +
                     "\" href=\"data:image/png;base64," + base64(picture.png) + "\"/>";
   if (placed.outlined) svg += outlines(plan, picture, size);
   svg += scale_bar(picture, letters);
@@ -148,6 +150,13 @@ std::string figure(const Plan& plan, const ScenePicture& picture, const Placed& 
   return element("figure", svg + "</svg>" + element("figcaption", placed.title));
 }
 
+/// "rest, maxilla".
+std::string names_of(const PictureGroup& group) {
+  std::string names;
+  for (const voxel::DrawnObject& object : group.objects) names += (names.empty() ? "" : ", ") + object.name;
+  return names;
+}
+
 std::string legend(const PictureGroup& group) {
   std::string items;
   for (const voxel::DrawnObject& object : group.objects)
@@ -160,12 +169,16 @@ std::string legend(const PictureGroup& group) {
 constexpr double small_letters = 24.0;
 
 std::string group_section(const Result& result, const PictureGroup& group) {
+  const bool two_in_a_row = group.most_mm > 0.0;
   std::string figures;
-  for (const ScenePicture& picture : group.pictures)
-    figures += figure(result.plan, picture, {view_title(picture), false, small_letters, group.marks_mm});
-  return element("h2", escaped(group.title)) +
-         (group.most_mm > 0.0 ? colour_scale(group.most_mm) : legend(group)) +
-         element(group.most_mm > 0.0 ? "div class=\"pictures two\"" : "div class=\"pictures four\"", figures);
+  for (const ScenePicture& picture : group.pictures) {
+    Placed placed{view_title(picture), names_of(group) + ", "};
+    if (!two_in_a_row) placed.letters = small_letters;
+    placed.marks_mm = group.marks_mm;
+    figures += figure(result.plan, picture, placed);
+  }
+  return element("h2", escaped(group.title)) + (two_in_a_row ? colour_scale(group.most_mm) : legend(group)) +
+         element(two_in_a_row ? "div class=\"pictures two\"" : "div class=\"pictures four\"", figures);
 }
 
 /// Pictures of one view before and after stand side by side; what remains is a grid of views.
@@ -181,8 +194,11 @@ std::string pictures(const Result& result) {
     for (const ScenePicture& picture : before->pictures)
       for (const ScenePicture& same : after->pictures)
         if (same.view == picture.view)
-          pairs += figure(result.plan, picture, {"<b>Before</b>, " + view_title(picture), true}) +
-                   figure(result.plan, same, {"<b>After</b>, " + view_title(same)});
+          pairs +=
+              figure(result.plan, picture,
+                     {"<b>Before</b>, " + view_title(picture), "before: " + names_of(*before) + ", ", true}) +
+              figure(result.plan, same,
+                     {"<b>After</b>, " + view_title(same), "after: " + names_of(*after) + ", "});
     html += element("h2", "Before and after") + legend(*after) + element("div class=\"pictures two\"", pairs);
   }
   for (const PictureGroup& group : result.pictures)

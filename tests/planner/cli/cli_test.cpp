@@ -358,6 +358,7 @@ TEST_F(CommandLine, MasksComeFromViewsAndSlicesAndAreEditedFurther) {
   const std::string side = " --region left:" + at("side.json");
   const Json both = Json::parse(run("mask" + front + side + " --json -o " + at("both.octree")).out);
   EXPECT_EQ(both["voxels"], 16 * 16 * 20);
+  EXPECT_EQ(both["step"]["views_of"], "scan") << "a plan that holds the head would turn it";
   const Json one = Json::parse(
       run("mask" + front + " --like " + at("both.octree") + " --json -o " + at("one.octree")).out);
   EXPECT_GT(one["voxels"], both["voxels"]);

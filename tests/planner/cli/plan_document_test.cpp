@@ -196,5 +196,32 @@ TEST_F(PlanDocument, AProcedureIsListedExplainedAndPlanned) {
   EXPECT_EQ(result.at("landmarks")[0].at("name"), "ans");
 }
 
+TEST_F(PlanDocument, AProcedurePlansAndReportsInOneCommand) {
+  write("marks.json", R"({"landmarks": [{"name": "ans", "point_mm": [0, 0, 0]}]})");
+  write("own.json", R"({"procedure": "own", "says": "Own.", "landmarks": [{"name": "ans", "says": "any."}],
+      "values": [{"name": "up_mm", "says": "up", "preset": 1, "least": 0, "most": 5}], "steps": [
+      {"id": "bone", "do": "window", "scan": "ct", "low": 0},
+      {"id": "m", "do": "move", "object": "bone", "by": {"up_mm": "=up_mm"}}]})");
+  const std::string planned =
+      "procedure own.json --scan ball.nrrd --landmarks marks.json --set up_mm=2 -o p.plan.json --report ";
+  const auto made = run(planned + "out --certify never --json");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_NEAR(tests::Json::parse(made.out).at("movements")[0].at("centroid").at("up_mm").get<double>(), 2.0,
+              1e-9);
+  EXPECT_TRUE(tests::Json::parse(made.out).at("certificates").empty());
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/report.html"));
+  // The same as the plan that it wrote, replayed.
+  ASSERT_EQ(run("run p.plan.json -o again --certify never").status, 0);
+  EXPECT_EQ(tests::bytes_of(folder_ / "out/views/after_left.png"),
+            tests::bytes_of(folder_ / "again/views/after_left.png"));
+  write("out/mine.txt", "mine");
+  EXPECT_EQ(run(planned + "out").status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/mine.txt"));
+  EXPECT_FALSE(tests::Json::parse(tests::bytes_of(folder_ / "out/result.json")).at("certificates").empty());
+  std::filesystem::create_directory(folder_ / "full");
+  write("full/a.txt", "a");
+  expect_refused(run(planned + "full"), "full");
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -138,6 +138,40 @@ TEST_F(SvgOutlinesFile, FindsThePictureAndWhereItStands) {
   EXPECT_EQ(picture_->shown_units, glm::dvec2(40, 30));
 }
 
+TEST_F(SvgOutlinesFile, EntitiesAreNotExpandedAndNothingElseIsRead) {
+  const auto with = [&](const std::string& declared, const std::string& inside) {
+    std::ofstream(folder_ / "e.svg") << "<!DOCTYPE svg [" << declared << "]><svg width=\"10mm\" "
+                                     << "viewBox=\"0 0 10 10\">" << inside
+                                     << "<rect width=\"7\" height=\"7\"/></svg>";
+    return read_svg_outlines(
+        folder_ / "e.svg", [](double, const auto&) { return glm::dmat3(1.0); }, tolerance_mm);
+  };
+  // Ten levels of ten, which would be ten thousand million rectangles.
+  std::string laughs = "<!ENTITY a0 \"<rect width='5' height='5'/>\">";
+  for (int level = 1; level <= 10; ++level) {
+    laughs += "<!ENTITY a" + std::to_string(level) + " \"";
+    for (int i = 0; i < 10; ++i) laughs += "&a" + std::to_string(level - 1) + ";";
+    laughs += "\">";
+  }
+  EXPECT_EQ(with(laughs, "&a10;").polygons_mm.size(), 1u);
+  EXPECT_EQ(with(laughs, "<g id=\"&a10;\"/>").polygons_mm.size(), 1u);
+  EXPECT_EQ(with("<!ENTITY w \"5\">", "").polygons_mm.size(), 1u);
+  EXPECT_THROW(with("<!ENTITY w \"5\">", "<rect width=\"&w;\" height=\"5\"/>"), std::runtime_error);
+  EXPECT_EQ(with("<!ENTITY f SYSTEM \"file:///etc/passwd\"><!ENTITY % p SYSTEM \"x.dtd\">%p;", "&f;")
+                .polygons_mm.size(),
+            1u);
+}
+
+TEST_F(SvgOutlinesFile, ElementsNestedTooDeepAreRefused) {
+  const auto nested = [](int deep) {
+    std::string begins, ends;
+    for (int i = 0; i < deep; ++i) begins += "<g>", ends += "</g>";
+    return begins + "<rect width=\"7\" height=\"7\"/>" + ends;
+  };
+  EXPECT_EQ(refusal(nested(900)), "");
+  EXPECT_NE(refusal(nested(1100)).find("nested more than 1000 deep"), std::string::npos);
+}
+
 TEST_F(SvgOutlinesFile, RefusalsSayLineAndPlace) {
   EXPECT_EQ(refusal("\n<path d=\"M1 2 L3 x\"/>"),
             "a.svg, line 4: <path> d, character 9: a number is expected, not 'x'");

@@ -59,6 +59,14 @@ TEST(HeadPositionStep, RegionsAndWordsAreOfTheHeadAsItIsHeld) {
   EXPECT_LT(evaluation.object("cap").voxel.measures.centroid_mm->z, -5.0);
   expect_certified(evaluation.object("cap"), cap_mm3(ball_radius_mm, 5.0), 0.05);
   EXPECT_NEAR(evaluation.object("up").moved->motion[3].z, -4.0, 1e-9);
+  // Views of the scan do not turn with the head.
+  const Evaluation as_it_lies = evaluate(ball_plan(folder, R"(
+      {"id": "held", "do": "head_position", "roll_deg": 180},
+      {"id": "cut", "do": "mask", "views_of": "scan", "regions": [{"view": "anterior",
+          "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
+      {"id": "cap", "do": "combine", "expression": "ball & cut"})"));
+  EXPECT_GT(as_it_lies.object("cap").voxel.measures.centroid_mm->z, 5.0);
+  expect_certified(as_it_lies.object("cap"), cap_mm3(ball_radius_mm, 5.0), 0.05);
   // An oblique cut in a head held askew is certified, too.
   const Evaluation askew = evaluate(ball_plan(folder, R"(
       {"id": "held", "do": "head_position", "roll_deg": 12, "pitch_deg": -7, "yaw_deg": 3},

@@ -49,5 +49,22 @@ TEST(MirrorStep, ThePlaneThatFitsIsSettledForBothKernels) {
   EXPECT_LT(glm::distance(*twin.voxel.measures.centroid_mm, *lens.voxel.measures.centroid_mm), 0.2);
 }
 
+TEST(MirrorStep, ThePlaneGoesThroughThreeLandmarks) {
+  const TestFolder folder;
+  const Evaluation evaluation = evaluate(ball_plan(folder, R"(
+      {"id": "marks", "do": "landmarks", "points": [{"name": "front", "point_mm": [3, -9, 0]}]},
+      {"id": "off", "do": "move", "object": "ball", "translate_mm": [5, 0, 0]},
+      {"id": "twin", "do": "mirror", "object": "off", "through": ["front", [3, 9, 0], [3, 0, 8]]})"));
+  EXPECT_NEAR(evaluation.object("twin").mesh.within->measures().centroid_mm->x, 1.0, 0.05);
+  EXPECT_NEAR(evaluation.object("twin").voxel.measures.centroid_mm->x, 1.0, 0.1);
+  EXPECT_THROW(evaluate(ball_plan(folder, R"(
+      {"id": "twin", "do": "mirror", "object": "ball", "through": [[0, 0, 0], [0, 5, 0], [0, 9, 0]]})")),
+               std::runtime_error);
+  EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "mirror", "object": "ball", "normal": [1, 0, 0],
+      "through": [[0, 0, 0], [0, 5, 0], [0, 0, 9]]})")
+                .find("keep one of the two"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace octotomy::planner

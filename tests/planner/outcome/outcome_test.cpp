@@ -96,9 +96,12 @@ TEST(Outcome, AKnownMotionLiesWithinItsInterval) {
   quick.certify = false;
   const Evaluation evaluation = evaluate(plan, quick);
   const char* runs = std::getenv("OCTOTOMY_RUNS");
-  int held = 0, cases = 0;
+  int held = 0, cases = 0, runs_held = 0;
+  double squared_share = 0.0;
   double widest_mm = 0.0, worst_share = 0.0;
-  for (int run = 0; run < (runs == nullptr ? 2 : std::atoi(runs)); ++run) {
+  const int run_count = runs == nullptr ? 2 : std::atoi(runs);
+  for (int run = 0; run < run_count; ++run) {
+    const int held_before = held, cases_before = cases;
     verify::Chance chance(static_cast<std::uint64_t>(run) + 11);
     const glm::dmat4 planned = evaluation.object("advanced").moved->motion;
     const glm::dmat4 moved = motion_by(chance, 6.0, 4.0, {0, -60, -40}) * planned;
@@ -117,6 +120,7 @@ TEST(Outcome, AKnownMotionLiesWithinItsInterval) {
         const double error = std::abs(difference(point.achieved, truth, axis));
         if (error <= of(point.half_width, axis)) ++held;
         worst_share = std::max(worst_share, error / of(point.half_width, axis));
+        squared_share += std::pow(error / of(point.half_width, axis), 2.0);
         EXPECT_LT(error, 0.25) << run << " " << point.name << " " << axis;
         widest_mm = std::max(widest_mm, of(point.half_width, axis));
       }
@@ -126,10 +130,16 @@ TEST(Outcome, AKnownMotionLiesWithinItsInterval) {
       ++cases;
       if (std::abs(piece.achieved_turns.*angle - truth.*angle) <= piece.turn_half_width.*angle) ++held;
     }
+    if (held - held_before == cases - cases_before) ++runs_held;
   }
   RecordProperty("held", held);
   RecordProperty("cases", cases);
   EXPECT_GE(held, std::floor(0.985 * cases));
+  RecordProperty("runs_with_all_held", runs_held);
+  EXPECT_GE(runs_held, 99 * run_count / 100);
+  // Two points of three axes a run.
+  RecordProperty("rms_percent_of_half_width",
+                 static_cast<int>(100.0 * std::sqrt(squared_share / (6.0 * run_count))));
   RecordProperty("worst_percent_of_half_width", static_cast<int>(100.0 * worst_share));
   RecordProperty("widest_um", static_cast<int>(1000.0 * widest_mm));
   EXPECT_LT(widest_mm, 0.6);

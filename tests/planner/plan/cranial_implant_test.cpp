@@ -6,6 +6,7 @@
 
 #include "planner/measure/near_surfaces.h"
 #include "planner/plan/evaluate.h"
+#include "planner/procedure/procedure.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
 #include "voxel/solid/combine.h"
@@ -37,24 +38,10 @@ std::string plan_text() {
     {"id": "repaired", "do": "combine", "expression": "bone | implant"}]})";
 }
 
-TEST(CranialImplant, FillsTheHoleToItsRimWithoutOverlap) {
-  OCTOTOMY_NEEDS_DATA("ct_invesalius_cranium.nii.gz");
-  const Evaluation evaluation = evaluate(parse_plan(plan_text(), "."), {});
-  for (const Object& object : evaluation.objects) {
-    if (!object.certificate) continue;
-    EXPECT_EQ(object.certificate->verdict, verify::Verdict::Pass)
-        << object.id << ": " << verify::verdict_text(*object.certificate);
-  }
-  const Object &bone = evaluation.object("bone"), &implant = evaluation.object("implant"),
-               &mirrored = evaluation.object("mirrored");
-  EXPECT_TRUE(voxel::combine(evaluation.universe,
-                             voxel::Expression(bone.voxel.octree) & voxel::Expression(implant.voxel.octree))
-                  .is_empty());
-  EXPECT_GT(least_distance_mm(*implant.mesh.within, *bone.mesh.within, 0.5), -0.01);
-  EXPECT_NEAR(implant.mesh.within->measures().volume_mm3, 7500.0, 1500.0);
-  // The rim: bone within the outline that faces the hole's middle, as far as it is as thick as the other
-  // side's bone.
-  const brep::Triangles& triangles = bone.mesh.within->triangles();
+/// The distances of the rim from the implant, ascending: of bone within the outline that faces the hole's
+/// middle, as far as it is as thick as the other side's bone.
+std::vector<double> rim_gaps_mm(const Evaluation& evaluation) {
+  const brep::Triangles& triangles = evaluation.object("bone").mesh.within->triangles();
   std::vector<glm::dvec3> rim_mm;
   const glm::dvec2 middle(93.0, 106.0);
   for (const auto& face : triangles.faces) {
@@ -66,16 +53,64 @@ TEST(CranialImplant, FillsTheHoleToItsRimWithoutOverlap) {
     if (glm::dot(glm::dvec2(across.x, across.z), inward) > 0.7 * glm::length(across) * glm::length(inward))
       rim_mm.push_back(p);
   }
-  const std::vector<double> depths_mm = signed_distances_mm(*mirrored.mesh.within, rim_mm);
+  const std::vector<double> depths_mm =
+      signed_distances_mm(*evaluation.object("mirrored").mesh.within, rim_mm);
   std::vector<glm::dvec3> covered_mm;
   for (std::size_t i = 0; i < rim_mm.size(); ++i)
     if (depths_mm[i] < -0.3) covered_mm.push_back(rim_mm[i]);
-  ASSERT_GT(covered_mm.size(), 500u);
-  std::vector<double> gaps_mm = implant.mesh.within->tree().distances_mm(covered_mm);
+  std::vector<double> gaps_mm = evaluation.object("implant").mesh.within->tree().distances_mm(covered_mm);
   std::sort(gaps_mm.begin(), gaps_mm.end());
+  return gaps_mm;
+}
+
+void expect_no_overlap(const Evaluation& evaluation) {
+  const Object &bone = evaluation.object("bone"), &implant = evaluation.object("implant");
+  EXPECT_TRUE(voxel::combine(evaluation.universe,
+                             voxel::Expression(bone.voxel.octree) & voxel::Expression(implant.voxel.octree))
+                  .is_empty());
+  EXPECT_GT(least_distance_mm(*implant.mesh.within, *bone.mesh.within, 0.5), -0.01);
+  EXPECT_NEAR(implant.mesh.within->measures().volume_mm3, 7500.0, 1500.0);
+}
+
+TEST(CranialImplant, FillsTheHoleToItsRimWithoutOverlap) {
+  OCTOTOMY_NEEDS_DATA("ct_invesalius_cranium.nii.gz");
+  const Evaluation evaluation = evaluate(parse_plan(plan_text(), "."), {});
+  for (const Object& object : evaluation.objects) {
+    if (!object.certificate) continue;
+    EXPECT_EQ(object.certificate->verdict, verify::Verdict::Pass)
+        << object.id << ": " << verify::verdict_text(*object.certificate);
+  }
+  expect_no_overlap(evaluation);
+  const std::vector<double> gaps_mm = rim_gaps_mm(evaluation);
+  ASSERT_GT(gaps_mm.size(), 500u);
   RecordProperty("rim_points", static_cast<int>(gaps_mm.size()));
   RecordProperty("largest_gap_um", static_cast<int>(1000.0 * gaps_mm.back()));
   EXPECT_LT(gaps_mm.back(), 0.5) << gaps_mm.size() << " points, median " << gaps_mm[gaps_mm.size() / 2];
+}
+
+TEST(CranialImplant, TheProcedureKeepsTheTypedGap) {
+  OCTOTOMY_NEEDS_DATA("ct_invesalius_cranium.nii.gz");
+  ProcedureInput input;
+  input.scan = {{"path", std::filesystem::absolute(tests::reference_data("ct_invesalius_cranium.nii.gz"))}};
+  input.folder = ".";
+  input.landmarks = {{"midline_front", {121, -200, 60}},
+                     {"midline_back", {121, -20, 60}},
+                     {"midline_top", {121, -100, 150}}};
+  // Eight points about the same outline.
+  for (const glm::dvec2& p : std::vector<glm::dvec2>{
+           {80, 108}, {84, 93}, {86, 80}, {104, 80}, {104.5, 110}, {100, 132}, {96, 131}, {85, 119}})
+    input.landmarks.push_back({"rim_" + std::to_string(input.landmarks.size() - 2), {p.x, -170.0, p.y}});
+  input.values = {{"reach_mm", 40}, {"rim_gap_mm", 0.3}};
+  EvaluateOptions quick;
+  quick.certify = false;
+  const Evaluation evaluation = evaluate(
+      parse_plan(plan_of(read_procedure("mirrored_reconstruction_front"), input).dump(), "."), quick);
+  expect_no_overlap(evaluation);
+  const std::vector<double> gaps_mm = rim_gaps_mm(evaluation);
+  ASSERT_GT(gaps_mm.size(), 500u);
+  RecordProperty("median_gap_um", static_cast<int>(1000.0 * gaps_mm[gaps_mm.size() / 2]));
+  EXPECT_NEAR(gaps_mm[gaps_mm.size() / 2], 0.3, 0.1);
+  EXPECT_LT(gaps_mm[gaps_mm.size() * 99 / 100], 0.5);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ TEST(Formula, OperatorsBindAsInArithmetic) {
   EXPECT_EQ(value_of("12 / 3 / 2", names), 2.0);
   EXPECT_EQ(value_of("-(ans.x + kerf_mm) * -2", names), 5.0);
   EXPECT_EQ(value_of(" min(3, ans.x) + max(1,abs(-7)) ", names), 9.0);
+  EXPECT_EQ(value_of("max(1, 5, 3) - min(4, 2, 3, 6)", names), 3.0);
   EXPECT_EQ(value_of("1.5e1", names), 15.0);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/measure/near_surfaces.h"
 #include "planner/plan/evaluate.h"
 #include "tests/planner/ball_scan.h"
 #include "verify/head_phantom.h"
@@ -65,7 +66,18 @@ std::vector<brep::Landmark> head_landmarks() {
           {"flap_after", {44.5, -38, -74}},
           {"donor_from", {30, 12, 105}},
           {"donor_to", {33, 16, -105}},
-          {"donor_face", {45, 12, 105}}};
+          {"donor_face", {45, 12, 105}},
+          {"midline_front", {0, -84, 10}},
+          {"midline_back", {0, 90, 10}},
+          {"midline_top", {0, 0, 100}},
+          {"rim_1", {20, -80, 40}},
+          {"rim_2", {30, -78, 32}},
+          {"rim_3", {40, -75, 40}},
+          {"rim_4", {44, -72, 50}},
+          {"rim_5", {40, -70, 60}},
+          {"rim_6", {30, -72, 64}},
+          {"rim_7", {20, -76, 60}},
+          {"rim_8", {16, -78, 50}}};
 }
 
 ProcedureInput head_input() {
@@ -222,6 +234,50 @@ TEST(Procedure, ZygomasOfBothSidesAreMirrorImages) {
   const auto left = corners("zygoma_left", 1.0), right = corners("zygoma_right", -1.0);
   ASSERT_EQ(left.size(), 6u);
   EXPECT_EQ(left, right);
+}
+
+TEST(Procedure, AMirroredReconstructionFillsAHoleUpToItsGap) {
+  const tests::TestFolder folder;
+  verify::HeadOptions coarse;
+  coarse.voxel_mm = 2.0;
+  voxel::Scene head = verify::head_phantom(coarse);
+  ProcedureInput input = head_input();
+  input.folder = folder.path();
+  input.voxel_mm = 2.0;
+  input.values = {{"rim_gap_mm", 1}, {"reach_mm", 25}};
+  EvaluateOptions quick;
+  quick.certify = false;
+  const auto made = [&](const char* name) {
+    voxel::write_scene(head, folder / name);
+    input.scan = {{"path", name}};
+    return evaluate(
+        parse_plan(plan_of(read_procedure("mirrored_reconstruction_front"), input).dump(), folder.path()),
+        quick);
+  };
+  const EvaluateOptions all = quick;
+  quick.wanted = {"bone"};
+  const double whole_mm3 = made("whole.nrrd").object("bone").voxel.measures.volume_mm3;
+  quick = all;
+  auto& samples = std::get<voxel::Int16Samples>(head.samples);
+  std::size_t at = 0;
+  for (int z = 0; z < head.lattice.dims.z; ++z)
+    for (int y = 0; y < head.lattice.dims.y; ++y)
+      for (int x = 0; x < head.lattice.dims.x; ++x, ++at) {
+        const glm::dvec3 p(head.lattice.lps_from_voxel * glm::dvec4(x, y, z, 1.0));
+        if (p.y < -30.0 && std::hypot(p.x - 30.0, p.z - 48.0) < 11.0) samples[at] = -1000;
+      }
+  const Evaluation holed = made("holed.nrrd");
+  const double lost_mm3 = whole_mm3 - holed.object("bone").voxel.measures.volume_mm3;
+  ASSERT_GT(lost_mm3, 1000.0);
+  // The gap is taken off around a hole of some 70 mm by 5 mm of bone.
+  EXPECT_NEAR(holed.object("implant").mesh.within->measures().volume_mm3, lost_mm3 - 70.0 * 5.0,
+              0.2 * lost_mm3);
+  EXPECT_TRUE(holed.object("overlap").voxel.octree.is_empty());
+  EXPECT_LT(holed.object("overlap").mesh.within->measures().volume_mm3, 1e-3);
+  const double gap_mm =
+      least_distance_mm(*holed.object("implant").mesh.within, *holed.object("bone").mesh.within, 1.0);
+  EXPECT_GT(gap_mm, 0.5);
+  EXPECT_LT(gap_mm, 1.1);
 }
 
 TEST(Procedure, AFlapTakesItsDonorsScanAndRefusesToDoWithout) {

@@ -77,6 +77,72 @@ TEST(Credibility, AFailedCertificateContradictsAndAnUnresolvedOneIsAGap) {
   EXPECT_NE(made.at("numbers")[0].at("gaps").dump().find("not resolved"), std::string::npos);
 }
 
+const Json& number(const Json& credibility, const std::string& quantity) {
+  for (const Json& one : credibility.at("numbers"))
+    if (one.at("quantity") == quantity) return one;
+  throw std::runtime_error(quantity + " is not told of in " + credibility.at("numbers").dump());
+}
+
+TEST(Credibility, ContactsNameTheOtherKernelAndWhatNothingChecks) {
+  Json told = run();
+  told["measurements"].push_back(Json::parse(R"({"id": "bite", "object": "skull", "against": "jaw",
+    "contacts": [{"nearest_mm": 0.1, "voxel_nearest_mm": 0.4, "half_width_mm": 0.5},
+                 {"nearest_mm": 0.1, "voxel_nearest_mm": 0.9, "half_width_mm": 0.5},
+                 {"nearest_mm": 0.1, "voxel_nearest_mm": null, "half_width_mm": 0.5}],
+    "certain_count": 2, "area_mm2": 4.0, "overlap_mm3": 0.0})"));
+  const Json made = credibility_json(told);
+  const Json& first = number(made, "nearest at contact 1 of skull and jaw");
+  ASSERT_EQ(first.at("supported_by").size(), 3u);
+  EXPECT_EQ(first.at("supported_by")[1].at("check"), "the other kernel's answer");
+  EXPECT_NE(first.at("gaps").dump().find("'jaw' has no certificate"), std::string::npos);
+  EXPECT_EQ(number(made, "nearest at contact 2 of skull and jaw").at("contradicted_by").size(), 1u);
+  EXPECT_NE(number(made, "nearest at contact 3 of skull and jaw").at("gaps").dump().find("one kernel"),
+            std::string::npos);
+  told["measurements"][1]["area_mm2"] = nullptr;
+  const Json of_voxels = credibility_json(told);
+  EXPECT_EQ(number(of_voxels, "nearest at contact 1 of skull and jaw").at("supported_by").size(), 2u)
+      << "voxels do not vouch for themselves";
+  for (const char* quantity : {"contacts of skull and jaw that are certain",
+                               "area in contact of skull and jaw", "overlap of skull and jaw"})
+    EXPECT_EQ(number(made, quantity).at("gaps").size(), 2u) << quantity;
+  EXPECT_EQ(made.at("unsupported"), 1) << "the second contact's alone";
+}
+
+TEST(Credibility, AirwaysHaveTheirIntervalsAndTheOtherKernel) {
+  Json told = run();
+  told["measurements"].push_back(Json::parse(R"({"id": "narrow", "object": "air", "airway": {
+    "volume_mm3": 900, "volume_half_width_mm3": 20, "volume_mesh_mm3": 910, "length_mm": 40,
+    "narrowest": {"area_mm2": 15, "half_width_mm2": 2, "mesh_mm2": 15, "voxel_mm2": 12,
+                  "half_width_terms": [{"name": "voxels"}]}}})"));
+  const Json made = credibility_json(told);
+  EXPECT_EQ(number(made, "airway volume of air").at("supported_by").size(), 2u);
+  EXPECT_EQ(number(made, "narrowest section of air").at("contradicted_by")[0].at("difference"), 3.0);
+  told["measurements"][1]["airway"]["narrowest"]["mesh_mm2"] = nullptr;
+  const Json alone = credibility_json(told);
+  EXPECT_EQ(number(alone, "narrowest section of air").at("supported_by").size(), 1u) << "the interval alone";
+  EXPECT_TRUE(number(made, "centre line's length of air").at("supported_by").empty());
+  EXPECT_EQ(made.at("unsupported"), 2);
+}
+
+TEST(Credibility, TrialsSupportWhatTheyDoubtAndNameTheirErrors) {
+  EXPECT_NE(factor(credibility_json(run()), "model inputs").at("gap").dump().find("step of trials"),
+            std::string::npos);
+  Json told = run();
+  told["measurements"].push_back(Json::parse(R"({"id": "doubt", "trials": 1000, "seed": 3,
+    "errors": {"seating_mm": 0.5}, "doubts": [{"what": "gap", "of": "rest to moved", "value": 1.5,
+    "unit": "mm", "half_width": 0.9, "coverage": 0.99, "sources": [{"name": "seating", "half_width": 0.9}]}]})"));
+  told["movements"] = Json::parse(R"([{"object": "skull", "pitch_deg": 1, "yaw_deg": 0, "roll_deg": 0,
+    "centroid": {"forward_mm": 6, "left_mm": 0, "up_mm": 2}}])");
+  const Json made = credibility_json(told);
+  const Json& support = number(made, "gap of rest to moved").at("supported_by")[0];
+  EXPECT_EQ(support.at("check"), "trials");
+  EXPECT_EQ(support.at("sources")[0], "seating");
+  EXPECT_EQ(factor(made, "model inputs").at("evidence")[1].at("seed"), 3);
+  EXPECT_NE(factor(made, "model inputs").at("gap").dump().find("was typed"), std::string::npos);
+  EXPECT_EQ(number(made, "forward").at("supported_by")[0].at("check"), "certificate");
+  EXPECT_NE(credibility_html(made).find("rest to moved"), std::string::npos);
+}
+
 TEST(Credibility, ThePageEscapesNamesAndSaysThatItClaimsNothing) {
   const std::string page = credibility_html(credibility_json(run()));
   EXPECT_NE(page.find("p &lt;q&gt;"), std::string::npos);

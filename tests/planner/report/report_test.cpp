@@ -123,6 +123,15 @@ TEST_F(Report, ThePageNeedsNothingElse) {
     EXPECT_NE(page.find(object.id), std::string::npos) << object.id;
 }
 
+TEST_F(Report, EachPictureSaysWhatItShowsAndTheDarkHasColoursOfItsOwn) {
+  const std::string page = tests::bytes_of(folder_ / "out/report.html");
+  int pictures = 0;
+  for (std::size_t at = 0; (at = page.find("role=\"img\"", at)) != std::string::npos; ++at, ++pictures)
+    EXPECT_EQ(page.substr(at, 24).find(" aria-label=\""), 10u) << page.substr(at, 80);
+  EXPECT_GT(pictures, 5);
+  EXPECT_NE(page.find("prefers-color-scheme:dark"), std::string::npos);
+}
+
 TEST_F(Report, TextOfThePlanCannotBecomeMarkup) {
   const std::string page = tests::bytes_of(folder_ / "out/report.html");
   EXPECT_EQ(times(page, "<b>bold"), 0);

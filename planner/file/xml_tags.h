@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace octotomy::planner {
+
+/// Where an element of an XML text begins or ends.
+struct XmlTag {
+  std::string name;  ///< without "svg:"; "foreign" of another namespace's prefix
+  std::map<std::string, std::string> attributes;
+  bool begins = true;
+  std::size_t line = 1;
+};
+
+/// The tags of an XML file in their order; text between them is passed over. Entities but XML's own five are
+/// not expanded, nothing outside of the file is read, and elements nest at most 1000 deep.
+class XmlTags {
+ public:
+  /// Throws std::runtime_error saying file, line and reason for what is not well-formed.
+  XmlTags(std::string file, const std::string& text);
+
+  auto begin() const { return tags_.begin(); }
+  auto end() const { return tags_.end(); }
+  /// Throws std::runtime_error.
+  [[noreturn]] void refuse_at(std::size_t line, const std::string& why) const;
+
+ private:
+  std::string file_;
+  std::vector<XmlTag> tags_;
+};
+
+}  // namespace octotomy::planner
