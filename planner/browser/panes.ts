@@ -85,7 +85,8 @@ export class Pane {
   }
   private is_dragging = false;
 
-  private resized(): void {
+  /// Takes the size that the page gives it.
+  resized(): void {
     const width = Math.round(this.canvas.clientWidth * this.ratio);
     const height = Math.round(this.canvas.clientHeight * this.ratio);
     if (!width || !height || (width === this.canvas.width && height === this.canvas.height)) return;

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Tools that take points: landmarks by name, distances, angles, ways along a surface, seeds of a
 // segmentation, the dental arch.
-import {add_step, free_id, put_landmark} from "./actions";
-import {button, el} from "./html";
-import {dot_at, ink, line, text} from "./ink";
-import {is_drawn} from "./overlay";
-import {show_scan} from "./pane_grid";
-import type {Pane} from "./panes";
-import {change_pane} from "./panes";
-import {Json} from "./protocol";
-import {first_scan, is_elsewhere, notify, selected_step, set, state} from "./state";
-import {take_tool, Tool} from "./tool";
-import {angle_deg, distance, hundredths, Vec2, Vec3} from "./vector";
+import {add_step, free_id, put_landmark} from './actions';
+import {button, el} from './html';
+import {dot_at, ink, line, text} from './ink';
+import {is_drawn} from './overlay';
+import {show_in, show_scan} from './pane_grid';
+import type {Pane} from './panes';
+import {Json} from './protocol';
+import {first_scan, is_elsewhere, notify, selected_step, set, state} from './state';
+import {take_tool, Tool} from './tool';
+import {angle_deg, distance, hundredths, Vec2, Vec3} from './vector';
 
 let taken: Vec3[] = [];
 let pointed: Vec3|null = null;
@@ -241,7 +240,7 @@ export const arch_tool: Tool = {
   cursor: "crosshair",
   taken() {
     set({arch_mm: []});
-    change_pane(2, {mode: "slice", plane: "axial"});
+    show_in(2, 'axial');
   },
   down({pane, at}) {
     set({arch_mm: [...state.arch_mm, hundredths(pane.point_at(at))]});
@@ -249,9 +248,8 @@ export const arch_tool: Tool = {
     return true;
   },
   press(event) {
-    if (event.key !== "Enter" || state.arch_mm.length < 2) return false;
-    change_pane(3, {mode: "panoramic"});
-    take_tool("navigate");
+    if (event.key !== 'Enter' || state.arch_mm.length < 2) return false;
+    show_panoramic();
     return true;
   },
   draw(pane, context) {
@@ -262,9 +260,13 @@ export const arch_tool: Tool = {
   panel: () => button(
       "Show panoramic slice", "Shows the curved slice along the points in the fourth pane",
       () => {
-        if (state.arch_mm.length < 2) return notify("Click at least two points along the arch.", "warning");
-        change_pane(3, {mode: "panoramic"});
-        take_tool("navigate");
+        if (state.arch_mm.length < 2) return notify('Click at least two points along the arch.', 'warning');
+        show_panoramic();
       },
       {class: "primary"}),
 };
+
+function show_panoramic(): void {
+  show_in(3, 'panoramic');
+  take_tool('navigate');
+}
