@@ -25,7 +25,7 @@ export function open_picker(
   const show = async(folder: string): Promise<void> => {
     const answer = await try_to<{entries: Entry[]}>("list", {folder});
     const entries = (answer?.entries ?? [])
-                        .filter((entry) => entry.kind !== 'other')
+                        .filter((entry) => entry.kind !== "other")
                         .sort(
                             (a, b) => Number(b.kind === "folder") - Number(a.kind === "folder") ||
                                 a.name.localeCompare(b.name));
@@ -35,9 +35,9 @@ export function open_picker(
         el("div", {class: "presets"},
            folders.map(
                (one) =>
-                   button(one, `Folder ${one}`, () => void show(one), {class: one === folder ? 'on' : ''}))),
-        folders.includes(folder) ? null : el('p', {class: 'path'}, folder),
-        el('div', {class: 'files', role: 'list'},
+                   button(one, `Folder ${one}`, () => void show(one), {class: one === folder ? "on" : ""}))),
+        folders.includes(folder) ? null : el("p", {class: "path"}, folder),
+        el("div", {class: "files", role: "list"},
            folders.some((one) => folder !== one && folder.startsWith(one)) ?
                row("folder", "..", "", () => void show(parent)) :
                null,

@@ -47,11 +47,11 @@ function release(): void {
   put_off.clear();
   for (const [host, children] of hosts) fill(host, ...children);
 }
-addEventListener('pointerdown', (event) => {
+addEventListener("pointerdown", (event) => {
   pressed = event.target as Node;
 }, true);
 // A click comes right after its pointerup. A list that hangs open tells its end by a change alone.
-for (const end of ['pointerup', 'pointercancel', 'change'])
+for (const end of ["pointerup", "pointercancel", "change"])
   addEventListener(end, () => window.setTimeout(release), true);
 
 /// Fills a host anew; a host in which something is pressed, as soon as that is let go. The field with the
@@ -87,7 +87,7 @@ export function fill_tabs<Name extends string>(
       tabs.map(
           ([name, label, tip]) => button(
               label, tip, () => choose(name),
-              {role: 'tab', 'aria-selected': String(name === chosen), class: name === chosen ? 'on' : ''})));
+              {role: "tab", "aria-selected": String(name === chosen), class: name === chosen ? "on" : ""})));
 }
 
 /// A button with words or an icon, and its tip. Where it has an icon alone, the tip's first sentence is its

@@ -4,16 +4,16 @@
 import {Vec2} from "./vector";
 
 export const ink = {
-  cross: ['#ff8a65', '#7bd88f', '#64b5f6'] as const,  // sagittal, coronal, axial
-  region: '#5b9dff',
-  landmark: '#ffd166',
-  measure: '#7ee0d0',
-  mark: '#ff5d8f',
-  oblique: '#c792ea',
-  bad: '#ff8f93',
-  good: '#9be7b0',
-  text: 'rgba(255,255,255,.92)',
-  faint: 'rgba(255,255,255,.55)',
+  cross: ["#ff8a65", "#7bd88f", "#64b5f6"] as const,  // sagittal, coronal, axial
+  region: "#5b9dff",
+  landmark: "#ffd166",
+  measure: "#7ee0d0",
+  mark: "#ff5d8f",
+  oblique: "#c792ea",
+  bad: "#ff8f93",
+  good: "#9be7b0",
+  text: "rgba(255,255,255,.92)",
+  faint: "rgba(255,255,255,.55)",
 };
 
 // Boxes of the words that a pane has so far: names and numbers make room for each other.
@@ -35,13 +35,13 @@ export interface TextLook {
   plate?: boolean;
 }
 const dark_of: {[colour: string]: string} = {
-  [ink.text]: '#18212b',
-  [ink.faint]: '#52606e',
-  [ink.landmark]: '#7a4b00',
-  [ink.measure]: '#005e50',
-  [ink.oblique]: '#7b3fa0',
-  [ink.bad]: '#b3212a',
-  [ink.good]: '#14713c'
+  [ink.text]: "#18212b",
+  [ink.faint]: "#52606e",
+  [ink.landmark]: "#7a4b00",
+  [ink.measure]: "#005e50",
+  [ink.oblique]: "#7b3fa0",
+  [ink.bad]: "#b3212a",
+  [ink.good]: "#14713c"
 };
 
 const font_of = (look: TextLook, ratio: number): string =>
@@ -51,8 +51,8 @@ const font_of = (look: TextLook, ratio: number): string =>
 export function text(
     context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
   context.font = font_of(look, ratio);
-  context.textAlign = look.align ?? 'left';
-  context.textBaseline = 'middle';
+  context.textAlign = look.align ?? "left";
+  context.textBaseline = "middle";
   context.lineWidth = 3 * ratio;
   const colour = look.colour ?? ink.text;
   const half = context.measureText(words).width / 2 + 4 * ratio;
@@ -84,8 +84,8 @@ export function sentence(
   const {width, height} = context.canvas;
   context.font = font_of(look, ratio);
   const lines: string[] = [];
-  for (const word of words.split(' ')) {
-    const longer = `${lines[lines.length - 1] ?? ''} ${word}`.trim();
+  for (const word of words.split(" ")) {
+    const longer = `${lines[lines.length - 1] ?? ""} ${word}`.trim();
     if (lines.length && context.measureText(longer).width < width - 32 * ratio)
       lines[lines.length - 1] = longer;
     else
@@ -95,7 +95,7 @@ export function sentence(
   lines.forEach(
       (each, i) => text(
           context, each, [width / 2, height / 2 + (i - (lines.length - 1) / 2) * row], ratio,
-          {...look, align: 'center'}));
+          {...look, align: "center"}));
 }
 
 /// Words beside a point: at its right, or its left, or as far up or down as there is room.

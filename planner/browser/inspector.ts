@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The right column: the tool in hand and the selected step, the plan's numbers with their certificates, and
 // how far each piece and landmark moves.
-import {add_step, replace_step} from './actions';
-import {badge, measured_text} from './certificate_badge';
-import {is_piece, makes_shape} from './drawn_objects';
-import {button, Child, el, fill, fill_tabs} from './html';
-import {icon, is_icon} from './icons';
-import {movement_fields} from './move_fields';
-import {fetch_movement, movement} from './movement_panel';
-import {numbers} from './numbers_panel';
-import {Step} from './protocol';
-import {step_form} from './schema_form';
-import {selected_step, set, state, watch} from './state';
-import {active_tool, take_tool} from './tool';
-import {compare_card, cut_plane_card} from './view_cards';
+import {add_step, replace_step} from "./actions";
+import {badge, measured_text} from "./certificate_badge";
+import {is_piece, makes_shape} from "./drawn_objects";
+import {button, Child, el, fill, fill_tabs} from "./html";
+import {icon, is_icon} from "./icons";
+import {movement_fields} from "./move_fields";
+import {fetch_movement, movement} from "./movement_panel";
+import {numbers} from "./numbers_panel";
+import {Step} from "./protocol";
+import {step_form} from "./schema_form";
+import {selected_step, set, state, watch} from "./state";
+import {active_tool, take_tool} from "./tool";
+import {compare_card, cut_plane_card} from "./view_cards";
 
 export function make_inspector(host: HTMLElement): void {
   const tabs = el("div", {class: "tabs", role: "tablist"});
@@ -24,9 +24,9 @@ export function make_inspector(host: HTMLElement): void {
     fill_tabs(
         tabs, state.right_tab,
         [
-          ['inspector', 'Inspector', 'Inspector: the tool in hand and the selected step'],
-          ['numbers', 'Numbers', 'Numbers: volumes and measurements with their certificates'],
-          ['movement', 'Movement', 'Movement: how far each piece and landmark moves']
+          ["inspector", "Inspector", "Inspector: the tool in hand and the selected step"],
+          ["numbers", "Numbers", "Numbers: volumes and measurements with their certificates"],
+          ["movement", "Movement", "Movement: how far each piece and landmark moves"]
         ],
         (right_tab) => set({right_tab}));
     fill(

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Moves a piece by marks (Ong 1992, 8.3): a point of the piece and where it is wanted, each set in one view
 // and brought to its depth in another. One pair shifts the piece, further pairs turn it.
-import {button, Child, el} from './html';
-import {dot_at, ink, label, line} from './ink';
-import type {Pane} from './panes';
-import {commit_motion, current, piece, preview_motion} from './piece_motion';
-import {Motion} from './protocol';
-import {notify, set, state} from './state';
-import {take_tool, Tool} from './tool';
-import {distance, dot, hundredths, Vec2, Vec3} from './vector';
-import {point_of} from './view_frame';
+import {button, Child, el} from "./html";
+import {dot_at, ink, label, line} from "./ink";
+import type {Pane} from "./panes";
+import {commit_motion, current, piece, preview_motion} from "./piece_motion";
+import {Motion} from "./protocol";
+import {notify, set, state} from "./state";
+import {take_tool, Tool} from "./tool";
+import {distance, dot, hundredths, Vec2, Vec3} from "./vector";
+import {point_of} from "./view_frame";
 
 type End = "at"|"to";
 type Pair = NonNullable<Motion["points"]>[number];

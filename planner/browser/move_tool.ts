@@ -115,7 +115,7 @@ function handle_at(pane: Pane, at: Vec2, centre: Vec2, one: {source: string; ste
       return word;
   }
   const radius = Math.hypot(from[0], from[1]);
-  if (Math.abs(radius - ring) < 9) return 'turn';
+  if (Math.abs(radius - ring) < 9) return "turn";
   const picked = pane.pick(at)?.object;
   return radius < ring ||
           (picked !== null && picked !== undefined && (picked === one.source || picked === one.step?.id)) ?
@@ -179,11 +179,11 @@ function draw_handles(pane: Pane, context: CanvasRenderingContext2D): void {
   }
   dot_at(context, [x, y], 5 * ratio, "#fff");
   if (held?.pane !== pane) return;
-  const words = held.handle === 'turn' ? `${turn_words(move, turn)}` : motion_words({by: move.by ?? {}});
-  text(context, words, [x, y - ring - 16 * ratio], ratio, {align: 'center', px: 13});
+  const words = held.handle === "turn" ? `${turn_words(move, turn)}` : motion_words({by: move.by ?? {}});
+  text(context, words, [x, y - ring - 16 * ratio], ratio, {align: "center", px: 13});
   if (state.overlap_mm3 !== null)
     text(context, `overlap ${state.overlap_mm3.toFixed(0)} mm³`, [x, y + ring + 16 * ratio], ratio, {
-      align: 'center',
+      align: "center",
       px: 13,
       colour: state.overlap_mm3 > 0.5 ? ink.bad : ink.good,
     });

@@ -35,11 +35,11 @@ export function numbers(): Child {
                class: state.selected === object.id ? "selected" : "",
                onclick: () => set({selected: object.id})
              },
-             el('th', {scope: 'row'}, object.id.replace(/_/g, ' '),
-                is_overlap(step, all) && !object.id.includes('overlap') ? el('small', {}, ' overlap') : null),
-             el('td', {}, el('div', {}, measured_text(object.volume)),
-                object.area ? el('small', {}, measured_text(object.area)) : null),
-             el('td', {class: 'badge-cell'}, badge(object.id, object.certificate)));
+             el("th", {scope: "row"}, object.id.replace(/_/g, " "),
+                is_overlap(step, all) && !object.id.includes("overlap") ? el("small", {}, " overlap") : null),
+             el("td", {}, el("div", {}, measured_text(object.volume)),
+                object.area ? el("small", {}, measured_text(object.area)) : null),
+             el("td", {class: "badge-cell"}, badge(object.id, object.certificate)));
        }))),
     el("table", {class: "numbers"}, el("caption", {}, "Measurements"),
        el("tbody", {},

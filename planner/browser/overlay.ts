@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
 // marks and the handles of the tool that is in hand.
-import {begin_ink, dot_at, ink, keep_words_off, label, line, sentence, text, TextLook} from './ink';
-import {draw_trace} from './oblique';
-import type {Pane} from './panes';
-import {Json, Measurement, Step} from './protocol';
-import {is_elsewhere, shown_scan, state, step_of, steps} from './state';
-import {is_dark} from './theme';
-import {active_tool} from './tool';
-import {add, dot, scaled, Vec2, Vec3} from './vector';
-import {edge_letters, view_of_plane, view_text} from './view_frame';
+import {begin_ink, dot_at, ink, keep_words_off, label, line, sentence, text, TextLook} from "./ink";
+import {draw_trace} from "./oblique";
+import type {Pane} from "./panes";
+import {Json, Measurement, Step} from "./protocol";
+import {is_elsewhere, shown_scan, state, step_of, steps} from "./state";
+import {active_tool} from "./tool";
+import {add, dot, scaled, Vec2, Vec3} from "./vector";
+import {edge_letters, view_of_plane, view_text} from "./view_frame";
 
 export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): void {
   if (!state.plan) return;
-  begin_ink(!pane.is_slice && !is_dark());
+  begin_ink(pane.is_on_white);
   const ratio = pane.ratio;
-  context.lineJoin = 'round';
+  context.lineJoin = "round";
   // A curved slice has no one place for a point.
-  if (pane.setting.mode !== 'panoramic') {
+  if (pane.setting.mode !== "panoramic") {
     draw_cross(pane, context);
     draw_trace(pane, context);
     if (!is_elsewhere()) draw_regions(pane, context);
@@ -35,8 +34,8 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
   else if (!pane.picture && !pane.is_slice)
     sentence(
         context,
-        state.plan.plan.steps.length ? 'No object is shown. Turn one on in the list.' :
-                                       'Choose a tissue to begin.',
+        state.plan.plan.steps.length ? "No object is shown. Turn one on in the list." :
+                                       "Choose a tissue to begin.",
         ratio, {colour: ink.faint});
 }
 

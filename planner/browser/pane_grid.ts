@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The four panes, each with its head: what it shows, its slider, its buttons. They ask for new pictures when
 // what they show has changed.
-import {fitted} from './actions';
-import {button, Child, el, fill} from './html';
-import {icon} from './icons';
-import {change_pane, Pane} from './panes';
-import {FrameHeader} from './protocol';
-import {first_scan, PaneSetting, set, shown_scan, State, state, watch} from './state';
-import {active_tool} from './tool';
-import {Vec2, Vec3} from './vector';
-import {plane_names, PlaneName, turned, view_names, ViewName} from './view_frame';
-import {attach_input} from './view_input';
+import {fitted} from "./actions";
+import {button, Child, el, fill} from "./html";
+import {icon} from "./icons";
+import {change_pane, Pane} from "./panes";
+import {FrameHeader} from "./protocol";
+import {first_scan, PaneSetting, set, shown_scan, State, state, watch} from "./state";
+import {active_tool} from "./tool";
+import {Vec2, Vec3} from "./vector";
+import {plane_names, PlaneName, turned, view_names, ViewName} from "./view_frame";
+import {attach_input} from "./view_input";
 
 const panes: Pane[] = [];
 export const all_panes = (): Pane[] => panes;
@@ -48,10 +48,10 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
       if (about)
         fill(
             legend,
-            el('div', {class: 'ramp', style: `background:linear-gradient(90deg,${about.colours.join()})`}),
-            el('span', {}, `−${- about.low_mm} mm`), el('span', {}, '0'),
-            el('span', {}, `+${about.high_mm} mm`));
-      legend.title = about?.definition ?? '';
+            el("div", {class: "ramp", style: `background:linear-gradient(90deg,${about.colours.join()})`}),
+            el("span", {}, `−${- about.low_mm} mm`), el("span", {}, "0"),
+            el("span", {}, `+${about.high_mm} mm`));
+      legend.title = about?.definition ?? "";
     });
     legend.hidden = true;
   }
@@ -163,7 +163,7 @@ function head_of(pane: Pane): Child {
   const turned_by = pane.is_oblique                               ? setting.tilt :
       setting.mode === "view" && typeof setting.view !== "string" ? setting.view :
                                                                     null;
-  const about = (words: string): Child => el('span', {class: 'angles', title: words}, words);
+  const about = (words: string): Child => el("span", {class: "angles", title: words}, words);
   const shading =
       el("select", {
         class: "pane-choice faint",
@@ -183,14 +183,14 @@ function head_of(pane: Pane): Child {
   return [
     choose,
     turned_by ? about(`${turned_by.azimuth.toFixed(0)}°, ${turned_by.elevation.toFixed(0)}°`) : null,
-    setting.only ? about(`${setting.only.replace(/_/g, ' ')} alone`) : null,
+    setting.only ? about(`${setting.only.replace(/_/g, " ")} alone`) : null,
     shading,
     el("span", {class: "spring"}),
     button(
         icon("maximise", 14),
         state.maximised === null ? "Enlarge this pane. Double click does it too" : "Show four panes",
         () => set({maximised: state.maximised === null ? pane.index : null, active_pane: pane.index}),
-        {class: 'ghost small'}),
+        {class: "ghost small"}),
   ];
 }
 

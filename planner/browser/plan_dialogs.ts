@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Dialogs about the plan: export and print, the report, the audit, the screenshot.
-import {add_step, busy, done, download, evaluate, file_url, free_id, try_to} from './actions';
-import {open_dialog} from './dialog';
-import {look_of, object_ids} from './drawn_objects';
-import {button, el} from './html';
-import {icon} from './icons';
-import {all_panes} from './pane_grid';
-import {audit_rows, scan_facts} from './start_page';
-import {notify, state, step_of} from './state';
+import {add_step, busy, done, download, evaluate, file_url, free_id, try_to} from "./actions";
+import {open_dialog} from "./dialog";
+import {look_of, object_ids} from "./drawn_objects";
+import {button, el} from "./html";
+import {icon} from "./icons";
+import {all_panes} from "./pane_grid";
+import {audit_rows, scan_facts} from "./start_page";
+import {notify, state, step_of} from "./state";
 
 const kinds: [string, string, string][] = [
   ["stl", "STL", "Surface for print"],
@@ -100,22 +100,22 @@ export async function write_report(): Promise<void> {
   done(job);
   if (!answer) return;
   void evaluate(true);  // the report has certified everything: badges show it
-  const dialog = open_dialog('Report', 'report');
-  const frame: HTMLIFrameElement = el('iframe', {
+  const dialog = open_dialog("Report", "report");
+  const frame: HTMLIFrameElement = el("iframe", {
     src: file_url(answer.file),
-    title: 'Report',
-    sandbox: 'allow-same-origin',
+    title: "Report",
+    sandbox: "allow-same-origin",
     // Keys that are pressed in the report do not reach the page.
     onload: () => frame.contentDocument?.addEventListener(
-        'keydown',
+        "keydown",
         (event) => {
-          if (event.key === 'Escape') dialog.close();
+          if (event.key === "Escape") dialog.close();
         })
   });
   dialog.refill(
       frame,
-      el('div', {class: 'row end'}, el('small', {class: 'path'}, answer.folder),
-         el('span', {class: 'spring'}),
+      el("div", {class: "row end"}, el("small", {class: "path"}, answer.folder),
+         el("span", {class: "spring"}),
          button(
              [icon("export", 15), "Download"], "Downloads the report, one file that needs nothing else",
              () => download(answer.file)),

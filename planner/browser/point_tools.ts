@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Tools that take points: landmarks by name, distances, angles, ways along a surface, seeds of a
 // segmentation, the dental arch.
-import {add_step, free_id, put_landmark} from './actions';
-import {button, el} from './html';
-import {dot_at, ink, line, text} from './ink';
-import {is_drawn} from './overlay';
-import {show_in, show_scan} from './pane_grid';
-import type {Pane} from './panes';
-import {Json} from './protocol';
-import {first_scan, is_elsewhere, notify, selected_step, set, state} from './state';
-import {take_tool, Tool} from './tool';
-import {angle_deg, distance, hundredths, Vec2, Vec3} from './vector';
+import {add_step, free_id, put_landmark} from "./actions";
+import {button, el} from "./html";
+import {dot_at, ink, line, text} from "./ink";
+import {is_drawn} from "./overlay";
+import {show_in, show_scan} from "./pane_grid";
+import type {Pane} from "./panes";
+import {Json} from "./protocol";
+import {first_scan, is_elsewhere, notify, selected_step, set, state} from "./state";
+import {take_tool, Tool} from "./tool";
+import {angle_deg, distance, hundredths, Vec2, Vec3} from "./vector";
 
 let taken: Vec3[] = [];
 let pointed: Vec3|null = null;
@@ -240,7 +240,7 @@ export const arch_tool: Tool = {
   cursor: "crosshair",
   taken() {
     set({arch_mm: []});
-    show_in(2, 'axial');
+    show_in(2, "axial");
   },
   down({pane, at}) {
     set({arch_mm: [...state.arch_mm, hundredths(pane.point_at(at))]});
@@ -248,7 +248,7 @@ export const arch_tool: Tool = {
     return true;
   },
   press(event) {
-    if (event.key !== 'Enter' || state.arch_mm.length < 2) return false;
+    if (event.key !== "Enter" || state.arch_mm.length < 2) return false;
     show_panoramic();
     return true;
   },
@@ -260,13 +260,13 @@ export const arch_tool: Tool = {
   panel: () => button(
       "Show panoramic slice", "Shows the curved slice along the points in the fourth pane",
       () => {
-        if (state.arch_mm.length < 2) return notify('Click at least two points along the arch.', 'warning');
+        if (state.arch_mm.length < 2) return notify("Click at least two points along the arch.", "warning");
         show_panoramic();
       },
       {class: "primary"}),
 };
 
 function show_panoramic(): void {
-  show_in(3, 'panoramic');
-  take_tool('navigate');
+  show_in(3, "panoramic");
+  take_tool("navigate");
 }

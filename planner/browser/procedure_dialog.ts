@@ -20,8 +20,8 @@ export function open_procedure(name?: string): void {
   const show = (chosen: ProcedureSays|undefined): void => dialog.refill(
       el("div", {class: "presets"},
          (state.hello?.procedures ??
-          []).map((one) => button(one.says.split(':')[0], one.says, () => show(one), {
-                    class: one === chosen ? 'on' : ''
+          []).map((one) => button(one.says.split(":")[0], one.says, () => show(one), {
+                    class: one === chosen ? "on" : ""
                   }))),
       chosen ?
           procedure_form(dialog, chosen) :

@@ -154,14 +154,14 @@ function structured(
     }
   };
   const field = text.length > 60 ?
-      el('details', {class: 'long-value'},
-         el('summary', {}, Array.isArray(value) ? `${value.length} of them` : 'as text'),
-         el('textarea', {...shared, 'aria-label': shared.name, rows: 5, onchange: take}, text)) :
-                                                  el('input', {
+      el("details", {class: "long-value"},
+         el("summary", {}, Array.isArray(value) ? `${value.length} of them` : "as text"),
+         el("textarea", {...shared, "aria-label": shared.name, rows: 5, onchange: take}, text)) :
+                                                  el("input", {
                                                     ...shared,
-                                                    type: 'text',
+                                                    type: "text",
                                                     value: text,
-                                                    placeholder: about.default === undefined ? '' : JSON.stringify(about.default),
+                                                    placeholder: about.default === undefined ? "" : JSON.stringify(about.default),
                                                     onchange: take
                                                   });
   return is_point ?

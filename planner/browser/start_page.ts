@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The start page, and the audit of a scan that is shown before anything else.
-import {open_plan} from './actions';
-import {grouped} from './certificate_badge';
-import {dialogs} from './commands';
-import {upload} from './files';
-import {button, Child, el, fill} from './html';
-import {icon, IconName} from './icons';
-import {ScanState} from './protocol';
-import {set, state, watch} from './state';
-import {take_tool} from './tool';
-import {start_tour} from './tour';
+import {open_plan} from "./actions";
+import {grouped} from "./certificate_badge";
+import {dialogs} from "./commands";
+import {upload} from "./files";
+import {button, Child, el, fill} from "./html";
+import {icon, IconName} from "./icons";
+import {ScanState} from "./protocol";
+import {set, state, watch} from "./state";
+import {take_tool} from "./tool";
+import {start_tour} from "./tour";
 
 export function make_start(host: HTMLElement): void {
   const again = (): void => {
@@ -95,7 +95,7 @@ export function scan_facts(scan: ScanState): Child {
           "Extent",
           `${scan.bounds_mm[1].map((high, i) => (high - scan.bounds_mm[0][i]!).toFixed(0)).join(" × ")} mm`),
       scan.range ?
-          fact('Range', `${grouped(scan.range[0])} to ${grouped(scan.range[1])} ${scan.unit ?? ''}`) :
+          fact("Range", `${grouped(scan.range[0])} to ${grouped(scan.range[1])} ${scan.unit ?? ""}`) :
           null,
       fact("File", scan.path));
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The left column: objects with their looks, the plan's steps, and its history with branches.
-import {change_history, try_to} from './actions';
-import {motion_words} from './anatomical';
-import {badge} from './certificate_badge';
-import {copy_command, name_version, new_branch, remove_step} from './commands';
-import {look_of, makes_shape, object_ids} from './drawn_objects';
-import {button, Child, el, fill, fill_tabs} from './html';
-import {icon} from './icons';
-import {show_scan} from './pane_grid';
-import {Json, Motion, ObjectState, Step} from './protocol';
-import {ObjectLook, set, shown_scan, state, steps, watch} from './state';
+import {change_history, try_to} from "./actions";
+import {motion_words} from "./anatomical";
+import {badge} from "./certificate_badge";
+import {copy_command, name_version, new_branch, remove_step} from "./commands";
+import {look_of, makes_shape, object_ids} from "./drawn_objects";
+import {button, Child, el, fill, fill_tabs} from "./html";
+import {icon} from "./icons";
+import {show_scan} from "./pane_grid";
+import {Json, Motion, ObjectState, Step} from "./protocol";
+import {ObjectLook, set, shown_scan, state, steps, watch} from "./state";
 
 const object_of = (id: string): ObjectState|undefined =>
     state.plan?.objects.find((object) => object.id === id);
@@ -23,9 +23,9 @@ export function make_lists(host: HTMLElement): void {
     fill_tabs(
         tabs, state.left_tab,
         [
-          ['steps', 'Steps', 'Steps of the plan, in order'],
-          ['objects', 'Objects', 'Objects: colour, visibility, opacity'],
-          ['history', 'History', 'History: every change, branches and versions']
+          ["steps", "Steps", "Steps of the plan, in order"],
+          ["objects", "Objects", "Objects: colour, visibility, opacity"],
+          ["history", "History", "History: every change, branches and versions"]
         ],
         (left_tab) => set({left_tab}));
     fill(
@@ -73,7 +73,7 @@ function objects(): Child {
     const look = look_of(id);
     const object = object_of(id);
     const percent = (opacity: number): string => `${Math.round(opacity * 100)} %`;
-    const shown = el('span', {}, percent(look.opacity));
+    const shown = el("span", {}, percent(look.opacity));
     return el(
         "div", {class: `item${state.selected === id ? " selected" : ""}`, onclick: () => set({selected: id})},
         el("div", {class: "item-line"}, el("input", {
@@ -85,16 +85,16 @@ function objects(): Child {
              onclick: (event: Event) => event.stopPropagation(),
              onchange: (event: Event) => change_look(id, {colour: (event.target as HTMLInputElement).value}),
            }),
-           el('button', {type: 'button', class: 'name'}, id.replace(/_/g, ' ')),
-           object?.kind === 'mask' ? null : badge(id, object?.certificate), eye(id)),
-        el('label', {class: 'opacity', 'data-tip': 'Opacity'}, shown, el('input', {
-             type: 'range',
+           el("button", {type: "button", class: "name"}, id.replace(/_/g, " ")),
+           object?.kind === "mask" ? null : badge(id, object?.certificate), eye(id)),
+        el("label", {class: "opacity", "data-tip": "Opacity"}, shown, el("input", {
+             type: "range",
              min: 0.05,
              max: 1,
              step: 0.05,
              value: look.opacity,
-             'aria-label': `Opacity of ${id}`,
-             'data-key': `opacity-${id}`,
+             "aria-label": `Opacity of ${id}`,
+             "data-key": `opacity-${id}`,
              oninput: (event: Event) => {
                const opacity = Number((event.target as HTMLInputElement).value);
                shown.textContent = percent(opacity);

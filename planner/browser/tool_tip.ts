@@ -22,7 +22,7 @@ export function attach_tips(): void {
     const within = (at: number, size: number, all: number): number =>
         Math.max(8, Math.min(all - size - 8, at - size / 2));
     // Beside the rail, whose next tools would be hidden below.
-    const is_beside = target.closest('.rail') !== null;
+    const is_beside = target.closest(".rail") !== null;
     const below = box.bottom + 8 + own.height < innerHeight;
     const left = is_beside ? box.right + 8 : within(box.left + box.width / 2, own.width, innerWidth);
     const top = is_beside ? within(box.top + box.height / 2, own.height, innerHeight) :
@@ -32,22 +32,22 @@ export function attach_tips(): void {
     tip.style.top = `${top}px`;
   };
   // What was pressed is often made anew under a pointer that rests: no reason for a tip.
-  let pressed = '';
+  let pressed = "";
   const place = (event: Event): string =>
-      event instanceof PointerEvent ? `${event.clientX},${event.clientY}` : 'focus';
+      event instanceof PointerEvent ? `${event.clientX},${event.clientY}` : "focus";
   const over = (event: Event): void => {
     hide();
     if (place(event) === pressed) return;
-    const target = (event.target as Element).closest?.<HTMLElement>('[data-tip]');
+    const target = (event.target as Element).closest?.<HTMLElement>("[data-tip]");
     if (target) timer = window.setTimeout(() => show(target), 450);
   };
   document.addEventListener("pointerover", over);
   document.addEventListener("focusin", (event) => {
     if ((event.target as Element).matches(":focus-visible")) over(event);
   });
-  document.addEventListener('pointerdown', (event) => {
+  document.addEventListener("pointerdown", (event) => {
     pressed = place(event);
     hide();
   });
-  document.addEventListener('keydown', hide);
+  document.addEventListener("keydown", hide);
 }

@@ -10,9 +10,9 @@ import {set, state} from "./state";
 export function cut_plane_card(): Child {
   const cut = state.cut_plane!;
   const bounds = state.plan?.scans[0]?.bounds_mm;
-  const names = ['Sagittal', 'Coronal', 'Axial'];
+  const names = ["Sagittal", "Coronal", "Axial"];
   const place = (offset_mm: number): string => `${offset_mm.toFixed(1)} mm`;
-  const shown = el('output', {}, place(cut.offset_mm));
+  const shown = el("output", {}, place(cut.offset_mm));
   return el(
       "section", {class: "card"},
       el("h3", {}, icon("plane", 16), "Cut plane", el("span", {class: "spring"}),

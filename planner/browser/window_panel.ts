@@ -63,22 +63,22 @@ function panel(): Child {
   const tissues = state.hello?.tissues.length ? state.hello.tissues : usual;
   const change = (part: Partial<DraftWindow>): void => set({draft_window: {...draft, ...part}});
   const slider = (label: string, value: number, key: string, take: (value: number) => void): Child => {
-    const shared = {step: 1, value, 'aria-label': label};
+    const shared = {step: 1, value, "aria-label": label};
     const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
-    const typed = el('input', {
-      type: 'number',
+    const typed = el("input", {
+      type: "number",
       ...shared,
-      'data-key': key,
+      "data-key": key,
       name: key,
       onchange: (event: Event) => take(number(event))
     });
     return el(
-        'label', {class: 'slider'}, el('span', {}, label), el('input', {
-          type: 'range',
+        "label", {class: "slider"}, el("span", {}, label), el("input", {
+          type: "range",
           min: least,
           max: most,
           ...shared,
-          'data-key': `${key}-range`,
+          "data-key": `${key}-range`,
           oninput: (event: Event) => {
             typed.value = String(number(event));
             take(number(event));

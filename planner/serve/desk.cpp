@@ -19,6 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Answers that a session keeps, and their memory, of objects and of scans. A certification of a head takes
+/// 400 MB: the last two are kept, so that undo and redo find theirs.
+constexpr std::size_t most_answers = 512;
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+
 bool is_plan(const fs::path& path) {
   return path.extension() == ".json";
 }
@@ -102,7 +107,8 @@ std::vector<std::string> steps_without(const Plan& plan, const std::vector<std::
 
 }  // namespace
 
-Desk::Desk(fs::path working_folder) : working_folder_(std::move(working_folder)) {
+Desk::Desk(fs::path working_folder)
+    : cache(most_answers, most_bytes), working_folder_(std::move(working_folder)) {
   folders.open(working_folder_);
 }
 
