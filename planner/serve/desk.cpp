@@ -167,13 +167,19 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
     const std::lock_guard lock(mutex_);
     made.plan = need_document().plan();
     opened = opened_;
+    // A window that asked before an undo reached it names steps that have gone.
+    std::erase_if(wanted, [&](const std::string& id) {
+      const auto& all = made.plan->steps;
+      return !certify &&
+             std::none_of(all.begin(), all.end(), [&](const Step& step) { return step.id == id; });
+    });
     // What pictures show already stays in them.
     if (!steps.empty() && !certify && snapshot_.evaluation)
       for (const Step& step : made.plan->steps)
         if (makes_object(step) && object_json(snapshot_, step.id)["evaluated"] == true)
           wanted.push_back(step.id);
   }
-  if (wanted.empty())
+  if (steps.empty())
     for (const Step& step : made.plan->steps)
       if (makes_object(step) || step.action.operation().makes == Makes::Scan) wanted.push_back(step.id);
   std::string doing;
