@@ -25,6 +25,7 @@ export function open_picker(
   const show = async(folder: string): Promise<void> => {
     const answer = await try_to<{entries: Entry[]}>("list", {folder});
     const entries = (answer?.entries ?? [])
+                        .filter((entry) => entry.kind !== "other")
                         .sort(
                             (a, b) => Number(b.kind === "folder") - Number(a.kind === "folder") ||
                                 a.name.localeCompare(b.name));
@@ -35,7 +36,7 @@ export function open_picker(
            folders.map(
                (one) =>
                    button(one, `Folder ${one}`, () => void show(one), {class: one === folder ? "on" : ""}))),
-        el("p", {class: "path"}, folder),
+        folders.includes(folder) ? null : el("p", {class: "path"}, folder),
         el("div", {class: "files", role: "list"},
            folders.some((one) => folder !== one && folder.startsWith(one)) ?
                row("folder", "..", "", () => void show(parent)) :

@@ -38,9 +38,30 @@ function put(element: Element, children: Child[]): void {
   }
 }
 
-/// Fills a host anew. The field with the focus keeps it, with its text and caret, if its `data-key` comes
-/// again.
+// What is pressed stays until it is let go, or its click would be lost and a slider would slip from the hand.
+let pressed: Node|null = null;
+const put_off = new Map<Element, Child[]>();
+function release(): void {
+  pressed = null;
+  const hosts = [...put_off];
+  put_off.clear();
+  for (const [host, children] of hosts) fill(host, ...children);
+}
+addEventListener("pointerdown", (event) => {
+  pressed = event.target as Node;
+}, true);
+// A click comes right after its pointerup. A list that hangs open tells its end by a change alone.
+for (const end of ["pointerup", "pointercancel", "change"])
+  addEventListener(end, () => window.setTimeout(release), true);
+
+/// Fills a host anew; a host in which something is pressed, as soon as that is let go. The field with the
+/// focus keeps it, with its text and caret, if its `data-key` comes again.
 export function fill(host: Element, ...children: Child[]): void {
+  if (pressed && host.contains(pressed)) {
+    put_off.set(host, children);
+    return;
+  }
+  put_off.delete(host);
   const active = document.activeElement;
   const key = active instanceof HTMLElement && host.contains(active) ? active.dataset.key : undefined;
   const typed = active instanceof HTMLInputElement && active.type !== "checkbox" && active.type !== "range" ?
@@ -55,6 +76,18 @@ export function fill(host: Element, ...children: Child[]): void {
   if (!again) return;
   if (typed !== null && again instanceof HTMLInputElement) again.value = typed;
   again.focus({preventScroll: true});
+}
+
+/// A row of tabs, of which one is chosen.
+export function fill_tabs<Name extends string>(
+    host: Element, chosen: Name, tabs: readonly(readonly[Name, string, string])[],
+    choose: (name: Name) => void): void {
+  fill(
+      host,
+      tabs.map(
+          ([name, label, tip]) => button(
+              label, tip, () => choose(name),
+              {role: "tab", "aria-selected": String(name === chosen), class: name === chosen ? "on" : ""})));
 }
 
 /// A button with words or an icon, and its tip. Where it has an icon alone, the tip's first sentence is its

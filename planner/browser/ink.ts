@@ -10,6 +10,8 @@ export const ink = {
   measure: "#7ee0d0",
   mark: "#ff5d8f",
   oblique: "#c792ea",
+  bad: "#ff8f93",
+  good: "#9be7b0",
   text: "rgba(255,255,255,.92)",
   faint: "rgba(255,255,255,.55)",
 };
@@ -38,14 +40,17 @@ const dark_of: {[colour: string]: string} = {
   [ink.landmark]: "#7a4b00",
   [ink.measure]: "#005e50",
   [ink.oblique]: "#7b3fa0",
-  "#ff8f93": "#b3212a",
-  "#9be7b0": "#14713c"
+  [ink.bad]: "#b3212a",
+  [ink.good]: "#14713c"
 };
+
+const font_of = (look: TextLook, ratio: number): string =>
+    `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
 
 /// Words with an outline, so that they are legible on bone and on the ground; they stay within the picture.
 export function text(
     context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook = {}): void {
-  context.font = `500 ${(look.px ?? 12) * ratio}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
+  context.font = font_of(look, ratio);
   context.textAlign = look.align ?? "left";
   context.textBaseline = "middle";
   context.lineWidth = 3 * ratio;
@@ -60,20 +65,54 @@ export function text(
   context.fillText(words, x, at[1]);
 }
 
+/// Keeps the labels that are still to come off a line.
+export function keep_words_off(points: Vec2[], ratio: number): void {
+  const half = 2 * ratio;
+  points.slice(1).forEach((to, i) => {
+    const from = points[i]!;
+    const count = Math.ceil(Math.hypot(to[0] - from[0], to[1] - from[1]) / (3 * half));
+    for (let n = 0; n <= count; ++n) {
+      const [x, y] = [0, 1].map((axis) => from[axis]! + ((to[axis]! - from[axis]!) * n) / (count || 1));
+      labelled.push({low: [x! - half, y! - half], high: [x! + half, y! + half]});
+    }
+  });
+}
+
+/// A sentence in the picture's middle, in as many lines as its width asks for.
+export function sentence(
+    context: CanvasRenderingContext2D, words: string, ratio: number, look: TextLook = {}): void {
+  const {width, height} = context.canvas;
+  context.font = font_of(look, ratio);
+  const lines: string[] = [];
+  for (const word of words.split(" ")) {
+    const longer = `${lines[lines.length - 1] ?? ""} ${word}`.trim();
+    if (lines.length && context.measureText(longer).width < width - 32 * ratio)
+      lines[lines.length - 1] = longer;
+    else
+      lines.push(word);
+  }
+  const row = 18 * ratio;
+  lines.forEach(
+      (each, i) => text(
+          context, each, [width / 2, height / 2 + (i - (lines.length - 1) / 2) * row], ratio,
+          {...look, align: "center"}));
+}
+
 /// Words beside a point: at its right, or its left, or as far up or down as there is room.
 export function label(
     context: CanvasRenderingContext2D, words: string, at: Vec2, ratio: number, look: TextLook): void {
   const px = (look.px ?? 12) * ratio;
-  context.font = `500 ${px}px system-ui, "Segoe UI", Roboto, "DejaVu Sans", sans-serif`;
+  context.font = font_of(look, ratio);
   const width = context.measureText(words).width;
   const gap = 7 * ratio;
   const rows = [0, -1, 1, -2, 2, -3, 3];
   const places = rows.flatMap((row): Vec2[] => [gap, -gap - width].map((x) => [at[0] + x, at[1] + row * px]));
   const box = ([x, y]: Vec2): {low: Vec2; high: Vec2} =>
       ({low: [x, y - px / 2], high: [x + width, y + px / 2]});
+  const edge = 4 * ratio;
   const is_free = (place: Vec2): boolean => {
     const {low, high} = box(place);
-    return low[0] >= 0 && high[0] <= context.canvas.width &&
+    return low[0] >= edge && high[0] <= context.canvas.width - edge &&
         labelled.every(
             (one) =>
                 one.low[0] > high[0] || one.high[0] < low[0] || one.low[1] > high[1] || one.high[1] < low[1]);

@@ -4,7 +4,7 @@
 import {add_step, replace_step} from "./actions";
 import {badge, measured_text} from "./certificate_badge";
 import {is_piece, makes_shape} from "./drawn_objects";
-import {button, Child, el, fill} from "./html";
+import {button, Child, el, fill, fill_tabs} from "./html";
 import {icon, is_icon} from "./icons";
 import {movement_fields} from "./move_fields";
 import {fetch_movement, movement} from "./movement_panel";
@@ -21,16 +21,14 @@ export function make_inspector(host: HTMLElement): void {
   host.append(tabs, body);
   const again = (): void => {
     if (!state.plan) return fill(body);
-    const tab = (name: typeof state.right_tab, label: string, tip: string): Child =>
-        button(label, tip, () => set({right_tab: name}), {
-          role: "tab",
-          "aria-selected": String(state.right_tab === name),
-          class: state.right_tab === name ? "on" : ""
-        });
-    fill(
-        tabs, tab("inspector", "Inspector", "Inspector: the tool in hand and the selected step"),
-        tab("numbers", "Numbers", "Numbers: volumes and measurements with their certificates"),
-        tab("movement", "Movement", "Movement: how far each piece and landmark moves"));
+    fill_tabs(
+        tabs, state.right_tab,
+        [
+          ["inspector", "Inspector", "Inspector: the tool in hand and the selected step"],
+          ["numbers", "Numbers", "Numbers: volumes and measurements with their certificates"],
+          ["movement", "Movement", "Movement: how far each piece and landmark moves"]
+        ],
+        (right_tab) => set({right_tab}));
     fill(
         body,
         state.right_tab === "numbers"      ? numbers() :

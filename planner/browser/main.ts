@@ -105,11 +105,12 @@ function make_page(): void {
 
 function follow_keys(): void {
   addEventListener("keydown", (event) => {
-    if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
-    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "k") {
-      event.preventDefault();
-      return open_palette();
-    }
+    const is_palette = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "k";
+    // Else the browser would take the key for its own line of search.
+    if (is_palette) event.preventDefault();
+    if (document.querySelector("dialog[open]")) return;
+    if (is_palette) return open_palette();
+    if (event.defaultPrevented) return;
     if (event.key === "Escape" && state.tool !== "navigate") return take_tool("navigate");
     const command = command_of(event);
     if (!command) return;

@@ -2,7 +2,7 @@
 // Moves a piece by marks (Ong 1992, 8.3): a point of the piece and where it is wanted, each set in one view
 // and brought to its depth in another. One pair shifts the piece, further pairs turn it.
 import {button, Child, el} from "./html";
-import {dot_at, ink, line, text} from "./ink";
+import {dot_at, ink, label, line} from "./ink";
 import type {Pane} from "./panes";
 import {commit_motion, current, piece, preview_motion} from "./piece_motion";
 import {Motion} from "./protocol";
@@ -109,7 +109,7 @@ export const marks_tool: Tool = {
     const mark = (p_mm: Vec3, words: string, is_target: boolean): void => {
       const p = pane.pixel_at(p_mm);
       dot_at(context, p, 5 * pane.ratio, is_target ? ink.measure : ink.landmark, is_target);
-      text(context, words, [p[0] + 9 * pane.ratio, p[1] - 9 * pane.ratio], pane.ratio, {px: 11});
+      if (words) label(context, words, p, pane.ratio, {px: 11});
     };
     for (const [index, {at, to}] of pairs.entries()) {
       line(context, [pane.pixel_at(at), pane.pixel_at(to)], ink.measure, 1.5 * pane.ratio);

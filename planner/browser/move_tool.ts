@@ -19,8 +19,9 @@ interface Held {
 }
 let held: Held|null = null;
 
-const arrow_px = 62;
-const ring_px = 84;
+/// The ring's radius and the arrows' length in CSS pixels: less in a small pane, so that they can be reached.
+const ring_px = (pane: Pane): number => Math.min(84, (0.25 * Math.min(...pane.size)) / pane.ratio);
+const arrow_px = (pane: Pane): number => 0.74 * ring_px(pane);
 const turn_axes: Record<Turn, [Vec3, Vec3]> = {
   pitch_deg: [[0, -1, 0], [0, 0, 1]],  // the front goes up
   yaw_deg: [[0, -1, 0], [1, 0, 0]],    // the front goes to the left
@@ -105,18 +106,18 @@ export const move_tool: Tool = {
 function handle_at(pane: Pane, at: Vec2, centre: Vec2, one: {source: string; step: Step | undefined}): Handle|
     null {
   const from: Vec2 = [(at[0] - centre[0]) / pane.ratio, (at[1] - centre[1]) / pane.ratio];
+  const [ring, reach] = [ring_px(pane), arrow_px(pane)];
   for (const word of directions) {
     const end = arrow_end(pane, word);
-    if (end &&
-        [1, -1].some(
-            (side) =>
-                Math.hypot(from[0] - side * end[0] * arrow_px, from[1] - side * end[1] * arrow_px) < 13))
+    if (end && [
+          1, -1
+        ].some((side) => Math.hypot(from[0] - side * end[0] * reach, from[1] - side * end[1] * reach) < 13))
       return word;
   }
   const radius = Math.hypot(from[0], from[1]);
-  if (Math.abs(radius - ring_px) < 9) return "turn";
+  if (Math.abs(radius - ring) < 9) return "turn";
   const picked = pane.pick(at)?.object;
-  return radius < ring_px ||
+  return radius < ring ||
           (picked !== null && picked !== undefined && (picked === one.source || picked === one.step?.id)) ?
       "free" :
       null;
@@ -156,36 +157,35 @@ function draw_handles(pane: Pane, context: CanvasRenderingContext2D): void {
   const [x, y] = pane.pixel_at(pivot_mm(one.source, move));
   const ratio = pane.ratio;
   const {turn} = turn_in(pane);
+  const [ring, reach] = [ring_px(pane) * ratio, arrow_px(pane) * ratio];
   context.beginPath();
-  context.arc(x, y, ring_px * ratio, 0, 2 * Math.PI);
+  context.arc(x, y, ring, 0, 2 * Math.PI);
   context.lineWidth = 5 * ratio;
   context.strokeStyle = "rgba(0,0,0,.45)";
   context.stroke();
   context.lineWidth = 2 * ratio;
   context.strokeStyle = ink.measure;
   context.stroke();
-  dot_at(
-      context, [x + ring_px * ratio * Math.SQRT1_2, y - ring_px * ratio * Math.SQRT1_2], 5 * ratio,
-      ink.measure);
+  dot_at(context, [x + ring * Math.SQRT1_2, y - ring * Math.SQRT1_2], 5 * ratio, ink.measure);
   const colours:
       Record<Direction, string> = {left_mm: ink.cross[0], forward_mm: ink.cross[1], up_mm: ink.cross[2]};
   for (const word of directions) {
     const end = arrow_end(pane, word);
     if (!end) continue;
     for (const side of [1, -1]) {
-      const tip: Vec2 = [x + side * end[0] * arrow_px * ratio, y + side * end[1] * arrow_px * ratio];
+      const tip: Vec2 = [x + side * end[0] * reach, y + side * end[1] * reach];
       arrow(context, [x, y], tip, colours[word], ratio);
     }
   }
   dot_at(context, [x, y], 5 * ratio, "#fff");
   if (held?.pane !== pane) return;
   const words = held.handle === "turn" ? `${turn_words(move, turn)}` : motion_words({by: move.by ?? {}});
-  text(context, words, [x, y - (ring_px + 16) * ratio], ratio, {align: "center", px: 13});
+  text(context, words, [x, y - ring - 16 * ratio], ratio, {align: "center", px: 13});
   if (state.overlap_mm3 !== null)
-    text(context, `overlap ${state.overlap_mm3.toFixed(0)} mm³`, [x, y + (ring_px + 16) * ratio], ratio, {
+    text(context, `overlap ${state.overlap_mm3.toFixed(0)} mm³`, [x, y + ring + 16 * ratio], ratio, {
       align: "center",
       px: 13,
-      colour: state.overlap_mm3 > 0.5 ? "#ff8f93" : "#9be7b0",
+      colour: state.overlap_mm3 > 0.5 ? ink.bad : ink.good,
     });
 }
 const turn_words = (move: Motion, turn: Turn): string => {

@@ -36,7 +36,7 @@ export function numbers(): Child {
                onclick: () => set({selected: object.id})
              },
              el("th", {scope: "row"}, object.id.replace(/_/g, " "),
-                is_overlap(step, all) ? el("small", {}, " overlap") : null),
+                is_overlap(step, all) && !object.id.includes("overlap") ? el("small", {}, " overlap") : null),
              el("td", {}, el("div", {}, measured_text(object.volume)),
                 object.area ? el("small", {}, measured_text(object.area)) : null),
              el("td", {class: "badge-cell"}, badge(object.id, object.certificate)));

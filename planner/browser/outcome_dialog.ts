@@ -58,6 +58,7 @@ const findings = (list: string[]): Child => list.map((finding) => el("p", {class
 function piece_table(piece: Outcome["pieces"][number]): Child {
   const head = (...words: string[]): Child =>
       el("thead", {}, el("tr", {}, words.map((word) => el("th", {scope: "col"}, word))));
+  const place = (name: string): string => (name === piece.object ? "its middle" : spoken(name));
   return [
     el("table", {class: "numbers outcome-table"},
        el("caption", {}, `${spoken(piece.object)}, fitted to ${piece.rms_mm.toFixed(2)} mm rms`),
@@ -68,7 +69,7 @@ function piece_table(piece: Outcome["pieces"][number]): Child {
                   (["forward_mm", "up_mm", "left_mm"] as const)
                       .map(
                           (word, row) => result_row(
-                              row ? "" : `${spoken(point.name)}, ${point.off_mm.toFixed(1)} mm off`, word,
+                              row ? "" : `${place(point.name)}, ${point.off_mm.toFixed(1)} mm off`, word,
                               "mm", point.planned[word], point.achieved[word], point.half_width[word]))),
           (["pitch_deg", "yaw_deg", "roll_deg"] as const)
               .map(

@@ -1,49 +1,47 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What is drawn over a pane's picture: edge letters, scale, cross-hair, regions, landmarks, measured lines,
 // marks and the handles of the tool that is in hand.
-import {begin_ink, dot_at, ink, label, line, text, TextLook} from "./ink";
+import {begin_ink, dot_at, ink, keep_words_off, label, line, sentence, text, TextLook} from "./ink";
 import {draw_trace} from "./oblique";
 import type {Pane} from "./panes";
 import {Json, Measurement, Step} from "./protocol";
 import {is_elsewhere, shown_scan, state, step_of, steps} from "./state";
-import {is_dark} from "./theme";
 import {active_tool} from "./tool";
 import {add, dot, scaled, Vec2, Vec3} from "./vector";
 import {edge_letters, view_of_plane, view_text} from "./view_frame";
 
 export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): void {
   if (!state.plan) return;
-  begin_ink(!pane.is_slice && !is_dark());
+  begin_ink(pane.is_on_white);
   const ratio = pane.ratio;
   context.lineJoin = "round";
-  draw_cross(pane, context);
-  draw_trace(pane, context);
-  if (!is_elsewhere()) draw_regions(pane, context);
-  draw_landmarks(pane, context);
-  if (!is_elsewhere()) draw_measures(pane, context);
-  if (state.marked) draw_mark(pane, context, state.marked.at_mm);
-  active_tool()?.draw?.(pane, context);
-  draw_letters(pane, context);
+  // A curved slice has no one place for a point.
+  if (pane.setting.mode !== "panoramic") {
+    draw_cross(pane, context);
+    draw_trace(pane, context);
+    if (!is_elsewhere()) draw_regions(pane, context);
+    if (!is_elsewhere()) draw_measures(pane, context);
+    draw_landmarks(pane, context);
+    if (state.marked) draw_mark(pane, context, state.marked.at_mm);
+    active_tool()?.draw?.(pane, context);
+    draw_letters(pane, context);
+  }
   draw_scale(pane, context);
   if (pane.is_slow)
     text(context, "drawing …", [10 * ratio, pane.size[1] - 12 * ratio], ratio, {colour: ink.faint, px: 11});
   if (pane.problem)
-    text(
-        context, pane.problem, [pane.size[0] / 2, pane.size[1] / 2], ratio,
-        {align: "center", colour: "#ffb4a8"});
-  else if (!pane.picture && !pane.is_slice) {
-    text(
+    sentence(context, pane.problem, ratio, {colour: ink.bad});
+  else if (!pane.picture && !pane.is_slice)
+    sentence(
         context,
         state.plan.plan.steps.length ? "No object is shown. Turn one on in the list." :
                                        "Choose a tissue to begin.",
-        [pane.size[0] / 2, pane.size[1] / 2], ratio, {align: "center", colour: ink.faint});
-  }
+        ratio, {colour: ink.faint});
 }
 
 // Each line is the trace of the other panes' planes; a gap in the middle leaves the point itself free to be
 // seen.
 function draw_cross(pane: Pane, context: CanvasRenderingContext2D): void {
-  if (pane.setting.mode === "panoramic") return;
   const frame = pane.frame;
   const [x, y] = pane.pixel_at(state.cross_mm);
   const [width, height] = pane.size;
@@ -120,13 +118,18 @@ const measured_words = (found: Measurement): string =>
     found.unit === "deg" ? `${found.value.toFixed(1)}°` : `${found.value.toFixed(2)} ${found.unit}`;
 
 function draw_measures(pane: Pane, context: CanvasRenderingContext2D): void {
+  const drawn: {step: Step; at: Vec2[]}[] = [];
   for (const step of steps()) {
     const marks = step.do === "measure" && Array.isArray(step.points_mm) ? step.points_mm : [];
     const points = marks.map(mark_mm).filter((p): p is Vec3 => p !== null);
     if (points.length < 2 || !points.every((p) => is_near(pane, p))) continue;
     const at = points.map((p) => pane.pixel_at(p));
     line(context, at, ink.measure, 1.5 * pane.ratio);
+    keep_words_off(at, pane.ratio);
     for (const p of at) dot_at(context, p, 3 * pane.ratio, ink.measure);
+    drawn.push({step, at});
+  }
+  for (const {step, at} of drawn) {
     const found = state.plan?.measurements?.find((one) => one.id === step.id);
     const middle = at[Math.floor(at.length / 2)]!;
     const before = at[Math.floor(at.length / 2) - 1]!;
@@ -171,7 +174,6 @@ function draw_mark(pane: Pane, context: CanvasRenderingContext2D, p_mm: Vec3): v
 }
 
 function draw_letters(pane: Pane, context: CanvasRenderingContext2D): void {
-  if (pane.setting.mode === "panoramic") return;
   const [width, height] = pane.size;
   const inset = 12 * pane.ratio;
   const letters = edge_letters(pane.frame);

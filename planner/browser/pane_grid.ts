@@ -2,7 +2,7 @@
 // The four panes, each with its head: what it shows, its slider, its buttons. They ask for new pictures when
 // what they show has changed.
 import {fitted} from "./actions";
-import {button, el, fill} from "./html";
+import {button, Child, el, fill} from "./html";
 import {icon} from "./icons";
 import {change_pane, Pane} from "./panes";
 import {FrameHeader} from "./protocol";
@@ -47,7 +47,9 @@ export function make_panes(host: HTMLElement, acknowledge: (pane: number, frame:
       legend.hidden = !about || index !== first_view;
       if (about)
         fill(
-            legend, el("div", {class: "ramp"}), el("span", {}, `${about.low_mm} mm`), el("span", {}, "0"),
+            legend,
+            el("div", {class: "ramp", style: `background:linear-gradient(90deg,${about.colours.join()})`}),
+            el("span", {}, `−${- about.low_mm} mm`), el("span", {}, "0"),
             el("span", {}, `+${about.high_mm} mm`));
       legend.title = about?.definition ?? "";
     });
@@ -93,6 +95,7 @@ export function reconnected(): void {
 /// Fits every pane to the scan, once the page has laid them out.
 export function fit_all(): void {
   requestAnimationFrame(() => {
+    for (const pane of panes) pane.resized();
     if (state.plan) set({panes: fitted(state.plan, shown_scan()).panes});
     want_all(false);
   });
@@ -137,7 +140,7 @@ export const pane_title = (setting: PaneSetting): string => setting.mode === "pa
                                                "free view");
 const capital = (word: string): string => word.charAt(0).toUpperCase() + word.slice(1);
 
-function head_of(pane: Pane): Node[] {
+function head_of(pane: Pane): Child {
   const setting = pane.setting;
   const value = setting.mode === "panoramic" ? "panoramic" :
       setting.mode === "slice"               ? setting.plane :
@@ -160,10 +163,7 @@ function head_of(pane: Pane): Node[] {
   const turned_by = pane.is_oblique                               ? setting.tilt :
       setting.mode === "view" && typeof setting.view !== "string" ? setting.view :
                                                                     null;
-  const angles = turned_by ?
-      el("span", {class: "angles"}, `${turned_by.azimuth.toFixed(0)}°, ${turned_by.elevation.toFixed(0)}°`) :
-      "";
-  const only = setting.only ? el("span", {class: "angles"}, `${setting.only.replace(/_/g, " ")} alone`) : "";
+  const about = (words: string): Child => el("span", {class: "angles", title: words}, words);
   const shading =
       el("select", {
         class: "pane-choice faint",
@@ -182,8 +182,8 @@ function head_of(pane: Pane): Node[] {
              .map(([name, label]) => el("option", {value: name, selected: name === setting.shading}, label)));
   return [
     choose,
-    angles as Node,
-    only as Node,
+    turned_by ? about(`${turned_by.azimuth.toFixed(0)}°, ${turned_by.elevation.toFixed(0)}°`) : null,
+    setting.only ? about(`${setting.only.replace(/_/g, " ")} alone`) : null,
     shading,
     el("span", {class: "spring"}),
     button(
@@ -191,7 +191,7 @@ function head_of(pane: Pane): Node[] {
         state.maximised === null ? "Enlarge this pane. Double click does it too" : "Show four panes",
         () => set({maximised: state.maximised === null ? pane.index : null, active_pane: pane.index}),
         {class: "ghost small"}),
-  ].filter((node) => node !== ("" as unknown as Node));
+  ];
 }
 
 /// Shows a view or slice by its name in a pane.

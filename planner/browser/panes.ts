@@ -63,6 +63,10 @@ export class Pane {
   get is_slice(): boolean {
     return this.setting.mode !== "view";
   }
+  /// Whether the picture stands on white, as surfaces on a light page do; samples stand on black.
+  get is_on_white(): boolean {
+    return !this.is_slice && !is_dark() && !["radiograph", "mip"].includes(this.setting.shading);
+  }
   get is_oblique(): boolean {
     return this.setting.mode === "slice" && this.setting.plane === "oblique";
   }
@@ -85,7 +89,8 @@ export class Pane {
   }
   private is_dragging = false;
 
-  private resized(): void {
+  /// Takes the size that the page gives it.
+  resized(): void {
     const width = Math.round(this.canvas.clientWidth * this.ratio);
     const height = Math.round(this.canvas.clientHeight * this.ratio);
     if (!width || !height || (width === this.canvas.width && height === this.canvas.height)) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Dialogs about the plan: export and print, the report, the audit, the screenshot.
-import {add_step, busy, done, download, file_url, free_id, try_to} from "./actions";
+import {add_step, busy, done, download, evaluate, file_url, free_id, try_to} from "./actions";
 import {open_dialog} from "./dialog";
 import {look_of, object_ids} from "./drawn_objects";
 import {button, el} from "./html";
@@ -99,9 +99,21 @@ export async function write_report(): Promise<void> {
   const answer = await try_to<{folder: string; file: string}>("report");
   done(job);
   if (!answer) return;
+  void evaluate(true);  // the report has certified everything: badges show it
   const dialog = open_dialog("Report", "report");
+  const frame: HTMLIFrameElement = el("iframe", {
+    src: file_url(answer.file),
+    title: "Report",
+    sandbox: "allow-same-origin",
+    // Keys that are pressed in the report do not reach the page.
+    onload: () => frame.contentDocument?.addEventListener(
+        "keydown",
+        (event) => {
+          if (event.key === "Escape") dialog.close();
+        })
+  });
   dialog.refill(
-      el("iframe", {src: file_url(answer.file), title: "Report", sandbox: "allow-same-origin"}),
+      frame,
       el("div", {class: "row end"}, el("small", {class: "path"}, answer.folder),
          el("span", {class: "spring"}),
          button(

@@ -5,9 +5,8 @@ import {add_step, free_id, put_landmark} from "./actions";
 import {button, el} from "./html";
 import {dot_at, ink, line, text} from "./ink";
 import {is_drawn} from "./overlay";
-import {show_scan} from "./pane_grid";
+import {show_in, show_scan} from "./pane_grid";
 import type {Pane} from "./panes";
-import {change_pane} from "./panes";
 import {Json} from "./protocol";
 import {first_scan, is_elsewhere, notify, selected_step, set, state} from "./state";
 import {take_tool, Tool} from "./tool";
@@ -241,7 +240,7 @@ export const arch_tool: Tool = {
   cursor: "crosshair",
   taken() {
     set({arch_mm: []});
-    change_pane(2, {mode: "slice", plane: "axial"});
+    show_in(2, "axial");
   },
   down({pane, at}) {
     set({arch_mm: [...state.arch_mm, hundredths(pane.point_at(at))]});
@@ -250,8 +249,7 @@ export const arch_tool: Tool = {
   },
   press(event) {
     if (event.key !== "Enter" || state.arch_mm.length < 2) return false;
-    change_pane(3, {mode: "panoramic"});
-    take_tool("navigate");
+    show_panoramic();
     return true;
   },
   draw(pane, context) {
@@ -263,8 +261,12 @@ export const arch_tool: Tool = {
       "Show panoramic slice", "Shows the curved slice along the points in the fourth pane",
       () => {
         if (state.arch_mm.length < 2) return notify("Click at least two points along the arch.", "warning");
-        change_pane(3, {mode: "panoramic"});
-        take_tool("navigate");
+        show_panoramic();
       },
       {class: "primary"}),
 };
+
+function show_panoramic(): void {
+  show_in(3, "panoramic");
+  take_tool("navigate");
+}

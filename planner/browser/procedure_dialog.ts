@@ -20,7 +20,7 @@ export function open_procedure(name?: string): void {
   const show = (chosen: ProcedureSays|undefined): void => dialog.refill(
       el("div", {class: "presets"},
          (state.hello?.procedures ??
-          []).map((one) => button(one.name.replace(/_/g, " "), one.says, () => show(one), {
+          []).map((one) => button(one.says.split(":")[0], one.says, () => show(one), {
                     class: one === chosen ? "on" : ""
                   }))),
       chosen ?

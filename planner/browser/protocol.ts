@@ -185,7 +185,7 @@ export interface FrameHeader {
   view_frame: ViewFrame;
   objects?: string[];
   command?: string;
-  legend?: {low_mm: number; high_mm: number; definition: string};
+  legend?: {low_mm: number; high_mm: number; colours: string[]; definition: string};
   overlap_mm3?: number|null;
   parts: {kind: "jpeg"|"png"|"depth"|"object"|"value"; bytes: number}[];
 }

@@ -153,13 +153,17 @@ function structured(
       field.reportValidity();
     }
   };
-  const field = text.length > 60 ? el("textarea", {...shared, rows: 3, onchange: take}, text) : el("input", {
-    ...shared,
-    type: "text",
-    value: text,
-    placeholder: about.default === undefined ? "" : JSON.stringify(about.default),
-    onchange: take
-  });
+  const field = text.length > 60 ?
+      el("details", {class: "long-value"},
+         el("summary", {}, Array.isArray(value) ? `${value.length} of them` : "as text"),
+         el("textarea", {...shared, "aria-label": shared.name, rows: 5, onchange: take}, text)) :
+                                                  el("input", {
+                                                    ...shared,
+                                                    type: "text",
+                                                    value: text,
+                                                    placeholder: about.default === undefined ? "" : JSON.stringify(about.default),
+                                                    onchange: take
+                                                  });
   return is_point ?
       el("span", {class: "with-button"}, field,
          button("✛", "Take the cross-hair's place", () => set_value([...state.cross_mm]), {class: "small"})) :

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The start page, and the audit of a scan that is shown before anything else.
 import {open_plan} from "./actions";
+import {grouped} from "./certificate_badge";
 import {dialogs} from "./commands";
 import {upload} from "./files";
 import {button, Child, el, fill} from "./html";
@@ -94,7 +95,7 @@ export function scan_facts(scan: ScanState): Child {
           "Extent",
           `${scan.bounds_mm[1].map((high, i) => (high - scan.bounds_mm[0][i]!).toFixed(0)).join(" × ")} mm`),
       scan.range ?
-          fact("Range", `${scan.range[0].toFixed(0)} to ${scan.range[1].toFixed(0)} ${scan.unit ?? ""}`) :
+          fact("Range", `${grouped(scan.range[0])} to ${grouped(scan.range[1])} ${scan.unit ?? ""}`) :
           null,
       fact("File", scan.path));
 }

@@ -5,7 +5,7 @@ import {motion_words} from "./anatomical";
 import {badge} from "./certificate_badge";
 import {copy_command, name_version, new_branch, remove_step} from "./commands";
 import {look_of, makes_shape, object_ids} from "./drawn_objects";
-import {button, Child, el, fill} from "./html";
+import {button, Child, el, fill, fill_tabs} from "./html";
 import {icon} from "./icons";
 import {show_scan} from "./pane_grid";
 import {Json, Motion, ObjectState, Step} from "./protocol";
@@ -20,16 +20,14 @@ export function make_lists(host: HTMLElement): void {
   host.append(tabs, body);
   const again = (): void => {
     if (!state.plan) return fill(body);
-    const tab = (name: typeof state.left_tab, label: string, tip: string): Child =>
-        button(label, tip, () => set({left_tab: name}), {
-          role: "tab",
-          "aria-selected": String(state.left_tab === name),
-          class: state.left_tab === name ? "on" : ""
-        });
-    fill(
-        tabs, tab("steps", "Steps", "Steps of the plan, in order"),
-        tab("objects", "Objects", "Objects: colour, visibility, opacity"),
-        tab("history", "History", "History: every change, branches and versions"));
+    fill_tabs(
+        tabs, state.left_tab,
+        [
+          ["steps", "Steps", "Steps of the plan, in order"],
+          ["objects", "Objects", "Objects: colour, visibility, opacity"],
+          ["history", "History", "History: every change, branches and versions"]
+        ],
+        (left_tab) => set({left_tab}));
     fill(
         body, scan_choice(),
         state.left_tab === "objects"   ? objects() :
@@ -74,6 +72,8 @@ function objects(): Child {
   return object_ids().map((id) => {
     const look = look_of(id);
     const object = object_of(id);
+    const percent = (opacity: number): string => `${Math.round(opacity * 100)} %`;
+    const shown = el("span", {}, percent(look.opacity));
     return el(
         "div", {class: `item${state.selected === id ? " selected" : ""}`, onclick: () => set({selected: id})},
         el("div", {class: "item-line"}, el("input", {
@@ -87,8 +87,7 @@ function objects(): Child {
            }),
            el("button", {type: "button", class: "name"}, id.replace(/_/g, " ")),
            object?.kind === "mask" ? null : badge(id, object?.certificate), eye(id)),
-        el("label", {class: "opacity", "data-tip": "Opacity"},
-           el("span", {}, `${Math.round(look.opacity * 100)} %`), el("input", {
+        el("label", {class: "opacity", "data-tip": "Opacity"}, shown, el("input", {
              type: "range",
              min: 0.05,
              max: 1,
@@ -96,8 +95,11 @@ function objects(): Child {
              value: look.opacity,
              "aria-label": `Opacity of ${id}`,
              "data-key": `opacity-${id}`,
-             oninput: (event: Event) =>
-                 change_look(id, {opacity: Number((event.target as HTMLInputElement).value)}),
+             oninput: (event: Event) => {
+               const opacity = Number((event.target as HTMLInputElement).value);
+               shown.textContent = percent(opacity);
+               change_look(id, {opacity});
+             },
              onclick: (event: Event) => event.stopPropagation(),
            })),
         object?.error ? el("p", {class: "error"}, object.error) : null);

@@ -19,13 +19,25 @@ export function attach_tips(): void {
     tip.hidden = false;
     const box = target.getBoundingClientRect();
     const own = tip.getBoundingClientRect();
-    const left = Math.max(8, Math.min(innerWidth - own.width - 8, box.left + box.width / 2 - own.width / 2));
+    const within = (at: number, size: number, all: number): number =>
+        Math.max(8, Math.min(all - size - 8, at - size / 2));
+    // Beside the rail, whose next tools would be hidden below.
+    const is_beside = target.closest(".rail") !== null;
     const below = box.bottom + 8 + own.height < innerHeight;
+    const left = is_beside ? box.right + 8 : within(box.left + box.width / 2, own.width, innerWidth);
+    const top = is_beside ? within(box.top + box.height / 2, own.height, innerHeight) :
+        below             ? box.bottom + 8 :
+                            box.top - own.height - 8;
     tip.style.left = `${left}px`;
-    tip.style.top = `${below ? box.bottom + 8 : box.top - own.height - 8}px`;
+    tip.style.top = `${top}px`;
   };
+  // What was pressed is often made anew under a pointer that rests: no reason for a tip.
+  let pressed = "";
+  const place = (event: Event): string =>
+      event instanceof PointerEvent ? `${event.clientX},${event.clientY}` : "focus";
   const over = (event: Event): void => {
     hide();
+    if (place(event) === pressed) return;
     const target = (event.target as Element).closest?.<HTMLElement>("[data-tip]");
     if (target) timer = window.setTimeout(() => show(target), 450);
   };
@@ -33,6 +45,9 @@ export function attach_tips(): void {
   document.addEventListener("focusin", (event) => {
     if ((event.target as Element).matches(":focus-visible")) over(event);
   });
-  document.addEventListener("pointerdown", hide);
+  document.addEventListener("pointerdown", (event) => {
+    pressed = place(event);
+    hide();
+  });
   document.addEventListener("keydown", hide);
 }

@@ -11,6 +11,8 @@ export function cut_plane_card(): Child {
   const cut = state.cut_plane!;
   const bounds = state.plan?.scans[0]?.bounds_mm;
   const names = ["Sagittal", "Coronal", "Axial"];
+  const place = (offset_mm: number): string => `${offset_mm.toFixed(1)} mm`;
+  const shown = el("output", {}, place(cut.offset_mm));
   return el(
       "section", {class: "card"},
       el("h3", {}, icon("plane", 16), "Cut plane", el("span", {class: "spring"}),
@@ -36,10 +38,13 @@ export function cut_plane_card(): Child {
            max: bounds?.[1][cut.axis] ?? 150,
            step: 0.5,
            value: cut.offset_mm,
-           oninput: (event: Event) =>
-               set({cut_plane: {...cut, offset_mm: Number((event.target as HTMLInputElement).value)}})
+           oninput: (event: Event) => {
+             const offset_mm = Number((event.target as HTMLInputElement).value);
+             shown.textContent = place(offset_mm);
+             set({cut_plane: {...cut, offset_mm}});
+           }
          }),
-         el("output", {}, `${cut.offset_mm.toFixed(1)} mm`)));
+         shown));
 }
 
 export function compare_card(): Child {

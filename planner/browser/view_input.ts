@@ -100,15 +100,16 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   });
 
   const ended = (event: PointerEvent): void => {
-    fingers.delete(event.pointerId);
+    if (!fingers.delete(event.pointerId)) return;
     if (drag === "tool")
       active_tool()?.up?.(pointer(event));
     else if (drag === "turn" && !has_moved)
       click(at_of(event));
     if (!fingers.size) drag = null;
   };
-  canvas.addEventListener("pointerup", ended);
-  canvas.addEventListener("pointercancel", ended);
+  // A dialog that opens in mid-drag takes the pointer away: the drag ends there.
+  for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
+    canvas.addEventListener(end, ended);
 
   // A click in a view brings the cross-hair to the surface and selects the object's step.
   function click(at: Vec2): void {

@@ -62,26 +62,30 @@ function panel(): Child {
   const [least, most] = range();
   const tissues = state.hello?.tissues.length ? state.hello.tissues : usual;
   const change = (part: Partial<DraftWindow>): void => set({draft_window: {...draft, ...part}});
-  const slider = (label: string, value: number, key: string, take: (value: number) => void): Child =>
-      el("label", {class: "slider"}, el("span", {}, label), el("input", {
-           type: "range",
-           min: least,
-           max: most,
-           step: 1,
-           value,
-           "data-key": `${key}-range`,
-           "aria-label": label,
-           oninput: (event: Event) => take(Number((event.target as HTMLInputElement).value))
-         }),
-         el("input", {
-           type: "number",
-           step: 1,
-           value,
-           "data-key": key,
-           name: key,
-           "aria-label": label,
-           onchange: (event: Event) => take(Number((event.target as HTMLInputElement).value))
-         }));
+  const slider = (label: string, value: number, key: string, take: (value: number) => void): Child => {
+    const shared = {step: 1, value, "aria-label": label};
+    const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
+    const typed = el("input", {
+      type: "number",
+      ...shared,
+      "data-key": key,
+      name: key,
+      onchange: (event: Event) => take(number(event))
+    });
+    return el(
+        "label", {class: "slider"}, el("span", {}, label), el("input", {
+          type: "range",
+          min: least,
+          max: most,
+          ...shared,
+          "data-key": `${key}-range`,
+          oninput: (event: Event) => {
+            typed.value = String(number(event));
+            take(number(event));
+          }
+        }),
+        typed);
+  };
   return [
     el("div", {class: "presets", role: "group", "aria-label": "Tissues"}, tissues.map((tissue) => {
       const on = draft.low === (tissue.low ?? least) && draft.high === (tissue.high ?? undefined);

@@ -19,6 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Answers that a session keeps, and their memory, of objects and of scans. A certification of a head takes
+/// 400 MB: the last two are kept, so that undo and redo find theirs.
+constexpr std::size_t most_answers = 512;
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+
 bool is_plan(const fs::path& path) {
   return path.extension() == ".json";
 }
@@ -102,7 +107,8 @@ std::vector<std::string> steps_without(const Plan& plan, const std::vector<std::
 
 }  // namespace
 
-Desk::Desk(fs::path working_folder) : working_folder_(std::move(working_folder)) {
+Desk::Desk(fs::path working_folder)
+    : cache(most_answers, most_bytes), working_folder_(std::move(working_folder)) {
   folders.open(working_folder_);
 }
 
@@ -161,13 +167,19 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
     const std::lock_guard lock(mutex_);
     made.plan = need_document().plan();
     opened = opened_;
+    // A window that asked before an undo reached it names steps that have gone.
+    std::erase_if(wanted, [&](const std::string& id) {
+      const auto& all = made.plan->steps;
+      return !certify &&
+             std::none_of(all.begin(), all.end(), [&](const Step& step) { return step.id == id; });
+    });
     // What pictures show already stays in them.
     if (!steps.empty() && !certify && snapshot_.evaluation)
       for (const Step& step : made.plan->steps)
         if (makes_object(step) && object_json(snapshot_, step.id)["evaluated"] == true)
           wanted.push_back(step.id);
   }
-  if (wanted.empty())
+  if (steps.empty())
     for (const Step& step : made.plan->steps)
       if (makes_object(step) || step.action.operation().makes == Makes::Scan) wanted.push_back(step.id);
   std::string doing;

@@ -58,8 +58,9 @@ class Desk {
   }
 
   /// Evaluates steps of the plan and those that they need; none named: all. Without `certify` in voxels
-  /// alone; then what comes of it is the snapshot. A step that cannot be evaluated is left out, with those
-  /// that need it. Throws Stopped, and what evaluate() throws where no step is at fault.
+  /// alone; then what comes of it is the snapshot, and a name that the plan lacks is passed over. A step that
+  /// cannot be evaluated is left out, with those that need it. Throws Stopped, and what evaluate() throws
+  /// where no step is at fault.
   Snapshot evaluate(const std::vector<std::string>& steps, bool certify, const Watched& watched);
   /// The same of another plan, which is no snapshot; `only_look_up` as in EvaluateOptions.
   Evaluation evaluate(const Plan& plan, const std::vector<std::string>& steps, bool certify,

@@ -73,6 +73,11 @@ Json open(Desk& desk, const Json& said, const Watched& watched) {
   return nullptr;
 }
 
+/// Whether a file is no scan: a plan's history, or records of something else.
+bool is_beside(const std::string& name) {
+  return name.find(".plan.json.") != std::string::npos || name.ends_with(".json");
+}
+
 Json list(Desk& desk, const Json& said, const Watched&) {
   constexpr std::size_t most_entries = 5000;
   const fs::path folder = desk.folders.need_within(said.value("folder", desk.working_folder().string()));
@@ -86,6 +91,7 @@ Json list(Desk& desk, const Json& said, const Watched&) {
     entries.push_back({{"name", name},
                        {"kind", is_folder                      ? "folder"
                                 : name.ends_with(".plan.json") ? "plan"
+                                : is_beside(name)              ? "other"
                                                                : "file"},
                        {"size", is_folder ? 0 : entry.file_size(failed)}});
   }

@@ -16,6 +16,7 @@
 #include "voxel/scan/image_file.h"
 #include "voxel/solid/combine.h"
 #include "voxel/view/render.h"
+#include "voxel/view/surface_scalar.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -27,6 +28,8 @@ constexpr double least_scale = 0.375;
 
 /// Distances of a pane that are kept, of both objects for a few ranges.
 constexpr std::size_t most_scalars = 8;
+/// Stops of the legend's ramp.
+constexpr int legend_colours = 9;
 
 constexpr const char* overlap_colour = "#e5484d";
 
@@ -286,9 +289,13 @@ void ViewPane::colour(const Json& colour_by, Drawing& drawing) {
   };
   by(of, reference);
   if (is_mutual) by(reference, of);
+  Json colours = Json::array();
+  for (const glm::vec3& each : voxel::diverging_colours(legend_colours))
+    colours.push_back(text_of_colour(each));
   drawing.header["legend"] = {
       {"low_mm", -range_mm},
       {"high_mm", range_mm},
+      {"colours", colours},
       {"definition", "distance of each surface point to the nearest of '" + reference + "'" +
                          (is_mutual ? ", and the reverse" : "") + ", positive outside of it"}};
   drawing.render.colour_by = "distance:" + reference;

@@ -5,10 +5,16 @@ import { spawn } from 'node:child_process';
 import fs from 'node:fs';
 import http from 'node:http';
 import net from 'node:net';
+import path from 'node:path';
 import { chromium } from 'playwright-core';
 
 export const program = process.env.OCTOTOMY_PROGRAM ?? 'build/release/octotomy';
 export const browser_path = process.env.OCTOTOMY_CHROMIUM ?? '/usr/bin/chromium';
+
+/// A real head, in the folder of the reference scans; where its jaw is rebuilt, and where the leg phantom's fibula is taken.
+export const head_scan = path.join(process.env.OCTOTOMY_SHARED_DATA ?? '.', 'ct_unc_cthead.nrrd');
+export const jaw_marks = { flap_1: [-56, -44, 45], flap_2: [-37, -70, 43], flap_3: [-8, -79, 41], flap_4: [7, -62, 43], flap_before: [-63, -32, 50], flap_after: [14, -50, 46] };
+export const donor_marks = { donor_from: [30, 12, 105], donor_to: [33, 16, -105], donor_face: [45, 12, 105] };
 
 /// Starts `octotomy serve` in a folder; answers its URL, and stop().
 export function start_server(folder, more = []) {
@@ -182,7 +188,7 @@ export class PlannerWindow {
       const shown = [...document.querySelectorAll('.pane')].filter((pane) => !pane.hidden).map((pane) => pane.dataset.pane);
       if (document.querySelector('.pane:not([hidden]) canvas[aria-busy="true"]')) return false;
       return shown.every((pane) => window.pictures.filter((one) => one.pane === pane).pop()?.quality === 'rest');
-    }, undefined, { timeout: 60000 });
+    }, undefined, { timeout: 120000 });
   }
   /// Waits until a pane at rest shows an object.
   async shows(pane, object) {

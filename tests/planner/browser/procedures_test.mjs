@@ -8,10 +8,9 @@ import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { test } from 'node:test';
-import { PlannerWindow, program, start_server } from './planner_window.mjs';
+import { PlannerWindow, donor_marks, head_scan, jaw_marks, program, start_server } from './planner_window.mjs';
 
-const scan = path.join(process.env.OCTOTOMY_SHARED_DATA ?? '.', 'ct_unc_cthead.nrrd');
-const skip = fs.existsSync(scan) ? false : `there is no ${scan}`;
+const skip = fs.existsSync(head_scan) ? false : `there is no ${head_scan}`;
 const head_spacing_mm = 2, leg_spacing_mm = 1;
 if (skip) console.log(`Skipped: ${skip}`);
 
@@ -19,13 +18,11 @@ const split_marks = {
   split_front_left: [12, -48, 50], split_front_right: [-53, -48, 50], split_back_left: [25.5, -29, 80], split_back_right: [-68, -29, 80],
   lower_incisor: [-18, -93, 64], lower_molar_left: [8, -58, 65], lower_molar_right: [-46, -52, 65], menton: [-18, -82, 26],
 };
-const jaw_marks = { flap_1: [-56, -44, 45], flap_2: [-37, -70, 43], flap_3: [-8, -79, 41], flap_4: [7, -62, 43], flap_before: [-63, -32, 50], flap_after: [14, -50, 46] };
-const donor_marks = { donor_from: [30, 12, 105], donor_to: [33, 16, -105], donor_face: [45, 12, 105] };
 
 /// A planner on the head, with bone set, a view and three slices.
 async function opened(context, prepare = () => {}) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-procedure-'));
-  fs.copyFileSync(scan, path.join(folder, 'head.nrrd'));
+  fs.copyFileSync(head_scan, path.join(folder, 'head.nrrd'));
   prepare(folder);
   const server = await start_server(folder);
   const one = await PlannerWindow.open(server.url);

@@ -156,6 +156,76 @@ test('the plan is held against a later scan, here one on which nothing was done'
   await one.press('Escape');
 });
 
+test('Ctrl K opens the palette at any instant, and a dialog keeps its keys to itself', async () => {
+  const field = one.page.locator('.palette-field');
+  const opens = async (when) => {
+    await one.page.keyboard.press('Control+k');
+    await field.waitFor({ timeout: 10000 }).catch(() => assert.fail(`no palette ${when}`));
+    await one.page.keyboard.press('Escape');
+    await field.waitFor({ state: 'detached' });
+  };
+  await one.press('Shift+1');
+  await one.at_rest();
+  const rounds = 8;
+  for (let round = 0; round < rounds; ++round) {
+    const box = await one.page.locator('.pane canvas').nth(3).boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await one.page.mouse.move(x, y);
+    await one.page.mouse.down();
+    await one.page.mouse.move(x + 10 + 5 * round, y, { steps: 3 });
+    await one.page.waitForTimeout((37 * round) % 200);
+    await opens(`in mid-drag, round ${round}`);
+    await one.page.mouse.up();
+    // The drag has ended: a pointer without a button turns nothing.
+    const { view } = await one.setting(3);
+    await one.page.mouse.move(x - 40, y, { steps: 3 });
+    await one.page.waitForTimeout(60);
+    assert.deepEqual((await one.setting(3)).view, view);
+    for (const key of ['Control+z', 'Control+y']) {
+      await one.page.keyboard.press(key);
+      await one.page.waitForTimeout((61 * round) % 150);
+      await opens(`after ${key}, round ${round}`);
+    }
+  }
+  await one.press('Control+e');
+  await one.page.locator('dialog.export').waitFor();
+  await one.page.keyboard.press('Control+k');
+  assert.equal(await field.count(), 0);
+  await one.press('Escape');
+  await opens('after a dialog');
+});
+
+test('what is pressed stays, though the plan changes meanwhile', async () => {
+  const middle = async (what) => {
+    const box = await what.boundingBox();
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  };
+  const tab = one.page.getByRole('tab', { name: 'Movement' });
+  await one.page.mouse.move(...(await middle(tab)));
+  await one.page.mouse.down();
+  await one.page.keyboard.press('Control+z');
+  await one.at_rest();
+  await one.page.mouse.up();
+  await one.until(async () => (await tab.getAttribute('aria-selected')) === 'true', 'the pressed tab');
+  await one.press('Control+y');
+  // A slider is drawn through many pictures.
+  await one.tab('Objects');
+  const slider = one.page.getByLabel('Opacity of rest');
+  const box = await slider.boundingBox();
+  await one.page.mouse.move(box.x + box.width - 6, box.y + box.height / 2);
+  await one.page.mouse.down();
+  for (let i = 1; i <= 8; ++i) {
+    await one.page.mouse.move(box.x + box.width - 6 - ((box.width - 12) * i) / 16, box.y + box.height / 2);
+    await one.page.waitForTimeout(30);
+  }
+  await one.page.mouse.up();
+  const opacity = await one.until(async () => (await one.look()).looks.rest?.opacity, 'the opacity');
+  assert.ok(Math.abs(opacity - 0.5) < 0.1, `${opacity}`);
+  await one.tab('Steps');
+  await one.tab('Inspector');
+  await one.at_rest();
+});
+
 test('a network that is cut in mid-drag is noticed, and nothing is lost', async () => {
   const proxy = await start_proxy();
   const far = await PlannerWindow.open(server.url, { proxy: proxy.url, size: { width: 1200, height: 900 } });

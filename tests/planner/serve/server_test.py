@@ -237,6 +237,11 @@ class Desk(Served):
             self.window.ask("edit", add={"step": step}, what=step["id"])
         made = {entry["id"]: entry for entry in self.window.ask("evaluate")["objects"]}
         self.assertTrue(made["moved"]["evaluated"])
+        # As a window asks that an undo overtakes.
+        made = {entry["id"]: entry for entry in self.window.ask("evaluate", objects=["gone", "moved"])["objects"]}
+        self.assertTrue(made["moved"]["evaluated"])
+        with self.assertRaisesRegex(RuntimeError, "no step called 'gone'"):
+            self.window.ask("certify", object="gone")
         overlap = self.window.ask("overlap", object="piece", move={"by": {"up_mm": 6.0}},
                                   **{"with": ["rest"]})
         self.assertGreater(overlap["mm3"], 100.0)
