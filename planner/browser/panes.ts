@@ -81,7 +81,8 @@ export class Pane {
     return {
       ...(turned_little ? {right: own.right, up: own.up, look: own.look} : wanted),
       centre_mm: setting.mode === "panoramic" && own ? own.centre_mm : setting.centre_mm,
-      pixel_mm: setting.mode === "panoramic" && own ? own.pixel_mm : setting.pixel_mm / this.ratio,
+      pixel_mm: setting.mode === "panoramic" && own ? own.pixel_mm / this.fit(this.picture!.header) :
+                                                      setting.pixel_mm / this.ratio,
     };
   }
   private picture_is_of(setting: PaneSetting): boolean {
@@ -247,6 +248,11 @@ export class Pane {
     draw_overlay(this, context);
   }
 
+  // How much larger a picture is drawn that fits in the canvas as a whole.
+  private fit({width, height}: FrameHeader): number {
+    return Math.min(this.canvas.width / width, this.canvas.height / height);
+  }
+
   // The newest picture, moved and scaled to the present setting, so that panning and zooming never wait.
   private draw_picture(context: CanvasRenderingContext2D, picture: Picture): void {
     const shown = picture.header.view_frame;
@@ -256,8 +262,9 @@ export class Pane {
     const turned = dot(shown.look, frame.look) < 0.999 || this.setting.mode === "panoramic";
     const x = turned ? 0 : dot(offset, frame.right) / frame.pixel_mm;
     const y = turned ? 0 : -dot(offset, frame.up) / frame.pixel_mm;
-    const width = picture.header.width * (turned ? this.canvas.width / picture.header.width : scale);
-    const height = picture.header.height * (turned ? this.canvas.height / picture.header.height : scale);
+    const stretch = turned ? this.fit(picture.header) : scale;
+    const width = picture.header.width * stretch;
+    const height = picture.header.height * stretch;
     context.imageSmoothingEnabled = Math.abs(width - picture.bitmap.width) > 1;
     const left = (this.canvas.width - width) / 2 + x;
     const top = (this.canvas.height - height) / 2 + y;
