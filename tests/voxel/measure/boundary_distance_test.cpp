@@ -42,8 +42,9 @@ TEST(BoundaryDistance, IsThatToTheNearestOfAllFacesNearAndFarInsideAndOutside) {
       return universe.lattice().lps_mm({place(random), place(random), place(random)});
     };
     for (int i = 0; i < 12; ++i) {
-      const Expression balls = Expression(Sphere{point(0.0), 0.25 * side}) - Sphere{point(0.0), 0.15 * side} |
-                               Sphere{point(0.0), 2.0};
+      const Expression balls =
+          (Expression(Sphere{point(0.0), 0.25 * side}) - Sphere{point(0.0), 0.15 * side}) |
+          Sphere{point(0.0), 2.0};
       const Octree octree = combine(universe, balls);
       if (octree.is_empty()) continue;
       const BoundaryDistance distance(octree);
