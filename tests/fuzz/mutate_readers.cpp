@@ -72,12 +72,6 @@ void limit(int resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define OCTOTOMY_SHADOWS 1  // a sanitizer's shadow takes terabytes of addresses
-#endif
-#endif
-
 Outcome run(const Options& options, const std::vector<std::string>& arguments, const fs::path& folder) {
   const fs::path out = folder / "stdout.txt", errors = folder / "stderr.txt";
   std::vector<char*> words;
@@ -93,7 +87,7 @@ Outcome run(const Options& options, const std::vector<std::string>& arguments, c
     dup2(error_file, STDERR_FILENO);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, static_cast<rlim_t>(options.seconds) + 1);
-#ifndef OCTOTOMY_SHADOWS
+#ifndef OCTOTOMY_SANITIZED
     limit(RLIMIT_AS, rlim_t{options.address_space_mib} << 20);
 #endif
     execv(program.c_str(), words.data());
@@ -126,7 +120,7 @@ std::string fault_of(const Outcome& outcome, const Options& options) {
   // A plan's kernels may disagree about a damaged plan.
   if (outcome.status != 0 && outcome.status != 2 && outcome.status != 1)
     return "status " + std::to_string(outcome.status);
-#ifndef OCTOTOMY_SHADOWS
+#ifndef OCTOTOMY_SANITIZED
   if (outcome.resident_mib > options.resident_mib)
     return "took " + std::to_string(outcome.resident_mib) + " MiB of memory";
 #endif

@@ -23,10 +23,7 @@ using octotomy::voxel::FrameHead;
 void set_limits() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-#if !defined(__has_feature)
-#define __has_feature(feature) 0  // NOLINT(bugprone-reserved-identifier): clang's own name, absent in g++
-#endif
-#if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer)  // their shadows take terabytes
+#ifndef OCTOTOMY_SANITIZED  // a sanitizer's shadow takes terabytes
   // The largest accepted frame has 4096 x 4096 pixels of four bytes; codecs hold it a few times.
   const rlimit memory{std::size_t{4} << 30, std::size_t{4} << 30};
   setrlimit(RLIMIT_AS, &memory);

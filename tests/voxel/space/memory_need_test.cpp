@@ -29,7 +29,7 @@ TEST(NeedMemory, RefusesWithBothFiguresWhatDoesNotFit) {
 }
 
 TEST(LimitMemory, BoundsWhatIsFreeAndWhatIsGiven) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef OCTOTOMY_SANITIZED
   GTEST_SKIP() << "a sanitizer's shadow takes terabytes of data";
 #endif
   const pid_t child = ::fork();
