@@ -12,4 +12,9 @@ inline voxel::Universe unit_universe(int depth) {
   return universe;
 }
 
+/// 64 voxels of 1 mm a side about the origin.
+inline voxel::Universe universe_of_64() {
+  return voxel::universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
+}
+
 }  // namespace octotomy::tests

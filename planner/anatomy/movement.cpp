@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/anatomy/movement.h"
 
-#include <nlohmann/json.hpp>
-
 #include "planner/anatomy/head_directions.h"
+#include "planner/table/json.h"
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double reach_mm = 3.0;
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 
@@ -15,7 +16,6 @@ const std::vector<std::pair<std::string, std::string>>& cephalometry_files();
 
 namespace {
 
-using Json = nlohmann::json;
 using Kind = CephalometricKind;
 using Plane = CephalometricPlane;
 
@@ -48,26 +48,26 @@ const Value& chosen(const std::map<std::string, Value>& all, const std::string& 
   refuse(where, "there is no '" + word + "'" + suggestion(word, known));
 }
 
-std::vector<std::string> words_of(const Json& list, const std::string& where) {
+std::vector<std::string> words_of(const SortedJson& list, const std::string& where) {
   if (!list.is_array()) refuse(where, "must be a list of names");
   std::vector<std::string> words;
-  for (const Json& word : list) words.push_back(word_of(word, where));
+  for (const SortedJson& word : list) words.push_back(word_of(word, where));
   return words;
 }
 
 class Reader {
  public:
-  Cephalometry read(const Json& root) {
+  Cephalometry read(const SortedJson& root) {
     check_keys(root, "cephalometry", {"cephalometry", "says", "landmarks", "measures"});
     made_.name = word_of(need(root, "cephalometry", ""), "cephalometry");
     made_.says = word_of(need(root, "says", ""), "says");
-    for (const Json& entry : need(root, "landmarks", "")) add_landmark(entry);
-    for (const Json& entry : need(root, "measures", "")) add_measure(entry);
+    for (const SortedJson& entry : need(root, "landmarks", "")) add_landmark(entry);
+    for (const SortedJson& entry : need(root, "measures", "")) add_measure(entry);
     return std::move(made_);
   }
 
  private:
-  void add_landmark(const Json& entry) {
+  void add_landmark(const SortedJson& entry) {
     const std::string where = "landmarks[" + std::to_string(made_.landmarks.size()) + "]";
     check_keys(entry, where, {"name", "says", "mean_of"});
     CephalometricLandmark landmark{
@@ -78,7 +78,7 @@ class Reader {
     made_.landmarks.push_back(std::move(landmark));
   }
 
-  void add_measure(const Json& entry) {
+  void add_measure(const SortedJson& entry) {
     const std::string where = "measures[" + std::to_string(made_.measures.size()) + "]";
     check_keys(entry, where,
                {"name", "says", "kind", "plane", "points", "of", "norm", "deviation", "source"});
@@ -151,8 +151,8 @@ LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points
 
 Cephalometry parse_cephalometry(const std::string& text) {
   try {
-    return Reader().read(Json::parse(text));
-  } catch (const Json::exception& error) {
+    return Reader().read(SortedJson::parse(text));
+  } catch (const SortedJson::exception& error) {
     throw std::runtime_error(std::string("is no JSON of definitions: ") + error.what());
   }
 }

@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
+#include "planner/table/json.h"
 #include "verify/chance.h"
 #include "verify/size_interval.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Kind = CephalometricKind;
 using Plane = CephalometricPlane;
 using Points = LandmarkPlaces;

@@ -20,7 +20,7 @@ std::string table(const std::vector<verify::DetectionPower>& powers) {
   return lines(rows);
 }
 
-SuiteAnswer run(Program& program, const VerifyText&) {
+SuiteAnswer run_faults(Program& program, const VerifyText&) {
   verify::FaultOptions options;
   options.progress = {program.stop.get_token(), program.progress("faults")};
   SuiteAnswer answer;
@@ -68,13 +68,13 @@ SuiteAnswer run(Program& program, const VerifyText&) {
   return answer;
 }
 
-CLI::Option* add_option(CLI::App& verb, VerifyText& text) {
+CLI::Option* add_faults(CLI::App& verb, VerifyText& text) {
   return verb.add_flag("--faults", text.faults,
                        "A suite: seeded faults in either kernel, each of which a certificate must show");
 }
 
 }  // namespace
 
-const Suite fault_suite{add_option, run};
+const Suite fault_suite{add_faults, run_faults};
 
 }  // namespace octotomy::planner::cli

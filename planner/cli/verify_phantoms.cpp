@@ -74,7 +74,7 @@ void add_intervals(const std::vector<verify::IntervalCoverage>& table,
   answer.more["intervals"] = std::move(json);
 }
 
-SuiteAnswer run(Program& program, const VerifyText& text) {
+SuiteAnswer run_phantoms(Program& program, const VerifyText& text) {
   SuiteAnswer answer;
   verify::PhantomSuiteOptions options;
   options.poses = text.poses;
@@ -117,7 +117,7 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
   return answer;
 }
 
-CLI::Option* add_options(CLI::App& verb, VerifyText& text) {
+CLI::Option* add_phantoms(CLI::App& verb, VerifyText& text) {
   verb.add_option("--poses", text.poses,
                   "Of --phantoms: poses of each solid, spacing and sampling; default 6")
       ->check(CLI::Range(1, 1000))
@@ -133,6 +133,6 @@ CLI::Option* add_options(CLI::App& verb, VerifyText& text) {
 
 }  // namespace
 
-const Suite phantoms_suite{add_options, run};
+const Suite phantoms_suite{add_phantoms, run_phantoms};
 
 }  // namespace octotomy::planner::cli

@@ -25,7 +25,7 @@ std::string told(const std::string& unit, const RandomAnswers& tier) {
          std::to_string(tier.no_answer) + " without a mesh";
 }
 
-SuiteAnswer run(Program& program, const VerifyText& text) {
+SuiteAnswer run_random(Program& program, const VerifyText& text) {
   RandomSuiteOptions options;
   options.count = text.random_count;
   options.seed = text.seed;
@@ -81,7 +81,7 @@ SuiteAnswer run(Program& program, const VerifyText& text) {
   return answer;
 }
 
-CLI::Option* add(CLI::App& verb, VerifyText& text) {
+CLI::Option* add_random(CLI::App& verb, VerifyText& text) {
   CLI::Option* named = verb.add_option("--random", text.random_count,
                                        "A suite: N random questions to both kernels in each tier")
                            ->check(CLI::Range(1, 1000000))
@@ -110,6 +110,6 @@ CLI::Option* add(CLI::App& verb, VerifyText& text) {
 
 }  // namespace
 
-const Suite random_suite{add, run};
+const Suite random_suite{add_random, run_random};
 
 }  // namespace octotomy::planner::cli

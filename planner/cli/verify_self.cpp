@@ -118,7 +118,7 @@ std::string trouble_of(const Part& part, std::filesystem::path& path) {
   }
 }
 
-SuiteAnswer run(Program& program, const VerifyText&) {
+SuiteAnswer run_self(Program& program, const VerifyText&) {
   SuiteAnswer answer;
   const Stopwatch watch(answer.timings, "self");
   const std::string build =
@@ -143,13 +143,13 @@ SuiteAnswer run(Program& program, const VerifyText&) {
   return answer;
 }
 
-CLI::Option* add_option(CLI::App& verb, VerifyText& text) {
+CLI::Option* add_self(CLI::App& verb, VerifyText& text) {
   return verb.add_flag("--self", text.self,
                        "A suite: whether the installed parts are of one build, start and work");
 }
 
 }  // namespace
 
-const Suite self_suite{add_option, run};
+const Suite self_suite{add_self, run_self};
 
 }  // namespace octotomy::planner::cli

@@ -7,7 +7,7 @@
 namespace octotomy::planner::cli {
 namespace {
 
-SuiteAnswer run(Program&, const VerifyText&) {
+SuiteAnswer run_thesis(Program&, const VerifyText&) {
   SuiteAnswer answer;
   std::vector<verify::ThesisEntry> entries;
   {
@@ -47,13 +47,13 @@ SuiteAnswer run(Program&, const VerifyText&) {
   return answer;
 }
 
-CLI::Option* add_option(CLI::App& verb, VerifyText& text) {
+CLI::Option* add_thesis(CLI::App& verb, VerifyText& text) {
   return verb.add_flag("--thesis", text.thesis,
                        "A suite: tables and worked examples of the thesis, ours beside the printed");
 }
 
 }  // namespace
 
-const Suite thesis_suite{add_option, run};
+const Suite thesis_suite{add_thesis, run_thesis};
 
 }  // namespace octotomy::planner::cli

@@ -12,14 +12,13 @@
 #include "planner/cohort/statistics.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/csv.h"
+#include "planner/table/json.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

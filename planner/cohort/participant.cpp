@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -16,14 +15,13 @@
 #include "planner/plan/sha256.h"
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/json.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 constexpr int picture_px = 240;
 
 /// A subject in the hands of one process; free again where that process ends, however it ends.

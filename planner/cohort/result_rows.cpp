@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "planner/plan/sha256.h"
 #include "planner/table/csv.h"
+#include "planner/table/json.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> columns = {"subject", "measurement", "object",   "quantity",   "value",
                                           "unit",    "half_width",  "coverage", "voxel",      "mesh",

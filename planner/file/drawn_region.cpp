@@ -10,6 +10,7 @@
 #include "planner/file/picture_frame.h"
 #include "planner/file/region_file.h"
 #include "planner/file/svg_outlines.h"
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "voxel/solid/polygon.h"
@@ -19,7 +20,6 @@ namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using Polygon = std::vector<glm::dvec2>;
 
 DrawnRegion drawn_in(const voxel::View& view, std::vector<Polygon> polygons_mm) {
@@ -116,13 +116,13 @@ double spline_bend_mm(const std::vector<glm::dvec3>& points) {
 }
 
 DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
-  const Json json = read_json(path);
-  const Json& lists = need(json, "markups", path.string());
+  const SortedJson json = read_json(path);
+  const SortedJson& lists = need(json, "markups", path.string());
   if (!lists.is_array()) refuse(path.string() + ": markups", "must be a list");
   std::vector<Polygon> polygons;
   std::vector<std::string> findings;
   for (std::size_t number = 0; number < lists.size(); ++number) {
-    const Json& list = lists[number];
+    const SortedJson& list = lists[number];
     const std::string where = path.string() + ": markups[" + std::to_string(number) + "]";
     const std::string type = word_of(need(list, "type", where), where + ".type");
     if (type != "ClosedCurve") {
@@ -133,18 +133,19 @@ DrawnRegion of_markups(const voxel::View& view, const fs::path& path) {
     const bool is_ras = system == "RAS" || system == "0";
     if (!is_ras && system != "LPS" && system != "1")
       refuse(where + ".coordinateSystem", "is LPS or RAS, not '" + system + "'");
-    if (const Json unit = list.value("coordinateUnits", Json("mm"));
-        unit != "mm" && !(unit.is_array() && std::all_of(unit.begin(), unit.end(), [](const Json& each) {
-                            return each == Json::array({"mm", "UCUM", "millimeter"}) || each == "mm" ||
-                                   each == "UCUM" || each == "millimeter";
-                          })))
+    if (const SortedJson unit = list.value("coordinateUnits", SortedJson("mm"));
+        unit != "mm" &&
+        !(unit.is_array() && std::all_of(unit.begin(), unit.end(), [](const SortedJson& each) {
+            return each == SortedJson::array({"mm", "UCUM", "millimeter"}) || each == "mm" ||
+                   each == "UCUM" || each == "millimeter";
+          })))
       refuse(where + ".coordinateUnits", "are not mm, but " + unit.dump());
     std::vector<glm::dvec3> points;
-    const Json& controls = need(list, "controlPoints", where);
+    const SortedJson& controls = need(list, "controlPoints", where);
     for (std::size_t i = 0; i < controls.size(); ++i) {
       const std::string at = where + ".controlPoints[" + std::to_string(i) + "]";
       if (controls[i].value("positionStatus", "defined") != "defined") continue;
-      const Json& p = need(controls[i], "position", at);
+      const SortedJson& p = need(controls[i], "position", at);
       if (!p.is_array() || p.size() != 3) refuse(at + ".position", "must be a point [x, y, z]");
       points.emplace_back(number_of(p[0], at), number_of(p[1], at), number_of(p[2], at));
       if (is_ras) points.back() *= glm::dvec3(-1.0, -1.0, 1.0);
@@ -197,7 +198,7 @@ DrawnRegion read_drawn_region(const std::string& text) {
   else if (voxel::lower_case(path.string()).ends_with(".mrk.json"))
     try {
       drawn = of_markups(*view, path);
-    } catch (const Json::exception& error) {
+    } catch (const SortedJson::exception& error) {
       refuse(path.string(), error.what());
     }
   else

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "planner/table/csv.h"
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/scan/label_names.h"
@@ -18,8 +19,6 @@ namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
 std::optional<int> whole(const std::string& text) {
   const std::string digits = voxel::trimmed(text);
   int number = 0;
@@ -41,9 +40,9 @@ void add(LabelTable& table, int label, const std::string& name, const std::strin
                         std::to_string(label));
 }
 
-void add_json(LabelTable& table, const Json& json, const std::string& where) {
+void add_json(LabelTable& table, const SortedJson& json, const std::string& where) {
   if (json.is_array()) {
-    for (const Json& entry : json) {
+    for (const SortedJson& entry : json) {
       const std::string at = where + "[" + std::to_string(&entry - &json.front()) + "]";
       add(table, static_cast<int>(count_of(need(entry, "label", at), at + ".label")),
           word_of(need(entry, "name", at), at + ".name"), at);

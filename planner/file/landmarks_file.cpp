@@ -3,29 +3,27 @@
 
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
+#include "planner/table/json.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
-glm::dvec3 point_of(const Json& numbers, const std::string& name) {
+glm::dvec3 point_of(const SortedJson& numbers, const std::string& name) {
   const bool three = numbers.is_array() && numbers.size() == 3 && numbers[0].is_number() &&
                      numbers[1].is_number() && numbers[2].is_number();
   if (!three) throw std::runtime_error("the point of '" + name + "' is not a list of three numbers");
   return {numbers[0].get<double>(), numbers[1].get<double>(), numbers[2].get<double>()};
 }
 
-std::vector<brep::Landmark> own_landmarks(const Json& list) {
+std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
   static const std::vector<std::string> known = {"name", "point_mm", "weight"};
   std::vector<brep::Landmark> landmarks;
-  for (const Json& entry : list) {
+  for (const SortedJson& entry : list) {
     const std::string number = "landmark " + std::to_string(landmarks.size());
     if (!entry.is_object() || !entry.contains("name") || !entry["name"].is_string())
       throw std::runtime_error(number + " has no name");
@@ -35,8 +33,8 @@ std::vector<brep::Landmark> own_landmarks(const Json& list) {
       if (std::find(known.begin(), known.end(), key) == known.end())
         throw std::runtime_error("'" + landmark.name + "' has an unknown key '" + key + "'" +
                                  suggestion(key, known));
-    landmark.p_mm = point_of(entry.value("point_mm", Json()), landmark.name);
-    const Json weight = entry.value("weight", Json(1.0));
+    landmark.p_mm = point_of(entry.value("point_mm", SortedJson()), landmark.name);
+    const SortedJson weight = entry.value("weight", SortedJson(1.0));
     if (!weight.is_number()) throw std::runtime_error("the weight of '" + landmark.name + "' is no number");
     landmark.weight = weight.get<double>();
     landmarks.push_back(landmark);
@@ -45,20 +43,20 @@ std::vector<brep::Landmark> own_landmarks(const Json& list) {
 }
 
 /// Control points of every list in the file.
-std::vector<brep::Landmark> slicer_landmarks(const Json& markups) {
+std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups) {
   std::vector<brep::Landmark> landmarks;
-  for (const Json& list : markups) {
+  for (const SortedJson& list : markups) {
     const std::string system = list.value("coordinateSystem", "LPS");
     if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
       throw std::runtime_error("the coordinate system '" + system + "' is neither LPS nor RAS");
     const bool ras = system == "RAS" || system == "0";
-    for (const Json& entry : list.value("controlPoints", Json::array())) {
+    for (const SortedJson& entry : list.value("controlPoints", SortedJson::array())) {
       if (entry.value("positionStatus", "defined") != "defined") continue;
       brep::Landmark landmark;
       landmark.name = entry.value("label", "");
       if (landmark.name.empty())
         throw std::runtime_error("control point " + std::to_string(landmarks.size()) + " has no label");
-      landmark.p_mm = point_of(entry.value("position", Json()), landmark.name);
+      landmark.p_mm = point_of(entry.value("position", SortedJson()), landmark.name);
       if (ras) landmark.p_mm *= glm::dvec3(-1.0, -1.0, 1.0);
       landmarks.push_back(landmark);
     }
@@ -73,7 +71,7 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   try {
-    const Json root = Json::parse(file);
+    const SortedJson root = SortedJson::parse(file);
     const auto is_list = [&](const char* key) {
       return root.is_object() && root.contains(key) && root[key].is_array();
     };
@@ -86,7 +84,7 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
       throw std::runtime_error(
           R"(there is no list "landmarks" of { "name": ..., "point_mm": [x, y, z] }, nor Slicer's "markups")");
     return landmarks;
-  } catch (const Json::exception& error) {
+  } catch (const SortedJson::exception& error) {
     throw std::runtime_error(path.string() + ": " + error.what());
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(path.string() + ": " + error.what());

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "voxel/scan/png_text.h"
@@ -15,8 +15,6 @@
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* keyword = "octotomy-frame";
 
@@ -57,14 +55,14 @@ PictureFrame frame_of(const voxel::ImagePlane& plane) {
 
 std::optional<voxel::ImageText> image_text(const std::optional<PictureFrame>& frame) {
   if (!frame) return {};
-  Json rows = Json::array();
+  SortedJson rows = SortedJson::array();
   for (int row = 0; row < 4; ++row) {
-    rows.push_back(Json::array());
+    rows.push_back(SortedJson::array());
     for (int column = 0; column < 4; ++column) rows.back().push_back(frame->lps_from_pixel[column][row]);
   }
   return voxel::ImageText{
-      keyword,
-      Json{{"size_px", {frame->size_px.x, frame->size_px.y}}, {"lps_from_pixel", rows}}.dump(-1, ' ', true)};
+      keyword, SortedJson{{"size_px", {frame->size_px.x, frame->size_px.y}}, {"lps_from_pixel", rows}}.dump(
+                   -1, ' ', true)};
 }
 
 PictureFrame read_frame(std::string_view png, const std::string& where) {
@@ -79,7 +77,7 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
         where,
         "does not say what its pixels show: only a .png of octotomy render or slice does, in true scale and "
         "as it was written");
-  const Json json = Json::parse(*found.text, nullptr, false);
+  const SortedJson json = SortedJson::parse(*found.text, nullptr, false);
   PictureFrame frame;
   try {
     frame.size_px = {json.at("size_px").at(0).get<int>(), json.at("size_px").at(1).get<int>()};
@@ -87,7 +85,7 @@ PictureFrame read_frame(std::string_view png, const std::string& where) {
       for (int column = 0; column < 4; ++column)
         frame.lps_from_pixel[column][row] =
             json.at("lps_from_pixel").at(static_cast<std::size_t>(row)).at(static_cast<std::size_t>(column));
-  } catch (const Json::exception&) {
+  } catch (const SortedJson::exception&) {
     refuse(where, "holds a frame that cannot be read: draw the picture again");
   }
   const double right_mm = glm::length(frame.lps_from_pixel[0]),

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
@@ -15,16 +16,14 @@
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
-std::vector<std::vector<glm::dvec2>> polygons_of(const Json& value, const std::string& where) {
+std::vector<std::vector<glm::dvec2>> polygons_of(const SortedJson& value, const std::string& where) {
   if (!value.is_array()) refuse(where, "must be a list of polygons [[[u, v], ...], ...]");
   std::vector<std::vector<glm::dvec2>> polygons;
-  for (const Json& polygon : value) {
+  for (const SortedJson& polygon : value) {
     const std::string at = where + "[" + std::to_string(polygons.size()) + "]";
     if (!polygon.is_array()) refuse(at, "must be a list of points [u, v]");
     polygons.emplace_back();
-    for (const Json& point : polygon) {
+    for (const SortedJson& point : polygon) {
       const std::string place = at + "[" + std::to_string(polygons.back().size()) + "]";
       polygons.back().push_back(point_of(point, place));
     }
@@ -32,7 +31,7 @@ std::vector<std::vector<glm::dvec2>> polygons_of(const Json& value, const std::s
   return polygons;
 }
 
-voxel::SliceMask slices_of(const Json& json, const std::string& source) {
+voxel::SliceMask slices_of(const SortedJson& json, const std::string& source) {
   check_keys(json, source, {"view", "between", "slices"});
   voxel::SliceMask mask;
   mask.view = voxel::parse_view(word_of(need(json, "view", source), source + ": view"));
@@ -43,9 +42,9 @@ voxel::SliceMask slices_of(const Json& json, const std::string& source) {
     mask.between =
         between == "nearest" ? voxel::SliceMask::Between::Nearest : voxel::SliceMask::Between::ShapeBased;
   }
-  const Json& slices = need(json, "slices", source);
+  const SortedJson& slices = need(json, "slices", source);
   if (!slices.is_array()) refuse(source + ": slices", "must be a list");
-  for (const Json& slice : slices) {
+  for (const SortedJson& slice : slices) {
     const std::string where = source + ": slices[" + std::to_string(mask.slices.size()) + "]";
     check_keys(slice, where, {"position_mm", "polygons_mm"});
     mask.slices.push_back({number_of(need(slice, "position_mm", where), where + ".position_mm"),
@@ -186,7 +185,7 @@ voxel::SliceMask slices_of(const std::vector<voxel::Structure>& structures, cons
 }  // namespace
 
 voxel::Region read_region(const voxel::View& view, const std::filesystem::path& path) {
-  const Json json = read_json(path);
+  const SortedJson json = read_json(path);
   if (json.is_array()) return {view, polygons_of(json, path.string())};
   check_keys(json, path.string(), {"polygons_mm"});
   return {view, polygons_of(need(json, "polygons_mm", path.string()), path.string() + ": polygons_mm")};

@@ -12,13 +12,13 @@
 #include "brep/contour/contour_edit.h"
 #include "brep/contour/offset_contours.h"
 #include "convert/surface/trace_contours.h"
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "voxel/filter/slice_contour.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Polygon = std::vector<glm::dvec2>;
 
 constexpr std::array view_names = {"anterior", "posterior", "left", "right", "superior", "inferior"};

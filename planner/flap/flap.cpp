@@ -8,13 +8,12 @@
 
 #include "planner/flap/fields.h"
 #include "planner/measure/result_json.h"
+#include "planner/table/json.h"
 #include "planner/table/operation.h"
 #include "verify/certificate.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Flap : FlapFields {
   std::vector<ObjectName> segments, contacts;

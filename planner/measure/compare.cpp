@@ -24,7 +24,7 @@ struct Compare {
   std::optional<double> range_mm;
 };
 
-Json to_json(const brep::OneWay& way, const std::vector<double>& tolerances) {
+Json one_way_json(const brep::OneWay& way, const std::vector<double>& tolerances) {
   Json bands = Json::array();
   for (std::size_t k = 0; k < tolerances.size(); ++k)
     bands.push_back({{"tolerance_mm", tolerances[k]}, {"share_within", way.within[k]}});
@@ -105,7 +105,7 @@ Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b
   return made;
 }
 
-Json to_json(const Compare& asked, const Compared& made) {
+Json comparison_json(const Compare& asked, const Compared& made) {
   const brep::Difference& difference = made.difference;
   return {{"hausdorff_mm", difference.hausdorff_mm},
           {"hausdorff95_mm", difference.hausdorff95_mm},
@@ -114,8 +114,8 @@ Json to_json(const Compare& asked, const Compared& made) {
           {"dice", made.dice ? Json(made.dice->value) : Json(nullptr)},
           {"dice_half_width", made.dice ? Json(made.dice->half_width) : Json(nullptr)},
           {"definition", definitions(difference, made.dice)},
-          {"a_to_b", to_json(difference.a_to_b, asked.tolerances_mm)},
-          {"b_to_a", to_json(difference.b_to_a, asked.tolerances_mm)},
+          {"a_to_b", one_way_json(difference.a_to_b, asked.tolerances_mm)},
+          {"b_to_a", one_way_json(difference.b_to_a, asked.tolerances_mm)},
           {"hausdorff_short_by_mm", difference.hausdorff_short_by_mm},
           {"samples", difference.sample_count},
           {"histogram",
@@ -136,7 +136,7 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
   }
   const Compared made = compared(asked, *bench.objects.at(asked.a.name).mesh.within,
                                  *bench.objects.at(asked.b.name).mesh.within, bench.timings);
-  json.update(to_json(asked, made));
+  json.update(comparison_json(asked, made));
   json["findings"] = made.findings;
   return json;
 }
@@ -177,7 +177,7 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
     const HistogramPicture picture = draw_histogram(made.difference, range_mm);
     voxel::write_image(asked.picture, picture.size_px, picture.rgb);
   }
-  FileAnswer answer{to_json(asked, made)};
+  FileAnswer answer{comparison_json(asked, made)};
   answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
   answer.json["picture"] = asked.picture.empty() ? Json(nullptr) : Json(asked.picture.string());
   answer.json["colour_range_mm"] =

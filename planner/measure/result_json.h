@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "planner/measure/half_width.h"
 #include "planner/table/bench.h"
+#include "planner/table/json.h"
 #include "voxel/measure/measure.h"
 #include "voxel/space/scene.h"
 
 // What the program answers as JSON. Keys end in their unit; a number that is missing is null.
 namespace octotomy::planner {
-
-using Json = nlohmann::ordered_json;
 
 /// {"octotomy": version, "timings_ms": {...}}: what every answer begins with.
 Json answer(const Timings& timings);

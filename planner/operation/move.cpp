@@ -13,14 +13,13 @@
 #include "planner/anatomy/head_directions.h"
 #include "planner/anatomy/motion_of_points.h"
 #include "planner/operation/trace.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/solid/expression.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Move {
   struct Rotation {

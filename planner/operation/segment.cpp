@@ -14,6 +14,7 @@
 #include "planner/file/region_file.h"
 #include "planner/operation/parts.h"
 #include "planner/operation/trace.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "verify/witness.h"
@@ -33,8 +34,6 @@ std::string words_of(const SampleWindow& window) {
   const std::optional<voxel::Tissue> tissue = voxel::tissue(window.tissue);
   return tissue ? voxel::described(*tissue) : to_string(window);
 }
-
-using Json = nlohmann::ordered_json;
 
 voxel::Neighbours neighbours_of(const Segment& segment) {
   if (segment.neighbours == 18) return voxel::Neighbours::Edges;

@@ -8,13 +8,12 @@
 #include "brep/mesh/disjoint_sets.h"
 #include "planner/file/mesh_file.h"
 #include "planner/operation/trace.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Separate {
   ObjectName object;

@@ -160,14 +160,14 @@ void fall_back(Filled& filled, convert::Tetrahedra tetrahedra, const voxel::Univ
 }
 
 /// A mesh and its health: that of a solid, unless the fallback is allowed.
-struct Surface {
+struct CheckedMesh {
   brep::Triangles triangles;
   brep::Health health;
 };
 
 /// Appends to the findings what mending did.
-Surface surface_of(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
-  Surface surface;
+CheckedMesh checked_mesh(const FileBench& bench, const Tet& asked, std::vector<std::string>& findings) {
+  CheckedMesh surface;
   if (asked.mend) {
     const voxel::Progress progress = bench.progress("repair");
     surface.triangles = brep::triangles_of(
@@ -188,7 +188,7 @@ Surface surface_of(const FileBench& bench, const Tet& asked, std::vector<std::st
 
 Filled of_mesh(const FileBench& bench, const Tet& asked) {
   std::vector<std::string> mended;
-  const Surface surface = surface_of(bench, asked, mended);
+  const CheckedMesh surface = checked_mesh(bench, asked, mended);
   const auto& [triangles, health] = surface;
   Filled filled;
   const Stopwatch watch(bench.timings, "tetrahedralise");

@@ -4,14 +4,13 @@
 #include <stdexcept>
 
 #include "planner/picture/colour.h"
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
-voxel::TransferPoint transfer_point(const Json& json, const std::string& where) {
+voxel::TransferPoint transfer_point(const SortedJson& json, const std::string& where) {
   check_keys(json, where, {"sample", "colour", "per_mm"});
   voxel::TransferPoint point;
   point.sample = number_of(need(json, "sample", where), where + ".sample");
@@ -28,7 +27,7 @@ voxel::TransferPoint transfer_point(const Json& json, const std::string& where) 
 
 voxel::TransferFunction read_transfer(const std::filesystem::path& path) {
   const std::string source = path.string();
-  const Json json = read_json(path);
+  const SortedJson json = read_json(path);
   check_keys(json, source, {"octotomy_transfer", "surface_per_mm", "points"});
   if (!json.contains("octotomy_transfer") || json["octotomy_transfer"] != 1)
     refuse(source, "is no transfer function of version 1: begin it with \"octotomy_transfer\": 1");
@@ -36,7 +35,7 @@ voxel::TransferFunction read_transfer(const std::filesystem::path& path) {
   if (json.contains("surface_per_mm"))
     transfer.surface_per_mm = number_of(json["surface_per_mm"], source + ": surface_per_mm");
   if (!json.contains("points") || !json["points"].is_array()) refuse(source, "needs 'points', a list");
-  for (const Json& point : json["points"])
+  for (const SortedJson& point : json["points"])
     transfer.points.push_back(
         transfer_point(point, source + ": points[" + std::to_string(transfer.points.size()) + "]"));
   try {

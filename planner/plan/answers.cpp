@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/plan/answers.h"
 
-#include <nlohmann/json.hpp>
-
 #include "planner/plan/sha256.h"
 #include "planner/plan/trial.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Kept = std::map<std::string, std::shared_ptr<const void>>;
 
 /// Where a file comes from, for its header.

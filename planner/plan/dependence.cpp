@@ -2,16 +2,14 @@
 #include "planner/plan/dependence.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "planner/plan/sha256.h"
 #include "planner/table/field_json.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The objects and made scans that a step uses, by their steps.
 std::vector<std::string> inputs_of(const Step& step) {

@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "planner/table/field_json.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string at(const std::string& place, const std::string& key) {
   return place.empty() ? key : place + ", " + key;

@@ -8,10 +8,11 @@
 #include <map>
 #include <stdexcept>
 
+#include "planner/table/json.h"
+
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Ids = std::vector<std::string>;
 
 /// Null stands for "not there".

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -16,34 +15,32 @@
 #include "planner/plan/plan_keys.h"
 #include "planner/plan/signature.h"
 #include "planner/table/field_json.h"
+#include "planner/table/json.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-using Ordered = nlohmann::ordered_json;
-
 /// Reads JSON, refusing keys that an object says twice, which would otherwise silently take the last.
-Json strict_json(const std::string& text) {
+SortedJson strict_json(const std::string& text) {
   std::vector<std::set<std::string>> open;
-  const auto watch = [&open](int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) open.emplace_back();
-    if (event == Json::parse_event_t::object_end) open.pop_back();
-    if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
+  const auto watch = [&open](int, SortedJson::parse_event_t event, SortedJson& parsed) {
+    if (event == SortedJson::parse_event_t::object_start) open.emplace_back();
+    if (event == SortedJson::parse_event_t::object_end) open.pop_back();
+    if (event == SortedJson::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
       throw std::runtime_error("the key '" + parsed.get<std::string>() +
                                "' is said twice in one object: keep one");
     return true;
   };
   try {
-    return Json::parse(text, watch);
-  } catch (const Json::exception& error) {
+    return SortedJson::parse(text, watch);
+  } catch (const SortedJson::exception& error) {
     throw std::runtime_error("not JSON: " + std::string(error.what()));
   }
 }
 
-int whole_number(const Json& value, const std::string& where) {
+int whole_number(const SortedJson& value, const std::string& where) {
   const double number = number_of(value, where);
   if (number != std::trunc(number) || std::abs(number) > std::numeric_limits<int>::max())
     refuse(where, "must be a whole number");
@@ -64,10 +61,10 @@ voxel::ReadOptions read_options_of(const Keys& scan) {
   if (scan.find("series") != nullptr) read.series = scan.text("series");
   if (scan.find("slices") != nullptr) read.slices = slices_of(scan);
   if (scan.find("spacing_mm") != nullptr) read.spacing_mm = scan.point("spacing_mm");
-  if (const Json* value = scan.find("raw")) {
+  if (const SortedJson* value = scan.find("raw")) {
     const Keys keys(*value, scan.at("raw"), {"dims", "type", "big_endian", "offset"});
     voxel::RawLayout raw;
-    const Json& dims = keys.need("dims");
+    const SortedJson& dims = keys.need("dims");
     if (!dims.is_array() || dims.size() != 3) refuse(keys.at("dims"), "must be three numbers [x, y, z]");
     for (int axis = 0; axis < 3; ++axis)
       raw.dims[axis] = whole_number(dims[static_cast<std::size_t>(axis)], keys.at("dims"));
@@ -75,7 +72,7 @@ voxel::ReadOptions read_options_of(const Keys& scan) {
     if (!type) refuse(keys.at("type"), "'" + keys.text("type") + "' is no type: use for example int16");
     raw.type = *type;
     if (keys.find("big_endian") != nullptr) raw.big_endian = keys.flag("big_endian");
-    if (const Json* offset = keys.find("offset")) {
+    if (const SortedJson* offset = keys.find("offset")) {
       const int bytes = whole_number(*offset, keys.at("offset"));
       if (bytes < 0) refuse(keys.at("offset"), "must not be negative");
       raw.offset = static_cast<std::uint64_t>(bytes);
@@ -86,7 +83,7 @@ voxel::ReadOptions read_options_of(const Keys& scan) {
 }
 
 std::map<std::string, ScanSource> scans_of(const Keys& top) {
-  const Json& value = top.need("scans");
+  const SortedJson& value = top.need("scans");
   if (!value.is_object() || value.empty())
     refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
   std::map<std::string, ScanSource> scans;
@@ -121,7 +118,7 @@ std::vector<std::string> step_words() {
 }
 
 /// The operation of a step that does "export": the one that writes its path's extension.
-const char* export_of(const Json& step) {
+const char* export_of(const SortedJson& step) {
   const auto path = step.find("path");
   const std::string name = path != step.end() && path->is_string() ? path->get<std::string>() : "";
   for (const char* ending : {".inp", ".vtu", ".feb", ".msh", ".node"})
@@ -131,7 +128,7 @@ const char* export_of(const Json& step) {
   return "surface";
 }
 
-Step step_of(const Json& value, std::size_t index, Scope& scope) {
+Step step_of(const SortedJson& value, std::size_t index, Scope& scope) {
   Place place{"step " + std::to_string(index + 1), &scope};
   if (!value.is_object()) place.refuse("must be an object in braces, not " + type_of(value));
   if (const auto id = value.find("id"); id != value.end() && id->is_string())
@@ -155,24 +152,24 @@ Step step_of(const Json& value, std::size_t index, Scope& scope) {
 }
 
 /// The schema of one operation's step.
-Ordered step_schema(const Operation& operation) {
-  Ordered schema{{"title", operation.name}, {"description", operation.says}};
+Json step_schema(const Operation& operation) {
+  Json schema{{"title", operation.name}, {"description", operation.says}};
   schema.update(fields_schema(operation.fields, operation.fresh().get()));
-  Ordered properties{{"id", {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}},
-                     {"do", {{"const", operation.name}}}};
+  Json properties{{"id", {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}}},
+                  {"do", {{"const", operation.name}}}};
   properties.update(schema["properties"]);
   schema["properties"] = properties;
-  Ordered required{"id", "do"};
-  for (const Ordered& name : schema.value("required", Ordered::array())) required.push_back(name);
+  Json required{"id", "do"};
+  for (const Json& name : schema.value("required", Json::array())) required.push_back(name);
   schema["required"] = required;
-  schema["examples"] = Ordered::array({Ordered::parse(operation.example)});
+  schema["examples"] = Json::array({Json::parse(operation.example)});
   return schema;
 }
 
 }  // namespace
 
 Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
-  Json root = strict_json(json);
+  SortedJson root = strict_json(json);
   if (root.is_object()) migrate(root, migrations());
   const Keys top(root, "", {"octotomy_plan", "name", "scans", "universe", "steps", "signatures"});
   top.need("octotomy_plan");
@@ -182,16 +179,16 @@ Plan parse_plan(const std::string& json, const std::filesystem::path& folder) {
   plan.name = top.text("name");
   plan.scans = scans_of(top);
   signatures_of(json);  // refuses what is none
-  if (const Json* universe = top.find("universe")) {
+  if (const SortedJson* universe = top.find("universe")) {
     const Keys keys(*universe, "universe", {"voxel_mm"});
     plan.voxel_mm = keys.number_if("voxel_mm");
     if (plan.voxel_mm && *plan.voxel_mm <= 0.0)
       refuse(keys.at("voxel_mm"), "must be above zero, for example 1.0");
   }
-  const Json& steps = top.need("steps");
+  const SortedJson& steps = top.need("steps");
   if (!steps.is_array() || steps.empty()) refuse("steps", "must be a list of at least one step");
   Scope scope(names_of(plan.scans), folder);
-  for (const Json& step : steps) plan.steps.push_back(step_of(step, plan.steps.size(), scope));
+  for (const SortedJson& step : steps) plan.steps.push_back(step_of(step, plan.steps.size(), scope));
   plan.landmarks = scope.landmarks();
   plan.lps_from_head = scope.lps_from_head();
   return plan;
@@ -220,32 +217,32 @@ std::string verb(const Step& step) {
   return step.action.operation().name;
 }
 
-Ordered plan_schema() {
-  const Ordered vector{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
-  const Ordered raw{{"type", "object"},
-                    {"properties",
-                     {{"dims", vector},
-                      {"type", {{"type", "string"}}},
-                      {"big_endian", {{"type", "boolean"}}},
-                      {"offset", {{"type", "integer"}, {"minimum", 0}}}}},
-                    {"required", {"dims", "type"}},
-                    {"additionalProperties", false}};
-  const Ordered scan{{"type", "object"},
-                     {"properties",
-                      {{"path", {{"type", "string"}, {"minLength", 1}}},
-                       {"sha256", {{"type", {"string", "null"}}, {"pattern", "^[0-9a-fA-F]{64}$"}}},
-                       {"series", {{"type", "string"}}},
-                       {"slices", {{"type", "string"}}},
-                       {"spacing_mm", vector},
-                       {"raw", raw}}},
-                     {"required", {"path"}},
-                     {"additionalProperties", false}};
-  Ordered steps = Ordered::array();
+Json plan_schema() {
+  const Json vector{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+  const Json raw{{"type", "object"},
+                 {"properties",
+                  {{"dims", vector},
+                   {"type", {{"type", "string"}}},
+                   {"big_endian", {{"type", "boolean"}}},
+                   {"offset", {{"type", "integer"}, {"minimum", 0}}}}},
+                 {"required", {"dims", "type"}},
+                 {"additionalProperties", false}};
+  const Json scan{{"type", "object"},
+                  {"properties",
+                   {{"path", {{"type", "string"}, {"minLength", 1}}},
+                    {"sha256", {{"type", {"string", "null"}}, {"pattern", "^[0-9a-fA-F]{64}$"}}},
+                    {"series", {{"type", "string"}}},
+                    {"slices", {{"type", "string"}}},
+                    {"spacing_mm", vector},
+                    {"raw", raw}}},
+                  {"required", {"path"}},
+                  {"additionalProperties", false}};
+  Json steps = Json::array();
   for (const Operation& operation : operations())
     if (is_step(operation)) steps.push_back(step_schema(operation));
   // "export" stands for the operation that writes the path's extension.
   for (const char* name : {"surface", "deck", "label_map"}) {
-    Ordered schema = step_schema(*find_operation(name));
+    Json schema = step_schema(*find_operation(name));
     schema["title"] = std::string("export, as ") + name;
     schema["properties"]["do"] = {{"const", "export"}};
     schema["examples"][0]["do"] = "export";
@@ -253,7 +250,7 @@ Ordered plan_schema() {
   }
   return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
           {"title", "Octotomy plan"},
-          {"description", "Ordered steps on scans. Lengths are in mm, angles in degrees, coordinates LPS."},
+          {"description", "Json steps on scans. Lengths are in mm, angles in degrees, coordinates LPS."},
           {"type", "object"},
           {"properties",
            {{"octotomy_plan", {{"const", plan_version}}},

@@ -4,13 +4,12 @@
 #include <cctype>
 #include <utility>
 
+#include "planner/table/json.h"
 #include "planner/table/nearest_name.h"
 
 namespace octotomy::planner {
 
-using Json = nlohmann::json;
-
-Keys::Keys(const Json& value, std::string where, std::vector<std::string> known)
+Keys::Keys(const SortedJson& value, std::string where, std::vector<std::string> known)
     : value_(value), where_(std::move(where)), known_(std::move(known)) {
   if (!value.is_object()) refuse(where_, "must be an object in braces, not " + type_of(value));
   std::sort(known_.begin(), known_.end());
@@ -19,19 +18,19 @@ Keys::Keys(const Json& value, std::string where, std::vector<std::string> known)
       refuse(where_, "unknown key '" + key + "'" + suggestion(key, known_));
 }
 
-const Json* Keys::find(const std::string& key) const {
+const SortedJson* Keys::find(const std::string& key) const {
   const auto found = value_.find(key);
   return found == value_.end() || found->is_null() ? nullptr : &*found;
 }
 
-const Json& Keys::need(const std::string& key) const {
-  const Json* found = find(key);
+const SortedJson& Keys::need(const std::string& key) const {
+  const SortedJson* found = find(key);
   if (found == nullptr) refuse(where_, "'" + key + "' is missing: add it");
   return *found;
 }
 
 std::string Keys::text(const std::string& key) const {
-  const Json& value = need(key);
+  const SortedJson& value = need(key);
   if (!value.is_string()) refuse(at(key), "must be a text in quotes, not " + type_of(value));
   if (value.get_ref<const std::string&>().empty()) refuse(at(key), "is empty: say what is meant");
   return value.get<std::string>();
@@ -42,13 +41,13 @@ std::optional<double> Keys::number_if(const std::string& key) const {
 }
 
 glm::dvec3 Keys::point(const std::string& key) const {
-  const Json& value = need(key);
+  const SortedJson& value = need(key);
   if (!value.is_array() || value.size() != 3) refuse(at(key), "must be three numbers [x, y, z]");
   return {number_of(value[0], at(key)), number_of(value[1], at(key)), number_of(value[2], at(key))};
 }
 
 bool Keys::flag(const std::string& key) const {
-  const Json& value = need(key);
+  const SortedJson& value = need(key);
   if (!value.is_boolean()) refuse(at(key), "must be true or false");
   return value.get<bool>();
 }

@@ -5,13 +5,12 @@
 #include <stdexcept>
 
 #include "planner/plan/dependence.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 fs::path whole(const fs::path& folder) {
   return fs::weakly_canonical(fs::absolute(folder.empty() ? fs::path(".") : folder));
 }

@@ -3,15 +3,13 @@
 
 #include <chrono>
 #include <ctime>
-#include <nlohmann/json.hpp>
 
 #include "planner/plan/plan_keys.h"
 #include "planner/plan/sha256.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* key = "signatures";
 
@@ -23,11 +21,11 @@ std::string now() {
   return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
-Signature signature_of(const Json& entry, const std::string& where) {
+Signature signature_of(const SortedJson& entry, const std::string& where) {
   const Keys keys(entry, where, {"by", "as", "note", "at", "plan_sha256", "scans_sha256"});
   Signature signature{keys.text("by"), keys.text("as"), "", keys.text("at"), keys.text("plan_sha256"), {}};
-  if (const Json* note = keys.find("note")) signature.note = word_of(*note, keys.at("note"));
-  const Json& scans = keys.need("scans_sha256");
+  if (const SortedJson* note = keys.find("note")) signature.note = word_of(*note, keys.at("note"));
+  const SortedJson& scans = keys.need("scans_sha256");
   if (!scans.is_object()) refuse(keys.at("scans_sha256"), "must be an object of sums by scans' names");
   for (const auto& [name, sum] : scans.items())
     signature.scans_sha256[name] = word_of(sum, keys.at("scans_sha256"));
@@ -37,10 +35,10 @@ Signature signature_of(const Json& entry, const std::string& where) {
 }  // namespace
 
 std::string sum_of_plan(const std::string& text) {
-  Json plan = Json::parse(text);
+  SortedJson plan = SortedJson::parse(text);
   plan.erase(key);
   if (plan.contains("scans"))
-    for (Json& scan : plan["scans"]) {
+    for (SortedJson& scan : plan["scans"]) {
       scan.erase("path");
       scan.erase("sha256");
     }
@@ -49,10 +47,10 @@ std::string sum_of_plan(const std::string& text) {
 
 std::vector<Signature> signatures_of(const std::string& text) {
   std::vector<Signature> signatures;
-  const Json plan = Json::parse(text);
+  const SortedJson plan = SortedJson::parse(text);
   if (!plan.contains(key)) return signatures;
   if (!plan[key].is_array()) refuse(key, "must be a list of signatures, as octotomy plan sign writes it");
-  for (const Json& entry : plan[key])
+  for (const SortedJson& entry : plan[key])
     signatures.push_back(
         signature_of(entry, std::string(key) + "[" + std::to_string(signatures.size()) + "]"));
   return signatures;

@@ -10,7 +10,6 @@
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "planner/anatomy/head_directions.h"
@@ -19,14 +18,13 @@
 #include "planner/operation/combine.h"
 #include "planner/operation/move.h"
 #include "planner/plan/dependence.h"
+#include "planner/table/json.h"
 #include "verify/chance.h"
 #include "verify/size_interval.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// What is wrong in one trial.
 struct Errors {

@@ -2,6 +2,7 @@
 // The scan without solid parts that are not the patient.
 #include <cmath>
 
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/board.h"
@@ -10,8 +11,6 @@
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct RemoveHeadrest {
   ScanName scan;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Binary slices between those of a window, by their shape.
+#include "planner/table/json.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/resample_slices.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Shape {
   ScanName scan;

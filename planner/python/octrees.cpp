@@ -67,7 +67,7 @@ Voxels voxels_of(const Octree& octree) {
   return voxels;
 }
 
-Octree read(const std::filesystem::path& path) {
+Octree read_octree(const std::filesystem::path& path) {
   voxel::OctreeFile file = without_lock([&](const std::stop_token&) { return voxel::read_octree(path); });
   if (auto* octree = std::get_if<Octree>(&file.tree)) return std::move(*octree);
   if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) return partial->inside;
@@ -147,7 +147,7 @@ void add_octrees(py::module_& module) {
           py::arg("path"), py::arg("name") = "", "Writes an .octree file.");
   py::implicitly_convertible<Octree, Expression>();
 
-  module.def("read_octree", &read, py::arg("path"), "Reads an object's .octree file.");
+  module.def("read_octree", &read_octree, py::arg("path"), "Reads an object's .octree file.");
   module.def(
       "window",
       [](const voxel::GreyOctree& grey, double low, double high) {

@@ -72,8 +72,8 @@ py::array shown_samples(const py::object& self) {
       scene.samples);
 }
 
-std::shared_ptr<Scene> read(const std::filesystem::path& path, const std::string& series,
-                            const std::optional<Numbers>& spacing_mm) {
+std::shared_ptr<Scene> read_scan(const std::filesystem::path& path, const std::string& series,
+                                 const std::optional<Numbers>& spacing_mm) {
   voxel::ReadOptions options;
   options.series = series;
   if (spacing_mm) options.spacing_mm = vector_of(*spacing_mm, "spacing_mm");
@@ -139,7 +139,8 @@ void add_scans(py::module_& module) {
           },
           py::arg("path"), "Writes .nrrd, .nii, .nii.gz or .mha as the name ends.");
 
-  module.def("read_scan", &read, py::arg("path"), py::arg("series") = "", py::arg("spacing_mm") = py::none(),
+  module.def("read_scan", &read_scan, py::arg("path"), py::arg("series") = "",
+             py::arg("spacing_mm") = py::none(),
              "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
              "series by number, UID or part of its description.");
 }

@@ -4,12 +4,11 @@
 #include <algorithm>
 
 #include "planner/report/html.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string number(const Json& json, int decimals) {
   return json.is_number() ? grouped(json.get<double>(), decimals) : "\u2013";

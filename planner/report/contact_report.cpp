@@ -5,15 +5,14 @@
 #include <limits>
 
 #include "planner/report/html.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr int picture_px = 480;
+constexpr int contact_picture_px = 480;
 /// Bone about the contacts that shows where they are, and what may stand above them.
 constexpr double about_mm = 20.0, above_mm = 3.0;
 
@@ -81,7 +80,7 @@ void add_contact_pictures(Result& result) {
         voxel::distance_to(against.voxel.octree, drawn.octree, group.most_mm));
     group.objects.push_back(std::move(drawn));
     draw(group, {view, view == "superior" || view == "inferior" ? "anterior" : "superior"}, group.objects,
-         picture_px, objects.lps_from_head);
+         contact_picture_px, objects.lps_from_head);
     result.pictures.push_back(std::move(group));
   }
 }

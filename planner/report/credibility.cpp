@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "planner/report/html.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* to_state = "to be stated by who uses the numbers: this run cannot know it";
 
@@ -396,7 +395,7 @@ Json credibility_json(const Json& result) {
 
 namespace {
 
-std::string text(const Json& json) {
+std::string words(const Json& json) {
   if (json.is_null()) return "\u2013";
   if (json.is_number_float()) return three_figures(json.get<double>());
   return escaped(json.is_string() ? json.get<std::string>() : json.dump());
@@ -435,9 +434,9 @@ std::string lines_of(const Json& evidence) {
 std::string factor_rows(const Json& factors) {
   std::string rows = "<tr><th>Credibility factor</th><th>This run</th><th>Not in this run</th></tr>";
   for (const Json& one : factors)
-    rows += "<tr>" + cell(text(one.at("group")) + ": " + element("b", text(one.at("factor")))) +
+    rows += "<tr>" + cell(words(one.at("group")) + ": " + element("b", words(one.at("factor")))) +
             cell(one.at("evidence").empty() ? "nothing" : lines_of(one.at("evidence"))) +
-            cell(text(one.at("gap"))) + "</tr>";
+            cell(words(one.at("gap"))) + "</tr>";
   return element("table", rows);
 }
 
@@ -448,8 +447,8 @@ std::string number_rows(const Json& numbers) {
   for (const Json& one : numbers) {
     std::vector<std::string> gaps;
     for (const Json& gap : one.at("gaps")) gaps.push_back(gap.get<std::string>());
-    rows += "<tr>" + cell(element("b", text(one.at("step"))) + ", " + text(one.at("quantity"))) +
-            figure_cell(text(one.at("value")) + " " + text(one.at("unit"))) +
+    rows += "<tr>" + cell(element("b", words(one.at("step"))) + ", " + words(one.at("quantity"))) +
+            figure_cell(words(one.at("value")) + " " + words(one.at("unit"))) +
             cell(one.at("supported_by").empty() ? "nothing" : lines_of(one.at("supported_by"))) +
             cell(lines_of(one.at("contradicted_by"))) + cell(list(gaps)) + "</tr>";
   }
@@ -465,15 +464,15 @@ std::string credibility_html(const Json& json) {
   };
   return html_page(
       "Credibility",
-      element("header", element("div", element("h1", "Credibility: " + text(context.at("plan"))) +
-                                           element("p class=\"soft\"", text(json.at("claim")) + " Terms: " +
-                                                                           text(json.at("terms")) + "."))) +
+      element("header", element("div", element("h1", "Credibility: " + words(context.at("plan"))) +
+                                           element("p class=\"soft\"", words(json.at("claim")) + " Terms: " +
+                                                                           words(json.at("terms")) + "."))) +
           asked("Context of use") + asked("Question of interest") +
           asked("Model risk, of model influence and decision consequence") +
           element("h2", "Numbers and what supports them") + number_rows(json.at("numbers")) +
           element("h2", "Credibility factors") + factor_rows(json.at("credibility_factors")) +
           element("footer",
-                  "Octotomy " + text(json.at("octotomy")) + ". The same as data: credibility.json."));
+                  "Octotomy " + words(json.at("octotomy")) + ". The same as data: credibility.json."));
 }
 
 }  // namespace octotomy::planner

@@ -11,7 +11,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr int picture_px = 420;
+constexpr int difference_picture_px = 420;
 
 /// Distances to the solid at all voxels that shading at the boundary may interpolate between; 0 elsewhere.
 voxel::SurfaceScalar distances_to(const brep::Solid& solid, const voxel::Octree& octree) {
@@ -66,7 +66,8 @@ DifferencePictures difference_pictures(const verify::Contested& contested) {
   voxel::DrawnObject drawn{contested.certificate.operation, contested.octree};
   drawn.scalar = std::make_shared<const voxel::SurfaceScalar>(std::move(scalar));
   pictures.group.objects.push_back(std::move(drawn));
-  draw(pictures.group, {"35,20", "-145,20", "superior", "inferior"}, pictures.group.objects, picture_px);
+  draw(pictures.group, {"35,20", "-145,20", "superior", "inferior"}, pictures.group.objects,
+       difference_picture_px);
   return pictures;
 }
 

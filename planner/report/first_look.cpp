@@ -14,7 +14,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr int picture_px = 400;
+constexpr int look_picture_px = 400;
 
 /// A scan as a plan names it.
 Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
@@ -93,7 +93,7 @@ Result first_look(const std::filesystem::path& scan, const LookOptions& options)
   const voxel::DrawnObject skin = drawn(result.evaluation.object("skin"), {0.88f, 0.72f, 0.63f});
   for (const voxel::DrawnObject& object : {bone, skin}) {
     result.pictures.push_back({object.name, object.name == "bone" ? "Bone" : "Skin", {object}, {}});
-    draw(result.pictures.back(), all_views(), {skin}, picture_px);
+    draw(result.pictures.back(), all_views(), {skin}, look_picture_px);
   }
   return result;
 }

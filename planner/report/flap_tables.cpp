@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/report/flap_tables.h"
 
-#include <nlohmann/json.hpp>
-
 #include "planner/report/html.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string number(const Json& json, int decimals, const std::string& unit) {
   return json.is_number() ? grouped(json.get<double>(), decimals) + unit : "\u2013";
 }
 
-std::string text(const Json& json) {
+std::string name(const Json& json) {
   return json.is_string() ? escaped(json.get<std::string>()) : "\u2013";
 }
 
@@ -29,7 +26,7 @@ std::string segments(const Json& flap) {
       "class=\"n\">longest side</th><th class=\"n\">angle to the one before</th><th class=\"n\">first cut on "
       "the donor</th><th class=\"n\">second cut</th></tr>";
   for (const Json& one : flap.at("flap_segments"))
-    rows += "<tr>" + cell(one.at("number").dump() + ". " + text(one.at("object"))) +
+    rows += "<tr>" + cell(one.at("number").dump() + ". " + name(one.at("object"))) +
             figure_cell(number(one.at("length_mm"), 1, " mm")) +
             figure_cell(number(one.at("shortest_mm"), 1, " mm")) +
             figure_cell(number(one.at("longest_mm"), 1, " mm")) +
@@ -44,13 +41,13 @@ std::string osteotomies(const Json& flap) {
       "class=\"n\">contact, mesh kernel</th><th class=\"n\">allowed difference</th><th>certificate</th></tr>";
   for (const Json& one : flap.at("osteotomies"))
     rows +=
-        "<tr>" + cell(one.at("number").dump() + ". " + text(one.at("object"))) +
-        cell(text(one.at("between").at(0)) + " and " + text(one.at("between").at(1))) +
+        "<tr>" + cell(one.at("number").dump() + ". " + name(one.at("object"))) +
+        cell(name(one.at("between").at(0)) + " and " + name(one.at("between").at(1))) +
         figure_cell(number(one.at("contact_voxels_mm2"), 0, " mm\u00b2")) +
         figure_cell(number(one.at("contact_mesh_mm2"), 0, " mm\u00b2")) +
-        figure_cell(number(one.at("tolerance_mm2"), 0, " mm\u00b2")) + cell(text(one.at("verdict"))) +
+        figure_cell(number(one.at("tolerance_mm2"), 0, " mm\u00b2")) + cell(name(one.at("verdict"))) +
         "</tr>" +
-        (one.contains("finding") ? "<tr><td colspan=\"6\">" + text(one.at("finding")) + "</td></tr>" : "");
+        (one.contains("finding") ? "<tr><td colspan=\"6\">" + name(one.at("finding")) + "</td></tr>" : "");
   return element("table", rows);
 }
 
@@ -61,14 +58,14 @@ std::string flap_tables(const Json& measurements) {
   for (const Json& flap : measurements) {
     if (!flap.contains("flap_segments")) continue;
     made +=
-        element("h3", "Free flap " + text(flap.at("id"))) + segments(flap) + osteotomies(flap) +
+        element("h3", "Free flap " + name(flap.at("id"))) + segments(flap) + osteotomies(flap) +
         element("p class=\"soft small\"",
                 "Segments are in their order along the curve and along the donor, which gives " +
                     number(flap.at("donor_used_mm"), 1, " mm") +
                     ". Lengths are along the axis; sides are as far out as the bone may reach. Cuts are told "
                     "by their place along the donor's axis from its first point and their tilt from a square "
                     "cut. Contact: " +
-                    text(flap.at("contact_estimator")) + ".");
+                    name(flap.at("contact_estimator")) + ".");
   }
   return made;
 }

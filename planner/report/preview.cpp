@@ -13,7 +13,6 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr glm::vec3 bone{0.91f, 0.87f, 0.79f};
 constexpr glm::vec3 accent{0.20f, 0.56f, 0.72f};
 constexpr glm::vec3 mark{0.87f, 0.30f, 0.20f};
 constexpr double ball_mm = 2.0;  ///< radius of a landmark's ball
@@ -107,11 +106,11 @@ std::vector<voxel::DrawnObject> scene_of(const Plan& plan, const Step& step, con
         rest = voxel::combine(universe, voxel::Expression(rest) - voxel::Expression(object->voxel.octree));
       }
     }
-    scene.insert(scene.begin(), part(context, rest, bone));
+    scene.insert(scene.begin(), part(context, rest, bone_colour));
   }
   for (const std::string& name : seen.objects)
     if (!is_tool || seen.context.empty())
-      scene.push_back(drawn(evaluation.object(name), seen.context.empty() ? bone : accent));
+      scene.push_back(drawn(evaluation.object(name), seen.context.empty() ? bone_colour : accent));
   if (step.action.operation().makes == Makes::Names)
     for (const NamedPoint& landmark : plan.landmarks) {
       Object ball(landmark.name, "landmark", universe);

@@ -5,12 +5,12 @@
 #include <map>
 
 #include "planner/table/csv.h"
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Row = std::map<std::string, std::string>;
 
 class Table {

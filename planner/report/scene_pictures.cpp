@@ -13,7 +13,6 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr glm::vec3 bone{0.91f, 0.87f, 0.79f};
 /// Told apart by readers with any colour vision and in grey print (after Okabe and Ito 2008).
 constexpr std::array<glm::vec3, 5> accents{{{0.20f, 0.56f, 0.72f},
                                             {0.87f, 0.49f, 0.20f},
@@ -163,13 +162,13 @@ FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
   const auto show_before = [&](const Object& first) {
     const bool is_there = std::any_of(scene.before.begin(), scene.before.end(),
                                       [&](const auto& object) { return object.name == first.id; });
-    if (!is_there) scene.before.push_back(drawn(first, bone));
+    if (!is_there) scene.before.push_back(drawn(first, bone_colour));
     scene.moves = true;
   };
   for (const std::string& id : pieces) {
     const std::string still = still_of(evaluation, id);
     const bool plain = still == id && !bone_taken;
-    const glm::vec3 colour = plain ? bone : accents[accent++ % accents.size()];
+    const glm::vec3 colour = plain ? bone_colour : accents[accent++ % accents.size()];
     bone_taken = bone_taken || plain;
     scene.moves = scene.moves || still != id;
     if (adds) {

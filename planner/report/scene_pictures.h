@@ -10,6 +10,9 @@
 
 namespace octotomy::planner {
 
+/// Bone of no piece in particular.
+inline constexpr glm::vec3 bone_colour{0.91f, 0.87f, 0.79f};
+
 /// A square picture and what its frame shows, for whoever draws scales or polygons over it.
 struct ScenePicture {
   std::string view;  ///< as voxel::parse_view reads it

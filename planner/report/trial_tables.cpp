@@ -2,12 +2,11 @@
 #include "planner/report/trial_tables.h"
 
 #include "planner/report/html.h"
+#include "planner/table/json.h"
 #include "planner/table/number_format.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string unit_of(const Json& doubt) {
   const auto unit = doubt.at("unit").get<std::string>();

@@ -3,15 +3,14 @@
 
 #include <cstdint>
 #include <exception>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "planner/table/json.h"
+
 // What goes over a page's WebSocket.
 namespace octotomy::planner::serve {
-
-using Json = nlohmann::ordered_json;
 
 /// A message to a page: JSON as text, or a packed frame.
 struct Message {

@@ -5,19 +5,16 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <nlohmann/json.hpp>
 
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-using Ordered = nlohmann::ordered_json;
-
 std::string number_text(double value) {
-  std::string text = Json(value).dump();
+  std::string text = SortedJson(value).dump();
   return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
 }
 
@@ -44,7 +41,7 @@ bool in_range(const Field& field, double value) {
 /// Reads one value. The overloads of read() are the types of Slot.
 class Reader {
  public:
-  Reader(const Field& field, const Json& json, const Place& place)
+  Reader(const Field& field, const SortedJson& json, const Place& place)
       : field_(field), json_(json), place_(place) {}
 
   void read(bool* value) const {
@@ -79,13 +76,13 @@ class Reader {
   void read(Mark* value) const { *value = mark(json_, place_); }
   void read(std::vector<Mark>* value) const {
     each("points [x, y, z] or names of landmarks",
-         [&](const Json& entry, const Place& at) { value->push_back(mark(entry, at)); });
+         [&](const SortedJson& entry, const Place& at) { value->push_back(mark(entry, at)); });
   }
   void read(glm::dmat4* value) const {
     const auto refuse = [&] { place_.refuse("must be four rows of four numbers, as register tells them"); };
     if (!json_.is_array() || json_.size() != 4) refuse();
     for (int row = 0; row < 4; ++row) {
-      const Json& numbers = json_[static_cast<std::size_t>(row)];
+      const SortedJson& numbers = json_[static_cast<std::size_t>(row)];
       if (!numbers.is_array() || numbers.size() != 4) refuse();
       for (int column = 0; column < 4; ++column)
         (*value)[column][row] = number_of(numbers[static_cast<std::size_t>(column)], place_.where);
@@ -111,37 +108,40 @@ class Reader {
   void read(std::vector<double>* value) const {
     value->clear();  // of the default
     each("numbers",
-         [&](const Json& entry, const Place& at) { value->push_back(number_of(entry, at.where)); });
+         [&](const SortedJson& entry, const Place& at) { value->push_back(number_of(entry, at.where)); });
   }
   void read(std::vector<int>* value) const {
-    each("whole numbers", [&](const Json& entry, const Place& at) { value->push_back(whole(entry, at)); });
+    each("whole numbers",
+         [&](const SortedJson& entry, const Place& at) { value->push_back(whole(entry, at)); });
   }
   void read(std::vector<std::string>* value) const {
-    each("texts",
-         [&](const Json& entry, const Place& at) { Reader(field_, entry, at).read(&value->emplace_back()); });
+    each("texts", [&](const SortedJson& entry, const Place& at) {
+      Reader(field_, entry, at).read(&value->emplace_back());
+    });
   }
   void read(std::vector<glm::dvec3>* value) const {
-    each("points [x, y, z]", [&](const Json& entry, const Place& at) { value->push_back(point(entry, at)); });
+    each("points [x, y, z]",
+         [&](const SortedJson& entry, const Place& at) { value->push_back(point(entry, at)); });
   }
   void read(std::vector<ObjectName>* value) const {
-    each("names of earlier steps", [&](const Json& entry, const Place& at) {
+    each("names of earlier steps", [&](const SortedJson& entry, const Place& at) {
       if (!entry.is_string()) place_.refuse("must hold names of earlier steps, not " + type_of(entry));
       value->push_back({entry.get<std::string>()});
       Place{place_.where, at.scope}.need_object(value->back().name);
     });
   }
   void read(Polygons* value) const {
-    each("polygons", [&](const Json& polygon, const Place& at) {
+    each("polygons", [&](const SortedJson& polygon, const Place& at) {
       if (!polygon.is_array()) at.refuse("must be a list of points [u, v]");
       auto& points = value->emplace_back();
-      for (const Json& entry : polygon)
+      for (const SortedJson& entry : polygon)
         points.push_back(point_of(entry, at.where + "[" + std::to_string(points.size()) + "]"));
     });
   }
   void read(NamePairs* value) const {
     const std::string wanted = "must be a list of pairs of names" + for_example(field_);
     if (!json_.is_array()) place_.refuse(wanted);
-    for (const Json& pair : json_) {
+    for (const SortedJson& pair : json_) {
       if (!pair.is_array() || pair.size() != 2 || !pair[0].is_string() || !pair[1].is_string())
         place_.refuse(wanted);
       value->emplace_back(pair[0].get<std::string>(), pair[1].get<std::string>());
@@ -151,7 +151,7 @@ class Reader {
     if (records.form == Records::Form::Optional)
       return read_fields(field_.fields, json_, records.add(""), place_);
     if (records.form == Records::Form::List) {
-      each("records", [&](const Json& entry, const Place& at) {
+      each("records", [&](const SortedJson& entry, const Place& at) {
         read_fields(field_.fields, entry, records.add(""), at);
       });
       return;
@@ -162,28 +162,28 @@ class Reader {
   }
 
  private:
-  static std::string text(const Json& json, const Place& place) {
+  static std::string text(const SortedJson& json, const Place& place) {
     if (!json.is_string()) place.refuse("must be a text in quotes, not " + type_of(json));
     if (json.get_ref<const std::string&>().empty()) place.refuse("is empty: say what is meant");
     return json.get<std::string>();
   }
-  double number(const Json& json, const Place& place) const {
+  double number(const SortedJson& json, const Place& place) const {
     const double value = number_of(json, place.where);
     if (!in_range(field_, value)) place.refuse("must be " + range_text(field_) + for_example(field_));
     return value;
   }
-  static int whole(const Json& json, const Place& place) {
+  static int whole(const SortedJson& json, const Place& place) {
     const double value = number_of(json, place.where);
     if (value != std::trunc(value) || std::abs(value) > std::numeric_limits<int>::max())
       place.refuse("must be a whole number");
     return static_cast<int>(value);
   }
-  static glm::dvec3 point(const Json& json, const Place& place) {
+  static glm::dvec3 point(const SortedJson& json, const Place& place) {
     if (!json.is_array() || json.size() != 3) place.refuse("must be three numbers [x, y, z]");
     return {number_of(json[0], place.where), number_of(json[1], place.where),
             number_of(json[2], place.where)};
   }
-  static Mark mark(const Json& json, const Place& place) {
+  static Mark mark(const SortedJson& json, const Place& place) {
     if (json.is_array()) return {point(json, place), "", ""};
     if (!json.is_string()) place.refuse("must be three numbers [x, y, z] or the name of a landmark");
     const std::string said = text(json, place);
@@ -206,16 +206,16 @@ class Reader {
     if (field_.most && static_cast<double>(json_.size()) > *field_.most)
       place_.refuse("must be a list of at most " + number_text(*field_.most) + " " + of);
     std::size_t index = 0;
-    for (const Json& entry : json_)
+    for (const SortedJson& entry : json_)
       act(entry, {place_.where + "[" + std::to_string(index++) + "]", place_.scope});
   }
 
   const Field& field_;
-  const Json& json_;
+  const SortedJson& json_;
   const Place& place_;
 };
 
-Ordered json_of(const glm::dvec3& value) {
+Json json_of(const glm::dvec3& value) {
   return {value.x, value.y, value.z};
 }
 
@@ -223,55 +223,55 @@ Ordered json_of(const glm::dvec3& value) {
 struct Printer {
   const Field& field;
 
-  Ordered operator()(const bool* value) const { return *value; }
-  Ordered operator()(const int* value) const { return *value; }
-  Ordered operator()(const double* value) const { return *value; }
-  Ordered operator()(const std::string* value) const { return value->empty() ? Ordered() : Ordered(*value); }
-  Ordered operator()(const std::filesystem::path* value) const {
-    return value->empty() ? Ordered() : Ordered(value->generic_string());
+  Json operator()(const bool* value) const { return *value; }
+  Json operator()(const int* value) const { return *value; }
+  Json operator()(const double* value) const { return *value; }
+  Json operator()(const std::string* value) const { return value->empty() ? Json() : Json(*value); }
+  Json operator()(const std::filesystem::path* value) const {
+    return value->empty() ? Json() : Json(value->generic_string());
   }
-  Ordered operator()(const glm::dvec3* value) const { return json_of(*value); }
-  Ordered operator()(const ObjectName* value) const { return (*this)(&value->name); }
-  Ordered operator()(const ScanName* value) const { return (*this)(&value->name); }
-  Ordered operator()(const Site* value) const {
-    return value->object.empty() ? json_of(value->point_mm) : Ordered(value->object);
+  Json operator()(const glm::dvec3* value) const { return json_of(*value); }
+  Json operator()(const ObjectName* value) const { return (*this)(&value->name); }
+  Json operator()(const ScanName* value) const { return (*this)(&value->name); }
+  Json operator()(const Site* value) const {
+    return value->object.empty() ? json_of(value->point_mm) : Json(value->object);
   }
-  Ordered operator()(const Mark* value) const {
+  Json operator()(const Mark* value) const {
     if (value->landmark.empty()) return json_of(value->p_mm);
     return value->landmark + (value->object.empty() ? "" : "@" + value->object);
   }
-  Ordered operator()(const glm::dmat4* value) const {
-    Ordered rows = Ordered::array();
+  Json operator()(const glm::dmat4* value) const {
+    Json rows = Json::array();
     for (int row = 0; row < 4; ++row)
       rows.push_back({(*value)[0][row], (*value)[1][row], (*value)[2][row], (*value)[3][row]});
     return rows;
   }
-  Ordered operator()(const SampleWindow* value) const { return to_string(*value); }
+  Json operator()(const SampleWindow* value) const { return to_string(*value); }
   template <typename Value>
-  Ordered operator()(const std::optional<Value>* value) const {
-    return *value ? (*this)(&**value) : Ordered();
+  Json operator()(const std::optional<Value>* value) const {
+    return *value ? (*this)(&**value) : Json();
   }
   template <typename Value>
-  Ordered operator()(const std::vector<Value>* values) const {
+  Json operator()(const std::vector<Value>* values) const {
     if (values->empty()) return {};
-    Ordered list = Ordered::array();
+    Json list = Json::array();
     for (const Value& value : *values) list.push_back((*this)(&value));
     return list;
   }
-  Ordered operator()(const std::vector<glm::dvec2>* polygon) const {
-    Ordered list = Ordered::array();
+  Json operator()(const std::vector<glm::dvec2>* polygon) const {
+    Json list = Json::array();
     for (const glm::dvec2& point : *polygon) list.push_back({point.x, point.y});
     return list;
   }
-  Ordered operator()(const std::pair<std::string, std::string>* pair) const {
-    return Ordered::array({pair->first, pair->second});
+  Json operator()(const std::pair<std::string, std::string>* pair) const {
+    return Json::array({pair->first, pair->second});
   }
-  Ordered operator()(const Records& records) const {
+  Json operator()(const Records& records) const {
     if (records.count == 0) return {};
     if (records.form == Records::Form::Optional) return print_fields(field.fields, records.at(0));
-    Ordered all = records.form == Records::Form::List ? Ordered::array() : Ordered::object();
+    Json all = records.form == Records::Form::List ? Json::array() : Json::object();
     for (std::size_t i = 0; i < records.count; ++i) {
-      Ordered one = print_fields(field.fields, records.at(i));
+      Json one = print_fields(field.fields, records.at(i));
       if (records.form == Records::Form::List)
         all.push_back(std::move(one));
       else
@@ -281,56 +281,56 @@ struct Printer {
   }
 };
 
-const Json vector_schema = {
+const SortedJson vector_schema = {
     {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
 
 /// The schema of a field's type, without its sentence.
 struct Schema {
   const Field& field;
 
-  Ordered operator()(const bool*) const { return {{"type", "boolean"}}; }
-  Ordered operator()(const int*) const { return ranged("integer"); }
-  Ordered operator()(const double*) const { return ranged("number"); }
-  Ordered operator()(const std::string*) const {
-    Ordered schema{{"type", "string"}, {"minLength", 1}};
+  Json operator()(const bool*) const { return {{"type", "boolean"}}; }
+  Json operator()(const int*) const { return ranged("integer"); }
+  Json operator()(const double*) const { return ranged("number"); }
+  Json operator()(const std::string*) const {
+    Json schema{{"type", "string"}, {"minLength", 1}};
     if (!field.words.empty()) schema["enum"] = field.words;
     return schema;
   }
-  Ordered operator()(const std::filesystem::path*) const { return {{"type", "string"}, {"minLength", 1}}; }
-  Ordered operator()(const glm::dvec3*) const { return vector_schema; }
-  Ordered operator()(const ObjectName*) const { return {{"type", "string"}, {"minLength", 1}}; }
-  Ordered operator()(const ScanName*) const { return {{"type", "string"}, {"minLength", 1}}; }
-  Ordered operator()(const SampleWindow*) const { return {{"type", "string"}, {"minLength", 1}}; }
-  Ordered operator()(const Site*) const {
-    return {{"oneOf", {Ordered(vector_schema), {{"type", "string"}, {"minLength", 1}}}}};
+  Json operator()(const std::filesystem::path*) const { return {{"type", "string"}, {"minLength", 1}}; }
+  Json operator()(const glm::dvec3*) const { return vector_schema; }
+  Json operator()(const ObjectName*) const { return {{"type", "string"}, {"minLength", 1}}; }
+  Json operator()(const ScanName*) const { return {{"type", "string"}, {"minLength", 1}}; }
+  Json operator()(const SampleWindow*) const { return {{"type", "string"}, {"minLength", 1}}; }
+  Json operator()(const Site*) const {
+    return {{"oneOf", {Json(vector_schema), {{"type", "string"}, {"minLength", 1}}}}};
   }
-  Ordered operator()(const Mark*) const { return (*this)(static_cast<const Site*>(nullptr)); }
-  Ordered operator()(const glm::dmat4*) const {
-    const Ordered row{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}};
+  Json operator()(const Mark*) const { return (*this)(static_cast<const Site*>(nullptr)); }
+  Json operator()(const glm::dmat4*) const {
+    const Json row{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 4}, {"maxItems", 4}};
     return {{"type", "array"}, {"items", row}, {"minItems", 4}, {"maxItems", 4}};
   }
   template <typename Value>
-  Ordered operator()(const std::optional<Value>*) const {
+  Json operator()(const std::optional<Value>*) const {
     return (*this)(static_cast<const Value*>(nullptr));
   }
   template <typename Value>
-  Ordered operator()(const std::vector<Value>*) const {
-    Ordered schema{{"type", "array"}, {"items", (*this)(static_cast<const Value*>(nullptr))}};
+  Json operator()(const std::vector<Value>*) const {
+    Json schema{{"type", "array"}, {"items", (*this)(static_cast<const Value*>(nullptr))}};
     if (field.least) schema["minItems"] = static_cast<int>(*field.least);
     if (field.most) schema["maxItems"] = static_cast<int>(*field.most);
     return schema;
   }
-  Ordered operator()(const std::vector<glm::dvec2>*) const {
-    const Ordered point{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+  Json operator()(const std::vector<glm::dvec2>*) const {
+    const Json point{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
     return {{"type", "array"}, {"items", point}};
   }
-  Ordered operator()(const std::pair<std::string, std::string>*) const {
+  Json operator()(const std::pair<std::string, std::string>*) const {
     return {{"type", "array"}, {"items", {{"type", "string"}}}, {"minItems", 2}, {"maxItems", 2}};
   }
-  Ordered operator()(const Records& records) const {
-    Ordered one = fields_schema(field.fields, records.add("name"));
+  Json operator()(const Records& records) const {
+    Json one = fields_schema(field.fields, records.add("name"));
     if (records.form == Records::Form::List) {
-      Ordered list{{"type", "array"}, {"items", one}};
+      Json list{{"type", "array"}, {"items", one}};
       if (field.least) list["minItems"] = static_cast<int>(*field.least);
       return list;
     }
@@ -339,8 +339,8 @@ struct Schema {
   }
 
  private:
-  Ordered ranged(const char* type) const {
-    Ordered schema{{"type", type}};
+  Json ranged(const char* type) const {
+    Json schema{{"type", type}};
     if (field.above) schema["exclusiveMinimum"] = *field.above;
     if (field.least) schema["minimum"] = *field.least;
     if (field.most) schema["maximum"] = *field.most;
@@ -357,8 +357,8 @@ double number_in(const std::string& word, const Field& field) {
   return value;
 }
 
-Json point_in(const std::string& word) {
-  Json point = Json::array();
+SortedJson point_in(const std::string& word) {
+  SortedJson point = SortedJson::array();
   const char* at = word.c_str();
   for (int axis = 0; axis < 3; ++axis) {
     char* end = nullptr;
@@ -376,24 +376,24 @@ struct Word {
   const Field& field;
   const std::string& word;
 
-  Json operator()(const bool*) const { return true; }
-  Json operator()(const int*) const { return number_in(word, field); }
-  Json operator()(const double*) const { return number_in(word, field); }
-  Json operator()(const glm::dvec3*) const { return point_in(word); }
-  Json operator()(const Site*) const {
-    return word.find(',') == std::string::npos ? Json(word) : point_in(word);
+  SortedJson operator()(const bool*) const { return true; }
+  SortedJson operator()(const int*) const { return number_in(word, field); }
+  SortedJson operator()(const double*) const { return number_in(word, field); }
+  SortedJson operator()(const glm::dvec3*) const { return point_in(word); }
+  SortedJson operator()(const Site*) const {
+    return word.find(',') == std::string::npos ? SortedJson(word) : point_in(word);
   }
-  Json operator()(const Mark*) const { return (*this)(static_cast<const Site*>(nullptr)); }
+  SortedJson operator()(const Mark*) const { return (*this)(static_cast<const Site*>(nullptr)); }
   template <typename Value>
-  Json operator()(const std::optional<Value>*) const {
+  SortedJson operator()(const std::optional<Value>*) const {
     return (*this)(static_cast<const Value*>(nullptr));
   }
   template <typename Value>
-  Json operator()(const std::vector<Value>*) const {
+  SortedJson operator()(const std::vector<Value>*) const {
     return (*this)(static_cast<const Value*>(nullptr));
   }
-  Json operator()(const void*) const { return word; }
-  Json operator()(const Records&) const { return word; }
+  SortedJson operator()(const void*) const { return word; }
+  SortedJson operator()(const Records&) const { return word; }
 };
 
 /// What help calls one word.
@@ -426,7 +426,7 @@ constexpr bool is_list<std::vector<Value>*> = true;
 
 }  // namespace
 
-void read_fields(const std::vector<Field>& fields, const Json& object, void* owner, const Place& place,
+void read_fields(const std::vector<Field>& fields, const SortedJson& object, void* owner, const Place& place,
                  const std::vector<std::string>& also) {
   if (!object.is_object()) place.refuse("must be an object in braces, not " + type_of(object));
   std::vector<std::string> known = also;
@@ -447,42 +447,43 @@ void read_fields(const std::vector<Field>& fields, const Json& object, void* own
   }
 }
 
-Ordered print_fields(const std::vector<Field>& fields, void* owner) {
-  Ordered object = Ordered::object();
+Json print_fields(const std::vector<Field>& fields, void* owner) {
+  Json object = Json::object();
   for (const Field& field : fields) {
-    Ordered value = std::visit(Printer{field}, field.slot(owner));
+    Json value = std::visit(Printer{field}, field.slot(owner));
     if (!value.is_null()) object[field.name] = std::move(value);
   }
   return object;
 }
 
-Ordered fields_schema(const std::vector<Field>& fields, void* fresh) {
-  Ordered properties = Ordered::object(), required = Ordered::array();
+Json fields_schema(const std::vector<Field>& fields, void* fresh) {
+  Json properties = Json::object(), required = Json::array();
   for (const Field& field : fields) {
-    Ordered value;
+    Json value;
     if (!field.is_required) value = std::visit(Printer{field}, field.slot(fresh));
-    Ordered schema{{"description", field.says}};
+    Json schema{{"description", field.says}};
     schema.update(std::visit(Schema{field}, field.slot(fresh)));
     if (!value.is_null()) schema["default"] = value;
     if (const std::string unit = field.unit(); !unit.empty()) schema["x-unit"] = unit;
     properties[field.name] = std::move(schema);
     if (field.is_required) required.push_back(field.name);
   }
-  Ordered schema{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+  Json schema{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) schema["required"] = required;
   return schema;
 }
 
-Json json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words) {
+SortedJson json_of_words(const Field& field, void* fresh, const std::vector<std::string>& words) {
   const auto one = [&](const std::string& word) { return std::visit(Word{field, word}, field.slot(fresh)); };
   if (!takes_several(field, fresh)) return one(words.empty() ? "" : words.back());
-  Json list = Json::array();
+  SortedJson list = SortedJson::array();
   for (const std::string& word : words) list.push_back(one(word));
   return list;
 }
 
-Json json_of_values(const std::vector<Field>& fields, void* fresh, const std::vector<std::string>& values) {
-  Json object = Json::object();
+SortedJson json_of_values(const std::vector<Field>& fields, void* fresh,
+                          const std::vector<std::string>& values) {
+  SortedJson object = SortedJson::object();
   std::size_t at = 0;
   for (const Field& field : fields) {
     if (names_scan(field, fresh)) continue;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "planner/table/json.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
@@ -14,25 +15,23 @@
 
 namespace octotomy::planner {
 
-using Json = nlohmann::json;
-
 void refuse(const std::string& where, const std::string& what) {
   throw std::runtime_error(where.empty() ? what : where + ": " + what);
 }
 
-std::string type_of(const Json& value) {
+std::string type_of(const SortedJson& value) {
   return value.is_number() ? "a number"
          : value.is_null() ? "null"
                            : "a JSON " + std::string(value.type_name());
 }
 
-Json read_json(const std::filesystem::path& path) {
+SortedJson read_json(const std::filesystem::path& path) {
   voxel::need_regular_file(path);
   std::ifstream stream(path);
   if (!stream) refuse(path.string(), "cannot be opened");
   try {
-    return Json::parse(stream);
-  } catch (const Json::exception& error) {
+    return SortedJson::parse(stream);
+  } catch (const SortedJson::exception& error) {
     refuse(path.string(), std::string("is no JSON: ") + error.what());
   }
 }
@@ -47,36 +46,36 @@ void write_json(const nlohmann::ordered_json& json, const std::filesystem::path&
   staging.commit(path.filename());
 }
 
-void check_keys(const Json& object, const std::string& where, const std::vector<std::string>& known) {
+void check_keys(const SortedJson& object, const std::string& where, const std::vector<std::string>& known) {
   if (!object.is_object()) refuse(where, "must be an object with the keys of this kind of file");
   for (const auto& [key, unused] : object.items())
     if (std::find(known.begin(), known.end(), key) == known.end())
       refuse(where, "unknown key '" + key + "'" + suggestion(key, known));
 }
 
-const Json& need(const Json& object, const std::string& key, const std::string& where) {
+const SortedJson& need(const SortedJson& object, const std::string& key, const std::string& where) {
   if (!object.contains(key)) refuse(where, "has no '" + key + "'");
   return object[key];
 }
 
-double number_of(const Json& value, const std::string& where) {
+double number_of(const SortedJson& value, const std::string& where) {
   if (!value.is_number()) refuse(where, "must be a number, not " + type_of(value));
   const auto number = value.get<double>();
   if (!std::isfinite(number)) refuse(where, "must be a finite number");
   return number;
 }
 
-std::size_t count_of(const Json& value, const std::string& where) {
+std::size_t count_of(const SortedJson& value, const std::string& where) {
   if (!value.is_number_unsigned()) refuse(where, "must be a whole number from 0");
   return value.get<std::size_t>();
 }
 
-std::string word_of(const Json& value, const std::string& where) {
+std::string word_of(const SortedJson& value, const std::string& where) {
   if (!value.is_string()) refuse(where, "must be a word");
   return value.get<std::string>();
 }
 
-glm::dvec2 point_of(const Json& value, const std::string& where) {
+glm::dvec2 point_of(const SortedJson& value, const std::string& where) {
   if (!value.is_array() || value.size() != 2) refuse(where, "must be two numbers [u, v]");
   return {number_of(value[0], where), number_of(value[1], where)};
 }

@@ -11,7 +11,7 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
-using tests::Json;
+using tests::SortedJson;
 
 class BadSurfaces : public tests::CommandLine {
  protected:
@@ -24,10 +24,10 @@ class BadSurfaces : public tests::CommandLine {
     write(name, text.str());
     return at(name);
   }
-  Json json_of(const std::string& command) {
+  SortedJson json_of(const std::string& command) {
     const CommandAnswer answer = run(command + " --json");
     EXPECT_EQ(answer.status, 0) << command << ": " << answer.errors;
-    return answer.status == 0 ? Json::parse(answer.out) : Json();
+    return answer.status == 0 ? SortedJson::parse(answer.out) : SortedJson();
   }
 };
 
@@ -35,19 +35,20 @@ TEST_F(BadSurfaces, AreComparedMirroredAndMeasuredAsTheyAre) {
   using namespace brep::shapes;
   const std::string cubes =
       off("cubes.off", welded(together(box({0, 0, 0}, {10, 10, 10}), box({10, 10, 0}, {20, 20, 10}))));
-  const Json same = json_of("compare " + cubes + " " + cubes);
+  const SortedJson same = json_of("compare " + cubes + " " + cubes);
   EXPECT_EQ(same["hausdorff_mm"], 0.0);
   EXPECT_EQ(same["dice"], 1.0);
   EXPECT_NE(same["findings"][0].get<std::string>().find("edge of 4 triangles at (10, 10, 5) mm"),
             std::string::npos);
   EXPECT_EQ(run("mirror " + cubes + " --plane 0,0,0 1,0,0 --exactly -o " + at("m.ply")).status, 0);
-  const Json open = json_of("measure " + off("open.off", without(box({0, 0, 0}, {10, 10, 10}), {0, 1})));
+  const SortedJson open =
+      json_of("measure " + off("open.off", without(box({0, 0, 0}, {10, 10, 10}), {0, 1})));
   EXPECT_NEAR(open["area_mm2"].get<double>(), 500.0, 1e-9);
   EXPECT_TRUE(open["volume_mm3"].is_null());
 }
 
 TEST_F(BadSurfaces, AreToldUnweldedAndWhatWeldingCloses) {
-  const Json info =
+  const SortedJson info =
       json_of("info " + off("soup.off", brep::shapes::unwelded(brep::shapes::sphere({0, 0, 0}, 5, 1))));
   EXPECT_EQ(info["open_edges"], 240);
   EXPECT_EQ(info["open_edges_closed_by_welding"], 240);
@@ -61,7 +62,7 @@ TEST_F(BadSurfaces, BecomeASolidThatTheBooleanTakesAndTheChangeIsTold) {
   const std::string heap = off("heap.off", together(sphere({0, 0, 0}, 5, 3), sphere({6, 0.3, 0.2}, 5, 3)));
   expect_refused(run("boolean " + heap + " difference " + heap + " -o " + at("b.ply")),
                  "repair heap.off --solid");
-  const Json made = json_of("repair " + heap + " --solid -o " + at("solid.ply"));
+  const SortedJson made = json_of("repair " + heap + " --solid -o " + at("solid.ply"));
   EXPECT_EQ(made["method"], "enclosed");
   EXPECT_TRUE(made["health"]["closed"]);
   EXPECT_EQ(made["health"]["self_intersections"], 0);
@@ -92,9 +93,9 @@ TEST_F(BadSurfaces, ABooleanThinnerThanRoundingIsMadeExactly) {
 TEST_F(BadSurfaces, AreDrawnAloneAndOutlined) {
   using namespace brep::shapes;
   const std::string soup = off("soup.off", unwelded(sphere({0, 0, 0}, 20, 2)));
-  const Json alone = json_of("render " + soup + " -o " + at("alone.png") + " --size 100x100");
+  const SortedJson alone = json_of("render " + soup + " -o " + at("alone.png") + " --size 100x100");
   EXPECT_GT(alone["lit_pixels"].get<int>(), 3000);
-  const Json slice = json_of("slice " + at("ball.nrrd") + " -o " + at("s.png") + " --octree " + soup);
+  const SortedJson slice = json_of("slice " + at("ball.nrrd") + " -o " + at("s.png") + " --octree " + soup);
   EXPECT_GT(slice["outlines"][0]["outline_pixels"].get<int>(), 10);
   EXPECT_EQ(run("slice " + soup + " -o " + at("own.png")).status, 0);
 }

@@ -15,7 +15,7 @@ namespace {
 
 using tests::CommandAnswer;
 using tests::CommandLine;
-using tests::Json;
+using tests::SortedJson;
 
 TEST_F(CommandLine, SaysItsVersionAndHelpsEveryVerbWithAnExample) {
   EXPECT_EQ(run("--version").out, std::string("octotomy ") + OCTOTOMY_VERSION + "\n");
@@ -92,9 +92,9 @@ TEST_F(CommandLine, ABrokenPlanLeavesNothing) {
 TEST_F(CommandLine, RunAnswersWithTheFileItWrote) {
   const CommandAnswer answer = run("run " + at("ball.plan.json") + " -o " + at("out") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json said = Json::parse(answer.out);
+  const SortedJson said = SortedJson::parse(answer.out);
   std::ifstream file(folder_ / "out/result.json");
-  EXPECT_EQ(said, Json::parse(file));
+  EXPECT_EQ(said, SortedJson::parse(file));
   EXPECT_EQ(said["octotomy"], OCTOTOMY_VERSION);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/ball.stl"));
 }
@@ -145,15 +145,15 @@ TEST_F(CommandLine, AnotherScanCanTakeTheNamedOnesPlace) {
   const CommandAnswer answer =
       run("verify " + at("ball.plan.json") + " --scan ct=" + at("small.nrrd") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json said = Json::parse(answer.out);
+  const SortedJson said = SortedJson::parse(answer.out);
   EXPECT_NEAR(said["certificates"][0]["voxel"]["volume_mm3"].get<double>(), tests::ball_mm3(9.0), 60.0);
   EXPECT_EQ(said["counts"]["FAIL"], 0);
 }
 
 TEST_F(CommandLine, TheAnswerIsTheSameOnAnyNumberOfThreads) {
   const auto measured = [&](const std::string& threads) {
-    Json json =
-        Json::parse(run("measure " + at("ball.nrrd") + " --window 0: --json --threads " + threads).out);
+    SortedJson json =
+        SortedJson::parse(run("measure " + at("ball.nrrd") + " --window 0: --json --threads " + threads).out);
     json.erase("timings_ms");
     return json;
   };
@@ -161,14 +161,14 @@ TEST_F(CommandLine, TheAnswerIsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST_F(CommandLine, MeasuresAScansWindowAndAMesh) {
-  const Json scan = Json::parse(run("measure " + at("ball.nrrd") + " --window 0: --json").out);
+  const SortedJson scan = SortedJson::parse(run("measure " + at("ball.nrrd") + " --window 0: --json").out);
   EXPECT_NEAR(scan["volume_mm3"].get<double>(), tests::ball_mm3(12.0), 60.0);
   EXPECT_NEAR(scan["volume_partial_mm3"].get<double>(), tests::ball_mm3(12.0), 60.0);
   EXPECT_NEAR(scan["area_mm2"].get<double>(), 4.0 * M_PI * 144.0, 0.03 * 4.0 * M_PI * 144.0);
   EXPECT_EQ(scan["components"], 1);
   EXPECT_EQ(scan["euler"], 2);
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.ply")).status, 0);
-  const Json mesh = Json::parse(run("measure " + at("ball.ply") + " --json").out);
+  const SortedJson mesh = SortedJson::parse(run("measure " + at("ball.ply") + " --json").out);
   EXPECT_NEAR(mesh["volume_mm3"].get<double>(), scan["volume_isosurface_mm3"].get<double>(), 1e-6);
   // The voxels' own partial volume is another estimate of the same, from the same samples.
   EXPECT_NEAR(mesh["volume_mm3"].get<double>() / scan["volume_partial_mm3"].get<double>(), 1.0, 0.003);
@@ -178,7 +178,7 @@ TEST_F(CommandLine, MeasuresAScansWindowAndAMesh) {
 }
 
 TEST_F(CommandLine, ARenderedBallCoversItsDisc) {
-  const Json json = Json::parse(
+  const SortedJson json = SortedJson::parse(
       run("render " + at("ball.nrrd") + " --window 0: --size 256x256 --json -o " + at("ball.png")).out);
   const double lit_mm2 = json["lit_pixels"].get<double>() * std::pow(json["pixel_mm"].get<double>(), 2);
   EXPECT_NEAR(lit_mm2, M_PI * 144.0, 2.0 * M_PI * 12.0);
@@ -188,15 +188,16 @@ TEST_F(CommandLine, ARenderedBallCoversItsDisc) {
 TEST_F(CommandLine, ACutPictureKeepsTheHalfThatTheNormalPointsAwayFromAndNamesItsObjects) {
   // Seen from the patient's left, a ball without its left half shows its flat face, at the ball's middle.
   const std::string ball = "render " + at("ball.nrrd") + " --window 0: --view left --json -o " + at("p.png");
-  const Json whole = Json::parse(run(ball).out);
-  const Json cut = Json::parse(run(ball + " --cut-plane 2,0,0,0 --cut-face grey --tones=-1000:1000").out);
+  const SortedJson whole = SortedJson::parse(run(ball).out);
+  const SortedJson cut =
+      SortedJson::parse(run(ball + " --cut-plane 2,0,0,0 --cut-face grey --tones=-1000:1000").out);
   EXPECT_NEAR(cut["depth_range_mm"][0].get<double>() - whole["depth_range_mm"][0].get<double>(), 12.0, 0.1);
   EXPECT_NEAR(cut["depth_range_mm"][1].get<double>() - cut["depth_range_mm"][0].get<double>(), 0.0, 1.0);
   EXPECT_EQ(cut["pixel_mm"], whole["pixel_mm"]);
   ASSERT_EQ(cut["objects"].size(), 1u);
   EXPECT_EQ(cut["objects"][0]["name"], "ball");
   EXPECT_EQ(cut["objects"][0]["lit_pixels"], cut["lit_pixels"]);
-  const Json boxed = Json::parse(run(ball + " --cut-box 0,-20,-20,20,20,20").out);
+  const SortedJson boxed = SortedJson::parse(run(ball + " --cut-box 0,-20,-20,20,20,20").out);
   EXPECT_EQ(boxed["depth_range_mm"][0], cut["depth_range_mm"][0]);
   expect_refused(run(ball + " --cut-plane 1,0,0"), "4 numbers");
   expect_refused(run(ball + " --cut-plane 0,0,0,4"), "without length");
@@ -207,8 +208,9 @@ TEST_F(CommandLine, ACutPictureKeepsTheHalfThatTheNormalPointsAwayFromAndNamesIt
 
 TEST_F(CommandLine, AnAnnotatedPictureIsAnotherPictureOfTheSamePixels) {
   const std::string ball = "render " + at("ball.nrrd") + " --window 0: --size 200x150 --json";
-  const Json plain = Json::parse(run(ball + " -o " + at("p.png")).out);
-  const Json annotated = Json::parse(run(ball + " --annotate --title truth -o " + at("a.png")).out);
+  const SortedJson plain = SortedJson::parse(run(ball + " -o " + at("p.png")).out);
+  const SortedJson annotated =
+      SortedJson::parse(run(ball + " --annotate --title truth -o " + at("a.png")).out);
   EXPECT_EQ(plain["lit_pixels"], annotated["lit_pixels"]);
   EXPECT_EQ(plain["pixel_mm"], annotated["pixel_mm"]);
   EXPECT_NE(std::filesystem::file_size(folder_ / "p.png"), std::filesystem::file_size(folder_ / "a.png"));
@@ -217,19 +219,19 @@ TEST_F(CommandLine, AnAnnotatedPictureIsAnotherPictureOfTheSamePixels) {
 
 TEST_F(CommandLine, APointPickedInTwoViewsIsMarkedWhereTheyMeet) {
   const auto picked = [&](const std::string& view) {
-    return Json::parse(run("render " + at("ball.nrrd") + " --window 0: --size 101x101 --view " + view +
-                           " --pick 50,50 --pick 0,0 --json -o " + at("p.png"))
-                           .out)["picks"];
+    return SortedJson::parse(run("render " + at("ball.nrrd") + " --window 0: --size 101x101 --view " + view +
+                                 " --pick 50,50 --pick 0,0 --json -o " + at("p.png"))
+                                 .out)["picks"];
   };
-  const Json front = picked("anterior");
+  const SortedJson front = picked("anterior");
   EXPECT_EQ(front[0]["object"], "ball");
   EXPECT_NEAR(front[0]["point_mm"][1].get<double>(), -12.0, 0.1);
   EXPECT_NEAR(front[0]["point_mm"][0].get<double>(), front[0]["view_mm"][0].get<double>(), 1e-9);
   EXPECT_TRUE(front[1]["object"].is_null());
   EXPECT_TRUE(front[1]["point_mm"].is_null());
   EXPECT_TRUE(front[1]["depth_mm"].is_null());
-  const Json mark = Json::parse(run("mark --in anterior:3,4 --in left:-5,6 --json").out);
-  EXPECT_EQ(mark["point_mm"], Json::parse("[3.0, -5.0, 5.0]"));
+  const SortedJson mark = SortedJson::parse(run("mark --in anterior:3,4 --in left:-5,6 --json").out);
+  EXPECT_EQ(mark["point_mm"], SortedJson::parse("[3.0, -5.0, 5.0]"));
   EXPECT_NEAR(mark["miss_mm"].get<double>(), 2.0, 1e-12);
   expect_refused(run("mark --in anterior:3,4 --in posterior:1,2"), "same direction");
   expect_refused(run("mark --in anterior:3,4"), "--in");
@@ -242,7 +244,7 @@ TEST_F(CommandLine, ATransferFunctionOfAFileIsDrawnAndOneThatIsNoneIsRefused) {
   write("u.json", R"({ "octotomy_transfer": 1, "points": [ { "sampel": 0 } ] })");
   const std::string ball =
       "render " + at("ball.nrrd") + " --shading composite --size 256x256 --json -o " + at("c.png");
-  const Json json = Json::parse(run(ball + " --transfer " + at("t.json")).out);
+  const SortedJson json = SortedJson::parse(run(ball + " --transfer " + at("t.json")).out);
   const double lit_mm2 = json["lit_pixels"].get<double>() * std::pow(json["pixel_mm"].get<double>(), 2);
   EXPECT_NEAR(lit_mm2, M_PI * 144.0, 2.0 * M_PI * 12.0);
   EXPECT_NEAR(json["depth_range_mm"][1].get<double>() - json["depth_range_mm"][0].get<double>(), 12.0, 2.0);
@@ -258,7 +260,8 @@ TEST_F(CommandLine, ATransferFunctionOfAFileIsDrawnAndOneThatIsNoneIsRefused) {
 TEST_F(CommandLine, ABallColouredByAnotherInsideItIsAsFarOutsideAsTheirRadiiDiffer) {
   voxel::write_scene(tests::ball_scene(9.0, 32), folder_ / "core.nrrd");
   const std::string ball = "render " + at("ball.nrrd") + " --window 0: --json --annotate -o " + at("p.png");
-  const Json json = Json::parse(run(ball + " --range 4 --colour-by distance:" + at("core.nrrd")).out);
+  const SortedJson json =
+      SortedJson::parse(run(ball + " --range 4 --colour-by distance:" + at("core.nrrd")).out);
   EXPECT_EQ(json["colour_by"]["distance_to"], "core");
   EXPECT_EQ(json["colour_by"]["range_mm"], 4.0);
   EXPECT_NEAR(json["colour_by"]["seen_mm"][0].get<double>(), 3.0, 0.87);
@@ -269,18 +272,18 @@ TEST_F(CommandLine, ABallColouredByAnotherInsideItIsAsFarOutsideAsTheirRadiiDiff
 }
 
 TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
-  const Json ball =
-      Json::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);
+  const SortedJson ball =
+      SortedJson::parse(run("octree " + at("ball.nrrd") + " --window 0: --json -o " + at("ball.octree")).out);
   EXPECT_EQ(ball["fields"], "binary");
   EXPECT_EQ(ball["depth"], 5);
   EXPECT_NEAR(ball["voxels"].get<double>(), tests::ball_mm3(12.0), 60.0);
   EXPECT_EQ(ball["bytes_file"], std::filesystem::file_size(folder_ / "ball.octree"));
-  const Json told = Json::parse(run("info " + at("ball.octree") + " --json").out);
+  const SortedJson told = SortedJson::parse(run("info " + at("ball.octree") + " --json").out);
   for (const char* key : {"depth", "levels", "voxels", "bytes_memory", "bytes_file", "metadata"})
     EXPECT_EQ(told[key], ball[key]) << key;
   ASSERT_EQ(told["levels"].size(), 5u);
   std::uint64_t voxels = 0;
-  for (const Json& level : told["levels"])
+  for (const SortedJson& level : told["levels"])
     voxels += level["full"].get<std::uint64_t>() << (3 * (5 - level["level"].get<int>()));
   EXPECT_EQ(voxels, told["voxels"]);
 
@@ -289,8 +292,8 @@ TEST_F(CommandLine, OctreesOfAScanTellTheirLevelsAndEvaluate) {
   const std::string lets = " --let ball=" + at("ball.octree") + " --let grey=" + at("grey.octree") +
                            " --window grey=0: --motion there=2,0,-1 --motion back=-2,0,1 --json -o " +
                            at("result.octree");
-  EXPECT_EQ(Json::parse(run("eval 'move(move(ball, there), back) ^ grey'" + lets).out)["voxels"], 0);
-  const Json moved = Json::parse(run("eval 'move(grey, there) | ball'" + lets).out);
+  EXPECT_EQ(SortedJson::parse(run("eval 'move(move(ball, there), back) ^ grey'" + lets).out)["voxels"], 0);
+  const SortedJson moved = SortedJson::parse(run("eval 'move(grey, there) | ball'" + lets).out);
   EXPECT_GT(moved["voxels"], ball["voxels"]);
   expect_refused(run("eval 'bal | grey'" + lets), "did you mean 'ball'");
   expect_refused(run("eval 'ball |'" + lets), "character");
@@ -322,11 +325,11 @@ TEST_F(CommandLine, Figure31GoesThroughEveryRepresentation) {
 }
 
 TEST_F(CommandLine, TheThesissSphereHasTable3_1) {
-  const Json made = Json::parse(
+  const SortedJson made = SortedJson::parse(
       run("phantom sphere --voxels 256 --radius 64 --digitise partial --json -o " + at("sphere.octree")).out);
   EXPECT_NEAR(made["truth"]["volume_mm3"], 4.0 / 3.0 * M_PI * 64 * 64 * 64, 1e-6);
   EXPECT_NEAR(made["truth"]["area_mm2"], 4.0 * M_PI * 64 * 64, 1e-6);
-  const Json told = Json::parse(run("info " + at("sphere.octree") + " --json").out);
+  const SortedJson told = SortedJson::parse(run("info " + at("sphere.octree") + " --json").out);
   const std::vector<std::array<int, 3>> table{{8, 0, 0},           {8, 0, 56},        {56, 8, 0},
                                               {272, 72, 104},      {1160, 480, 536},  {4760, 2240, 2280},
                                               {19232, 9360, 9488}, {0, 115784, 38072}};
@@ -337,7 +340,7 @@ TEST_F(CommandLine, TheThesissSphereHasTable3_1) {
     EXPECT_EQ(told["levels"][i]["full"], table[i][1]) << "level " << i + 1;
     EXPECT_EQ(told["levels"][i]["empty"], table[i][2]) << "level " << i + 1;
   }
-  const Json measured = Json::parse(run("measure " + at("sphere.octree") + " --json").out);
+  const SortedJson measured = SortedJson::parse(run("measure " + at("sphere.octree") + " --json").out);
   EXPECT_NEAR(measured["volume_partial_mm3"].get<double>() / made["truth"]["volume_mm3"].get<double>(), 1.0,
               1e-4);
   EXPECT_NEAR(measured["area_mm2"].get<double>() / made["truth"]["area_mm2"].get<double>(), 1.0, 0.02);
@@ -356,17 +359,18 @@ TEST_F(CommandLine, MasksComeFromViewsAndSlicesAndAreEditedFurther) {
       {"position_mm": 2, "polygons_mm": [[[-5,-5],[5,-5],[5,5],[-5,5]]]}]})");
   const std::string front = " --region anterior:" + at("front.json");
   const std::string side = " --region left:" + at("side.json");
-  const Json both = Json::parse(run("mask" + front + side + " --json -o " + at("both.octree")).out);
+  const SortedJson both =
+      SortedJson::parse(run("mask" + front + side + " --json -o " + at("both.octree")).out);
   EXPECT_EQ(both["voxels"], 16 * 16 * 20);
   EXPECT_EQ(both["step"]["views_of"], "scan") << "a plan that holds the head would turn it";
-  const Json one = Json::parse(
+  const SortedJson one = SortedJson::parse(
       run("mask" + front + " --like " + at("both.octree") + " --json -o " + at("one.octree")).out);
   EXPECT_GT(one["voxels"], both["voxels"]);
-  const Json edited = Json::parse(
+  const SortedJson edited = SortedJson::parse(
       run("mask" + side + " --edit " + at("one.octree") + " --json -o " + at("edited.octree")).out);
   EXPECT_EQ(edited["levels"], both["levels"]);
-  const Json slices =
-      Json::parse(run("mask --slices " + at("slices.json") + " --json -o " + at("slices.octree")).out);
+  const SortedJson slices =
+      SortedJson::parse(run("mask --slices " + at("slices.json") + " --json -o " + at("slices.octree")).out);
   EXPECT_EQ(slices["voxels"], 10 * 10 * 8);
   expect_refused(run("mask" + front + " -o " + at("x.octree")), "--like");
   expect_refused(run("mask -o " + at("x.octree")), "--region");
@@ -377,11 +381,13 @@ TEST_F(CommandLine, MasksComeFromViewsAndSlicesAndAreEditedFurther) {
 TEST_F(CommandLine, GreyResultsKeepTheirSamplesAndAreMeasured) {
   ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
   const std::string ask = " --let g=" + at("grey.octree") + " --window g=0: ";
-  const Json kept = Json::parse(run("eval g" + ask + "--grey --json -o " + at("kept.octree")).out);
+  const SortedJson kept =
+      SortedJson::parse(run("eval g" + ask + "--grey --json -o " + at("kept.octree")).out);
   EXPECT_EQ(kept["fields"], "grey");
   EXPECT_GE(kept["range"][1], 900);
   // The object that keeps its samples has the samples' surface still, and so does not when moved by halves.
-  const Json measured = Json::parse(run("measure " + at("grey.octree") + " --window 0: --json").out);
+  const SortedJson measured =
+      SortedJson::parse(run("measure " + at("grey.octree") + " --window 0: --json").out);
   EXPECT_NEAR(measured["volume_partial_mm3"].get<double>() / tests::ball_mm3(12.0), 1.0, 0.005);
   EXPECT_EQ(measured["inertia_mm5"].size(), 3u);
   for (const char* how : {"--interpolate nearest", "--interpolate cubic", "--digitise half"})

@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/run_command.h"
 
 namespace octotomy::tests {
 
-using Json = nlohmann::json;
+using planner::Json;
+using planner::SortedJson;
 
 /// The program in a folder of the test's own, with a ball's scan and plan in it.
 class CommandLine : public testing::Test {

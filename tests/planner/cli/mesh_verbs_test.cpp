@@ -12,7 +12,7 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
-using tests::Json;
+using tests::SortedJson;
 
 class MeshVerbs : public tests::CommandLine {};
 
@@ -22,44 +22,44 @@ TEST_F(MeshVerbs, AnOctreeBecomesAMeshByEverySurfaceAndComesBackFromItsCuberille
       0);
   ASSERT_EQ(run("phantom sphere -o " + at("ball.octree") + " --voxels 64 --radius 24").status, 0);
   ASSERT_EQ(run("octree " + at("ball.nrrd") + " -o " + at("grey.octree") + " --grey").status, 0);
-  const Json smooth =
-      Json::parse(run("mesh " + at("share.octree") + " -o " + at("share.ply") + " --json").out);
+  const SortedJson smooth =
+      SortedJson::parse(run("mesh " + at("share.octree") + " -o " + at("share.ply") + " --json").out);
   EXPECT_NEAR(smooth["volume_mm3"].get<double>() / (4.0 / 3.0 * M_PI * 13824.0), 1.0, 1e-3);
   EXPECT_NEAR(smooth["area_mm2"].get<double>() / (4.0 * M_PI * 576.0), 1.0, 5e-3);
   EXPECT_TRUE(smooth["closed"]);
-  const Json cubes = Json::parse(
+  const SortedJson cubes = SortedJson::parse(
       run("mesh " + at("ball.octree") + " -o " + at("cubes.off") + " --surface cuberille --json").out);
   const CommandAnswer back = run("voxelise " + at("cubes.off") + " -o " + at("back.octree") + " --like " +
                                  at("ball.octree") + " --json");
   ASSERT_EQ(back.status, 0) << back.errors;
-  EXPECT_EQ(Json::parse(back.out)["voxels"].get<double>(), cubes["volume_mm3"].get<double>());
+  EXPECT_EQ(SortedJson::parse(back.out)["voxels"].get<double>(), cubes["volume_mm3"].get<double>());
   ASSERT_EQ(run("eval \"a ^ b\" --let a=" + at("back.octree") + " --let b=" + at("ball.octree") + " -o " +
                 at("none.octree"))
                 .status,
             0);
-  EXPECT_EQ(Json::parse(run("info " + at("none.octree") + " --json").out)["voxels"], 0);
-  const Json grey =
-      Json::parse(run("mesh " + at("grey.octree") + " --window 0: -o " + at("grey.ply") + " --json").out);
-  const Json scan =
-      Json::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("scan.ply") + " --json").out);
+  EXPECT_EQ(SortedJson::parse(run("info " + at("none.octree") + " --json").out)["voxels"], 0);
+  const SortedJson grey = SortedJson::parse(
+      run("mesh " + at("grey.octree") + " --window 0: -o " + at("grey.ply") + " --json").out);
+  const SortedJson scan =
+      SortedJson::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("scan.ply") + " --json").out);
   EXPECT_EQ(grey["faces"], scan["faces"]);
   EXPECT_NEAR(grey["volume_mm3"].get<double>(), scan["volume_mm3"].get<double>(), 1e-6);
   const CommandAnswer fewer =
       run("mesh " + at("grey.octree") + " --window 0: -o " + at("few.ply") + " --faces 400 --smooth --json");
   ASSERT_EQ(fewer.status, 0) << fewer.errors;
-  EXPECT_LE(Json::parse(fewer.out)["faces"], 400);
+  EXPECT_LE(SortedJson::parse(fewer.out)["faces"], 400);
   expect_refused(run("mesh " + at("ball.octree") + " --window 1: -o " + at("p.ply")), "no samples");
 }
 
 TEST_F(MeshVerbs, AScansContoursAreTiledToASolidByAnyCost) {
-  const Json iso =
-      Json::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("i.ply") + " --json").out);
+  const SortedJson iso =
+      SortedJson::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("i.ply") + " --json").out);
   for (const std::string tiling :
        {"shortest-span", "least-area", "greatest-volume", "least-angle", "overlay"}) {
     const CommandAnswer tiled = run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("t.vtp") +
                                     " --surface contours --tiling " + tiling + " --json");
     ASSERT_EQ(tiled.status, 0) << tiled.errors;
-    const Json json = Json::parse(tiled.out);
+    const SortedJson json = SortedJson::parse(tiled.out);
     EXPECT_TRUE(json["closed"] && json["manifold"] && json["oriented"]) << tiling;
     EXPECT_EQ(json["self_intersections"], 0) << tiling;
     EXPECT_NEAR(json["volume_mm3"].get<double>() / iso["volume_mm3"].get<double>(), 1.0, 0.03) << tiling;
@@ -70,7 +70,7 @@ TEST_F(MeshVerbs, AScansContoursAreTiledToASolidByAnyCost) {
 
 TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
-  const Json ball = Json::parse(run("measure " + at("ball.off") + " --json").out);
+  const SortedJson ball = SortedJson::parse(run("measure " + at("ball.off") + " --json").out);
   const double x = ball["centroid_mm"][0], y = ball["centroid_mm"][1], z = ball["centroid_mm"][2];
   const double r = std::cbrt(ball["volume_mm3"].get<double>() * 3.0 / (4.0 * M_PI));
   const auto point = [](double a, double b, double c) {
@@ -81,7 +81,7 @@ TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
           "--angle 1,0,0 0,0,0 0,2,0 --along" + point(x + r, y, z) + point(x, y + r, z) +
           " --thickness --curvature " + "--to " + at("ball.off") + " -o " + at("walls.vtp") + " --json");
   ASSERT_EQ(asked.status, 0) << asked.errors;
-  const Json json = Json::parse(asked.out);
+  const SortedJson json = SortedJson::parse(asked.out);
   EXPECT_NEAR(json["section"]["area_mm2"].get<double>(), M_PI * r * r, 0.03 * M_PI * r * r);
   EXPECT_EQ(json["distance_mm"], 13.0);
   EXPECT_EQ(json["angle_deg"], 90.0);
@@ -120,7 +120,7 @@ TEST_F(MeshVerbs, AMeshIsMendedOnlyAsAskedAndEachChangeIsListed) {
   const CommandAnswer mended =
       run("repair " + at("broken.off") + " --orient --holes -o " + at("mended.off") + " --json");
   ASSERT_EQ(mended.status, 0) << mended.errors;
-  const Json json = Json::parse(mended.out);
+  const SortedJson json = SortedJson::parse(mended.out);
   EXPECT_FALSE(json["before"]["closed"]);
   EXPECT_TRUE(json["health"]["findings"].empty()) << json["health"];
   ASSERT_EQ(json["changes"].size(), 2u) << json["changes"];
@@ -133,19 +133,19 @@ TEST_F(MeshVerbs, ASurfaceIsMirroredAboutAPlaneGivenOrFitted) {
   const CommandAnswer given =
       run("mirror " + at("ball.off") + " --plane 5,0,0 1,0,0 --exactly -o " + at("image.off") + " --json");
   ASSERT_EQ(given.status, 0) << given.errors;
-  const Json ball = Json::parse(run("measure " + at("ball.off") + " --json").out),
-             image = Json::parse(run("measure " + at("image.off") + " --json").out);
+  const SortedJson ball = SortedJson::parse(run("measure " + at("ball.off") + " --json").out),
+                   image = SortedJson::parse(run("measure " + at("image.off") + " --json").out);
   EXPECT_NEAR(ball["centroid_mm"][0].get<double>() + image["centroid_mm"][0].get<double>(), 10.0, 1e-9);
   EXPECT_NEAR(ball["volume_mm3"].get<double>(), image["volume_mm3"].get<double>(), 1e-6);
   const CommandAnswer fitted = run("mirror " + at("ball.off") + " --json");
   ASSERT_EQ(fitted.status, 0) << fitted.errors;
-  EXPECT_LT(Json::parse(fitted.out)["rms_mm"].get<double>(), 0.5);
+  EXPECT_LT(SortedJson::parse(fitted.out)["rms_mm"].get<double>(), 0.5);
   expect_refused(run("mirror " + at("ball.off") + " --exactly"), "--plane");
 }
 
 TEST_F(MeshVerbs, ASolidIsSawnAndItsBooleansAreProvenExactly) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 400").status, 0);
-  const Json ball = Json::parse(run("measure " + at("ball.off") + " --json").out);
+  const SortedJson ball = SortedJson::parse(run("measure " + at("ball.off") + " --json").out);
   const double x = ball["centroid_mm"][0], y = ball["centroid_mm"][1], z = ball["centroid_mm"][2];
   const auto point = [](double a, double b, double c) {
     return std::to_string(a) + "," + std::to_string(b) + "," + std::to_string(c);
@@ -154,7 +154,7 @@ TEST_F(MeshVerbs, ASolidIsSawnAndItsBooleansAreProvenExactly) {
       run("saw " + at("ball.off") + " --line " + point(x - 90, y - 90, z) + " " + point(x + 90, y - 90, z) +
           " --direction 0,1,0 --depth 180 --kerf 1 -o " + at("halves.glb") + " --json");
   ASSERT_EQ(sawn.status, 0) << sawn.errors;
-  const Json halves = Json::parse(sawn.out);
+  const SortedJson halves = SortedJson::parse(sawn.out);
   EXPECT_EQ(halves["pieces"].size(), 2u);
   EXPECT_NEAR(halves["sawn_away_mm3"].get<double>() + halves["volume_mm3"].get<double>(),
               ball["volume_mm3"].get<double>(), 1e-6);
@@ -166,7 +166,7 @@ TEST_F(MeshVerbs, ASolidIsSawnAndItsBooleansAreProvenExactly) {
   const CommandAnswer exact = run("boolean " + at("ball.off") + " difference " + at("rough.off") +
                                   " --exact -o " + at("films.ply") + " --json");
   ASSERT_EQ(exact.status, 0) << exact.errors;
-  const Json proof = Json::parse(exact.out)["exact"];
+  const SortedJson proof = SortedJson::parse(exact.out)["exact"];
   EXPECT_NEAR(proof["a_mm3"].get<double>() + proof["b_mm3"].get<double>(),
               proof["union_mm3"].get<double>() + proof["intersection_mm3"].get<double>(), 1e-6);
   EXPECT_GT(proof["rounded_points"], 0);
@@ -174,11 +174,11 @@ TEST_F(MeshVerbs, ASolidIsSawnAndItsBooleansAreProvenExactly) {
 
 TEST_F(MeshVerbs, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFallback) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 600").status, 0);
-  const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
+  const double truth = SortedJson::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
   for (const std::string name : {"ball.inp", "ball.feb", "ball.vtu", "ball.msh", "ball.node"}) {
     const CommandAnswer answer = run("tet " + at("ball.off") + " -o " + at(name) + " --json");
     ASSERT_EQ(answer.status, 0) << answer.errors;
-    const Json json = Json::parse(answer.out);
+    const SortedJson json = SortedJson::parse(answer.out);
     EXPECT_NEAR(json["volume_mm3"].get<double>() / truth, 1.0, 1e-3) << name;
     EXPECT_GT(json["quality"]["min_dihedral_deg"].get<double>(), 1.0) << name;
     EXPECT_EQ(json["fallback"], false) << name;
@@ -189,18 +189,18 @@ TEST_F(MeshVerbs, ASolidBecomesADeckOfEveryKindAndABrokenOneOnlyByTheMarkedFallb
                                   at("ball.nrrd") + " --bins 7 --json");
   ASSERT_EQ(stiff.status, 0) << stiff.errors;
   EXPECT_NE(stiff.errors.find("NOT CALIBRATED"), std::string::npos);
-  EXPECT_GE(Json::parse(stiff.out)["materials"], 1);
+  EXPECT_GE(SortedJson::parse(stiff.out)["materials"], 1);
   write("open.off", "OFF\n4 3 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
   expect_refused(run("tet " + at("open.off") + " -o " + at("p.inp")), "--fallback");
   const CommandAnswer marked =
       run("tet " + at("open.off") + " -o " + at("open.inp") + " --fallback --voxel 1 --json");
   ASSERT_EQ(marked.status, 0) << marked.errors;
-  EXPECT_EQ(Json::parse(marked.out)["fallback"], true);
+  EXPECT_EQ(SortedJson::parse(marked.out)["fallback"], true);
   EXPECT_NE(marked.out.find("fallback: "), std::string::npos);
   expect_refused(run("tet " + at("ball.off") + " -o " + at("p.stp")), ".feb");
   const CommandAnswer ten = run("tet " + at("ball.off") + " -o " + at("ten.vtu") + " --order 2 --json");
   ASSERT_EQ(ten.status, 0) << ten.errors;
-  EXPECT_EQ(Json::parse(ten.out)["order"], 2);
+  EXPECT_EQ(SortedJson::parse(ten.out)["order"], 2);
   EXPECT_GT(std::filesystem::file_size(folder_ / "ten.vtu"),
             2 * std::filesystem::file_size(folder_ / "ball.vtu"));
   expect_refused(run("tet " + at("ball.off") + " -o " + at("ten.node") + " --order 2"), "linear");
@@ -214,7 +214,7 @@ TEST_F(MeshVerbs, ElementsAreFinerAtPointsLandmarksAndAlongMeshesAndStiffnessCom
   const auto tets = [&](const std::string& options) {
     const CommandAnswer answer = run(tet + options);
     EXPECT_EQ(answer.status, 0) << answer.errors;
-    return Json::parse(answer.out)["tets"].get<int>();
+    return SortedJson::parse(answer.out)["tets"].get<int>();
   };
   const int even = tets("");
   const int at_point = tets(" --finer 0,0,12=0.4");
@@ -247,42 +247,42 @@ TEST_F(MeshVerbs, OctreesBecomeRegionsOfSmoothElementsThatShareNodesOrTouch) {
   const std::string two = "tet " + at("core.octree") + " --region " + at("ball.octree");
   const CommandAnswer shared = run(two + " --size 3 -o " + at("two.inp") + " --json");
   ASSERT_EQ(shared.status, 0) << shared.errors;
-  const Json json = Json::parse(shared.out);
+  const SortedJson json = SortedJson::parse(shared.out);
   EXPECT_EQ(json["regions"], 2);
   EXPECT_EQ(json["fallback"], false);
   EXPECT_GT(json["quality"]["min_dihedral_deg"].get<double>(), 5.0);
   const CommandAnswer touching = run(two + " --size 3 --contact -o " + at("touch.inp") + " --json");
   ASSERT_EQ(touching.status, 0) << touching.errors;
-  EXPECT_GT(Json::parse(touching.out)["nodes"].get<int>(), json["nodes"].get<int>());
+  EXPECT_GT(SortedJson::parse(touching.out)["nodes"].get<int>(), json["nodes"].get<int>());
   const CommandAnswer voxels = run(two + " -o " + at("voxels.inp") + " --json");
   ASSERT_EQ(voxels.status, 0) << voxels.errors;
-  EXPECT_EQ(Json::parse(voxels.out)["fallback"], true);
+  EXPECT_EQ(SortedJson::parse(voxels.out)["fallback"], true);
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off") + " --faces 600").status, 0);
   expect_refused(run("tet " + at("ball.off") + " --size 3 -o " + at("p.inp")), "voxelise");
 }
 
 TEST_F(MeshVerbs, AMeshBecomesAnOctreeAndSaysWhereItHadToGuess) {
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
-  const double truth = Json::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
-  std::map<std::string, Json> made;
+  const double truth = SortedJson::parse(run("measure " + at("ball.off") + " --json").out)["volume_mm3"];
+  std::map<std::string, SortedJson> made;
   for (const std::string how : {"inside", "touching", "centre", "half", "partial"}) {
     const CommandAnswer answer = run("voxelise " + at("ball.off") + " -o " + at(how + ".octree") +
                                      " --voxel 0.5 --digitise " + how + " --json");
     ASSERT_EQ(answer.status, 0) << answer.errors;
-    made[how] = Json::parse(answer.out);
+    made[how] = SortedJson::parse(answer.out);
     EXPECT_EQ(made[how]["findings"].size(), made["inside"]["findings"].size()) << how;
   }
   EXPECT_LT(made["inside"]["voxels"], made["half"]["voxels"]);
   EXPECT_LT(made["half"]["voxels"], made["touching"]["voxels"]);
   EXPECT_EQ(made["partial"]["voxels"], made["touching"]["voxels"]);
-  const Json partial = Json::parse(run("measure " + at("partial.octree") + " --json").out);
+  const SortedJson partial = SortedJson::parse(run("measure " + at("partial.octree") + " --json").out);
   EXPECT_NEAR(partial["volume_partial_mm3"].get<double>() / truth, 1.0, 1e-6);
 
   write("open.off", "OFF\n4 3 0\n0 0 0\n20 0 0\n0 20 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n");
   const CommandAnswer open = run("voxelise " + at("open.off") + " -o " + at("open.octree") + " --json");
   ASSERT_EQ(open.status, 0) << open.errors;
   EXPECT_NE(open.out.find("winding number"), std::string::npos);
-  EXPECT_GT(Json::parse(open.out)["voxels"], 500);
+  EXPECT_GT(SortedJson::parse(open.out)["voxels"], 500);
   expect_refused(run("voxelise " + at("open.off") + " -o " + at("p.octree") + " --digitise half"),
                  "not a solid");
   expect_refused(run("voxelise " + at("open.off") + " -o " + at("p.octree") + " --voxel 0.0001"), "--voxel");
@@ -292,7 +292,7 @@ TEST_F(MeshVerbs, SmoothKeepsTheVolumeWithinItsShareAndWritesNothingWhereItDoesN
   ASSERT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.stl")).status, 0);
   const CommandAnswer good = run("smooth " + at("ball.stl") + " -o " + at("smooth.stl") + " --json");
   ASSERT_EQ(good.status, 0) << good.errors;
-  const Json json = Json::parse(good.out);
+  const SortedJson json = SortedJson::parse(good.out);
   EXPECT_TRUE(json.at("closed").get<bool>());
   EXPECT_LT(std::abs(json.at("volume_change_mm3").get<double>()), 0.01 * json.at("volume_mm3").get<double>());
   expect_refused(
@@ -309,11 +309,11 @@ TEST_F(MeshVerbs, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
       {"name":"a","point_mm":[5,2,3],"weight":2}]})");
   const CommandAnswer points = run("register " + at("here.json") + " " + at("there.json") + " --json");
   ASSERT_EQ(points.status, 0) << points.errors;
-  const Json of_points = Json::parse(points.out);
+  const SortedJson of_points = SortedJson::parse(points.out);
   EXPECT_LT(of_points.at("rms_mm").get<double>(), 1e-12);
   EXPECT_NEAR(of_points.at("transform")[0][1].get<double>(), -1.0, 1e-12);  // a quarter turn about z
   EXPECT_NEAR(of_points.at("transform")[2][3].get<double>(), 3.0, 1e-12);
-  EXPECT_EQ(of_points.at("landmarks").at("left_out"), Json::array({"only here"}));
+  EXPECT_EQ(of_points.at("landmarks").at("left_out"), SortedJson::array({"only here"}));
 
   const std::string landmarks = " --landmarks " + at("here.json") + " " + at("there.json");
   ASSERT_EQ(run("register " + at("ball.stl") + " " + at("ball.stl") + landmarks + " --landmarks-only -o " +
@@ -324,12 +324,12 @@ TEST_F(MeshVerbs, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
       run("register " + at("moved.ply") + " " + at("ball.stl") + " --landmarks " + at("there.json") + " " +
           at("here.json") + " --overlap 1 -o " + at("back.ply") + " --json");
   ASSERT_EQ(back.status, 0) << back.errors;
-  EXPECT_LT(Json::parse(back.out).at("rms_mm").get<double>(), 1e-5);
+  EXPECT_LT(SortedJson::parse(back.out).at("rms_mm").get<double>(), 1e-5);
 
   const CommandAnswer compared = run("compare " + at("back.ply") + " " + at("ball.stl") + " -o " +
                                      at("coloured.ply") + " --picture " + at("difference.png") + " --json");
   ASSERT_EQ(compared.status, 0) << compared.errors;
-  const Json json = Json::parse(compared.out);
+  const SortedJson json = SortedJson::parse(compared.out);
   EXPECT_LT(json.at("hausdorff_mm").get<double>(), 1e-4);
   EXPECT_GT(json.at("dice").get<double>(), 0.9999);
   EXPECT_TRUE(json.at("definition").contains("hausdorff95_mm"));
@@ -337,13 +337,13 @@ TEST_F(MeshVerbs, AMeshThatWasMovedIsRegisteredAndComparedBackToNothing) {
 
   const CommandAnswer apart = run("compare " + at("moved.ply") + " " + at("ball.stl") + " --json");
   ASSERT_EQ(apart.status, 0) << apart.errors;
-  EXPECT_GT(Json::parse(apart.out).at("hausdorff_mm").get<double>(), 3.0);
-  EXPECT_LT(Json::parse(apart.out).at("dice").get<double>(), 0.9);
+  EXPECT_GT(SortedJson::parse(apart.out).at("hausdorff_mm").get<double>(), 3.0);
+  EXPECT_LT(SortedJson::parse(apart.out).at("dice").get<double>(), 0.9);
 
   write("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
   const CommandAnswer open = run("compare " + at("open.off") + " " + at("open.off") + " --json");
   ASSERT_EQ(open.status, 0) << open.errors;
-  EXPECT_TRUE(Json::parse(open.out).at("dice").is_null());
+  EXPECT_TRUE(SortedJson::parse(open.out).at("dice").is_null());
   expect_refused(run("register " + at("here.json") + " " + at("ball.stl")), "two of a kind");
 }
 
@@ -364,7 +364,7 @@ TEST_F(MeshVerbs, SeveralMeshesBecomeALabelMapAndTellWhereTheyOverlap) {
   const CommandAnswer answer =
       run("voxelise " + at("a.off") + " " + at("b.off") + " -o " + at("ab.nrrd") + " --voxel 0.5 --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json json = Json::parse(answer.out);
+  const SortedJson json = SortedJson::parse(answer.out);
   ASSERT_EQ(json["labels"].size(), 2u);
   EXPECT_EQ(json["labels"][1]["name"], "b");
   EXPECT_NEAR(json["labels"][0]["volume_mm3"].get<double>(), 512, 1e-9);
@@ -372,9 +372,9 @@ TEST_F(MeshVerbs, SeveralMeshesBecomeALabelMapAndTellWhereTheyOverlap) {
   EXPECT_EQ(json["overlaps"], 64);
   EXPECT_NE(json["findings"][0].get<std::string>().find("64 voxels lie in several"), std::string::npos);
   // Each comes back where it was, less what the first has of the second.
-  const Json back =
-      Json::parse(run("segment " + at("ab.nrrd") + " --label 2 -o " + at("b.octree") + " --json").out);
-  const Json measured = Json::parse(run("measure " + at("b.octree") + " --json").out);
+  const SortedJson back =
+      SortedJson::parse(run("segment " + at("ab.nrrd") + " --label 2 -o " + at("b.octree") + " --json").out);
+  const SortedJson measured = SortedJson::parse(run("measure " + at("b.octree") + " --json").out);
   EXPECT_NEAR(measured["volume_mm3"].get<double>(), 512 - 8, 1e-9) << back;
   EXPECT_GT(measured["centroid_mm"][0].get<double>(), 10.0);
   expect_refused(run("voxelise " + at("a.off") + " " + at("b.off") + " -o " + at("ab.octree")), "label map");

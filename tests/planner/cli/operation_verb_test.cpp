@@ -7,7 +7,7 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
-using tests::Json;
+using tests::SortedJson;
 
 class OperationVerbs : public tests::CommandLine {
  protected:
@@ -27,7 +27,7 @@ TEST_F(OperationVerbs, EveryKernelAnswersOnFilesAndNoCertificateFails) {
                                   " --voxel 0.5 --certify -o " + at(out);
       const CommandAnswer answer = run(command + " --json");
       ASSERT_EQ(answer.status, 0) << command << answer.errors;
-      const Json certificate = Json::parse(answer.out).at("certificate");
+      const SortedJson certificate = SortedJson::parse(answer.out).at("certificate");
       // Voxels centred on a ball count it worse than the bound's ball in any place: a WARN is no FAIL.
       EXPECT_NE(certificate["verdict"], "FAIL") << command << certificate.dump(1);
       EXPECT_EQ(certificate["tier"], "bounded");

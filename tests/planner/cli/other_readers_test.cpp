@@ -4,8 +4,8 @@
 // what `octotomy convert` writes they read as the same.
 #include <cmath>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "planner/table/json.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
@@ -19,7 +19,6 @@ namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using tests::quoted;
 using tests::run_command;
 
@@ -45,16 +44,16 @@ constexpr double place_tolerance_mm(bool single_precision) {
   return single_precision ? 1e-4 : 1e-6;
 }
 
-void expect_same(const Json& ours, const Json& theirs, double tolerance_mm) {
+void expect_same(const SortedJson& ours, const SortedJson& theirs, double tolerance_mm) {
   EXPECT_EQ(ours["dims"], theirs["dims"]);
   for (std::size_t axis = 0; axis < 3; ++axis)
     EXPECT_NEAR(ours["spacing_mm"][axis].get<double>(), theirs["spacing_mm"][axis].get<double>(),
                 tolerance_mm)
         << "axis " << axis;
-  const auto place = [](const Json& said, const glm::dvec3& p_voxel) {
+  const auto place = [](const SortedJson& said, const glm::dvec3& p_voxel) {
     glm::dvec3 p(0.0);
     for (int row = 0; row < 3; ++row) {
-      const Json& line = said["lps_from_voxel"][static_cast<std::size_t>(row)];
+      const SortedJson& line = said["lps_from_voxel"][static_cast<std::size_t>(row)];
       p[row] = line[0].get<double>() * p_voxel.x + line[1].get<double>() * p_voxel.y +
                line[2].get<double>() * p_voxel.z + line[3].get<double>();
     }
@@ -100,8 +99,8 @@ TEST_P(PythonsReaders, SayTheSame) {
   const tests::CommandAnswer theirs = python(std::string(GetParam().kind) + " " + path + " " + converted);
   NEEDS_PYTHON(theirs);
   ASSERT_EQ(theirs.status, 0) << theirs.errors;
-  const Json said = Json::parse(theirs.out);
-  expect_same(Json::parse(info.out), said, place_tolerance_mm(std::string(GetParam().kind) == "nifti"));
+  const SortedJson said = SortedJson::parse(theirs.out);
+  expect_same(SortedJson::parse(info.out), said, place_tolerance_mm(std::string(GetParam().kind) == "nifti"));
   EXPECT_EQ(said["differing"], 0) << "samples that nibabel reads of what was written from it";
   EXPECT_LT(said["shift_mm"].get<double>(), place_tolerance_mm(true));
 }
@@ -121,16 +120,16 @@ TEST_P(ItksReaders, SayTheSame) {
   const fs::path path = tests::reference_data(GetParam().name);
   const tests::ItkVolume theirs = tests::read_by_itk(path);
   const auto [low, high] = std::minmax_element(theirs.samples.begin(), theirs.samples.end());
-  Json said{{"dims", {theirs.dims.x, theirs.dims.y, theirs.dims.z}},
-            {"spacing_mm", {theirs.spacing_mm.x, theirs.spacing_mm.y, theirs.spacing_mm.z}},
-            {"range", {*low, *high}}};
+  SortedJson said{{"dims", {theirs.dims.x, theirs.dims.y, theirs.dims.z}},
+                  {"spacing_mm", {theirs.spacing_mm.x, theirs.spacing_mm.y, theirs.spacing_mm.z}},
+                  {"range", {*low, *high}}};
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
       said["lps_from_voxel"][static_cast<std::size_t>(row)].push_back(theirs.lps_from_voxel[column][row]);
   const tests::CommandAnswer info = octotomy("info --json " + quoted(path));
   ASSERT_EQ(info.status, 0) << info.errors;
   const bool single_precision = path.extension() == ".gz";
-  expect_same(Json::parse(info.out), said, place_tolerance_mm(single_precision));
+  expect_same(SortedJson::parse(info.out), said, place_tolerance_mm(single_precision));
   for (const char* name : {"converted.nrrd", "converted.mha"}) {
     const tests::CommandAnswer convert =
         octotomy("convert " + quoted(path) + " -o " + quoted(folder_ / name));
@@ -170,13 +169,13 @@ TEST_P(NumpysReader, NumpyReadsTheSameSlicesWithoutAHeader) {
   const tests::CommandAnswer theirs = python("raw " + raw + " 256x256x113 '>u2' 1,1,2 " + converted);
   NEEDS_PYTHON(theirs);
   ASSERT_EQ(theirs.status, 0) << theirs.errors;
-  const Json said = Json::parse(theirs.out);
-  expect_same(Json::parse(info.out), said, place_tolerance_mm(false));
+  const SortedJson said = SortedJson::parse(theirs.out);
+  expect_same(SortedJson::parse(info.out), said, place_tolerance_mm(false));
   EXPECT_EQ(said["differing"], 0);
   // The same head as the NRRD beside it, whose values are 1024 lower.
   OCTOTOMY_NEEDS_DATA("ct_unc_cthead.nrrd");
-  const Json nrrd =
-      Json::parse(octotomy("info --json " + quoted(tests::reference_data("ct_unc_cthead.nrrd"))).out);
+  const SortedJson nrrd =
+      SortedJson::parse(octotomy("info --json " + quoted(tests::reference_data("ct_unc_cthead.nrrd"))).out);
   for (std::size_t i = 0; i < 2; ++i)
     EXPECT_EQ(nrrd["range"][i].get<double>() + 1024.0, said["range"][i].get<double>());
 }
@@ -188,10 +187,10 @@ class ReferenceAudit : public OtherReaders {};
 
 TEST_P(ReferenceAudit, NamesWhatIsWrongWithTheSeriesAndWithNoOther) {
   OCTOTOMY_NEEDS_DATA(GetParam().name);
-  const Json said =
-      Json::parse(octotomy("info --json " + quoted(tests::reference_data(GetParam().name))).out);
+  const SortedJson said =
+      SortedJson::parse(octotomy("info --json " + quoted(tests::reference_data(GetParam().name))).out);
   std::string failed;
-  for (const Json& line : said["audit"])
+  for (const SortedJson& line : said["audit"])
     if (line["verdict"] == "FAIL") failed += line["check"].get<std::string>();
   const bool without_intercept = std::string(GetParam().name).find("slicer") != std::string::npos;
   EXPECT_EQ(failed, without_intercept ? "air_level" : "");

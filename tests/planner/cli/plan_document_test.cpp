@@ -30,7 +30,7 @@ TEST_F(PlanDocument, DiffNamesStepsAndFields) {
   const auto told = run("plan diff a.plan.json b.plan.json");
   EXPECT_EQ(told.status, 0) << told.errors;
   EXPECT_EQ(told.out, "~ step 'ball', low: 0.0 -> 10.0\n+ step 'size'\n");
-  const auto json = tests::Json::parse(run("plan diff a.plan.json b.plan.json --json").out);
+  const auto json = tests::SortedJson::parse(run("plan diff a.plan.json b.plan.json --json").out);
   EXPECT_EQ(json.at("changed")[0].at("id"), "ball");
   EXPECT_EQ(json.at("added")[0], "size");
   expect_refused(run("plan diff a.plan.json none.plan.json"), "none.plan.json");
@@ -41,7 +41,7 @@ TEST_F(PlanDocument, MergeWritesWhatAgreesAndNothingWhereItDoesNot) {
   write("a.plan.json", plan("10"));
   write("b.plan.json", plan("0", R"(, {"id": "size", "do": "measure", "object": "ball"})"));
   EXPECT_EQ(run("plan merge base.plan.json a.plan.json b.plan.json -o merged.plan.json").status, 0);
-  const auto merged = tests::Json::parse(tests::bytes_of(folder_ / "merged.plan.json"));
+  const auto merged = tests::SortedJson::parse(tests::bytes_of(folder_ / "merged.plan.json"));
   EXPECT_EQ(merged.at("steps")[0].at("low"), 10);
   EXPECT_EQ(merged.at("steps").size(), 2u);
   write("b.plan.json", plan("20"));
@@ -50,18 +50,18 @@ TEST_F(PlanDocument, MergeWritesWhatAgreesAndNothingWhereItDoesNot) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "clash.plan.json"));
   const auto told = run("plan merge base.plan.json a.plan.json b.plan.json -o clash.plan.json --json");
   EXPECT_EQ(told.status, 2);
-  EXPECT_EQ(tests::Json::parse(told.out).at("conflicts")[0].at("field"), "low");
+  EXPECT_EQ(tests::SortedJson::parse(told.out).at("conflicts")[0].at("field"), "low");
 }
 
 TEST_F(PlanDocument, PlansOfOtherFoldersMergeAndFindTheirScan) {
   std::filesystem::create_directories(folder_ / "mine");
   write("base.plan.json", plan("0"));
-  auto mine = tests::Json::parse(plan("10"));
+  auto mine = tests::SortedJson::parse(plan("10"));
   mine["scans"]["ct"]["path"] = "../ball.nrrd";
   write("mine/a.plan.json", mine.dump());
   ASSERT_EQ(run("plan merge base.plan.json mine/a.plan.json base.plan.json -o mine/merged.plan.json").status,
             0);
-  const auto merged = tests::Json::parse(tests::bytes_of(folder_ / "mine/merged.plan.json"));
+  const auto merged = tests::SortedJson::parse(tests::bytes_of(folder_ / "mine/merged.plan.json"));
   EXPECT_EQ(merged.at("scans").at("ct").at("path"), "../ball.nrrd");
   EXPECT_EQ(merged.at("steps")[0].at("low"), 10);
   EXPECT_EQ(run("run mine/merged.plan.json -o report --no-certificates").status, 0);
@@ -76,17 +76,17 @@ TEST_F(PlanDocument, ASignatureHoldsUntilThePlanOrItsScanChanges) {
   EXPECT_NE(run("plan sign my.plan.json").out.find("A. Reader, second reader: holds (kerf checked)"),
             std::string::npos);
   ASSERT_EQ(run("run my.plan.json -o report --no-certificates").status, 0);
-  auto result = tests::Json::parse(tests::bytes_of(folder_ / "report/result.json"));
+  auto result = tests::SortedJson::parse(tests::bytes_of(folder_ / "report/result.json"));
   EXPECT_TRUE(result.at("signatures")[0].at("changed_since").empty());
   // Layout is no change, a number is.
-  write("my.plan.json", tests::Json::parse(text).dump());
+  write("my.plan.json", tests::SortedJson::parse(text).dump());
   EXPECT_NE(run("plan sign my.plan.json").out.find(": holds"), std::string::npos);
-  auto changed = tests::Json::parse(text);
+  auto changed = tests::SortedJson::parse(text);
   changed["steps"][0]["low"] = 1;
   write("my.plan.json", changed.dump());
   EXPECT_NE(run("plan sign my.plan.json").out.find("the plan changed since"), std::string::npos);
   ASSERT_EQ(run("run my.plan.json -o report --no-certificates").status, 0);
-  result = tests::Json::parse(tests::bytes_of(folder_ / "report/result.json"));
+  result = tests::SortedJson::parse(tests::bytes_of(folder_ / "report/result.json"));
   EXPECT_EQ(result.at("signatures")[0].at("changed_since")[0], "the plan");
   EXPECT_NE(result.at("findings").dump().find("let it be read and signed again"), std::string::npos);
   changed["signatures"][0].erase("by");
@@ -121,7 +121,7 @@ TEST_F(PlanDocument, HistoryRecordsWhatAnEditorChangesAndGoesBack) {
   write("my.plan.json", plan("0"));
   EXPECT_EQ(run("plan history my.plan.json --name first").status, 0);
   write("my.plan.json", plan("10"));
-  const auto told = tests::Json::parse(run("plan history my.plan.json --json").out);
+  const auto told = tests::SortedJson::parse(run("plan history my.plan.json --json").out);
   EXPECT_EQ(told.at("count"), 2);
   EXPECT_EQ(told.at("edits")[0].at("what"), "changed outside");
   EXPECT_EQ(run("plan history my.plan.json --undo").status, 0);
@@ -163,7 +163,7 @@ TEST_F(PlanDocument, CertificatesThatComeLaterAreThoseOfNowAndKeepTheExports) {
   ASSERT_EQ(run("run my.plan.json -o now").status, 0);
   ASSERT_EQ(run("run my.plan.json -o never --certify never").status, 0);
   const auto result = [&](const char* folder) {
-    auto json = tests::Json::parse(tests::bytes_of(folder_ / folder / "result.json"));
+    auto json = tests::SortedJson::parse(tests::bytes_of(folder_ / folder / "result.json"));
     for (auto& certificate : json.at("certificates")) certificate.erase("timings_ms");
     return json;
   };
@@ -191,7 +191,7 @@ TEST_F(PlanDocument, AProcedureIsListedExplainedAndPlanned) {
       0);
   const auto made = run("run p.plan.json -o out --json");
   ASSERT_EQ(made.status, 0) << made.errors;
-  const auto result = tests::Json::parse(made.out);
+  const auto result = tests::SortedJson::parse(made.out);
   EXPECT_NEAR(result.at("movements")[0].at("centroid").at("up_mm").get<double>(), 4.0, 1e-9);
   EXPECT_EQ(result.at("landmarks")[0].at("name"), "ans");
 }
@@ -206,9 +206,9 @@ TEST_F(PlanDocument, AProcedurePlansAndReportsInOneCommand) {
       "procedure own.json --scan ball.nrrd --landmarks marks.json --set up_mm=2 -o p.plan.json --report ";
   const auto made = run(planned + "out --certify never --json");
   ASSERT_EQ(made.status, 0) << made.errors;
-  EXPECT_NEAR(tests::Json::parse(made.out).at("movements")[0].at("centroid").at("up_mm").get<double>(), 2.0,
-              1e-9);
-  EXPECT_TRUE(tests::Json::parse(made.out).at("certificates").empty());
+  EXPECT_NEAR(tests::SortedJson::parse(made.out).at("movements")[0].at("centroid").at("up_mm").get<double>(),
+              2.0, 1e-9);
+  EXPECT_TRUE(tests::SortedJson::parse(made.out).at("certificates").empty());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/report.html"));
   // The same as the plan that it wrote, replayed.
   ASSERT_EQ(run("run p.plan.json -o again --certify never").status, 0);
@@ -217,7 +217,8 @@ TEST_F(PlanDocument, AProcedurePlansAndReportsInOneCommand) {
   write("out/mine.txt", "mine");
   EXPECT_EQ(run(planned + "out").status, 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out/mine.txt"));
-  EXPECT_FALSE(tests::Json::parse(tests::bytes_of(folder_ / "out/result.json")).at("certificates").empty());
+  EXPECT_FALSE(
+      tests::SortedJson::parse(tests::bytes_of(folder_ / "out/result.json")).at("certificates").empty());
   std::filesystem::create_directory(folder_ / "full");
   write("full/a.txt", "a");
   expect_refused(run(planned + "full"), "full");

@@ -8,19 +8,19 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
-using tests::Json;
 using tests::quoted;
+using tests::SortedJson;
 
 class RealBone : public tests::CommandLine {
  protected:
-  Json json_of(const std::string& command) {
+  SortedJson json_of(const std::string& command) {
     const CommandAnswer answer = run(command + " --json");
     EXPECT_EQ(answer.status, 0) << command << ": " << answer.errors;
-    return answer.status == 0 ? Json::parse(answer.out) : Json();
+    return answer.status == 0 ? SortedJson::parse(answer.out) : SortedJson();
   }
 
   /// A block over the upper half of a solid.
-  std::string upper_half(const Json& measured) {
+  std::string upper_half(const SortedJson& measured) {
     const auto end = [&](std::size_t which, std::size_t axis) {
       return measured["extents_mm"][which][axis].get<double>();
     };
@@ -41,18 +41,19 @@ class RealBone : public tests::CommandLine {
 
   /// repair, boolean, tet, mirror and compare, none of which may refuse.
   void go_through(const std::string& raw) {
-    const Json repaired = json_of("repair " + raw + " --solid -o " + at("solid.ply"));
+    const SortedJson repaired = json_of("repair " + raw + " --solid -o " + at("solid.ply"));
     EXPECT_EQ(repaired["health"]["self_intersections"], 0);
     const double whole_mm3 = repaired["volume_after_mm3"];
     const std::string upper = upper_half(json_of("measure " + at("solid.ply")));
     // The surface as it came, mended on the way, is cut into the same halves.
-    const Json half = json_of("boolean " + raw + " intersection " + upper + " --mend -o " + at("half.ply"));
-    const Json rest =
+    const SortedJson half =
+        json_of("boolean " + raw + " intersection " + upper + " --mend -o " + at("half.ply"));
+    const SortedJson rest =
         json_of("boolean " + at("solid.ply") + " difference " + upper + " -o " + at("rest.ply"));
     EXPECT_NEAR(half["volume_mm3"].get<double>() + rest["volume_mm3"].get<double>(), whole_mm3,
                 1e-3 * whole_mm3);
     EXPECT_NE(half["findings"][0].get<std::string>().find("so it was mended: "), std::string::npos);
-    const Json tets = json_of("tet " + raw + " --mend -o " + at("raw.inp"));
+    const SortedJson tets = json_of("tet " + raw + " --mend -o " + at("raw.inp"));
     EXPECT_GT(tets["quality"]["min_dihedral_deg"].get<double>(), 5.0) << tets["findings"];
     EXPECT_EQ(tets["fallback"], false);
     EXPECT_NEAR(tets["volume_mm3"].get<double>() / whole_mm3, 1.0, 0.05);
@@ -85,18 +86,18 @@ TEST_F(RealBone, UnmendedIsRefusedByNameAndTold) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "hyoid.inp"));
   const std::string offset = "offset " + hyoid + " --by 1 -o " + at("margin.ply");
   expect_refused(run(offset), "--mend");
-  const Json margin = json_of(offset + " --mend");
+  const SortedJson margin = json_of(offset + " --mend");
   EXPECT_NE(margin["findings"][0].get<std::string>().find("so it was mended: "), std::string::npos);
   EXPECT_GT(margin["volume_change_mm3"], 0.0);
-  const Json whole = json_of("repair " + hyoid + " --solid -o " + at("solid.ply"));
-  const Json box = json_of("measure " + at("solid.ply"))["extents_mm"];
+  const SortedJson whole = json_of("repair " + hyoid + " --solid -o " + at("solid.ply"));
+  const SortedJson box = json_of("measure " + at("solid.ply"))["extents_mm"];
   std::ostringstream line;
   line << " --line";
   for (const std::size_t end : {0, 1})
     line << " " << box[end][0].get<double>() + (end == 0 ? -5.0 : 5.0) << "," << box[0][1].get<double>() - 5.0
          << "," << 0.5 * (box[0][2].get<double>() + box[1][2].get<double>());
-  const Json sawn = json_of("saw " + hyoid + " --mend" + line.str() +
-                            " --direction 0,1,0 --depth 300 --kerf 1 -o " + at("sawn.ply"));
+  const SortedJson sawn = json_of("saw " + hyoid + " --mend" + line.str() +
+                                  " --direction 0,1,0 --depth 300 --kerf 1 -o " + at("sawn.ply"));
   EXPECT_GT(sawn["sawn_away_mm3"], 0.0);
   EXPECT_NEAR(sawn["sawn_away_mm3"].get<double>() + sawn["volume_mm3"].get<double>(),
               whole["volume_after_mm3"].get<double>(), 1e-3 * whole["volume_after_mm3"].get<double>());
@@ -110,7 +111,7 @@ TEST_F(RealBone, ASkullOf400000TrianglesOfVtkGoesThroughEveryVerb) {
       folder_ / "");
   if (made.status == 77) GTEST_SKIP() << "/usr/bin/python3: " << made.errors;
   ASSERT_EQ(made.status, 0) << made.errors;
-  const Json spoiled = Json::parse(made.out);
+  const SortedJson spoiled = SortedJson::parse(made.out);
   ASSERT_GT(spoiled["triangles"], 390000);
   ASSERT_GT(spoiled["open_edges"], 500) << "the surface is not spoiled";
   ASSERT_GT(spoiled["fans"], 50) << "the surface is not spoiled";

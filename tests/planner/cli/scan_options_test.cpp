@@ -3,15 +3,14 @@
 // The options about a scan mean the same to every verb that reads one: a raw file with its layout said is the
 // NRRD of the same samples.
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/run_command.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
 using tests::quoted;
 
 class ScanOptions : public testing::Test {
@@ -31,10 +30,10 @@ class ScanOptions : public testing::Test {
   tests::CommandAnswer run(const std::string& arguments) const {
     return tests::run_command(std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments, folder_.path());
   }
-  Json json(const std::string& arguments) const {
+  SortedJson json(const std::string& arguments) const {
     const tests::CommandAnswer answer = run(arguments + " --json");
     EXPECT_EQ(answer.status, 0) << answer.errors;
-    Json said = answer.status == 0 ? Json::parse(answer.out) : Json();
+    SortedJson said = answer.status == 0 ? SortedJson::parse(answer.out) : SortedJson();
     return said;
   }
   std::string at(const std::string& name) const { return quoted(folder_ / name); }
@@ -44,16 +43,16 @@ class ScanOptions : public testing::Test {
 };
 
 TEST_F(ScanOptions, RenderDrawsARawFileAsTheNrrdOfTheSameSamples) {
-  const Json nrrd = json("render " + at("ball.nrrd") + " --window 0: -o " + at("a.png"));
-  const Json raw = json("render " + at("ball.raw") + layout_ + " --window 0: -o " + at("b.png"));
+  const SortedJson nrrd = json("render " + at("ball.nrrd") + " --window 0: -o " + at("a.png"));
+  const SortedJson raw = json("render " + at("ball.raw") + layout_ + " --window 0: -o " + at("b.png"));
   EXPECT_GT(raw["lit_pixels"], 0);
   EXPECT_EQ(raw["lit_pixels"], nrrd["lit_pixels"]);
   EXPECT_EQ(raw["depth_range_mm"], nrrd["depth_range_mm"]);
 }
 
 TEST_F(ScanOptions, RunTakesARawFileInTheScansPlace) {
-  const Json nrrd = json("verify " + at("ball.plan.json"));
-  const Json raw = json("verify " + at("ball.plan.json") + " --scan ct=" + at("ball.raw") + layout_);
+  const SortedJson nrrd = json("verify " + at("ball.plan.json"));
+  const SortedJson raw = json("verify " + at("ball.plan.json") + " --scan ct=" + at("ball.raw") + layout_);
   EXPECT_EQ(raw["certificates"][0]["voxel"]["volume_mm3"], nrrd["certificates"][0]["voxel"]["volume_mm3"]);
   const tests::CommandAnswer without =
       run("verify " + at("ball.plan.json") + " --scan ct=" + at("ball.raw") + " --json");
@@ -61,9 +60,9 @@ TEST_F(ScanOptions, RunTakesARawFileInTheScansPlace) {
 }
 
 TEST_F(ScanOptions, LookAtARawFileLeavesAPlanThatRunReplays) {
-  const Json look = json("look " + at("ball.raw") + layout_ + " --bone 0 --skin -500 -o " + at("look"));
+  const SortedJson look = json("look " + at("ball.raw") + layout_ + " --bone 0 --skin -500 -o " + at("look"));
   std::ofstream(folder_ / "look.plan.json") << look["plan"];
-  const Json replayed = json("run " + at("look.plan.json") + " -o " + at("again"));
+  const SortedJson replayed = json("run " + at("look.plan.json") + " -o " + at("again"));
   EXPECT_EQ(replayed["objects"][0]["voxel"], look["objects"][0]["voxel"]);
   EXPECT_FALSE(look["objects"].empty());
 }
@@ -77,10 +76,10 @@ TEST_F(ScanOptions, LookTakesAPatternOfImagesAndRunReplaysItsPlan) {
       for (int x = 0; x < 24; ++x) slice.put(x >= 6 && x < 18 && y >= 5 && y < 15 && z > 0 ? '\xc8' : '\x0a');
   }
   const std::string stack = quoted(folder_ / "s*.pgm") + " --spacing 1,1,1";
-  const Json look = json("look " + stack + " --bone 100 --skin 50 -o " + at("look"));
-  EXPECT_EQ(look["scans"][0]["dims"], Json({24, 20, 9}));
+  const SortedJson look = json("look " + stack + " --bone 100 --skin 50 -o " + at("look"));
+  EXPECT_EQ(look["scans"][0]["dims"], SortedJson({24, 20, 9}));
   std::ofstream(folder_ / "look.plan.json") << look["plan"];
-  const Json replayed = json("run " + at("look.plan.json") + " -o " + at("again"));
+  const SortedJson replayed = json("run " + at("look.plan.json") + " -o " + at("again"));
   EXPECT_EQ(replayed["objects"][0]["voxel"], look["objects"][0]["voxel"]);
   EXPECT_EQ(replayed["scans"][0]["sha256"], look["scans"][0]["sha256"]);
 }

@@ -8,41 +8,43 @@
 namespace octotomy::planner {
 namespace {
 
-using tests::Json;
+using tests::SortedJson;
 
 class ScanVerbs : public tests::CommandLine {
  protected:
-  Json json(const std::string& arguments) const {
+  SortedJson json(const std::string& arguments) const {
     const tests::CommandAnswer answer = run(arguments + " --json");
     EXPECT_EQ(answer.status, 0) << arguments << '\n' << answer.errors;
-    return Json::parse(answer.out, nullptr, false);
+    return SortedJson::parse(answer.out, nullptr, false);
   }
 };
 
 TEST_F(ScanVerbs, SlicesAreInTrueScaleAndSayWhereTheyLie) {
   ASSERT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("ball.octree")).status, 0);
-  const Json axial = json("slice " + at("ball.nrrd") + " --axial 5 --pixel 0.5 --octree " +
-                          at("ball.octree") + " --level 0,2000 -o " + at("axial.png"));
+  const SortedJson axial = json("slice " + at("ball.nrrd") + " --axial 5 --pixel 0.5 --octree " +
+                                at("ball.octree") + " --level 0,2000 -o " + at("axial.png"));
   EXPECT_EQ(axial["plane"], "axial");
   EXPECT_EQ(axial["position_mm"], 5.0);
-  EXPECT_EQ(axial["size_px"], Json({64, 64}));
-  EXPECT_EQ(axial["window"], Json({-1000.0, 1000.0}));
-  EXPECT_EQ(axial["letters"], Json({{"left", "R"}, {"right", "L"}, {"top", "A"}, {"bottom", "P"}}));
+  EXPECT_EQ(axial["size_px"], SortedJson({64, 64}));
+  EXPECT_EQ(axial["window"], SortedJson({-1000.0, 1000.0}));
+  EXPECT_EQ(axial["letters"], SortedJson({{"left", "R"}, {"right", "L"}, {"top", "A"}, {"bottom", "P"}}));
   EXPECT_EQ(axial["scale_bar_mm"], 5.0);
   // Pixel (0, 0) is at the patient's right front.
-  EXPECT_EQ(axial["lps_from_pixel"][0], Json({0.5, 0.0, 0.0, -15.75}));
-  EXPECT_EQ(axial["lps_from_pixel"][1], Json({0.0, 0.5, 0.0, -15.75}));
+  EXPECT_EQ(axial["lps_from_pixel"][0], SortedJson({0.5, 0.0, 0.0, -15.75}));
+  EXPECT_EQ(axial["lps_from_pixel"][1], SortedJson({0.0, 0.5, 0.0, -15.75}));
   EXPECT_EQ(axial["lps_from_pixel"][2][3], 5.0);
   EXPECT_NEAR(axial["outlines"][0]["area_mm2"].get<double>() / (M_PI * (144.0 - 25.0)), 1.0, 0.04);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "axial.png"));
 
-  const Json coronal = json("slice " + at("ball.octree") + " --coronal middle -o " + at("coronal.png"));
+  const SortedJson coronal = json("slice " + at("ball.octree") + " --coronal middle -o " + at("coronal.png"));
   EXPECT_EQ(coronal["letters"]["top"], "S");
-  EXPECT_EQ(coronal["values"], Json({0.0, 1.0}));
-  const Json sagittal = json("slice " + at("ball.nrrd") + " --sagittal -3 --plain -o " + at("sagittal.png"));
+  EXPECT_EQ(coronal["values"], SortedJson({0.0, 1.0}));
+  const SortedJson sagittal =
+      json("slice " + at("ball.nrrd") + " --sagittal -3 --plain -o " + at("sagittal.png"));
   EXPECT_EQ(sagittal["letters"]["left"], "A");
   EXPECT_TRUE(sagittal["scale_bar_mm"].is_null());
-  const Json oblique = json("slice " + at("ball.nrrd") + " --oblique 0,0,0 0,1,1 -o " + at("oblique.png"));
+  const SortedJson oblique =
+      json("slice " + at("ball.nrrd") + " --oblique 0,0,0 0,1,1 -o " + at("oblique.png"));
   EXPECT_EQ(oblique["position_mm"], 0.0);
   EXPECT_EQ(oblique["letters"]["right"], "L");
 }
@@ -50,10 +52,10 @@ TEST_F(ScanVerbs, SlicesAreInTrueScaleAndSayWhereTheyLie) {
 TEST_F(ScanVerbs, ACurveIsGivenAsPointsOrAsAFile) {
   write("curve.json", R"({"points_mm": [[-10, 5, 0], [0, -8, 0], [10, 5, 0]]})");
   const std::string rest = " --height 20 --pixel 0.5 -o " + at("curve.png");
-  const Json points = json("slice " + at("ball.nrrd") + " --curve=-10,5,0 0,-8,0 10,5,0" + rest);
-  const Json file = json("slice " + at("ball.nrrd") + " --curve " + at("curve.json") + rest);
+  const SortedJson points = json("slice " + at("ball.nrrd") + " --curve=-10,5,0 0,-8,0 10,5,0" + rest);
+  const SortedJson file = json("slice " + at("ball.nrrd") + " --curve " + at("curve.json") + rest);
   EXPECT_EQ(points["plane"], "curved");
-  EXPECT_EQ(points["size_px"], Json({static_cast<int>(std::ceil(2 * std::hypot(10, 13) / 0.5)), 40}));
+  EXPECT_EQ(points["size_px"], SortedJson({static_cast<int>(std::ceil(2 * std::hypot(10, 13) / 0.5)), 40}));
   EXPECT_TRUE(points["lps_from_pixel"].is_null());
   for (const char* key : {"size_px", "values", "inside_pixels", "letters"})
     EXPECT_EQ(points[key], file[key]) << key;
@@ -77,19 +79,19 @@ TEST_F(ScanVerbs, SlicesThatCannotBeDrawnAreRefused) {
 }
 
 TEST_F(ScanVerbs, ATissueIsAWindowOfHounsfieldUnitsEverywhere) {
-  const Json named = json("measure " + at("ball.nrrd") + " --window skin");
-  EXPECT_EQ(named["window"], Json({-300.0, nullptr}));
+  const SortedJson named = json("measure " + at("ball.nrrd") + " --window skin");
+  EXPECT_EQ(named["window"], SortedJson({-300.0, nullptr}));
   EXPECT_EQ(named["volume_mm3"], json("measure " + at("ball.nrrd") + " --window=-300:")["volume_mm3"]);
   EXPECT_EQ(named["tissues"]["skin"]["low"], -300.0);
   EXPECT_FALSE(json("measure " + at("ball.nrrd") + " --window=-300:").contains("tissues"));
   ASSERT_EQ(run("octree " + at("ball.nrrd") + " --grey -o " + at("grey.octree")).status, 0);
   // Bone is the same in every verb, said or by default, and its numbers stand beside each use.
-  EXPECT_EQ(json("measure " + at("ball.nrrd") + " --window bone")["window"], Json({300.0, nullptr}));
+  EXPECT_EQ(json("measure " + at("ball.nrrd") + " --window bone")["window"], SortedJson({300.0, nullptr}));
   EXPECT_NE(run("mesh " + at("ball.nrrd") + " -o " + at("d.stl")).errors.find("bone (from 300 HU)"),
             std::string::npos);
   const tests::CommandAnswer segmented =
       run("segment " + at("ball.nrrd") + " --window bone -o " + at("s.octree") + " --json");
-  EXPECT_EQ(Json::parse(segmented.out)["tissues"]["bone"]["low"], 300.0);
+  EXPECT_EQ(SortedJson::parse(segmented.out)["tissues"]["bone"]["low"], 300.0);
   EXPECT_NE(segmented.errors.find("bone (from 300 HU)"), std::string::npos) << segmented.errors;
   for (const std::string& verb :
        {"octree " + at("ball.nrrd") + " --window bone -o " + at("a.octree"),
@@ -135,10 +137,10 @@ class Segments : public ScanVerbs {
 };
 
 TEST_F(Segments, ChoosePartsByWindowSizeSeedAndRegion) {
-  const auto volume = [](const Json& said) { return said["objects"][0]["volume_mm3"].get<double>(); };
+  const auto volume = [](const SortedJson& said) { return said["objects"][0]["volume_mm3"].get<double>(); };
   EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window cortical_bone")), ball(9) + ball(6), 160);
   EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window cortical_bone --largest")), ball(9), 120);
-  const Json both = json(segment("a.nrrd") + "--window 600: --components 2");
+  const SortedJson both = json(segment("a.nrrd") + "--window 600: --components 2");
   EXPECT_NEAR(volume(both), ball(9) + ball(6), 160);
   EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window 600: --seed 10,0,0")), ball(6), 60);
   EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window 600: --at-least 2000")), ball(9), 120);
@@ -150,15 +152,15 @@ TEST_F(Segments, ChoosePartsByWindowSizeSeedAndRegion) {
   EXPECT_NEAR(volume(json(segment("a.nrrd") + "--window 600: --regions " + at("left.json"))), ball(6), 60);
   // On the octree's voxels of 1 mm, half-way between a ball and air lies in it; what was done is kept in the
   // file.
-  const Json octree = json(segment("a.octree") + "--window=-50: --seed 10,0,0");
+  const SortedJson octree = json(segment("a.octree") + "--window=-50: --seed 10,0,0");
   EXPECT_NEAR(volume(octree), ball(6), 150);
-  const Json told = json("info " + at("a.octree"));
+  const SortedJson told = json("info " + at("a.octree"));
   EXPECT_EQ(told["kind"], "octree");
   EXPECT_EQ(told["metadata"]["steps"].size(), 2u);
 }
 
 TEST_F(Segments, OtsuFindsTheThreeClassesAndMakesTheBrightest) {
-  const Json only = json("segment " + at("scan.nrrd") + " --otsu 3");
+  const SortedJson only = json("segment " + at("scan.nrrd") + " --otsu 3");
   const std::vector<double> thresholds = only["suggestion"]["thresholds"];
   ASSERT_EQ(thresholds.size(), 2u);
   EXPECT_GT(thresholds[0], -1000);
@@ -166,8 +168,8 @@ TEST_F(Segments, OtsuFindsTheThreeClassesAndMakesTheBrightest) {
   EXPECT_GT(thresholds[1], 300);
   EXPECT_LE(thresholds[1], 900);
   EXPECT_EQ(only["suggestion"]["histogram"]["counts"].size(), 256u);
-  const Json bright = json(segment("a.nrrd") + "--otsu 3");
-  const Json middle = json(segment("b.nrrd") + "--otsu 3 --class 2");
+  const SortedJson bright = json(segment("a.nrrd") + "--otsu 3");
+  const SortedJson middle = json(segment("b.nrrd") + "--otsu 3 --class 2");
   EXPECT_EQ(bright["labels"][0]["samples"],
             json(segment("c.nrrd") + "--window 900:")["labels"][0]["samples"]);
   EXPECT_EQ(middle["labels"][0]["samples"], 20 * 8 * 8);
@@ -175,17 +177,17 @@ TEST_F(Segments, OtsuFindsTheThreeClassesAndMakesTheBrightest) {
 
 TEST_F(Segments, LabelMapsHoldSeveralObjectsAndGiveThemBack) {
   for (const char* name : {"map.nrrd", "map.nii.gz", "map.mha"}) {
-    const Json map = json(segment(name) + "--window 600: --window 200:600");
+    const SortedJson map = json(segment(name) + "--window 600: --window 200:600");
     ASSERT_EQ(map["labels"].size(), 2u) << name;
     EXPECT_EQ(map["overlaps"], 0);
     EXPECT_EQ(map["labels"][1]["samples"], 20 * 8 * 8);
-    const Json back = json("segment " + at(name) + " --label 2 -o " + at("back.nrrd"));
+    const SortedJson back = json("segment " + at(name) + " --label 2 -o " + at("back.nrrd"));
     EXPECT_EQ(back["labels"][0]["samples"], 20 * 8 * 8) << name;
   }
   // Octrees become a label map on the scan's lattice, and overlap is told.
   ASSERT_EQ(run(segment("a.octree") + "--window 600:").status, 0);
   ASSERT_EQ(run(segment("b.octree") + "--window 200:").status, 0);
-  const Json again =
+  const SortedJson again =
       json(segment("again.nrrd") + "--object " + at("a.octree") + " --object " + at("b.octree"));
   EXPECT_EQ(again["overlaps"], again["labels"][0]["samples"]);
   EXPECT_EQ(again["labels"][1]["samples"], 20 * 8 * 8);
@@ -195,9 +197,9 @@ TEST_F(Segments, LabelMapsHoldSeveralObjectsAndGiveThemBack) {
 TEST_F(Segments, AnOctreeAndALabelMapAreOneSetOnSlicesOfAnyDistance) {
   const auto voxels_of = [&](const std::string& how) {
     EXPECT_EQ(run("segment " + at("thick.nrrd") + " -o " + at("set.octree") + how).status, 0);
-    const Json octree = json("segment " + at("thick.nrrd") + " -o " + at("set.octree") + how);
-    const Json map = json("segment " + at("thick.nrrd") + " -o " + at("set.nrrd") + how);
-    const Json &one = octree["objects"][0], &other = map["objects"][0];
+    const SortedJson octree = json("segment " + at("thick.nrrd") + " -o " + at("set.octree") + how);
+    const SortedJson map = json("segment " + at("thick.nrrd") + " -o " + at("set.nrrd") + how);
+    const SortedJson &one = octree["objects"][0], &other = map["objects"][0];
     EXPECT_EQ(other["octree"]["volume_mm3"], one["volume_mm3"]) << how;
     EXPECT_EQ(other["steps"], one["steps"]) << how;
     EXPECT_EQ(other["voxels"], map["labels"][0]["samples"]) << how;
@@ -244,8 +246,8 @@ TEST_F(Segments, AnOctreeAndALabelMapAreOneSetOnSlicesOfAnyDistance) {
 }
 
 TEST_F(Segments, SeveralBecomeADicomSegmentationAndComeBackUnshiftedUnderTheirNames) {
-  const Json map = json(segment("map.nrrd") + "--window 600: --window 200:600");
-  const Json seg = json(segment("seg.dcm") + "--window 600: --window 200:600");
+  const SortedJson map = json(segment("map.nrrd") + "--window 600: --window 200:600");
+  const SortedJson seg = json(segment("seg.dcm") + "--window 600: --window 200:600");
   EXPECT_EQ(seg["labels"], map["labels"]);
   write("map.json", R"({"Balls": 1, "Cube": 2})");
   EXPECT_EQ(run("convert " + at("map.nrrd") + " -o " + at("named.dcm")).status, 0);
@@ -269,16 +271,17 @@ TEST_F(Segments, SeveralBecomeADicomSegmentationAndComeBackUnshiftedUnderTheirNa
     }
     EXPECT_EQ(labelled, std::count_if(before.begin(), before.end(), [](auto each) { return each != 0; }));
   }
-  const Json cube = json("segment " + at("named.dcm") + " --named Cube -o " + at("back.nrrd"));
+  const SortedJson cube = json("segment " + at("named.dcm") + " --named Cube -o " + at("back.nrrd"));
   EXPECT_EQ(cube["labels"][0]["samples"], 20 * 8 * 8);
   expect_refused(run("convert " + at("scan.nrrd") + " -o " + at("x.dcm")), "label");
 }
 
 TEST_F(Segments, ContoursComeBackAsTheMaskTheyBound) {
-  const Json followed =
+  const SortedJson followed =
       json("segment " + at("scan.nrrd") + " --window=-50: --contours " + at("regions.json"));
   EXPECT_GT(followed["contours"]["contours"].get<int>(), 10);
-  const Json mask = json("mask --slices " + at("regions.json") + " --voxel 0.5 -o " + at("mask.octree"));
+  const SortedJson mask =
+      json("mask --slices " + at("regions.json") + " --voxel 0.5 -o " + at("mask.octree"));
   const double mm3 = mask["voxels"].get<double>() * 0.125;
   // The cube's contour at -50 lies 0.27 mm from its outer samples instead of half-way.
   EXPECT_NEAR(mm3 / (ball(9) + ball(6) + 19.5 * 7.5 * 16), 1.0, 0.04);
@@ -298,36 +301,36 @@ TEST_F(Segments, WhatCannotBeMeantIsRefused) {
 }
 
 TEST_F(Segments, PreparationGoesStepByStepInTheOrderGivenAndSaysWhatEachDid) {
-  const Json said = json("prepare " + at("scan.nrrd") + " -o " + at("ready.nrrd") +
-                         " --step crop=-20,-15,-13,20,19,13 --step slices=1,cubic --step median=1"
-                         " --step gaussian=0.8 --step edge_preserving=2,1 --step average_down=2,2,1");
+  const SortedJson said = json("prepare " + at("scan.nrrd") + " -o " + at("ready.nrrd") +
+                               " --step crop=-20,-15,-13,20,19,13 --step slices=1,cubic --step median=1"
+                               " --step gaussian=0.8 --step edge_preserving=2,1 --step average_down=2,2,1");
   ASSERT_EQ(said["steps"].size(), 6u);
-  EXPECT_EQ(said["steps"][0]["dims"], Json({40, 34, 14}));
-  EXPECT_EQ(said["steps"][0]["first_sample"], Json({4, 5, 3}));
-  EXPECT_EQ(said["steps"][1]["dims"], Json({40, 34, 27}));
+  EXPECT_EQ(said["steps"][0]["dims"], SortedJson({40, 34, 14}));
+  EXPECT_EQ(said["steps"][0]["first_sample"], SortedJson({4, 5, 3}));
+  EXPECT_EQ(said["steps"][1]["dims"], SortedJson({40, 34, 27}));
   EXPECT_EQ(said["steps"][1]["kernel"], "cubic");
-  EXPECT_EQ(said["dims"], Json({20, 17, 27}));
-  EXPECT_EQ(said["spacing_mm"], Json({2.0, 2.0, 1.0}));
-  const Json read = json("info " + at("ready.nrrd"));
+  EXPECT_EQ(said["dims"], SortedJson({20, 17, 27}));
+  EXPECT_EQ(said["spacing_mm"], SortedJson({2.0, 2.0, 1.0}));
+  const SortedJson read = json("info " + at("ready.nrrd"));
   EXPECT_EQ(read["dims"], said["dims"]);
   EXPECT_EQ(read["lps_from_voxel"], said["lps_from_voxel"]);
   // The larger ball is where it was, within what smoothing takes off.
-  const Json kept =
+  const SortedJson kept =
       json("segment " + at("ready.nrrd") + " -o " + at("a.octree") + " --window=-50: --seed=-12,0,0");
   EXPECT_NEAR(kept["objects"][0]["volume_mm3"].get<double>() / ball(9), 1.0, 0.12);
   // The order counts: averaged first, the crop's box holds other samples.
-  const Json other = json("prepare " + at("scan.nrrd") + " -o " + at("b.nrrd") +
-                          " --step average_down=2,2,1 --step crop=-20,-15,-13,20,19,13");
+  const SortedJson other = json("prepare " + at("scan.nrrd") + " -o " + at("b.nrrd") +
+                                " --step average_down=2,2,1 --step crop=-20,-15,-13,20,19,13");
   EXPECT_NE(other["lps_from_voxel"], said["lps_from_voxel"]);
 }
 
 TEST_F(Segments, AHeadrestIsRemovedKeptAndPutBack) {
   const std::string clean = "prepare " + at("scan.nrrd") + " -o " + at("clean.nrrd");
-  const Json said = json(clean + " --step remove_headrest=-300,5 --removed " + at("removed.octree"));
+  const SortedJson said = json(clean + " --step remove_headrest=-300,5 --removed " + at("removed.octree"));
   EXPECT_EQ(said["steps"][0]["parts_removed"], 2);
   EXPECT_NEAR(said["steps"][0]["volume_removed_mm3"].get<double>(), 20 * 8 * 16 + ball(6), 80);
-  const Json back = json("prepare " + at("clean.nrrd") + " -o " + at("back.nrrd") +
-                         " --step restore=" + at("removed.octree"));
+  const SortedJson back = json("prepare " + at("clean.nrrd") + " -o " + at("back.nrrd") +
+                               " --step restore=" + at("removed.octree"));
   EXPECT_EQ(back["steps"][0]["samples_restored"], said["steps"][0]["samples_removed"]);
   const auto bytes = [&](const char* name) { return tests::bytes_of(folder_ / name); };
   EXPECT_EQ(bytes("back.nrrd"), bytes("scan.nrrd"));
@@ -336,13 +339,14 @@ TEST_F(Segments, AHeadrestIsRemovedKeptAndPutBack) {
 }
 
 TEST_F(Segments, EdgesAndShapesAreScenesToo) {
-  const Json shape =
+  const SortedJson shape =
       json("prepare " + at("scan.nrrd") + " -o " + at("shape.nrrd") + " --step shape=0.5,bone");
-  EXPECT_EQ(shape["range"], Json({0.0, 1.0}));
+  EXPECT_EQ(shape["range"], SortedJson({0.0, 1.0}));
   EXPECT_EQ(shape["dims"][2], 77);
-  const Json edges = json("prepare " + at("scan.nrrd") + " -o " + at("edges.nrrd") + " --step zucker_hummel");
+  const SortedJson edges =
+      json("prepare " + at("scan.nrrd") + " -o " + at("edges.nrrd") + " --step zucker_hummel");
   EXPECT_GT(edges["range"][1], 500);
-  const Json marr =
+  const SortedJson marr =
       json("prepare " + at("scan.nrrd") + " -o " + at("marr.nrrd") + " --step marr_hildreth=1.5");
   EXPECT_LT(marr["range"][0], -10);
   EXPECT_EQ(marr["unit"], "1");

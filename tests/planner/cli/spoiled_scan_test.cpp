@@ -11,7 +11,7 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
-using tests::Json;
+using tests::SortedJson;
 using tests::SpoiledKind;
 
 class SpoiledScan : public tests::CommandLine {
@@ -26,13 +26,13 @@ class SpoiledScan : public tests::CommandLine {
     std::filesystem::remove_all(folder_ / "scan");
     kind(name).write(folder_ / "scan");
   }
-  static const Json* line_of(const Json& audit, const std::string& check) {
-    for (const Json& line : audit)
+  static const SortedJson* line_of(const SortedJson& audit, const std::string& check) {
+    for (const SortedJson& line : audit)
       if (line["check"] == check) return &line;
     return nullptr;
   }
   /// The audit in an answer: its own, or that of the one scan which it lists.
-  static Json audit_of(const Json& answer) {
+  static SortedJson audit_of(const SortedJson& answer) {
     if (answer.contains("audit")) return answer["audit"];
     if (!answer.contains("scans") || answer["scans"].empty()) return nullptr;
     return answer["scans"][0]["audit"];
@@ -67,11 +67,11 @@ TEST_F(SpoiledScan, IsToldOfByEveryVerb) {
     for (const std::string& verb : verbs()) {
       const CommandAnswer answer = run(verb + " --json");
       ASSERT_TRUE(answer.status == 0 || answer.status == 1) << verb << '\n' << answer.errors;
-      const Json audit = audit_of(Json::parse(answer.out));
-      const Json* line = line_of(audit, spoiled.check);
+      const SortedJson audit = audit_of(SortedJson::parse(answer.out));
+      const SortedJson* line = line_of(audit, spoiled.check);
       ASSERT_NE(line, nullptr) << verb;
       EXPECT_EQ((*line)["verdict"], verdict) << verb;
-      EXPECT_EQ((*line)["files"], Json(spoiled.files)) << verb;
+      EXPECT_EQ((*line)["files"], SortedJson(spoiled.files)) << verb;
       EXPECT_NE(answer.errors.find(verdict + ", " + spoiled.check), std::string::npos)
           << verb << answer.errors;
       for (const std::string& file : spoiled.files)
@@ -92,10 +92,10 @@ TEST_F(SpoiledScan, ReportsAndObjectsSayWhatIsInterpolated) {
   EXPECT_NE(html.find("missing_slices"), std::string::npos);
   EXPECT_NE(html.find("a03"), std::string::npos);
   std::ifstream file(folder_ / "result/result.json");
-  const Json result = Json::parse(file);
+  const SortedJson result = SortedJson::parse(file);
   ASSERT_EQ(result["scans"][0]["interpolated"].size(), 1u);
   EXPECT_EQ(result["scans"][0]["interpolated"][0]["length_mm"], 10.0);
-  EXPECT_EQ(result["scans"][0]["interpolated"][0]["slices"], Json({4, 7}));
+  EXPECT_EQ(result["scans"][0]["interpolated"][0]["slices"], SortedJson({4, 7}));
   const std::string ball = result["objects"][0]["findings"].dump(),
                     half = result["objects"][1]["findings"].dump();
   EXPECT_NE(ball.find("interpolated over 1 gap between the images of 'ct', up to 10 mm"), std::string::npos)
@@ -107,7 +107,8 @@ TEST_F(SpoiledScan, ReportsAndObjectsSayWhatIsInterpolated) {
   spoil("another_scanner");
   ASSERT_LE(run(verbs()[10]).status, 1);
   std::ifstream sound(folder_ / "result/result.json");
-  EXPECT_EQ(Json::parse(sound)["objects"][0]["findings"].dump().find("interpolated"), std::string::npos);
+  EXPECT_EQ(SortedJson::parse(sound)["objects"][0]["findings"].dump().find("interpolated"),
+            std::string::npos);
 }
 
 TEST_F(SpoiledScan, StacksAndSlicesAreChosenByOptionsAndInPlans) {
@@ -115,7 +116,7 @@ TEST_F(SpoiledScan, StacksAndSlicesAreChosenByOptionsAndInPlans) {
   const auto dims = [&](const std::string& options) {
     const CommandAnswer answer = run("info " + at("scan") + options + " --json");
     EXPECT_EQ(answer.status, 0) << answer.errors;
-    return Json::parse(answer.out)["dims"][2].get<int>();
+    return SortedJson::parse(answer.out)["dims"][2].get<int>();
   };
   EXPECT_EQ(dims(""), 12);
   EXPECT_EQ(dims(" --series H60s"), 11);
@@ -128,7 +129,7 @@ TEST_F(SpoiledScan, StacksAndSlicesAreChosenByOptionsAndInPlans) {
       "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 } ] })");
   ASSERT_LE(run("run " + at("chosen.json") + " -o " + at("result")).status, 1);
   std::ifstream file(folder_ / "result/result.json");
-  EXPECT_EQ(Json::parse(file)["scans"][0]["dims"][2], 8);
+  EXPECT_EQ(SortedJson::parse(file)["scans"][0]["dims"][2], 8);
 }
 
 }  // namespace

@@ -39,13 +39,14 @@ class Verify : public tests::CommandLine {
 TEST_F(Verify, RandomQuestionsAgreeAndAreTheSameOfTheSameSeed) {
   const auto first = run("verify --random 2 --seed 5 --json --failures " + at("failures"));
   ASSERT_EQ(first.status, 0) << first.errors << first.out;
-  const tests::Json json = tests::Json::parse(first.out);
+  const tests::SortedJson json = tests::SortedJson::parse(first.out);
   EXPECT_EQ(json["exact"]["verdicts"]["PASS"], 2);
   EXPECT_EQ(json["counts"]["FAIL"], 0);
   EXPECT_EQ(json["disagreements"].size(), 0U);
   EXPECT_GE(json["certificates"].size(), 2U);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "failures"));
-  const tests::Json one = tests::Json::parse(run("verify --random 1 --seed 6 --threads 1 --json").out);
+  const tests::SortedJson one =
+      tests::SortedJson::parse(run("verify --random 1 --seed 6 --threads 1 --json").out);
   EXPECT_EQ(one["certificates"][0]["operation"], json["certificates"][1]["operation"]);
   EXPECT_EQ(one["certificates"][0]["mesh"], json["certificates"][1]["mesh"]);
 }
@@ -53,11 +54,11 @@ TEST_F(Verify, RandomQuestionsAgreeAndAreTheSameOfTheSameSeed) {
 TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
   const auto sound = run("verify --self --json");
   EXPECT_EQ(sound.status, 0) << sound.out;
-  const tests::Json parts = tests::Json::parse(sound.out)["parts"];
+  const tests::SortedJson parts = tests::SortedJson::parse(sound.out)["parts"];
   EXPECT_EQ(parts.size(), 5U);
   const std::filesystem::path helpers = folder_ / "helpers";
   std::filesystem::create_directory(helpers);
-  for (const tests::Json& part : parts)
+  for (const tests::SortedJson& part : parts)
     std::filesystem::copy(part["path"].get<std::string>(), helpers / part["part"].get<std::string>());
   const auto spoil = [&](const std::string& name, const std::function<void(std::string&, std::size_t)>& how) {
     std::string bytes = tests::bytes_of(helpers / name);
@@ -77,8 +78,8 @@ TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
       folder_ / "");
   EXPECT_EQ(spoiled.status, 1) << spoiled.out;
   std::map<std::string, std::string> troubles;
-  const tests::Json told = tests::Json::parse(spoiled.out)["parts"];
-  for (const tests::Json& part : told)
+  const tests::SortedJson told = tests::SortedJson::parse(spoiled.out)["parts"];
+  for (const tests::SortedJson& part : told)
     troubles[part["part"]] = part["trouble"].is_null() ? "" : part["trouble"].get<std::string>();
   EXPECT_NE(troubles["octotomy-tetgen"].find("another build"), std::string::npos);
   EXPECT_NE(troubles["octotomy-mesh3"].find("no mark"), std::string::npos);
@@ -89,7 +90,7 @@ TEST_F(Verify, OfItselfFindsAPartOfAnotherBuildAndOneThatIsDamaged) {
 TEST_F(Verify, OneTierOfRandomQuestionsCanBeAskedAlone) {
   const auto answer = run("verify --random 50 --tier as_given --seed 3 --json");
   EXPECT_EQ(answer.status, 0) << answer.errors;
-  const tests::Json json = tests::Json::parse(answer.out);
+  const tests::SortedJson json = tests::SortedJson::parse(answer.out);
   EXPECT_EQ(json["as_given"]["asked"], 50);
   EXPECT_EQ(json["as_given"]["verdicts"]["FAIL"], 0);
   EXPECT_EQ(json["exact"]["asked"], 0);
@@ -100,7 +101,7 @@ TEST_F(Verify, OneTierOfRandomQuestionsCanBeAskedAlone) {
 TEST_F(Verify, TheThesissTablesAgree) {
   const auto answer = run("verify --thesis --json");
   EXPECT_EQ(answer.status, 0) << answer.errors;
-  const tests::Json json = tests::Json::parse(answer.out);
+  const tests::SortedJson json = tests::SortedJson::parse(answer.out);
   EXPECT_GT(json["tables"].size(), 70U);
   EXPECT_GT(json["not_recomputed"].size(), 0U);
 }
@@ -109,7 +110,7 @@ TEST_F(Verify, TwoMeshesAndTwoLabelMapsOfAnyProgram) {
   for (const char* operation : {"union", "intersection", "difference"}) {
     const auto maps = run("verify " + at("a.nrrd") + " " + operation + " " + at("b.nrrd") + " --json");
     EXPECT_EQ(maps.status, 0) << maps.errors << maps.out;
-    const tests::Json json = tests::Json::parse(maps.out);
+    const tests::SortedJson json = tests::SortedJson::parse(maps.out);
     EXPECT_EQ(json["certificates"][0]["tier"], "exact");
     // The sets as they were given, where the mesh kernel has an answer, and in general position, smaller.
     EXPECT_EQ(json["counts"]["PASS"], json["certificates"].size());
@@ -120,7 +121,7 @@ TEST_F(Verify, TwoMeshesAndTwoLabelMapsOfAnyProgram) {
   EXPECT_EQ(meshes.status, 0) << meshes.errors << meshes.out;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "page" / "report.html"));
   std::ifstream written(folder_ / "page" / "result.json");
-  EXPECT_EQ(tests::Json::parse(written)["counts"], tests::Json::parse(meshes.out)["counts"]);
+  EXPECT_EQ(tests::SortedJson::parse(written)["counts"], tests::SortedJson::parse(meshes.out)["counts"]);
 }
 
 /// Two boxes whose faces coincide, and the sets that their Booleans are.
@@ -153,7 +154,7 @@ class VerifyTouchingBoxes : public tests::CommandLine {
 TEST_F(VerifyTouchingBoxes, AreTestedAsTheyAreWithTheirSharedFaces) {
   const auto answer = run("verify " + at("a.nrrd") + " union " + at("b.nrrd") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors << answer.out;
-  const tests::Json json = tests::Json::parse(answer.out);
+  const tests::SortedJson json = tests::SortedJson::parse(answer.out);
   EXPECT_EQ(json["volume_mm3"], 696.0);
   EXPECT_EQ(json["certificates"][0]["mesh"]["volume_mm3"], 696.0);
 }
@@ -162,14 +163,14 @@ TEST_F(VerifyTouchingBoxes, AnAnswerOfAnybodyIsJudgedAgainstBothKernels) {
   const auto right =
       run("verify " + at("a.nrrd") + " union " + at("b.nrrd") + " --answer " + at("union.nrrd") + " --json");
   EXPECT_EQ(right.status, 0) << right.errors << right.out;
-  const tests::Json json = tests::Json::parse(right.out);
+  const tests::SortedJson json = tests::SortedJson::parse(right.out);
   ASSERT_EQ(json["certificates"].size(), 4U);
   EXPECT_EQ(json["counts"]["PASS"], 4);
   const auto wrong = run("verify " + at("a.nrrd") + " union " + at("b.nrrd") + " --answer " +
                          at("spoiled.nrrd") + " --json");
   EXPECT_EQ(wrong.status, 1);
   // A single voxel; the kernels themselves agree.
-  const tests::Json spoiled = tests::Json::parse(wrong.out);
+  const tests::SortedJson spoiled = tests::SortedJson::parse(wrong.out);
   EXPECT_EQ(spoiled["certificates"][0]["verdict"], "PASS");
   EXPECT_EQ(spoiled["certificates"][2]["verdict"], "FAIL");
   EXPECT_EQ(spoiled["certificates"][3]["verdict"], "FAIL");
@@ -184,7 +185,7 @@ TEST_F(VerifyTouchingBoxes, AFolderOfTriplesIsJudgedInOneRunWithATable) {
       << R"([{"operands": ["../a.nrrd", "../b.nrrd"], "operation": "union", "result": "../spoiled.nrrd"}])";
   const auto answer = run("verify " + at("triples") + " --json");
   EXPECT_EQ(answer.status, 1) << answer.errors;
-  const tests::Json questions = tests::Json::parse(answer.out)["questions"];
+  const tests::SortedJson questions = tests::SortedJson::parse(answer.out)["questions"];
   ASSERT_EQ(questions.size(), 3U);
   EXPECT_EQ(questions[0]["verdict"], "PASS");
   EXPECT_EQ(questions[1]["verdict"], "PASS");
@@ -199,17 +200,17 @@ TEST_F(Verify, AMeshIsJudgedAgainstBothKernelsAndASpoiledOneFails) {
   ASSERT_EQ(run("boolean " + at("a.ply") + " union " + at("b.ply") + " -o " + at("c.ply")).status, 0);
   const auto right = run(question + at("c.ply") + " --json");
   EXPECT_EQ(right.status, 0) << right.errors << right.out;
-  EXPECT_EQ(tests::Json::parse(right.out)["certificates"].size(), 3U);
+  EXPECT_EQ(tests::SortedJson::parse(right.out)["certificates"].size(), 3U);
   const auto wrong = run(question + at("a.ply") + " --json");
   EXPECT_EQ(wrong.status, 1) << wrong.out;
-  EXPECT_GE(tests::Json::parse(wrong.out)["counts"]["FAIL"], 2);
+  EXPECT_GE(tests::SortedJson::parse(wrong.out)["counts"]["FAIL"], 2);
 }
 
 TEST_F(Verify, AVoxelThatHoldsBothMeshesIsNoEvidenceAndNoSuccess) {
   const std::string question = "verify " + at("a.ply") + " difference " + at("b.ply") + " --voxel 40 --json";
   const auto answer = run(question);
   EXPECT_EQ(answer.status, 1) << answer.out;
-  const tests::Json json = tests::Json::parse(answer.out);
+  const tests::SortedJson json = tests::SortedJson::parse(answer.out);
   EXPECT_EQ(json["certificates"][0]["resolved"], false);
   EXPECT_EQ(json["counts"]["without_evidence"], 1);
   EXPECT_EQ(run(question + " --accept-unresolved").status, 0);

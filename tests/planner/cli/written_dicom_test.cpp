@@ -3,8 +3,8 @@
 // DICOM that the program writes, as dciodvfy and pydicom see it: a series made from another refers to its
 // images, a segmentation holds the octree's voxels where they are.
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include "planner/table/json.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
@@ -14,7 +14,6 @@ namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using tests::quoted;
 
 class WrittenDicom : public testing::Test {
@@ -22,11 +21,11 @@ class WrittenDicom : public testing::Test {
   tests::CommandAnswer command(const std::string& line) const {
     return tests::run_command(line, folder_.path());
   }
-  Json octotomy(const std::string& arguments) const {
+  SortedJson octotomy(const std::string& arguments) const {
     const tests::CommandAnswer answer =
         command(std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments + " --json");
     EXPECT_EQ(answer.status, 0) << arguments << "\n" << answer.errors;
-    return answer.status == 0 ? Json::parse(answer.out) : Json();
+    return answer.status == 0 ? SortedJson::parse(answer.out) : SortedJson();
   }
   tests::CommandAnswer python(const std::string& arguments) const {
     return command("/usr/bin/python3 " OCTOTOMY_SOURCE_DIR "/tests/planner/cli/other_readers.py " +
@@ -67,7 +66,7 @@ TEST_F(WrittenDicom, ASeriesMadeFromAnotherRefersToTheImagesBehindEachSlice) {
     const tests::CommandAnswer theirs = python("derived " + quoted(folder_ / "derived") + " " + source);
     NEEDS_PYTHON(theirs);
     ASSERT_EQ(theirs.status, 0) << theirs.errors;
-    const Json said = Json::parse(theirs.out);
+    const SortedJson said = SortedJson::parse(theirs.out);
     EXPECT_EQ(said["images"], 40);
     EXPECT_EQ(said["references"], 40) << "straightened slices lie at the height of their own";
     EXPECT_EQ(said["unknown"], 0);
@@ -75,7 +74,7 @@ TEST_F(WrittenDicom, ASeriesMadeFromAnotherRefersToTheImagesBehindEachSlice) {
     EXPECT_EQ(said["same"].size(), 4u) << said["same"];
     EXPECT_EQ(said["own_series"], true);
     EXPECT_EQ(said["own_instances"], true);
-    EXPECT_EQ(said["image_type"], Json({"DERIVED", "SECONDARY"}));
+    EXPECT_EQ(said["image_type"], SortedJson({"DERIVED", "SECONDARY"}));
   }
 }
 
@@ -85,7 +84,7 @@ TEST_F(WrittenDicom, AMissingSliceRefersToItsNeighbours) {
   octotomy("convert " + quoted(source) + " -o " + quoted(folder_ / "derived"));
   const tests::CommandAnswer theirs = python("derived " + quoted(folder_ / "derived") + " " + quoted(source));
   NEEDS_PYTHON(theirs);
-  const Json said = Json::parse(theirs.out);
+  const SortedJson said = SortedJson::parse(theirs.out);
   EXPECT_EQ(said["references"], 41);
   EXPECT_EQ(said["unknown"], 0);
   EXPECT_NEAR(said["farthest_mm"].get<double>(), 2.0, 1e-6);
@@ -121,7 +120,7 @@ TEST_F(WrittenDicom, OfARealSeriesIsHeldToTheStandardToo) {
     const tests::CommandAnswer theirs = python("derived " + quoted(derived) + " " + source);
     NEEDS_PYTHON(theirs);
     ASSERT_EQ(theirs.status, 0) << theirs.errors;
-    const Json said = Json::parse(theirs.out);
+    const SortedJson said = SortedJson::parse(theirs.out);
     EXPECT_EQ(said["references"], said["images"]);
     EXPECT_EQ(said["unknown"], 0);
     EXPECT_EQ(said["same"].size(), 4u) << said["same"];
@@ -132,14 +131,14 @@ TEST_F(WrittenDicom, OfARealSeriesIsHeldToTheStandardToo) {
 TEST_F(WrittenDicom, ASegmentationHoldsTheOctreesVoxelsWhereTheyAre) {
   const fs::path source = source_series(0.0);
   const std::string octree = quoted(folder_ / "ball.octree");
-  const Json built = octotomy("octree " + quoted(source) + " --window 0: --voxel 0.75 -o " + octree);
-  const Json measured = octotomy("measure " + octree);
+  const SortedJson built = octotomy("octree " + quoted(source) + " --window 0: --voxel 0.75 -o " + octree);
+  const SortedJson measured = octotomy("measure " + octree);
   const fs::path file = folder_ / "ball.dcm";
   octotomy("convert " + octree + " --source " + quoted(source) + " --label Ball -o " + quoted(file));
   const tests::CommandAnswer theirs = python("seg " + quoted(file));
   NEEDS_PYTHON(theirs);
   ASSERT_EQ(theirs.status, 0) << theirs.errors;
-  const Json said = Json::parse(theirs.out);
+  const SortedJson said = SortedJson::parse(theirs.out);
   EXPECT_EQ(said["modality"], "SEG");
   EXPECT_EQ(said["voxels"], built["voxels"]);
   EXPECT_NEAR(said["volume_mm3"].get<double>(), measured["volume_mm3"].get<double>(), 1e-6);
@@ -155,14 +154,15 @@ TEST_F(WrittenDicom, ASegmentationHoldsTheOctreesVoxelsWhereTheyAre) {
   // Labels in any script; pydicom reads them by the file's character set.
   octotomy("convert " + octree + " --source " + quoted(source) + " --label 'Sch\u00e4del \u03b1' -o " +
            quoted(folder_ / "umlaut.dcm"));
-  EXPECT_EQ(Json::parse(python("seg " + quoted(folder_ / "umlaut.dcm")).out)["label"], "Sch\u00e4del \u03b1");
+  EXPECT_EQ(SortedJson::parse(python("seg " + quoted(folder_ / "umlaut.dcm")).out)["label"],
+            "Sch\u00e4del \u03b1");
 
   // The same bytes again, and a study of its own without a source.
   octotomy("convert " + octree + " --source " + quoted(source) + " --label Ball -o " +
            quoted(folder_ / "again.dcm"));
   EXPECT_EQ(command("cmp " + quoted(file) + " " + quoted(folder_ / "again.dcm")).status, 0);
   octotomy("convert " + octree + " -o " + quoted(folder_ / "alone.dcm"));
-  const Json alone = Json::parse(python("seg " + quoted(folder_ / "alone.dcm")).out);
+  const SortedJson alone = SortedJson::parse(python("seg " + quoted(folder_ / "alone.dcm")).out);
   EXPECT_EQ(alone["voxels"], built["voxels"]);
   EXPECT_TRUE(alone["series"].empty());
   EXPECT_NE(alone["study"], said["study"]);

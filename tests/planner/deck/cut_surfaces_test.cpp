@@ -16,12 +16,12 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr double radius_mm = 10.0;
+constexpr double ball_radius_mm = 10.0;
 
 class CutSurfaces : public testing::Test {
  protected:
   CutSurfaces() {
-    voxel::write_scene(tests::ball_scene(radius_mm, 32), folder_ / "ball.nrrd");
+    voxel::write_scene(tests::ball_scene(ball_radius_mm, 32), folder_ / "ball.nrrd");
     EvaluateOptions uncertified;
     uncertified.certify = false;
     evaluation_ = evaluate(
@@ -65,7 +65,7 @@ class CutSurfaces : public testing::Test {
 };
 
 /// The disc 2 mm above the middle.
-constexpr double disc_mm2 = std::numbers::pi * (radius_mm * radius_mm - 4.0);
+constexpr double disc_mm2 = std::numbers::pi * (ball_radius_mm * ball_radius_mm - 4.0);
 
 TEST_F(CutSurfaces, OfBothPiecesAreTheDiscThatTheSawLeftFacingEachOther) {
   for (const std::string id : {"upper", "lower"}) {
@@ -96,7 +96,7 @@ TEST_F(CutSurfaces, OfVoxelsElementsAreWholeFacesOfVoxels) {
 TEST_F(CutSurfaces, WhatNothingCutIsAllOuter) {
   const auto areas = this->areas("ball", filled("ball"));
   ASSERT_EQ(areas.size(), 1U);
-  EXPECT_NEAR(areas.at("OUTER").mm2 / (4.0 * std::numbers::pi * radius_mm * radius_mm), 1.0, 0.02);
+  EXPECT_NEAR(areas.at("OUTER").mm2 / (4.0 * std::numbers::pi * ball_radius_mm * ball_radius_mm), 1.0, 0.02);
 }
 
 }  // namespace

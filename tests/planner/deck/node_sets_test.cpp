@@ -11,8 +11,8 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
-using tests::Json;
 using tests::quoted;
+using tests::SortedJson;
 
 class NodeSets : public tests::CommandLine {
  protected:
@@ -32,7 +32,7 @@ TEST_F(NodeSets, OfPlanesBallsPointsLandmarksAndMeshesHoldTheirNodesAlone) {
       tet("--nodes LOW=0,0,0,0,0,1 --nodes BALL=5,5,20,3 --nodes ONE=5,5,0 --landmarks " + at("marks.json") +
           " --nodes MARK=corner --nodes HIGH=" + (folder_ / "plate.off").string());
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json sets = Json::parse(answer.out)["node_sets"];
+  const SortedJson sets = SortedJson::parse(answer.out)["node_sets"];
   EXPECT_GE(sets["LOW"], 9);
   EXPECT_EQ(sets["ONE"], 1);
   EXPECT_EQ(sets["MARK"], 1);

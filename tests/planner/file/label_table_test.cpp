@@ -12,7 +12,7 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
-using tests::Json;
+using tests::SortedJson;
 using tests::TestFolder;
 
 using Names = std::map<int, std::string>;
@@ -93,7 +93,7 @@ TEST_F(LabelNames, ANamedLabelIsTheOctreeOfItsNumberUnshiftedAndAnUnknownNameIsR
   ASSERT_EQ(run("segment " + at("map.nii.gz") + " --named ball -o " + at("named.octree")).status, 0);
   ASSERT_EQ(run("segment " + at("map.nii.gz") + " --label 1 -o " + at("number.octree")).status, 0);
   const auto measured = [&](const std::string& file) {
-    return Json::parse(run("measure " + at(file) + " --json").out);
+    return SortedJson::parse(run("measure " + at(file) + " --json").out);
   };
   EXPECT_EQ(measured("named.octree")["volume_mm3"], measured("number.octree")["volume_mm3"]);
   EXPECT_EQ(measured("named.octree")["centroid_mm"], measured("number.octree")["centroid_mm"]);

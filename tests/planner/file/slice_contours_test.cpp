@@ -12,7 +12,7 @@ namespace {
 
 using tests::CommandAnswer;
 using tests::CommandLine;
-using tests::Json;
+using tests::SortedJson;
 
 /// Of circles of a ball's slices 1 mm apart.
 double circles_mm2(double radius_mm) {
@@ -21,9 +21,9 @@ double circles_mm2(double radius_mm) {
   return sum;
 }
 
-double sum_of(const Json& json, const char* key) {
+double sum_of(const SortedJson& json, const char* key) {
   double sum = 0.0;
-  for (const Json& slice : json["slices"]) sum += slice[key].get<double>();
+  for (const SortedJson& slice : json["slices"]) sum += slice[key].get<double>();
   return sum;
 }
 
@@ -31,7 +31,7 @@ TEST_F(CommandLine, ContoursOfABallAreItsCirclesAndMakeItsMask) {
   const CommandAnswer answer = run("contours " + at("ball.nrrd") + " --window 0: -o " + at("c.json") +
                                    " --codes " + at("f.json") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json json = Json::parse(answer.out);
+  const SortedJson json = SortedJson::parse(answer.out);
   EXPECT_EQ(json["contours"], 24);
   EXPECT_EQ(json["slices"].size(), 26u) << "an empty one at either end says where the ball ends";
   EXPECT_NEAR(sum_of(json, "area_mm2"), circles_mm2(12), 0.01 * circles_mm2(12));
@@ -39,15 +39,15 @@ TEST_F(CommandLine, ContoursOfABallAreItsCirclesAndMakeItsMask) {
   ASSERT_EQ(
       run("mask --slices " + at("c.json") + " --like " + at("ball.nrrd") + " -o " + at("c.octree")).status,
       0);
-  const Json mask = Json::parse(run("measure " + at("c.octree") + " --json").out);
+  const SortedJson mask = SortedJson::parse(run("measure " + at("c.octree") + " --json").out);
   EXPECT_NEAR(mask["volume_mm3"].get<double>(), tests::ball_mm3(12), 0.03 * tests::ball_mm3(12));
   EXPECT_NEAR(mask["centroid_mm"][2].get<double>(), 0.0, 0.05) << "not shifted along the slices";
 
-  const Json codes = Json::parse(std::ifstream(folder_ / "f.json"));
+  const SortedJson codes = SortedJson::parse(std::ifstream(folder_ / "f.json"));
   EXPECT_EQ(codes["slices"].size(), 26u);
   int stepped = 0;
-  for (const Json& slice : codes["slices"])
-    for (const Json& chain : slice["chains"]) {
+  for (const SortedJson& slice : codes["slices"])
+    for (const SortedJson& chain : slice["chains"]) {
       const auto steps = chain["steps"].get<std::string>();
       EXPECT_EQ(steps.find_first_not_of("01234567"), std::string::npos);
       stepped += steps.size() > 8;
@@ -61,13 +61,13 @@ TEST_F(CommandLine, ContoursMoveOutThinAndLeaveSmallOnesOut) {
     const CommandAnswer answer =
         run("contours " + at("c.json") + " " + options + " -o " + at("d.json") + " --json");
     EXPECT_EQ(answer.status, 0) << answer.errors;
-    return Json::parse(answer.out);
+    return SortedJson::parse(answer.out);
   };
-  const Json all = asked("");
+  const SortedJson all = asked("");
   const double area = sum_of(all, "area_mm2"), perimeter = sum_of(all, "perimeter_mm");
   // Steiner's formula for each of 24 convex contours.
   EXPECT_NEAR(sum_of(asked("--by 1.5"), "area_mm2"), area + 1.5 * perimeter + 24 * M_PI * 2.25, 0.002 * area);
-  const Json thinned = asked("--thin 0.1");
+  const SortedJson thinned = asked("--thin 0.1");
   EXPECT_LT(thinned["points"].get<int>(), all["points"].get<int>() / 2);
   EXPECT_NEAR(sum_of(thinned, "area_mm2"), area, 0.02 * area);
   EXPECT_EQ(asked("--least-area 150")["contours"], 20) << "four of the smallest go";
@@ -92,7 +92,7 @@ TEST_F(CommandLine, AContourThatSmoothingWouldCrossKeepsMoreOfItsShape) {
   const CommandAnswer answer =
       run("contours " + at("c.json") + " --harmonics 3 -o " + at("d.json") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json said = Json::parse(answer.out);
+  const SortedJson said = SortedJson::parse(answer.out);
   EXPECT_EQ(said["contours"], 3);
   ASSERT_EQ(said["findings"].size(), 1u) << said["findings"];
   EXPECT_NE(said["findings"][0].get<std::string>().find("the slice at 0"), std::string::npos)
@@ -112,7 +112,7 @@ TEST_F(CommandLine, ContoursAreEditedByHandAndRefusedWhereTheyCross) {
   const auto areas = [&](const std::string& edits) {
     const CommandAnswer answer = edit(edits);
     EXPECT_EQ(answer.status, 0) << answer.errors;
-    const Json json = Json::parse(answer.out);
+    const SortedJson json = SortedJson::parse(answer.out);
     return std::pair(json["slices"][0]["area_mm2"].get<double>(), json["contours"].get<int>());
   };
   using Pair = std::pair<double, int>;
@@ -142,7 +142,7 @@ TEST_F(CommandLine, AMarginAboutABallIsABall) {
   const CommandAnswer answer =
       run("offset " + at("ball.stl") + " --by 3 --cell 0.75 -o " + at("margin.stl") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json json = Json::parse(answer.out);
+  const SortedJson json = SortedJson::parse(answer.out);
   EXPECT_NEAR(json["volume_mm3"].get<double>(), tests::ball_mm3(15), 0.01 * tests::ball_mm3(15));
   EXPECT_EQ(json["self_intersections"], 0);
   expect_refused(run("offset " + at("ball.stl") + " --by -13 -o " + at("none.stl")), "nothing is left of");

@@ -4,14 +4,13 @@
 
 #include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "verify/leg_phantom.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A jaw that is a bar along x, between y = 4 and 16, z = -7 and 7.
 voxel::Scene bar_scene() {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <functional>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "planner/measure/passage.h"
 #include "planner/plan/answers.h"
 #include "planner/plan/evaluate.h"
+#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "voxel/scan/write_scene.h"
 
@@ -14,8 +14,6 @@ namespace octotomy::planner {
 namespace {
 
 using namespace tests;
-using Json = nlohmann::ordered_json;
-
 /// Samples that are at least 0 inside; `depth_mm` is how deep a point is inside, negative outside.
 Json measured(const TestFolder& folder, const std::function<double(const glm::dvec3&)>& depth_mm,
               const std::string& airway, const std::string& more = "") {

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/measure/near_surfaces.h"
-
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "planner/measure/near_surfaces.h"
 #include "planner/plan/answers.h"
+#include "planner/table/json.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
 namespace {
 
 using namespace tests;
-using Json = nlohmann::ordered_json;
-
 Json map_of(const TestFolder& folder, const std::string& steps, bool meshes = true) {
   const Plan plan = ball_plan(folder, steps);
   EvaluateOptions options;

@@ -7,14 +7,13 @@
 #include "brep/mesh/triangles.h"
 #include "planner/measure/half_width.h"
 #include "tests/brep/shapes.h"
+#include "tests/unit_universe.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
 
-voxel::Universe universe_of_64() {
-  return voxel::universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
-}
+using tests::universe_of_64;
 
 TEST(Gap, BetweenBallsIsWithinItsHalfWidthInBothKernelsHoweverTheyLie) {
   double largest_share = 0.0;

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/field_scene.h"
 #include "voxel/measure/flat_parts.h"
 #include "voxel/solid/combine.h"
@@ -16,9 +17,7 @@
 namespace octotomy::planner {
 namespace {
 
-voxel::Universe universe_of_64() {
-  return voxel::universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
-}
+using tests::universe_of_64;
 
 TEST(VolumeHalfWidth, HoldsTheTruthOfBallsWhereverTheyLieAndIsNotIdle) {
   int outside_of_a_tenth = 0;

@@ -54,11 +54,11 @@ TEST_F(SeparateVerb, EachPieceOfAnOpenSurfaceIsAFileAndTheyAddUpToTheWhole) {
   brep::write_mesh(open, folder_ / "open.off");
   const CommandAnswer answer = run("separate " + at("open.off") + " -o " + at("part.ply") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  const Json json = Json::parse(answer.out);
+  const SortedJson json = SortedJson::parse(answer.out);
   ASSERT_EQ(json["pieces"], 4);
   std::size_t triangles = 0;
   double before_mm2 = 1e300;
-  for (const Json& piece : json["written"]) {
+  for (const SortedJson& piece : json["written"]) {
     const brep::Triangles read = brep::read_triangles(piece["path"].get<std::string>());
     EXPECT_EQ(read.faces.size(), piece["triangles"]);
     EXPECT_EQ(brep::health(read).components, 1u);
@@ -69,7 +69,7 @@ TEST_F(SeparateVerb, EachPieceOfAnOpenSurfaceIsAFileAndTheyAddUpToTheWhole) {
   EXPECT_EQ(triangles, open.faces.size());
   const CommandAnswer few =
       run("separate " + at("open.off") + " --least 500 -o " + at("large.ply") + " --json");
-  EXPECT_EQ(Json::parse(few.out)["written"].size(), 2u);
+  EXPECT_EQ(SortedJson::parse(few.out)["written"].size(), 2u);
   EXPECT_NE(few.errors.find("2 pieces under 500"), std::string::npos) << few.errors;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "large-3.ply"));
 }
@@ -79,7 +79,7 @@ TEST_F(SeparateVerb, OnePieceGetsTheNameThatIsGivenAndAMissingOneIsRefused) {
   const CommandAnswer answer =
       run("separate " + at("two.off") + " --piece 1 -o " + at("body.ply") + " --json");
   ASSERT_EQ(answer.status, 0) << answer.errors;
-  EXPECT_NEAR(Json::parse(answer.out)["written"][0]["volume_mm3"].get<double>(), 7000.0, 1e-9);
+  EXPECT_NEAR(SortedJson::parse(answer.out)["written"][0]["volume_mm3"].get<double>(), 7000.0, 1e-9);
   EXPECT_TRUE(brep::health(brep::read_triangles(folder_ / "body.ply")).solid());
   expect_refused(run("separate " + at("two.off") + " --piece 3 -o " + at("none.ply")), "has 2 pieces");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none.ply"));

@@ -2,37 +2,36 @@
 #include "planner/plan/evaluate.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "planner/plan/sha256.h"
+#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/reference_data.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
 using tests::ball_mm3;
 using tests::cap_mm3;
 
-constexpr double radius_mm = 20.0;
+constexpr double scanned_radius_mm = 20.0;
 
 /// A ball's scan, and a plan on it that starts with the ball and a mask of z >= 5.3.
 class Evaluate : public testing::Test {
  protected:
   Evaluate() {
-    voxel::write_scene(tests::ball_scene(radius_mm), folder_ / "ball.nrrd");
+    voxel::write_scene(tests::ball_scene(scanned_radius_mm), folder_ / "ball.nrrd");
     plan_ = {{"octotomy_plan", 1},
              {"name", "ball"},
              {"scans", {{"ct", {{"path", "ball.nrrd"}}}}},
-             {"steps", Json::array()}};
+             {"steps", SortedJson::array()}};
     add({{"id", "ball"}, {"do", "window"}, {"scan", "ct"}, {"low", 0}});
-    const Json cap{{-40, 5.3}, {40, 5.3}, {40, 40}, {-40, 40}};
+    const SortedJson cap{{-40, 5.3}, {40, 5.3}, {40, 40}, {-40, 40}};
     add({{"id", "top"},
          {"do", "mask"},
-         {"regions", {{{"view", "anterior"}, {"polygons_mm", Json::array({cap})}}}}});
+         {"regions", {{{"view", "anterior"}, {"polygons_mm", SortedJson::array({cap})}}}}});
   }
-  void add(const Json& step) { plan_["steps"].push_back(step); }
+  void add(const SortedJson& step) { plan_["steps"].push_back(step); }
   Evaluation evaluated(const EvaluateOptions& options = {}) const {
     return evaluate(parse_plan(plan_.dump(), folder_.path()), options);
   }
@@ -46,7 +45,7 @@ class Evaluate : public testing::Test {
   }
 
   tests::TestFolder folder_;
-  Json plan_;
+  SortedJson plan_;
 };
 
 /// A voxel count's rms error on curved boundary is up to 0.32 h^2 sqrt(S) (measured on spheres); four of
@@ -60,10 +59,10 @@ TEST_F(Evaluate, BothKernelsFindABallAndItsCap) {
   add({{"id", "cup"}, {"do", "combine"}, {"expression", "ball - top"}});
   add({{"id", "size"}, {"do", "measure"}, {"object", "cap"}});
   const Evaluation evaluation = evaluated();
-  const double sphere_mm2 = 4.0 * M_PI * radius_mm * radius_mm;
-  const double flat_mm2 = M_PI * (radius_mm * radius_mm - 5.3 * 5.3);
-  const double truth[] = {ball_mm3(radius_mm), cap_mm3(radius_mm, 5.3),
-                          ball_mm3(radius_mm) - cap_mm3(radius_mm, 5.3)};
+  const double sphere_mm2 = 4.0 * M_PI * scanned_radius_mm * scanned_radius_mm;
+  const double flat_mm2 = M_PI * (scanned_radius_mm * scanned_radius_mm - 5.3 * 5.3);
+  const double truth[] = {ball_mm3(scanned_radius_mm), cap_mm3(scanned_radius_mm, 5.3),
+                          ball_mm3(scanned_radius_mm) - cap_mm3(scanned_radius_mm, 5.3)};
   const char* names[] = {"ball", "cap", "cup"};
   for (int i = 0; i < 3; ++i) {
     const Object& object = evaluation.object(names[i]);
@@ -71,7 +70,8 @@ TEST_F(Evaluate, BothKernelsFindABallAndItsCap) {
         << names[i];
     ASSERT_TRUE(object.mesh.within) << names[i];
     // Chords of an edge length cut at most edge^2 / (8 r) of depth off the sphere.
-    EXPECT_NEAR(object.mesh.within->measures().volume_mm3, truth[i], sphere_mm2 * 2.0 / (8.0 * radius_mm))
+    EXPECT_NEAR(object.mesh.within->measures().volume_mm3, truth[i],
+                sphere_mm2 * 2.0 / (8.0 * scanned_radius_mm))
         << names[i];
     ASSERT_TRUE(object.certificate) << names[i];
     EXPECT_EQ(object.certificate->verdict, verify::Verdict::Pass)
@@ -103,8 +103,8 @@ TEST_F(Evaluate, AMovedPieceGoesWhereTheMotionSaysInBothKernels) {
 
 TEST_F(Evaluate, APieceMovedTwiceIsSampledOnce) {
   add({{"id", "cap"}, {"do", "combine"}, {"expression", "ball & top"}});
-  const Json there{{"degrees", 17}, {"axis", {1, 2, 3}}, {"about_mm", {1, 2, 3}}};
-  const Json back{{"degrees", -17}, {"axis", {1, 2, 3}}, {"about_mm", {1, 2, 3}}};
+  const SortedJson there{{"degrees", 17}, {"axis", {1, 2, 3}}, {"about_mm", {1, 2, 3}}};
+  const SortedJson back{{"degrees", -17}, {"axis", {1, 2, 3}}, {"about_mm", {1, 2, 3}}};
   add({{"id", "out"}, {"do", "move"}, {"object", "cap"}, {"rotate", there}});
   add({{"id", "home"}, {"do", "move"}, {"object", "out"}, {"rotate", back}});
   const Evaluation evaluation = evaluated();
@@ -119,9 +119,9 @@ TEST_F(Evaluate, APieceThatLeavesTheUniverseSaysSo) {
   const Object& gone = evaluation.object("gone");
   ASSERT_FALSE(gone.findings.empty());
   EXPECT_NE(gone.findings[0].find("outside of the universe"), std::string::npos) << gone.findings[0];
-  EXPECT_LT(gone.voxel.measures.volume_mm3, 0.9 * ball_mm3(radius_mm));
+  EXPECT_LT(gone.voxel.measures.volume_mm3, 0.9 * ball_mm3(scanned_radius_mm));
   EXPECT_NEAR(gone.voxel.measures.volume_mm3, gone.mesh.within->measures().volume_mm3,
-              0.01 * ball_mm3(radius_mm));
+              0.01 * ball_mm3(scanned_radius_mm));
   EXPECT_TRUE(evaluation.object("back").voxel.octree == evaluation.object("ball").voxel.octree);
 }
 
@@ -235,7 +235,7 @@ TEST_F(Evaluate, AnExpressionOfMasksEndsWithTheUniverseInBothKernelsAlsoWhenItIs
   const Evaluation evaluation = evaluated();
   for (const char* id : {"slab", "moved", "moved_mask"})
     EXPECT_EQ(evaluation.object(id).certificate->verdict, verify::Verdict::Pass)
-        << id << ": " << Json(evaluation.object(id).certificate->reasons);
+        << id << ": " << SortedJson(evaluation.object(id).certificate->reasons);
 }
 
 }  // namespace

@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "planner/plan/difference.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json base() {
   return Json::parse(R"({"octotomy_plan": 1, "name": "p", "scans": {"ct": {"path": "a.nrrd", "sha256": null}},

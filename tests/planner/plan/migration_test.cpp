@@ -2,29 +2,29 @@
 #include "planner/plan/migration.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
 TEST(Migration, AnOldPlanIsRaisedAVersionAtATime) {
   const Migrations two{
-      [](Json& plan) { plan["a"] = plan["name"]; },
-      [](Json& plan) { plan["b"] = plan["a"].get<std::string>() + plan["a"].get<std::string>(); }};
-  Json plan{{"octotomy_plan", 1}, {"name", "x"}};
+      [](SortedJson& plan) { plan["a"] = plan["name"]; },
+      [](SortedJson& plan) { plan["b"] = plan["a"].get<std::string>() + plan["a"].get<std::string>(); }};
+  SortedJson plan{{"octotomy_plan", 1}, {"name", "x"}};
   migrate(plan, two);
-  EXPECT_EQ(plan, (Json{{"octotomy_plan", 3}, {"name", "x"}, {"a", "x"}, {"b", "xx"}}));
-  Json newer{{"octotomy_plan", 2}, {"a", "y"}};
+  EXPECT_EQ(plan, (SortedJson{{"octotomy_plan", 3}, {"name", "x"}, {"a", "x"}, {"b", "xx"}}));
+  SortedJson newer{{"octotomy_plan", 2}, {"a", "y"}};
   migrate(newer, two);
   EXPECT_EQ(newer.at("b"), "yy");
 }
 
 TEST(Migration, AVersionOfTheFutureIsRefusedAndThereIsAWayToEachPresentOne) {
   EXPECT_EQ(static_cast<int>(migrations().size()), plan_version - 1);
-  for (const Json& version : {Json(plan_version + 1), Json(0), Json("1"), Json(1.5)}) {
-    Json plan{{"octotomy_plan", version}};
+  for (const SortedJson& version :
+       {SortedJson(plan_version + 1), SortedJson(0), SortedJson("1"), SortedJson(1.5)}) {
+    SortedJson plan{{"octotomy_plan", version}};
     EXPECT_THROW(migrate(plan, migrations()), std::runtime_error) << version;
   }
 }

@@ -4,19 +4,17 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "planner/operation/mask.h"
 #include "planner/table/field_json.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
-Json le_fort_i() {
+SortedJson le_fort_i() {
   std::ifstream file(std::string(OCTOTOMY_SOURCE_DIR) + "/planner/le_fort_i.plan.json");
-  return Json::parse(file);
+  return SortedJson::parse(file);
 }
 
 /// What a plan is refused with; empty where it is taken.
@@ -28,19 +26,19 @@ std::string refusal(const std::string& text) {
     return error.what();
   }
 }
-std::string refusal(const Json& plan) {
+std::string refusal(const SortedJson& plan) {
   return refusal(plan.dump());
 }
 
 /// A step's fields as they would be written.
-Json printed(const Step& step) {
+SortedJson printed(const Step& step) {
   Action action = step.action;
-  return Json::parse(print_fields(action.operation().fields, action.value()).dump());
+  return SortedJson::parse(print_fields(action.operation().fields, action.value()).dump());
 }
 
 /// The step of le_fort_i with this id.
-Json& step(Json& plan, const std::string& id) {
-  for (Json& step : plan["steps"])
+SortedJson& step(SortedJson& plan, const std::string& id) {
+  for (SortedJson& step : plan["steps"])
     if (step["id"] == id) return step;
   throw std::out_of_range(id);
 }
@@ -55,20 +53,21 @@ TEST(Plan, TheExampleIsReadWithEveryNumberInItsPlace) {
   EXPECT_EQ(plan.voxel_mm, 1.0);
   EXPECT_EQ(scan_path(plan, plan.scans.at("ct")), plan.folder / "head.nrrd");
   ASSERT_GE(plan.steps.size(), 7u);
-  const Json window = printed(plan.steps[0]);
-  EXPECT_EQ(window, Json::parse(R"({"scan": "ct", "low": 300.0})"));
+  const SortedJson window = printed(plan.steps[0]);
+  EXPECT_EQ(window, SortedJson::parse(R"({"scan": "ct", "low": 300.0})"));
   const auto& mask = plan.steps[1].action.get<Mask>();
   ASSERT_EQ(mask.regions.size(), 2u);
   EXPECT_EQ(mask.regions[0].view, "anterior");
   EXPECT_EQ(mask.regions[1].polygons_mm[0][0], glm::dvec2(-90, -60));
-  EXPECT_EQ(printed(plan.steps[4]), Json::parse(R"({"object": "maxilla", "translate_mm": [0.0, -6.0, 2.0],
+  EXPECT_EQ(printed(plan.steps[4]),
+            SortedJson::parse(R"({"object": "maxilla", "translate_mm": [0.0, -6.0, 2.0],
       "rotate": {"degrees": 5.0, "axis": [1.0, 0.0, 0.0], "about_mm": [0.0, -40.0, -30.0]}})"));
   EXPECT_EQ(verb(plan.steps[1]), "mask");
   EXPECT_EQ(verb(plan.steps.back()), "deck");
 }
 
 TEST(Plan, AScanSaysItsSeriesAndWhatItsFileDoesNot) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   plan["scans"]["ct"] = {{"path", "head.raw"},
                          {"spacing_mm", {0.5, 0.5, 1.25}},
                          {"raw", {{"dims", {512, 512, 300}}, {"type", "uint16"}, {"offset", 12}}}};
@@ -92,26 +91,26 @@ TEST(Plan, AScanSaysItsSeriesAndWhatItsFileDoesNot) {
 }
 
 TEST(Plan, AnUnknownKeyIsRefusedWithTheStepAndTheNearestKnownOne) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   step(plan, "advanced")["translate"] = {0, -6, 2};
   expect_says(refusal(plan), {"step 'advanced'", "unknown key 'translate'", "did you mean 'translate_mm'?"});
   plan = le_fort_i();
   plan["universe"]["voxelmm"] = 1.0;
   expect_says(refusal(plan), {"universe", "'voxelmm'", "'voxel_mm'"});
   plan = le_fort_i();
-  plan["step"] = Json::array();
+  plan["step"] = SortedJson::array();
   expect_says(refusal(plan), {"'step'", "'steps'"});
 }
 
 TEST(Plan, AnUnknownStepIsRefusedWithTheStepsThereAre) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   step(plan, "maxilla")["do"] = "combin";
   expect_says(refusal(plan),
               {"step 'maxilla'", "unknown step 'combin'", "did you mean 'combine'?", "mask", "window"});
 }
 
 TEST(Plan, ANameIsRefusedBeforeItIsBound) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   std::swap(plan["steps"][0], plan["steps"][2]);
   expect_says(refusal(plan), {"step 'maxilla'", "no earlier step is called 'skull'"});
   plan = le_fort_i();
@@ -123,14 +122,14 @@ TEST(Plan, ANameIsRefusedBeforeItIsBound) {
 }
 
 TEST(Plan, AMeasurementIsNoObject) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   plan["steps"].push_back({{"id", "again"}, {"do", "measure"}, {"object", "overlap_size"}});
   expect_says(refusal(plan), {"step 'again'", "'overlap_size' is a measure step"});
 }
 
 TEST(Plan, AMeasureStepAsksForOneThing) {
-  const auto refused = [](Json measure) {
-    Json plan = le_fort_i();
+  const auto refused = [](SortedJson measure) {
+    SortedJson plan = le_fort_i();
     measure["id"] = "asked";
     measure["do"] = "measure";
     plan["steps"].push_back(measure);
@@ -150,11 +149,11 @@ TEST(Plan, AMeasureStepAsksForOneThing) {
 
 TEST(Plan, IdsAreUniqueIdentifiers) {
   for (const char* id : {"two words", "1st", "a-b", "", "\xc3\xa4", "a.b"}) {
-    Json plan = le_fort_i();
+    SortedJson plan = le_fort_i();
     plan["steps"].push_back({{"id", id}, {"do", "measure"}, {"object", "skull"}});
     EXPECT_NE(refusal(plan), "") << "id '" << id << "' was taken";
   }
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   plan["steps"].push_back({{"id", "skull"}, {"do", "measure"}, {"object", "skull"}});
   expect_says(refusal(plan), {"'skull'", "taken"});
 }
@@ -162,7 +161,7 @@ TEST(Plan, IdsAreUniqueIdentifiers) {
 TEST(Plan, AnExpressionIsParsedBeforeAnythingIsEvaluated) {
   for (const char* expression :
        {"skull &", "skull cut", "(skull", "& cut", "move(skull, cut)", "skull + cut"}) {
-    Json plan = le_fort_i();
+    SortedJson plan = le_fort_i();
     step(plan, "maxilla")["expression"] = expression;
     expect_says(refusal(plan), {"step 'maxilla'", "expression"});
   }
@@ -188,7 +187,7 @@ TEST(Plan, AKeySaidTwiceIsRefused) {
 }
 
 TEST(Plan, AnExportIsRefusedWhereNothingCouldWriteIt) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   step(plan, "piece")["path"] = "maxilla.stp";
   expect_says(refusal(plan), {"step 'piece'", "maxilla.stp", "did you mean '.stl'?"});
   for (const char* path :
@@ -202,7 +201,7 @@ TEST(Plan, AnExportIsRefusedWhereNothingCouldWriteIt) {
 }
 
 TEST(Plan, TheExtensionSaysWhatIsExported) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   step(plan, "piece")["path"] = "maxilla.nii.gz";
   const Plan read = parse_plan(plan.dump(), "/plans");
   for (const Step& each : read.steps) {
@@ -212,7 +211,7 @@ TEST(Plan, TheExtensionSaysWhatIsExported) {
 }
 
 TEST(Plan, ARegionWithoutAreaOrOfAnUnknownViewIsRefused) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   step(plan, "cut")["regions"][0]["view"] = "front";
   expect_says(refusal(plan), {"step 'cut'", "regions[0]", "front", "anterior"});
   plan = le_fort_i();
@@ -224,7 +223,7 @@ TEST(Plan, ARegionWithoutAreaOrOfAnUnknownViewIsRefused) {
 }
 
 TEST(Plan, AnUpsideDownWindowAMoveOfNothingAndARotationWithoutAxisAreRefused) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   step(plan, "skull")["high"] = 200;
   expect_says(refusal(plan), {"step 'skull', high", "below"});
   plan = le_fort_i();
@@ -237,7 +236,7 @@ TEST(Plan, AnUpsideDownWindowAMoveOfNothingAndARotationWithoutAxisAreRefused) {
 }
 
 TEST(Plan, OnlyVersionOneIsRead) {
-  Json plan = le_fort_i();
+  SortedJson plan = le_fort_i();
   plan["octotomy_plan"] = 2;
   expect_says(refusal(plan), {"octotomy_plan"});
   plan.erase("octotomy_plan");

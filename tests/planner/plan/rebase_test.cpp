@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "planner/plan/merge.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* plan_text = R"({"octotomy_plan": 1, "name": "p",
     "scans": {"ct": {"path": "scans/a.nrrd"}, "far": {"path": "/data/b.nrrd"}},

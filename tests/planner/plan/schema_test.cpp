@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <fstream>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "planner/plan/plan.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
 /// Whether a value fits a schema of the words that plan_schema() uses; the first misfit is said in `why`.
-bool fits(const Json& value, const Json& schema, const std::string& where, std::string& why) {
+bool fits(const SortedJson& value, const SortedJson& schema, const std::string& where, std::string& why) {
   const auto misfit = [&](const std::string& what) {
     if (why.empty()) why = where + ": " + what;
     return false;
@@ -23,7 +21,7 @@ bool fits(const Json& value, const Json& schema, const std::string& where, std::
   for (const char* choice : {"anyOf", "oneOf"})
     if (schema.contains(choice)) {
       std::string reasons;
-      for (const Json& one : schema[choice]) {
+      for (const SortedJson& one : schema[choice]) {
         std::string reason;
         if (fits(value, one, where, reason)) return true;
         reasons += "\n  " + one.value("title", "") + ": " + reason;
@@ -40,9 +38,9 @@ bool fits(const Json& value, const Json& schema, const std::string& where, std::
              : type == "integer" ? value.is_number() && value.get<double>() == std::trunc(value.get<double>())
                                  : value.is_number();
     };
-    const Json types = schema["type"].is_array() ? schema["type"] : Json::array({schema["type"]});
+    const SortedJson types = schema["type"].is_array() ? schema["type"] : SortedJson::array({schema["type"]});
     if (std::none_of(types.begin(), types.end(),
-                     [&](const Json& type) { return is(type.get<std::string>()); }))
+                     [&](const SortedJson& type) { return is(type.get<std::string>()); }))
       return misfit("is no " + schema["type"].dump());
   }
   if (value.is_number()) {
@@ -59,11 +57,11 @@ bool fits(const Json& value, const Json& schema, const std::string& where, std::
   }
   if (value.is_object()) {
     if (value.size() < schema.value("minProperties", 0u)) return misfit("has too few keys");
-    for (const Json& name : schema.value("required", Json::array()))
+    for (const SortedJson& name : schema.value("required", SortedJson::array()))
       if (!value.contains(name.get<std::string>())) return misfit("lacks " + name.dump());
     for (const auto& [key, entry] : value.items()) {
-      const Json properties = schema.value("properties", Json::object());
-      const Json others = schema.value("additionalProperties", Json(true));
+      const SortedJson properties = schema.value("properties", SortedJson::object());
+      const SortedJson others = schema.value("additionalProperties", SortedJson(true));
       if (properties.contains(key)) {
         if (!fits(entry, properties[key], where + "/" + key, why)) return false;
       } else if (others.is_object()) {
@@ -76,8 +74,8 @@ bool fits(const Json& value, const Json& schema, const std::string& where, std::
   return true;
 }
 
-Json schema() {
-  return Json::parse(plan_schema().dump());
+SortedJson schema() {
+  return SortedJson::parse(plan_schema().dump());
 }
 
 TEST(Schema, EveryPlanOfTheProjectFits) {
@@ -87,14 +85,14 @@ TEST(Schema, EveryPlanOfTheProjectFits) {
       if (!entry.path().filename().string().ends_with(".plan.json")) continue;
       std::ifstream file(entry.path());
       std::string why;
-      EXPECT_TRUE(fits(Json::parse(file), schema(), "", why)) << entry.path() << why;
+      EXPECT_TRUE(fits(SortedJson::parse(file), schema(), "", why)) << entry.path() << why;
       ++plans;
     }
   EXPECT_GE(plans, 3);
 }
 
 TEST(Schema, EveryExampleOfAnOperationFitsItsOwnAlternative) {
-  for (const Json& step : schema()["properties"]["steps"]["items"]["anyOf"]) {
+  for (const SortedJson& step : schema()["properties"]["steps"]["items"]["anyOf"]) {
     std::string why;
     EXPECT_TRUE(fits(step["examples"][0], step, step["title"], why)) << why;
   }
@@ -102,10 +100,10 @@ TEST(Schema, EveryExampleOfAnOperationFitsItsOwnAlternative) {
 
 TEST(Schema, ASpoiledPlanDoesNotFit) {
   std::ifstream file(std::string(OCTOTOMY_SOURCE_DIR) + "/planner/le_fort_i.plan.json");
-  const Json plan = Json::parse(file);
-  const auto refuses = [&](const char* pointer, const Json& value) {
-    Json spoiled = plan;
-    spoiled[Json::json_pointer(pointer)] = value;
+  const SortedJson plan = SortedJson::parse(file);
+  const auto refuses = [&](const char* pointer, const SortedJson& value) {
+    SortedJson spoiled = plan;
+    spoiled[SortedJson::json_pointer(pointer)] = value;
     std::string why;
     EXPECT_FALSE(fits(spoiled, schema(), "", why)) << pointer << " = " << value;
   };
@@ -114,7 +112,7 @@ TEST(Schema, ASpoiledPlanDoesNotFit) {
   refuses("/steps/0/lower", 300);
   refuses("/steps/4/rotate/axis", {1, 0});
   refuses("/universe/voxel_mm", 0);
-  refuses("/scans", Json::object());
+  refuses("/scans", SortedJson::object());
   refuses("/octotomy_plan", 2);
 }
 

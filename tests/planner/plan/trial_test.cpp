@@ -2,17 +2,15 @@
 #include "planner/plan/trial.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "planner/plan/answers.h"
+#include "planner/table/json.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
 namespace {
 
 using namespace tests;
-using Json = nlohmann::ordered_json;
-
 /// All errors but those that are named are none.
 std::string errors_json(const std::string& named) {
   std::string text = named;

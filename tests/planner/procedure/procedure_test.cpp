@@ -5,14 +5,13 @@
 
 #include "planner/measure/near_surfaces.h"
 #include "planner/plan/evaluate.h"
+#include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "verify/head_phantom.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The head phantom's landmarks, read off its pictures.
 std::vector<brep::Landmark> head_landmarks() {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/table/json.h"
+
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// What a run with one certified object and one size tells.
 Json run() {

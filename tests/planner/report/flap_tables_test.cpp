@@ -2,12 +2,11 @@
 #include "planner/report/flap_tables.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 TEST(FlapTables, TellOrderLengthAngleAndContactAndEscapeNames) {
   const Json cut{{"at_mm", 20.0}, {"tilt_deg", 28.7}};

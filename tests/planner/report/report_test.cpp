@@ -5,25 +5,21 @@
 
 #include "planner/operation/mask.h"
 #include "planner/report/report_page.h"
+#include "planner/table/json.h"
 #include "tests/file_bytes.h"
 #include "tests/planner/ball_scan.h"
+#include "tests/planner/times.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
-int times(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
-  return count;
-}
+using tests::times;
 
 class Report : public testing::Test {
  protected:
   Report() {
     voxel::write_scene(tests::ball_scene(12.0, 32), folder_ / "ball.nrrd");
-    const Json plan = Json::parse(R"({
+    const SortedJson plan = SortedJson::parse(R"({
       "octotomy_plan": 1, "name": "A <b>bold</b> & \"quoted\" plan",
       "scans": { "ct": { "path": "ball.nrrd" } },
       "steps": [
@@ -56,7 +52,7 @@ class Report : public testing::Test {
 };
 
 TEST_F(Report, TheFolderHoldsWhatTheAnswerSays) {
-  EXPECT_EQ(Json::parse(tests::bytes_of(folder_ / "out/result.json")), Json(json_));
+  EXPECT_EQ(SortedJson::parse(tests::bytes_of(folder_ / "out/result.json")), SortedJson(json_));
   for (const char* name : {"report.html", "pieces/cap.stl", "cap.nrrd", "cap.inp", "views/after_anterior.png",
                            "views/before_left.png", "tables/measurements.csv", "tables/certificates.csv",
                            "tables/movements.csv"})

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/table/json.h"
+
 namespace octotomy::planner {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 TEST(ResultTables, ValuesAtAnyDepthAreColumnsAndWhatARowLacksIsEmpty) {
   const Json rows = Json::parse(R"([

@@ -6,15 +6,12 @@
 #include <iterator>
 
 #include "tests/planner/ball_scan.h"
+#include "tests/planner/times.h"
 
 namespace octotomy::planner {
 namespace {
 
-int times(const std::string& text, const std::string& part) {
-  int count = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++count;
-  return count;
-}
+using tests::times;
 
 /// Certificates of a ball and of what is left of it behind a cut.
 class VerificationPage : public testing::Test {

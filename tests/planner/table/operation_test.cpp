@@ -2,19 +2,17 @@
 #include "planner/table/operation.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "planner/plan/plan.h"
 #include "planner/table/field_json.h"
+#include "planner/table/json.h"
 
 namespace octotomy::planner {
 namespace {
 
-using Json = nlohmann::json;
-
 /// A scope in which the example's objects are bound.
-Scope scope_for(const Operation& operation, const Json& example) {
+Scope scope_for(const Operation& operation, const SortedJson& example) {
   Scope scope({"ct"});
   const auto bind = [&](const std::string& name, const char* maker) {
     try {
@@ -34,19 +32,19 @@ TEST(Operation, EveryExampleIsReadAndPrintedBackToTheSame) {
   std::set<std::string> names;
   for (const Operation& operation : operations()) {
     EXPECT_TRUE(names.insert(operation.name).second) << operation.name << " is in the table twice";
-    const Json example = Json::parse(operation.example);
+    const SortedJson example = SortedJson::parse(operation.example);
     Scope scope = scope_for(operation, example);
     Action action(operation), again(operation);
     const Place place{operation.name, &scope};
     read_fields(operation.fields, example, action.value(), place, {"id", "do"});
     if (operation.check) operation.check(action.value(), place);
     const auto printed = print_fields(operation.fields, action.value());
-    read_fields(operation.fields, Json::parse(printed.dump()), again.value(), place);
+    read_fields(operation.fields, SortedJson::parse(printed.dump()), again.value(), place);
     EXPECT_EQ(print_fields(operation.fields, again.value()).dump(), printed.dump()) << operation.name;
-    Json given = example;
+    SortedJson given = example;
     given.erase("id");
     given.erase("do");
-    const Json back = Json::parse(printed.dump());
+    const SortedJson back = SortedJson::parse(printed.dump());
     for (const auto& [key, value] : given.items()) EXPECT_EQ(back.at(key), value) << operation.name;
   }
 }
@@ -78,7 +76,7 @@ TEST(Operation, ARequiredFieldAWrongTypeAndANumberOutOfItsRangeAreRefusedByPlace
   const auto refusal = [&](const char* text) -> std::string {
     Action action(deck);
     try {
-      read_fields(deck.fields, Json::parse(text), action.value(), {"step 'd'", nullptr});
+      read_fields(deck.fields, SortedJson::parse(text), action.value(), {"step 'd'", nullptr});
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -103,12 +101,13 @@ TEST(Operation, ObjectsAndScansUsedAreFoundInEveryKindOfField) {
   const Operation& deck = *find_operation("deck");
   Action action(deck);
   read_fields(deck.fields,
-              Json::parse(R"({"object": "a", "path": "a.inp", "moved": ["b", "c"], "fixed": ["b"],
+              SortedJson::parse(R"({"object": "a", "path": "a.inp", "moved": ["b", "c"], "fixed": ["b"],
                               "finer": [{"at": [0, 0, 0], "size_mm": 1}, {"at": "d", "size_mm": 1}]})"),
               action.value(), {});
   EXPECT_EQ(objects_used(action), (std::vector<std::string>{"a", "b", "c", "d"}));
   Action window(*find_operation("window"));
-  read_fields(window.operation().fields, Json::parse(R"({"scan": "ct", "low": 3})"), window.value(), {});
+  read_fields(window.operation().fields, SortedJson::parse(R"({"scan": "ct", "low": 3})"), window.value(),
+              {});
   EXPECT_EQ(scans_used(window), std::vector<std::string>{"ct"});
 }
 
