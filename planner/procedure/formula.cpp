@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <glm/trigonometric.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -116,23 +117,20 @@ class Parser {
     refuse("nothing is called '" + name + "'" + suggestion(name, known));
   }
   double call(const std::string& name, std::size_t begin) {
-    const double first = sum();
-    if (name == "abs") {
-      need(')');
-      return std::abs(first);
-    }
-    if (name != "min" && name != "max") {
-      at_ = begin;
-      refuse("there is no function '" + name + "': use min, max or abs");
-    }
-    need(',');
-    double value = first;
-    do {
-      const double next = sum();
-      value = name == "min" ? std::min(value, next) : std::max(value, next);
-    } while (take(','));
+    std::vector<double> of{sum()};
+    while (take(',')) of.push_back(sum());
     need(')');
-    return value;
+    if (of.size() > 1 && name == "min") return *std::min_element(of.begin(), of.end());
+    if (of.size() > 1 && name == "max") return *std::max_element(of.begin(), of.end());
+    if (of.size() == 2 && name == "hypot") return std::hypot(of[0], of[1]);
+    if (of.size() == 1 && name == "abs") return std::abs(of[0]);
+    if (of.size() == 1 && name == "asin_deg") {
+      if (std::abs(of[0]) > 1.0) refuse("asin_deg needs a number from -1 to 1");
+      return glm::degrees(std::asin(of[0]));
+    }
+    at_ = begin;
+    refuse("there is no function '" + name + "' of " + std::to_string(of.size()) +
+           ": use min, max, hypot (of two), abs or asin_deg (of one)");
   }
 
   std::string_view text_;

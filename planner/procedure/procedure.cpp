@@ -8,6 +8,7 @@
 
 #include "planner/plan/plan.h"
 #include "planner/procedure/formula.h"
+#include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 
@@ -18,8 +19,6 @@ const std::vector<std::pair<std::string, std::string>>& procedure_files();
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Plain = nlohmann::json;
 using Values = std::map<std::string, double>;
 
 /// Coordinates are kept to a tenth of a micrometre, so that a plan is read easily.
@@ -81,8 +80,8 @@ Values values_of(const Procedure& procedure, const ProcedureInput& input) {
     const auto typed = input.values.find(value.name);
     const double number = typed == input.values.end() ? value.preset : typed->second;
     if (!(number >= value.least && number <= value.most))
-      throw std::runtime_error("value " + value.name + " must be from " + Plain(value.least).dump() + " to " +
-                               Plain(value.most).dump());
+      throw std::runtime_error("value " + value.name + " must be from " + SortedJson(value.least).dump() +
+                               " to " + SortedJson(value.most).dump());
     values[value.name] = number;
   }
   for (const auto& [name, unused] : input.values)
@@ -113,7 +112,36 @@ Json first_steps(const std::vector<brep::Landmark>& landmarks) {
   return steps;
 }
 
-double number_at(const Plain& entry, const char* key, const std::string& where) {
+/// Another procedure of the program, whose landmarks or steps one takes.
+Procedure borrowed(const std::string& name, const Procedure& borrower) {
+  if (name == borrower.name || name.ends_with(".json"))
+    throw std::runtime_error("of '" + name + "': must be another procedure of the program");
+  return read_procedure(name);
+}
+
+void add_landmarks_of(const std::string& name, Procedure& procedure) {
+  for (const ProcedureLandmark& landmark : borrowed(name, procedure).landmarks)
+    if (std::none_of(procedure.landmarks.begin(), procedure.landmarks.end(),
+                     [&](const ProcedureLandmark& known) { return known.name == landmark.name; }))
+      procedure.landmarks.push_back(landmark);
+}
+
+/// {"of": another procedure, "steps": [ids]}: these steps of it, with its formulas.
+void add_steps_of(const Json& entry, const std::string& where, Procedure& procedure) {
+  const SortedJson plain = entry;
+  check_keys(plain, where, {"of", "steps"});
+  const Procedure other = borrowed(word_of(plain["of"], where), procedure);
+  for (const SortedJson& id : need(plain, "steps", where)) {
+    const std::string wanted = word_of(id, where);
+    const auto step = std::find_if(other.steps.begin(), other.steps.end(),
+                                   [&](const Json& each) { return each.value("id", "") == wanted; });
+    if (step == other.steps.end())
+      throw std::runtime_error(where + ": " + other.name + " has no step '" + wanted + "'");
+    procedure.steps.push_back(*step);
+  }
+}
+
+double number_at(const SortedJson& entry, const char* key, const std::string& where) {
   return number_of(need(entry, key, where), where + ", " + key);
 }
 
@@ -126,26 +154,32 @@ Procedure parse_procedure(const std::string& text) {
   } catch (const Json::exception& error) {
     throw std::runtime_error(std::string("is no JSON: ") + error.what());
   }
-  const Plain plain = root;
+  const SortedJson plain = root;
   check_keys(plain, "procedure", {"procedure", "says", "landmarks", "scans", "values", "steps"});
   Procedure procedure;
   procedure.name = word_of(need(plain, "procedure", "procedure"), "procedure");
   procedure.says = word_of(need(plain, "says", "procedure"), "says");
-  for (const Plain& entry : need(plain, "landmarks", "procedure")) {
-    const std::string where = "landmarks[" + std::to_string(procedure.landmarks.size()) + "]";
+  std::size_t number = 0;
+  for (const SortedJson& entry : need(plain, "landmarks", "procedure")) {
+    const std::string where = "landmarks[" + std::to_string(number++) + "]";
+    if (entry.contains("of")) {
+      check_keys(entry, where, {"of"});
+      add_landmarks_of(word_of(entry["of"], where), procedure);
+      continue;
+    }
     check_keys(entry, where, {"name", "says", "scan"});
     procedure.landmarks.push_back({word_of(need(entry, "name", where), where),
                                    word_of(need(entry, "says", where), where),
                                    entry.contains("scan") ? word_of(entry["scan"], where) : ""});
   }
   if (plain.contains("scans"))
-    for (const Plain& entry : plain.at("scans")) {
+    for (const SortedJson& entry : plain.at("scans")) {
       const std::string where = "scans[" + std::to_string(procedure.scans.size()) + "]";
       check_keys(entry, where, {"name", "says"});
       procedure.scans.push_back(
           {word_of(need(entry, "name", where), where), word_of(need(entry, "says", where), where)});
     }
-  for (const Plain& entry : need(plain, "values", "procedure")) {
+  for (const SortedJson& entry : need(plain, "values", "procedure")) {
     const std::string where = "values[" + std::to_string(procedure.values.size()) + "]";
     check_keys(entry, where, {"name", "says", "preset", "least", "most"});
     procedure.values.push_back({word_of(need(entry, "name", where), where),
@@ -157,7 +191,13 @@ Procedure parse_procedure(const std::string& text) {
                              ", which nobody types without a mistake: derive some by formulas");
   if (!root.contains("steps") || !root["steps"].is_array() || root["steps"].empty())
     throw std::runtime_error("steps: must be a list of at least one step");
-  procedure.steps = root["steps"];
+  for (std::size_t i = 0; i < root["steps"].size(); ++i) {
+    const Json& step = root["steps"][i];
+    if (step.contains("of"))
+      add_steps_of(step, "steps[" + std::to_string(i) + "]", procedure);
+    else
+      procedure.steps.push_back(step);
+  }
   return procedure;
 }
 

@@ -25,6 +25,8 @@ TEST(Formula, OperatorsBindAsInArithmetic) {
   EXPECT_EQ(value_of(" min(3, ans.x) + max(1,abs(-7)) ", names), 9.0);
   EXPECT_EQ(value_of("max(1, 5, 3) - min(4, 2, 3, 6)", names), 3.0);
   EXPECT_EQ(value_of("1.5e1", names), 15.0);
+  EXPECT_EQ(value_of("hypot(3, 2 * 2)", names), 5.0);
+  EXPECT_NEAR(value_of("asin_deg(1 / 2)", names), 30.0, 1e-12);
 }
 
 TEST(Formula, RefusalsSayWhereAndWhat) {
@@ -36,6 +38,8 @@ TEST(Formula, RefusalsSayWhereAndWhat) {
   EXPECT_NE(refusal("").find("expected a number"), std::string::npos);
   EXPECT_NE(refusal("1 / (kerf_mm - 0.5)").find("divides by zero"), std::string::npos);
   EXPECT_NE(refusal("sin(1)").find("there is no function 'sin'"), std::string::npos);
+  EXPECT_NE(refusal("hypot(1)").find("no function 'hypot' of 1"), std::string::npos);
+  EXPECT_NE(refusal("asin_deg(1.5)").find("from -1 to 1"), std::string::npos);
   EXPECT_NE(refusal(std::string(100000, '(').c_str()).find("too many parentheses"), std::string::npos);
 }
 

@@ -8,6 +8,7 @@
 #include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "verify/head_phantom.h"
+#include "voxel/filter/components.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -47,7 +48,9 @@ std::vector<brep::Landmark> head_landmarks() {
           {"ramus_border_left", {50, -24, -78}},
           {"ramus_border_right", {-50, -24, -78}},
           {"condyle_left", {50, -6, -13}},
+          {"condyle_right", {-50, -6, -13}},
           {"coronoid_left", {47, -37, -22}},
+          {"coronoid_right", {-47, -37, -22}},
           {"coronoid_front_left", {46, -43, -55}},
           {"frontonasal", {0, -84, 14}},
           {"lateral_rim_left", {51, -66, 13}},
@@ -218,6 +221,101 @@ TEST(Procedure, OnTheHeadPhantomEachTakesItsOwnPieceAndLeavesTheOthers) {
     EXPECT_NEAR(evaluation.object(moved).voxel.measures.centroid_mm->y,
                 evaluation.object(each.piece).voxel.measures.centroid_mm->y - 6.0, 0.3);
   }
+}
+
+/// How far a step moves a landmark of the phantom.
+glm::dvec3 way_mm(const Evaluation& evaluation, const char* moved, const std::string& name) {
+  for (const brep::Landmark& mark : head_landmarks())
+    if (mark.name == name)
+      return glm::dvec3(evaluation.object(moved).moved->motion * glm::dvec4(mark.p_mm, 1.0)) - mark.p_mm;
+  ADD_FAILURE() << name;
+  return {};
+}
+
+TEST(Procedure, TheThesissThreeOperationsComeOutOfAFewTypedValues) {
+  const tests::TestFolder folder;
+  verify::HeadOptions coarse;
+  coarse.voxel_mm = 2.0;
+  voxel::write_scene(verify::head_phantom(coarse), folder / "head.nrrd");
+  ProcedureInput input = head_input();
+  input.folder = folder.path();
+  input.voxel_mm = 2.0;
+  EvaluateOptions quick;
+  quick.meshes = false;
+  const auto planned = [&](const char* name, const std::map<std::string, double>& values) {
+    input.values = values;
+    return evaluate(parse_plan(plan_of(read_procedure(name), input).dump(), folder.path()), quick);
+  };
+  const auto expect_way = [](const glm::dvec3& way_mm, double forward_mm, double left_mm, double up_mm) {
+    EXPECT_LT(glm::distance(way_mm, {left_mm, -forward_mm, up_mm}), 1e-3);
+  };
+
+  // Case 1, 8.4.2.
+  const Evaluation kufner = planned("kufner", {{"forward_mm", 2}, {"up_mm", -1}});
+  expect_way(way_mm(kufner, "midface_moved", "incisor"), 2, 0, -1);
+
+  // Case 2, 8.4.3: the condyles come down by 41.1 mm, the front up by 2 mm and, after the way back, forward
+  // by 1 mm.
+  const Evaluation mandible =
+      planned("mandible", {{"forward_mm", 1}, {"front_up_mm", 2}, {"back_up_mm", -41.1}});
+  expect_way(way_mm(mandible, "mandible_moved", "lower_incisor"), 1, 0, 2);
+  for (const char* condyle : {"condyle_left", "condyle_right"})
+    EXPECT_NEAR(way_mm(mandible, "mandible_moved", condyle).z, -41.1, 1e-3);
+  for (const char* taken : {"menton", "lower_incisor", "coronoid_left", "coronoid_right", "split_back_left"})
+    EXPECT_TRUE(has(mandible, "mandible", taken)) << taken;
+  for (const char* left : {"incisor", "molar_left", "zygoma_left", "brow"})
+    EXPECT_FALSE(has(mandible, "mandible", left)) << left;
+  const auto parts = voxel::components(mandible.object("mandible").voxel.octree).voxel_counts;
+  EXPECT_GT(static_cast<double>(parts.front()),
+            0.95 * static_cast<double>(mandible.object("mandible").voxel.octree.voxel_count()));
+
+  // Case 3, 8.4.4.
+  const Evaluation jaws = planned("two_jaw", {{"upper_left_mm", 2},
+                                              {"upper_front_up_mm", 7},
+                                              {"upper_back_up_mm", 3},
+                                              {"lower_forward_mm", 9},
+                                              {"lower_left_mm", 2},
+                                              {"lower_front_up_mm", 6},
+                                              {"lower_back_up_mm", 2},
+                                              {"lower_yaw_deg", 3}});
+  expect_way(way_mm(jaws, "maxilla_moved", "incisor"), 0, 2, 7);
+  expect_way(way_mm(jaws, "distal_moved", "lower_incisor"), 9, 2, 6);
+  for (const char* molar : {"molar_left", "molar_right"})
+    EXPECT_NEAR(way_mm(jaws, "maxilla_moved", molar).z, 3.0, 1e-3);
+  for (const char* molar : {"lower_molar_left", "lower_molar_right"})
+    EXPECT_NEAR(way_mm(jaws, "distal_moved", molar).z, 2.0, 1e-3);
+  EXPECT_FALSE(jaws.object("overlap_upper").voxel.octree.is_empty());
+  const double pieces_mm3 = jaws.object("maxilla").voxel.measures.volume_mm3 +
+                            jaws.object("distal").voxel.measures.volume_mm3 +
+                            jaws.object("rest").voxel.measures.volume_mm3;
+  EXPECT_LT(pieces_mm3, jaws.object("skull").voxel.measures.volume_mm3 - 300.0);
+}
+
+TEST(Procedure, OneTakesLandmarksAndStepsOfAnother) {
+  const Procedure both = read_procedure("two_jaw"), upper = read_procedure("le_fort_i");
+  const auto step = [](const Procedure& procedure, const char* id) {
+    return *std::find_if(procedure.steps.begin(), procedure.steps.end(),
+                         [&](const Json& each) { return each.at("id") == id; });
+  };
+  EXPECT_EQ(step(both, "below_cut"), step(upper, "below_cut"));
+  for (const ProcedureLandmark& landmark : upper.landmarks)
+    EXPECT_EQ(std::count_if(both.landmarks.begin(), both.landmarks.end(),
+                            [&](const ProcedureLandmark& each) { return each.name == landmark.name; }),
+              1);
+  const auto refused = [](const std::string& landmarks, const std::string& steps) {
+    try {
+      parse_procedure(R"({"procedure": "mine", "says": "Mine.", "values": [], "landmarks": [)" + landmarks +
+                      R"(], "steps": [)" + steps + "]}");
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused(R"({"of": "le_fort_1"})", "{}").find("did you mean 'le_fort_i'?"), std::string::npos);
+  EXPECT_NE(refused(R"({"of": "mine"})", "{}").find("another procedure"), std::string::npos);
+  EXPECT_NE(
+      refused("", R"({"of": "le_fort_i", "steps": ["cut"]})").find("steps[0]: le_fort_i has no step 'cut'"),
+      std::string::npos);
 }
 
 TEST(Procedure, ZygomasOfBothSidesAreMirrorImages) {
