@@ -101,6 +101,58 @@ class Parser {
   int depth_ = 0;
 };
 
+/// An expression with the names of its leaves.
+struct Named {
+  ExpressionTree tree;
+  std::vector<std::string> names;
+
+  static Named of(std::string_view text) {
+    Named made;
+    made.tree = expression_tree_of(text, made.names);
+    return made;
+  }
+
+  bool repeats() const { return tree.leaf_count() > static_cast<int>(names.size()); }
+  /// Whether there is a read-once expression of the same function, which it then is.
+  bool read_once() {
+    std::optional<ExpressionTree> once = verify::read_once(tree);
+    if (once) tree = std::move(*once);
+    return once.has_value();
+  }
+  /// The same solid of those that its solids were made of, down to what no expression made.
+  Named by_origins(const MeshExpressions::Origin& origin) const {
+    Named made;
+    made.tree = made.adopted(tree, names, origin);
+    return made;
+  }
+
+ private:
+  /// Far beyond what read_once() takes: an expression of expressions could grow without bound.
+  static constexpr std::size_t most_leaves = 64;
+
+  /// A tree whose leaves are numbered by `its_names`, with this one's numbers and origins in place of leaves.
+  ExpressionTree adopted(const ExpressionTree& other, const std::vector<std::string>& its_names,
+                         const MeshExpressions::Origin& origin) {
+    if (other.parts.empty()) {
+      const std::string& name = its_names[static_cast<std::size_t>(other.leaf)];
+      if (const std::string text = adopted_ < most_leaves ? origin(name) : ""; !text.empty()) {
+        const Named inner = Named::of(text);
+        return adopted(inner.tree, inner.names, origin);
+      }
+      ++adopted_;
+      const auto found = std::find(names.begin(), names.end(), name);
+      const auto number = static_cast<int>(found - names.begin());
+      if (found == names.end()) names.push_back(name);
+      return {0, number, {}};
+    }
+    ExpressionTree made{other.symbol, 0, {}};
+    for (const ExpressionTree& part : other.parts) made.parts.push_back(adopted(part, its_names, origin));
+    return made;
+  }
+
+  std::size_t adopted_ = 0;
+};
+
 }  // namespace
 
 ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string>& names) {
@@ -110,20 +162,21 @@ ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string
   return tree;
 }
 
-brep::Solid MeshExpressions::evaluate(std::string_view text,
-                                      const std::function<brep::Solid(std::string_view)>& lookup,
-                                      const std::stop_token& stop) {
+brep::Solid MeshExpressions::evaluate(std::string_view text, const Lookup& lookup,
+                                      const std::stop_token& stop, const Origin& origin) {
   findings_.clear();
   shift_mm_ = 0.0;
   stop_ = stop;
-  std::vector<std::string> names;
-  ExpressionTree tree = expression_tree_of(text, names);
-  std::vector<brep::Solid> leaves;
-  for (const std::string& name : names) leaves.push_back(lookup(name));
+  Named expression = Named::of(text);
   // Without a repeated name the expression stays as it is, so that earlier answers serve again.
-  if (tree.leaf_count() > static_cast<int>(leaves.size()))
-    if (std::optional<ExpressionTree> once = read_once(tree)) tree = std::move(*once);
-  const Signed answer = value(tree, leaves);
+  if (origin) {
+    Named by_origins = expression.by_origins(origin);
+    if (by_origins.repeats() && by_origins.read_once()) expression = std::move(by_origins);
+  }
+  if (expression.repeats()) expression.read_once();
+  std::vector<brep::Solid> leaves;
+  for (const std::string& name : expression.names) leaves.push_back(lookup(name));
+  const Signed answer = value(expression.tree, leaves);
   return answer.complement ? boolean(world_, brep::Operation::Difference, answer.solid) : answer.solid;
 }
 

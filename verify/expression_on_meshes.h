@@ -24,17 +24,23 @@ ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string
 ///
 /// Complements stay symbolic (a & ~b is a - b, ~a & ~b is ~(a | b)), so no mesh is ever inside out. A
 /// complement left at the end is taken within `world`. An expression that names a solid several times is
-/// replaced by a read-once one if there is one, so that no surface meets itself. a ^ b is (a | b) - (a & b).
+/// replaced by a read-once one if there is one, so that no surface meets itself; so is one whose solids were
+/// made of the same others: skull - piece, where piece is skull & mask, is skull - mask. a ^ b is
+/// (a | b) - (a & b).
 /// Every pair of operands is corefined once; its union, intersection and difference are kept.
 class MeshExpressions {
  public:
   /// `world` is the solid that the complement of everything is taken in: the universe's box.
   explicit MeshExpressions(brep::Solid world) : world_(std::move(world)) {}
 
-  /// The solid of the expression. Throws std::invalid_argument with the position and the expected symbol; as
-  /// `lookup` and brep::boolean().
-  brep::Solid evaluate(std::string_view text, const std::function<brep::Solid(std::string_view name)>& lookup,
-                       const std::stop_token& stop = {});
+  using Lookup = std::function<brep::Solid(std::string_view name)>;
+  /// The expression that made a solid, of names that `Lookup` knows; empty where it was made otherwise.
+  using Origin = std::function<std::string(std::string_view name)>;
+
+  /// The solid of the expression. `origin` may be empty. Throws std::invalid_argument with the position and
+  /// the expected symbol; as `lookup` and brep::boolean().
+  brep::Solid evaluate(std::string_view text, const Lookup& lookup, const std::stop_token& stop = {},
+                       const Origin& origin = {});
 
   /// How far the corefinements of the last evaluate() moved operands, one added to the other.
   double shift_mm() const { return shift_mm_; }

@@ -10,6 +10,8 @@
 namespace octotomy::planner {
 namespace {
 
+constexpr const char* operation_name = "combine";
+
 std::vector<std::string> uses(const Combine& combine) {
   return voxel::names_in(combine.expression);
 }
@@ -48,9 +50,13 @@ void voxels(const Combine& combine, const VoxelBench& bench, VoxelSide& made) {
 
 void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
   const Stopwatch watch(bench.timings, "boolean_mesh");
+  const auto origin = [&](std::string_view name) -> std::string {
+    const Object& object = bench.objects.at(std::string(name));
+    return object.kind == operation_name ? object.definition : "";
+  };
   made.whole = bench.expressions.evaluate(
       combine.expression, [&](std::string_view name) { return bench.object(std::string(name)); },
-      bench.progress.stop);
+      bench.progress.stop, origin);
   made.shift_mm = bench.expressions.shift_mm();
   made.findings = bench.expressions.findings();
   made.lineage = "corefinement of meshes";
@@ -90,7 +96,7 @@ void bound(const Combine& combine, const BoundBench& bench, Object& made) {
 }  // namespace
 
 Operation combine_operation() {
-  return Describe<Combine>("combine", "Combines earlier objects by a Boolean expression.", Makes::Object)
+  return Describe<Combine>(operation_name, "Combines earlier objects by a Boolean expression.", Makes::Object)
       .takes(field("expression", &Combine::expression,
                    "Names of objects under & (and), | (or), - (less), ^ (either), ~ (not) and parentheses.")
                  .required())

@@ -115,6 +115,34 @@ TEST_F(MeshExpression, APairIsCorefinedOnceForAllItsResults) {
   EXPECT_TRUE(meshes_.evaluate("a - b", names).is_same(first));
 }
 
+TEST_F(MeshExpression, ASolidMadeOfOthersMeetsThemInNoSheet) {
+  std::map<std::string, std::string, std::less<>> origins{{"piece", "a & b"}, {"rest", "a - piece"}};
+  std::map<std::string, brep::Solid, std::less<>> made;
+  const auto names = [&](std::string_view name) {
+    const auto found = made.find(name);
+    return found == made.end() ? solid(name) : found->second;
+  };
+  const auto origin = [&](std::string_view name) {
+    const auto found = origins.find(name);
+    return found == origins.end() ? std::string() : found->second;
+  };
+  const auto answer = [&](const std::string& text) { return meshes_.evaluate(text, names, {}, origin); };
+  made.emplace("piece", answer("a & b"));
+  const brep::Solid rest = answer("a - piece");
+  EXPECT_TRUE(rest.is_same(meshes_.evaluate("a - b", names)));
+  EXPECT_TRUE(meshes_.findings().empty());
+  made.emplace("rest", rest);
+  EXPECT_TRUE(answer("rest & piece").empty());
+  EXPECT_TRUE(answer("rest | piece").is_same(a_));
+  EXPECT_NEAR(answer("(rest | piece) - c").measures().volume_mm3, 63.0, rounding_mm3);
+  // Nothing is shared: the answers that are there serve.
+  EXPECT_NEAR(answer("rest - far").measures().volume_mm3, 56.0, rounding_mm3);
+  // Functions of more names than are taken apart stay as they are.
+  origins.emplace("many", "a | b | c | far | d | e | f");
+  made.emplace("many", answer("a | far"));
+  EXPECT_NEAR(answer("many - a").measures().volume_mm3, 1.0, rounding_mm3);
+}
+
 TEST_F(MeshExpression, AStopIsNoMissingAnswer) {
   std::stop_source stop;
   stop.request_stop();
