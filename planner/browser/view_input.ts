@@ -18,7 +18,6 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   const canvas = pane.canvas;
   const fingers = new Map<number, Vec2>();
   let drag: Drag|null = null;
-  let last: Vec2 = [0, 0];
   let start: Vec2 = [0, 0];
   let has_moved = false;
   let pinch = 0;
@@ -56,7 +55,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     canvas.setPointerCapture(event.pointerId);
     set({active_pane: pane.index});
     fingers.set(event.pointerId, at_of(event));
-    last = start = at_of(event);
+    start = at_of(event);
     has_moved = false;
     if (fingers.size === 2) {
       if (drag === "tool") active_tool()?.up?.(pointer(event));
@@ -65,25 +64,26 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       return;
     }
     const is_plain = event.button === 0 && !event.shiftKey && !event.ctrlKey && !event.metaKey;
-    tilt = is_plain ? tilt_from(pane, last) : null;
+    tilt = is_plain ? tilt_from(pane, start) : null;
     drag = tilt ? "tilt" : is_plain && active_tool()?.down?.(pointer(event)) ? "tool" : drag_of(event);
-    if (drag === "cross") put_cross(last);
+    if (drag === "cross") put_cross(start);
   });
 
   canvas.addEventListener("pointermove", (event) => {
     const at = at_of(event);
     pointed(pane, at);
     if (!drag) return active_tool()?.hover?.(pointer(event));
+    const from = middle(fingers);
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, at);
+    const to = middle(fingers);
     if (Math.hypot(at[0] - start[0], at[1] - start[1]) > click_px * pane.ratio) has_moved = true;
     if (drag === "tool") return active_tool()?.move?.(pointer(event));
     if (fingers.size === 2) {
       const now = spread(fingers);
-      if (pinch) pane.zoom(pinch / now, at);
+      if (pinch) pane.zoom(pinch / now, to);
       pinch = now;
     }
-    const by: Vec2 = [(at[0] - last[0]) / (fingers.size || 1), (at[1] - last[1]) / (fingers.size || 1)];
-    last = at;
+    const by: Vec2 = [to[0] - from[0], to[1] - from[1]];
     if (drag === "turn" && has_moved) turn(pane, by[0] / pane.ratio, by[1] / pane.ratio);
     if (drag === "pan") pane.pan(by);
     if (drag === "zoom") pane.zoom(Math.exp(by[1] * 0.006), start);
@@ -166,6 +166,13 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       return;
     event.preventDefault();
   });
+}
+
+/// Between the fingers: where each of them moves on its own, what they hold goes along with their middle.
+function middle(fingers: Map<number, Vec2>): Vec2 {
+  const all = [...fingers.values()];
+  const mean = (axis: 0|1): number => all.reduce((sum, at) => sum + at[axis], 0) / (all.length || 1);
+  return [mean(0), mean(1)];
 }
 
 function spread(fingers: Map<number, Vec2>): number {
