@@ -3,7 +3,7 @@
 import {objects_of_plan} from "./drawn_objects";
 import {Hello, Measured, Measurement, PlanState, Step} from "./protocol";
 import {first_scan, kept_view, notify, PaneSetting, set, State, state, steps, usual_panes} from "./state";
-import {add, scaled, Vec3} from "./vector";
+import {add, scaled, Vec3} from "./base/vector";
 import {Refusal, Wire} from "./wire";
 
 let wire: Wire;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Everything that can be asked for by name: the palette, the keys and the menus read this one table.
 import {add_step, change_history, edit, evaluate, free_id, try_to} from "./actions";
-import {ask_text} from "./dialog";
+import {ask_text} from "./base/dialog";
 import {makes_shape, objects_of_plan} from "./drawn_objects";
-import {all_panes, fit_all, show_in} from "./pane_grid";
-import {change_pane} from "./panes";
+import {all_panes, fit_all, show_in} from "./pane/pane_grid";
+import {change_pane} from "./pane/panes";
 import {Step} from "./protocol";
-import {cut_selected} from "./region_tool";
-import {new_step, operations} from "./schema_form";
+import {cut_selected} from "./tool/region_tool";
+import {new_step, operations} from "./panel/schema_form";
 import {notify, selected_step, set, state, step_of, usual_panes} from "./state";
-import {change_theme} from "./theme";
-import {all_tools, take_tool} from "./tool";
-import {plane_names, view_names} from "./view_frame";
+import {change_theme} from "./base/theme";
+import {all_tools, take_tool} from "./tool/tool";
+import {plane_names, view_names} from "./base/view_frame";
 
 export interface Command {
   name: string;

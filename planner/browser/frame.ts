@@ -3,12 +3,12 @@
 // connection.
 import {change_history, try_to} from "./actions";
 import {certify_all, compare_selected, dialogs, map_contacts, mirror_selected, new_branch} from "./commands";
-import {button, Child, el, fill} from "./html";
-import {icon, IconName, is_icon} from "./icons";
-import {cut_selected} from "./region_tool";
+import {button, Child, el, fill} from "./base/html";
+import {icon, IconName, is_icon} from "./base/icons";
+import {cut_selected} from "./tool/region_tool";
 import {dismiss, set, state, watch} from "./state";
-import {change_theme} from "./theme";
-import {active_tool, all_tools, take_tool} from "./tool";
+import {change_theme} from "./base/theme";
+import {active_tool, all_tools, take_tool} from "./tool/tool";
 
 export function make_bar(host: HTMLElement): void {
   const again = (): void => {

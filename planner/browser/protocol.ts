@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What the planner's server and its page say to each other.
-import {Vec3} from "./vector";
-import {View, ViewFrame} from "./view_frame";
+import {Vec3} from "./base/vector";
+import {View, ViewFrame} from "./base/view_frame";
 
 export type Json = null|boolean|number|string|Json[]|{[key: string]: Json};
 export interface Step {

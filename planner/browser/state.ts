@@ -2,8 +2,8 @@
 // What this window shows: the server's plan, and how this window looks at it. One value, changed by set(),
 // watched by key.
 import {Hello, Job, Motion, Notice, PlanState, Step} from "./protocol";
-import {Vec3} from "./vector";
-import {PlaneName, Turned, View} from "./view_frame";
+import {Vec3} from "./base/vector";
+import {PlaneName, Turned, View} from "./base/view_frame";
 
 export interface PaneSetting {
   mode: "view"|"slice"|"panoramic";

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Procedures: chosen by name, given the scans that they take, placed by landmarks, and planned with a few
+// values.
+import {edit, evaluate, take_plan, try_to} from "../actions";
+import {Dialog, open_dialog} from "../base/dialog";
+import {objects_of_plan} from "../drawn_objects";
+import {open_picker} from "./files";
+import {button, Child, el} from "../base/html";
+import {ask_for_landmarks} from "../tool/point_tools";
+import {PlanState, ProcedureSays} from "../protocol";
+import {set, state} from "../state";
+import {Vec3} from "../base/vector";
+
+const values: {[name: string]: number} = {};
+let pending_procedure: string|null = null;
+
+/// Chooses a procedure, has its landmarks placed, takes its values and adds its steps.
+export function open_procedure(name?: string): void {
+  const dialog = open_dialog("Procedure from landmarks", "procedure");
+  const show = (chosen: ProcedureSays|undefined): void => dialog.refill(
+      el("div", {class: "presets"},
+         (state.hello?.procedures ??
+          []).map((one) => button(one.says.split(":")[0], one.says, () => show(one), {
+                    class: one === chosen ? "on" : ""
+                  }))),
+      chosen ?
+          procedure_form(dialog, chosen) :
+          el("p", {class: "says"},
+             "Each procedure is placed by named landmarks and a few values. What it writes are ordinary steps that you can change."));
+  show(state.hello?.procedures.find((one) => one.name === name));
+}
+
+function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
+  const placed = new Map((state.plan?.landmarks ?? []).map((mark) => [mark.name, mark.point]));
+  const lacks_scan = chosen.scans.some((scan) => !scans()[scan.name]);
+  const missing = chosen.landmarks.filter((mark) => !placed.has(mark.name));
+  const place = (): void => {
+    pending_procedure = chosen.name;
+    dialog.close();
+    ask_for_landmarks(chosen.landmarks);
+  };
+  const perform = async(): Promise<void> => {
+    const landmarks: {[mark: string]: Vec3} = {};
+    for (const mark of chosen.landmarks) landmarks[mark.name] = placed.get(mark.name)!;
+    const set_values = Object.fromEntries(
+        chosen.values.map((one) => [one.name, values[`${chosen.name}.${one.name}`] ?? one.default]));
+    const before = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
+    dialog.close();
+    const plan = await try_to<PlanState>("procedure", {name: chosen.name, landmarks, values: set_values});
+    if (!plan) return;
+    // The pieces take the place of what was shown before.
+    const hidden = before.map((id) => [id, {...state.looks[id], visible: false}] as const);
+    take_plan(plan);
+    set({looks: {...state.looks, ...Object.fromEntries(hidden)}});
+    void evaluate();
+  };
+  return [
+    el("p", {class: "says"}, chosen.says),
+    el("ul", {class: "marks"},
+       chosen.landmarks.map(
+           (mark) =>
+               el("li", {class: placed.has(mark.name) ? "placed" : ""},
+                  el("b", {}, mark.name.replace(/_/g, " ")), ` ${mark.says}`))),
+    chosen.scans.map((scan) => scan_row(scan, chosen.name, dialog)),
+    lacks_scan ?
+        null :
+        missing.length ?
+        el("div", {class: "row"},
+           button(
+               `Place ${missing.length} landmarks`, "Click them one after the other in the panes", place,
+               {class: "primary"})) :
+        [
+          el("div", {class: "grid-2"},
+             chosen.values.map(
+                 (one) =>
+                     el("label", {class: "field", "data-tip": `${one.says}. From ${one.low} to ${one.high}.`},
+                        el("span", {}, one.name.replace(/_(mm|deg)$/, "").replace(/_/g, " ")), el("input", {
+                          type: "number",
+                          step: "any",
+                          min: one.low,
+                          max: one.high,
+                          name: one.name,
+                          value: values[`${chosen.name}.${one.name}`] ?? one.default,
+                          onchange: (event: Event) => {
+                            values[`${chosen.name}.${one.name}`] =
+                                Number((event.target as HTMLInputElement).value);
+                          }
+                        }),
+                        el("i", {},
+                           one.unit ??
+                               (one.name.endsWith("_mm")      ? "mm" :
+                                    one.name.endsWith("_deg") ? "°" :
+                                                                ""))))),
+          el("div", {class: "row end"},
+             button(
+                 "Plan it", "Adds the procedure's steps to the plan", () => void perform(),
+                 {class: "primary"})),
+        ],
+  ];
+}
+const scans = (): {[name: string]: {path: string}} => state.plan?.plan.scans ?? {};
+
+/// A scan that a procedure takes beside the patient's: the file that it is, or a button to choose one.
+function scan_row(scan: {name: string; says: string}, procedure: string, dialog: Dialog): Child {
+  const path = scans()[scan.name]?.path;
+  const take = async(chosen: string): Promise<void> => {
+    await edit(
+        {scans: {...scans(), [scan.name]: {path: chosen}}}, `${scan.name}: ${chosen.replace(/^.*\//, "")}`);
+    open_procedure(procedure);
+  };
+  return el(
+      "div", {class: "row"}, el("b", {}, scan.name), el("span", {class: "path"}, path ?? scan.says),
+      el("span", {class: "spring"}),
+      button(path ? "Another scan" : `Choose the ${scan.name}'s scan`, "A scan of the opened folders", () => {
+        dialog.close();
+        open_picker(`The ${scan.name}'s scan`, (chosen) => void take(chosen));
+      }, {class: path ? "" : "primary"}));
+}
+
+addEventListener("landmarks-placed", () => {
+  if (pending_procedure) open_procedure(pending_procedure);
+  pending_procedure = null;
+});

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The start page, and the audit of a scan that is shown before anything else.
+import {open_plan} from "../actions";
+import {grouped} from "../panel/certificate_badge";
+import {dialogs} from "../commands";
+import {upload} from "./files";
+import {button, Child, el, fill} from "../base/html";
+import {icon, IconName} from "../base/icons";
+import {ScanState} from "../protocol";
+import {set, state, watch} from "../state";
+import {take_tool} from "../tool/tool";
+import {start_tour} from "./tour";
+
+export function make_start(host: HTMLElement): void {
+  const again = (): void => {
+    document.body.dataset.page = state.page;
+    host.hidden = state.page === "plan";
+    if (state.page === "start") fill(host, start());
+    if (state.page === "audit") fill(host, audit_page());
+  };
+  watch(["page", "hello", "plan", "jobs"], again);
+  again();
+}
+
+function start(): Child {
+  const picker = el("input", {
+    type: "file",
+    hidden: true,
+    onchange: () => {
+      const file = picker.files?.[0];
+      if (file) void upload(file);
+    }
+  });
+  const is_opening = state.jobs.some((job) => job.what === "Opening");
+  return el(
+      "main", {class: "start"},
+      el("header", {}, el("h1", {}, el("span", {class: "logo"}), "Octotomy"),
+         el("p", {}, "Plans an operation on a skull in two geometry kernels that check each other.")),
+      el("div", {class: "offers"},
+         offer(
+             "play", "Guided tour", "A Le Fort I on the head phantom, in seven steps and five minutes.",
+             () => void start_tour(), "primary"),
+         offer(
+             "head", "Head phantom", "A CT of a head made of closed forms: every number has a known truth.",
+             () => void open_plan({phantom: "head"})),
+         offer(
+             "folder", "Scan or plan",
+             "A DICOM folder, .nii.gz, .nrrd, .mha, or a .plan.json of the opened folders.",
+             () => dialogs.open())),
+      el("button", {type: "button", class: "drop", onclick: () => picker.click()}, icon("file", 20),
+         "Drop a scan or plan here, or choose a file", picker),
+      is_opening ? el("p", {class: "opening", role: "status"}, el("span", {class: "spinner"}),
+                      "Reading and checking the scan …") :
+                   null,
+      el("footer", {},
+         `Octotomy ${state.hello?.version ?? ""} · Nothing leaves this machine · Not a medical device`));
+}
+
+function offer(name: IconName, title: string, says: string, run: () => void, more = ""): Child {
+  return el(
+      "button", {type: "button", class: `offer ${more}`, onclick: run}, icon(name, 28), el("b", {}, title),
+      el("span", {}, says));
+}
+
+const words = {
+  PASS: "in order",
+  WARN: "to know",
+  FAIL: "a problem"
+} as const;
+
+/// What was found in a scan, worst first.
+export function audit_rows(scan: ScanState): Child {
+  const order = {FAIL: 0, WARN: 1, PASS: 2};
+  const rows = [...scan.audit].sort((a, b) => order[a.verdict] - order[b.verdict]);
+  return el(
+      "ul", {class: "audit"},
+      rows.map(
+          (row) => el(
+              "li", {},
+              el("span",
+                 {class: `badge ${row.verdict.toLowerCase()}`, role: "img", "aria-label": words[row.verdict]},
+                 row.verdict === "PASS"     ? "✓" :
+                     row.verdict === "WARN" ? "!" :
+                                              "✕"),
+              el("span", {}, row.check ? el("b", {}, `${row.check.replace(/_/g, " ")}: `) : null,
+                 row.sentence))));
+}
+
+export function scan_facts(scan: ScanState): Child {
+  const fact = (name: string, value: string): Child => [el("dt", {}, name), el("dd", {}, value)];
+  return el(
+      "dl", {class: "facts"}, scan.dims ? fact("Samples", scan.dims.join(" × ")) : null,
+      scan.spacing_mm ? fact("Spacing", `${scan.spacing_mm.map((x) => x.toFixed(2)).join(" × ")} mm`) : null,
+      fact(
+          "Extent",
+          `${scan.bounds_mm[1].map((high, i) => (high - scan.bounds_mm[0][i]!).toFixed(0)).join(" × ")} mm`),
+      scan.range ?
+          fact("Range", `${grouped(scan.range[0])} to ${grouped(scan.range[1])} ${scan.unit ?? ""}`) :
+          null,
+      fact("File", scan.path));
+}
+
+function audit_page(): Child {
+  const scan = state.plan?.scans[0];
+  if (!scan) return null;
+  const worst = scan.audit.some((row) => row.verdict === "FAIL") ? "FAIL" :
+      scan.audit.some((row) => row.verdict === "WARN")           ? "WARN" :
+                                                                   "PASS";
+  const headline = {
+    PASS: "The scan is in order",
+    WARN: "Read this before you plan",
+    FAIL: "The scan has a problem"
+  }[worst];
+  return el(
+      "main", {class: "start audit-page"},
+      el("header", {}, el("h1", {}, headline),
+         el("p", {}, "The audit checks what a plan relies on: orientation, spacing, units, gaps.")),
+      el("section", {class: "card wide"}, audit_rows(scan), scan_facts(scan)),
+      el("div", {class: "row"},
+         button(
+             "Continue", "Continue to the planner",
+             () => {
+               set({page: "plan"});
+               if (state.tour === null) take_tool("window");
+             },
+             {class: "primary big", autofocus: true}),
+         button("Another scan", "Back to the start page", () => set({page: "start"}), {class: "big"})));
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What a pane asks the server to draw, and what its pictures depend on besides.
+import {drawn_objects, is_overlap, makes_shape} from "../drawn_objects";
+import type {Pane} from "./panes";
+import {PaneRequest} from "../protocol";
+import {is_elsewhere, PaneSetting, shown_scan, state, step_of, steps} from "../state";
+import {dark_ground, is_dark} from "../base/theme";
+import {directions_of} from "../base/view_frame";
+
+const sheet_height_mm = 70;
+const most_sample = 32767;
+
+export function request_of(pane: Pane, dragging: boolean): PaneRequest {
+  const setting = pane.setting;
+  const objects = drawn_objects();
+  const shown =
+      setting.only && !is_elsewhere() ? objects.filter((object) => object.id === setting.only) : objects;
+  const request: PaneRequest = {
+    pane: pane.index,
+    kind: pane.is_slice ? "slice" : "view",
+    centre_mm: setting.centre_mm,
+    size: pane.size,
+    pixel_mm: setting.pixel_mm / pane.ratio,
+    objects: shown,
+    dragging,
+  };
+  if (pane.is_slice)
+    add_slice(request, setting);
+  else
+    add_view(request, setting);
+  if (state.preview && !is_elsewhere()) {
+    request.preview = state.preview;
+    request.overlap = true;
+    request.objects = shown.filter((object) => !object.id || !is_stale(object.id));
+  }
+  return request;
+}
+
+function add_view(request: PaneRequest, setting: PaneSetting): void {
+  request.view = setting.view;
+  if (is_dark()) request.background = dark_ground;
+  if (setting.shading !== "partial_volume") request.shading = setting.shading;
+  const cut = state.cut_plane;
+  if (cut) {
+    const normal: [number, number, number] = [0, 0, 0];
+    normal[cut.axis] = cut.side;
+    request.cut_planes = [[...normal, cut.offset_mm * cut.side]];
+    request.cut_face = "grey";
+  }
+  if (state.compare && !is_elsewhere()) request.colour_by = state.compare;
+}
+
+function add_slice(request: PaneRequest, setting: PaneSetting): void {
+  request.scan = shown_scan();
+  request.window = state.grey;
+  request.at_mm = state.cross_mm;
+  const {look, up} = directions_of(setting.tilt);
+  request.plane = setting.mode === "panoramic" && state.arch_mm.length > 1 ?
+      {curve_mm: state.arch_mm, height_mm: sheet_height_mm} :
+      setting.plane === "oblique" ? {normal: look, up} :
+                                    setting.plane;
+  if (state.draft_window)
+    request.threshold = [state.draft_window.low, state.draft_window.high ?? most_sample];
+}
+
+// While a piece is dragged, the overlap that was evaluated before says nothing.
+function is_stale(id: string): boolean {
+  const step = step_of(id);
+  return step !== undefined && is_overlap(step, steps());
+}
+
+/// The steps that make shapes, as a text: what pictures depend on besides their own request.
+export const shapes = (): string => JSON.stringify([
+  state.plan?.path, state.evaluations,
+  steps().filter((step) => makes_shape(step) || step.do === "head_position")
+]);
+
+/// Whether an object that is to be drawn is still being evaluated: the picture before stays until it is
+/// there.
+export function is_pending(): boolean {
+  const pending = new Set((state.plan?.objects ?? [])
+                              .filter((object) => object.evaluated === false && !object.error)
+                              .map((object) => object.id));
+  return drawn_objects().some((object) => object.id !== undefined && pending.has(object.id));
+}

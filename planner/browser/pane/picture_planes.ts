@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What comes beside a picture at rest: the depth and the object of every pixel of a view, the samples of a
+// slice.
+import {FrameHeader} from "../protocol";
+
+export interface Planes {
+  depth: Float32Array|null;  // mm along the view's look, NaN beside all objects
+  object: Uint16Array|null;  // from 1 in the header's objects, 0 none
+  value: Float32Array|null;  // samples, NaN beside the scan
+}
+
+// Browsers have it; the compiler's list of their names does not yet.
+declare class DecompressionStream implements GenericTransformStream {
+  constructor(format: "deflate");
+  readonly readable: ReadableStream;
+  readonly writable: WritableStream;
+}
+
+async function inflated(bytes: Uint8Array): Promise<ArrayBuffer> {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).arrayBuffer();
+}
+
+export async function planes_of(header: FrameHeader, parts: Uint8Array[]): Promise<Planes> {
+  const plane = async(kind: "depth"|"object"|"value"): Promise<ArrayBuffer|null> => {
+    const at = header.parts.findIndex((part) => part.kind === kind);
+    return at < 0 ? null : inflated(parts[at]!);
+  };
+  const [depth, object, value] = [await plane("depth"), await plane("object"), await plane("value")];
+  return {
+    depth: depth && new Float32Array(depth),
+    object: object && new Uint16Array(object),
+    value: value && new Float32Array(value)
+  };
+}

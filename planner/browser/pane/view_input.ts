@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Pointer, pen, touch, wheel and keys in a pane: the tool in hand first, then turning, panning, zooming,
+// slices, the cross-hair.
+import {tilt_from} from "./oblique";
+import type {Pane} from "./panes";
+import {change_pane} from "./panes";
+import {set, shown_scan, state} from "../state";
+import {Pointer, active_tool} from "../tool/tool";
+import {Vec2, Vec3, add, dot, hundredths, scaled} from "../base/vector";
+import {turned} from "../base/view_frame";
+
+const turn_deg_per_px = 0.45;
+const click_px = 4;
+
+type Drag = "turn"|"pan"|"zoom"|"grey"|"cross"|"tilt"|"tool";
+
+export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane, at: Vec2) => void): void {
+  const canvas = pane.canvas;
+  const fingers = new Map<number, Vec2>();
+  let drag: Drag|null = null;
+  let start: Vec2 = [0, 0];
+  let has_moved = false;
+  let pinch = 0;
+  let tilt: ((to: Vec2) => void)|null = null;
+
+  const at_of = (event: PointerEvent|WheelEvent|MouseEvent): Vec2 => {
+    const box = canvas.getBoundingClientRect();
+    return [(event.clientX - box.left) * pane.ratio, (event.clientY - box.top) * pane.ratio];
+  };
+  const pointer = (event: PointerEvent): Pointer => ({pane, at: at_of(event), event});
+  const want_slices = (): void => {
+    for (const other of all())
+      if (other.is_slice) other.want(true);
+  };
+  const want_oblique = (): void => {
+    for (const other of all()) {
+      if (other.is_oblique) other.want(true);
+      other.redraw();
+    }
+  };
+  const put_cross = (at: Vec2): void => {
+    set({cross_mm: hundredths(pane.point_at(at))});
+    want_slices();
+  };
+
+  function drag_of(event: PointerEvent): Drag {
+    if (event.button === 1 || event.shiftKey) return "pan";
+    if (event.button === 2) return pane.is_slice ? "grey" : "pan";
+    if (event.ctrlKey || event.metaKey) return "zoom";
+    return pane.is_slice ? "cross" : "turn";
+  }
+
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.focus({preventScroll: true});
+    canvas.setPointerCapture(event.pointerId);
+    set({active_pane: pane.index});
+    fingers.set(event.pointerId, at_of(event));
+    start = at_of(event);
+    has_moved = false;
+    if (fingers.size === 2) {
+      if (drag === "tool") active_tool()?.up?.(pointer(event));
+      pinch = spread(fingers);
+      drag = "pan";
+      return;
+    }
+    const is_plain = event.button === 0 && !event.shiftKey && !event.ctrlKey && !event.metaKey;
+    tilt = is_plain ? tilt_from(pane, start) : null;
+    drag = tilt ? "tilt" : is_plain && active_tool()?.down?.(pointer(event)) ? "tool" : drag_of(event);
+    if (drag === "cross") put_cross(start);
+  });
+
+  canvas.addEventListener("pointermove", (event) => {
+    const at = at_of(event);
+    pointed(pane, at);
+    if (!drag) return active_tool()?.hover?.(pointer(event));
+    const from = middle(fingers);
+    if (fingers.has(event.pointerId)) fingers.set(event.pointerId, at);
+    const to = middle(fingers);
+    if (Math.hypot(at[0] - start[0], at[1] - start[1]) > click_px * pane.ratio) has_moved = true;
+    if (drag === "tool") return active_tool()?.move?.(pointer(event));
+    if (fingers.size === 2) {
+      const now = spread(fingers);
+      if (pinch) pane.zoom(pinch / now, to);
+      pinch = now;
+    }
+    const by: Vec2 = [to[0] - from[0], to[1] - from[1]];
+    if (drag === "turn" && has_moved) turn(pane, by[0] / pane.ratio, by[1] / pane.ratio);
+    if (drag === "pan") pane.pan(by);
+    if (drag === "zoom") pane.zoom(Math.exp(by[1] * 0.006), start);
+    if (drag === "cross") put_cross(at);
+    if (drag === "tilt") {
+      tilt?.(at);
+      want_oblique();
+    }
+    if (drag === "grey") {
+      const width = Math.max(1, state.grey[1] + (by[0] / pane.ratio) * 8);
+      set({grey: [Math.round(state.grey[0] - (by[1] / pane.ratio) * 5), Math.round(width)]});
+      want_slices();
+    }
+  });
+
+  const ended = (event: PointerEvent): void => {
+    if (!fingers.delete(event.pointerId)) return;
+    if (drag === "tool")
+      active_tool()?.up?.(pointer(event));
+    else if (drag === "turn" && !has_moved)
+      click(at_of(event));
+    if (!fingers.size) drag = null;
+  };
+  // A dialog that opens in mid-drag takes the pointer away: the drag ends there.
+  for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
+    canvas.addEventListener(end, ended);
+
+  // A click in a view brings the cross-hair to the surface and selects the object's step.
+  function click(at: Vec2): void {
+    const picked = pane.pick(at);
+    if (!picked) return;
+    set({cross_mm: hundredths(picked.point), ...(picked.object ? {selected: picked.object} : {})});
+    want_slices();
+  }
+
+  canvas.addEventListener("dblclick", (event) => {
+    const tool = active_tool();
+    if (tool?.double?.({pane, at: at_of(event), event: event as PointerEvent})) return;
+    if (state.tool === "navigate") set({maximised: state.maximised === null ? pane.index : null});
+  });
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        if (pane.is_slice && !event.ctrlKey)
+          step_slice(pane, event.deltaY > 0 ? 1 : -1, want_slices);
+        else
+          pane.zoom(Math.exp(event.deltaY * 0.0012), at_of(event));
+      },
+      {passive: false},
+  );
+
+  canvas.addEventListener("keydown", (event) => {
+    if (active_tool()?.press?.(event, pane)) return event.preventDefault();
+    const step = event.shiftKey ? 15 : 5;
+    const arrows:
+        {[key: string]: Vec2} = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+    const arrow = arrows[event.key];
+    if (arrow && pane.is_slice && arrow[1])
+      step_slice(pane, arrow[1] * (event.shiftKey ? 5 : 1), want_slices);
+    else if (arrow && pane.is_oblique) {
+      const {azimuth, elevation} = pane.setting.tilt;
+      change_pane(pane.index, {
+        tilt: event.shiftKey ? {azimuth, elevation: within(elevation + 5 * arrow[0])} :
+                               {azimuth: round_about(azimuth + 5 * arrow[0]), elevation}
+      });
+      want_oblique();
+    } else if (arrow && !pane.is_slice)
+      turn(pane, (arrow[0] * step) / turn_deg_per_px, (arrow[1] * step) / turn_deg_per_px);
+    else if (event.key === "+" || event.key === "=")
+      pane.zoom(1 / 1.15, [pane.size[0] / 2, pane.size[1] / 2]);
+    else if (event.key === "-")
+      pane.zoom(1.15, [pane.size[0] / 2, pane.size[1] / 2]);
+    else if (event.key === "PageUp")
+      step_slice(pane, -1, want_slices);
+    else if (event.key === "PageDown")
+      step_slice(pane, 1, want_slices);
+    else
+      return;
+    event.preventDefault();
+  });
+}
+
+/// Between the fingers: where each of them moves on its own, what they hold goes along with their middle.
+function middle(fingers: Map<number, Vec2>): Vec2 {
+  const all = [...fingers.values()];
+  const mean = (axis: 0|1): number => all.reduce((sum, at) => sum + at[axis], 0) / (all.length || 1);
+  return [mean(0), mean(1)];
+}
+
+function spread(fingers: Map<number, Vec2>): number {
+  const [a, b] = [...fingers.values()];
+  return a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
+}
+
+const round_about = (azimuth: number): number => ((((azimuth + 180) % 360) + 360) % 360) - 180;
+const within = (elevation: number): number => Math.max(-90, Math.min(90, elevation));
+
+/// Turns a view by CSS pixels of the pointer: the surface follows it.
+export function turn(pane: Pane, by_x: number, by_y: number): void {
+  const from = turned(pane.setting.view);
+  const azimuth = round_about(from.azimuth - by_x * turn_deg_per_px);
+  const elevation = within(from.elevation + by_y * turn_deg_per_px);
+  const tenth = (value: number): number => Math.round(value * 10) / 10;
+  change_pane(pane.index, {view: {azimuth: tenth(azimuth), elevation: tenth(elevation)}});
+  pane.want(true);
+}
+
+/// Moves the cross-hair through the slices by their distance.
+function step_slice(pane: Pane, by: number, want_slices: () => void): void {
+  const spacing = state.plan?.scans.find((scan) => scan.name === shown_scan())?.spacing_mm ?? [1, 1, 1];
+  const look = pane.frame.look;
+  const step = Math.max(0.2, Math.abs(dot(spacing as Vec3, look.map(Math.abs) as Vec3)));
+  set({cross_mm: hundredths(add(state.cross_mm, scaled(look, by * step)))});
+  want_slices();
+}

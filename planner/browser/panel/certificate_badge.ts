@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A certificate as a badge on every number: both kernels agree, doubt, disagree, or have not been asked.
+import {Child, el} from "../base/html";
+import {show_place} from "../pane/pane_grid";
+import {Certificate, Measured} from "../protocol";
+import {set} from "../state";
+
+const words = {
+  PASS: "both kernels agree",
+  WARN: "the kernels agree, with a doubt",
+  FAIL: "the kernels disagree"
+} as const;
+const signs = {
+  PASS: "✓",
+  WARN: "!",
+  FAIL: "✕"
+} as const;
+
+/// The badge. Its tip is the certificate's sentence; a click goes to the certificate's place in all panes.
+export function badge(id: string, certificate: Certificate|null|undefined): Child {
+  if (!certificate)
+    return el(
+        "span", {
+          class: "badge none",
+          role: "img",
+          "aria-label": `${id}: not certified`,
+          "data-tip": "Not certified yet. Certify asks both kernels and compares their answers."
+        },
+        "·");
+  const resolved = certificate.resolved === false ? " Not resolved: smaller than the voxels can tell." : "";
+  return el(
+      "button", {
+        type: "button",
+        class: `badge ${certificate.verdict.toLowerCase()}${
+            certificate.resolved === false ? " unresolved" : ""}`,
+        "aria-label": `${id}: ${words[certificate.verdict]}`,
+        "data-tip":
+            `${certificate.sentence}${resolved}${certificate.place ? " Click to see the place." : ""}`,
+        onclick: (event: MouseEvent) => {
+          event.stopPropagation();
+          set({selected: id});
+          if (certificate.place) show_place(certificate.place, certificate.sentence);
+        },
+      },
+      signs[certificate.verdict]);
+}
+
+/// "56 764 ± 310 mm³", grouped and with as many digits as the half-width leaves.
+export function measured_text(measured: Measured|null|undefined): string {
+  if (!measured || !Number.isFinite(measured.value)) return "–";
+  const unit = measured.unit.replace("mm3", "mm³").replace("mm2", "mm²").replace("deg", "°");
+  const half = measured.half_width ?? null;
+  const is_length = unit === "mm" || unit === "°";
+  const digits = is_length ? 2 : Math.abs(measured.value) < 100 ? 1 : 0;
+  const number = grouped(measured.value, digits);
+  return half === null || half === 0 ?
+      `${number} ${unit}` :
+      `${number} ± ${grouped(half, half < 10 ? Math.max(digits, 1) : 0)} ${unit}`;
+}
+export const grouped = (value: number, digits = 0): string =>
+    value.toFixed(digits).replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f").replace("-", "−");

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The right column: the tool in hand and the selected step, the plan's numbers with their certificates, and
+// how far each piece and landmark moves.
+import {add_step, replace_step} from "../actions";
+import {badge, measured_text} from "./certificate_badge";
+import {is_piece, makes_shape} from "../drawn_objects";
+import {button, Child, el, fill, fill_tabs} from "../base/html";
+import {icon, is_icon} from "../base/icons";
+import {movement_fields} from "./move_fields";
+import {fetch_movement, movement} from "./movement_panel";
+import {numbers} from "./numbers_panel";
+import {Step} from "../protocol";
+import {step_form} from "./schema_form";
+import {selected_step, set, state, watch} from "../state";
+import {active_tool, take_tool} from "../tool/tool";
+import {compare_card, cut_plane_card} from "../pane/view_cards";
+
+export function make_inspector(host: HTMLElement): void {
+  const tabs = el("div", {class: "tabs", role: "tablist"});
+  const body = el("div", {class: "panel-body", role: "tabpanel"});
+  host.append(tabs, body);
+  const again = (): void => {
+    if (!state.plan) return fill(body);
+    fill_tabs(
+        tabs, state.right_tab,
+        [
+          ["inspector", "Inspector", "Inspector: the tool in hand and the selected step"],
+          ["numbers", "Numbers", "Numbers: volumes and measurements with their certificates"],
+          ["movement", "Movement", "Movement: how far each piece and landmark moves"]
+        ],
+        (right_tab) => set({right_tab}));
+    fill(
+        body,
+        state.right_tab === "numbers"      ? numbers() :
+            state.right_tab === "movement" ? movement() :
+                                             inspector());
+  };
+  watch(
+      [
+        "plan", "selected", "right_tab", "tool", "draft_window", "draft_step", "preview", "overlap_mm3",
+        "compare", "cut_plane", "arch_mm"
+      ],
+      again);
+  watch(["plan", "right_tab"], () => void fetch_movement());
+}
+
+function inspector(): Child {
+  const draft = state.draft_step;
+  if (draft)
+    return el(
+        "section", {class: "card"}, el("h3", {}, `New step: ${draft.do.replace(/_/g, " ")}`),
+        el("label", {class: "field"}, el("span", {}, "name"), el("input", {
+             value: draft.id,
+             "data-key": "draft-id",
+             onchange: (event: Event) =>
+                 set({draft_step: {...draft, id: (event.target as HTMLInputElement).value}})
+           })),
+        step_form(draft, (step) => set({draft_step: step})),
+        el("div", {class: "row"},
+           button(
+               "Add step", "Adds the step to the plan",
+               () => void add_step(draft, draft.do.replace(/_/g, " ")).then((ok) => {
+                 if (ok) set({draft_step: null});
+               }),
+               {class: "primary"}),
+           button("Cancel", "Adds nothing", () => set({draft_step: null}))));
+  const step = selected_step();
+  const motion =
+      step?.do === "move" || state.tool === "move" || (step && is_piece(step)) ? movement_fields() : null;
+  return [
+    tool_card(), state.cut_plane ? cut_plane_card() : null, state.compare ? compare_card() : null, motion,
+    step ? step_card(step, motion !== null && step.do === "move") : hint()
+  ];
+}
+
+const hint = (): Child => (
+    state.tool === "navigate" ? el("p", {class: "says empty"},
+                                   "Select a step on the left, or take a tool. Ctrl K finds every command.") :
+                                null);
+
+function tool_card(): Child {
+  const tool = active_tool();
+  if (!tool || tool.name === "navigate") return null;
+  return el(
+      "section", {class: "card tool-card"},
+      el("h3", {}, is_icon(tool.name) ? icon(tool.name, 16) : null, tool.title, el("span", {class: "spring"}),
+         button(icon("close", 14), "Put the tool away", () => take_tool("navigate"), {class: "ghost small"})),
+      el("p", {class: "says"}, tool.says), tool.panel?.() ?? null);
+}
+
+function step_card(step: Step, has_motion: boolean): Child {
+  const object = state.plan?.objects.find((one) => one.id === step.id);
+  const certificate = object?.certificate;
+  const is_number = step.do === "measure";
+  const found = is_number ? state.plan?.measurements?.find((one) => one.id === step.id) : undefined;
+  return el(
+      "section", {class: "card"},
+      el("h3", {}, step.id.replace(/_/g, " "), el("small", {}, step.do.replace(/_/g, " ")),
+         el("span", {class: "spring"}),
+         makes_shape(step) && step.do !== "mask" ? badge(step.id, certificate) : null),
+      object?.error ? el("p", {class: "error"}, object.error) : null,
+      object?.volume ? el("p", {class: "reading"}, el("b", {}, measured_text(object.volume)),
+                          object.area ? `  ·  ${measured_text(object.area)}` : "") :
+                                        null,
+      found ? el("p", {class: "reading"}, el("b", {}, measured_text(found))) : null,
+      certificate ? el("p", {class: `sentence ${certificate.verdict.toLowerCase()}`}, certificate.sentence) :
+                    null,
+      step_form(
+          step, (next) => void replace_step(step.id, next, `${step.id} changed`),
+          has_motion ? ["by", "turn"] : []));
+}

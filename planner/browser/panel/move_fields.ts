@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A piece's motion as numbers in the head's words.
+import {Direction, directions, motion_words, Turn, turns} from "../base/anatomical";
+import {overlap_colour} from "../drawn_objects";
+import {Child, el} from "../base/html";
+import {centre_of, commit_motion, current, piece, preview_motion} from "../tool/piece_motion";
+import {Motion} from "../protocol";
+import {state} from "../state";
+
+const titles: Record<Direction|Turn, [string, string]> = {
+  forward_mm: ["Forward", "negative: back"],
+  left_mm: ["Left", "to the patient's left; negative: right"],
+  up_mm: ["Up", "negative: down"],
+  pitch_deg: ["Pitch", "the front goes up"],
+  yaw_deg: ["Yaw", "the front goes to the patient's left"],
+  roll_deg: ["Roll", "the patient's left side goes up"],
+};
+
+/// The fields of a piece's motion in the head's words; null where the selected step is no piece.
+export function movement_fields(): Child {
+  const one = piece();
+  if (!one) return null;
+  if (one.step && !one.step.by && !one.step.turn &&
+      Object.keys(one.step).some((key) => !["id", "do", "object"].includes(key)))
+    return null;
+  const move = current();
+  const field = (word: Direction|Turn): Child => {
+    const unit = word.endsWith("mm") ? "mm" : "°";
+    const values = (unit === "mm" ? move.by : move.turn) as {[field: string]: number | undefined} | undefined;
+    const changed = (value: number): Motion => unit === "mm" ? {...move, by: {...move.by, [word]: value}} : {
+      ...move,
+      turn: {...move.turn, about_mm: move.turn?.about_mm ?? centre_of(one.source), [word]: value}
+    };
+    const take = (event: Event, end: boolean): void => {
+      const value = Number((event.target as HTMLInputElement).value);
+      if (!Number.isFinite(value)) return;
+      if (end)
+        void commit_motion(changed(value));
+      else
+        preview_motion(changed(value));
+    };
+    return el(
+        "label", {class: "number-field", "data-tip": `${titles[word][0]}: ${titles[word][1]}`},
+        el("span", {}, titles[word][0]), el("input", {
+          type: "number",
+          step: unit === "mm" ? 0.5 : 0.5,
+          value: (values?.[word] ?? 0).toString(),
+          "data-key": `move-${word}`,
+          name: word,
+          "aria-label": `${titles[word][0]}, ${titles[word][1]}`,
+          oninput: (event: Event) => take(event, false),
+          onchange: (event: Event) => take(event, true),
+        }),
+        el("i", {}, unit));
+  };
+  const landmarks = state.plan?.landmarks ?? [];
+  const about = move.turn?.about_mm;
+  return el(
+      "section", {class: "card"}, el("h3", {}, one.step ? `Motion of ${one.source}` : `Move ${one.source}`),
+      el("div", {class: "grid-3"}, directions.map(field)), el("div", {class: "grid-3"}, turns.map(field)),
+      el("label", {class: "field"}, el("span", {}, "Turn about"),
+         el("select", {
+           "data-key": "move-about",
+           onchange: (event: Event) => {
+             const value = (event.target as HTMLSelectElement).value;
+             const about_mm = value === "" ? centre_of(one.source) :
+                 value === "cross"         ? state.cross_mm :
+                                             value;
+             void commit_motion({...move, turn: {...move.turn, about_mm}});
+           },
+         },
+            el("option", {value: "", selected: typeof about !== "string"}, "its middle"),
+            el("option", {value: "cross"}, "the cross-hair"),
+            landmarks.map(
+                (mark) =>
+                    el("option", {value: mark.name, selected: about === mark.name},
+                       mark.name.replace(/_/g, " "))))),
+      el("p", {class: "reading", role: "status"}, motion_words(move),
+         state.preview && state.overlap_mm3 !== null ?
+             el("b", {style: `color:${state.overlap_mm3 > 0.5 ? overlap_colour : "var(--good)"}`},
+                ` overlap ${state.overlap_mm3.toFixed(0)} mm³`) :
+             null));
+}

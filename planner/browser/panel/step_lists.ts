@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The left column: objects with their looks, the plan's steps, and its history with branches.
+import {change_history, try_to} from "../actions";
+import {motion_words} from "../base/anatomical";
+import {badge} from "./certificate_badge";
+import {copy_command, name_version, new_branch, remove_step} from "../commands";
+import {look_of, makes_shape, object_ids} from "../drawn_objects";
+import {button, Child, el, fill, fill_tabs} from "../base/html";
+import {icon} from "../base/icons";
+import {show_scan} from "../pane/pane_grid";
+import {Json, Motion, ObjectState, Step} from "../protocol";
+import {ObjectLook, set, shown_scan, state, steps, watch} from "../state";
+
+const object_of = (id: string): ObjectState|undefined =>
+    state.plan?.objects.find((object) => object.id === id);
+
+export function make_lists(host: HTMLElement): void {
+  const tabs = el("div", {class: "tabs", role: "tablist"});
+  const body = el("div", {class: "list", role: "tabpanel"});
+  host.append(tabs, body);
+  const again = (): void => {
+    if (!state.plan) return fill(body);
+    fill_tabs(
+        tabs, state.left_tab,
+        [
+          ["steps", "Steps", "Steps of the plan, in order"],
+          ["objects", "Objects", "Objects: colour, visibility, opacity"],
+          ["history", "History", "History: every change, branches and versions"]
+        ],
+        (left_tab) => set({left_tab}));
+    fill(
+        body, scan_choice(),
+        state.left_tab === "objects"   ? objects() :
+            state.left_tab === "steps" ? step_rows() :
+                                         history());
+  };
+  watch(["plan", "looks", "selected", "left_tab", "scan"], again);
+}
+
+/// Which scan the panes show, where the plan has several.
+function scan_choice(): Child {
+  const names = (state.plan?.scans ?? []).map((scan) => scan.name);
+  if (names.length < 2) return null;
+  return el(
+      "label",
+      {class: "field", "data-tip": "The scan whose slices are shown. A donor's lies in a frame of its own."},
+      el("span", {}, "Scan"),
+      el("select", {
+        "data-key": "scan",
+        name: "scan",
+        onchange: (event: Event) => show_scan((event.target as HTMLSelectElement).value),
+      },
+         names.map(
+             (name) =>
+                 el("option", {value: name, selected: name === shown_scan()}, name.replace(/_/g, " ")))));
+}
+
+function change_look(id: string, change: ObjectLook): void {
+  set({looks: {...state.looks, [id]: {...state.looks[id], ...change}}});
+}
+
+const eye = (id: string): Child => {
+  const look = look_of(id);
+  return button(
+      icon(look.visible ? "eye" : "eye_off", 16), `${look.visible ? "Hide" : "Show"} ${id}`, (event) => {
+        event.stopPropagation();
+        change_look(id, {visible: !look.visible});
+      }, {class: `ghost small${look.visible ? "" : " off"}`, "aria-pressed": String(look.visible)});
+};
+
+function objects(): Child {
+  return object_ids().map((id) => {
+    const look = look_of(id);
+    const object = object_of(id);
+    const percent = (opacity: number): string => `${Math.round(opacity * 100)} %`;
+    const shown = el("span", {}, percent(look.opacity));
+    return el(
+        "div", {class: `item${state.selected === id ? " selected" : ""}`, onclick: () => set({selected: id})},
+        el("div", {class: "item-line"}, el("input", {
+             type: "color",
+             class: "swatch",
+             value: look.colour,
+             "aria-label": `Colour of ${id}`,
+             "data-tip": "Colour",
+             onclick: (event: Event) => event.stopPropagation(),
+             onchange: (event: Event) => change_look(id, {colour: (event.target as HTMLInputElement).value}),
+           }),
+           el("button", {type: "button", class: "name"}, id.replace(/_/g, " ")),
+           object?.kind === "mask" ? null : badge(id, object?.certificate), eye(id)),
+        el("label", {class: "opacity", "data-tip": "Opacity"}, shown, el("input", {
+             type: "range",
+             min: 0.05,
+             max: 1,
+             step: 0.05,
+             value: look.opacity,
+             "aria-label": `Opacity of ${id}`,
+             "data-key": `opacity-${id}`,
+             oninput: (event: Event) => {
+               const opacity = Number((event.target as HTMLInputElement).value);
+               shown.textContent = percent(opacity);
+               change_look(id, {opacity});
+             },
+             onclick: (event: Event) => event.stopPropagation(),
+           })),
+        object?.error ? el("p", {class: "error"}, object.error) : null);
+  });
+}
+
+/// What a step does, in one line.
+export function step_words(step: Step): string {
+  const list = (value: Json|undefined): string =>
+      (Array.isArray(value) ?
+           value.map((one) => (typeof one === "string" ? one : "")).filter(Boolean).join(", ") :
+           "");
+  switch (step.do) {
+    case "window":
+      return `samples from ${String(step.low)}${step.high === undefined ? "" : ` to ${String(step.high)}`}`;
+    case "mask":
+      return `regions in ${
+          Array.isArray(step.regions) ?
+              (step.regions as {view: string}[]).map((region) => region.view).join(" and ") :
+              "a file"}`;
+    case "combine":
+      return String(step.expression);
+    case "move":
+      return `${String(step.object)}: ${
+          step.by || step.turn || step.points ? motion_words(step as unknown as Motion) :
+              step.translate_mm               ? `by ${(step.translate_mm as number[]).join(", ")} mm` :
+                                                "moved"              }`;
+    case "measure":
+      return step.points_mm ? list(step.points_mm) || "points" :
+          step.to           ? `${String(step.object)} to ${String(step.to)}` :
+                              String(step.object ?? "");
+    case "landmarks":
+      return `${Array.isArray(step.points) ? step.points.length : ""} landmarks`;
+    case "export":
+      return String(step.path);
+    default:
+      return [step.object, step.scan, step.path].filter((value) => typeof value === "string").join(" ");
+  }
+}
+
+function step_rows(): Child {
+  return [
+    steps().map((step, index) => {
+      const object = object_of(step.id);
+      return el(
+          "div", {
+            class: `item step${state.selected === step.id ? " selected" : ""}`,
+            onclick: () => set({selected: step.id, right_tab: "inspector"})
+          },
+          el("div", {class: "item-line"},
+             makes_shape(step) ? el("span", {class: "chip", style: `background:${look_of(step.id).colour}`}) :
+                                 el("span", {class: "chip empty"}, index + 1),
+             el("button",
+                {type: "button", class: "name", "aria-current": state.selected === step.id ? "step" : null},
+                step.id.replace(/_/g, " ")),
+             makes_shape(step) && step.do !== "mask" ? badge(step.id, object?.certificate) : null,
+             makes_shape(step) ? eye(step.id) : null, step_menu(step)),
+          el("p", {class: "words"}, el("b", {}, step.do.replace(/_/g, " ")), " ", step_words(step)),
+          object?.error ? el("p", {class: "error"}, object.error) : null);
+    }),
+    steps().length ? null : el("p", {class: "says"}, "No step yet."),
+  ];
+}
+
+function step_menu(step: Step): Child {
+  const menu =
+      el("div", {class: "menu", role: "menu", hidden: true},
+         button(
+             "Copy as command", "A line for the terminal that does this step",
+             () => void copy_command(step, "shell"), {role: "menuitem"}),
+         button(
+             "Copy as Python", "A line of Python that adds this step",
+             () => void copy_command(step, "python"), {role: "menuitem"}),
+         button(
+             "Take away", "Takes the step out of the plan; undo brings it back", () => remove_step(step),
+             {role: "menuitem", class: "danger"}));
+  const open = button(icon("more", 16), `More for ${step.id}`, (event) => {
+    event.stopPropagation();
+    const was_hidden = menu.hidden;
+    document.querySelectorAll<HTMLElement>(".menu").forEach((other) => {
+      other.hidden = true;
+    });
+    menu.hidden = !was_hidden;
+  }, {class: "ghost small", "aria-haspopup": "menu"});
+  return el("span", {class: "menu-host"}, open, menu);
+}
+
+let diff_rows: {from: number; rows: string[]}|null = null;
+
+function history(): Child {
+  const plan = state.plan;
+  if (!plan) return null;
+  return [
+    el("div", {class: "row"},
+       button(
+           [icon("branch", 15), "New branch"],
+           "New branch. Tries something beside the present plan; both are kept", () => void new_branch()),
+       button("Name version", "Names this state, so that you find it again", () => void name_version())),
+    plan.branches.length > 1 ?
+        el("label", {class: "field"}, el("span", {}, "Branch"),
+           el("select", {
+             "data-key": "branch",
+             name: "branch",
+             onchange: (event: Event) =>
+                 void change_history("go_to", {where: (event.target as HTMLSelectElement).value})
+           },
+              plan.branches.map(
+                  ([name]) => el("option", {value: name, selected: name === plan.branch}, name)))) :
+        null,
+    plan.history.map((one) => {
+      const is_now = one.id === plan.edit;
+      return el(
+          "div", {class: `item edit${is_now ? " selected" : ""}`},
+          el("div", {class: "item-line"},
+             el("button", {
+               type: "button",
+               class: "name",
+               "data-tip": is_now ? "The present state" : "Go to this state",
+               onclick: () => void change_history("go_to", {where: String(one.id)})
+             },
+                one.what || "first state"),
+             one.names.map((name) => el("span", {class: "tag"}, name)),
+             is_now ? null :
+                      button(
+                          "Diff", "What changed from this state to the present one",
+                          () => void show_diff(one.id), {class: "ghost small"})),
+          el("p", {class: "words"}, time_words(one.made_at)),
+          diff_rows?.from === one.id ?
+              el("ul", {class: "diff"},
+                 diff_rows.rows.map(
+                     (row) =>
+                         el("li",
+                            {class: row[0] === "+" ? "more" :
+                                 row[0] === "-"    ? "less" :
+                                                     ""},
+                            row))) :
+              null);
+    }),
+  ];
+}
+
+async function show_diff(from: number): Promise<void> {
+  if (diff_rows?.from === from)
+    diff_rows = null;
+  else {
+    const answer =
+        await try_to<{rows: (string | {[key: string]: Json})[]}>("diff", {a: from, b: state.plan?.edit});
+    if (answer)
+      diff_rows = {
+        from,
+        rows: answer.rows.map(
+            (row) => (typeof row === "string" ? row : Object.values(row).map(String).join(" ")))
+      };
+  }
+  set({left_tab: "history"});
+}
+
+const time_words = (made_at: string): string => {
+  const time = new Date(made_at);
+  return Number.isNaN(time.getTime()) ?
+      made_at :
+      time.toLocaleTimeString([], {hour: "2-digit", minute: "2-digit", second: "2-digit"});
+};

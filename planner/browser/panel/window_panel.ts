@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The window tool: tissues and two sliders over the scan's samples, shown live in views and slices before it
+// is a step.
+import {add_step, replace_step, window_step} from "../actions";
+import {button, Child, el} from "../base/html";
+import {Step, Tissue} from "../protocol";
+import {DraftWindow, first_scan, selected_step, set, state, step_of, steps} from "../state";
+import {take_tool, Tool} from "../tool/tool";
+
+const usual: Tissue[] = [
+  {name: "bone", low: 300},
+  {name: "skin", low: -300},
+  {name: "soft_tissue", low: -29, high: 150},
+  {name: "fat", low: -190, high: -30},
+];
+const range = (): [number, number] => {
+  const [low, high] = state.plan?.scans[0]?.range ?? [-1000, 3000];
+  return [Math.max(-1024, Math.floor(low)), Math.min(4000, Math.ceil(high))];
+};
+const edited = (): Step|undefined => (selected_step()?.do === "window" ? selected_step() : undefined);
+
+export const window_tool: Tool = {
+  name: "window",
+  title: "Tissue window",
+  says: "Choose a tissue or drag the thresholds; views and slices show it at once.",
+  key: "w",
+  cursor: "default",
+  taken() {
+    const step =
+        edited() ?? (state.selected === null ? steps().find((one) => one.do === "window") : undefined);
+    const draft: DraftWindow = step ? {
+      scan: String(step.scan),
+      low: Number(step.low),
+      replaces: step.id,
+      ...(step.high === undefined ? {} : {high: Number(step.high)})
+    } :
+                                      {scan: first_scan(), low: 300};
+    set({draft_window: draft, selected: step?.id ?? null});
+  },
+  left() {
+    set({draft_window: null});
+  },
+  panel,
+};
+
+async function apply(): Promise<void> {
+  const draft = state.draft_window;
+  if (!draft) return;
+  const step = step_of(draft.replaces ?? null);
+  const {high: _high, ...kept} = step ?? window_step(draft.low);
+  const next: Step = {...kept, low: draft.low, ...(draft.high === undefined ? {} : {high: draft.high})} as
+      Step;
+  const what = `window from ${draft.low}${draft.high === undefined ? "" : ` to ${draft.high}`}`;
+  await (step ? replace_step(step.id, next, what) : add_step(next, what));
+  set({draft_window: null});
+  take_tool("navigate");
+}
+
+function panel(): Child {
+  const draft = state.draft_window;
+  if (!draft) return null;
+  const [least, most] = range();
+  const tissues = state.hello?.tissues.length ? state.hello.tissues : usual;
+  const change = (part: Partial<DraftWindow>): void => set({draft_window: {...draft, ...part}});
+  const slider = (label: string, value: number, key: string, take: (value: number) => void): Child => {
+    const shared = {step: 1, value, "aria-label": label};
+    const number = (event: Event): number => Number((event.target as HTMLInputElement).value);
+    const typed = el("input", {
+      type: "number",
+      ...shared,
+      "data-key": key,
+      name: key,
+      onchange: (event: Event) => take(number(event))
+    });
+    return el(
+        "label", {class: "slider"}, el("span", {}, label), el("input", {
+          type: "range",
+          min: least,
+          max: most,
+          ...shared,
+          "data-key": `${key}-range`,
+          oninput: (event: Event) => {
+            typed.value = String(number(event));
+            take(number(event));
+          }
+        }),
+        typed);
+  };
+  return [
+    el("div", {class: "presets", role: "group", "aria-label": "Tissues"}, tissues.map((tissue) => {
+      const on = draft.low === (tissue.low ?? least) && draft.high === (tissue.high ?? undefined);
+      return button(
+          tissue.name.replace(/_/g, " "),
+          `${tissue.name.replace(/_/g, " ")}: ${tissue.low ?? "lowest"} to ${tissue.high ?? "highest"} HU. ${
+              tissue.says ?? ""}`,
+          () => {
+            const {high: _high, ...rest} = draft;
+            set({
+              draft_window: {
+                ...rest,
+                low: tissue.low ?? least,
+                ...(tissue.high === null || tissue.high === undefined ? {} : {high: tissue.high})
+              }
+            });
+          },
+          {class: on ? "on" : "", "aria-pressed": String(on)});
+    })),
+    slider("From", draft.low, "low", (low) => change({low})),
+    slider("To", draft.high ?? most, "high", (high) => change({high: high >= most ? undefined : high})),
+    el("div", {class: "row"},
+       button(
+           draft.replaces ? `Set ${draft.replaces}` : "Make object", "Makes it a step of the plan",
+           () => void apply(), {class: "primary", "data-key": "apply-window"}),
+       button("Cancel", "Leaves the plan as it is", () => take_tool("navigate"))),
+  ];
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The piece that moves: which one it is, how it moves now, a motion tried, and one kept as a step.
+import {add_steps, free_id, replace_step} from "../actions";
+import {directions, lps, motion_words} from "../base/anatomical";
+import {is_overlap, look_of, makes_shape} from "../drawn_objects";
+import {mark_mm} from "../pane/overlay";
+import {Json, Motion, Step} from "../protocol";
+import {selected_step, set, state, steps} from "../state";
+import {add, scaled, Vec3} from "../base/vector";
+
+/// The piece that the tool moves: the selected move's, or the selected object itself.
+export function piece(): {source: string; step: Step | undefined}|null {
+  const step = selected_step();
+  if (!step || !makes_shape(step) || step.do === "mask") return null;
+  if (step.do === "move" && typeof step.object === "string") return {source: step.object, step};
+  const moved = steps().find((one) => one.do === "move" && one.object === step.id);
+  return moved ? {source: step.id, step: moved} : {source: step.id, step: undefined};
+}
+
+const motion_of = (step: Step|undefined): Motion =>
+    step?.points ? {points: step.points as unknown as Motion["points"]} : ({
+      by: {...((step?.by as Motion["by"]) ?? {})},
+      ...(step?.turn ? {turn: {...(step.turn as unknown as NonNullable<Motion["turn"]>)}} : {}),
+    });
+export const current = (): Motion => state.preview?.move ?? motion_of(piece()?.step);
+
+/// Where a piece's handles stand: its pivot, moved along.
+export function pivot_mm(source: string, move: Motion): Vec3 {
+  const about = mark_mm(move.turn?.about_mm as Json | undefined) ?? centre_of(source);
+  return directions.reduce<Vec3>((p, word) => add(p, scaled(lps[word], move.by?.[word] ?? 0)), about);
+}
+export function centre_of(id: string): Vec3 {
+  const bounds = state.plan?.objects.find((object) => object.id === id)?.bounds_mm;
+  return bounds ? scaled(add(bounds[0], bounds[1]), 0.5) : state.cross_mm;
+}
+
+/// What a piece must not run into: the shown objects that stay.
+function others(source: string, moved: string|undefined): string[] {
+  return steps()
+      .filter((step) => makes_shape(step) && step.do !== "mask" && step.id !== source && step.id !== moved)
+      .filter((step) => look_of(step.id).visible && !is_overlap(step, steps()) && step.object !== source)
+      .map((step) => step.id);
+}
+
+export function preview_motion(move: Motion): void {
+  const one = piece();
+  if (!one) return;
+  const object = one.step?.id ?? `${one.source}_moved`;
+  set({
+    preview: {object: one.step?.id ?? one.source, of: one.source, move, against: others(one.source, object)}
+  });
+}
+
+export async function commit_motion(move: Motion): Promise<void> {
+  const one = piece();
+  if (!one) return;
+  const fields = move.points ? {points: move.points as unknown as Json} : {
+    by: clean(move.by ?? {}),
+    ...(move.turn ? {turn: {...clean(move.turn as {[f: string]: Json}), about_mm: move.turn.about_mm}} : {})
+  };
+  const what = `${one.source}: ${motion_words(move)}`;
+  if (one.step) {
+    const {by: _by, turn: _turn, points: _points, ...kept} = one.step;
+    await replace_step(one.step.id, {...kept, ...fields} as Step, what);
+  } else {
+    const id = free_id(`${one.source}_moved`);
+    const stays = others(one.source, id);
+    const more: Step[] = [{id, do: "move", object: one.source, ...fields} as Step];
+    // What both have in common, and last the operation's outcome, which the report shows.
+    if (stays.length)
+      more.push(
+          {
+            id: free_id("overlap"),
+            do: "combine",
+            expression: stays.length > 1 ? `(${stays.join(" | ")}) & ${id}` : `${stays[0]} & ${id}`
+          },
+          {id: free_id("planned"), do: "combine", expression: `${stays.join(" | ")} | ${id}`});
+    await add_steps(more, what);
+    set({selected: id});
+  }
+  set({preview: null, overlap_mm3: null});
+}
+const clean = (values: {[field: string]: Json|undefined}): {[field: string]: Json} =>
+    Object.fromEntries(Object.entries(values).filter(
+        ([, value]) => typeof value === "number" && value !== 0)) as {[field: string]: Json};
+
+export const can_move = (): boolean => piece() !== null;

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Tools that take points: landmarks by name, distances, angles, ways along a surface, seeds of a
+// segmentation, the dental arch.
+import {add_step, free_id, put_landmark} from "../actions";
+import {button, el} from "../base/html";
+import {dot_at, ink, line, text} from "../base/ink";
+import {is_drawn} from "../pane/overlay";
+import {show_in, show_scan} from "../pane/pane_grid";
+import type {Pane} from "../pane/panes";
+import {Json} from "../protocol";
+import {first_scan, is_elsewhere, notify, selected_step, set, state} from "../state";
+import {take_tool, Tool} from "./tool";
+import {angle_deg, distance, hundredths, Vec2, Vec3} from "../base/vector";
+
+let taken: Vec3[] = [];
+let pointed: Vec3|null = null;
+let landmark_name = "";
+interface Wanted {
+  name: string;
+  says: string;
+  scan?: string;
+}
+let procedure_wants: Wanted[] = [];
+let held: {name: string; point: Vec3}|null = null;  // a landmark that is dragged
+let is_snapping = true;
+
+const named = (p: Vec3): Json =>
+    state.plan?.landmarks.find((mark) => distance(mark.point, p) < 0.005)?.name ?? [...p];
+
+/// A landmark that is nearer than this on the screen is meant when its place is clicked.
+const near_px = 10;
+
+function landmark_at(pane: Pane, at: Vec2): {name: string; point: Vec3}|undefined {
+  return state.plan?.landmarks.find((mark) => {
+    if (!is_drawn(pane, mark)) return false;
+    const p = pane.pixel_at(mark.point);
+    return Math.hypot(p[0] - at[0], p[1] - at[1]) < near_px * pane.ratio;
+  });
+}
+/// Points of slices stay where they are clicked; a donor's surface is no object of the plan.
+const snaps = (pane: Pane): boolean => is_snapping && !pane.is_slice && !is_elsewhere();
+
+function point_tool(
+    kind: "distance"|"angle"|"surface_distance", count: number, title: string, says: string,
+    key: string): Tool {
+  return {
+    name: kind,
+    title,
+    says,
+    key,
+    cursor: "crosshair",
+    down({pane, at}) {
+      taken.push(landmark_at(pane, at)?.point ?? hundredths(pane.point_at(at)));
+      pointed = null;
+      if (taken.length === count) {
+        const points = taken;
+        taken = [];
+        void finish(kind, points);
+      }
+      pane.redraw();
+      return true;
+    },
+    hover({pane, at}) {
+      if (!taken.length) return;
+      pointed = pane.point_at(at);
+      pane.redraw();
+    },
+    press(event, pane) {
+      if (event.key !== "Escape" || !taken.length) return false;
+      taken = [];
+      pane.redraw();
+      return true;
+    },
+    draw(pane, context) {
+      const points = (pointed && taken.length ? [...taken, pointed] : taken).map((p) => pane.pixel_at(p));
+      line(context, points, ink.measure, 2 * pane.ratio);
+      for (const p of points) dot_at(context, p, 4 * pane.ratio, ink.measure);
+      const last = points[points.length - 1];
+      if (!last || !pointed || !taken.length) return;
+      const words = taken.length === 2 ? `${angle_deg(taken[0]!, taken[1]!, pointed).toFixed(1)}°` :
+                                         `${distance(taken[0]!, pointed).toFixed(1)} mm`;
+      text(
+          context, words, [last[0] + 12 * pane.ratio, last[1] - 12 * pane.ratio], pane.ratio,
+          {colour: ink.measure});
+    },
+    left() {
+      taken = [];
+      pointed = null;
+    },
+  };
+}
+
+async function finish(kind: string, points: Vec3[]): Promise<void> {
+  const id = free_id(kind === "surface_distance" ? "surface_way" : kind);
+  const step = selected_step();
+  if (kind === "surface_distance") {
+    const object = step && step.do !== "measure" && step.do !== "landmarks" ? step.id : undefined;
+    if (!object)
+      return notify("Select the object on whose surface the way runs, then click its two ends.", "warning");
+    await add_step({id, do: "measure", object, along: points.map((p) => [...p])}, `way along ${object}`);
+  } else {
+    await add_step({id, do: "measure", points_mm: points.map(named)}, kind);
+  }
+  set({right_tab: "numbers"});
+}
+
+export const distance_tool = point_tool("distance", 2, "Distance", "Click two points or landmarks.", "d");
+export const angle_tool =
+    point_tool("angle", 3, "Angle", "Click three points or landmarks; the angle is at the second.", "a");
+export const surface_tool = point_tool(
+    "surface_distance", 2, "Way along a surface", "Select an object, then click two points of its surface.",
+    "");
+
+/// Landmarks that a procedure waits for: clicked one after the other.
+export function ask_for_landmarks(wanted: Wanted[]): void {
+  procedure_wants = wanted;
+  next_wanted();
+  take_tool("landmark");
+}
+// `placed` may not have come back in the plan's state yet.
+function next_wanted(placed = ""): void {
+  const missing = procedure_wants.find(
+      (one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
+  landmark_name = missing?.name ?? "";
+  if (missing) show_scan(missing.scan || null);
+  set({tool: state.tool});  // so that the panel asks for it
+  if (procedure_wants.length && !missing) {
+    procedure_wants = [];
+    show_scan(null);
+    take_tool("navigate");
+    window.dispatchEvent(new Event("landmarks-placed"));
+  }
+}
+
+export const landmark_tool: Tool = {
+  name: "landmark",
+  title: "Landmark",
+  says:
+      "Name a landmark, then click it in a view or slice. It snaps to the surface; drag a placed one to move it.",
+  key: "l",
+  cursor: "crosshair",
+  down({pane, at}) {
+    const known = landmark_at(pane, at);
+    if (known) {
+      held = {...known};
+      return true;
+    }
+    const point = hundredths(pane.point_at(at));
+    const name =
+        landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
+    void (async () => {
+      const place = await put_landmark(name, point, snaps(pane));
+      if (!place) return;
+      set({cross_mm: hundredths(place)});
+      if (procedure_wants.length)
+        next_wanted(name);
+      else
+        landmark_name = "";
+    })();
+    return true;
+  },
+  move({pane, at}) {
+    if (!held) return;
+    held.point = hundredths(pane.point_at(at));
+    pane.redraw();
+  },
+  up({pane}) {
+    if (!held) return;
+    const {name, point} = held;
+    held = null;
+    if (distance(point, state.plan?.landmarks.find((mark) => mark.name === name)?.point ?? point) < 0.01)
+      return;
+    void put_landmark(name, point, snaps(pane)).then((place) => {
+      if (place) set({cross_mm: hundredths(place)});
+    });
+  },
+  draw(pane, context) {
+    if (held) dot_at(context, pane.pixel_at(held.point), 6 * pane.ratio, ink.landmark, true);
+  },
+  panel: () => {
+    const wanted = procedure_wants.find((one) => one.name === landmark_name);
+    const placed =
+        procedure_wants.filter((one) => state.plan?.landmarks.some((mark) => mark.name === one.name)).length;
+    return [
+      wanted ?
+          el("p", {class: "says"},
+             el("b", {}, `${placed + 1} of ${procedure_wants.length}: ${wanted.name.replace(/_/g, " ")}. `),
+             wanted.says) :
+          null,
+      el("label", {class: "field"}, el("span", {}, "Name"), el("input", {
+           value: landmark_name,
+           placeholder: "ans, nasion, …",
+           "data-key": "landmark-name",
+           name: "landmark",
+           oninput: (event: Event) => {
+             landmark_name = (event.target as HTMLInputElement).value;
+           },
+         })),
+      el("label", {class: "check"}, el("input", {
+           type: "checkbox",
+           checked: is_snapping,
+           onchange: (event: Event) => {
+             is_snapping = (event.target as HTMLInputElement).checked;
+           }
+         }),
+         "Snap to the surface"),
+    ];
+  },
+  left() {
+    procedure_wants = [];
+    held = null;
+  },
+};
+
+export const segment_tool: Tool = {
+  name: "segment",
+  title: "Segment by click",
+  says:
+      "Click a tissue in a slice or view: the connected part with samples like those of the selected window becomes an object.",
+  key: "p",
+  cursor: "crosshair",
+  down({pane, at}) {
+    const seed = hundredths(pane.point_at(at));
+    const base = [selected_step(), ...(state.plan?.plan.steps ?? [])].find((step) => step?.do === "window");
+    const window_text =
+        base ? `${String(base.low)}:${base.high === undefined ? "" : String(base.high)}` : "bone";
+    void add_step(
+        {id: free_id("part"), do: "segment", scan: first_scan(), window: window_text, seeds_mm: [[...seed]]},
+        "segment by click");
+    return true;
+  },
+};
+
+export const arch_tool: Tool = {
+  name: "arch",
+  title: "Dental arch",
+  says:
+      "In an axial slice click along the arch from the patient's right to the left; Enter shows the panoramic slice.",
+  key: "",
+  cursor: "crosshair",
+  taken() {
+    set({arch_mm: []});
+    show_in(2, "axial");
+  },
+  down({pane, at}) {
+    set({arch_mm: [...state.arch_mm, hundredths(pane.point_at(at))]});
+    pane.redraw();
+    return true;
+  },
+  press(event) {
+    if (event.key !== "Enter" || state.arch_mm.length < 2) return false;
+    show_panoramic();
+    return true;
+  },
+  draw(pane, context) {
+    const points = state.arch_mm.map((p) => pane.pixel_at(p));
+    line(context, points, ink.landmark, 2 * pane.ratio);
+    for (const p of points) dot_at(context, p, 3.5 * pane.ratio, ink.landmark);
+  },
+  panel: () => button(
+      "Show panoramic slice", "Shows the curved slice along the points in the fourth pane",
+      () => {
+        if (state.arch_mm.length < 2) return notify("Click at least two points along the arch.", "warning");
+        show_panoramic();
+      },
+      {class: "primary"}),
+};
+
+function show_panoramic(): void {
+  show_in(3, "panoramic");
+  take_tool("navigate");
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What a tool is, and which one is in hand. A tool takes the pointer in a pane; what it leaves, the pane's
+// own navigation takes.
+import type {Child} from "../base/html";
+import type {Pane} from "../pane/panes";
+import {set, state} from "../state";
+import {Vec2} from "../base/vector";
+
+export interface Pointer {
+  pane: Pane;
+  at: Vec2;  // pixels of the canvas
+  event: PointerEvent;
+}
+
+export interface Tool {
+  name: string;
+  title: string;
+  says: string;  // one sentence that teaches it
+  key: string;   // the key that takes it in hand
+  cursor: string;
+  down?(pointer: Pointer): boolean;  // true: the tool takes the drag
+  move?(pointer: Pointer): void;
+  up?(pointer: Pointer): void;
+  hover?(pointer: Pointer): void;
+  double?(pointer: Pointer): boolean;
+  press?(event: KeyboardEvent, pane: Pane): boolean;
+  draw?(pane: Pane, context: CanvasRenderingContext2D): void;
+  panel?(): Child;  // what the inspector shows above the step
+  taken?(): void;
+  left?(): void;
+}
+
+const tools: Tool[] = [];
+export const all_tools = (): readonly Tool[] => tools;
+export function register_tools(more: Tool[]): void {
+  tools.push(...more);
+}
+export const active_tool = (): Tool|undefined => tools.find((tool) => tool.name === state.tool);
+
+export function take_tool(name: string): void {
+  if (name === state.tool) return;
+  active_tool()?.left?.();
+  set({tool: name});
+  active_tool()?.taken?.();
+}
