@@ -183,14 +183,19 @@ void check(const VertexData& data, std::size_t vertex_count) {
     throw std::invalid_argument("write_mesh: '" + data.scalar_name + "' is no name for scalars");
 }
 
-std::string extension_of(const std::filesystem::path& path) {
+}  // namespace
+
+std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
 
-}  // namespace
+void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  replace_file(
+      path, [&](Sink& sink) { sink.file.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+}
 
 std::uint64_t least_mesh_bytes(std::size_t vertex_count, std::size_t face_count,
                                const std::filesystem::path& path) {
@@ -205,7 +210,7 @@ std::uint64_t least_mesh_bytes(std::size_t vertex_count, std::size_t face_count,
                                           {".off", 0, 6, 8},
                                           {".vtp", 0, 36, 32},
                                           {".glb", 0, 24, 12}}};
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   for (const Least& least : formats)
     if (least.extension == extension)
       return least.head + vertex_count * least.a_vertex + face_count * least.a_face;
@@ -213,7 +218,7 @@ std::uint64_t least_mesh_bytes(std::size_t vertex_count, std::size_t face_count,
 }
 
 void write_mesh(const Triangles& triangles, const std::filesystem::path& path, const VertexData& data) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   check(data, triangles.points_mm.size());
   if (extension == ".ply") return replace_file(path, [&](Sink& sink) { write_ply(triangles, data, sink); });
   if (extension == ".vtp")

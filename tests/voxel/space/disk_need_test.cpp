@@ -49,7 +49,7 @@ std::string refusal(const std::function<void()>& work) {
 Scene scene_of(int side) {
   Scene scene;
   scene.lattice = axis_aligned_lattice(glm::ivec3(side), glm::dvec3(1.0), glm::dvec3(0.0));
-  scene.samples = Int16Samples(scene.lattice.sample_count());
+  scene.samples = Int16Samples(scene.lattice.sample_count(), 0);
   return scene;
 }
 
