@@ -36,10 +36,12 @@
 //          Cohen-Steiner and Morvan, 2003). Marching cubes' triangles alternate about the surface: with its
 //          sign the sum levels that out; without, it is taken cell by cell of three samples and by the
 //          direction of the normal, so that the two sides of a thin plate do not cancel.
+// Long, as the terms of one model share its points and what moved.
 #include "verify/boundary_model.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
@@ -47,12 +49,14 @@
 #include <numbers>
 #include <optional>
 #include <tbb/parallel_sort.h>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/triangles.h"
 #include "verify/facet_count.h"
+#include "verify/in_order.h"
 
 namespace octotomy::verify {
 namespace {
@@ -159,12 +163,25 @@ std::array<double, 13> shares_of_space(const std::array<glm::dvec3, 13>& unit) {
 class CountVariance {
  public:
   CountVariance() : unit_(units(glm::dmat3(1.0))) {}
-  void add(const glm::dvec3& area) {
-    const double size = glm::length(area);
-    area_ += size;
+  /// An area, and a bit for each cone that its normal is in.
+  struct Share {
+    double size = 0.0;
+    std::uint64_t cones = 0;
+  };
+  Share share_of(const glm::dvec3& area) const {
+    Share share{glm::length(area), 0};
     for (std::size_t d = 0; d < unit_.size(); ++d)
       for (std::size_t w = 0; w < cosines.size(); ++w)
-        if (std::abs(glm::dot(area, unit_[d])) > cosines[w] * size) in_cone_[d][w] += size;
+        if (std::abs(glm::dot(area, unit_[d])) > cosines[w] * share.size)
+          share.cones |= std::uint64_t{1} << (cosines.size() * d + w);
+    return share;
+  }
+  void add(const Share& share) {
+    area_ += share.size;
+    for (std::uint64_t left = share.cones; left != 0; left &= left - 1) {
+      const auto cone = static_cast<std::size_t>(std::countr_zero(left));
+      in_cone_[cone / cosines.size()][cone % cosines.size()] += share.size;
+    }
   }
   double sum() const {
     // Sums over all integer vectors but zero of 1 / |k|^4, and over the multiples of one.
@@ -208,19 +225,50 @@ constexpr double nearly_along = 0.9659258262890683;
 class Modeller {
  public:
   Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
-      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()), moved_(triangles_.faces.size()) {
-    const glm::dmat3 voxel_from_mm = glm::inverse(glm::dmat3(frame.lattice.lps_from_voxel));
-    const glm::dvec3 first_mm(frame.lattice.lps_from_voxel[3]);
+      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()) {}
+
+  BoundaryModel run() {
+    const glm::dmat3 voxel_from_mm = glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel));
+    const glm::dvec3 first_mm(frame_.lattice.lps_from_voxel[3]);
     points_voxel_.reserve(triangles_.points_mm.size());
     for (const glm::dvec3& p_mm : triangles_.points_mm)
       points_voxel_.push_back(voxel_from_mm * (p_mm - first_mm));
-  }
-
-  BoundaryModel run() {
+    moved_.resize(triangles_.faces.size());
     add_faces();
     add_counts();
     add_edges();
     return model_;
+  }
+
+  AreaAndCurvature area_and_curvature() const {
+    AreaAndCurvature found;
+    in_order<double>(
+        triangles_.faces.size(), [&](std::size_t face) { return glm::length(triangle(face).area_vector()); },
+        [&](std::size_t, double area_mm2) { found.area_mm2 += area_mm2; });
+    struct Part {
+      std::uint64_t cell = 0;
+      std::uint32_t edge = 0;
+      double mm = 0.0;
+      bool operator<(const Part& other) const {
+        return std::tie(cell, edge) < std::tie(other.cell, other.edge);
+      }
+    };
+    std::vector<Part> parts;
+    parts.reserve(mesh_.n_edges());
+    in_order<BentEdge>(
+        mesh_.n_edges(), [&](std::size_t number) { return bent_edge(number); },
+        [&](std::size_t number, const BentEdge& edge) {
+          if (edge.bends) parts.push_back({edge.bend.cell, static_cast<std::uint32_t>(number), edge.bend.mm});
+        });
+    tbb::parallel_sort(parts.begin(), parts.end());
+    double cell_mm = 0.0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      cell_mm += parts[i].mm;
+      if (i + 1 < parts.size() && parts[i + 1].cell == parts[i].cell) continue;
+      found.curvature_mm += std::abs(cell_mm);
+      cell_mm = 0.0;
+    }
+    return found;
   }
 
  private:
@@ -239,89 +287,157 @@ class Modeller {
     const glm::dmat3 edges(frame_.lattice.lps_from_voxel);
     const std::array<glm::dvec3, 13> lines = units(edges);
     const std::array<double, 13> share = shares_of_space(lines);
-    for (std::size_t face = 0; face < triangles_.faces.size(); ++face) {
-      const Triangle at_mm = triangle(face);
-      const double area_mm2 = glm::length(at_mm.area_vector());
-      model_.area_mm2 += area_mm2;
-      const glm::dvec3 normal = normal_of(at_mm);
-      for (std::size_t d = 0; d < lines.size(); ++d)
-        model_.crofton13_mm2 += 2.0 * share[d] * std::abs(glm::dot(normal, lines[d])) * area_mm2;
-      if (const std::optional<LatticePlane> plane = lattice_plane(in_voxels(face).p))
-        moved_[face] = add_plane(*plane, at_mm, area_mm2);
-    }
+    struct Face {
+      double area_mm2 = 0.0;
+      std::array<double, 13> seen_mm2{};
+      std::optional<LatticePlane> plane;
+    };
+    in_order<Face>(
+        triangles_.faces.size(),
+        [&](std::size_t face) {
+          const Triangle at_mm = triangle(face);
+          Face made{glm::length(at_mm.area_vector()), {}, lattice_plane(in_voxels(face).p)};
+          const glm::dvec3 normal = normal_of(at_mm);
+          for (std::size_t d = 0; d < lines.size(); ++d)
+            made.seen_mm2[d] = 2.0 * share[d] * std::abs(glm::dot(normal, lines[d])) * made.area_mm2;
+          return made;
+        },
+        [&](std::size_t face, const Face& made) {
+          model_.area_mm2 += made.area_mm2;
+          for (const double seen_mm2 : made.seen_mm2) model_.crofton13_mm2 += seen_mm2;
+          if (made.plane) moved_[face] = add_plane(*made.plane, triangle(face), made.area_mm2);
+        });
   }
   Triangle in_voxels(std::size_t face) const {
     const auto& corner = triangles_.faces[face];
     return {{points_voxel_[corner[0]], points_voxel_[corner[1]], points_voxel_[corner[2]]}};
   }
 
+  /// A face's area, and of each of its pieces with the arm squared and to the fourth.
+  struct ArmsOfFace {
+    double mm2 = 0.0;
+    std::array<double, 6> mm4{}, mm6{};
+  };
+  ArmsOfFace arms_of(const Triangle& triangle) const {
+    ArmsOfFace made{glm::length(triangle.area_vector()), {}, {}};
+    const std::array<Piece, 6> pieces = pieces_of(triangle);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const glm::dvec3 arm_mm = pieces[i].p - frame_.about_mm;
+      const double square = glm::dot(arm_mm, arm_mm);
+      made.mm4[i] = pieces[i].share * made.mm2 * square;
+      made.mm6[i] = pieces[i].share * made.mm2 * square * square;
+    }
+    return made;
+  }
+
   /// The boundary outside such planes: flat facets by their transforms, the rest by its normals.
   void add_counts() {
     const std::vector<std::uint32_t> set = flat_sets();
     std::vector<double> area(set.size(), 0.0);
-    for (std::uint32_t face = 0; face < set.size(); ++face)
-      if (!moved_[face]) area[set[face]] += glm::length(in_voxels(face).area_vector());
+    in_order<double>(
+        set.size(), [&](std::size_t face) { return glm::length(in_voxels(face).area_vector()); },
+        [&](std::size_t face, double size) {
+          if (!moved_[face]) area[set[face]] += size;
+        });
     std::vector<Facet> facets;
     std::vector<std::optional<std::size_t>> facet_of_set(set.size());
     CountVariance curved;
     Arms curved_arms, flat_arms;
-    for (std::uint32_t face = 0; face < set.size(); ++face) {
-      if (moved_[face]) continue;
-      const glm::dvec3 across = in_voxels(face).area_vector();
-      if (area[set[face]] < large_facet) {
-        curved.add(across);
-        add_nearly_plane(face, across);
-        curved_arms.add(triangle(face), frame_.about_mm);
-        continue;
-      }
-      std::optional<std::size_t>& number = facet_of_set[set[face]];
-      if (!number) {
-        number = facets.size();
-        facets.emplace_back();
-      }
-      facets[*number].area += across;
-      add_rims(facets[*number], face, set);
-      flat_arms.add(triangle(face), frame_.about_mm);
-    }
+    struct Face {
+      glm::dvec3 across{0.0};
+      bool is_curved = false;
+      CountVariance::Share share;
+      NearlyPlane nearly;
+      ArmsOfFace arms;
+    };
+    in_order<Face>(
+        set.size(),
+        [&](std::size_t face) {
+          Face made;
+          if (moved_[face]) return made;
+          made.across = in_voxels(face).area_vector();
+          made.is_curved = area[set[face]] < large_facet;
+          made.arms = arms_of(triangle(face));
+          if (!made.is_curved) return made;
+          made.share = curved.share_of(made.across);
+          made.nearly = nearly_plane_of(face, made.across);
+          return made;
+        },
+        [&](std::size_t face, const Face& made) {
+          if (moved_[face]) return;
+          (made.is_curved ? curved_arms : flat_arms).add(made.arms);
+          if (made.is_curved) {
+            curved.add(made.share);
+            for (std::size_t i = 0; i < made.nearly.count; ++i)
+              model_.nearly_planes.add(made.nearly.mm3[i], made.nearly.arm_mm[i]);
+            return;
+          }
+          std::optional<std::size_t>& number = facet_of_set[set[face]];
+          if (!number) {
+            number = facets.size();
+            facets.emplace_back();
+          }
+          facets[*number].area += made.across;
+          add_rims(facets[*number], static_cast<std::uint32_t>(face), set);
+        });
     add_variance(curved.sum(), curved_arms);
     add_variance(count_variance(facets), flat_arms);
   }
 
+  /// What the pieces of such a face gain; none of another one.
+  struct NearlyPlane {
+    std::size_t count = 0;
+    std::array<double, 6> mm3{};
+    std::array<glm::dvec3, 6> arm_mm{};
+  };
   /// Columns of centres along the axis that the face is nearly across count it to half a voxel's step.
-  void add_nearly_plane(std::uint32_t face, const glm::dvec3& across) {
+  NearlyPlane nearly_plane_of(std::size_t face, const glm::dvec3& across) const {
+    NearlyPlane made;
     int axis = 0;
     for (int i = 1; i < 3; ++i)
       if (std::abs(across[i]) > std::abs(across[axis])) axis = i;
-    if (!(std::abs(across[axis]) > nearly_along * glm::length(across))) return;
+    if (!(std::abs(across[axis]) > nearly_along * glm::length(across))) return made;
     const Triangle at_mm = triangle(face), at_voxel = in_voxels(face);
     const std::array<Piece, 6> places = pieces_of(at_voxel), points = pieces_of(at_mm);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double step = std::floor(places[i].p[axis]) + 0.5 - places[i].p[axis];
-      model_.nearly_planes.add(places[i].share * step * across[axis] * frame_.lattice.voxel_mm3(),
-                               points[i].p - frame_.about_mm);
+      made.mm3[i] = places[i].share * step * across[axis] * frame_.lattice.voxel_mm3();
+      made.arm_mm[i] = points[i].p - frame_.about_mm;
     }
+    made.count = places.size();
+    return made;
   }
 
   /// By face, the name of the set of coplanar faces it is in; faces in lattice planes are in none.
   std::vector<std::uint32_t> flat_sets() const {
     brep::DisjointSets sets(triangles_.faces.size());
-    for (const auto edge : mesh_.edges()) {
-      if (mesh_.is_boundary(edge)) continue;
-      const auto side = mesh_.halfedge_handle(edge, 0);
-      const auto a = static_cast<std::uint32_t>(mesh_.face_handle(side).idx());
-      const auto b = static_cast<std::uint32_t>(mesh_.opposite_face_handle(side).idx());
-      if (moved_[a] || moved_[b]) continue;
-      const glm::dvec3 from = in_voxels(a).area_vector(), to = in_voxels(b).area_vector();
-      const bool a_larger = glm::dot(from, from) >= glm::dot(to, to);
-      const Triangle large = in_voxels(a_larger ? a : b), small = in_voxels(a_larger ? b : a);
-      const double size = glm::length(large.area_vector());
-      if (!(size > 0.0) || glm::dot(from, to) < 0.0) continue;
-      const glm::dvec3 normal = large.area_vector() / size;
-      const bool flat = std::all_of(small.p.begin(), small.p.end(), [&](const glm::dvec3& p) {
-        return std::abs(glm::dot(p - large.p[0], normal)) < flatness_voxels;
-      });
-      if (flat) sets.join(a, b);
-    }
+    struct Pair {
+      std::uint32_t a = 0, b = 0;
+      bool flat = false;
+    };
+    in_order<Pair>(
+        mesh_.n_edges(),
+        [&](std::size_t number) {
+          const OpenMesh::EdgeHandle edge(static_cast<int>(number));
+          if (mesh_.is_boundary(edge)) return Pair{};
+          const auto side = mesh_.halfedge_handle(edge, 0);
+          const auto a = static_cast<std::uint32_t>(mesh_.face_handle(side).idx());
+          const auto b = static_cast<std::uint32_t>(mesh_.opposite_face_handle(side).idx());
+          if (moved_[a] || moved_[b]) return Pair{};
+          const glm::dvec3 from = in_voxels(a).area_vector(), to = in_voxels(b).area_vector();
+          const bool a_larger = glm::dot(from, from) >= glm::dot(to, to);
+          const Triangle large = in_voxels(a_larger ? a : b), small = in_voxels(a_larger ? b : a);
+          const double size = glm::length(large.area_vector());
+          if (!(size > 0.0) || glm::dot(from, to) < 0.0) return Pair{};
+          const glm::dvec3 normal = large.area_vector() / size;
+          const bool flat = std::all_of(small.p.begin(), small.p.end(), [&](const glm::dvec3& p) {
+            return std::abs(glm::dot(p - large.p[0], normal)) < flatness_voxels;
+          });
+          return Pair{a, b, flat};
+        },
+        [&](std::size_t, const Pair& pair) {
+          if (pair.flat) sets.join(pair.a, pair.b);
+        });
     std::vector<std::uint32_t> set(triangles_.faces.size());
     for (std::uint32_t face = 0; face < set.size(); ++face) set[face] = sets.set_of(face);
     return set;
@@ -343,14 +459,11 @@ class Modeller {
   /// Area with the squares of its arms.
   struct Arms {
     double mm2 = 0.0, mm4 = 0.0, mm6 = 0.0;
-    void add(const Triangle& triangle, const glm::dvec3& about_mm) {
-      const double area_mm2 = glm::length(triangle.area_vector());
-      mm2 += area_mm2;
-      for (const Piece& piece : pieces_of(triangle)) {
-        const glm::dvec3 arm_mm = piece.p - about_mm;
-        const double square = glm::dot(arm_mm, arm_mm);
-        mm4 += piece.share * area_mm2 * square;
-        mm6 += piece.share * area_mm2 * square * square;
+    void add(const ArmsOfFace& face) {
+      mm2 += face.mm2;
+      for (std::size_t i = 0; i < face.mm4.size(); ++i) {
+        mm4 += face.mm4[i];
+        mm6 += face.mm6[i];
       }
     }
   };
@@ -405,34 +518,59 @@ class Modeller {
     glm::dvec3 arm_mm{0.0};
   };
 
+  /// An edge with its angle, and what it adds to its cell if it has any.
+  struct BentEdge {
+    double angle = 0.0;
+    bool is_inner = false, bends = false;
+    Bend bend;
+  };
+  BentEdge bent_edge(std::size_t number) const {
+    const OpenMesh::EdgeHandle edge(static_cast<int>(number));
+    BentEdge made;
+    if (mesh_.is_boundary(edge)) return made;
+    made.is_inner = true;
+    const auto side = mesh_.halfedge_handle(edge, 0);
+    const auto a = static_cast<std::size_t>(mesh_.face_handle(side).idx());
+    const auto b = static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx());
+    const glm::dvec3 from = point(mesh_.from_vertex_handle(side)), to = point(mesh_.to_vertex_handle(side));
+    const glm::dvec3 middle = 0.5 * (from + to);
+    made.angle = mesh_.calc_dihedral_angle(edge);
+    if (!std::isfinite(made.angle) || made.angle == 0.0) return made;
+    const glm::dvec3 normal = normal_of(triangle(a)) + normal_of(triangle(b));
+    const glm::dvec3 across = glm::cross(normal, to - from);
+    const double length = glm::length(across);
+    if (!(length > 0.0)) return made;
+    const glm::dvec3 spacing_mm = frame_.sample_spacing_mm * across / length;
+    const double mm = 0.5 * glm::length(to - from) * made.angle;
+    made.bends = true;
+    made.bend = {cell_of(middle, normal), mm, mm * glm::dot(spacing_mm, spacing_mm),
+                 middle - frame_.about_mm};
+    return made;
+  }
+
   void add_edges() {
     std::vector<Bend> bends;
-    for (const auto edge : mesh_.edges()) {
-      if (mesh_.is_boundary(edge)) continue;
-      const auto side = mesh_.halfedge_handle(edge, 0);
-      const auto a = static_cast<std::size_t>(mesh_.face_handle(side).idx());
-      const auto b = static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx());
-      const glm::dvec3 from = point(mesh_.from_vertex_handle(side)), to = point(mesh_.to_vertex_handle(side));
-      const glm::dvec3 middle = 0.5 * (from + to);
-      const double angle = mesh_.calc_dihedral_angle(edge);
-      if (moved_[a] && moved_[b])
-        add_corner(*moved_[a], *moved_[b], angle, glm::length(to - from), middle - frame_.about_mm);
-      else if (moved_[a] || moved_[b]) {
-        const double mm2 = std::abs(moved_[a] ? moved_[a]->mm : moved_[b]->mm) * glm::length(to - from);
-        model_.rims_mm2 += mm2;
-        model_.unsure.add(mm2 * longest_mm_, glm::length(middle - frame_.about_mm));
-      }
-      if (!std::isfinite(angle) || angle == 0.0) continue;
-      const glm::dvec3 normal = normal_of(triangle(a)) + normal_of(triangle(b));
-      const glm::dvec3 across = glm::cross(normal, to - from);
-      const double length = glm::length(across);
-      if (!(length > 0.0)) continue;
-      const glm::dvec3 spacing_mm = frame_.sample_spacing_mm * across / length;
-      const double mm = 0.5 * glm::length(to - from) * angle;
-      bends.push_back(
-          {cell_of(middle, normal), mm, mm * glm::dot(spacing_mm, spacing_mm), middle - frame_.about_mm});
-    }
+    in_order<BentEdge>(
+        mesh_.n_edges(), [&](std::size_t number) { return bent_edge(number); },
+        [&](std::size_t number, const BentEdge& edge) {
+          if (edge.is_inner) add_displaced(number, edge.angle);
+          if (edge.bends) bends.push_back(edge.bend);
+        });
     add_bends(bends);
+  }
+  /// What displaced planes gain along an edge, on either side of it or beside one.
+  void add_displaced(std::size_t number, double angle) {
+    const auto side = mesh_.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(number)), 0);
+    const auto a = static_cast<std::size_t>(mesh_.face_handle(side).idx());
+    const auto b = static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx());
+    if (!moved_[a] && !moved_[b]) return;
+    const glm::dvec3 from = point(mesh_.from_vertex_handle(side)), to = point(mesh_.to_vertex_handle(side));
+    const glm::dvec3 middle = 0.5 * (from + to);
+    if (moved_[a] && moved_[b])
+      return add_corner(*moved_[a], *moved_[b], angle, glm::length(to - from), middle - frame_.about_mm);
+    const double mm2 = std::abs(moved_[a] ? moved_[a]->mm : moved_[b]->mm) * glm::length(to - from);
+    model_.rims_mm2 += mm2;
+    model_.unsure.add(mm2 * longest_mm_, glm::length(middle - frame_.about_mm));
   }
   /// The volume that two displaced planes gain at their common edge beyond their own gains.
   void add_corner(const Moved& a, const Moved& b, double angle, double length_mm, const glm::dvec3& arm_mm) {
@@ -494,6 +632,10 @@ class Modeller {
 };
 
 }  // namespace
+
+AreaAndCurvature area_and_curvature(const brep::Solid& solid, const BoundaryFrame& frame) {
+  return Modeller(solid, frame).area_and_curvature();
+}
 
 BoundaryModel boundary_model(const brep::Solid& solid, const BoundaryFrame& frame) {
   return Modeller(solid, frame).run();

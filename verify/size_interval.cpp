@@ -43,6 +43,7 @@
 #include <unordered_map>
 
 #include "brep/mesh/triangles.h"
+#include "verify/in_order.h"
 
 namespace octotomy::verify {
 namespace {
@@ -127,17 +128,31 @@ class Measuring {
   }
 
   void add_faces() {
-    for (std::size_t face = 0; face < triangles_.faces.size(); ++face) {
-      const glm::dvec3 area = across(face);
-      const double size = glm::length(area);
-      if (!(size > 0.0)) continue;
-      const auto& [a, b, c] = triangles_.faces[face];
-      const auto& p = triangles_.points_mm;
-      Part& part = parts_[part_of((p[a] + p[b] + p[c]) / 3.0, area)];
-      part.area_mm2 += size;
-      part.across_mm2 += area;
-      part.flat_mm3 += flat_mm3(area);
-    }
+    struct Face {
+      double size = 0.0, flat_mm3 = 0.0;
+      glm::dvec3 across{0.0};
+      std::uint64_t part = 0;
+    };
+    in_order<Face>(
+        triangles_.faces.size(),
+        [&](std::size_t face) {
+          Face made;
+          made.across = across(face);
+          made.size = glm::length(made.across);
+          if (!(made.size > 0.0)) return made;
+          const auto& [a, b, c] = triangles_.faces[face];
+          const auto& p = triangles_.points_mm;
+          made.part = part_of((p[a] + p[b] + p[c]) / 3.0, made.across);
+          made.flat_mm3 = flat_mm3(made.across);
+          return made;
+        },
+        [&](std::size_t, const Face& face) {
+          if (!(face.size > 0.0)) return;
+          Part& part = parts_[face.part];
+          part.area_mm2 += face.size;
+          part.across_mm2 += face.across;
+          part.flat_mm3 += face.flat_mm3;
+        });
   }
 
   /// The size of an area along the lattice times the spacing across; zero for any other.
@@ -149,34 +164,52 @@ class Measuring {
     return 0.0;
   }
 
+  /// What an edge adds: to its part, or its points to those of cuts.
+  struct BentEdge {
+    enum class Kind : std::uint8_t { None, Cut, Bent } kind = Kind::None;
+    std::size_t a = 0, b = 0;
+    std::uint64_t part = 0;
+    double mm = 0.0, spacing_mm = 0.0, inverse = 0.0;
+  };
+  BentEdge bent_edge(std::size_t number) const {
+    const OpenMesh::EdgeHandle edge(static_cast<int>(number));
+    BentEdge made;
+    if (mesh_.is_boundary(edge)) return made;
+    const double angle = mesh_.calc_dihedral_angle(edge);
+    if (!std::isfinite(angle) || angle == 0.0) return made;
+    const auto side = mesh_.halfedge_handle(edge, 0);
+    const auto a = static_cast<std::size_t>(mesh_.from_vertex_handle(side).idx()),
+               b = static_cast<std::size_t>(mesh_.to_vertex_handle(side).idx());
+    if (std::abs(angle) > sharpest_rad) return {BentEdge::Kind::Cut, a, b};
+    const glm::dvec3 along = triangles_.points_mm[b] - triangles_.points_mm[a];
+    const glm::dvec3 normal = unit(across(static_cast<std::size_t>(mesh_.face_handle(side).idx()))) +
+                              unit(across(static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx())));
+    const glm::dvec3 t = unit(glm::cross(normal, along));
+    if (t == glm::dvec3(0.0)) return made;
+    return {BentEdge::Kind::Bent,
+            a,
+            b,
+            part_of(0.5 * (triangles_.points_mm[a] + triangles_.points_mm[b]), normal),
+            0.5 * glm::length(along) * angle,
+            glm::length((t * units_) * spacing_mm_),
+            glm::length(from_lps_ * t)};
+  }
+
   void add_edges() {
     cut_.assign(triangles_.points_mm.size(), 0);
-    for (const auto edge : mesh_.edges()) {
-      if (mesh_.is_boundary(edge)) continue;
-      const double angle = mesh_.calc_dihedral_angle(edge);
-      if (!std::isfinite(angle) || angle == 0.0) continue;
-      const auto side = mesh_.halfedge_handle(edge, 0);
-      const auto a = static_cast<std::size_t>(mesh_.from_vertex_handle(side).idx()),
-                 b = static_cast<std::size_t>(mesh_.to_vertex_handle(side).idx());
-      if (std::abs(angle) > sharpest_rad) {
-        cut_[a] = cut_[b] = 1;
-        continue;
-      }
-      const glm::dvec3 along = triangles_.points_mm[b] - triangles_.points_mm[a];
-      const glm::dvec3 normal =
-          unit(across(static_cast<std::size_t>(mesh_.face_handle(side).idx()))) +
-          unit(across(static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx())));
-      const glm::dvec3 t = unit(glm::cross(normal, along));
-      if (t == glm::dvec3(0.0)) continue;
-      const double mm = 0.5 * glm::length(along) * angle;
-      const double s = glm::length((t * units_) * spacing_mm_), inverse = glm::length(from_lps_ * t);
-      Part& part = parts_[part_of(0.5 * (triangles_.points_mm[a] + triangles_.points_mm[b]), normal)];
-      part.bent_mm2 += mm * s;
-      part.bent_mm3 += mm * s * s;
-      shape_.bent_mm3 += mm * s * s;
-      shape_.chord_mm3 += mm / (inverse * inverse);
-      shape_.curvature_mm += mm;
-    }
+    in_order<BentEdge>(
+        mesh_.n_edges(), [&](std::size_t number) { return bent_edge(number); },
+        [&](std::size_t, const BentEdge& edge) {
+          if (edge.kind == BentEdge::Kind::Cut) cut_[edge.a] = cut_[edge.b] = 1;
+          if (edge.kind != BentEdge::Kind::Bent) return;
+          const double mm = edge.mm, s = edge.spacing_mm;
+          Part& part = parts_[edge.part];
+          part.bent_mm2 += mm * s;
+          part.bent_mm3 += mm * s * s;
+          shape_.bent_mm3 += mm * s * s;
+          shape_.chord_mm3 += mm / (edge.inverse * edge.inverse);
+          shape_.curvature_mm += mm;
+        });
     shape_.curvature_mm = std::abs(shape_.curvature_mm);
   }
 

@@ -264,7 +264,10 @@ class RegionWitness {
       high_ = std::max({high_, a.y, b.y});
       reach_mm_ = std::max({reach_mm_, glm::length(a), glm::length(b)});
     }
-    rows_.resize(std::max<std::size_t>(edges_.size(), 1));
+    // Rows much lower than the slack would each list the same edges.
+    const double most_rows = high_ > low_ ? 4.0 * (high_ - low_) / most_slack_mm : 0.0;
+    rows_.resize(std::max<std::size_t>(
+        1, static_cast<std::size_t>(std::min(static_cast<double>(edges_.size()), most_rows))));
     for (std::size_t i = 0; i < edges_.size(); ++i) {
       const auto [from, to] = std::minmax(edges_[i][0].y, edges_[i][1].y);
       for (std::size_t row = row_of(from - most_slack_mm); row <= row_of(to + most_slack_mm); ++row)

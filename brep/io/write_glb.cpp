@@ -43,22 +43,45 @@ std::string text_of(const glm::vec3& p) {
   return "[" + number(p.x) + "," + number(p.y) + "," + number(p.z) + "]";
 }
 
-void add_points(const Triangles& triangles, Buffer& buffer) {
+/// The points and their bounds, the first array.
+void add_points(const std::vector<glm::dvec3>& points_mm, Buffer& buffer) {
   glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
-  for (const glm::dvec3& point : triangles.points_mm) {
+  for (const glm::dvec3& point : points_mm) {
     const glm::vec3 p(point);
     low = glm::min(low, p);
     high = glm::max(high, p);
     for (int axis = 0; axis < 3; ++axis) append_little(buffer.bytes, p[axis]);
   }
-  const std::string count = "\"count\":" + std::to_string(triangles.points_mm.size());
   buffer.close(0, of_vertices,
-               "\"componentType\":5126,\"type\":\"VEC3\"," + count + ",\"min\":" + text_of(low) +
-                   ",\"max\":" + text_of(high));
+               "\"componentType\":5126,\"type\":\"VEC3\",\"count\":" + std::to_string(points_mm.size()) +
+                   ",\"min\":" + text_of(low) + ",\"max\":" + text_of(high));
+}
+
+void add_normals(const Triangles& triangles, Buffer& buffer) {
   const std::size_t normals = buffer.bytes.size();
   for (const glm::vec3& n : vertex_normals(triangles))
     for (int axis = 0; axis < 3; ++axis) append_little(buffer.bytes, n[axis]);
-  buffer.close(normals, of_vertices, "\"componentType\":5126,\"type\":\"VEC3\"," + count);
+  buffer.close(
+      normals, of_vertices,
+      "\"componentType\":5126,\"type\":\"VEC3\",\"count\":" + std::to_string(triangles.points_mm.size()));
+}
+
+void add_corners(const std::vector<std::array<std::uint32_t, 3>>& faces, Buffer& buffer) {
+  const std::size_t corners = buffer.bytes.size();
+  for (const auto& face : faces)
+    for (const std::uint32_t v : face) append_little(buffer.bytes, v);
+  buffer.close(corners, of_indices,
+               "\"componentType\":5125,\"type\":\"SCALAR\",\"count\":" + std::to_string(3 * faces.size()));
+}
+
+/// Turns LPS millimetres to metres with y to the head and z to the front.
+constexpr const char* node_matrix = "\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]";
+constexpr const char* material =
+    "\"materials\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0.7}}]";
+
+std::string arrays_of(const Buffer& buffer) {
+  return ",\"buffers\":[{\"byteLength\":" + std::to_string(buffer.bytes.size()) + "}],\"bufferViews\":[" +
+         buffer.views + "],\"accessors\":[" + buffer.accessors + "]";
 }
 
 void add_chunk(std::string& file, const char* kind, std::string chunk, char fill) {
@@ -66,6 +89,31 @@ void add_chunk(std::string& file, const char* kind, std::string chunk, char fill
   append_little(file, static_cast<std::uint32_t>(chunk.size()));
   file.append(kind, 4);
   file += chunk;
+}
+
+/// The file of a scene's nodes, meshes and arrays; of none where there is no buffer.
+std::string file_of(const std::string& nodes, const std::string& json, const Buffer& buffer) {
+  std::string chunks;
+  add_chunk(chunks, "JSON",
+            "{\"asset\":{\"version\":\"2.0\",\"generator\":\"octotomy\"},\"scene\":0,\"scenes\":[{" + nodes +
+                "}]" + json + "}",
+            ' ');
+  if (!buffer.bytes.empty()) add_chunk(chunks, "BIN\0", buffer.bytes, '\0');
+  std::string file = "glTF";
+  append_little(file, std::uint32_t{2});
+  append_little(file, static_cast<std::uint32_t>(12 + chunks.size()));
+  return file + chunks;
+}
+
+/// A name as JSON's text.
+std::string quoted(const std::string& name) {
+  std::string text = "\"";
+  for (const char letter : name)
+    if (letter == '"' || letter == '\\')
+      text += std::string("\\") + letter;
+    else
+      text += static_cast<unsigned char>(letter) < ' ' ? '_' : letter;
+  return text + '"';
 }
 
 }  // namespace
@@ -92,7 +140,8 @@ std::string glb_of(const Triangles& triangles, const VertexData& data) {
   // The format has no mesh without points; a scene without nodes stands for it.
   const bool is_empty = triangles.faces.empty();
   if (!is_empty) {
-    add_points(triangles, buffer);
+    add_points(triangles.points_mm, buffer);
+    add_normals(triangles, buffer);
     std::string attributes = "\"POSITION\":0,\"NORMAL\":1";
     if (!data.colours.empty()) {
       attributes += ",\"COLOR_0\":2";
@@ -105,31 +154,34 @@ std::string glb_of(const Triangles& triangles, const VertexData& data) {
                    "\"componentType\":5123,\"normalized\":true,\"type\":\"VEC4\",\"count\":" +
                        std::to_string(data.colours.size()));
     }
-    const std::size_t corners = buffer.bytes.size();
-    for (const auto& face : triangles.faces)
-      for (const std::uint32_t v : face) append_little(buffer.bytes, v);
-    buffer.close(
-        corners, of_indices,
-        "\"componentType\":5125,\"type\":\"SCALAR\",\"count\":" + std::to_string(3 * triangles.faces.size()));
-    mesh =
-        ",\"nodes\":[{\"mesh\":0,\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]}],"
-        "\"meshes\":[{\"primitives\":[{\"attributes\":{" +
-        attributes + "},\"indices\":" + std::to_string(buffer.count - 1) +
-        ",\"material\":0}]}],\"materials\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0,"
-        "\"roughnessFactor\":0.7}}],\"buffers\":[{\"byteLength\":" +
-        std::to_string(buffer.bytes.size()) + "}],\"bufferViews\":[" + buffer.views + "],\"accessors\":[" +
-        buffer.accessors + "]";
+    add_corners(triangles.faces, buffer);
+    mesh = std::string(",\"nodes\":[{\"mesh\":0,") + node_matrix +
+           "}],\"meshes\":[{\"primitives\":[{\"attributes\":{" + attributes +
+           "},\"indices\":" + std::to_string(buffer.count - 1) + ",\"material\":0}]}]," + material +
+           arrays_of(buffer);
   }
-  std::string chunks;
-  add_chunk(chunks, "JSON",
-            "{\"asset\":{\"version\":\"2.0\",\"generator\":\"octotomy\"},\"scene\":0,\"scenes\":[{" +
-                std::string(is_empty ? "" : "\"nodes\":[0]") + "}]" + mesh + "}",
-            ' ');
-  if (!is_empty) add_chunk(chunks, "BIN\0", buffer.bytes, '\0');
-  std::string file = "glTF";
-  append_little(file, std::uint32_t{2});
-  append_little(file, static_cast<std::uint32_t>(12 + chunks.size()));
-  return file + chunks;
+  return file_of(is_empty ? "" : "\"nodes\":[0]", mesh, buffer);
+}
+
+std::string glb_of(const std::vector<glm::dvec3>& points_mm, const std::vector<GlbPart>& parts) {
+  Buffer buffer;
+  std::string numbers, nodes, meshes;
+  int count = 0;
+  for (const GlbPart& part : parts) {
+    if (part.faces.empty()) continue;
+    if (count == 0) add_points(points_mm, buffer);
+    add_corners(part.faces, buffer);
+    const std::string comma = count == 0 ? "" : ",", number = std::to_string(count++),
+                      name = "{\"name\":" + quoted(part.name) + ",";
+    numbers += comma + number;
+    nodes += comma + name + "\"mesh\":" + number + "," + node_matrix + "}";
+    meshes += comma + name + "\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":" +
+              std::to_string(buffer.count - 1) + ",\"material\":0}]}";
+  }
+  if (count == 0) return file_of("", "", buffer);
+  return file_of("\"nodes\":[" + numbers + "]",
+                 ",\"nodes\":[" + nodes + "],\"meshes\":[" + meshes + "]," + material + arrays_of(buffer),
+                 buffer);
 }
 
 }  // namespace octotomy::brep

@@ -2,6 +2,7 @@
 #include "brep/io/write_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cerrno>
 #include <charconv>
@@ -11,6 +12,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <unistd.h>
 
 #include "brep/io/mesh_bytes.h"
@@ -183,10 +185,40 @@ void check(const VertexData& data, std::size_t vertex_count) {
 
 }  // namespace
 
-void write_mesh(const Triangles& triangles, const std::filesystem::path& path, const VertexData& data) {
+std::string lower_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  replace_file(
+      path, [&](Sink& sink) { sink.file.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+}
+
+std::uint64_t least_mesh_bytes(std::size_t vertex_count, std::size_t face_count,
+                               const std::filesystem::path& path) {
+  struct Least {
+    std::string_view extension;
+    std::uint64_t head, a_vertex, a_face;
+  };
+  // Of text, the shortest lines: "v 0 0 0", "f 1 2 3", "0 0 0" and "3 0 1 2".
+  constexpr std::array<Least, 6> formats{{{".stl", 84, 0, 50},
+                                          {".ply", 0, 24, 13},
+                                          {".obj", 0, 8, 8},
+                                          {".off", 0, 6, 8},
+                                          {".vtp", 0, 36, 32},
+                                          {".glb", 0, 24, 12}}};
+  const std::string extension = lower_extension(path);
+  for (const Least& least : formats)
+    if (least.extension == extension)
+      return least.head + vertex_count * least.a_vertex + face_count * least.a_face;
+  return 0;
+}
+
+void write_mesh(const Triangles& triangles, const std::filesystem::path& path, const VertexData& data) {
+  const std::string extension = lower_extension(path);
   check(data, triangles.points_mm.size());
   if (extension == ".ply") return replace_file(path, [&](Sink& sink) { write_ply(triangles, data, sink); });
   if (extension == ".vtp")

@@ -19,6 +19,11 @@ struct VertexData {
   std::vector<double> scalars;
 };
 
+/// Bytes that a file of so many vertices and triangles takes at least, by its extension; 0 where write_mesh()
+/// knows none.
+std::uint64_t least_mesh_bytes(std::size_t vertex_count, std::size_t face_count,
+                               const std::filesystem::path& path);
+
 /// Writes .stl (binary; points in single precision), .ply (binary little-endian, double), .obj or .off (text
 /// that reads back to the same doubles), .vtp (doubles, with normals) or .glb (single precision, with
 /// normals; turned to that format's axes and metres by its node) as the extension says; LPS millimetres.

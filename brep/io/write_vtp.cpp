@@ -25,21 +25,47 @@ class Appended {
   std::string bytes_;
 };
 
+/// The letters' codes, each name ended by 0, as VTK keeps texts.
+std::string field_data(const CellData& cells) {
+  if (cells.part_numbers.empty()) return {};
+  const std::string count = "NumberOfTuples=\"" + std::to_string(cells.part_numbers.size()) + "\"";
+  std::string numbers, letters;
+  for (const int number : cells.part_numbers) numbers += std::to_string(number) + " ";
+  for (const std::string& name : cells.part_names) {
+    for (const char letter : name) letters += std::to_string(static_cast<unsigned char>(letter)) + " ";
+    letters += "0 ";
+  }
+  return "<FieldData>\n<DataArray type=\"Int32\" Name=\"part_numbers\" " + count + " format=\"ascii\">" +
+         numbers + "</DataArray>\n<DataArray type=\"String\" Name=\"part_names\" " + count +
+         " format=\"ascii\">" + letters + "</DataArray>\n</FieldData>\n";
+}
+
+std::string cell_data(const CellData& cells, Appended& appended) {
+  std::string xml;
+  for (const auto& [name, numbers] : cells.numbers)
+    xml += appended.array("Int32", name, 1, [&](std::string& values) {
+      for (const std::int32_t number : numbers) append_little(values, number);
+    });
+  return xml.empty() ? xml : "<CellData>\n" + xml + "</CellData>\n";
+}
+
 }  // namespace
 
-std::string vtp_of(const Triangles& triangles, const VertexData& data) {
+std::string vtp_of(const Triangles& triangles, const VertexData& data, const CellData& cells) {
   Appended appended;
   std::string xml =
       "<?xml version=\"1.0\"?>\n<!-- octotomy, LPS millimetres -->\n"
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-      "<PolyData>\n<Piece NumberOfPoints=\"" +
-      std::to_string(triangles.points_mm.size()) +
+      "<PolyData>\n" +
+      field_data(cells) + "<Piece NumberOfPoints=\"" + std::to_string(triangles.points_mm.size()) +
       "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
-      std::to_string(triangles.faces.size()) + "\">\n<PointData Normals=\"Normals\">\n";
-  xml += appended.array("Float32", "Normals", 3, [&](std::string& values) {
-    for (const glm::vec3& n : vertex_normals(triangles))
-      for (int axis = 0; axis < 3; ++axis) append_little(values, n[axis]);
-  });
+      std::to_string(triangles.faces.size()) + "\">\n<PointData" +
+      (cells.numbers.empty() ? " Normals=\"Normals\"" : "") + ">\n";
+  if (cells.numbers.empty())
+    xml += appended.array("Float32", "Normals", 3, [&](std::string& values) {
+      for (const glm::vec3& n : vertex_normals(triangles))
+        for (int axis = 0; axis < 3; ++axis) append_little(values, n[axis]);
+    });
   if (!data.colours.empty())
     xml += appended.array("UInt8", "Colours", 3, [&](std::string& values) {
       for (const glm::u8vec3& colour : data.colours)
@@ -49,7 +75,7 @@ std::string vtp_of(const Triangles& triangles, const VertexData& data) {
     xml += appended.array("Float64", data.scalar_name, 1, [&](std::string& values) {
       for (const double scalar : data.scalars) append_little(values, scalar);
     });
-  xml += "</PointData>\n<Points>\n";
+  xml += "</PointData>\n" + cell_data(cells, appended) + "<Points>\n";
   xml += appended.array("Float64", "Points", 3, [&](std::string& values) {
     for (const glm::dvec3& p : triangles.points_mm)
       for (int axis = 0; axis < 3; ++axis) append_little(values, p[axis]);

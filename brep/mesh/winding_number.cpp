@@ -29,29 +29,78 @@ constexpr double nearness() {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// 4 pi times the share of the sphere about p that the triangle covers, positive seen from behind.
-double solid_angle(const Corners& triangle, const glm::dvec3& p) {
-  const glm::dvec3 a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
-  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  const double below = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  const double above = glm::dot(a, glm::cross(b, c));
-  if (below > 4.0 * std::abs(above)) {  // a small angle: the series, to 1e-7
-    const double t = above / below, t2 = t * t;
-    return 2.0 * t * (1.0 - t2 * (1.0 / 3.0 - t2 * (1.0 / 5.0 - t2 * (1.0 / 7.0 - t2 / 9.0))));
+// Compiles a loop for the vectors of several processors. Nothing is contracted or summed in another order, so
+// all give the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define OCTOTOMY_FOR_VECTORS __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define OCTOTOMY_FOR_VECTORS
+#endif
+
+/// Points near each other, which are answered by one descent, and their sums.
+struct Points {
+  static constexpr std::size_t size = 8;
+  std::array<double, size> x, y, z, sum{};
+};
+
+/// Adds to each point p 4 pi times the share of the sphere about it that the triangles cover, positive seen
+/// from behind.
+OCTOTOMY_FOR_VECTORS void add_solid_angles(std::span<const Corners> triangles, Points& points) {
+  for (const Corners& t : triangles) {
+    std::array<double, Points::size> above, below, angle;
+    for (std::size_t k = 0; k < Points::size; ++k) {
+      const double ax = t[0].x - points.x[k], ay = t[0].y - points.y[k], az = t[0].z - points.z[k];
+      const double bx = t[1].x - points.x[k], by = t[1].y - points.y[k], bz = t[1].z - points.z[k];
+      const double cx = t[2].x - points.x[k], cy = t[2].y - points.y[k], cz = t[2].z - points.z[k];
+      const double la = std::sqrt(ax * ax + ay * ay + az * az), lb = std::sqrt(bx * bx + by * by + bz * bz),
+                   lc = std::sqrt(cx * cx + cy * cy + cz * cz);
+      below[k] = la * lb * lc + (ax * bx + ay * by + az * bz) * lc + (bx * cx + by * cy + bz * cz) * la +
+                 (cx * ax + cy * ay + cz * az) * lb;
+      above[k] = ax * (by * cz - cy * bz) + ay * (bz * cx - cz * bx) + az * (bx * cy - cx * by);
+      // A small angle: the series, to 1e-7.
+      const double tangent = above[k] / below[k], t2 = tangent * tangent;
+      angle[k] = 2.0 * tangent * (1.0 - t2 * (1.0 / 3.0 - t2 * (1.0 / 5.0 - t2 * (1.0 / 7.0 - t2 / 9.0))));
+    }
+    for (std::size_t k = 0; k < Points::size; ++k)
+      if (!(below[k] > 4.0 * std::abs(above[k])))
+        angle[k] = above[k] == 0.0 && below[k] == 0.0 ? 0.0 : 2.0 * std::atan2(above[k], below[k]);
+    for (std::size_t k = 0; k < Points::size; ++k) points.sum[k] += angle[k];
   }
-  return above == 0.0 && below == 0.0 ? 0.0 : 2.0 * std::atan2(above, below);
+}
+
+/// What is known of a cluster of triangles.
+struct Cluster {
+  glm::dvec3 centre_mm{0.0};
+  double radius_mm = 0.0;  ///< of a ball about the centre that holds all corners
+  double area_mm2 = 0.0;
+  glm::dvec3 normal{0.0};  ///< sum of area vectors
+  glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
+};
+
+/// Adds what a cluster covers of the sphere about each point: the gradient of 1 / r and its derivative, on
+/// the area vectors and their first moment.
+OCTOTOMY_FOR_VECTORS void add_moments(const Cluster& cluster, Points& points) {
+  const glm::dmat3 m = cluster.moment;
+  const glm::dvec3 centre = cluster.centre_mm, normal = cluster.normal;
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  const double xy = m[1][0] + m[0][1], yz = m[2][1] + m[1][2], zx = m[0][2] + m[2][0];
+  const double xx = m[0][0], yy = m[1][1], zz = m[2][2];
+  std::array<double, Points::size> angle;
+  for (std::size_t k = 0; k < Points::size; ++k) {
+    const double x = centre.x - points.x[k], y = centre.y - points.y[k], z = centre.z - points.z[k];
+    const double by_r2 = 1.0 / (x * x + y * y + z * z), by_r3 = by_r2 * std::sqrt(by_r2);
+    const double moments = x * (xx * x + xy * y) + y * (yy * y + yz * z) + z * (zz * z + zx * x);
+    angle[k] = by_r3 * (normal.x * x + normal.y * y + normal.z * z + trace - 3.0 * by_r2 * moments);
+  }
+  for (std::size_t k = 0; k < Points::size; ++k) points.sum[k] += angle[k];
 }
 
 }  // namespace
 
 struct WindingTree::Tree {
   /// A leaf holds `count` triangles from `first`; an inner node's children are the next one and `first`.
-  struct Node {
-    glm::dvec3 centre_mm{0.0};
-    double radius_mm = 0.0;  ///< of a ball about the centre that holds all corners
-    double area_mm2 = 0.0;
-    glm::dvec3 normal{0.0};  ///< sum of area vectors
-    glm::dmat3 moment{0.0};  ///< column j: sum of area vectors times coordinate j of (middle - centre)
+  struct Node : Cluster {
     std::uint32_t first = 0, count = 0;
   };
   std::vector<Corners> triangles;  ///< in the order of the leaves
@@ -118,12 +167,10 @@ struct WindingTree::Tree {
     }
   }
 
-  /// Points near each other, which are answered by one descent.
-  struct Packet {
-    static constexpr std::size_t size = 8;
-    std::array<double, size> x, y, z, sum{};
+  /// Points with a ball that holds them.
+  struct Packet : Points {
     glm::dvec3 centre_mm{0.0};
-    double radius_mm = 0.0;  ///< of a ball about the centre that holds all
+    double radius_mm = 0.0;
 
     /// Places beyond the last number repeat the first.
     Packet(const std::vector<glm::dvec3>& points_mm, std::span<const std::uint32_t> numbers) {
@@ -137,25 +184,7 @@ struct WindingTree::Tree {
       centre_mm = 0.5 * (low + high);
       radius_mm = 0.5 * glm::distance(low, high);
     }
-    glm::dvec3 at(std::size_t k) const { return {x[k], y[k], z[k]}; }
   };
-
-  /// Adds what a cluster covers of the sphere about each point: the gradient of 1 / r and its derivative, on
-  /// the area vectors and their first moment.
-  static void add_moments(const Node& node, Packet& packet) {
-    const glm::dmat3& m = node.moment;
-    const double trace = m[0][0] + m[1][1] + m[2][2];
-    const double xy = m[1][0] + m[0][1], yz = m[2][1] + m[1][2], zx = m[0][2] + m[2][0];
-    for (std::size_t k = 0; k < Packet::size; ++k) {
-      const double x = node.centre_mm.x - packet.x[k], y = node.centre_mm.y - packet.y[k],
-                   z = node.centre_mm.z - packet.z[k];
-      const double by_r2 = 1.0 / (x * x + y * y + z * z), by_r3 = by_r2 * std::sqrt(by_r2);
-      const double moments =
-          x * (m[0][0] * x + xy * y) + y * (m[1][1] * y + yz * z) + z * (m[2][2] * z + zx * x);
-      packet.sum[k] +=
-          by_r3 * (node.normal.x * x + node.normal.y * y + node.normal.z * z + trace - 3.0 * by_r2 * moments);
-    }
-  }
 
   void descend(Packet& packet) const {
     std::array<std::uint32_t, 64> waiting;
@@ -169,9 +198,7 @@ struct WindingTree::Tree {
       if (glm::dot(r, r) > reach * reach) {
         add_moments(node, packet);
       } else if (node.count > 0) {
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-          for (std::size_t k = 0; k < Packet::size; ++k)
-            packet.sum[k] += solid_angle(triangles[i], packet.at(k));
+        add_solid_angles(std::span(triangles).subspan(node.first, node.count), packet);
       } else {
         assert(top + 2 <= waiting.size());
         waiting[top++] = node.first;

@@ -5,14 +5,18 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/hilbert_sort.h>
+#include <CGAL/property_map.h>
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -117,6 +121,24 @@ void check_crossings(std::vector<Side> sides) {
     }
 }
 
+/// Fewer take no time; their triangles' diagonals stay those of the outline's order.
+constexpr std::size_t many_points = 2000;
+
+/// Along the outline; of one with many points along a Hilbert curve, as each point of a fine outline would
+/// else turn the fan about the last ones.
+std::vector<std::size_t> order_of_insertion(const std::vector<glm::dvec2>& points) {
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (points.size() < many_points) return order;
+  std::vector<Kernel::Point_2> places;
+  places.reserve(points.size());
+  for (const glm::dvec2& p : points) places.emplace_back(p.x, p.y);
+  const auto place_of = CGAL::make_property_map(places);
+  CGAL::hilbert_sort(order.begin(), order.end(),
+                     CGAL::Spatial_sort_traits_adapter_2<Kernel, decltype(place_of)>(place_of));
+  return order;
+}
+
 /// Counts for every face the polygon edges between it and infinity, one flood per nesting level.
 void count_nesting(Triangulation& triangulation) {
   for (auto face : triangulation.all_face_handles()) face->info() = unseen;
@@ -166,12 +188,14 @@ Solid solid_of(const Prism& prism) {
   Triangulation triangulation;
   std::vector<glm::dvec2> uv;
   for (const auto& points : polygons) {
-    std::vector<Triangulation::Vertex_handle> ring;
-    for (const glm::dvec2& p : points) {
-      ring.push_back(triangulation.insert({p.x, p.y}));
-      ring.back()->info() = static_cast<std::uint32_t>(uv.size());
-      uv.push_back(p);
+    Triangulation::Face_handle near;
+    std::vector<Triangulation::Vertex_handle> ring(points.size());
+    for (const std::size_t i : order_of_insertion(points)) {
+      ring[i] = triangulation.insert({points[i].x, points[i].y}, near);
+      ring[i]->info() = static_cast<std::uint32_t>(uv.size() + i);
+      if (points.size() >= many_points) near = ring[i]->face();
     }
+    uv.insert(uv.end(), points.begin(), points.end());
     for (std::size_t i = 0; i < ring.size(); ++i)
       triangulation.insert_constraint(ring[i], ring[(i + 1) % ring.size()]);
   }

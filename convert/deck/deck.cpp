@@ -13,6 +13,7 @@
 
 #include "convert/deck/deck_format.h"
 #include "convert/deck/second_order.h"
+#include "voxel/space/disk_need.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 
@@ -154,6 +155,11 @@ double bytes_about(const Tetrahedra& tetrahedra, const DeckOptions& options) {
          35.0 * static_cast<double>(tetrahedra.tets.size()) + 10.0 * static_cast<double>(entries);
 }
 
+/// Bytes that every format takes at least: "1,0,0,0" a node, "1,1,2,3,4" an element.
+std::uint64_t least_bytes(const Tetrahedra& tetrahedra) {
+  return 8 * tetrahedra.nodes_mm.size() + 10 * tetrahedra.tets.size();
+}
+
 /// Counts the bytes written to a deck's files.
 class Written {
  public:
@@ -214,6 +220,7 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     write_deck(made.tetrahedra, path, made.options);
     return;
   }
+  voxel::need_disk(path, least_bytes(tetrahedra));
   voxel::StagedFiles staged_files(path.has_parent_path() ? path.parent_path() : ".");
   Written written(options.progress, bytes_about(tetrahedra, options));
   for (const Part& part : parts) {

@@ -84,9 +84,11 @@ Json json_of(const Subject& subject, const SubjectRecord& record) {
       {"seconds", record.seconds}, {"peak_mb", record.peak_mb}};
 }
 
-/// The records of the subjects, and 2 where one has no answer.
+/// The records of the subjects, and where one has no answer 3 if a process ran out of time, memory or disk,
+/// else 2.
 int say_records(const Program& program, const std::vector<Subject>& subjects,
-                const std::vector<SubjectRecord>& records, const std::vector<std::string>& jobs) {
+                const std::vector<SubjectRecord>& records, const std::vector<std::string>& jobs,
+                bool ran_out) {
   Json json = answer({});
   json["subjects"] = Json::array();
   json["jobs"] = jobs;
@@ -105,7 +107,8 @@ int say_records(const Program& program, const std::vector<Subject>& subjects,
   if (!jobs.empty())
     said = "submitted: job " + jobs.front() + " and on; the group is job " + jobs.back() + "\n";
   program.say(json, said);
-  return jobs.empty() && done_count + in_hand < records.size() ? bad_input : done;
+  if (!jobs.empty() || done_count + in_hand == records.size()) return done;
+  return ran_out ? out_of_resources : bad_input;
 }
 
 int participants(const Program& program, const CohortText& text, const Plan& plan,
@@ -114,7 +117,7 @@ int participants(const Program& program, const CohortText& text, const Plan& pla
     const SubjectRecord record =
         run_participant(plan, subjects.front(), text.out,
                         {program.stop.get_token(), program.progress(), text.again, text.reports});
-    return say_records(program, subjects, {record}, {});
+    return say_records(program, subjects, {record}, {}, false);
   }
   EngineRequest request{command(program, text, "participant"),
                         command(program, text, "group"),
@@ -126,15 +129,16 @@ int participants(const Program& program, const CohortText& text, const Plan& pla
                         program.progress()};
   for (const Subject& subject : subjects) request.labels.push_back(subject.label);
   std::vector<std::string> jobs;
+  bool ran_out = false;
   if (text.engine == "slurm")
     jobs = submit_slurm(request);
   else if (text.engine == "parallel")
-    run_parallel(request);
+    ran_out = run_parallel(request);
   else
-    run_serial(request);
+    ran_out = run_serial(request);
   std::vector<SubjectRecord> records;
   for (const Subject& subject : subjects) records.push_back(subject_record(text.out, subject));
-  return say_records(program, subjects, records, jobs);
+  return say_records(program, subjects, records, jobs, ran_out);
 }
 
 /// What the subjects would take, by those that are done.

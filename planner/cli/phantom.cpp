@@ -10,6 +10,7 @@
 #include "verify/sample_volume.h"
 #include "verify/solid_phantom.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/disk_need.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -42,6 +43,12 @@ class ScanOut {
       throw std::runtime_error(path_.string() +
                                ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
   }
+  /// Throws voxel::Error (Resource) where a scan of the box does not fit onto the disk.
+  void need_disk_of(const voxel::Box& box, double voxel_mm, double slice_mm) const {
+    voxel::Lattice least;
+    least.dims = glm::floor((box.high_mm - box.low_mm) / glm::dvec3(voxel_mm, voxel_mm, slice_mm));
+    voxel::need_disk(path_, voxel::least_file_bytes(least, sizeof(std::int16_t), path_));
+  }
   void write(const voxel::Scene& scene, Timings& timings) const {
     const Stopwatch watch(timings, "write");
     if (!is_folder_) return voxel::write_scene(scene, path_);
@@ -58,6 +65,8 @@ class ScanOut {
 
 int head(const Program& program, const PhantomText& text) {
   const ScanOut out(text, "Octotomy head phantom");
+  out.need_disk_of(verify::head_bounds(), text.head.voxel_mm,
+                   text.head.slice_mm.value_or(text.head.voxel_mm));
   Timings timings;
   voxel::Scene scene;
   {

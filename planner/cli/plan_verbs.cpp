@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "planner/cli/plan_document.h"
 #include "planner/cli/plan_in.h"
@@ -11,6 +13,8 @@
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/number_format.h"
+#include "voxel/scan/write_scene.h"
+#include "voxel/space/disk_need.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -60,6 +64,25 @@ Json written(Program& program, Result& result, const std::filesystem::path& out)
   return write_result(result, out, {program.stop.get_token(), program.progress()});
 }
 
+/// Refuses a result one of whose label maps does not fit onto the disk as soon as the first scan, and with it
+/// the universe, is read; later ones may lie beside it packed to nearly nothing.
+void need_disk_of_label_maps(const Plan& plan, const std::filesystem::path& out, EvaluateOptions& options) {
+  const auto is_first = std::make_shared<bool>(true);
+  options.read_scene = [&plan, out, is_first](const std::filesystem::path& path,
+                                              const voxel::ReadOptions& how) {
+    voxel::Scene scene = voxel::read_scene(path, how);
+    if (!std::exchange(*is_first, false)) return scene;
+    const voxel::Lattice lattice = universe_of(scene.lattice, plan.voxel_mm).lattice();
+    std::uint64_t least_bytes = 0;
+    for (const Step& step : plan.steps)
+      if (step.action.operation().name == "label_map")
+        least_bytes = std::max(
+            least_bytes, voxel::least_file_bytes(lattice, sizeof(std::int16_t), path_written(step.action)));
+    voxel::need_disk(out, least_bytes);
+    return scene;
+  };
+}
+
 }  // namespace
 
 int run(Program& program, const RunText& text) {
@@ -70,6 +93,7 @@ int run(Program& program, const RunText& text) {
   need_result_folder(text.out, result_names(result.plan));
   EvaluateOptions options = evaluate_options(program);
   options.certify = text.certify == Certify::Now;
+  need_disk_of_label_maps(result.plan, text.out, options);
   result.evaluation = evaluated(program, result.plan, options);
   if (!options.certify)
     result.findings.push_back(

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <csignal>
 #include <fcntl.h>
+#include <fstream>
 #include <spawn.h>
+#include <sstream>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -21,6 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
+
+/// Exit status of a process that ran out of time, memory or disk.
+constexpr int out_of_resources = 3;
 
 /// How a child ended, and its first line on standard output.
 struct Child {
@@ -113,24 +118,41 @@ std::string submit(const EngineRequest& request, const Words& options, const Wor
   return job;
 }
 
+/// Whether a process ended with that status by GNU parallel's log, whose seventh column holds it.
+bool log_tells_end_of_resources(const fs::path& log) {
+  std::ifstream file(log);
+  bool tells = false;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream columns(line);
+    std::string word;
+    for (int column = 0; column < 7; ++column) std::getline(columns, word, '\t');
+    tells |= word == std::to_string(out_of_resources);
+  }
+  return tells;
+}
+
 }  // namespace
 
-void run_serial(const EngineRequest& request) {
+bool run_serial(const EngineRequest& request) {
+  bool ran_out = false;
   for (std::size_t i = 0; i < request.labels.size(); ++i) {
     if (request.progress)
       request.progress("subject " + request.labels[i],
                        static_cast<double>(i) / static_cast<double>(request.labels.size()));
-    run_child(with_label(request, request.labels[i]), request.stop);
+    const int status = run_child(with_label(request, request.labels[i]), request.stop).status;
+    ran_out |= WIFEXITED(status) && WEXITSTATUS(status) == out_of_resources;
   }
+  return ran_out;
 }
 
-void run_parallel(const EngineRequest& request) {
+bool run_parallel(const EngineRequest& request) {
   Words words{"parallel",   "--will-cite",
               "--joblog",   (request.out / "code/parallel.log").string(),
               "--arg-file", write_labels(request).string()};
   if (request.jobs > 0) words.insert(words.end(), {"--jobs", std::to_string(request.jobs)});
   words.push_back(shell_text(request.program) + " --participant-label {} >/dev/null");
   run_child(words, request.stop);
+  return log_tells_end_of_resources(request.out / "code/parallel.log");
 }
 
 std::vector<std::string> submit_slurm(const EngineRequest& request) {

@@ -22,12 +22,13 @@ struct EngineRequest {
 };
 
 /// One process after another; one that crashes takes nobody with it. Each leaves its subject's record, or
-/// none. Throws voxel::Stopped after the process at work ended.
-void run_serial(const EngineRequest& request);
+/// none. Returns whether a process ran out of time, memory or disk (status 3). Throws voxel::Stopped after
+/// the process at work ended.
+bool run_serial(const EngineRequest& request);
 
 /// The same by GNU parallel, whose log is code/parallel.log. Throws voxel::Error (Resource) where it is not
 /// installed.
-void run_parallel(const EngineRequest& request);
+bool run_parallel(const EngineRequest& request);
 
 /// Submits job arrays of at most 1,000 subjects and a group job that waits for them; the scripts and the
 /// logs are in code/. Does not wait; returns the jobs' numbers, the group's last. Throws voxel::Error

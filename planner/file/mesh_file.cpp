@@ -7,6 +7,7 @@
 #include "brep/mesh/split_fans.h"
 #include "brep/shape/repair.h"
 #include "planner/table/number_format.h"
+#include "voxel/space/disk_need.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
@@ -71,6 +72,7 @@ brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
 void write_surface(const brep::Triangles& triangles, const std::filesystem::path& out, Timings& timings,
                    const brep::VertexData& data) {
   const Stopwatch watch(timings, "write");
+  voxel::need_disk(out, brep::least_mesh_bytes(triangles.points_mm.size(), triangles.faces.size(), out));
   voxel::StagedFiles staged(out.parent_path());
   const std::filesystem::path file = staged.folder() / out.filename();
   try {

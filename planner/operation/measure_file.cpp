@@ -157,8 +157,8 @@ void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures
 
 void add_area_half_width(const brep::Solid& surface, const voxel::Lattice& lattice,
                          const Digitised& digitised, Json& json) {
-  const verify::BoundaryModel model =
-      verify::boundary_model(surface, {lattice, digitised.sample_mm, glm::dvec3(0.0)});
+  const verify::AreaAndCurvature model =
+      verify::area_and_curvature(surface, {lattice, digitised.sample_mm, glm::dvec3(0.0)});
   const HalfWidth width = area_half_width({model.area_mm2, model.curvature_mm}, digitised);
   json["area_half_width_mm2"] = width.value;
   json["area_half_width_terms"] = to_json(width);

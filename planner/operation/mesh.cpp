@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "brep/io/write_mesh.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "brep/shape/decimate.h"
@@ -21,6 +22,7 @@
 #include "planner/table/operation.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/disk_need.h"
 
 namespace octotomy::planner {
 namespace {
@@ -147,6 +149,9 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
     throw std::runtime_error(
         asked.file.name + ": nothing is " +
         (asked.window ? "in the window " + to_string(*asked.window) + ": choose another" : "in it"));
+  if (!asked.faces)
+    voxel::need_disk(asked.out,
+                     brep::least_mesh_bytes(triangles.points_mm.size(), triangles.faces.size(), asked.out));
   const auto& [surface, measures] = finished(std::move(triangles), asked, bench.timings);
   brep::Health health;
   {

@@ -4,6 +4,7 @@
 #include "planner/file/output_path.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "voxel/space/disk_need.h"
 
 namespace octotomy::planner {
 namespace {
@@ -26,7 +27,9 @@ void write(const Surface& surface, const AnswerBench& bench, Exported& made) {
   const brep::Mesh& mesh = *object.mesh.within;
   if (mesh.n_faces() == 0) return made.findings.push_back("not written: '" + object.id + "' is empty");
   const Stopwatch watch(bench.timings, "write");
-  brep::write_mesh(mesh, output_file(bench.folder, made.path));
+  const std::filesystem::path file = output_file(bench.folder, made.path);
+  voxel::need_disk(file, brep::least_mesh_bytes(mesh.n_vertices(), mesh.n_faces(), file));
+  brep::write_mesh(mesh, file);
   made.written = true;
   made.content = grouped(static_cast<double>(mesh.n_faces()), 0) + " triangles";
   made.details = {{"faces", mesh.n_faces()},

@@ -26,6 +26,7 @@
 #include <unistd.h>
 
 #include "planner/plan/sha256.h"
+#include "voxel/space/disk_need.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
@@ -335,6 +336,9 @@ void need_result_folder(const fs::path& folder, const std::vector<fs::path>& nam
   const fs::path place = place_of(folder);
   need_place(place, folder, names);
   try_to_write(place.parent_path(), folder);
+  // A page without pictures, its tables and the list of files.
+  constexpr std::uint64_t least_bytes = 24000;
+  voxel::need_disk(folder, least_bytes);
 }
 
 ResultFolder::ResultFolder(const fs::path& folder, const std::vector<fs::path>& names)

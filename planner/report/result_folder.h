@@ -16,7 +16,8 @@ namespace octotomy::planner {
 /// - holds a file of that list that was changed since;
 /// - holds a file of somebody else under one of `names`, the paths that the result will write;
 /// - is the working folder or holds it, or is a mounted one: publishing replaces the folder itself;
-/// - cannot be made or written to.
+/// - cannot be made or written to;
+/// or (Resource) whose disk has no room for the barest page.
 /// A symbolic link to a folder stands for that folder.
 void need_result_folder(const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& names = {});

@@ -4,19 +4,23 @@
 
 Each answer goes onto a small disk (tmpfs, which needs root) with less room than it takes. The verb ends with status
 3 and one line, the older answer is whole, and nothing unfinished is left. Given enough room it ends with status 0.
+Where the answer's least size is known before the work, the verb refuses with that size and the room that there is.
 
   tests/attack/full_disk_suite.py build/release --count 200
 """
 import argparse
+import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
 from collections import Counter
+from pathlib import Path
 
 from kill_suite import VERBS
-from subject import Subject
+from subject import PLAN, Subject
 
 DISK_BYTES = 48 << 20
 NOT_THERE = 77  # ctest's word for a test that is skipped
@@ -61,6 +65,42 @@ def end_on_full_disk(subject, verb, room):
     return why, ended.status
 
 
+# Verbs whose answer has a least size that is known before the work: where the table has it, or else by what is written
+# once there is room.
+REFUSED = (
+    (("phantom", "head", "--voxel", "1", "-o", "disk/fine.nii"), 2 * 200 * 240 * 240),
+    (("convert", "head.nrrd", "-o", "disk/copy.nii"), 0),
+    (("convert", "head.nrrd", "-o", "disk/series"), 0),
+    (("prepare", "head.nrrd", "--step", "gaussian=4", "-o", "disk/soft.nii.gz"), 0),
+    (("mesh", "head.nrrd", "--window", "300:", "-o", "disk/head.stl"), 0),
+    (("mirror", "head.stl", "-o", "disk/mirrored.ply"), 0),
+    (("run", "map.plan.json", "-o", "disk/result"), 2 * 256**3),
+)
+
+
+def end_refused(subject, arguments, least):
+    """Why a verb did not refuse, before its work, an answer for which the disk has no room."""
+    disk = subject.folder / "disk"
+    free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
+    with open(disk / "filler", "wb") as filler:
+        os.posix_fallocate(filler.fileno(), 0, free - 65536)
+    ended = subject.run(*arguments)
+    (disk / "filler").unlink()
+    told = re.search(r"writing it takes at least ([0-9.]+) (kB|MB|GB) of disk, 65.5 kB are free", ended.errors)
+    if ended.status != 3 or told is None or any(disk.iterdir()):
+        return f"{ended}, left {list(disk.iterdir())}"
+    size = float(told[1]) * {"kB": 1e3, "MB": 1e6, "GB": 1e9}[told[2]]
+    # Given the room, the answer is no smaller than it was told to be.
+    if least:
+        return None if size >= 0.9 * least else f"told {size:.0f} bytes of {least}"
+    subject.need(*arguments)
+    written = size_of(disk / Path(arguments[-1]).name)
+    packed = arguments[-1].endswith(".gz")
+    for path in list(disk.iterdir()):
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    return None if packed or 0.5 * written <= size <= 1.001 * written else f"told {size:.0f} bytes of {written}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="the build folder that holds octotomy")
@@ -80,6 +120,15 @@ def main():
             for verb in VERBS:
                 verb.lay_older(subject)
                 verb.learn(subject)
+            plan = dict(PLAN, universe={"voxel_mm": 1.0}, steps=[
+                {"id": "skull", "do": "window", "scan": "ct", "low": 300},
+                {"id": "map", "do": "export", "object": "skull", "path": "skull.nii.gz"}])
+            subject.write("map.plan.json", json.dumps(plan))
+            for arguments, least in REFUSED:
+                why = end_refused(subject, arguments, least)
+                if why:
+                    faults += 1
+                    print(f"  {' '.join(arguments)}: {why}")
             for number in range(asked.count):
                 verb = VERBS[number % len(VERBS)]
                 room = int(chance.uniform(0.0, 1.05) * size_of(subject.folder / verb.out))

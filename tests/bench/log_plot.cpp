@@ -52,6 +52,22 @@ std::string line(double x1, double y1, double x2, double y2) {
   return svg.str();
 }
 
+// The curves' common places, or powers of ten where they have others.
+std::vector<double> x_ticks(const LogPlot& plot, const Axis& x) {
+  std::vector<double> common;
+  for (const auto& [at, unused] : plot.curves.front().points) common.push_back(at);
+  const bool is_common = std::all_of(plot.curves.begin(), plot.curves.end(), [&](const Curve& curve) {
+    return curve.points.size() == common.size() &&
+           std::equal(common.begin(), common.end(), curve.points.begin(),
+                      [](double at, const auto& point) { return at == point.first; });
+  });
+  if (is_common) return common;
+  std::vector<double> decades;
+  for (double tick = std::pow(10.0, std::ceil(std::log10(x.low) - 1e-9)); tick <= x.high; tick *= 10.0)
+    decades.push_back(tick);
+  return decades;
+}
+
 // Powers of ten within the axis, as lines across the picture with their values.
 std::string decades(const Axis& x, const Axis& y) {
   std::string svg;
@@ -93,7 +109,7 @@ void write_svg(const LogPlot& plot, const std::filesystem::path& path) {
       << "\" font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" "
          "fill=\"white\"/>\n"
       << text(left, 24, plot.title, "font-size=\"16\"") << decades(x, y);
-  for (const auto& [at, unused] : plot.curves.front().points)
+  for (const double at : x_ticks(plot, x))
     svg << line(x.px(at), y.from_px, x.px(at), y.to_px)
         << text(x.px(at), y.from_px + 20, number(at), "text-anchor=\"middle\"");
   svg << text(0.5 * (x.from_px + x.to_px), height - 14, plot.x_label, "text-anchor=\"middle\"")

@@ -10,6 +10,7 @@
 #include "voxel/scan/character_set.h"
 #include "voxel/scan/dicom_derived.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/disk_need.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 
@@ -225,6 +226,7 @@ std::string slice_name(int k) {
 }  // namespace
 
 void write_dicom_series(const Scene& scene, const fs::path& folder, const DicomOptions& options) {
+  need_disk(folder, least_file_bytes(scene.lattice, sizeof(std::int16_t), folder));
   const SeriesWriter series(scene, options);
   std::error_code error;
   fs::create_directories(folder, error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,9 +15,15 @@ namespace octotomy::voxel {
 /// their meaning and the modality survive a round trip. Geometry is kept in double precision; NIfTI files,
 /// single precision by themselves, keep it in an extension that other readers skip. Written beside and
 /// renamed into place, so that a failure leaves an older file intact. Throws Error, Input or Resource, with
-/// path and reason; std::invalid_argument for NIfTI and MetaImage, which cannot store them, if the lattice's
-/// axes are not perpendicular.
+/// path and reason, before a byte is written where the disk cannot take it; std::invalid_argument for NIfTI
+/// and MetaImage, which cannot store them, if the lattice's axes are not perpendicular.
 void write_scene(const Scene& scene, const std::filesystem::path& path);
+
+/// Bytes that write_scene(), or for a path of another extension write_dicom_series(), takes of the disk at
+/// least while it writes samples of this size: what NIfTI has unpacked, and the rest as packed as it can be.
+/// For need_disk(), before the samples are made.
+std::uint64_t least_file_bytes(const Lattice& lattice, std::uint64_t sample_bytes,
+                               const std::filesystem::path& path);
 
 struct DicomOptions {
   std::string patient_name = "Phantom^Octotomy";  ///< family^given; unused if the source names its patient

@@ -20,6 +20,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include "voxel/space/disk_need.h"
 #include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
@@ -493,6 +494,7 @@ OctreeFile octree_file_of_bytes(std::span<const std::uint8_t> bytes, const std::
 
 void write_octree(const OctreeFile& file, const std::filesystem::path& path) {
   const Bytes bytes = octree_file_bytes(file);
+  need_disk(path, bytes.size());
   StagedFiles staging(path.parent_path());
   const std::filesystem::path staged = staging.folder() / path.filename();
   std::FILE* const stream = std::fopen(staged.c_str(), "wb");

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "convert/surface/label_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include "voxel/filter/label_map.h"
+#include "voxel/space/error.h"
+#include "voxel/space/large_allocator.h"
+#include "voxel/space/shared_progress.h"
+
+// Source: Bloomenthal and Ferguson, "Polygonization of non-manifold implicit surfaces", SIGGRAPH 1995, for
+// tetrahedra of several materials. Departures: Kuhn's six tetrahedra of a cell in place of one's own
+// polygonizer, and points where labels' shares are equal. The passes:
+//
+// 1 The labels are copied with a border of no label, so that surfaces close there.
+// 2 Every cell whose corners differ is cut into six tetrahedra along its diagonal from the lowest to the
+//   highest corner; all cells alike, so neighbours share whole triangles. A tetrahedron's triangles follow
+//   from which of its corners have equal labels. They name their points by keys: a point lies on an edge
+//   between two labels, on a face between three, or in a tetrahedron between four.
+// 3 The keys of each plane of samples are sorted; the rank of a key is its point's number.
+// 4 The points are placed, and keys replaced by numbers.
+//
+// Why the surfaces are sound. Up to where its points lie, a label's region is the union of the dual cells of
+// its samples, which is a regular neighbourhood of the complex that they span, so its boundary is a closed
+// manifold (Rourke and Sanderson, Introduction to Piecewise-Linear Topology, chapter 3). In a tetrahedron the
+// triangles are a cone from a point, which sees every point of the boundary of a convex body once, so they
+// cross nowhere for any points inside the edges and faces that they belong to.
+
+namespace octotomy::convert {
+namespace {
+
+using Key = std::uint64_t;
+
+/// Codes of points at a sample: 8 d + e for the face with the corners 0, d and e, d = 0 for an edge, where
+/// corners are offsets, x + 2y + 4z; and the six tetrahedra's own.
+constexpr std::uint32_t code_count = 128, first_tetrahedron_code = 64;
+/// The part of an edge that a point keeps from its ends.
+constexpr double least_part = 0.1;
+
+struct PointName {
+  std::uint8_t corner = 0;  ///< of the cell: the point's lowest sample
+  std::uint8_t code = 0;
+};
+
+/// A triangle of a tetrahedron, counter-clockwise seen from the side of the corner `front` of the cell.
+struct Piece {
+  std::array<PointName, 3> points;
+  std::uint8_t behind = 0, front = 0;
+};
+using Pieces = std::vector<Piece>;
+
+glm::dvec3 place_of(int corner) {
+  return {corner & 1, (corner >> 1) & 1, corner >> 2};
+}
+
+/// A point of a tetrahedron by the corners that it lies between, in ascending order.
+struct Between {
+  std::vector<int> corners;
+  PointName name(int tetrahedron) const {
+    const auto lowest = static_cast<std::uint8_t>(corners.front());
+    if (corners.size() == 4) return {lowest, static_cast<std::uint8_t>(first_tetrahedron_code + tetrahedron)};
+    const int d = corners.size() == 3 ? corners[1] - corners[0] : 0;
+    return {lowest, static_cast<std::uint8_t>(8 * d + corners.back() - corners.front())};
+  }
+  glm::dvec3 place() const {
+    glm::dvec3 sum(0.0);
+    for (const int corner : corners) sum += place_of(corner);
+    return sum / static_cast<double>(corners.size());
+  }
+};
+
+/// Derives the pieces of a tetrahedron whose corners have these labels.
+class Derivation {
+ public:
+  Derivation(int tetrahedron, const std::array<int, 4>& corners, const std::array<int, 4>& labels)
+      : tetrahedron_(tetrahedron), corners_(corners) {
+    std::vector<std::vector<int>> classes;
+    for (int i = 0; i < 4; ++i) {
+      const auto same = std::find_if(classes.begin(), classes.end(), [&](const std::vector<int>& each) {
+        return labels[each.front()] == labels[i];
+      });
+      if (same == classes.end())
+        classes.push_back({i});
+      else
+        same->push_back(i);
+    }
+    std::stable_sort(classes.begin(), classes.end(),
+                     [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    if (classes.size() == 2 && classes[1].size() == 1) one_corner(classes[1][0], classes[0]);
+    if (classes.size() == 2 && classes[1].size() == 2) two_corners(classes[0], classes[1]);
+    if (classes.size() == 3) three_labels(classes[0], classes[1][0], classes[2][0]);
+    if (classes.size() == 4) four_labels();
+  }
+  Pieces take() { return std::move(pieces_); }
+
+ private:
+  Between between(std::vector<int> numbers) const {
+    for (int& number : numbers) number = corners_[number];
+    std::sort(numbers.begin(), numbers.end());
+    return {std::move(numbers)};
+  }
+  void add(int behind, int front, const Between& a, const Between& b, const Between& c) {
+    const glm::dvec3 normal = glm::cross(b.place() - a.place(), c.place() - a.place());
+    const bool faces_front = glm::dot(normal, place_of(corners_[front]) - place_of(corners_[behind])) > 0.0;
+    pieces_.push_back({{a.name(tetrahedron_), (faces_front ? b : c).name(tetrahedron_),
+                        (faces_front ? c : b).name(tetrahedron_)},
+                       static_cast<std::uint8_t>(corners_[behind]),
+                       static_cast<std::uint8_t>(corners_[front])});
+  }
+
+  void one_corner(int one, const std::vector<int>& rest) {
+    add(one, rest[0], between({one, rest[0]}), between({one, rest[1]}), between({one, rest[2]}));
+  }
+  void two_corners(const std::vector<int>& a, const std::vector<int>& b) {
+    const Between apex = between({a[0], b[0]}), across = between({a[1], b[1]});
+    add(a[0], b[1], apex, between({a[0], b[1]}), across);
+    add(a[1], b[0], apex, across, between({a[1], b[0]}));
+  }
+  /// A cone from the point of the face of one of the two corners with the same label.
+  void three_labels(const std::vector<int>& same, int b, int c) {
+    const Between apex = between({same[1], b, c}), across = between({same[0], b, c});
+    add(b, c, between({b, c}), across, apex);
+    for (const int other : {b, c}) {
+      add(same[0], other, between({same[0], other}), across, apex);
+      add(same[1], other, between({same[1], other}), between({same[0], other}), apex);
+    }
+  }
+  /// A cone from the tetrahedron's own point.
+  void four_labels() {
+    const Between apex = between({0, 1, 2, 3});
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j)
+        for (int k = 0; k < 4; ++k)
+          if (k != i && k != j) add(i, j, between({i, j}), between({i, j, k}), apex);
+  }
+
+  int tetrahedron_;
+  std::array<int, 4> corners_;
+  Pieces pieces_;
+};
+
+constexpr std::array<std::array<int, 4>, 6> tetrahedra{
+    {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
+
+/// Which of four labels are equal, a bit a pair.
+template <typename Label>
+std::size_t pattern_of(const Label& a, const Label& b, const Label& c, const Label& d) {
+  return static_cast<std::size_t>((a == b ? 1 : 0) | (a == c ? 2 : 0) | (a == d ? 4 : 0) | (b == c ? 8 : 0) |
+                                  (b == d ? 16 : 0) | (c == d ? 32 : 0));
+}
+constexpr std::size_t all_equal = 63;
+
+/// The pieces of each tetrahedron by the pattern of its labels.
+const std::array<std::array<Pieces, 64>, 6>& pieces() {
+  static const auto table = [] {
+    std::array<std::array<Pieces, 64>, 6> made;
+    for (std::size_t t = 0; t < 6; ++t)
+      for (int labels = 0; labels < 256; ++labels) {
+        const std::array<int, 4> four{labels & 3, (labels >> 2) & 3, (labels >> 4) & 3, labels >> 6};
+        Pieces& here = made[t][pattern_of(four[0], four[1], four[2], four[3])];
+        if (here.empty()) here = Derivation(static_cast<int>(t), tetrahedra[t], four).take();
+      }
+    return made;
+  }();
+  return table;
+}
+
+class Extraction {
+ public:
+  Extraction(const voxel::Scene& scene, const LabelSurfaceOptions& options)
+      : lattice_(scene.lattice), options_(options), size_(scene.lattice.dims + 2) {
+    copy_labels(scene);
+    for (int corner = 0; corner < 8; ++corner)
+      step_[corner] = static_cast<std::size_t>(corner & 1) +
+                      static_cast<std::size_t>(size_.x) *
+                          (static_cast<std::size_t>((corner >> 1) & 1) +
+                           static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(corner >> 2));
+    fill_weights();
+  }
+
+  brep::PartedSurface run() {
+    find_faces(voxel::part_of(options_.progress, 0.0, 0.4));
+    number_points(voxel::part_of(options_.progress, 0.4, 0.6));
+    write(voxel::part_of(options_.progress, 0.6, 1.0));
+    return std::move(made_);
+  }
+
+ private:
+  struct Face {
+    std::array<Key, 3> points;
+    brep::PartedSurface::Sides sides;
+  };
+
+  void copy_labels(const voxel::Scene& scene) {
+    std::vector<char> wanted(std::size_t{1} << 15, 0);
+    for (const voxel::Label& label : voxel::labels(scene)) {
+      if (!options_.labels.empty() && !options_.labels.contains(label.number)) continue;
+      if (label.number >= static_cast<int>(wanted.size()))
+        throw std::invalid_argument("label surfaces: label " + std::to_string(label.number) +
+                                    " is over 32767");
+      wanted[static_cast<std::size_t>(label.number)] = 1;
+      made_.names[label.number];
+    }
+    for (const int label : options_.labels)
+      if (!made_.names.contains(label))
+        throw voxel::Error(voxel::ErrorCode::Input,
+                           "no sample has label " + std::to_string(label) + ": choose among those there are");
+    labels_.resize(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
+                   static_cast<std::size_t>(size_.z));
+    tbb::parallel_for(0, size_.z, [&](int z) {
+      for (int y = 0; y < size_.y; ++y) {
+        std::int16_t* row = &labels_[at(0, y, z)];
+        std::fill_n(row, size_.x, std::int16_t{0});
+        if (z == 0 || z + 1 == size_.z || y == 0 || y + 1 == size_.y) continue;
+        std::visit(
+            [&](const auto& samples) {
+              const auto* from =
+                  &samples[(static_cast<std::size_t>(z - 1) * static_cast<std::size_t>(lattice_.dims.y) +
+                            static_cast<std::size_t>(y - 1)) *
+                           static_cast<std::size_t>(lattice_.dims.x)];
+              for (int x = 0; x < lattice_.dims.x; ++x) {
+                const auto label = static_cast<std::int16_t>(from[x]);
+                if (label > 0 && wanted[static_cast<std::size_t>(label)] != 0) row[x + 1] = label;
+              }
+            },
+            scene.samples);
+      }
+    });
+  }
+
+  /// The binomial weights along an axis, whose product weighs a neighbour.
+  void fill_weights() {
+    weights_ = {1.0};
+    for (int round = 0; round < 2 * options_.smooth_voxels; ++round) {
+      weights_.push_back(0.0);
+      for (std::size_t i = weights_.size() - 1; i > 0; --i) weights_[i] += weights_[i - 1];
+    }
+  }
+
+  std::size_t at(int x, int y, int z) const {
+    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y) + static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(size_.x) +
+           static_cast<std::size_t>(x);
+  }
+  glm::ivec3 sample_of(std::size_t index) const {
+    const auto x = static_cast<std::size_t>(size_.x), y = static_cast<std::size_t>(size_.y);
+    return {static_cast<int>(index % x), static_cast<int>(index / x % y), static_cast<int>(index / x / y)};
+  }
+
+  void find_faces(const voxel::Progress& progress) {
+    faces_.resize(static_cast<std::size_t>(size_.z - 1));
+    voxel::SharedProgress done(progress, faces_.size());
+    tbb::parallel_for(0, size_.z - 1, [&](int z) {
+      done.one_more();
+      for (int y = 0; y + 1 < size_.y; ++y)
+        for (int x = 0; x + 1 < size_.x; ++x) add_cell(at(x, y, z), faces_[static_cast<std::size_t>(z)]);
+    });
+  }
+
+  void add_cell(std::size_t cell, std::vector<Face>& faces) const {
+    std::array<std::int16_t, 8> labels{};
+    bool differ = false;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      labels[corner] = labels_[cell + step_[corner]];
+      differ |= labels[corner] != labels[0];
+    }
+    if (!differ) return;
+    for (std::size_t t = 0; t < 6; ++t) {
+      const std::array<int, 4>& c = tetrahedra[t];
+      for (const Piece& piece :
+           pieces()[t][pattern_of(labels[c[0]], labels[c[1]], labels[c[2]], labels[c[3]])]) {
+        Face face;
+        face.sides = {labels[piece.behind], labels[piece.front]};
+        for (std::size_t i = 0; i < 3; ++i)
+          face.points[i] = (cell + step_[piece.points[i].corner]) * code_count + piece.points[i].code;
+        // Outward from a part, from the lower number of two.
+        const bool turn =
+            face.sides.behind == 0 || (face.sides.front != 0 && face.sides.front < face.sides.behind);
+        if (turn) std::swap(face.sides.behind, face.sides.front);
+        if (turn == lattice_.right_handed()) std::swap(face.points[1], face.points[2]);
+        faces.push_back(face);
+      }
+    }
+  }
+
+  /// The keys of plane z are named by the cells above and below it.
+  void number_points(const voxel::Progress& progress) {
+    const Key plane = Key{code_count} * static_cast<Key>(size_.x) * static_cast<Key>(size_.y);
+    keys_.resize(static_cast<std::size_t>(size_.z));
+    voxel::SharedProgress done(progress, keys_.size());
+    tbb::parallel_for(std::size_t{0}, keys_.size(), [&](std::size_t z) {
+      done.one_more();
+      std::vector<Key>& keys = keys_[z];
+      for (std::size_t layer = z == 0 ? 0 : z - 1; layer <= z && layer < faces_.size(); ++layer)
+        for (const Face& face : faces_[layer])
+          for (const Key key : face.points)
+            if (key / plane == z) keys.push_back(key);
+      std::sort(keys.begin(), keys.end());
+      keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+      keys.shrink_to_fit();
+    });
+    std::uint64_t points = 0, faces = 0;
+    for (const std::vector<Key>& keys : keys_) {
+      first_point_.push_back(points);
+      points += keys.size();
+    }
+    for (const std::vector<Face>& layer : faces_) {
+      first_face_.push_back(faces);
+      faces += layer.size();
+    }
+    if (std::max(points, faces) > std::numeric_limits<std::uint32_t>::max())
+      throw voxel::Error(voxel::ErrorCode::Resource,
+                         "the labels' surfaces would have " + std::to_string(faces) +
+                             " triangles, more than 32-bit numbers can name: crop or resample the label map");
+    tbb::parallel_invoke([&] { made_.triangles.points_mm.resize(points); },
+                         [&] { made_.triangles.faces.resize(faces); }, [&] { made_.sides.resize(faces); });
+  }
+
+  void write(const voxel::Progress& progress) {
+    const Key plane = Key{code_count} * static_cast<Key>(size_.x) * static_cast<Key>(size_.y);
+    voxel::SharedProgress done(progress, 2 * keys_.size());
+    tbb::parallel_for(std::size_t{0}, keys_.size(), [&](std::size_t z) {
+      done.one_more();
+      for (std::size_t i = 0; i < keys_[z].size(); ++i)
+        // The border's sample is one before the first.
+        made_.triangles.points_mm[first_point_[z] + i] = lattice_.lps_mm(point_of(keys_[z][i]) - 1.0);
+    });
+    tbb::parallel_for(std::size_t{0}, faces_.size(), [&](std::size_t z) {
+      done.one_more();
+      for (std::size_t f = 0; f < faces_[z].size(); ++f) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          const Key key = faces_[z][f].points[i];
+          const std::vector<Key>& keys = keys_[key / plane];
+          const auto rank = std::lower_bound(keys.begin(), keys.end(), key) - keys.begin();
+          made_.triangles.faces[first_face_[z] + f][i] =
+              static_cast<std::uint32_t>(first_point_[key / plane] + static_cast<std::uint64_t>(rank));
+        }
+        made_.sides[first_face_[z] + f] = faces_[z][f].sides;
+      }
+      faces_[z] = {};
+    });
+  }
+
+  glm::dvec3 point_of(Key key) const {
+    const std::size_t low = key / code_count;
+    const auto code = static_cast<std::size_t>(key % code_count);
+    const auto corner = [&](std::size_t offset) { return low + step_[offset]; };
+    if (code >= first_tetrahedron_code) {
+      const std::array<int, 4>& c = tetrahedra[code - first_tetrahedron_code];
+      glm::dvec3 sum(0.0);
+      for (std::size_t i = 0; i < 4; ++i)
+        sum += face_point(corner(c[i]), corner(c[(i + 1) % 4]), corner(c[(i + 2) % 4]));
+      return sum / 4.0;
+    }
+    const std::size_t d = code / 8, e = code % 8;
+    return d == 0 ? edge_point(low, corner(e)) : face_point(low, corner(d), corner(e));
+  }
+  /// Inside the face, as each of the three is inside of a side.
+  glm::dvec3 face_point(std::size_t a, std::size_t b, std::size_t c) const {
+    return (edge_point(a, b) + edge_point(b, c) + edge_point(c, a)) / 3.0;
+  }
+  /// From sample a to sample b where the weighted shares of both labels about it are equal, linearly between
+  /// the two; half-way at the scan's border.
+  glm::dvec3 edge_point(std::size_t a, std::size_t b) const {
+    if (a > b) std::swap(a, b);  // the same bits from each tetrahedron
+    const glm::ivec3 from = sample_of(a), to = sample_of(b);
+    const double excess_a = excess(from, labels_[a], labels_[b]),
+                 excess_b = excess(to, labels_[b], labels_[a]);
+    double part = 0.5;
+    if (!is_border(from) && !is_border(to))
+      part = excess_a + excess_b > 0.0 ? excess_a / (excess_a + excess_b) : 0.5;
+    part = std::clamp(part, least_part, 1.0 - least_part);
+    return glm::dvec3(from) + part * glm::dvec3(to - from);
+  }
+  bool is_border(const glm::ivec3& p) const {
+    return glm::any(glm::equal(p, glm::ivec3(0))) || glm::any(glm::equal(p, size_ - 1));
+  }
+  /// How much more of one label there is about a sample than of another, at least 0. A label ends at the
+  /// scan's border as it is there.
+  double excess(const glm::ivec3& p, std::int16_t more, std::int16_t less) const {
+    const int reach = options_.smooth_voxels;
+    double sum = 0.0;
+    for (int k = -reach; k <= reach; ++k)
+      for (int j = -reach; j <= reach; ++j) {
+        const glm::ivec3 row = glm::clamp(p + glm::ivec3(0, j, k), glm::ivec3(1), size_ - 2);
+        const std::int16_t* labels = &labels_[at(0, row.y, row.z)];
+        double in_row = 0.0;
+        for (int i = -reach; i <= reach; ++i) {
+          const std::int16_t label = labels[std::clamp(p.x + i, 1, size_.x - 2)];
+          in_row += weights_[static_cast<std::size_t>(i + reach)] *
+                    ((label == more ? 1.0 : 0.0) - (label == less ? 1.0 : 0.0));
+        }
+        sum += in_row * weights_[static_cast<std::size_t>(j + reach)] *
+               weights_[static_cast<std::size_t>(k + reach)];
+      }
+    return std::max(0.0, sum);
+  }
+
+  voxel::Lattice lattice_;
+  LabelSurfaceOptions options_;
+  glm::ivec3 size_;  ///< with the border
+  std::vector<std::int16_t, voxel::LargeAllocator<std::int16_t>> labels_;
+  std::array<std::size_t, 8> step_{};
+  std::vector<double> weights_;
+  std::vector<std::vector<Face>> faces_;  ///< by the plane of samples below
+  std::vector<std::vector<Key>> keys_;    ///< by the plane of the lowest sample
+  std::vector<std::uint64_t> first_point_, first_face_;
+  brep::PartedSurface made_;
+};
+
+}  // namespace
+
+brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurfaceOptions& options) {
+  voxel::check(scene);
+  if (options.smooth_voxels < 0 || options.smooth_voxels > 4)
+    throw std::invalid_argument("label surfaces: smooth_voxels must be from 0 to 4, not " +
+                                std::to_string(options.smooth_voxels));
+  return Extraction(scene, options).run();
+}
+
+}  // namespace octotomy::convert

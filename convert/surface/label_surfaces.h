@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <set>
+
+#include "brep/io/write_parts.h"
+#include "voxel/space/progress.h"
+#include "voxel/space/scene.h"
+
+namespace octotomy::convert {
+
+struct LabelSurfaceOptions {
+  std::set<int> labels = {};  ///< the parts; empty: all but 0. Samples of others belong to no part.
+  /// 0..4: the neighbours so many voxels about a sample decide where a surface passes between two samples; 0:
+  /// half-way. More is smoother, and draws a ball of r voxels in by s / 2r voxels.
+  int smooth_voxels = 1;
+  voxel::Progress progress = {};
+};
+
+/// The surfaces of all labels of a label map at once, in LPS millimetres. A part without a name is in
+/// `names` with an empty one.
+///
+/// The surfaces cut space: two labels that touch share the triangles between them, three meet in lines and
+/// four in points, so there is no gap and no overlap, and the parts' volumes add up to that within the
+/// outside. The surface of each label is closed, manifold, oriented and free of self-intersection for any
+/// labels. It passes between neighbouring samples of different labels, a tenth of their distance from each or
+/// more; samples that only touch across a cell's diagonal are joined along one of its diagonals, apart along
+/// the others. A part that reaches the scan's border is closed half a voxel beyond its outermost samples.
+///
+/// Throws std::invalid_argument if the scene fails check(), a sample is negative or no integer, or an option
+/// is out of range; voxel::Error (Input) if a label that was asked for has no sample, (Resource) if 32 bits
+/// do not number the triangles; voxel::Stopped. Parallel; same bits on any thread count. Memory: two bytes a
+/// sample and 80 a triangle. Cost: linear in samples, and in triangles but for their numbering, n log n.
+brep::PartedSurface label_surfaces(const voxel::Scene& scene, const LabelSurfaceOptions& options = {});
+
+}  // namespace octotomy::convert

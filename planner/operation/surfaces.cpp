@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// All labels of a label map as one set of surfaces that share their common faces.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "brep/mesh/error.h"
+#include "convert/surface/label_surfaces.h"
+#include "planner/file/file_kind.h"
+#include "planner/file/label_table.h"
+#include "planner/file/mesh_file.h"
+#include "planner/file/output_path.h"
+#include "planner/measure/result_json.h"
+#include "planner/table/number_format.h"
+#include "planner/table/operation.h"
+#include "voxel/filter/label_map.h"
+#include "voxel/space/disk_need.h"
+#include "voxel/space/staged_files.h"
+
+namespace octotomy::planner {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Surfaces {
+  ScanName scan;
+  fs::path path;
+  std::vector<int> labels;
+  int smooth = convert::LabelSurfaceOptions{}.smooth_voxels;
+  // Of the verb.
+  fs::path out, names;
+};
+
+constexpr const char* name_mark = "{name}";
+
+void check(const Surfaces& surfaces, const Place& place) {
+  if (place.scope != nullptr) check_output_path(surfaces.path, {".vtp", ".obj", ".glb"}, place.at("path"));
+  for (const int label : surfaces.labels)
+    if (label < 1 || label > 32767) place.at("labels").refuse("a label is from 1 to 32767");
+}
+
+brep::PartedSurface surfaces_of(const Surfaces& asked, const voxel::Scene& scene, const LabelTable& table,
+                                const voxel::Progress& progress) {
+  brep::PartedSurface made;
+  try {
+    made =
+        convert::label_surfaces(scene, {{asked.labels.begin(), asked.labels.end()}, asked.smooth, progress});
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(scene.source + ": is no label map: " + error.what());
+  }
+  for (auto& [label, name] : made.names) {
+    const auto known = table.names.find(label);
+    name = known == table.names.end() ? "label " + std::to_string(label) : known->second;
+  }
+  return made;
+}
+
+/// Numbers of parts, and areas of their contacts.
+struct Sizes {
+  struct Part {
+    std::size_t faces = 0;
+    double volume_mm3 = 0.0, area_mm2 = 0.0;
+  };
+  std::map<int, Part> parts;
+  std::map<std::pair<int, int>, double> contacts_mm2;
+};
+
+Sizes sizes_of(const brep::PartedSurface& parted) {
+  Sizes sizes;
+  for (std::size_t f = 0; f < parted.sides.size(); ++f) {
+    const auto& [a, b, c] = parted.triangles.faces[f];
+    // About the first point, as six times a volume far from the origin loses digits.
+    const glm::dvec3 &origin = parted.triangles.points_mm[0], p = parted.triangles.points_mm[a] - origin,
+                     q = parted.triangles.points_mm[b] - origin, r = parted.triangles.points_mm[c] - origin;
+    const double volume_mm3 = glm::dot(glm::cross(p, q), r) / 6.0,
+                 area_mm2 = 0.5 * glm::length(glm::cross(q - p, r - p));
+    const auto& [behind, front] = parted.sides[f];
+    for (const auto& [part, sign] : {std::pair{behind, 1.0}, std::pair{front, -1.0}}) {
+      if (part == 0) continue;
+      Sizes::Part& size = sizes.parts[part];
+      ++size.faces;
+      size.volume_mm3 += sign * volume_mm3;
+      size.area_mm2 += area_mm2;
+    }
+    if (behind != 0 && front != 0) sizes.contacts_mm2[{behind, front}] += area_mm2;
+  }
+  return sizes;
+}
+
+Json to_json(const brep::PartedSurface& made, const Sizes& sizes, const voxel::Scene& scene) {
+  Json json{{"faces", made.triangles.faces.size()},
+            {"vertices", made.triangles.points_mm.size()},
+            {"parts", Json::array()},
+            {"contacts", Json::array()}};
+  for (const voxel::Label& label : voxel::labels(scene))
+    if (const auto size = sizes.parts.find(label.number); size != sizes.parts.end())
+      json["parts"].push_back(
+          {{"label", label.number},
+           {"name", made.names.at(label.number)},
+           {"faces", size->second.faces},
+           {"volume_mm3", size->second.volume_mm3},
+           {"volume_samples_mm3", static_cast<double>(label.samples) * scene.lattice.voxel_mm3()},
+           {"area_mm2", size->second.area_mm2}});
+  for (const auto& [between, area_mm2] : sizes.contacts_mm2)
+    json["contacts"].push_back({{"between", {between.first, between.second}}, {"area_mm2", area_mm2}});
+  return json;
+}
+
+/// Parts whose surface holds another volume than their samples: layers between others, which are thin.
+std::vector<std::string> findings_of(const Json& json) {
+  constexpr double told_share = 0.1;
+  std::vector<std::string> findings;
+  for (const Json& part : json["parts"]) {
+    const double surface = part["volume_mm3"].get<double>(),
+                 samples = part["volume_samples_mm3"].get<double>();
+    if (std::abs(surface - samples) > told_share * samples)
+      findings.push_back(part["name"].get<std::string>() + ": the surface holds " + grouped(surface, 0) +
+                         " mm\u00b3, its samples " + grouped(samples, 0) +
+                         " mm\u00b3: it is thin, and smoothing changed it; --smooth 0 changes less");
+  }
+  return findings;
+}
+
+/// The name as part of a file's: letters, digits, dots and dashes, in any writing.
+std::string file_word(const std::string& name) {
+  std::string word;
+  for (const char letter : name) {
+    const auto code = static_cast<unsigned char>(letter);
+    word += code >= 0x80 || std::isalnum(code) != 0 || letter == '-' || letter == '.' ? letter : '_';
+  }
+  return word;
+}
+
+/// One file a part: `out` with the part's name in place of {name}. Two parts of one name have their numbers,
+/// too.
+std::vector<fs::path> write_each(const brep::PartedSurface& made, const fs::path& out) {
+  std::vector<fs::path> written;
+  voxel::StagedFiles staged(out.parent_path());
+  std::set<std::string> used;
+  for (const auto& [part, name] : made.names) {
+    std::string file = out.filename().string();
+    std::string word = file_word(name);
+    if (!used.insert(word).second) used.insert(word += "_" + std::to_string(part));
+    file.replace(file.find(name_mark), std::string(name_mark).size(), word);
+    brep::write_mesh(brep::surface_of_part(made, part), staged.folder() / file);
+    written.push_back(out.parent_path() / file);
+  }
+  staged.commit();
+  return written;
+}
+
+/// Writes the surfaces; returns the files.
+std::vector<fs::path> write_all(const brep::PartedSurface& made, const fs::path& out, Timings& timings) {
+  const Stopwatch watch(timings, "write");
+  voxel::need_disk(out,
+                   brep::least_mesh_bytes(made.triangles.points_mm.size(), made.triangles.faces.size(), out));
+  if (out.filename().string().find(name_mark) != std::string::npos) return write_each(made, out);
+  voxel::StagedFiles staged(out.parent_path());
+  brep::write_parts(made, staged.folder() / out.filename());
+  staged.commit();
+  return {out};
+}
+
+void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
+  made.path = output_path(asked.path).generic_string();
+  const voxel::Scene& scene = bench.samples(asked.scan.name);
+  const LabelTable table = asked.names.empty() ? label_table_of(scene.source) : read_label_table(asked.names);
+  const brep::PartedSurface parted =
+      surfaces_of(asked, scene, table, bench.progress("surfaces of " + asked.scan.name));
+  if (parted.triangles.faces.empty())
+    return made.findings.push_back("not written: '" + asked.scan.name + "' has no labels");
+  write_all(parted, output_file(bench.folder, made.path), bench.timings);
+  made.written = true;
+  made.content = grouped(static_cast<double>(parted.names.size()), 0) + " labels, " +
+                 grouped(static_cast<double>(parted.triangles.faces.size()), 0) + " triangles";
+  made.details = to_json(parted, sizes_of(parted), scene);
+  made.findings = findings_of(made.details);
+}
+
+FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
+  const std::string name = asked.out.filename().string();
+  if (name.find(name_mark) == std::string::npos && !brep::is_parts_file(asked.out))
+    throw std::runtime_error(asked.out.string() +
+                             ": several surfaces are one .vtp, .obj or .glb file; or one file a label: put " +
+                             name_mark + " into its name");
+  need_mesh_extension(asked.out);
+  need_folder_of(asked.out);
+  const fs::path file = asked.scan.name;
+  const LabelTable table = asked.names.empty() ? label_table_of(file) : read_label_table(asked.names);
+  const voxel::Scene scene = bench.read_scan(file);
+  brep::PartedSurface made;
+  {
+    const Stopwatch watch(bench.timings, "surfaces");
+    made = surfaces_of(asked, scene, table, bench.progress("surfaces"));
+  }
+  if (made.triangles.faces.empty())
+    throw std::runtime_error(file.string() + ": every sample is 0, so there are no labels");
+  const std::vector<fs::path> files = write_all(made, asked.out, bench.timings);
+  FileAnswer answer{{{"kind", "surfaces of labels"}, {"path", asked.out.string()}}};
+  answer.json["files"] = Json::array();
+  for (const fs::path& each : files) answer.json["files"].push_back(each.string());
+  answer.json.update(to_json(made, sizes_of(made), scene));
+  answer.findings = findings_of(answer.json);
+  for (const std::string& finding : answer.findings) answer.json["findings"].push_back(finding);
+  answer.rows.emplace_back("written",
+                           files.size() == 1 ? files[0].string() : std::to_string(files.size()) + " files");
+  for (const Json& part : answer.json["parts"])
+    answer.rows.emplace_back(part["name"].get<std::string>(),
+                             grouped(part["volume_mm3"].get<double>(), 1) + " mm\u00b3, " +
+                                 grouped(part["faces"].get<double>(), 0) + " triangles");
+  return answer;
+}
+
+}  // namespace
+
+Operation surfaces_operation() {
+  return Describe<Surfaces>(
+             "surfaces", "Writes the surfaces of all labels of a label map, which share their common faces.",
+             Makes::File)
+      .takes(field("scan", &Surfaces::scan, "The label map.").required().positional("file"))
+      .takes(field("path", &Surfaces::path, "The file within the result's folder: .vtp, .obj or .glb.")
+                 .in_plans_only())
+      .takes(
+          field("labels", &Surfaces::labels, "Only these labels. Default: all but 0.").for_example("[1, 2]"))
+      .takes(field("smooth", &Surfaces::smooth,
+                   "Smooths over so many voxels; 0 leaves the surfaces half-way between voxels.")
+                 .from(0)
+                 .to(4))
+      .verb_takes(field("out", &Surfaces::out,
+                        "One .vtp, .obj or .glb file of all; or one file a label, with {name} in its name.")
+                      .required())
+      .verb_takes(
+          field("names", &Surfaces::names,
+                "The table of names, in place of the one found: .json, .csv, .tsv, ITK-SNAP's .txt, 3D "
+                "Slicer's .ctbl.")
+              .a_file())
+      .reads_scans()
+      .example(R"({"id": "organs", "do": "surfaces", "scan": "labels", "path": "organs.vtp"})")
+      .on_files(
+          "octotomy surfaces organs.nii.gz -o organs.vtp\n"
+          "  octotomy surfaces organs.nii.gz --names organs.json -o \"parts/{name}.stl\"",
+          on_files)
+      .check(check)
+      .write(write);
+}
+
+}  // namespace octotomy::planner
