@@ -88,7 +88,7 @@ Sizes sizes_of(const brep::PartedSurface& parted) {
   return sizes;
 }
 
-Json to_json(const brep::PartedSurface& made, const Sizes& sizes, const voxel::Scene& scene) {
+Json parted_json(const brep::PartedSurface& made, const Sizes& sizes, const voxel::Scene& scene) {
   Json json{{"faces", made.triangles.faces.size()},
             {"vertices", made.triangles.points_mm.size()},
             {"parts", Json::array()},
@@ -174,7 +174,7 @@ void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
   made.written = true;
   made.content = grouped(static_cast<double>(parted.names.size()), 0) + " labels, " +
                  grouped(static_cast<double>(parted.triangles.faces.size()), 0) + " triangles";
-  made.details = to_json(parted, sizes_of(parted), scene);
+  made.details = parted_json(parted, sizes_of(parted), scene);
   made.findings = findings_of(made.details);
 }
 
@@ -200,7 +200,7 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
   FileAnswer answer{{{"kind", "surfaces of labels"}, {"path", asked.out.string()}}};
   answer.json["files"] = Json::array();
   for (const fs::path& each : files) answer.json["files"].push_back(each.string());
-  answer.json.update(to_json(made, sizes_of(made), scene));
+  answer.json.update(parted_json(made, sizes_of(made), scene));
   answer.findings = findings_of(answer.json);
   for (const std::string& finding : answer.findings) answer.json["findings"].push_back(finding);
   answer.rows.emplace_back("written",
