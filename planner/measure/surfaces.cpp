@@ -236,7 +236,7 @@ Operation surfaces_operation() {
                 "Slicer's .ctbl.")
               .a_file())
       .reads_scans()
-      .example(R"({"id": "organs", "do": "surfaces", "scan": "labels", "path": "organs.vtp"})")
+      .example(R"({"id": "organs", "do": "surfaces", "scan": "ct", "path": "organs.vtp"})")
       .on_files(
           "octotomy surfaces organs.nii.gz -o organs.vtp\n"
           "  octotomy surfaces organs.nii.gz --names organs.json -o \"parts/{name}.stl\"",
