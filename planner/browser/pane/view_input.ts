@@ -18,6 +18,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   const canvas = pane.canvas;
   const fingers = new Map<number, Vec2>();
   let drag: Drag|null = null;
+  let last: Vec2 = [0, 0];
   let start: Vec2 = [0, 0];
   let has_moved = false;
   let pinch = 0;
@@ -43,6 +44,19 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     want_slices();
   };
 
+  /// Takes the fingers as they are for where the next motion begins.
+  function hold_fingers(): void {
+    last = middle(fingers);
+    pinch = spread(fingers);
+  }
+  /// Two fingers pan by their middle, and zoom about it by their spread.
+  function pinch_to(): void {
+    const from = last, before = pinch;
+    hold_fingers();
+    if (before && pinch) pane.zoom(before / pinch, last);
+    pane.pan([last[0] - from[0], last[1] - from[1]]);
+  }
+
   function drag_of(event: PointerEvent): Drag {
     if (event.button === 1 || event.shiftKey) return "pan";
     if (event.button === 2) return pane.is_slice ? "grey" : "pan";
@@ -55,35 +69,34 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     canvas.setPointerCapture(event.pointerId);
     set({active_pane: pane.index});
     fingers.set(event.pointerId, at_of(event));
-    start = at_of(event);
+    last = start = at_of(event);
     has_moved = false;
-    if (fingers.size === 2) {
-      if (drag === "tool") active_tool()?.up?.(pointer(event));
-      pinch = spread(fingers);
+    if (fingers.size > 1) {
+      // What the first finger began was the beginning of a pinch.
+      const tool = active_tool();
+      if (drag === "tool" && tool?.cancel)
+        tool.cancel();
+      else if (drag === "tool")
+        tool?.up?.(pointer(event));
       drag = "pan";
-      return;
+      return hold_fingers();
     }
     const is_plain = event.button === 0 && !event.shiftKey && !event.ctrlKey && !event.metaKey;
-    tilt = is_plain ? tilt_from(pane, start) : null;
+    tilt = is_plain ? tilt_from(pane, last) : null;
     drag = tilt ? "tilt" : is_plain && active_tool()?.down?.(pointer(event)) ? "tool" : drag_of(event);
-    if (drag === "cross") put_cross(start);
+    if (drag === "cross") put_cross(last);
   });
 
   canvas.addEventListener("pointermove", (event) => {
     const at = at_of(event);
     pointed(pane, at);
     if (!drag) return active_tool()?.hover?.(pointer(event));
-    const from = middle(fingers);
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, at);
-    const to = middle(fingers);
     if (Math.hypot(at[0] - start[0], at[1] - start[1]) > click_px * pane.ratio) has_moved = true;
     if (drag === "tool") return active_tool()?.move?.(pointer(event));
-    if (fingers.size === 2) {
-      const now = spread(fingers);
-      if (pinch) pane.zoom(pinch / now, to);
-      pinch = now;
-    }
-    const by: Vec2 = [to[0] - from[0], to[1] - from[1]];
+    if (fingers.size > 1) return pinch_to();
+    const by: Vec2 = [at[0] - last[0], at[1] - last[1]];
+    last = at;
     if (drag === "turn" && has_moved) turn(pane, by[0] / pane.ratio, by[1] / pane.ratio);
     if (drag === "pan") pane.pan(by);
     if (drag === "zoom") pane.zoom(Math.exp(by[1] * 0.006), start);
@@ -105,7 +118,10 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       active_tool()?.up?.(pointer(event));
     else if (drag === "turn" && !has_moved)
       click(at_of(event));
-    if (!fingers.size) drag = null;
+    if (fingers.size)
+      hold_fingers();
+    else
+      drag = null;
   };
   // A dialog that opens in mid-drag takes the pointer away: the drag ends there.
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const)
@@ -168,16 +184,17 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
   });
 }
 
-/// Between the fingers: where each of them moves on its own, what they hold goes along with their middle.
-function middle(fingers: Map<number, Vec2>): Vec2 {
-  const all = [...fingers.values()];
-  const mean = (axis: 0|1): number => all.reduce((sum, at) => sum + at[axis], 0) / (all.length || 1);
-  return [mean(0), mean(1)];
-}
-
 function spread(fingers: Map<number, Vec2>): number {
   const [a, b] = [...fingers.values()];
   return a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
+}
+
+/// The middle of the first two fingers, or the place of the only one.
+function middle(fingers: Map<number, Vec2>): Vec2 {
+  const places = [...fingers.values()];
+  const a = places[0] ?? [0, 0];
+  const b = places[1] ?? a;
+  return [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
 }
 
 const round_about = (azimuth: number): number => ((((azimuth + 180) % 360) + 360) % 360) - 180;

@@ -54,6 +54,10 @@ export const region_tool: Tool = {
     held = null;
     void replace_step(copy.id, copy, `a corner of ${copy.id} moved`);
   },
+  cancel() {
+    if (!held) drawn.pop();
+    held = null;
+  },
   hover({pane, at}) {
     if (!drawn.length) return;
     pointed = at;

@@ -21,6 +21,7 @@ export interface Tool {
   down?(pointer: Pointer): boolean;  // true: the tool takes the drag
   move?(pointer: Pointer): void;
   up?(pointer: Pointer): void;
+  cancel?(): void;  // a second finger came: what `down` did is undone; without it, `up` is called
   hover?(pointer: Pointer): void;
   double?(pointer: Pointer): boolean;
   press?(event: KeyboardEvent, pane: Pane): boolean;

@@ -99,54 +99,6 @@ test('an oblique slice is tilted by a handle in another pane', async () => {
   await picture('oblique');
 });
 
-test('fingers and a pen turn, carry and enlarge a view', async () => {
-  await one.press('Shift+1');
-  await one.at_rest();
-  const devtools = await one.context.newCDPSession(one.page);
-  const box = await one.page.locator('.pane canvas').nth(0).boundingBox();
-  const middle = [box.x + box.width / 2, box.y + box.height / 2];
-  const put = (type, points) => devtools.send('Input.dispatchTouchEvent', {
-    type, touchPoints: points.map(([x, y], id) => ({ x: middle[0] + x, y: middle[1] + y, id })),
-  });
-  const fingers = async (from, to) => {
-    const at = (share) => from.map((point, i) => point.map((x, axis) => x + share * (to[i][axis] - x)));
-    await put('touchStart', from);
-    for (let i = 1; i <= 10; ++i) await put('touchMove', at(i / 10));
-    await put('touchEnd', []);
-    await one.at_rest();
-  };
-  const still = await one.setting(0);
-  // Apart by twice as much: twice as large, about the middle between them.
-  await fingers([[-40, 0], [40, 0]], [[-80, 0], [80, 0]]);
-  const enlarged = await one.setting(0);
-  assert.ok(Math.abs(enlarged.pixel_mm / still.pixel_mm - 0.5) < 0.01, `${still.pixel_mm} -> ${enlarged.pixel_mm}`);
-  assert.ok(Math.hypot(...enlarged.centre_mm.map((x, i) => x - still.centre_mm[i])) < 0.6 * still.pixel_mm, `${still.centre_mm} -> ${enlarged.centre_mm}`);
-  // Both to the left: what is seen goes along.
-  await fingers([[-40, 0], [40, 0]], [[-80, 0], [0, 0]]);
-  const carried = await one.setting(0);
-  assert.ok(Math.abs(carried.pixel_mm / enlarged.pixel_mm - 1) < 0.01, 'carried only');
-  assert.ok(Math.abs(carried.centre_mm[0] - enlarged.centre_mm[0] - 40 * enlarged.pixel_mm) < 2 * enlarged.pixel_mm, `${enlarged.centre_mm} -> ${carried.centre_mm}`);
-  // One finger turns.
-  await fingers([[0, 0]], [[60, 0]]);
-  const turned = await one.setting(0);
-  assert.ok(Math.abs(Math.abs(turned.view.azimuth) - 27) < 1.5, JSON.stringify(turned.view));
-  // A pen puts the cross-hair in a slice.
-  await one.press('Shift+2');
-  await one.at_rest();
-  const pen = await one.position(2, [12, 30]);
-  for (const [type, buttons] of [['mousePressed', 1], ['mouseReleased', 0]])
-    await devtools.send('Input.dispatchMouseEvent', { type, ...pen, button: 'left', buttons, clickCount: 1, pointerType: 'pen' });
-  await one.until(async () => {
-    const { cross_mm } = await one.look();
-    return Math.hypot(cross_mm[0] - 12, cross_mm[1] + 30) < 1;
-  }, 'the cross-hair under the pen');
-  await devtools.detach();
-  await one.press('Shift+1');
-  await one.page.getByLabel('What pane 1 shows').selectOption('anterior');
-  await one.command('Fit all panes');
-  await one.at_rest();
-});
-
 test('a piece is moved by a mark and its target, set in one view and refined in another', async () => {
   await one.press('Shift+1');
   await one.select('piece_moved');
