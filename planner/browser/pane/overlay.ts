@@ -24,6 +24,7 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
     draw_landmarks(pane, context);
     if (state.marked) draw_mark(pane, context, state.marked.at_mm);
     active_tool()?.draw?.(pane, context);
+    if (pane.keyed_at && active_tool()?.is_pointed) draw_keyed(pane, context, pane.keyed_at);
     draw_letters(pane, context);
   }
   draw_scale(pane, context);
@@ -37,6 +38,12 @@ export function draw_overlay(pane: Pane, context: CanvasRenderingContext2D): voi
         state.plan.plan.steps.length ? "No object is shown. Turn one on in the list." :
                                        "Choose a tissue to begin.",
         ratio, {colour: ink.faint});
+}
+
+function draw_keyed(pane: Pane, context: CanvasRenderingContext2D, [x, y]: Vec2): void {
+  const reach = 11 * pane.ratio;
+  line(context, [[x - reach, y], [x + reach, y]], ink.region, 2 * pane.ratio);
+  line(context, [[x, y - reach], [x, y + reach]], ink.region, 2 * pane.ratio);
 }
 
 // Each line is the trace of the other panes' planes; a gap in the middle leaves the point itself free to be

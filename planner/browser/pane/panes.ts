@@ -28,6 +28,7 @@ export class Pane {
   readonly canvas = el("canvas", {tabindex: 0, role: "img"});
   picture: Picture|null = null;
   problem = "";
+  keyed_at: Vec2|null = null;  // the place that arrow keys carry, with a tool in hand that takes places
   private is_wanted = false;
   private in_flight = 0;
   private rest_timer = 0;

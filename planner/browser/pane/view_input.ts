@@ -5,12 +5,15 @@ import {tilt_from} from "./oblique";
 import type {Pane} from "./panes";
 import {change_pane} from "./panes";
 import {set, shown_scan, state} from "../state";
-import {Pointer, active_tool} from "../tool/tool";
+import {Pointer, Tool, active_tool} from "../tool/tool";
 import {Vec2, Vec3, add, dot, hundredths, scaled} from "../base/vector";
 import {turned} from "../base/view_frame";
 
 const turn_deg_per_px = 0.45;
 const click_px = 4;
+const coarse_px = 12, fine_px = 1;
+const arrows:
+    {[key: string]: Vec2} = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 type Drag = "turn"|"pan"|"zoom"|"grey"|"cross"|"tilt"|"tool";
 
@@ -28,7 +31,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
     const box = canvas.getBoundingClientRect();
     return [(event.clientX - box.left) * pane.ratio, (event.clientY - box.top) * pane.ratio];
   };
-  const pointer = (event: PointerEvent): Pointer => ({pane, at: at_of(event), event});
+  const pointer = (event: PointerEvent): Pointer => ({pane, at: at_of(event)});
   const want_slices = (): void => {
     for (const other of all())
       if (other.is_slice) other.want(true);
@@ -89,6 +92,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
 
   canvas.addEventListener("pointermove", (event) => {
     const at = at_of(event);
+    pane.keyed_at = null;
     pointed(pane, at);
     if (!drag) return active_tool()?.hover?.(pointer(event));
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, at);
@@ -137,7 +141,7 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
 
   canvas.addEventListener("dblclick", (event) => {
     const tool = active_tool();
-    if (tool?.double?.({pane, at: at_of(event), event: event as PointerEvent})) return;
+    if (tool?.double?.({pane, at: at_of(event)})) return;
     if (state.tool === "navigate") set({maximised: state.maximised === null ? pane.index : null});
   });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -153,11 +157,33 @@ export function attach_input(pane: Pane, all: () => Pane[], pointed: (pane: Pane
       {passive: false},
   );
 
+  // With a tool in hand that takes places: arrows carry one over the pane, Space clicks it.
+  function point_by_key(event: KeyboardEvent, tool: Tool): boolean {
+    const arrow = arrows[event.key];
+    const at = pane.keyed_at ?? [pane.size[0] / 2, pane.size[1] / 2];
+    if (arrow) {
+      const by = (event.shiftKey ? fine_px : coarse_px) * pane.ratio;
+      pane.keyed_at = [0, 1].map((axis) => Math.max(0, Math.min(pane.size[axis]!, at[axis]! + by * arrow[axis]!))) as Vec2;
+      pointed(pane, pane.keyed_at);
+      tool.hover?.({pane, at: pane.keyed_at});
+    } else if (event.key === " ") {
+      pane.keyed_at = at;
+      if (tool.down?.({pane, at})) tool.up?.({pane, at});
+    } else
+      return false;
+    pane.redraw();
+    return true;
+  }
+
+  canvas.addEventListener("focus", () => {
+    if (state.active_pane !== pane.index) set({active_pane: pane.index});
+  });
   canvas.addEventListener("keydown", (event) => {
-    if (active_tool()?.press?.(event, pane)) return event.preventDefault();
+    const tool = active_tool();
+    if (tool?.press?.(event, pane)) return event.preventDefault();
+    if (tool?.is_pointed && !event.ctrlKey && !event.metaKey && point_by_key(event, tool))
+      return event.preventDefault();
     const step = event.shiftKey ? 15 : 5;
-    const arrows:
-        {[key: string]: Vec2} = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
     const arrow = arrows[event.key];
     if (arrow && pane.is_slice && arrow[1])
       step_slice(pane, arrow[1] * (event.shiftKey ? 5 : 1), want_slices);

@@ -56,6 +56,7 @@ export const marks_tool: Tool = {
       "Click a point of the selected piece, then where it is wanted in the same view; drag either mark in another view to its depth. Enter moves the piece.",
   key: "j",
   cursor: "crosshair",
+  is_pointed: true,
   taken() {
     pairs = (current().points ?? []).map((pair) => ({...pair}));
     open = held = null;

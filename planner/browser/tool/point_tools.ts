@@ -49,6 +49,7 @@ function point_tool(
     says,
     key,
     cursor: "crosshair",
+    is_pointed: true,
     down({pane, at}) {
       taken.push(landmark_at(pane, at)?.point ?? hundredths(pane.point_at(at)));
       pointed = null;
@@ -139,6 +140,7 @@ export const landmark_tool: Tool = {
       "Name a landmark, then click it in a view or slice. It snaps to the surface; drag a placed one to move it.",
   key: "l",
   cursor: "crosshair",
+  is_pointed: true,
   down({pane, at}) {
     const known = landmark_at(pane, at);
     if (known) {
@@ -219,6 +221,7 @@ export const segment_tool: Tool = {
       "Click a tissue in a slice or view: the connected part with samples like those of the selected window becomes an object.",
   key: "p",
   cursor: "crosshair",
+  is_pointed: true,
   down({pane, at}) {
     const seed = hundredths(pane.point_at(at));
     const base = [selected_step(), ...(state.plan?.plan.steps ?? [])].find((step) => step?.do === "window");
@@ -238,6 +241,7 @@ export const arch_tool: Tool = {
       "In an axial slice click along the arch from the patient's right to the left; Enter shows the panoramic slice.",
   key: "",
   cursor: "crosshair",
+  is_pointed: true,
   taken() {
     set({arch_mm: []});
     show_in(2, "axial");

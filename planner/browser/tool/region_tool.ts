@@ -30,6 +30,7 @@ export const region_tool: Tool = {
       "Click the corners of a region in any view or slice; Enter closes it. A second view refines the same mask. Drag a corner to move it.",
   key: "r",
   cursor: "crosshair",
+  is_pointed: true,
 
   down(pointer) {
     const {pane, at} = pointer;

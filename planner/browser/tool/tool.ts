@@ -9,7 +9,6 @@ import {Vec2} from "../base/vector";
 export interface Pointer {
   pane: Pane;
   at: Vec2;  // pixels of the canvas
-  event: PointerEvent;
 }
 
 export interface Tool {
@@ -18,6 +17,7 @@ export interface Tool {
   says: string;  // one sentence that teaches it
   key: string;   // the key that takes it in hand
   cursor: string;
+  is_pointed?: boolean;  // it takes clicks on places: arrow keys carry a place in the pane, and Space clicks it
   down?(pointer: Pointer): boolean;  // true: the tool takes the drag
   move?(pointer: Pointer): void;
   up?(pointer: Pointer): void;

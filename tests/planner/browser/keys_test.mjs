@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// An operation from the start page to its report by keys alone: what has the focus is seen, and the mouse is never moved.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { PlannerWindow, start_server } from './planner_window.mjs';
+
+const most_tabs = 120;
+const coarse_px = 12; // of an arrow key; with Shift 1
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-keys-'));
+let server;
+let one;
+const plan_path = () => fs.readdirSync(folder).filter((name) => name.endsWith('.plan.json')).map((name) => path.join(folder, name))[0];
+const step = (name) => plan_path() && one.plan(plan_path()).steps.find((each) => each.id === name);
+
+before(async () => {
+  server = await start_server(folder);
+  one = await PlannerWindow.open(server.url);
+});
+after(async () => {
+  await one?.close();
+  server?.stop();
+  fs.rmSync(folder, { recursive: true, force: true });
+});
+
+/// Goes from one control to the next until one has the focus, and holds that it is seen.
+async function reach(control) {
+  await control.first().waitFor();
+  for (let i = 0; i < most_tabs; ++i) {
+    const has_focus = await control.first().evaluate((element) => element === document.activeElement);
+    if (has_focus) break;
+    await one.press('Tab');
+  }
+  const seen = await control.first().evaluate((element) => {
+    const style = element.matches('.pane canvas') ? getComputedStyle(element.closest('.pane'), '::after') : null;
+    const width = style ? style.borderTopWidth : getComputedStyle(element).outlineStyle !== 'none' ? getComputedStyle(element).outlineWidth : '0';
+    return { has_focus: element === document.activeElement, width: parseFloat(width), words: element.outerHTML.slice(0, 120) };
+  });
+  assert.ok(seen.has_focus, `not reached within ${most_tabs} keys: ${seen.words}`);
+  assert.ok(seen.width >= 2, `focus is not seen on ${seen.words}`);
+}
+const button = (name, exact = false) => one.page.getByRole('button', { name, exact });
+async function push(control) {
+  await reach(control);
+  await one.press('Enter');
+}
+
+/// Carries the place of a pane by arrows to a point of its view, and takes it.
+let carried;
+async function take(pane, uv) {
+  const to = await one.position(pane, uv);
+  for (const [axis, keys] of [['x', ['ArrowLeft', 'ArrowRight']], ['y', ['ArrowUp', 'ArrowDown']]]) {
+    const by = Math.round(to[axis] - carried[axis]);
+    const key = keys[by > 0 ? 1 : 0];
+    for (let i = 0; i < Math.floor(Math.abs(by) / coarse_px); ++i) await one.press(key);
+    for (let i = 0; i < Math.abs(by) % coarse_px; ++i) await one.press(`Shift+${key}`);
+    carried[axis] += by;
+  }
+  await one.press(' ');
+}
+async function enter(pane) {
+  await reach(one.page.locator('.pane canvas').nth(pane));
+  const box = await one.page.locator('.pane canvas').nth(pane).boundingBox();
+  carried = { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+}
+
+test('the phantom is opened, and bone is set', async () => {
+  await push(button('Head phantom'));
+  await one.page.getByRole('heading', { name: 'The scan is in order' }).waitFor();
+  await push(button('Continue'));
+  await one.at_rest();
+  await push(button('bone', true));
+  await push(button('Set bone'));
+  await one.until(() => step('bone'), 'bone');
+  await one.at_rest();
+});
+
+test('a region is drawn where the arrows carry its corners', async () => {
+  await one.press('Control+k');
+  await one.page.keyboard.type('draw a region');
+  await one.press('Enter');
+  await enter(0);
+  const corners = [[-40, -60], [40, -60], [40, -25], [-40, -25]];
+  for (const corner of corners) await take(0, corner);
+  await one.press('Enter');
+  const cut = await one.until(() => step('cut'), 'the mask');
+  const [drawn] = cut.regions[0].polygons_mm;
+  assert.equal(drawn.length, corners.length);
+  // A place stands on whole pixels.
+  const pixel_mm = (await one.setting(0)).pixel_mm;
+  for (const [i, corner] of corners.entries()) for (const axis of [0, 1]) assert.ok(Math.abs(drawn[i][axis] - corner[axis]) <= pixel_mm, `${drawn[i]} for ${corner}`);
+});
+
+test('it is cut, moved by a typed number, undone and done again', async () => {
+  await one.press('x');
+  await one.until(() => step('piece'), 'the piece');
+  await one.at_rest();
+  await one.press('g');
+  await reach(one.page.locator('[data-key="move-forward_mm"]'));
+  await one.press('Control+a');
+  await one.page.keyboard.type('6');
+  await one.press('Enter');
+  await one.until(() => step('piece_moved')?.by.forward_mm === 6, 'the motion');
+  await one.press('Control+z');
+  await one.until(() => !step('piece_moved'), 'undone');
+  await one.press('Control+y');
+  await one.until(() => step('piece_moved')?.by.forward_mm === 6, 'done again');
+});
+
+test('certificates are asked for, one is opened, and the report is read', async () => {
+  await one.press('Control+Enter');
+  await one.until(async () => (await one.page.locator('.numbers .badge.pass').count()) >= 3, 'green badges', 120000);
+  await push(one.page.locator('.numbers .badge.pass'));
+  await one.press('Control+k');
+  await one.page.locator('.palette-field').waitFor();
+  await one.page.keyboard.type('report');
+  await one.press('Enter');
+  await one.page.locator('dialog.report iframe').waitFor({ timeout: 120000 });
+  await one.press('Escape');
+  await one.page.locator('dialog.report').waitFor({ state: 'detached' });
+  assert.deepEqual(one.problems, []);
+});
