@@ -21,7 +21,8 @@ glm::dvec3 point_of(const SortedJson& numbers, const std::string& name) {
 }
 
 std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
-  static const std::vector<std::string> known = {"name", "point_mm", "weight"};
+  static const std::vector<std::string> known = {"name",   "says",           "point_mm",
+                                                 "weight", "uncertainty_mm", "confirmed"};
   std::vector<brep::Landmark> landmarks;
   for (const SortedJson& entry : list) {
     const std::string number = "landmark " + std::to_string(landmarks.size());
@@ -33,6 +34,13 @@ std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
       if (std::find(known.begin(), known.end(), key) == known.end())
         throw std::runtime_error("'" + landmark.name + "' has an unknown key '" + key + "'" +
                                  suggestion(key, known));
+    const SortedJson confirmed = entry.value("confirmed", SortedJson(true));
+    if (!confirmed.is_boolean())
+      throw std::runtime_error("'confirmed' of '" + landmark.name + "' is neither true nor false");
+    if (!confirmed.get<bool>())
+      throw std::runtime_error("'" + landmark.name +
+                               "' is a guess that nobody has confirmed: look at it, correct it, and set its "
+                               "'confirmed' to true, or leave it out");
     landmark.p_mm = point_of(entry.value("point_mm", SortedJson()), landmark.name);
     const SortedJson weight = entry.value("weight", SortedJson(1.0));
     if (!weight.is_number()) throw std::runtime_error("the weight of '" + landmark.name + "' is no number");

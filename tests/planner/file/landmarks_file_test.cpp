@@ -38,6 +38,18 @@ TEST_F(LandmarksFile, OwnLandmarksKeepTheirOrderAndWeights) {
   EXPECT_EQ(marks[1].weight, 1.0);
 }
 
+TEST_F(LandmarksFile, AGuessIsRefusedUntilItIsConfirmed) {
+  const std::string begin =
+      R"({"landmarks":[{"name":"nasion","says":"the deepest point","point_mm":[1,-2,3.5],)"
+      R"("uncertainty_mm":2.5,"confirmed":)";
+  EXPECT_NE(refusal(begin + "false}]}").find("'nasion' is a guess that nobody has confirmed"),
+            std::string::npos);
+  const auto marks = read(begin + "true}]}");
+  ASSERT_EQ(marks.size(), 1u);
+  EXPECT_EQ(marks[0].p_mm, glm::dvec3(1, -2, 3.5));
+  EXPECT_NE(refusal(begin + "\"later\"}]}").find("'confirmed'"), std::string::npos);
+}
+
 TEST_F(LandmarksFile, SlicersMarkupsAreTurnedFromRasToLps) {
   const std::string points = R"("controlPoints":[{"label":"N","position":[1,2,3]},
                                {"label":"later","position":[0,0,0],"positionStatus":"undefined"}])";

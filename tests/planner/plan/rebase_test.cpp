@@ -9,7 +9,7 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr const char* plan_text = R"({"octotomy_plan": 1, "name": "p",
+constexpr const char* rebased_plan = R"({"octotomy_plan": 1, "name": "p",
     "scans": {"ct": {"path": "scans/a.nrrd"}, "far": {"path": "/data/b.nrrd"}},
     "steps": [
       {"id": "skull", "do": "window", "scan": "ct", "low": 300},
@@ -17,7 +17,7 @@ constexpr const char* plan_text = R"({"octotomy_plan": 1, "name": "p",
       {"id": "piece", "do": "export", "object": "skull", "path": "scans/a.stl"}]})";
 
 TEST(Rebase, PathsThatAreReadNameTheSameFilesAndThoseThatAreWrittenStay) {
-  const Plan there = rebased(parse_plan(plan_text, "/tmp/one/plans"), "/tmp/two");
+  const Plan there = rebased(parse_plan(rebased_plan, "/tmp/one/plans"), "/tmp/two");
   EXPECT_EQ(scan_path(there, there.scans.at("ct")).lexically_normal(), "/tmp/one/plans/scans/a.nrrd");
   const Json json = Json::parse(there.text);
   EXPECT_EQ(json["scans"]["ct"]["path"], "../one/plans/scans/a.nrrd");
@@ -25,15 +25,15 @@ TEST(Rebase, PathsThatAreReadNameTheSameFilesAndThoseThatAreWrittenStay) {
   EXPECT_EQ(json["steps"][1]["path"], "../one/plates/p.stl");
   EXPECT_EQ(json["steps"][2]["path"], "scans/a.stl");
   const Json back = Json::parse(rebased(there, "/tmp/one/plans").text);
-  EXPECT_EQ(back, Json::parse(plan_text)) << "there and back";
+  EXPECT_EQ(back, Json::parse(rebased_plan)) << "there and back";
 }
 
 TEST(Rebase, APlanOfTheSameFolderKeepsItsBytes) {
-  EXPECT_EQ(rebased(parse_plan(plan_text, "/tmp/one"), "/tmp/two/../one").text, plan_text);
+  EXPECT_EQ(rebased(parse_plan(rebased_plan, "/tmp/one"), "/tmp/two/../one").text, rebased_plan);
 }
 
 TEST(Rebase, PlansOfTwoFoldersThatNameOneScanMergeWithoutAConflict) {
-  const Plan base = parse_plan(plan_text, "/tmp/one");
+  const Plan base = parse_plan(rebased_plan, "/tmp/one");
   Json changed = Json::parse(rebased(base, "/tmp/two/deep").text);
   changed["steps"][0]["low"] = 250;
   const Plan mine = parse_plan(changed.dump(), "/tmp/two/deep");

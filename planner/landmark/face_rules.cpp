@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/landmark/face_rules.h"
+
+#include <algorithm>
+#include <array>
+
+namespace octotomy::planner {
+namespace {
+
+/// Lengths of a face, in millimetres.
+constexpr double rim_step = 8.0;     ///< by which a rim stands before what is behind it
+constexpr double rim_reach = 3.0;    ///< along which a rim goes on
+constexpr double above_spine = 4.0;  ///< where the piriform rim is taken, over the nasal spine
+constexpr double below_rim = 8.0;    ///< where the buttress is taken, under the piriform rim
+constexpr double broken = 4.0,
+                 most_hole = 9.0;  ///< a surface falls back farther where it ends, and thin bone has holes
+constexpr double orbit_above_nose = 6.0;  ///< a height within the orbits, over the nose's opening
+constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
+constexpr double orbit_height = 32.0;
+constexpr double crest = 6.0;  ///< below a rim's crest nothing stands before it for so long
+constexpr double arch_begin = 15.0, arch_end = 75.0;  ///< behind the nasal spine
+constexpr double least_half_face = 45.0, most_half_face = 80.0;
+constexpr double least_angle = 34.0, most_angle = 75.0;  ///< the mandible's, from the mid-plane
+constexpr double angle_begin = 40.0, angle_end = 82.0;   ///< behind the chin
+constexpr double below_teeth = 15.0;  ///< below the incisors\' edge; metal in teeth draws streaks beside them
+constexpr double nose_root = 12.0;    ///< over the nose's opening
+constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< beside the mid-plane; behind the nose
+
+using Side = std::pair<const char*, double>;
+constexpr std::array<Side, 2> sides{{{"_left", 1.0}, {"_right", -1.0}}};
+
+class Face {
+ public:
+  Face(const HeadMaps& maps, const NasalOpening& nose, double higher_mm, const Side& side, FoundPlaces& found)
+      : maps_(maps), nose_(nose), higher_mm_(higher_mm), side_(side), found_(found) {}
+
+  void find() {
+    piriform_and_buttress();
+    orbit();
+    arch();
+    angle();
+  }
+
+ private:
+  void place(const std::string& name, const glm::dvec3& at) { found_.places[name + side_.first] = at; }
+  void miss(const std::string& name, const std::string& why) { found_.missing[name + side_.first] = why; }
+  /// How far back the bone begins, `out` to this side.
+  double front(double out_mm, int row) const {
+    return maps_.front.at(maps_.front.column(side_.second * out_mm), row);
+  }
+  const HeadMap& from_side() const { return side_.second > 0.0 ? maps_.left : maps_.right; }
+  double step() const { return maps_.front.step_mm(); }
+
+  /// From the mid-line outwards: the first bone as far in front as the rim; and where its surface ends.
+  void piriform_and_buttress() {
+    const glm::dvec3* ans = found_.find("ans");
+    if (ans == nullptr) {
+      miss("piriform", "the nasal spine was not found");
+      return miss("buttress", "the nasal spine was not found");
+    }
+    const auto rim_at = [&](int row) {
+      double foremost_mm = std::numeric_limits<double>::infinity();
+      for (double out = 8.0; out <= 30.0; out += step())
+        if (front(out, row) < foremost_mm) foremost_mm = front(out, row);
+      double run = 0.0;
+      for (double out = 4.0; out <= 30.0; out += step()) {
+        run = front(out, row) <= foremost_mm + rim_step ? run + step() : 0.0;
+        if (run >= rim_reach) return out - run + step();
+      }
+      return -1.0;
+    };
+    const int row = maps_.front.row(ans->z + above_spine + higher_mm_);
+    const double rim = rim_at(row);
+    if (rim < 0.0) {
+      miss("piriform", "no rim stands before the nose's inside");
+      return miss("buttress", "no rim stands before the nose's inside");
+    }
+    place("piriform", {side_.second * rim, front(rim, row), maps_.front.y_mm(row)});
+    const int lower = maps_.front.row(ans->z + above_spine - below_rim + higher_mm_);
+    double out = std::max(rim_at(lower), rim) + 1.0;
+    for (double next = out + step(); next < std::min(out + most_hole, most_half_face); next += step())
+      if (std::abs(front(next, lower) - front(out, lower)) < broken) out = next;
+    if (out + step() >= most_half_face || !(out > rim + 10.0))
+      return miss("buttress", "the maxilla's outer end is not seen from the front");
+    place("buttress", {side_.second * out, front(out, lower), maps_.front.y_mm(lower)});
+  }
+
+  /// The orbit's rim in a column: the first crest on the way down from the orbit's depth; a row below 0:
+  /// none.
+  int rim_row(double out, int first) const {
+    const double inside = front(out, first);
+    const int rows = static_cast<int>(orbit_height / step()), below = static_cast<int>(crest / step());
+    if (!std::isfinite(inside)) return -1;
+    for (int j = first; j > first - rows; --j) {
+      const double here = front(out, j);
+      if (!(inside - here >= rim_step)) continue;
+      bool is_crest = true;
+      for (int i = j - 1; i >= j - below && is_crest; --i) is_crest = !(front(out, i) < here - 0.7);
+      if (is_crest) return j;
+    }
+    return -1;
+  }
+
+  void orbit() {
+    const int first = maps_.front.row(nose_.top_mm + orbit_above_nose);
+    // The median of five columns leaves single ones, as with a foramen, out.
+    std::vector<std::pair<int, double>> rims;
+    std::vector<int> rows;
+    for (double out = least_orbit; out <= most_orbit; out += step()) {
+      rows.push_back(rim_row(out, first));
+      if (rows.size() < 5) continue;
+      std::array<int, 5> five{};
+      std::copy(rows.end() - 5, rows.end(), five.begin());
+      std::sort(five.begin(), five.end());
+      if (five[0] >= 0) rims.emplace_back(five[2], out - 2.0 * step());
+    }
+    if (rims.empty()) return miss("orbitale", "no rim of an orbit is seen from the front");
+    const int lowest = std::min_element(rims.begin(), rims.end())->first;
+    std::vector<double> across;
+    for (const auto& [row, out] : rims)
+      if (row <= lowest + 1) across.push_back(out);
+    const double out = across[across.size() / 2];
+    place("orbitale", {side_.second * out, front(out, lowest), maps_.front.y_mm(lowest)});
+  }
+
+  /// The mean of the places of the map from this side that reach farthest by a measure, within its limits.
+  template <typename Reach>
+  std::optional<glm::dvec3> farthest(const glm::dvec2& low, const glm::dvec2& high,
+                                     const Reach& reach) const {
+    const HeadMap& map = from_side();
+    double most = -std::numeric_limits<double>::infinity();
+    std::vector<std::pair<double, glm::dvec3>> near;
+    for (int j = map.row(low.y); j <= map.row(high.y); ++j)
+      for (int i = map.column(low.x); i <= map.column(high.x); ++i) {
+        const double out = map.at(i, j);
+        if (!std::isfinite(out)) continue;
+        const std::optional<double> value = reach(out, map.x_mm(i), map.y_mm(j));
+        if (!value || *value < most - step()) continue;
+        most = std::max(most, *value);
+        near.emplace_back(*value, glm::dvec3(side_.second * out, map.x_mm(i), map.y_mm(j)));
+      }
+    glm::dvec3 sum(0.0);
+    double count = 0.0;
+    for (const auto& [value, at] : near)
+      if (value >= most - step()) {
+        sum += at;
+        count += 1.0;
+      }
+    if (count == 0.0) return std::nullopt;
+    return sum / count;
+  }
+
+  void arch() {
+    const glm::dvec3* ans = found_.find("ans");
+    const glm::dvec3* orbitale = found_.find(std::string("orbitale") + side_.first);
+    if (ans == nullptr || orbitale == nullptr)
+      return miss("zygoma", "it is sought between the nasal spine and the orbit, which were not both found");
+    const auto outermost = farthest({ans->y + arch_begin, ans->z}, {ans->y + arch_end, orbitale->z + 5.0},
+                                    [](double out, double, double) { return std::optional(out); });
+    if (!outermost || std::abs(outermost->x) < least_half_face)
+      return miss("zygoma", "no arch is seen from the side");
+    place("zygoma", *outermost);
+  }
+
+  void angle() {
+    const glm::dvec3* menton = found_.find("menton");
+    const glm::dvec3* incisor = found_.find("incisor");
+    if (menton == nullptr || incisor == nullptr)
+      return miss("gonion", "it is sought between chin and teeth, which were not both found");
+    const auto most = farthest({menton->y + angle_begin, menton->z - 5.0},
+                               {menton->y + angle_end, incisor->z - below_teeth},
+                               [](double out, double back, double up) -> std::optional<double> {
+                                 if (out < least_angle || out > most_angle) return std::nullopt;
+                                 return (back - up) / std::sqrt(2.0);
+                               });
+    if (!most) return miss("gonion", "no angle of a mandible is seen from the side");
+    place("gonion", *most);
+  }
+
+  const HeadMaps& maps_;
+  NasalOpening nose_;
+  double higher_mm_;
+  Side side_;
+  FoundPlaces& found_;
+};
+
+}  // namespace
+
+void find_face_places(const HeadMaps& maps, const NasalOpening& nose, double higher_mm, FoundPlaces& found) {
+  for (const Side& side : sides) Face(maps, nose, higher_mm, side, found).find();
+}
+
+void find_midline_places(const HeadMaps& maps, const NasalOpening& nose, FoundPlaces& found) {
+  const Profile profile = profile_of(maps.front, nose_root_width);
+  const auto back = [&](double up_mm) {
+    return profile.back_mm[static_cast<std::size_t>(profile.row(up_mm))];
+  };
+  const double root_mm = nose.top_mm + nose_root;
+  if (back(root_mm) < back(nose.top_mm) + nose_root_depth)
+    found.places["midline_front"] = {0.0, back(root_mm), root_mm};
+  // Of the bone seen from the left: the hindmost above the nose's floor, and the highest.
+  std::optional<glm::dvec2> behind, top;
+  for (int j = maps.left.row(nose.floor_mm); j < maps.left.size().y; ++j)
+    for (int i = 0; i < maps.left.size().x; ++i) {
+      if (!std::isfinite(maps.left.at(i, j))) continue;
+      const glm::dvec2 at(maps.left.x_mm(i), maps.left.y_mm(j));
+      if (!behind || at.x > behind->x) behind = at;
+      if (!top || at.y > top->y) top = at;
+    }
+  if (behind) found.places["midline_back"] = {0.0, behind->x, behind->y};
+  if (top) found.places["midline_top"] = {0.0, top->x, top->y};
+}
+
+}  // namespace octotomy::planner

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "voxel/view/drawn_object.h"
+
+namespace octotomy::planner {
+
+/// A head's own directions, unit and square to each other, and a point of its mid-plane. A place in it is
+/// (left, back, up) in millimetres: left of the mid-plane, back and up from LPS's origin.
+struct HeadFrame {
+  glm::dvec3 left{1, 0, 0}, back{0, 1, 0}, up{0, 0, 1};
+  double mid_mm = 0.0;  ///< of the mid-plane along left
+
+  glm::dvec3 lps_mm(const glm::dvec3& place) const {
+    return left * (place.x + mid_mm) + back * place.y + up * place.z;
+  }
+};
+/// The frame of a mid-plane whose up is the scan's, turned by an angle about left: positive raises the face.
+/// Precondition: a unit normal that points to the left and is not along z.
+HeadFrame head_frame(const glm::dvec3& point_mm, const glm::dvec3& normal, double pitch_deg);
+
+/// A rectangle of numbers at equal distances, NaN where nothing was met. `x` runs along the rows.
+class HeadMap {
+ public:
+  HeadMap(glm::ivec2 size, glm::dvec2 first_mm, double step_mm);
+
+  const glm::ivec2& size() const { return size_; }
+  double step_mm() const { return step_mm_; }
+  double x_mm(int i) const { return first_mm_.x + i * step_mm_; }
+  double y_mm(int j) const { return first_mm_.y + j * step_mm_; }
+  /// Columns and rows next to a place; may lie outside.
+  int column(double x_mm) const { return static_cast<int>(std::lround((x_mm - first_mm_.x) / step_mm_)); }
+  int row(double y_mm) const { return static_cast<int>(std::lround((y_mm - first_mm_.y) / step_mm_)); }
+  /// NaN outside.
+  double at(int i, int j) const;
+  double& set(int i, int j);
+
+ private:
+  glm::ivec2 size_;
+  glm::dvec2 first_mm_;
+  double step_mm_;
+  std::vector<double> values_;
+};
+
+/// What of a skull is met first, from the front and from both sides.
+struct HeadMaps {
+  HeadFrame frame;
+  HeadMap front;        ///< over (left, up): how far back the bone begins
+  HeadMap left, right;  ///< over (back, up): how far to that side the bone reaches, both positive
+};
+inline constexpr double head_map_step_mm = 0.5;
+
+/// Draws the maps. Cost: three pictures of the skull by ray casting.
+HeadMaps map_head(const voxel::DrawnObject& bone, const HeadFrame& frame);
+
+}  // namespace octotomy::planner

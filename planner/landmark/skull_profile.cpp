@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/landmark/skull_profile.h"
+
+#include <algorithm>
+
+namespace octotomy::planner {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+/// Lengths of an adult's or a child's face, in millimetres, that tell its parts apart.
+constexpr double least_opening = 14.0, most_opening = 50.0;  ///< height of the nose's opening
+constexpr double edge = 5.0;          ///< by which bone stands before what is behind it
+constexpr double spine_reach = 10.0;  ///< of the nasal spine below the opening's floor
+constexpr double least_alveolar = 10.0, most_alveolar = 45.0;  ///< from the spine to the upper incisors' edge
+constexpr double tooth_step = 1.5;                             ///< an edge's, within tooth_step_over
+constexpr double tooth_step_over = 2.0;
+constexpr double crown = 9.0;             ///< of an incisor
+constexpr double receding = 28.0;         ///< a chin's, at most, behind the nasal spine
+constexpr double least_mandible = 20.0;   ///< its height in the mid-line
+constexpr double chin = 22.0;             ///< its height
+constexpr double hollow = 1.0;            ///< least depth of a concavity between its neighbours
+constexpr double most_nasal_bone = 25.0;  ///< above the opening
+constexpr double widest_end = 25.0;  ///< of bone that ends by itself, from front to back, in its lowest row
+constexpr double scan_end = 2.0;     ///< within which of a scan's end nothing is bone's own
+constexpr double least_brow = 12.0, most_brow = 45.0;  ///< above the nose's tip
+
+/// The row that lies foremost of first..last; of equals, to a third of a millimetre, the middle one.
+int foremost(const Profile& profile, int first, int last) {
+  double best = infinite;
+  for (int k = first; k <= last; ++k) best = std::min(best, profile.back_mm[static_cast<std::size_t>(k)]);
+  int begin = -1, end = -1;
+  for (int k = first; k <= last; ++k)
+    if (profile.back_mm[static_cast<std::size_t>(k)] <= best + 0.3) {
+      if (begin < 0) begin = k;
+      end = k;
+    }
+  return begin < 0 ? first : (begin + end) / 2;
+}
+
+class Reader {
+ public:
+  Reader(const Profile& profile, const NasalOpening& nose) : profile_(profile), nose_(nose) {}
+
+  FoundPlaces read() {
+    above_nose();
+    below_nose();
+    return std::move(found_);
+  }
+
+ private:
+  double back(int k) const {
+    return k < 0 || k >= profile_.rows() ? infinite : profile_.back_mm[static_cast<std::size_t>(k)];
+  }
+  int rows_of(double length_mm) const { return static_cast<int>(std::lround(length_mm / profile_.step_mm)); }
+  int within(int k) const { return std::clamp(k, 0, profile_.rows() - 1); }
+  /// Places a point that an edge below it makes, unless the scan made the edge.
+  void place_end(const char* name, int k) {
+    if (profile_.up_mm(k) < profile_.cut_mm + scan_end) return miss(name, "the scan ends there");
+    place(name, k);
+  }
+  void place(const char* name, int k) { found_.places[name] = {0.0, back(k), profile_.up_mm(k)}; }
+  void miss(const char* name, const char* why) { found_.missing[name] = why; }
+
+  /// The nose's root lies deepest behind the line from the nasal bones' foremost point that touches the brow,
+  /// however the head is pitched.
+  void above_nose() {
+    const int top = profile_.row(nose_.top_mm);
+    const int tip = foremost(profile_, within(top - rows_of(most_nasal_bone)), top);
+    int brow = -1;
+    const auto slope = [&](int k) { return (back(k) - back(tip)) / (tip - k); };
+    for (int k = within(tip - rows_of(least_brow)); k >= within(tip - rows_of(most_brow)); --k)
+      if (brow < 0 || slope(k) < slope(brow)) brow = k;
+    if (brow < 0 || !(slope(brow) < infinite))
+      return miss("nasion", "there is no brow over the nose in this scan");
+    place_hollow("nasion", brow, tip, "the profile has no hollow between nose and brow");
+  }
+
+  void below_nose() {
+    const int floor = profile_.row(nose_.floor_mm);
+    const int ans = foremost(profile_, floor, within(floor + rows_of(spine_reach)));
+    // The spine's tip is the highest of rows as far in front.
+    int tip = ans;
+    while (tip > floor && back(tip - 1) <= back(ans) + 0.5) --tip;
+    place("ans", tip);
+    const int last = end_of_front(tip);
+    const int incisor = incisor_below(tip, last);
+    if (incisor < 0) {
+      for (const char* name : {"incisor", "a_point", "lower_incisor"})
+        miss(name, "no edge of upper incisors is seen below the nasal spine");
+    } else {
+      place_end("incisor", incisor);
+      place_hollow("a_point", tip, incisor - rows_of(crown));
+    }
+    mandible(incisor < 0 ? tip : incisor, last);
+  }
+
+  /// The last row of the face: below, all bone lies far behind, and for as long as a mouth opens.
+  int end_of_front(int tip) const {
+    int last = tip, gap = 0;
+    for (int k = tip; k < profile_.rows() && gap < rows_of(most_alveolar); ++k) {
+      const bool is_front = back(k) < back(tip) + receding;
+      gap = is_front ? 0 : gap + 1;
+      if (is_front) last = k;
+    }
+    return last;
+  }
+
+  /// The last row before the profile first steps back about as far as it does anywhere; -1: none.
+  int incisor_below(int tip, int last) const {
+    const int over = rows_of(tooth_step_over);
+    const int first = tip + rows_of(least_alveolar), lowest = std::min(last, tip + rows_of(most_alveolar));
+    // Where the mouth is open it falls back to the spine, which is no more of an edge.
+    const auto fall = [&](int k) { return std::min(back(k + over) - back(k), edge); };
+    double most = 0.0;
+    for (int k = first; k <= lowest; ++k) most = std::max(most, fall(k));
+    if (most < tooth_step) return -1;
+    int k = first;
+    while (fall(k) < 0.6 * most) ++k;
+    // The step's own row: the greatest fall from one row to the next.
+    int at = k;
+    for (int i = k; i < k + over; ++i)
+      if (back(i + 1) - back(i) > back(at + 1) - back(at)) at = i;
+    return at;
+  }
+
+  void mandible(int above, int last) {
+    const char* none = "there is no chin below the teeth in this scan";
+    if ((last - above) < rows_of(least_mandible)) {
+      for (const char* name : {"menton", "pogonion", "b_point", "lower_incisor"}) miss(name, none);
+      return;
+    }
+    place_end("menton", last);
+    int first = above + 1;
+    while (first < last && back(first) >= back(above) + edge + crown) ++first;
+    const bool is_seen = first > above + 1 && found_.find("incisor") != nullptr;
+    if (is_seen)
+      place("lower_incisor", first);
+    else
+      miss("lower_incisor", "it stands behind the upper incisors as seen from the front");
+    const int high = std::max(first + rows_of(crown), last - rows_of(chin));
+    const int foremost_chin = foremost(profile_, high, last);
+    if (foremost_chin <= high + 1) {
+      miss("pogonion", "the chin has no point before the bone above it");
+      return miss("b_point", "the chin has no point before the bone above it");
+    }
+    place("pogonion", foremost_chin);
+    place_hollow("b_point", first + rows_of(crown) / 2, foremost_chin);
+  }
+
+  /// The row farthest behind the line between two rows.
+  void place_hollow(const char* name, int first, int last,
+                    const char* why = "the profile has no hollow there") {
+    const double run = last - first, rise = back(last) - back(first);
+    // Square to the line, in millimetres.
+    const auto depth = [&](int k) {
+      return (back(k) - back(first) - rise * (k - first) / run) /
+             std::hypot(1.0, rise / (run * profile_.step_mm));
+    };
+    int at = -1;
+    for (int k = first + 1; k < last; ++k)
+      if (back(k) < infinite && (at < 0 || depth(k) > depth(at))) at = k;
+    if (at < 0 || !(depth(at) >= hollow)) return miss(name, why);
+    place(name, at);
+  }
+
+  const Profile& profile_;
+  NasalOpening nose_;
+  FoundPlaces found_;
+};
+
+/// Whether bone stands on both sides of a height before what is seen in the mid-line.
+bool is_between_rims(const HeadMap& front, int row, double back_mm) {
+  for (const double side : {-1.0, 1.0}) {
+    bool is_rim = false;
+    for (double x = 4.0; x <= 25.0 && !is_rim; x += front.step_mm())
+      is_rim = front.at(front.column(side * x), row) < back_mm - edge;
+    if (!is_rim) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int Profile::row(double up) const {
+  return std::clamp(static_cast<int>(std::lround((top_mm - up) / step_mm)), 0, rows() - 1);
+}
+
+Profile profile_of(const HeadMap& front, double within_mm) {
+  Profile profile;
+  profile.step_mm = front.step_mm();
+  profile.top_mm = front.y_mm(front.size().y - 1);
+  for (int j = front.size().y - 1; j >= 0; --j) {
+    double foremost_mm = infinite;
+    for (int i = front.column(-within_mm); i <= front.column(within_mm); ++i)
+      if (const double back_mm = front.at(i, j); back_mm < foremost_mm) foremost_mm = back_mm;
+    profile.back_mm.push_back(foremost_mm);
+  }
+  return profile;
+}
+
+FoundPlaces places_of_profile(const Profile& profile, const NasalOpening& nose) {
+  return Reader(profile, nose).read();
+}
+
+double cut_height(const HeadMap& side) {
+  for (int j = 0; j < side.size().y; ++j) {
+    int count = 0;
+    for (int i = 0; i < side.size().x; ++i) count += std::isfinite(side.at(i, j)) ? 1 : 0;
+    if (count == 0) continue;
+    return count * side.step_mm() > widest_end ? side.y_mm(j) : -infinite;
+  }
+  return -infinite;
+}
+
+std::optional<NasalOpening> find_nasal_opening(const Profile& profile, const HeadMap& front) {
+  const auto back = [&](int k) { return profile.back_mm[static_cast<std::size_t>(k)]; };
+  const int over = static_cast<int>(std::lround(tooth_step_over / profile.step_mm));
+  for (int k = 0; k + over < profile.rows(); ++k) {
+    // The nasal bones' lower end: the profile falls back at once.
+    if (!(back(k) < infinite) || back(k + over) - back(k) < edge) continue;
+    int top = k;
+    for (int i = k; i < k + over; ++i)
+      if (back(i + 1) - back(i) > back(top + 1) - back(top)) top = i;
+    // It ends where bone stands before all that was seen in it, but for the last rows, as its floor slopes.
+    int floor = top + static_cast<int>(least_opening / profile.step_mm);
+    double nearest = infinite;
+    for (int seen = top + over; floor < profile.rows(); ++floor) {
+      for (; seen < floor - 2 * over; ++seen) nearest = std::min(nearest, back(seen));
+      if (back(floor) < nearest - edge) break;
+    }
+    const double height = (floor - top) * profile.step_mm;
+    if (floor >= profile.rows() || height > most_opening) continue;
+    const double middle = profile.up_mm((top + floor) / 2);
+    if (is_between_rims(front, front.row(middle), back((top + floor) / 2)))
+      return NasalOpening{profile.up_mm(top), profile.up_mm(floor)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace octotomy::planner
