@@ -56,6 +56,7 @@ export function take_plan(plan: PlanState|null): void {
     preview: null,
     overlap_mm3: null,
     marked: null,
+    guesses: [],
     jobs: plan.jobs ?? []
   });
   void evaluate();

@@ -6,6 +6,7 @@ import {makes_shape, objects_of_plan} from "./drawn_objects";
 import {all_panes, fit_all, show_in} from "./pane/pane_grid";
 import {change_pane} from "./pane/panes";
 import {Step} from "./protocol";
+import {guess_landmarks} from "./tool/point_tools";
 import {cut_selected} from "./tool/region_tool";
 import {new_step, operations} from "./panel/schema_form";
 import {notify, selected_step, set, state, step_of, usual_panes} from "./state";
@@ -155,6 +156,11 @@ export function all_commands(): Command[] {
       name: "Procedure from landmarks",
       says: "Le Fort I, sagittal split, genioplasty: placed by landmarks.",
       run: () => dialogs.procedure()
+    },
+    {
+      name: "First guess of landmarks",
+      says: "Looks for a skull's landmarks by its symmetry and extremal points; each is kept or corrected.",
+      run: () => void guess_landmarks()
     },
     {name: "Mirror the selected object", run: mirror_selected},
     {

@@ -90,6 +90,13 @@ export interface PlanState {
   measurements?: Measurement[];
   jobs?: Job[];
 }
+/// A place that a rule found and nobody has confirmed.
+export interface LandmarkGuess {
+  name: string;
+  says: string;
+  point_mm: Vec3;
+  uncertainty_mm: number;
+}
 export interface ProcedureSays {
   name: string;
   says: string;

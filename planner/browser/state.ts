@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What this window shows: the server's plan, and how this window looks at it. One value, changed by set(),
 // watched by key.
-import {Hello, Job, Motion, Notice, PlanState, Step} from "./protocol";
+import {Hello, Job, LandmarkGuess, Motion, Notice, PlanState, Step} from "./protocol";
 import {Vec3} from "./base/vector";
 import {PlaneName, Turned, View} from "./base/view_frame";
 
@@ -67,6 +67,7 @@ export interface State {
   cut_plane: CutPlane|null;
   arch_mm: Vec3[];                           // points of the panoramic sheet, left to right
   marked: {at_mm: Vec3; says: string}|null;  // the place that a certificate names
+  guesses: LandmarkGuess[];                  // landmarks to look at, none of them in the plan
   tool: string;
   left_tab: "objects"|"steps"|"history";
   right_tab: "inspector"|"numbers"|"movement";
@@ -117,6 +118,7 @@ const first: State = {
   cut_plane: null,
   arch_mm: [],
   marked: null,
+  guesses: [],
   tool: "navigate",
   left_tab: "steps",
   right_tab: "inspector",

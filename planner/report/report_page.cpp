@@ -17,6 +17,7 @@
 #include "planner/report/contact_report.h"
 #include "planner/report/flap_tables.h"
 #include "planner/report/html.h"
+#include "planner/report/landmark_tables.h"
 #include "planner/report/trial_tables.h"
 #include "planner/table/number_format.h"
 #include "voxel/view/annotation.h"
@@ -280,7 +281,8 @@ std::string measurements(const Result& result) {
   if (result.measurements.empty()) return "";
   return element("h2", "Measurements") + sizes(result.measurements) + lengths(result.measurements) +
          flap_tables(result.measurements) + contact_tables(result.measurements) +
-         airway_tables(result.measurements) + trial_tables(result.measurements);
+         airway_tables(result.measurements) + landmark_tables(result.measurements) +
+         trial_tables(result.measurements);
 }
 
 /// A point's displacement as cells, signed along the head's directions.

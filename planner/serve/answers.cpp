@@ -33,11 +33,11 @@ constexpr double snap_mm = 8.0;
   throw voxel::Error(voxel::ErrorCode::Input, why);
 }
 
-/// The answer of one more step of the plan that measures.
+/// The answer of one more step of the plan that measures; its "do" is measure where it has none.
 Json measured(Desk& desk, Json step, const std::vector<std::string>& needed, bool certify,
               const Watched& watched) {
   step["id"] = asked_step;
-  step["do"] = "measure";
+  if (!step.contains("do")) step["do"] = "measure";
   const Plan plan =
       desk.with_document([&](const Document& document) { return document.with_steps(Json::array({step})); });
   std::vector<std::string> wanted = needed;
@@ -197,6 +197,11 @@ Json place_landmark(Desk& desk, const Json& said, const Watched&) {
   for (int axis = 0; axis < 3; ++axis) p_mm[axis] = std::round(p_mm[axis] * 1e4) / 1e4;
   desk.with_document([&](Document& document) { document.place_landmark(name, planner::to_json(p_mm)); });
   return {{"point", planner::to_json(p_mm)}};
+}
+
+Json find_landmarks(Desk& desk, const Json& said, const Watched& watched) {
+  const std::string object = said.at("object");
+  return measured(desk, {{"do", "find_landmarks"}, {"object", object}}, {object}, true, watched);
 }
 
 Json export_file(Desk& desk, const Json& said, const Watched& watched) {

@@ -18,6 +18,8 @@ Json overlap(Desk& desk, const Json& said, const Watched& watched);
 Json movement(Desk& desk, const Json& said, const Watched& watched);
 /// {"name", "point", "snap"} -> {"point"}: names a point, on the nearest bone where it snaps.
 Json place_landmark(Desk& desk, const Json& said, const Watched& watched);
+/// {"object"} -> {"landmarks", "missing", "findings"}: a first guess, which places none.
+Json find_landmarks(Desk& desk, const Json& said, const Watched& watched);
 /// {"object", "path"} -> {"file"}, which is written into the plan's folder of exports.
 Json export_file(Desk& desk, const Json& said, const Watched& watched);
 /// {} -> {"folder", "file"}.

@@ -219,6 +219,7 @@ const std::vector<Word>& words() {
       {"diff", Lane::Desk, false, diff},
       {"procedure", Lane::Desk, true, procedure},
       {"landmark", Lane::Desk, true, place_landmark},
+      {"find_landmarks", Lane::Long, false, find_landmarks},
       {"command", Lane::Desk, false, command_of_step},
       {"evaluate", Lane::Evaluate, false, evaluate, true},
       {"overlap", Lane::Overlap, false, overlap},

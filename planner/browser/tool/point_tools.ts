@@ -3,11 +3,12 @@
 // segmentation, the dental arch.
 import {add_step, free_id, put_landmark} from "../actions";
 import {button, el} from "../base/html";
+import {ask_guesses, draw_guesses, guess_card, open_guesses, pass_over} from "./guesses";
 import {dot_at, ink, line, text} from "../base/ink";
 import {is_drawn} from "../pane/overlay";
 import {show_in, show_scan} from "../pane/pane_grid";
 import type {Pane} from "../pane/panes";
-import {Json} from "../protocol";
+import {Json, LandmarkGuess} from "../protocol";
 import {first_scan, is_elsewhere, notify, selected_step, set, state} from "../state";
 import {take_tool, Tool} from "./tool";
 import {angle_deg, distance, hundredths, Vec2, Vec3} from "../base/vector";
@@ -124,13 +125,49 @@ function next_wanted(placed = ""): void {
       (one) => one.name !== placed && !state.plan?.landmarks.some((mark) => mark.name === one.name));
   landmark_name = missing?.name ?? "";
   if (missing) show_scan(missing.scan || null);
-  set({tool: state.tool});  // so that the panel asks for it
+  show_guess();
   if (procedure_wants.length && !missing) {
     procedure_wants = [];
     show_scan(null);
     take_tool("navigate");
     window.dispatchEvent(new Event("landmarks-placed"));
   }
+}
+
+/// The guess that is looked at: the one of the name that is asked for.
+const current_guess = (): LandmarkGuess|undefined =>
+    open_guesses().find((guess) => guess.name === landmark_name);
+
+export async function guess_landmarks(): Promise<void> {
+  if (!await ask_guesses()) return;
+  take_tool("landmark");
+  set({right_tab: "inspector"});
+  if (!procedure_wants.length) next_guess();
+}
+
+/// Asks for the next guess, and shows its place in all panes. `placed` may still be open in the plan's state.
+function next_guess(placed = ""): void {
+  const next = open_guesses().find((guess) => guess.name !== placed);
+  landmark_name = next?.name ?? "";
+  show_guess();
+}
+
+/// The panel asks for the landmark, and all panes show where it is guessed.
+function show_guess(): void {
+  const guess = current_guess();
+  set(guess ? {tool: state.tool, cross_mm: hundredths(guess.point_mm)} : {tool: state.tool});
+}
+
+async function place(name: string, point: Vec3, snap: boolean): Promise<void> {
+  const at = await put_landmark(name, point, snap);
+  if (!at) return;
+  set({cross_mm: hundredths(at)});
+  if (procedure_wants.length)
+    next_wanted(name);
+  else if (open_guesses().length)
+    next_guess(name);
+  else
+    landmark_name = "";
 }
 
 export const landmark_tool: Tool = {
@@ -150,15 +187,7 @@ export const landmark_tool: Tool = {
     const point = hundredths(pane.point_at(at));
     const name =
         landmark_name.trim().replace(/\s+/g, "_") || `point_${(state.plan?.landmarks.length ?? 0) + 1}`;
-    void (async () => {
-      const place = await put_landmark(name, point, snaps(pane));
-      if (!place) return;
-      set({cross_mm: hundredths(place)});
-      if (procedure_wants.length)
-        next_wanted(name);
-      else
-        landmark_name = "";
-    })();
+    void place(name, point, snaps(pane));
     return true;
   },
   move({pane, at}) {
@@ -172,23 +201,32 @@ export const landmark_tool: Tool = {
     held = null;
     if (distance(point, state.plan?.landmarks.find((mark) => mark.name === name)?.point ?? point) < 0.01)
       return;
-    void put_landmark(name, point, snaps(pane)).then((place) => {
-      if (place) set({cross_mm: hundredths(place)});
+    void put_landmark(name, point, snaps(pane)).then((at) => {
+      if (at) set({cross_mm: hundredths(at)});
     });
   },
   draw(pane, context) {
     if (held) dot_at(context, pane.pixel_at(held.point), 6 * pane.ratio, ink.landmark, true);
+    draw_guesses(pane, context, landmark_name);
   },
   panel: () => {
     const wanted = procedure_wants.find((one) => one.name === landmark_name);
     const placed =
         procedure_wants.filter((one) => state.plan?.landmarks.some((mark) => mark.name === one.name)).length;
+    const guess = current_guess();
     return [
       wanted ?
           el("p", {class: "says"},
              el("b", {}, `${placed + 1} of ${procedure_wants.length}: ${wanted.name.replace(/_/g, " ")}. `),
              wanted.says) :
           null,
+      guess ? guess_card(
+                  guess, () => void place(guess.name, guess.point_mm, false),
+                  () => {
+                    pass_over(guess);
+                    if (!procedure_wants.length) next_guess();
+                  }) :
+              null,
       el("label", {class: "field"}, el("span", {}, "Name"), el("input", {
            value: landmark_name,
            placeholder: "ans, nasion, …",
@@ -206,6 +244,11 @@ export const landmark_tool: Tool = {
            }
          }),
          "Snap to the surface"),
+      state.guesses.length ?
+          null :
+          button(
+              "First guess", "First guess. Looks for landmarks by the skull's symmetry and extremal points",
+              () => void guess_landmarks(), {"data-key": "first-guess"}),
     ];
   },
   left() {

@@ -8,6 +8,7 @@ import { after, before, test } from 'node:test';
 import { PlannerWindow, start_server } from './planner_window.mjs';
 
 const most_tabs = 120;
+const pictures = process.env.OCTOTOMY_PICTURES;
 const coarse_px = 12; // of an arrow key; with Shift 1
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-keys-'));
 let server;
@@ -47,8 +48,9 @@ async function push(control) {
   await one.press('Enter');
 }
 
-/// Carries the place of a pane by arrows to a point of its view, and takes it.
+/// Where the arrows have carried the place of a pane; it begins in the middle.
 let carried;
+/// Carries it to a point of the view, and takes it.
 async function take(pane, uv) {
   const to = await one.position(pane, uv);
   for (const [axis, keys] of [['x', ['ArrowLeft', 'ArrowRight']], ['y', ['ArrowUp', 'ArrowDown']]]) {
@@ -63,11 +65,11 @@ async function take(pane, uv) {
 async function enter(pane) {
   await reach(one.page.locator('.pane canvas').nth(pane));
   const box = await one.page.locator('.pane canvas').nth(pane).boundingBox();
-  carried = { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+  carried ??= { x: box.x + box.width / 2, y: box.y + box.height / 2 };
 }
 
 test('the phantom is opened, and bone is set', async () => {
-  await push(button('Head phantom'));
+  await push(button(/^Head phantom/));
   await one.page.getByRole('heading', { name: 'The scan is in order' }).waitFor();
   await push(button('Continue'));
   await one.at_rest();
@@ -94,6 +96,7 @@ test('a region is drawn where the arrows carry its corners', async () => {
 });
 
 test('it is cut, moved by a typed number, undone and done again', async () => {
+  await one.page.locator('.lists .name', { hasText: /^cut$/ }).waitFor();
   await one.press('x');
   await one.until(() => step('piece'), 'the piece');
   await one.at_rest();
@@ -120,5 +123,33 @@ test('certificates are asked for, one is opened, and the report is read', async 
   await one.page.locator('dialog.report iframe').waitFor({ timeout: 120000 });
   await one.press('Escape');
   await one.page.locator('dialog.report').waitFor({ state: 'detached' });
+});
+
+test('landmarks are guessed: one is kept, one is put elsewhere, one is passed over', async () => {
+  const placed = () => one.plan(plan_path()).steps.filter((each) => each.do === 'landmarks').flatMap((each) => each.points);
+  const asked = async () => (await one.page.locator('.tool-card').innerText()).match(/(\d+) to look at: ([\w ]+), within/);
+  await one.press('Control+k');
+  await one.page.keyboard.type('first guess');
+  await one.press('Enter');
+  const keep = one.page.locator('[data-key="keep-guess"]');
+  await keep.waitFor({ timeout: 120000 });
+  const [, count, first] = await asked();
+  assert.ok(Number(count) >= 15, count);
+  assert.deepEqual(placed(), [], 'a guess alone places nothing');
+  if (pictures) await one.at_rest().then(() => one.page.screenshot({ path: path.join(pictures, 'guesses.png') }));
+  await push(keep);
+  await one.until(() => placed().length === 1, 'the kept guess');
+  assert.equal(placed()[0].name, first.replace(/ /g, '_'));
+  const [, , second] = await one.until(async () => { const found = await asked(); return found?.[2] === first ? null : found; }, 'the next guess');
+  // The next is clicked where the arrows carry it.
+  await enter(0);
+  await take(0, [0, 40]);
+  await one.until(() => placed().length === 2, 'the corrected guess');
+  assert.equal(placed()[1].name, second.replace(/ /g, '_'));
+  assert.ok(Math.abs(placed()[1].point_mm[2] - 40) < 3, `${placed()[1].point_mm}`);
+  await one.until(async () => (await asked())?.[1] === String(count - 2), 'two fewer');
+  await push(one.page.locator('[data-key="pass-guess"]'));
+  await one.until(async () => (await asked())?.[1] === String(count - 3), 'three fewer');
+  assert.equal(placed().length, 2);
   assert.deepEqual(one.problems, []);
 });
