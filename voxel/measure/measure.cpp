@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/measure/measure.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
@@ -8,9 +9,12 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <tbb/parallel_for.h>
+#include <vector>
 
 #include "voxel/measure/cell_counts.h"
 #include "voxel/measure/crofton.h"
+#include "voxel/space/vector_clones.h"
 #include "voxel/tree/slice_bits.h"
 
 // Area by the Crofton formula: the area of a boundary is four times the mean, over all directions, of the
@@ -83,37 +87,23 @@ std::array<double, 13> shares(const Lattice& lattice) {
   return share;
 }
 
-// Word `i` of a shifted row: bit x is voxel x + shift of the row, zero beyond its ends.
-std::uint64_t shifted_word(const std::uint64_t* row, int words, int i, int shift) {
-  assert(i >= 0 && i < words && shift >= -1 && shift <= 1);
-  if (row == nullptr) return 0;
-  if (shift == 0) return row[i];
-  if (shift > 0) return (row[i] >> 1) | (i + 1 < words ? row[i + 1] << 63 : 0);
-  return (row[i] << 1) | (i > 0 ? row[i - 1] >> 63 : 0);
+// Voxels of a row that differ from those of another one, voxel x against x + shift: beyond its ends the other
+// has none. Bit x of a shifted word is voxel x + shift.
+OCTOTOMY_VECTOR_CLONES std::uint64_t differing(const std::uint64_t* row, const std::uint64_t* other,
+                                               int words, int shift) {
+  std::uint64_t count = 0;
+  for (int i = 0; i < words; ++i) {
+    std::uint64_t shifted = other[i];
+    if (shift > 0) shifted = (other[i] >> 1) | (i + 1 < words ? other[i + 1] << 63 : 0);
+    if (shift < 0) shifted = (other[i] << 1) | (i > 0 ? other[i - 1] >> 63 : 0);
+    count += static_cast<std::uint64_t>(std::popcount(row[i] ^ shifted));
+  }
+  return count;
 }
 
-// First and second moments by axis, and boundary pairs by direction, summed slice by slice.
-class Accumulator {
+// First and second moments by axis, and boundary pairs by direction, of a run of slices.
+class Sums {
  public:
-  explicit Accumulator(const Octree& octree) : octree_(octree), side_(octree.universe().side()) {}
-
-  void run() {
-    SliceBits below;
-    SliceBits slice;
-    below.side = side_;
-    below.words_per_row = (side_ + 63) / 64;
-    below.words.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(below.words_per_row), 0);
-    // One empty slice beyond the last holds the last slice's upper neighbours.
-    for (int z = 0; z <= side_; ++z) {
-      if (z < side_)
-        read_slice(octree_, z, slice);
-      else
-        std::fill(slice.words.begin(), slice.words.end(), 0);
-      add_slice(below, slice, z);
-      std::swap(below, slice);
-    }
-  }
-
   // Pairs of neighbours along each direction with exactly one inside, pairs across the universe's ends
   // included.
   std::array<std::uint64_t, 13> crossings{};
@@ -122,35 +112,54 @@ class Accumulator {
   glm::ivec3 low{std::numeric_limits<int>::max()};
   glm::ivec3 high{-1};
 
- private:
   // Counts the pairs (v, v - direction) with v in slice z, rows one beyond each end of the slice included.
-  void add_slice(const SliceBits& below, const SliceBits& slice, int z) {
+  // `none` is an empty row.
+  void add_slice(const SliceBits& below, const SliceBits& slice, const std::uint64_t* none, int z) {
+    const int words = slice.words_per_row, side = slice.side;
     const auto row_of = [&](const SliceBits& bits, int y) {
-      return y < 0 || y >= side_ ? nullptr : bits.row(y);
+      return y < 0 || y >= side || is_empty(bits.row(y), words) ? none : bits.row(y);
     };
-    for (int y = -1; y <= side_; ++y) {
-      const std::uint64_t* here = row_of(slice, y);
-      if (here != nullptr) add_moments(here, slice.words_per_row, y, z);
+    std::array<const std::uint64_t*, 3> here{none, none, row_of(slice, 0)},
+        under{none, none, row_of(below, 0)};
+    for (int y = -1; y <= side; ++y) {
+      // Rows y - 1, y and y + 1.
+      std::rotate(here.begin(), here.begin() + (y >= 0), here.end());
+      std::rotate(under.begin(), under.begin() + (y >= 0), under.end());
+      if (y >= 0) {
+        here[2] = row_of(slice, y + 1);
+        under[2] = row_of(below, y + 1);
+      }
+      if (here[1] != none) add_moments(here[1], words, y, z);
       for (std::size_t d = 0; d < directions.size(); ++d) {
         const auto [dx, dy, dz] = directions[d];
-        count_pairs(here, row_of(dz == 1 ? below : slice, y - dy), slice.words_per_row, dx, d);
+        const std::uint64_t* there = (dz == 1 ? under : here)[static_cast<std::size_t>(1 - dy)];
+        if (here[1] != none || there != none) crossings[d] += pairs(here[1], there, words, side, dx);
       }
     }
   }
 
-  // Pairs of voxel x of `here` with voxel x - dx of `there`; either row may be missing.
-  void count_pairs(const std::uint64_t* here, const std::uint64_t* there, int words, int dx, std::size_t d) {
-    if (here == nullptr && there == nullptr) return;
-    std::uint64_t pairs = 0;
-    for (int i = 0; i < words; ++i) {
-      const std::uint64_t own = here == nullptr ? 0 : here[i];
-      pairs += static_cast<std::uint64_t>(std::popcount(own ^ shifted_word(there, words, i, -dx)));
-    }
+  void add(const Sums& other) {
+    for (std::size_t d = 0; d < crossings.size(); ++d) crossings[d] += other.crossings[d];
+    first_moment += other.first_moment;
+    second_moment += other.second_moment;
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+
+ private:
+  static bool is_empty(const std::uint64_t* row, int words) {
+    return std::all_of(row, row + words, [](std::uint64_t word) { return word == 0; });
+  }
+
+  // Pairs of voxel x of `here` with voxel x - dx of `there`.
+  static std::uint64_t pairs(const std::uint64_t* here, const std::uint64_t* there, int words, int side,
+                             int dx) {
+    std::uint64_t count = differing(here, there, words, -dx);
     // A voxel at the end of the row pairs with one outside. The shifted word holds this pair unless the row
     // ends with the word.
-    if (there != nullptr && dx == 1 && side_ % 64 == 0) pairs += there[words - 1] >> 63;
-    if (there != nullptr && dx == -1) pairs += there[0] & 1;
-    crossings[d] += pairs;
+    if (dx == 1 && side % 64 == 0) count += there[words - 1] >> 63;
+    if (dx == -1) count += there[0] & 1;
+    return count;
   }
 
   void add_moments(const std::uint64_t* row, int words, int y, int z) {
@@ -200,10 +209,35 @@ class Accumulator {
     }
     return sum;
   }
-
-  const Octree& octree_;
-  int side_;
 };
+
+// Runs of slices are fixed, so that sums too large to be exact are the same on any number of threads, too.
+Sums sums_of(const Octree& octree) {
+  constexpr int run = 16;
+  const int side = octree.universe().side(), words = (side + 63) / 64;
+  const std::vector<std::uint64_t> none(static_cast<std::size_t>(words), 0);
+  // One empty slice beyond the last holds the last slice's upper neighbours.
+  std::vector<Sums> parts(static_cast<std::size_t>((side + run) / run));
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const auto read = [&](int z, SliceBits& slice) {
+      if (z >= 0 && z < side) return read_slice(octree, z, slice);
+      slice.side = side;
+      slice.words_per_row = words;
+      slice.words.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(words), 0);
+    };
+    const int begin = static_cast<int>(part) * run;
+    SliceBits below, slice;
+    read(begin - 1, below);
+    for (int z = begin; z < std::min(begin + run, side + 1); ++z) {
+      read(z, slice);
+      parts[part].add_slice(below, slice, none.data(), z);
+      std::swap(below, slice);
+    }
+  });
+  Sums sums;
+  for (const Sums& part : parts) sums.add(part);
+  return sums;
+}
 
 // Lindblad's weight of a pattern of 2 x 2 x 2 voxels, in squares of the voxel's edge. A pattern of more than
 // four voxels has the weight of its complement. The number of voxels and their neighbours by faces determine
@@ -290,8 +324,7 @@ Measures measure(const Octree& octree) {
   measures.volume_mm3 = static_cast<double>(measures.voxel_count) * lattice.voxel_mm3();
   if (measures.voxel_count == 0) return measures;
 
-  Accumulator sums(octree);
-  sums.run();
+  const Sums sums = sums_of(octree);
   measures.centroid_mm = lattice.lps_mm(sums.first_moment / static_cast<double>(measures.voxel_count));
   measures.inertia_mm5 =
       inertia_mm5(lattice, static_cast<double>(measures.voxel_count), sums.first_moment, sums.second_moment);
