@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 surfaces that meet have no gap; 2 of those that do not, the nearest points are a corner of one and a
-// point of a triangle of the other, or lie on an edge of each: the nearest corner bounds what edges need be
-// tried.
+// Surfaces that meet have no gap. Of those that do not, the nearest triangles are found by two trees, and
+// their nearest points are a corner of one and a point of the other, or lie on an edge of each.
 #include "brep/measure/gap.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
 #include <CGAL/intersections.h>
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "brep/mesh/distance.h"
 #include "brep/mesh/intersecting_triangles.h"
-#include "brep/mesh/mesh_point.h"
+#include "brep/mesh/morton_tree.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
@@ -45,39 +44,28 @@ Gap gap_of(const Segment& s, const Segment& t) {
   return {glm::distance(p, q), p, q};
 }
 
-std::vector<Segment> edges_of(const Mesh& mesh) {
-  std::vector<Segment> edges;
-  const auto at = [&](Mesh::VertexHandle v) { return glm_of(mesh.point(v)); };
-  for (const auto e : mesh.edges()) {
-    const Mesh::HalfedgeHandle h = mesh.halfedge_handle(e, 0);
-    edges.push_back({at(mesh.from_vertex_handle(h)), at(mesh.to_vertex_handle(h))});
-  }
-  return edges;
+std::array<glm::dvec3, 3> corners_of(const Triangles& surface, std::uint32_t face) {
+  const auto& f = surface.faces[face];
+  return {surface.points_mm[f[0]], surface.points_mm[f[1]], surface.points_mm[f[2]]};
 }
 
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
-
-std::vector<Box> boxes_of(const std::vector<Segment>& edges, double margin_mm) {
-  std::vector<Box> boxes;
-  boxes.reserve(edges.size());
-  for (std::uint32_t i = 0; i < edges.size(); ++i) {
-    const glm::dvec3 low = glm::min(edges[i].from, edges[i].to) - margin_mm,
-                     high = glm::max(edges[i].from, edges[i].to) + margin_mm;
-    boxes.emplace_back(CGAL::Bbox_3(low.x, low.y, low.z, high.x, high.y, high.z), i);
+/// Nearest points of two triangles that do not meet: a corner of one and a point of the other, or a point of
+/// an edge of each.
+Gap gap_of(const std::array<glm::dvec3, 3>& s, const std::array<glm::dvec3, 3>& t) {
+  Gap best{std::numeric_limits<double>::infinity()};
+  const auto take = [&](const Gap& one) {
+    if (one.distance_mm < best.distance_mm) best = one;
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const glm::dvec3 on_t = nearest_of_triangle(s[k], t[0], t[1], t[2]),
+                     on_s = nearest_of_triangle(t[k], s[0], s[1], s[2]);
+    take({glm::distance(s[k], on_t), s[k], on_t});
+    take({glm::distance(on_s, t[k]), on_s, t[k]});
   }
-  return boxes;
-}
-
-/// The nearest corner of one surface to the other.
-Gap corner_gap(const Triangles& corners, const Triangles& surface) {
-  std::vector<glm::dvec3> points;
-  for (const auto& face : corners.faces)
-    for (const std::uint32_t v : face) points.push_back(corners.points_mm[v]);
-  const std::vector<Foot> feet = SurfaceTree(surface).feet(points);
-  assert(!feet.empty());
-  const auto nearest = std::min_element(
-      feet.begin(), feet.end(), [](const Foot& f, const Foot& g) { return f.distance_mm < g.distance_mm; });
-  return {nearest->distance_mm, points[static_cast<std::size_t>(nearest - feet.begin())], nearest->p_mm};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t m = 0; m < 3; ++m)
+      take(gap_of(Segment{s[k], s[(k + 1) % 3]}, Segment{t[m], t[(m + 1) % 3]}));
+  return best;
 }
 
 Kernel::Triangle_3 triangle_of(const Triangles& surface, std::uint32_t face) {
@@ -115,35 +103,22 @@ glm::dvec3 common_point(const Triangles& a, const Triangles& b, const Intersecti
 
 }  // namespace
 
-Gap gap(const Mesh& a, const Mesh& b) {
-  if (a.n_faces() == 0 || b.n_faces() == 0)
+Gap gap(const Triangles& a, const Triangles& b) {
+  if (a.faces.empty() || b.faces.empty())
     throw std::invalid_argument("gap: there is no distance to a surface without triangles");
-  const Triangles of_a = triangles_of(a), of_b = triangles_of(b);
-  const IntersectingTriangles meeting = intersecting_triangles(of_a, of_b);
+  const IntersectingTriangles meeting = intersecting_triangles(a, b);
   if (!meeting.of_a.empty()) {
-    const glm::dvec3 p = common_point(of_a, of_b, meeting);
+    const glm::dvec3 p = common_point(a, b, meeting);
     return {0.0, p, p};
   }
-  Gap best = corner_gap(of_a, of_b);
-  const Gap other = corner_gap(of_b, of_a);
-  if (other.distance_mm < best.distance_mm) best = {other.distance_mm, other.on_b_mm, other.on_a_mm};
-
-  const std::vector<Segment> edges_a = edges_of(a), edges_b = edges_of(b);
-  std::vector<Box> boxes_a = boxes_of(edges_a, best.distance_mm), boxes_b = boxes_of(edges_b, 0.0);
-  // Pairs come in any order: of equal ones the first by number stands.
-  bool found = false;
-  std::pair<std::uint32_t, std::uint32_t> first;
-  CGAL::box_intersection_d(boxes_a.begin(), boxes_a.end(), boxes_b.begin(), boxes_b.end(),
-                           [&](const Box& s, const Box& t) {
-                             assert(s.info() < edges_a.size() && t.info() < edges_b.size());
-                             const Gap between = gap_of(edges_a[s.info()], edges_b[t.info()]);
-                             const std::pair pair(s.info(), t.info());
-                             if (between.distance_mm > best.distance_mm) return;
-                             if (between.distance_mm == best.distance_mm && (!found || first < pair)) return;
-                             best = between;
-                             first = pair;
-                             found = true;
-                           });
+  Gap best{std::numeric_limits<double>::infinity()};
+  MortonTree(a).visit_near_pairs(
+      MortonTree(b), [&] { return best.distance_mm * best.distance_mm; },
+      [&](std::uint32_t f, std::uint32_t g) {
+        if (const Gap between = gap_of(corners_of(a, f), corners_of(b, g));
+            between.distance_mm < best.distance_mm)
+          best = between;
+      });
   return best;
 }
 

@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 
@@ -16,8 +16,8 @@ struct Gap {
 
 /// Exact but for rounding, edges that pass each other included; of several places equally near, one. A solid
 /// within another has the distance of their surfaces. Throws std::invalid_argument where a surface has no
-/// triangles. The same bits on any number of threads. Cost: n log n where the surfaces are near
-/// each other in few places; pairs of edges where all of them run alongside.
-Gap gap(const Mesh& a, const Mesh& b);
+/// triangles. The same bits on any number of threads. Cost: linear, and the pairs of triangles
+/// that are about as near as the nearest. Source: trees descended together, the nearer halves first.
+Gap gap(const Triangles& a, const Triangles& b);
 
 }  // namespace octotomy::brep

@@ -113,6 +113,12 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
 
 }  // namespace
 
+glm::dvec3 nearest_of_triangle(const glm::dvec3& p_mm, const glm::dvec3& a_mm, const glm::dvec3& b_mm,
+                               const glm::dvec3& c_mm) {
+  const glm::dvec3 weights = nearest_weights(p_mm, {a_mm, b_mm, c_mm});
+  return weights.x * a_mm + weights.y * b_mm + weights.z * c_mm;
+}
+
 bool is_inside(const glm::dvec3& p_mm, const Triangles& surface) {
   const auto passed = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, surface.faces.size(), 4096), std::size_t{0},

@@ -30,6 +30,10 @@ struct Foot {
       0.0};  ///< of the face's corners: the foot's barycentric coordinates, exact zeros on sides
 };
 
+/// The point of a triangle that is nearest to a point.
+glm::dvec3 nearest_of_triangle(const glm::dvec3& p_mm, const glm::dvec3& a_mm, const glm::dvec3& b_mm,
+                               const glm::dvec3& c_mm);
+
 /// A tree of boxes over a surface's triangles, copied, that answers questions about points in LPS
 /// millimetres. Answers do not depend on the number of threads. Building: n log n, about 150 bytes a
 /// triangle.

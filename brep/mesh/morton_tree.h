@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -38,6 +39,13 @@ struct OuterBox {
   bool overlaps(const OuterBox& other) const {
     return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
            low.z <= other.high.z && other.low.z <= high.z;
+  }
+  /// Of two points of the boxes that are nearest.
+  double squared_distance(const OuterBox& other) const {
+    const glm::dvec3 apart =
+        glm::max(glm::max(glm::dvec3(low) - glm::dvec3(other.high), glm::dvec3(other.low) - glm::dvec3(high)),
+                 glm::dvec3(0.0));
+    return glm::dot(apart, apart);
   }
 };
 
@@ -81,6 +89,13 @@ class MortonTree {
   template <typename Visit>
   void visit_pairs(const MortonTree& other, const Visit& visit_pair) const {
     if (!empty() && !other.empty()) between(0, other, 0, visit_pair);
+  }
+
+  /// Calls visit(face of this, face of the other) for each pair whose boxes are as near as `limit_mm2()`, a
+  /// squared distance that may fall meanwhile; near ones come early. One after the other.
+  template <typename Limit, typename Visit>
+  void visit_near_pairs(const MortonTree& other, const Limit& limit_mm2, const Visit& visit_pair) const {
+    if (!empty() && !other.empty()) near(0, other, 0, limit_mm2, visit_pair);
   }
 
  private:
@@ -156,6 +171,30 @@ class MortonTree {
       first();
       second();
     }
+  }
+
+  template <typename Limit, typename Visit>
+  void near(std::uint32_t number, const MortonTree& other, std::uint32_t other_number, const Limit& limit_mm2,
+            const Visit& visit_pair) const {
+    const Node &own = nodes_[number], &of_other = other.nodes_[other_number];
+    if (own.box.squared_distance(of_other.box) > limit_mm2()) return;
+    if (own.is_leaf() && of_other.is_leaf()) {
+      for (std::uint32_t i = own.begin; i < own.end; ++i)
+        for (std::uint32_t j = of_other.begin; j < of_other.end; ++j)
+          if (boxes_[i].squared_distance(other.boxes_[j]) <= limit_mm2())
+            visit_pair(faces_[i], other.faces_[j]);
+      return;
+    }
+    const bool parts_own = of_other.is_leaf() || (!own.is_leaf() && own.count() >= of_other.count());
+    using Pair = std::pair<std::uint32_t, std::uint32_t>;
+    std::array<Pair, 2> halves =
+        parts_own ? std::array{Pair{number + 1, other_number}, Pair{own.second, other_number}}
+                  : std::array{Pair{number, other_number + 1}, Pair{number, of_other.second}};
+    const auto apart = [&](const Pair& half) {
+      return nodes_[half.first].box.squared_distance(other.nodes_[half.second].box);
+    };
+    if (apart(halves[1]) < apart(halves[0])) std::swap(halves[0], halves[1]);
+    for (const auto& [half, other_half] : halves) near(half, other, other_half, limit_mm2, visit_pair);
   }
 
   std::vector<std::uint32_t> faces_;  ///< in the order

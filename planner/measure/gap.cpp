@@ -47,7 +47,7 @@ bool is_within(const brep::Triangles& one, const brep::Triangles& other) {
 /// 0 where one solid holds a part of the other.
 double mesh_gap_mm(const brep::Solid& a, const brep::Solid& b) {
   if (is_within(a.triangles(), b.triangles()) || is_within(b.triangles(), a.triangles())) return 0.0;
-  return brep::gap(a, b).distance_mm;
+  return brep::gap(a.triangles(), b.triangles()).distance_mm;
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ Json along_json(const SurfaceQuestions& questions, const brep::Mesh& mesh) {
 }
 
 Json gap_json(const brep::Mesh& mesh, const brep::Mesh& other) {
-  const brep::Gap gap = brep::gap(mesh, other);
+  const brep::Gap gap = brep::gap(brep::triangles_of(mesh), brep::triangles_of(other));
   return {
       {"distance_mm", gap.distance_mm}, {"on_a_mm", to_json(gap.on_a_mm)}, {"on_b_mm", to_json(gap.on_b_mm)}};
 }
