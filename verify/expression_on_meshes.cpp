@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "brep/boolean/common_faces.h"
 #include "brep/mesh/error.h"
 
 namespace octotomy::verify {
@@ -163,11 +164,16 @@ ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string
 }
 
 brep::Solid MeshExpressions::evaluate(std::string_view text, const Lookup& lookup,
-                                      const std::stop_token& stop, const Origin& origin) {
+                                      const std::stop_token& stop, const Origin& origin,
+                                      const Choice& choice) {
   findings_.clear();
   shift_mm_ = 0.0;
   stop_ = stop;
   Named expression = Named::of(text);
+  if (origin && choice)
+    if (std::optional<brep::Solid> made =
+            less_parts(expression.tree, expression.names, lookup, origin, choice))
+      return *made;
   // Without a repeated name the expression stays as it is, so that earlier answers serve again.
   if (origin) {
     Named by_origins = expression.by_origins(origin);
@@ -178,6 +184,31 @@ brep::Solid MeshExpressions::evaluate(std::string_view text, const Lookup& looku
   for (const std::string& name : expression.names) leaves.push_back(lookup(name));
   const Signed answer = value(expression.tree, leaves);
   return answer.complement ? boolean(world_, brep::Operation::Difference, answer.solid) : answer.solid;
+}
+
+std::optional<brep::Solid> MeshExpressions::less_parts(const ExpressionTree& tree,
+                                                       const std::vector<std::string>& names,
+                                                       const Lookup& lookup, const Origin& origin,
+                                                       const Choice& choice) {
+  const bool is_less = tree.symbol == '-' && tree.parts.size() == 2 && names.size() == 2 &&
+                       tree.parts[0].parts.empty() && tree.parts[1].parts.empty();
+  if (!is_less) return std::nullopt;
+  const std::string &whole = names[0], &part = names[1];
+  const std::optional<PartsOf> parts = choice(part);
+  if (!parts) return std::nullopt;
+  // All of what the parts were chosen from must lie in the whole.
+  const std::string text = origin(parts->whole);
+  if (text.empty()) return std::nullopt;
+  const Named cut = Named::of(text);
+  const bool is_within =
+      cut.tree.symbol == '&' &&
+      std::any_of(cut.tree.parts.begin(), cut.tree.parts.end(), [&](const ExpressionTree& operand) {
+        return operand.parts.empty() && cut.names[static_cast<std::size_t>(operand.leaf)] == whole;
+      });
+  if (!is_within) return std::nullopt;
+  brep::Solid rest = evaluate(whole + " - " + parts->whole, lookup, stop_, origin);
+  if (parts->others.empty()) return rest;
+  return brep::united_at_common_faces(rest, parts->others);
 }
 
 MeshExpressions::Signed MeshExpressions::value(const ExpressionTree& tree,

@@ -25,7 +25,8 @@ ExpressionTree expression_tree_of(std::string_view text, std::vector<std::string
 /// Complements stay symbolic (a & ~b is a - b, ~a & ~b is ~(a | b)), so no mesh is ever inside out. A
 /// complement left at the end is taken within `world`. An expression that names a solid several times is
 /// replaced by a read-once one if there is one, so that no surface meets itself; so is one whose solids were
-/// made of the same others: skull - piece, where piece is skull & mask, is skull - mask. a ^ b is
+/// made of the same others: skull - piece, where piece is skull & mask, is skull - mask; where piece is some
+/// parts of skull & mask, the other parts are joined to that. a ^ b is
 /// (a | b) - (a & b).
 /// Every pair of operands is corefined once; its union, intersection and difference are kept.
 class MeshExpressions {
@@ -37,10 +38,18 @@ class MeshExpressions {
   /// The expression that made a solid, of names that `Lookup` knows; empty where it was made otherwise.
   using Origin = std::function<std::string(std::string_view name)>;
 
-  /// The solid of the expression. `origin` may be empty. Throws std::invalid_argument with the position and
-  /// the expected symbol; as `lookup` and brep::boolean().
+  /// Some of the connected parts of another solid: which, and the parts that were left out.
+  struct PartsOf {
+    std::string whole;
+    brep::Solid others;
+  };
+  /// What parts a solid is; none where it is no such choice.
+  using Choice = std::function<std::optional<PartsOf>(std::string_view name)>;
+
+  /// The solid of the expression. `origin` and `choice` may be empty. Throws std::invalid_argument with the
+  /// position and the expected symbol; as `lookup` and brep::boolean().
   brep::Solid evaluate(std::string_view text, const Lookup& lookup, const std::stop_token& stop = {},
-                       const Origin& origin = {});
+                       const Origin& origin = {}, const Choice& choice = {});
 
   /// How far the corefinements of the last evaluate() moved operands, one added to the other.
   double shift_mm() const { return shift_mm_; }
@@ -52,6 +61,10 @@ class MeshExpressions {
     brep::Solid solid;
     bool complement = false;
   };
+  /// a - p, where p is some parts of a solid that is a & m: a - m and the other parts, which have the cut's
+  /// faces in common. Without it, p's surface meets that of a wherever it is one. None where it is not so.
+  std::optional<brep::Solid> less_parts(const ExpressionTree& tree, const std::vector<std::string>& names,
+                                        const Lookup& lookup, const Origin& origin, const Choice& choice);
   Signed value(const ExpressionTree& tree, const std::vector<brep::Solid>& leaves);
   brep::Solid boolean(const brep::Solid& a, brep::Operation operation, const brep::Solid& b);
   using Answers = std::map<brep::Operation, brep::Solid>;

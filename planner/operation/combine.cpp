@@ -54,9 +54,14 @@ void triangles(const Combine& combine, const MeshBench& bench, MeshSide& made) {
     const Object& object = bench.objects.at(std::string(name));
     return object.kind == operation_name ? object.definition : "";
   };
+  const auto choice = [&](std::string_view name) -> std::optional<verify::MeshExpressions::PartsOf> {
+    const auto& parts_of = bench.objects.at(std::string(name)).mesh.parts_of;
+    if (!parts_of) return std::nullopt;
+    return verify::MeshExpressions::PartsOf{parts_of->first, parts_of->second};
+  };
   made.whole = bench.expressions.evaluate(
       combine.expression, [&](std::string_view name) { return bench.object(std::string(name)); },
-      bench.progress.stop, origin);
+      bench.progress.stop, origin, choice);
   made.shift_mm = bench.expressions.shift_mm();
   made.findings = bench.expressions.findings();
   made.lineage = "corefinement of meshes";

@@ -83,7 +83,7 @@ void voxels(const Parts& parts, const VoxelBench& bench, VoxelSide& made) {
 
 KeptParts kept_parts_at(const Parts& parts, const brep::Solid& solid, const Objects& objects) {
   const std::vector<brep::Component>& all = solid.components();
-  KeptParts kept{{}, 0, all.size()};
+  KeptParts kept{{}, {}, 0, all.size()};
   std::vector<std::uint32_t> faces;
   std::vector<bool> holds(parts.at_mm.size(), false);
   for (const brep::Component& part : all) {
@@ -100,6 +100,7 @@ KeptParts kept_parts_at(const Parts& parts, const brep::Solid& solid, const Obje
     if (!holds[i]) refuse_point(parts, mark_mm(parts.at_mm[i], objects));
   std::sort(faces.begin(), faces.end());
   kept.mesh = brep::part_of(solid, faces);
+  kept.faces = std::move(faces);
   return kept;
 }
 
@@ -111,6 +112,16 @@ void triangles(const Parts& parts, const MeshBench& bench, MeshSide& made) {
   made.details = {{"parts", kept.kept}, {"of", kept.of}};
   made.whole = brep::trusted_solid(kept.mesh, brep::proof_of_part(solid.proof()));
   made.lineage = "triangles that share vertices";
+  std::vector<std::uint32_t> others;
+  for (std::uint32_t face = 0, next = 0; face < solid.triangles().faces.size(); ++face)
+    if (next < kept.faces.size() && kept.faces[next] == face)
+      ++next;
+    else
+      others.push_back(face);
+  made.parts_of = {
+      parts.object.name,
+      others.empty() ? brep::Solid()
+                     : brep::trusted_solid(brep::part_of(solid, others), brep::proof_of_part(solid.proof()))};
 }
 
 void bound(const Parts& parts, const BoundBench& bench, Object& made) {
@@ -124,7 +135,7 @@ void bound(const Parts& parts, const BoundBench& bench, Object& made) {
 
 KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::optional<double> at_least_mm3) {
   const std::vector<brep::Component> all = brep::components(mesh);
-  KeptParts parts{{}, 0, all.size()};
+  KeptParts parts{{}, {}, 0, all.size()};
   std::vector<std::uint32_t> faces;
   for (const brep::Component& part : all) {
     if (largest && parts.kept == static_cast<std::size_t>(*largest)) break;
@@ -134,6 +145,7 @@ KeptParts kept_parts(const brep::Mesh& mesh, std::optional<int> largest, std::op
   }
   std::sort(faces.begin(), faces.end());
   parts.mesh = brep::part_of(mesh, faces);
+  parts.faces = std::move(faces);
   return parts;
 }
 

@@ -12,6 +12,7 @@ namespace octotomy::planner {
 /// The parts that stay, as a mesh.
 struct KeptParts {
   brep::Mesh mesh;
+  std::vector<std::uint32_t> faces;  ///< of the whole, ascending
   std::size_t kept = 0, of = 0;
 };
 

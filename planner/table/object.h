@@ -40,6 +40,8 @@ struct MeshSide {
   double shift_mm = 0.0;  ///< how far Booleans moved operands
   std::vector<std::string> findings;
   nlohmann::ordered_json details = nlohmann::ordered_json::object();  ///< what the operation tells beside it
+  /// Of some of another object's parts: its name, and the parts that were left out.
+  std::optional<std::pair<std::string, brep::Solid>> parts_of = {};
 };
 
 /// A plane along which an object was cut, parallel to the universe's planes when it was cut.

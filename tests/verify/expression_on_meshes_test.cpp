@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <stop_token>
 
+#include "brep/mesh/components.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "brep/shape/prism.h"
 
@@ -51,6 +53,42 @@ TEST_F(MeshExpression, TheFourOperationsHaveTheirVolumes) {
   EXPECT_NEAR(volume_mm3("a | b"), 72.0, rounding_mm3);
   EXPECT_NEAR(volume_mm3("a - b"), 56.0, rounding_mm3);
   EXPECT_NEAR(volume_mm3("b - a"), 8.0, rounding_mm3);
+}
+
+// Two prongs of one body; a mask takes both off, and one of them is chosen.
+TEST_F(MeshExpression, APartOfWhatWasCutIsTakenFromTheWholeWithoutMeetingItsOwnSurface) {
+  const brep::Solid body = meshes_.evaluate("a - n", [](std::string_view name) {
+    return name == "a" ? box({1, 1, 1}, {9, 5, 7}) : box({4, 0.5, 3}, {6, 6, 8});
+  });
+  const brep::Solid mask = box({0.5, 0.5, 5.1}, {9.5, 5.5, 7.5});
+  const auto all = [&](std::string_view name) { return name == "body" ? body : mask; };
+  const brep::Solid prongs = meshes_.evaluate("body & mask", all);
+  ASSERT_EQ(prongs.components().size(), 2u);
+  const auto part = [&](std::size_t which) {
+    return brep::trusted_solid(brep::part_of(prongs, prongs.components()[which].faces), prongs.proof());
+  };
+  const brep::Solid piece = part(0), other = part(1);
+  const auto lookup = [&](std::string_view name) {
+    return name == "piece" ? piece : name == "prongs" ? prongs : all(name);
+  };
+  const auto origin = [](std::string_view name) {
+    return std::string(name == "prongs" ? "body & mask" : "");
+  };
+  const auto choice = [&](std::string_view name) -> std::optional<MeshExpressions::PartsOf> {
+    if (name != "piece") return std::nullopt;
+    return MeshExpressions::PartsOf{"prongs", other};
+  };
+  const brep::Solid rest = meshes_.evaluate("body - piece", lookup, {}, origin, choice);
+  EXPECT_NEAR(rest.measures().volume_mm3, body.measures().volume_mm3 - piece.measures().volume_mm3, 1e-12);
+  EXPECT_EQ(rest.components().size(), 1u);
+  EXPECT_EQ(brep::health(rest.triangles()).findings, std::vector<std::string>());
+  EXPECT_EQ(meshes_.shift_mm(), 0.0);
+  // What was not cut from the body is asked of the Boolean.
+  const auto elsewhere = [](std::string_view name) {
+    return std::string(name == "prongs" ? "mask & other" : "");
+  };
+  EXPECT_NEAR(meshes_.evaluate("body - piece", lookup, {}, elsewhere, choice).measures().volume_mm3,
+              rest.measures().volume_mm3, 1e-6);
 }
 
 TEST_F(MeshExpression, OfFiftyThousandOperandsIsNoDeepTree) {
