@@ -8,12 +8,12 @@ namespace octotomy::planner {
 namespace {
 
 /// Lengths of a face, in millimetres.
-constexpr double rim_step = 8.0;     ///< by which a rim stands before what is behind it
-constexpr double rim_reach = 3.0;    ///< along which a rim goes on
-constexpr double above_spine = 4.0;  ///< where the piriform rim is taken, over the nasal spine
-constexpr double below_rim = 8.0;    ///< where the buttress is taken, under the piriform rim
-constexpr double broken = 4.0,
-                 most_hole = 9.0;  ///< a surface falls back farther where it ends, and thin bone has holes
+constexpr double rim_step = 8.0;          ///< by which a rim stands before what is behind it
+constexpr double rim_reach = 3.0;         ///< along which a rim goes on
+constexpr double above_spine = 4.0;       ///< where the piriform rim is taken, over the nasal spine
+constexpr double below_rim = 8.0;         ///< where the buttress is taken, under the piriform rim
+constexpr double broken = 4.0;            ///< a surface falls back farther where it ends
+constexpr double most_hole = 9.0;         ///< of thin bone, across which it goes on
 constexpr double orbit_above_nose = 6.0;  ///< a height within the orbits, over the nose's opening
 constexpr double least_orbit = 18.0, most_orbit = 42.0;  ///< from the mid-plane
 constexpr double orbit_height = 32.0;
@@ -22,7 +22,7 @@ constexpr double arch_begin = 15.0, arch_end = 75.0;  ///< behind the nasal spin
 constexpr double least_half_face = 45.0, most_half_face = 80.0;
 constexpr double least_angle = 34.0, most_angle = 75.0;  ///< the mandible's, from the mid-plane
 constexpr double angle_begin = 40.0, angle_end = 82.0;   ///< behind the chin
-constexpr double below_teeth = 15.0;  ///< below the incisors\' edge; metal in teeth draws streaks beside them
+constexpr double below_teeth = 15.0;  ///< below the incisors' edge; metal in teeth draws streaks beside them
 constexpr double nose_root = 12.0;    ///< over the nose's opening
 constexpr double nose_root_width = 2.0, nose_root_depth = 30.0;  ///< beside the mid-plane; behind the nose
 
@@ -85,8 +85,7 @@ class Face {
     place("buttress", {side_.second * out, front(out, lower), maps_.front.y_mm(lower)});
   }
 
-  /// The orbit's rim in a column: the first crest on the way down from the orbit's depth; a row below 0:
-  /// none.
+  /// The orbit's rim in a column, the first crest on the way down from the orbit's depth; -1: none.
   int rim_row(double out, int first) const {
     const double inside = front(out, first);
     const int rows = static_cast<int>(orbit_height / step()), below = static_cast<int>(crest / step());

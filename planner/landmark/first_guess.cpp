@@ -14,13 +14,11 @@
 namespace octotomy::planner {
 namespace {
 
-constexpr double most_tilt =
-    0.94;  ///< cosine of 20 degrees between the mid-plane's normal and the scan's left
+constexpr double least_left = 0.94;  ///< of the mid-plane's normal: the cosine of 20 degrees
 /// Shares of the surface that have a counterpart, for the fit and for its doubt.
 constexpr double usual_overlap = 0.7;
 constexpr std::array<double, 2> other_overlaps{0.55, 0.85};
-/// The head's pitch in degrees, the profile's half width and the rules' heights in millimetres, for the
-/// doubt.
+/// For the doubt: the head's pitch in degrees, the profile's half width and the rules' heights in mm.
 constexpr std::array<std::array<double, 3>, 4> other_ways{
     {{5.0, 1.0, 2.0}, {2.5, 3.0, -1.0}, {-2.5, 1.0, 1.0}, {-5.0, 3.0, -2.0}}};
 constexpr double most_within_mm = 15.0;  ///< what may be farther off is no guess
@@ -88,11 +86,9 @@ SkullGuess guess_landmarks(const voxel::DrawnObject& bone, const brep::Mesh& sur
   SkullGuess guess;
   guess.mid_plane = mid_plane_of(surface, usual_overlap, std::nullopt, progress);
   const brep::MirrorPlane plane = guess.mid_plane.plane;
-  if (plane.normal.x < most_tilt)
+  if (plane.normal.x < least_left)
     throw std::runtime_error(
-        "the plane of the bone's symmetry does not part left from right: is it a skull, and not turned by "
-        "more "
-        "than 20 degrees?");
+        "the bone's symmetry does not part left from right: is it a skull, turned by at most 20 degrees?");
   std::vector<Trial> trials{{plane}};
   for (const auto& [pitch_deg, width_mm, higher_mm] : other_ways)
     trials.push_back({plane, pitch_deg, width_mm, higher_mm});

@@ -62,7 +62,7 @@ HeadFrame head_frame(const glm::dvec3& point_mm, const glm::dvec3& normal, doubl
   return frame;
 }
 
-HeadMap::HeadMap(glm::ivec2 size, glm::dvec2 first_mm, double step_mm)
+HeadMap::HeadMap(const glm::ivec2& size, const glm::dvec2& first_mm, double step_mm)
     : size_(size),
       first_mm_(first_mm),
       step_mm_(step_mm),

@@ -28,7 +28,7 @@ HeadFrame head_frame(const glm::dvec3& point_mm, const glm::dvec3& normal, doubl
 /// A rectangle of numbers at equal distances, NaN where nothing was met. `x` runs along the rows.
 class HeadMap {
  public:
-  HeadMap(glm::ivec2 size, glm::dvec2 first_mm, double step_mm);
+  HeadMap(const glm::ivec2& size, const glm::dvec2& first_mm, double step_mm);
 
   const glm::ivec2& size() const { return size_; }
   double step_mm() const { return step_mm_; }
