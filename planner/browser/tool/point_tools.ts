@@ -142,7 +142,10 @@ export async function guess_landmarks(): Promise<void> {
   if (!await ask_guesses()) return;
   take_tool("landmark");
   set({right_tab: "inspector"});
-  if (!procedure_wants.length) next_guess();
+  if (procedure_wants.length)
+    show_guess();
+  else
+    next_guess();
 }
 
 /// Asks for the next guess, and shows its place in all panes. `placed` may still be open in the plan's state.
