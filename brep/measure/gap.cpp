@@ -49,6 +49,16 @@ std::array<glm::dvec3, 3> corners_of(const Triangles& surface, std::uint32_t fac
   return {surface.points_mm[f[0]], surface.points_mm[f[1]], surface.points_mm[f[2]]};
 }
 
+/// How far a triangle lies beyond another one's plane, all of it on one side: no more than their distance.
+double beyond_plane(const std::array<glm::dvec3, 3>& s, const std::array<glm::dvec3, 3>& t) {
+  const glm::dvec3 normal = glm::cross(s[1] - s[0], s[2] - s[0]);
+  const double length = glm::length(normal);
+  if (!(length > 0.0)) return 0.0;
+  const auto [low, high] = std::minmax(
+      {glm::dot(t[0] - s[0], normal), glm::dot(t[1] - s[0], normal), glm::dot(t[2] - s[0], normal)});
+  return std::max(std::max(low, -high) / length, 0.0);
+}
+
 /// Nearest points of two triangles that do not meet: a corner of one and a point of the other, or a point of
 /// an edge of each.
 Gap gap_of(const std::array<glm::dvec3, 3>& s, const std::array<glm::dvec3, 3>& t) {
@@ -115,9 +125,11 @@ Gap gap(const Triangles& a, const Triangles& b) {
   MortonTree(a).visit_near_pairs(
       MortonTree(b), [&] { return best.distance_mm * best.distance_mm; },
       [&](std::uint32_t f, std::uint32_t g) {
-        if (const Gap between = gap_of(corners_of(a, f), corners_of(b, g));
-            between.distance_mm < best.distance_mm)
-          best = between;
+        const auto s = corners_of(a, f), t = corners_of(b, g);
+        // Where surfaces run alongside, planes part most pairs at a tenth of the cost.
+        constexpr double rounding_mm = 1e-9;
+        if (std::max(beyond_plane(s, t), beyond_plane(t, s)) > best.distance_mm + rounding_mm) return;
+        if (const Gap between = gap_of(s, t); between.distance_mm < best.distance_mm) best = between;
       });
   return best;
 }

@@ -2,6 +2,7 @@
 
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/subjects.h"
+#include "voxel/measure/measure.h"
 #include "voxel/tree/build.h"
 
 namespace octotomy::bench {
@@ -42,6 +43,11 @@ void register_measure() {
   add("measure/volume/512", [](benchmark::State& state) {
     const voxel::Octree object = skull(512);
     for (auto _ : state) benchmark::DoNotOptimize(object.voxel_count());
+  });
+  // Moments, extents and the areas of both estimators.
+  add("measure/all/512", [](benchmark::State& state) {
+    const voxel::Octree object = skull(512);
+    for (auto _ : state) benchmark::DoNotOptimize(voxel::measure(object).area_crofton13_mm2);
   });
 }
 

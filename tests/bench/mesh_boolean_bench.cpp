@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Booleans and measures of meshes, and the same work in CGAL called plainly.
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "brep/boolean/boolean.h"
+#include "brep/measure/gap.h"
+#include "brep/mesh/distance.h"
 #include "brep/mesh/measure.h"
 #include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
@@ -80,6 +83,22 @@ void run_size(benchmark::State& state, const brep::Triangles& triangles) {
   state.counters["triangles"] = static_cast<double>(mesh.n_faces());
 }
 
+void run_gap(benchmark::State& state, const brep::Triangles& a, const brep::Triangles& b) {
+  double gap_mm = 0.0;
+  for (auto _ : state) gap_mm = brep::gap(a, b).distance_mm;
+  state.counters["gap_mm"] = gap_mm;
+}
+
+/// The least distance of all corners, one way, as the reference.
+void run_corners(benchmark::State& state, const brep::Triangles& a, const brep::Triangles& b) {
+  double gap_mm = 0.0;
+  for (auto _ : state) {
+    const std::vector<double> distances_mm = brep::SurfaceTree(b).distances_mm(a.points_mm);
+    gap_mm = *std::min_element(distances_mm.begin(), distances_mm.end());
+  }
+  state.counters["gap_mm"] = gap_mm;
+}
+
 #if defined(OCTOTOMY_HAS_CGAL)
 void run_cgal(benchmark::State& state, const Pair& pair) {
   const CgalSurface a(pair.a), b(pair.b);
@@ -117,6 +136,20 @@ void register_mesh_boolean() {
   add_boolean("mesh_boolean/twin_spheres/10k", [] { return twins(71); });
   add_boolean("mesh_boolean/bone_box/100k", [] { return bone_box(128); });
   add_boolean("mesh_boolean/bone_box/500k", [] { return bone_box(256); });
+  // Balls beside each other, and one within another, along which all of it runs.
+  const auto scaled = [](brep::Triangles surface, double scale) {
+    for (glm::dvec3& p : surface.points_mm) p *= scale;
+    return surface;
+  };
+  add("mesh_measure/gap/beside/500k", [](benchmark::State& state) {
+    run_gap(state, ball({0, 0, 0}, 500), ball({2.1, 0.2, 0.1}, 500));
+  });
+  add("mesh_measure/gap/within/500k", [=](benchmark::State& state) {
+    run_gap(state, ball({0, 0, 0}, 500), scaled(ball({0, 0, 0}, 500), 1.02));
+  });
+  add("mesh_measure/corners/beside/500k", [](benchmark::State& state) {
+    run_corners(state, ball({0, 0, 0}, 500), ball({2.1, 0.2, 0.1}, 500));
+  });
   add("mesh_measure/size/500k", [](benchmark::State& state) { run_size(state, ball({0, 0, 0}, 500)); });
 #if defined(OCTOTOMY_HAS_CGAL)
   add("peer/cgal/mesh_measure/size/500k", [](benchmark::State& state) {
