@@ -67,18 +67,19 @@ Json measure(const FindLandmarks& asked, const AnswerBench& bench) {
   const Stopwatch watch(bench.timings, "landmarks");
   const Object& object = bench.objects.at(asked.object.name);
   Json json{{"object", object.id}};
-  if (!object.mesh.within) {
-    json.update({{"landmarks", Json::array()},
-                 {"missing", Json::array()},
-                 {"findings", {"it has no mesh, whose symmetry gives the mid-plane"}}});
+  const auto nothing = [&](const std::string& why) {
+    json.update({{"landmarks", Json::array()}, {"missing", Json::array()}, {"findings", {why}}});
     return json;
-  }
+  };
+  if (object.voxel.octree.is_empty()) return nothing("'" + object.id + "' is empty: it has no landmarks");
+  if (!object.mesh.within || object.mesh.within->empty())
+    return nothing("it has no mesh, whose symmetry gives the mid-plane");
   try {
     json.update(guess_json(
         guess_landmarks(drawn(object, glm::vec3(1.0f)), *object.mesh.within, bench.progress("landmarks"))));
   } catch (const std::runtime_error& error) {
     if (bench.stop.stop_requested()) throw;
-    json.update({{"landmarks", Json::array()}, {"missing", Json::array()}, {"findings", {error.what()}}});
+    return nothing(error.what());
   }
   return json;
 }
@@ -101,9 +102,13 @@ FileAnswer on_files(const FindLandmarks& asked, const FileBench& bench) {
     if (asked.out.extension() != ".json")
       throw std::runtime_error(asked.out.string() + ": landmarks are written as .json");
   }
+  const std::filesystem::path file = asked.object.name;
+  if (asked.window.high && !is_mesh(file))
+    throw std::runtime_error(
+        "--window " + to_string(asked.window) +
+        ": landmarks are found on bone without an upper limit, for example --window 300:");
   Render render;
   render.window = asked.window;
-  const std::filesystem::path file = asked.object.name;
   const voxel::DrawnObject bone = drawn_of_files(render, {asked.object}, bench).front();
   const brep::Mesh surface = surface_of(file, bone, bench);
   const SkullGuess guess = [&] {
