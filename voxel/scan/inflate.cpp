@@ -11,15 +11,15 @@ namespace {
 
 class Stream {
  public:
-  Stream(std::string_view input, int window_bits) : input_(input) {
-    if (inflateInit2(&stream_, window_bits) != Z_OK)
+  explicit Stream(std::string_view input) : input_(input) {
+    if (inflateInit2(&stream_, -MAX_WBITS) != Z_OK)
       throw Error(ErrorCode::Resource, "no memory is left to inflate");
   }
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
   ~Stream() { inflateEnd(&stream_); }
 
-  std::string run(bool may_follow) {
+  std::string run() {
     std::string output;
     std::string part(std::size_t{1} << 18, '\0');
     for (;;) {
@@ -28,12 +28,7 @@ class Stream {
       stream_.avail_out = static_cast<uInt>(part.size());
       const int state = inflate(&stream_, Z_NO_FLUSH);
       output.append(part, 0, part.size() - stream_.avail_out);
-      if (state == Z_STREAM_END) {
-        feed();
-        if (!may_follow || stream_.avail_in == 0) return output;
-        inflateReset(&stream_);
-        continue;
-      }
+      if (state == Z_STREAM_END) return output;
       if (state == Z_BUF_ERROR && at_ == input_.size())
         throw Error(ErrorCode::Input, "the deflated part is cut short");
       if (state != Z_OK)
@@ -60,11 +55,7 @@ class Stream {
 }  // namespace
 
 std::string inflate_raw(std::string_view deflated) {
-  return Stream(deflated, -MAX_WBITS).run(false);
-}
-
-std::string inflate_gzip(std::string_view deflated) {
-  return Stream(deflated, MAX_WBITS + 16).run(true);
+  return Stream(deflated).run();
 }
 
 }  // namespace octotomy::voxel

@@ -10,7 +10,4 @@ namespace octotomy::voxel {
 /// without a path, if the stream is damaged or cut short. Memory: the output, at most 1032 times the input.
 std::string inflate_raw(std::string_view deflated);
 
-/// Inflates a gzip stream, or several one after the other. Throws and costs as inflate_raw().
-std::string inflate_gzip(std::string_view deflated);
-
 }  // namespace octotomy::voxel

@@ -15,10 +15,9 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <zlib.h>
 
 #include "voxel/scan/audit.h"
-#include "voxel/scan/inflate.h"
+#include "voxel/scan/sample_stream.h"
 #include "voxel/scan/stored_samples.h"
 #include "voxel/space/file_text.h"
 
@@ -114,14 +113,10 @@ class Header {
 };
 
 std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(in), {});
-  const bool packed = bytes.size() > 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b';
-  try {
-    return packed ? inflate_gzip(bytes) : bytes;
-  } catch (const Error& error) {
-    refuse(path, error.what(), error.code());
-  }
+  SampleStream in(path, 0, is_gzip(path));
+  std::string bytes, part(std::size_t{1} << 18, '\0');
+  while (const std::size_t count = in.read(part.data(), part.size())) bytes.append(part, 0, count);
+  return bytes;
 }
 
 void place(const Header& header, const glm::ivec3& dims, Scene& scene) {
@@ -141,12 +136,15 @@ void place(const Header& header, const glm::ivec3& dims, Scene& scene) {
 }  // namespace
 
 bool is_nifti2(const fs::path& path) {
-  const gzFile in = gzopen(path.c_str(), "rb");  // reads unpacked files as they are
   std::int32_t size = 0;
-  const int count = in == nullptr ? 0 : gzread(in, &size, sizeof size);
-  if (in != nullptr) gzclose(in);
+  try {
+    if (SampleStream(path, 0, is_gzip(path)).read(reinterpret_cast<char*>(&size), sizeof size) < sizeof size)
+      return false;
+  } catch (const Error&) {
+    return false;
+  }
   constexpr auto wanted = static_cast<std::int32_t>(header_bytes);
-  return count == sizeof size && (size == wanted || swapped(size) == wanted);
+  return size == wanted || swapped(size) == wanted;
 }
 
 Scene read_nifti2(const fs::path& path) {

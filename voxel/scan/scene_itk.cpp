@@ -120,45 +120,59 @@ Lattice lattice_of(const itk::ImageIOBase& io, const fs::path& path, std::uintma
   return lattice;
 }
 
+/// A volume file that is open.
+struct Volume {
+  const fs::path& path;
+  VolumeFormat format;
+  const VolumeHeader& header;
+  itk::ImageIOBase& io;
+};
+
 template <typename Stored>
-void read_as(itk::ImageIOBase& io, Scene& scene) {
+void read_as(const Volume& volume, Scene& scene) {
   Samples<Stored> stored(scene.lattice.sample_count());
-  io.Read(stored.data());
+  // The libraries behind ITK unpack into memory of their own.
+  if (volume.header.is_plain)
+    read_plain_samples(volume.path, volume.format, volume.header, reinterpret_cast<char*>(stored.data()),
+                       stored.size() * sizeof(Stored));
+  else
+    volume.io.Read(stored.data());
   if constexpr (std::is_same_v<Stored, std::int16_t>)
     scene.samples = std::move(stored);
   else
     take_samples(stored, scene);
 }
 
-void read_samples(itk::ImageIOBase& io, const fs::path& path, Scene& scene) {
-  switch (io.GetComponentType()) {
+void read_samples(const Volume& volume, Scene& scene) {
+  switch (volume.io.GetComponentType()) {
     case itk::IOComponentEnum::UCHAR:
-      return read_as<unsigned char>(io, scene);
+      return read_as<unsigned char>(volume, scene);
     case itk::IOComponentEnum::CHAR:
-      return read_as<signed char>(io, scene);
+      return read_as<signed char>(volume, scene);
     case itk::IOComponentEnum::USHORT:
-      return read_as<unsigned short>(io, scene);
+      return read_as<unsigned short>(volume, scene);
     case itk::IOComponentEnum::SHORT:
-      return read_as<std::int16_t>(io, scene);
+      return read_as<std::int16_t>(volume, scene);
     case itk::IOComponentEnum::UINT:
-      return read_as<unsigned int>(io, scene);
+      return read_as<unsigned int>(volume, scene);
     case itk::IOComponentEnum::INT:
-      return read_as<int>(io, scene);
+      return read_as<int>(volume, scene);
     case itk::IOComponentEnum::ULONG:
-      return read_as<unsigned long>(io, scene);
+      return read_as<unsigned long>(volume, scene);
     case itk::IOComponentEnum::LONG:
-      return read_as<long>(io, scene);
+      return read_as<long>(volume, scene);
     case itk::IOComponentEnum::ULONGLONG:
-      return read_as<unsigned long long>(io, scene);
+      return read_as<unsigned long long>(volume, scene);
     case itk::IOComponentEnum::LONGLONG:
-      return read_as<long long>(io, scene);
+      return read_as<long long>(volume, scene);
     case itk::IOComponentEnum::FLOAT:
-      return read_as<float>(io, scene);
+      return read_as<float>(volume, scene);
     case itk::IOComponentEnum::DOUBLE:
-      return read_as<double>(io, scene);
+      return read_as<double>(volume, scene);
     default:
-      refuse(path, "samples of type " + itk::ImageIOBase::GetComponentTypeAsString(io.GetComponentType()) +
-                       " are not supported");
+      refuse(volume.path, "samples of type " +
+                              itk::ImageIOBase::GetComponentTypeAsString(volume.io.GetComponentType()) +
+                              " are not supported");
   }
 }
 
@@ -317,13 +331,15 @@ Scene read_volume_file(const fs::path& path, VolumeFormat format) {
            [&] { scene.lattice = lattice_of(*io, path, header.most_bytes); });
   take_exact_geometry(header, scene);
   const std::uintmax_t sample_bytes = header.sample_bytes > 0 ? header.sample_bytes : io->GetComponentSize();
-  require_samples(path, format, header, scene.lattice.sample_count() * sample_bytes);
+  if (!header.is_plain) require_samples(path, format, header, scene.lattice.sample_count() * sample_bytes);
   need_memory(path, scene.lattice.sample_count(), sample_bytes + sizeof(std::int16_t));
   itk::ImageIORegion region(io->GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis)
     region.SetSize(axis, io->GetDimensions(axis));
   io->SetIORegion(region);
-  call_itk(path, format, "its samples cannot be read", [&] { read_samples(*io, path, scene); });
+  call_itk(path, format, "its samples cannot be read", [&] {
+    read_samples({path, format, header, *io}, scene);
+  });
   audit_frame(*io, format, header, scene);
   take_meaning(*io, header, scene);
   return scene;

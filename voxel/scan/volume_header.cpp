@@ -12,8 +12,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <vector>
-#include <zlib.h>
 
+#include "voxel/scan/sample_stream.h"
 #include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
@@ -27,15 +27,17 @@ namespace fs = std::filesystem;
 class NiftiGate {
  public:
   explicit NiftiGate(const fs::path& path) : path_(path) {
-    const gzFile in = gzopen(path.c_str(), "rb");  // reads unpacked files as they are
-    const int count = in == nullptr ? 0 : gzread(in, bytes_.data(), static_cast<unsigned>(bytes_.size()));
-    if (in != nullptr) gzclose(in);
-    if (count < header_bytes) refuse(path_, "is cut short or damaged within its header");
-    held_ = static_cast<std::size_t>(count);
-    swapped_ = number<std::int32_t>(0) != header_bytes;
+    try {
+      held_ = SampleStream(path, 0, is_gzip(path)).read(bytes_.data(), bytes_.size());
+    } catch (const Error&) {
+      // Below with what is too short.
+    }
+    if (held_ < header_bytes) refuse(path_, "is cut short or damaged within its header");
+    constexpr auto size = static_cast<std::int32_t>(header_bytes);
+    swapped_ = number<std::int32_t>(0) != size;
     if (number<std::int32_t>(0) == 540)
       refuse(path_, "is NIfTI-2; its header is not read here: save it as NIfTI-1");
-    require(number<std::int32_t>(0) == header_bytes, "size");
+    require(number<std::int32_t>(0) == size, "size");
     require(bytes_[344] == 'n' && bytes_[345] == '+' && bytes_[346] == '1', "magic (n+1 is expected)");
     check_dims();
     check_places();
@@ -43,6 +45,12 @@ class NiftiGate {
 
   std::uintmax_t sample_bytes() const { return static_cast<std::uintmax_t>(number<std::int16_t>(72)) / 8; }
   std::uintmax_t samples_at() const { return static_cast<std::uintmax_t>(number<float>(108)); }
+
+  /// A slope of zero is none.
+  bool is_plain() const {
+    const auto slope = number<float>(112);
+    return !swapped_ && (slope == 0.0f || slope == 1.0f) && number<float>(116) == 0.0f;
+  }
 
   /// The geometry in our own extension; none if that is absent or damaged.
   std::optional<glm::dmat4> exact_geometry() const {
@@ -116,7 +124,7 @@ class NiftiGate {
     if (!holds) refuse(path_, std::string("its NIfTI header is damaged: ") + what);
   }
 
-  static constexpr int header_bytes = 348;
+  static constexpr std::size_t header_bytes = 348;
   fs::path path_;
   std::array<char, 1024> bytes_{};
   std::size_t held_ = 0;
@@ -248,49 +256,53 @@ class TextHeader {
   std::size_t end_ = 0;
 };
 
-bool is_compressed_meta(const VolumeHeader& header) {
-  return lower_case(header.field("compresseddata").value_or("false")) == "true";
+/// A field that says yes or no in a word.
+bool says(const VolumeHeader& header, const char* key, const char* word, const char* otherwise) {
+  return lower_case(header.field(key).value_or(otherwise)) == word;
 }
 
-/// The unpacked size of a .gz file; none if it is damaged or cut short.
-std::optional<std::uintmax_t> unpacked_bytes(const fs::path& path) {
-  const gzFile in = gzopen(path.c_str(), "rb");
-  if (in == nullptr) return std::nullopt;
-  std::vector<char> part(std::size_t{1} << 18);
-  std::uintmax_t total = 0;
-  int count = 0;
-  while ((count = gzread(in, part.data(), static_cast<unsigned>(part.size()))) > 0)
-    total += static_cast<std::uintmax_t>(count);
-  const bool sound = count == 0 && gzclose(in) == Z_OK;
-  if (count != 0) gzclose(in);
-  return sound ? std::optional(total) : std::nullopt;
+bool is_in_several_files(const std::string& data_file) {
+  return data_file.starts_with("LIST") || data_file.find('%') != std::string::npos;
 }
 
-/// The unpacked size of the zlib or gzip stream that begins at offset `at`; none if it is damaged or cut
-/// short.
-std::optional<std::uintmax_t> inflated_bytes(const fs::path& path, std::uintmax_t at) {
-  z_stream stream{};
-  constexpr int either_header = 32 + MAX_WBITS;
-  if (inflateInit2(&stream, either_header) != Z_OK) return std::nullopt;
-  std::ifstream in(path, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(at));
-  std::vector<char> packed(std::size_t{1} << 18), part(std::size_t{1} << 18);
-  std::uintmax_t total = 0;
-  int state = Z_OK;
-  while (state == Z_OK) {
-    if (stream.avail_in == 0) {
-      in.read(packed.data(), static_cast<std::streamsize>(packed.size()));
-      if (in.gcount() == 0) break;
-      stream.next_in = reinterpret_cast<Bytef*>(packed.data());
-      stream.avail_in = static_cast<uInt>(in.gcount());
-    }
-    stream.next_out = reinterpret_cast<Bytef*>(part.data());
-    stream.avail_out = static_cast<uInt>(part.size());
-    state = inflate(&stream, Z_NO_FLUSH);
-    total += part.size() - stream.avail_out;
-  }
-  inflateEnd(&stream);
-  return state == Z_STREAM_END ? std::optional(total) : std::nullopt;
+fs::path beside(const fs::path& header_file, const std::string& name) {
+  return fs::absolute(header_file).parent_path() / name;  // an absolute name stays itself
+}
+
+constexpr bool is_little = std::endian::native == std::endian::little;
+
+void place_nrrd_samples(const fs::path& path, std::size_t header_end, VolumeHeader& header) {
+  const std::string data = header.field("data file").value_or(header.field("datafile").value_or(""));
+  const std::string encoding = lower_case(header.field("encoding").value_or("raw"));
+  header.is_packed = encoding == "gzip" || encoding == "gz";
+  // The library itself checks skipped bytes and samples in several files.
+  const auto absent = [&](const char* key) { return !header.field(key); };
+  if (is_in_several_files(data) || !absent("byte skip") || !absent("byteskip") || !absent("line skip") ||
+      !absent("lineskip"))
+    return;
+  header.data_file = data.empty() ? path : beside(path, data);
+  if (data.empty()) header.data_at = header_end;
+  header.is_plain = (header.is_packed || encoding == "raw") &&
+                    says(header, "endian", is_little ? "little" : "big", is_little ? "little" : "big");
+}
+
+void place_meta_samples(const fs::path& path, std::size_t header_end, VolumeHeader& header) {
+  const std::string data = header.field("elementdatafile").value_or("");
+  header.is_packed = says(header, "compresseddata", "true", "false");
+  if (is_in_several_files(data)) return;
+  const bool is_local = lower_case(data) == "local";
+  header.data_file = is_local ? path : beside(path, data);
+  if (is_local) header.data_at = header_end;
+  header.is_plain = says(header, "binarydata", "true", "true") &&
+                    (header.is_packed || says(header, "compresseddata", "false", "false")) &&
+                    says(header, "binarydatabyteordermsb", is_little ? "false" : "true", "false") &&
+                    says(header, "elementbyteordermsb", is_little ? "false" : "true", "false") &&
+                    !header.field("headersize") && !header.field("elementtointensityfunctionslope") &&
+                    !header.field("elementtointensityfunctionoffset");
+}
+
+[[noreturn]] void refuse_short(const fs::path& path, std::uintmax_t held, std::uintmax_t bytes) {
+  refuse(path, "its samples are cut short: " + std::to_string(held) + " bytes of " + std::to_string(bytes));
 }
 
 /// Upper bound on the bytes of samples in the file.
@@ -313,11 +325,11 @@ std::uintmax_t most_bytes(const fs::path& path, VolumeFormat format, const Volum
   std::uintmax_t bytes = 0;
   if (data_file.empty()) {
     bytes = fs::file_size(path);
-  } else if (data_file.starts_with("LIST") || data_file.find('%') != std::string::npos) {
+  } else if (is_in_several_files(data_file)) {
     for (const fs::directory_entry& entry : fs::directory_iterator(fs::absolute(path).parent_path()))
       if (entry.is_regular_file()) bytes += entry.file_size();
   } else {
-    const fs::path data = fs::absolute(path).parent_path() / data_file;  // an absolute name stays itself
+    const fs::path data = beside(path, data_file);
     if (!fs::is_regular_file(data))
       refuse(path, "its data file '" + data_file + "' is missing; keep header and data together");
     bytes = fs::file_size(data);
@@ -362,47 +374,43 @@ VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
     header.data_file = path;
     header.data_at = gate.samples_at();
     header.sample_bytes = gate.sample_bytes();
+    header.is_packed = is_gzip(path);
+    header.is_plain = gate.is_plain();
   } else if (format == VolumeFormat::Nrrd) {
-    const std::string data = header.field("data file").value_or(header.field("datafile").value_or(""));
-    // The library itself checks skipped bytes and samples in several files.
-    const bool is_plain = !data.starts_with("LIST") && data.find('%') == std::string::npos &&
-                          !header.field("byte skip") && !header.field("line skip");
-    if (is_plain) header.data_file = data.empty() ? path : fs::absolute(path).parent_path() / data;
-    if (data.empty()) header.data_at = text.end();
-  } else if (format == VolumeFormat::Meta) {
-    const std::string data = header.field("elementdatafile").value_or("");
-    if (lower_case(data) == "local") {
-      header.data_file = path;
-      header.data_at = text.end();
-    } else if (!data.starts_with("LIST") && data.find('%') == std::string::npos) {
-      header.data_file = fs::absolute(path).parent_path() / data;
-    }
+    place_nrrd_samples(path, text.end(), header);
+  } else {
+    place_meta_samples(path, text.end(), header);
   }
   header.most_bytes = most_bytes(path, format, header);
   return header;
 }
 
+void read_plain_samples(const fs::path& path, VolumeFormat format, const VolumeHeader& header, char* samples,
+                        std::uintmax_t bytes) {
+  // A NIfTI file is packed as a whole.
+  const bool is_whole = header.is_packed && format == VolumeFormat::Nifti;
+  SampleStream stream(header.data_file, is_whole ? 0 : header.data_at, header.is_packed);
+  std::vector<char> before(is_whole ? header.data_at : 0);
+  if (stream.read(before.data(), before.size()) < before.size()) refuse_short(path, 0, bytes);
+  const std::uintmax_t held = stream.read(samples, bytes);
+  if (held < bytes) refuse_short(path, held, bytes);
+  if (header.is_packed) stream.skip_rest();
+}
+
 void require_samples(const fs::path& path, VolumeFormat format, const VolumeHeader& header,
                      std::uintmax_t bytes) {
   if (header.data_file.empty()) return;
-  const std::string encoding = lower_case(header.field("encoding").value_or("raw"));
-  const bool is_packed_nrrd = format == VolumeFormat::Nrrd && (encoding == "gzip" || encoding == "gz");
-  const bool is_text = lower_case(header.field("binarydata").value_or("true")) == "false" ||
-                       (encoding != "raw" && !is_packed_nrrd);
+  const bool is_text = says(header, "binarydata", "false", "true") ||
+                       (!header.is_packed && !says(header, "encoding", "raw", "raw"));
   if (is_text) return;  // the library counts the numbers that it parses
-  std::optional<std::uintmax_t> held;
-  if (format == VolumeFormat::Nifti && extension_of(path) == ".gz") {
-    held = unpacked_bytes(path);
-  } else if (is_packed_nrrd || (format == VolumeFormat::Meta && is_compressed_meta(header))) {
-    held = inflated_bytes(header.data_file, header.data_at);
-    if (held) held = *held + header.data_at;
-  } else {
+  std::uintmax_t held = 0;
+  if (!header.is_packed)
     held = fs::file_size(header.data_file);
-  }
-  if (!held) refuse(path, "its packed samples are damaged or cut short");
-  if (*held < header.data_at + bytes)
-    refuse(path, "its samples are cut short: " + std::to_string(*held - std::min(*held, header.data_at)) +
-                     " bytes of " + std::to_string(bytes));
+  else if (format == VolumeFormat::Nifti)
+    held = SampleStream(path, 0, true).skip_rest();
+  else
+    held = header.data_at + SampleStream(header.data_file, header.data_at, true).skip_rest();
+  if (held < header.data_at + bytes) refuse_short(path, held - std::min(held, header.data_at), bytes);
 }
 
 }  // namespace octotomy::voxel

@@ -31,6 +31,9 @@ struct VolumeHeader {
   std::filesystem::path data_file;  ///< holds the samples; empty if several files do
   std::uintmax_t sample_bytes = 0;  ///< of one stored sample, before rescale; NIfTI only
   std::uintmax_t data_at = 0;       ///< offset of the samples in the file; in the unpacked one for .nii.gz
+  bool is_packed = false;           ///< the samples, or the whole .nii.gz, are deflated
+  /// The samples stand in `data_file` in this machine's byte order and as they are meant.
+  bool is_plain = false;
 
   std::optional<std::string> field(const std::string& key) const;
 };
@@ -44,8 +47,13 @@ inline constexpr std::int32_t nifti_text_extension = 6;
 /// Throws Error, Input, with path and reason.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
 
+/// Reads `bytes` bytes of samples. Precondition: they are plain. Throws Error, Input, with path and reason
+/// where they are cut short or damaged. Cost: reads and unpacks the file once.
+void read_plain_samples(const std::filesystem::path& path, VolumeFormat format, const VolumeHeader& header,
+                        char* samples, std::uintmax_t bytes);
+
 /// Refuses a file whose samples are cut short or damaged, for which the libraries behind ITK return
-/// uninitialised memory. Throws Error, Input, with path and reason. Cost: unpacks packed samples once.
+/// uninitialised memory. Throws as read_plain_samples(). Cost: unpacks packed samples once.
 void require_samples(const std::filesystem::path& path, VolumeFormat format, const VolumeHeader& header,
                      std::uintmax_t bytes);
 
