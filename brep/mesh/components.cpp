@@ -14,7 +14,6 @@
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/equal_points.h"
 #include "brep/mesh/mesh_point.h"
-#include "brep/mesh/sides.h"
 
 namespace octotomy::brep {
 namespace {
@@ -127,18 +126,15 @@ std::vector<Component> components_of(const Triangles& triangles, DisjointSets& j
 
 }  // namespace
 
-std::vector<Component> components(const Triangles& triangles,
-                                  const std::function<const SurfaceTree&()>& tree) {
-  DisjointSets joined(triangles.faces.size());
-  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) {
-    if (end - begin == 1)
+std::vector<Component> components(const Linked& linked, const std::function<const SurfaceTree&()>& tree) {
+  DisjointSets joined(linked.triangles.faces.size());
+  for (std::uint32_t side = 0; side < linked.opposite.size(); ++side) {
+    if (linked.opposite[side] == Linked::none)
       throw std::invalid_argument("the components of open triangles have no volume: triangle " +
-                                  std::to_string(begin->corner / 3) +
-                                  " has a side of its own; close it first");
-    for (const Side* other = begin + 1; other != end; ++other)
-      joined.join(begin->corner / 3, other->corner / 3);
-  });
-  return components_of(triangles, joined, tree);
+                                  std::to_string(side / 3) + " has a side of its own; close it first");
+    if (linked.is_inner_edge(side)) joined.join(side / 3, linked.opposite[side] / 3);
+  }
+  return components_of(linked.triangles, joined, tree);
 }
 
 std::vector<Component> components(const Mesh& mesh) {

@@ -25,10 +25,9 @@ struct Component {
 /// Cost: n log n, one ray a shell.
 std::vector<Component> components(const Mesh& mesh);
 
-/// The same of closed triangles that linked() takes as they are; `tree` is their tree, asked for only where
-/// there are cavities. Cost: linear, one ray a cavity.
-std::vector<Component> components(const Triangles& triangles,
-                                  const std::function<const SurfaceTree&()>& tree);
+/// The same of triangles with their neighbours; `tree` is their tree, asked for only where there are
+/// cavities. Cost: linear, one ray a cavity.
+std::vector<Component> components(const Linked& linked, const std::function<const SurfaceTree&()>& tree);
 
 /// The mesh of some of a mesh's faces, in the order given, without other vertices.
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& faces);

@@ -13,8 +13,8 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "brep/mesh/dihedral_angle.h"
 #include "brep/mesh/mesh_point.h"
-#include "brep/mesh/sides.h"
 
 namespace octotomy::brep {
 namespace {
@@ -96,6 +96,11 @@ struct ListCorners {
   }
 };
 
+struct LinkedCorners : ListCorners {
+  explicit LinkedCorners(const Linked& source) : ListCorners{source.triangles}, linked(source) {}
+  const Linked& linked;
+};
+
 glm::dvec3 normal_of(const Corners& t) {
   return glm::cross(t.b - t.a, t.c - t.a);
 }
@@ -148,11 +153,9 @@ Size size_from(const Source& source) {
   return {sums.x, sums.y, extents.low, extents.high};
 }
 
-/// Half of length times unsigned angle between the faces' normals n and m; atan2 keeps small angles exact
-/// where acos does not.
-double edge_curvature_mm(const glm::dvec3& n, const glm::dvec3& m, double length_mm) {
-  if (glm::dot(n, n) == 0.0 || glm::dot(m, m) == 0.0) return 0.0;
-  return 0.5 * length_mm * std::atan2(glm::length(glm::cross(n, m)), glm::dot(n, m));
+/// Half of length times unsigned angle between the faces' normals n and m.
+double edge_curvature_mm(const glm::dvec3& n, const glm::dvec3& m, const glm::dvec3& along) {
+  return 0.5 * glm::length(along) * std::abs(dihedral_angle(n, m, along));
 }
 
 /// Edges with one triangle count nothing. `normals` are in the order of the faces.
@@ -163,30 +166,25 @@ double absolute_mean_curvature_mm(const MeshCorners& source, const std::vector<g
     const Mesh::EdgeHandle e(static_cast<int>(i));
     if (mesh.is_boundary(e)) return 0.0;
     const Mesh::HalfedgeHandle h = mesh.halfedge_handle(e, 0), g = mesh.halfedge_handle(e, 1);
-    return edge_curvature_mm(normals[static_cast<std::size_t>(mesh.face_handle(h).idx())],
-                             normals[static_cast<std::size_t>(mesh.face_handle(g).idx())],
-                             glm::distance(glm_of(mesh.point(mesh.to_vertex_handle(h))),
-                                           glm_of(mesh.point(mesh.to_vertex_handle(g)))));
+    return edge_curvature_mm(
+        normals[static_cast<std::size_t>(mesh.face_handle(h).idx())],
+        normals[static_cast<std::size_t>(mesh.face_handle(g).idx())],
+        glm_of(mesh.point(mesh.to_vertex_handle(h))) - glm_of(mesh.point(mesh.to_vertex_handle(g))));
   });
 }
 
-/// Edges in the order of mesh_of(): by the first of their corners.
-double absolute_mean_curvature_mm(const ListCorners& source, const std::vector<glm::dvec3>& normals) {
-  const Triangles& triangles = source.triangles;
-  std::vector<std::uint32_t> beyond(3 * triangles.faces.size(), Linked::none);
-  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) {
-    if (end - begin == 2) beyond[begin[0].corner] = begin[1].corner;
-  });
-  std::vector<std::uint32_t> edges;  // by their first corner
-  edges.reserve(beyond.size() / 2);
-  for (std::uint32_t c = 0; c < beyond.size(); ++c)
-    if (beyond[c] != Linked::none) edges.push_back(c);
+/// Edges in the order of mesh_of(): by the first of their sides.
+double absolute_mean_curvature_mm(const LinkedCorners& source, const std::vector<glm::dvec3>& normals) {
+  const Linked& linked = source.linked;
+  std::vector<std::uint32_t> edges;
+  edges.reserve(linked.opposite.size() / 2);
+  for (std::uint32_t side = 0; side < linked.opposite.size(); ++side)
+    if (linked.is_inner_edge(side)) edges.push_back(side);
+  const std::vector<glm::dvec3>& p = linked.triangles.points_mm;
   return blockwise_sum<double>(edges.size(), [&](std::size_t i) {
-    const std::uint32_t c = edges[i];
-    const auto& face = triangles.faces[c / 3];
-    return edge_curvature_mm(
-        normals[c / 3], normals[beyond[c] / 3],
-        glm::distance(triangles.points_mm[face[(c + 1) % 3]], triangles.points_mm[face[c % 3]]));
+    const std::uint32_t side = edges[i];
+    return edge_curvature_mm(normals[side / 3], normals[linked.opposite[side] / 3],
+                             p[linked.to(side)] - p[linked.from(side)]);
   });
 }
 
@@ -274,8 +272,8 @@ Measures measure(const Mesh& mesh) {
   return measures_from(MeshCorners{mesh});
 }
 
-Measures measure(const Triangles& triangles) {
-  return measures_from(ListCorners{triangles});
+Measures measure(const Linked& linked) {
+  return measures_from(LinkedCorners(linked));
 }
 
 long euler_number(const Triangles& surface) {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/mesh/mesh_point.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -37,18 +39,36 @@ void check_rigid(const glm::dmat4& m) {
   if (glm::determinant(r) < 0.0) refuse("it mirrors");
 }
 
+/// A rigid motion that was checked.
+class Motion {
+ public:
+  explicit Motion(const glm::dmat4& moved_from_still)
+      : rotation_(moved_from_still), translation_(moved_from_still[3]) {
+    check_rigid(moved_from_still);
+  }
+  glm::dvec3 operator()(const glm::dvec3& p_mm) const { return rotation_ * p_mm + translation_; }
+
+ private:
+  glm::dmat3 rotation_;
+  glm::dvec3 translation_;
+};
+
 }  // namespace
 
 Mesh moved(const Mesh& mesh, const glm::dmat4& moved_from_still) {
-  check_rigid(moved_from_still);
-  const glm::dmat3 rotation(moved_from_still);
-  const glm::dvec3 translation(moved_from_still[3]);
+  const Motion motion(moved_from_still);
   Mesh result = mesh;
   for (const auto v : result.all_vertices()) {
-    const Mesh::Point& p = mesh.point(v);
-    const glm::dvec3 q = rotation * glm::dvec3(p[0], p[1], p[2]) + translation;
+    const glm::dvec3 q = motion(glm_of(mesh.point(v)));
     result.set_point(v, Mesh::Point(q.x, q.y, q.z));
   }
+  return result;
+}
+
+Triangles moved(const Triangles& triangles, const glm::dmat4& moved_from_still) {
+  const Motion motion(moved_from_still);
+  Triangles result = triangles;
+  for (glm::dvec3& p : result.points_mm) p = motion(p);
   return result;
 }
 

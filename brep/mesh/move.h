@@ -4,10 +4,12 @@
 #include <glm/glm.hpp>
 
 #include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 
-/// The mesh under a rigid motion, LPS to LPS. Throws std::invalid_argument where the matrix is not rigid.
+/// The surface under a rigid motion, LPS to LPS. Throws std::invalid_argument where the matrix is not rigid.
 Mesh moved(const Mesh& mesh, const glm::dmat4& moved_from_still);
+Triangles moved(const Triangles& triangles, const glm::dmat4& moved_from_still);
 
 }  // namespace octotomy::brep

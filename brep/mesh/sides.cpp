@@ -1,40 +1,54 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 count the sides of each lower point; 2 lay them out by it, in the order of their corners; 3 sort the few
+// 1 count the sides of each lower point; 2 lay out their corners by it, in ascending order; 3 sort the few
 // sides of each point by the other.
 #include "brep/mesh/sides.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <numeric>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 namespace octotomy::brep {
 
-std::vector<Side> sorted_sides(const Triangles& triangles) {
-  std::vector<std::uint32_t> begin(triangles.points_mm.size() + 1, 0);
+SidesOfPoints::SidesOfPoints(const Triangles& triangles)
+    : triangles_(triangles), end_(triangles.points_mm.size(), 0), corners_(3 * triangles.faces.size()) {
+  const auto low_of = [](const std::array<std::uint32_t, 3>& face, std::size_t k) {
+    return std::min(face[k], face[k == 2 ? 0 : k + 1]);
+  };
   for (const auto& face : triangles.faces)
     for (std::size_t k = 0; k < 3; ++k) {
-      assert(face[k] < triangles.points_mm.size());
-      ++begin[std::min(face[k], face[(k + 1) % 3]) + 1];
+      assert(face[k] < end_.size());
+      ++end_[low_of(face, k)];
     }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Side> sides(3 * triangles.faces.size());
-  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f) {
-    const auto& face = triangles.faces[f];
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = face[k], to = face[(k + 1) % 3], low = std::min(from, to);
-      sides[begin[low]++] = {low, std::max(from, to), 3 * f + k, from < to};
-    }
+  std::uint32_t sum = 0;
+  for (std::uint32_t& end : end_) {
+    const std::uint32_t count = end;
+    end = sum;  // where the point's sides begin: laying them out takes it to their end
+    sum += count;
   }
-  // By now `begin` holds where the sides of each point end.
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.points_mm.size(), 4096),
+  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f)
+    for (std::uint32_t k = 0; k < 3; ++k) corners_[end_[low_of(triangles.faces[f], k)]++] = 3 * f + k;
+}
+
+void SidesOfPoints::put(std::size_t point, Side* sides) const {
+  Side* last = sides;
+  for (std::size_t i = first(point); i != end(point); ++i) {
+    const std::uint32_t corner = corners_[i];
+    const auto& face = triangles_.faces[corner / 3];
+    const std::uint32_t from = face[corner % 3], to = face[(corner + 1) % 3];
+    *last++ = {std::min(from, to), std::max(from, to), corner, from < to};
+  }
+  std::sort(sides, last, [](const Side& a, const Side& b) {
+    return a.high != b.high ? a.high < b.high : a.corner < b.corner;
+  });
+}
+
+std::vector<Side> sorted_sides(const Triangles& triangles) {
+  const SidesOfPoints of_points(triangles);
+  std::vector<Side> sides(3 * triangles.faces.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, of_points.point_count(), 4096),
                     [&](const auto& range) {
-                      for (std::size_t v = range.begin(); v != range.end(); ++v)
-                        std::sort(sides.begin() + (v == 0 ? 0 : begin[v - 1]), sides.begin() + begin[v],
-                                  [](const Side& a, const Side& b) {
-                                    return a.high != b.high ? a.high < b.high : a.corner < b.corner;
-                                  });
+                      for (std::size_t point = range.begin(); point != range.end(); ++point)
+                        of_points.put(point, sides.data() + of_points.first(point));
                     });
   return sides;
 }

@@ -22,17 +22,16 @@ namespace {
                               " has no neighbour along a side; close it first");
 }
 
-void check_closed(const Mesh& mesh) {
-  for (const auto h : mesh.halfedges())
-    if (mesh.is_boundary(h)) refuse_open(static_cast<std::size_t>(mesh.opposite_face_handle(h).idx()));
-}
-
-Triangles closed(Triangles given) {
-  Linked linked = brep::linked(std::move(given));
+Linked closed(Linked linked) {
   const auto open = std::find(linked.opposite.begin(), linked.opposite.end(), Linked::none);
   if (open != linked.opposite.end())
     refuse_open(static_cast<std::size_t>(open - linked.opposite.begin()) / 3);
-  return std::move(linked.triangles);
+  return linked;
+}
+
+void check_closed(const Mesh& mesh) {
+  for (const auto h : mesh.halfedges())
+    if (mesh.is_boundary(h)) refuse_open(static_cast<std::size_t>(mesh.opposite_face_handle(h).idx()));
 }
 
 void check_health(const Triangles& triangles) {
@@ -66,16 +65,16 @@ struct Solid::State {
     mesh.get([&] { return given; });
     check();
   }
-  State(Triangles given, Proof by) : from_mesh(false), face_count(given.faces.size()), proof(by) {
-    triangles.get([&] { return closed(std::move(given)); });
+  State(Linked given, Proof by) : from_mesh(false), face_count(given.triangles.faces.size()), proof(by) {
+    linked.get([&] { return closed(std::move(given)); });
     check();
   }
 
-  // One of mesh and triangles is given, the other made of it.
+  // One of mesh and linked triangles is given, the other made of it.
   mutable Kept<Mesh> mesh;
-  mutable Kept<Triangles> triangles;
-  const Triangles& list() const {
-    return triangles.get([&] { return triangles_of(mesh.given()); });
+  mutable Kept<Linked> linked;
+  const Linked& list() const {
+    return linked.get([&] { return linked_of(mesh.given()); });
   }
   const bool from_mesh;
   const std::size_t face_count;
@@ -86,7 +85,7 @@ struct Solid::State {
   mutable Kept<std::vector<Component>> components;
 
  private:
-  void check() const { assert(proof != Proof::Construction || size_of(list()).volume_mm3 >= 0.0); }
+  void check() const { assert(proof != Proof::Construction || size_of(list().triangles).volume_mm3 >= 0.0); }
 };
 
 Solid::Solid() {
@@ -106,7 +105,7 @@ Proof Solid::proof() const {
   return state_->proof;
 }
 
-const Triangles& Solid::triangles() const {
+const Linked& Solid::linked() const {
   return state_->list();
 }
 
@@ -116,7 +115,7 @@ const Size& Solid::size() const {
 
 const Measures& Solid::measures() const {
   // The order of a given mesh's edges is its own, and sums go by it.
-  return state_->measures.get([&] { return state_->from_mesh ? measure(mesh()) : measure(triangles()); });
+  return state_->measures.get([&] { return state_->from_mesh ? measure(mesh()) : measure(linked()); });
 }
 
 const SurfaceTree& Solid::tree() const {
@@ -125,12 +124,12 @@ const SurfaceTree& Solid::tree() const {
 
 const std::vector<Component>& Solid::components() const {
   return state_->components.get(
-      [&] { return brep::components(triangles(), [&]() -> const SurfaceTree& { return tree(); }); });
+      [&] { return brep::components(linked(), [&]() -> const SurfaceTree& { return tree(); }); });
 }
 
 Solid solid_of(const Triangles& triangles) {
   check_health(triangles);
-  return Solid(std::make_shared<const Solid::State>(triangles, Proof::Health));
+  return Solid(std::make_shared<const Solid::State>(linked(triangles), Proof::Health));
 }
 
 Solid solid_of(const Mesh& mesh) {
@@ -140,7 +139,7 @@ Solid solid_of(const Mesh& mesh) {
 
 Solid trusted_solid(Triangles triangles, Proof proof) {
   assert(proof != Proof::Health);
-  return Solid(std::make_shared<const Solid::State>(std::move(triangles), proof));
+  return Solid(std::make_shared<const Solid::State>(linked(std::move(triangles)), proof));
 }
 
 Solid trusted_solid(const Mesh& mesh, Proof proof) {
@@ -149,7 +148,10 @@ Solid trusted_solid(const Mesh& mesh, Proof proof) {
 }
 
 Solid moved(const Solid& solid, const glm::dmat4& moved_from_still) {
-  return trusted_solid(moved(solid.mesh(), moved_from_still), proof_of_image(solid.proof()));
+  const Proof proof = proof_of_image(solid.proof());
+  if (solid.state_->from_mesh) return trusted_solid(moved(solid.mesh(), moved_from_still), proof);
+  return Solid(std::make_shared<const Solid::State>(
+      Linked{moved(solid.triangles(), moved_from_still), solid.linked().opposite}, proof));
 }
 
 }  // namespace octotomy::brep

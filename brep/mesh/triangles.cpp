@@ -8,7 +8,9 @@
 #include <stdexcept>
 #include <string>
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tuple>
 #include <utility>
 
 #include "brep/mesh/error.h"
@@ -16,8 +18,8 @@
 
 // The halfedge structure is written directly rather than by add_face, which prints to the standard error,
 // depends on the order of the triangles at vertices where several fans meet, and cannot say what is wrong.
-// 1 refuse triangles that are none; 2 pair halfedges by sorting those of each point; 3 tell the fans at each
-// point apart; 4 write edges, faces and the loops along the boundary.
+// 1 refuse triangles that are none; 2 pair sides by sorting those of each point; 3 separate the fans at each
+// point; 4 write edges, faces and the loops along the boundary.
 
 namespace octotomy::brep {
 namespace {
@@ -49,25 +51,26 @@ void check_triangles(const Triangles& triangles) {
   }
 }
 
-/// For each halfedge, numbered by the corner it leaves, the one along the same edge the other way, or none.
-std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
+/// By side, the one along the same edge the other way, or none.
+std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
   std::vector<std::uint32_t> opposite(3 * triangles.faces.size(), none);
-  std::uint32_t offender = none;
-  bool too_many = false;
-  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) {
+  // The first offender, and the edge that it offends at.
+  using Offence = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, bool>;
+  constexpr Offence no_offence{none, none, none, false};
+  tbb::enumerable_thread_specific<Offence> found(no_offence);
+  each_edge_in_parallel(triangles, [&](const Side* begin, const Side* end) {
     if (end - begin == 1) return;
     const bool same_way = begin[0].upward == begin[1].upward;
     if (same_way || end - begin > 2) {
       const std::uint32_t culprit = (same_way ? begin[1] : begin[2]).corner / 3;
-      if (culprit < offender) {
-        offender = culprit;
-        too_many = !same_way;
-      }
+      found.local() = std::min(found.local(), Offence(culprit, begin->low, begin->high, !same_way));
       return;
     }
     opposite[begin[0].corner] = begin[1].corner;
     opposite[begin[1].corner] = begin[0].corner;
   });
+  const auto [offender, low, high, too_many] =
+      found.combine([](const Offence& a, const Offence& b) { return std::min(a, b); });
   if (offender != none)
     refuse(offender,
            too_many ? "is the third along one of its edges" : "runs along an edge the same way as another",
@@ -75,73 +78,78 @@ std::vector<std::uint32_t> pair_halfedges(const Triangles& triangles) {
   return opposite;
 }
 
-/// Adds a vertex for each point and for each further fan about it; returns the vertex of each corner. The fan
-/// whose corner comes first has the point's own.
-std::vector<Mesh::VertexHandle> place_corners(const Triangles& triangles,
-                                              const std::vector<std::uint32_t>& opposite,
-                                              std::vector<glm::dvec3>& copies_mm) {
+/// Gives each further fan about a point a copy of the point, so that one fan is left about each. The fan
+/// whose corner comes first keeps the point.
+void separate_fans(Linked& linked) {
+  Triangles& triangles = linked.triangles;
   std::vector<std::uint8_t> has_fan(triangles.points_mm.size(), 0);
-  std::vector<Mesh::VertexHandle> of_corner(opposite.size());
-  for (std::uint32_t c = 0; c < opposite.size(); ++c) {
-    if (of_corner[c].is_valid()) continue;
-    const std::uint32_t v = triangles.faces[c / 3][c % 3];
-    Mesh::VertexHandle vertex(static_cast<int>(v));
-    if (has_fan[v]) {
-      vertex = Mesh::VertexHandle(static_cast<int>(triangles.points_mm.size() + copies_mm.size()));
-      copies_mm.push_back(triangles.points_mm[v]);
-    }
-    has_fan[v] = 1;
-    // All round the point one way; at a boundary the rest of the fan lies the other way.
-    std::uint32_t turning = c;
-    do {
-      of_corner[turning] = vertex;
-      turning = opposite[turning] == none ? none : next_corner(opposite[turning]);
-    } while (turning != none && turning != c);
-    for (turning = turning == none ? opposite[previous_corner(c)] : none; turning != none;
-         turning = opposite[previous_corner(turning)])
-      of_corner[turning] = vertex;
-  }
-  return of_corner;
+  std::uint32_t vertex = 0;
+  each_fan(
+      linked.opposite,
+      [&](std::uint32_t corner) {
+        vertex = linked.from(corner);
+        if (has_fan[vertex]) {
+          triangles.points_mm.push_back(glm::dvec3(triangles.points_mm[vertex]));
+          vertex = static_cast<std::uint32_t>(triangles.points_mm.size() - 1);
+        } else {
+          has_fan[vertex] = 1;
+        }
+      },
+      [&](std::uint32_t corner) { triangles.faces[corner / 3][corner % 3] = vertex; });
 }
 
 }  // namespace
 
+bool Linked::is_closed() const {
+  return std::find(opposite.begin(), opposite.end(), none) == opposite.end();
+}
+
 void check_joins(const Triangles& triangles) {
   check_triangles(triangles);
-  pair_halfedges(triangles);
+  pair_sides(triangles);
+}
+
+Linked linked(Triangles triangles) {
+  check_triangles(triangles);
+  std::vector<std::uint32_t> opposite = pair_sides(triangles);
+  Linked linked{std::move(triangles), std::move(opposite)};
+  separate_fans(linked);
+  return linked;
 }
 
 Mesh mesh_of(const Triangles& triangles) {
-  check_triangles(triangles);
-  const std::vector<std::uint32_t> opposite = pair_halfedges(triangles);
-  std::vector<glm::dvec3> copies_mm;
-  const std::vector<Mesh::VertexHandle> vertex = place_corners(triangles, opposite, copies_mm);
+  return mesh_of(linked(triangles));
+}
 
-  // An edge is numbered by the first of its corners, whose halfedge is the edge's first.
+Mesh mesh_of(const Linked& linked) {
+  const Triangles& triangles = linked.triangles;
+  const std::vector<std::uint32_t>& opposite = linked.opposite;
+  const auto vertex = [](std::uint32_t point) { return Mesh::VertexHandle(static_cast<int>(point)); };
+
+  // An edge is numbered by the first of its sides, whose halfedge is the edge's first.
   std::vector<Mesh::HalfedgeHandle> halfedge(opposite.size());
   int edge_count = 0;
   for (std::uint32_t c = 0; c < opposite.size(); ++c)
     halfedge[c] = opposite[c] < c ? Mesh::HalfedgeHandle(halfedge[opposite[c]].idx() + 1)
                                   : Mesh::HalfedgeHandle(2 * edge_count++);
 
-  const std::size_t point_count = triangles.points_mm.size();
   Mesh mesh;
-  mesh.resize(point_count + copies_mm.size(), static_cast<std::size_t>(edge_count), triangles.faces.size());
-  for (std::size_t v = 0; v < point_count + copies_mm.size(); ++v) {
-    const glm::dvec3& p = v < point_count ? triangles.points_mm[v] : copies_mm[v - point_count];
-    mesh.set_point(Mesh::VertexHandle(static_cast<int>(v)), Mesh::Point(p.x, p.y, p.z));
+  mesh.resize(triangles.points_mm.size(), static_cast<std::size_t>(edge_count), triangles.faces.size());
+  for (std::uint32_t v = 0; v < triangles.points_mm.size(); ++v) {
+    const glm::dvec3& p = triangles.points_mm[v];
+    mesh.set_point(vertex(v), Mesh::Point(p.x, p.y, p.z));
   }
   std::vector<Mesh::HalfedgeHandle> boundary;
   for (std::uint32_t c = 0; c < opposite.size(); ++c) {
     const Mesh::FaceHandle face(static_cast<int>(c / 3));
     if (c % 3 == 0) mesh.set_halfedge_handle(face, halfedge[c]);
-    mesh.set_vertex_handle(halfedge[c], vertex[next_corner(c)]);
+    mesh.set_vertex_handle(halfedge[c], vertex(linked.to(c)));
     mesh.set_face_handle(halfedge[c], face);
     mesh.set_next_halfedge_handle(halfedge[c], halfedge[next_corner(c)]);
-    mesh.set_halfedge_handle(vertex[c], halfedge[c]);
+    mesh.set_halfedge_handle(vertex(linked.from(c)), halfedge[c]);
     if (opposite[c] != none) continue;
     boundary.push_back(mesh.opposite_halfedge_handle(halfedge[c]));
-    mesh.set_vertex_handle(boundary.back(), vertex[c]);
+    mesh.set_vertex_handle(boundary.back(), vertex(linked.from(c)));
   }
 
   // As every fan has its own vertex, at most one boundary halfedge leaves each; a vertex must point to it.
@@ -152,20 +160,6 @@ Mesh mesh_of(const Triangles& triangles) {
   for (const Mesh::HalfedgeHandle outside : boundary)
     mesh.set_next_halfedge_handle(outside, mesh.halfedge_handle(mesh.to_vertex_handle(outside)));
   return mesh;
-}
-
-Linked linked(Triangles triangles) {
-  check_triangles(triangles);
-  Linked linked{{}, pair_halfedges(triangles)};
-  std::vector<glm::dvec3> copies_mm;
-  const std::vector<Mesh::VertexHandle> vertex = place_corners(triangles, linked.opposite, copies_mm);
-  if (!copies_mm.empty()) {
-    for (std::size_t c = 0; c < vertex.size(); ++c)
-      triangles.faces[c / 3][c % 3] = static_cast<std::uint32_t>(vertex[c].idx());
-    triangles.points_mm.insert(triangles.points_mm.end(), copies_mm.begin(), copies_mm.end());
-  }
-  linked.triangles = std::move(triangles);
-  return linked;
 }
 
 Triangles triangles_of(const Mesh& mesh) {
@@ -192,6 +186,28 @@ Triangles triangles_of(const Mesh& mesh) {
     }
   });
   return triangles;
+}
+
+Linked linked_of(const Mesh& mesh) {
+  Linked linked{triangles_of(mesh), std::vector<std::uint32_t>(3 * mesh.n_faces(), none)};
+  // By halfedge, the side that it is.
+  std::vector<std::uint32_t> side_of(mesh.n_halfedges(), none);
+  const auto each_side = [&](const auto& visit) {
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(mesh.n_faces()), 4096),
+                      [&](const auto& range) {
+                        for (std::uint32_t f = range.begin(); f != range.end(); ++f) {
+                          auto h = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
+                          for (std::uint32_t k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h))
+                            visit(3 * f + k, h);
+                        }
+                      });
+  };
+  each_side(
+      [&](std::uint32_t side, Mesh::HalfedgeHandle h) { side_of[static_cast<std::size_t>(h.idx())] = side; });
+  each_side([&](std::uint32_t side, Mesh::HalfedgeHandle h) {
+    linked.opposite[side] = side_of[static_cast<std::size_t>(mesh.opposite_halfedge_handle(h).idx())];
+  });
+  return linked;
 }
 
 }  // namespace octotomy::brep

@@ -116,10 +116,7 @@ Finished finished(brep::Triangles triangles, const Meshed& asked, Timings& timin
   const bool fewer = asked.faces && static_cast<std::size_t>(*asked.faces) < triangles.faces.size();
   if (!asked.smooth && !fewer) {
     brep::Linked linked = brep::linked(std::move(triangles));
-    const bool closed = std::find(linked.opposite.begin(), linked.opposite.end(), brep::Linked::none) ==
-                        linked.opposite.end();
-    linked.opposite = {};
-    brep::Measures measures = closed ? measure(linked.triangles) : measure(mesh_of(linked.triangles));
+    brep::Measures measures = measure(linked);
     return {std::move(linked.triangles), std::move(measures)};
   }
   brep::Mesh surface = mesh_of(triangles);

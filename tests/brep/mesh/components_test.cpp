@@ -29,7 +29,7 @@ TEST(Components, ComeLargestFirstWithTheirCavities) {
   EXPECT_EQ(pieces[2].cavities, 0u);
 
   const SurfaceTree tree(t);
-  const std::vector<Component> of_list = components(t, [&]() -> const SurfaceTree& { return tree; });
+  const std::vector<Component> of_list = components(linked(t), [&]() -> const SurfaceTree& { return tree; });
   ASSERT_EQ(of_list.size(), pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     EXPECT_EQ(of_list[i].faces, pieces[i].faces);
@@ -53,7 +53,7 @@ TEST(Components, AnOpenMeshHasNone) {
   Triangles open = shapes::box({0, 0, 0}, {1, 1, 1});
   open.faces.pop_back();
   EXPECT_THROW(components(mesh_of(open)), std::invalid_argument);
-  EXPECT_THROW(components(open, {}), std::invalid_argument);
+  EXPECT_THROW(components(linked(open), {}), std::invalid_argument);
   EXPECT_TRUE(components(Mesh()).empty());
   EXPECT_EQ(largest_component(Mesh()).n_faces(), 0u);
 }

@@ -70,7 +70,7 @@ TEST(Measure, FarFromTheOriginTheVolumeLosesNoMoreThanThePointsDo) {
 TEST(Measure, OfTrianglesIsThatOfTheirMeshToTheBit) {
   const Triangles surface =
       shapes::together(shapes::sphere({10, -20, 30}, 5, 4), shapes::box({-1, 2, -3}, {2, 4, 1}));
-  const Measures of_list = measure(surface), of_mesh = measure(mesh_of(surface));
+  const Measures of_list = measure(linked(surface)), of_mesh = measure(mesh_of(surface));
   EXPECT_EQ(of_list.volume_mm3, of_mesh.volume_mm3);
   EXPECT_EQ(of_list.area_mm2, of_mesh.area_mm2);
   EXPECT_EQ(of_list.centroid_mm, of_mesh.centroid_mm);
