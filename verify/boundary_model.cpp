@@ -48,13 +48,13 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <tbb/parallel_sort.h>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "brep/mesh/dihedral_angle.h"
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/triangles.h"
+#include "verify/cell_table.h"
 #include "verify/facet_count.h"
 #include "verify/in_order.h"
 
@@ -225,7 +225,7 @@ constexpr double nearly_along = 0.9659258262890683;
 class Modeller {
  public:
   Modeller(const brep::Solid& solid, const BoundaryFrame& frame)
-      : mesh_(solid.mesh()), frame_(frame), triangles_(solid.triangles()) {}
+      : linked_(solid.linked()), frame_(frame), triangles_(linked_.triangles) {}
 
   BoundaryModel run() {
     const glm::dmat3 voxel_from_mm = glm::inverse(glm::dmat3(frame_.lattice.lps_from_voxel));
@@ -245,29 +245,14 @@ class Modeller {
     in_order<double>(
         triangles_.faces.size(), [&](std::size_t face) { return glm::length(triangle(face).area_vector()); },
         [&](std::size_t, double area_mm2) { found.area_mm2 += area_mm2; });
-    struct Part {
-      std::uint64_t cell = 0;
-      std::uint32_t edge = 0;
-      double mm = 0.0;
-      bool operator<(const Part& other) const {
-        return std::tie(cell, edge) < std::tie(other.cell, other.edge);
-      }
-    };
-    std::vector<Part> parts;
-    parts.reserve(mesh_.n_edges());
+    CellTable<double> cells_mm;
     in_order<BentEdge>(
-        mesh_.n_edges(), [&](std::size_t number) { return bent_edge(number); },
-        [&](std::size_t number, const BentEdge& edge) {
-          if (edge.bends) parts.push_back({edge.bend.cell, static_cast<std::uint32_t>(number), edge.bend.mm});
+        linked_.opposite.size(),
+        [&](std::size_t side) { return bent_edge(static_cast<std::uint32_t>(side)); },
+        [&](std::size_t, const BentEdge& edge) {
+          if (edge.bends) cells_mm.at(edge.bend.cell) += edge.bend.mm;
         });
-    tbb::parallel_sort(parts.begin(), parts.end());
-    double cell_mm = 0.0;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      cell_mm += parts[i].mm;
-      if (i + 1 < parts.size() && parts[i + 1].cell == parts[i].cell) continue;
-      found.curvature_mm += std::abs(cell_mm);
-      cell_mm = 0.0;
-    }
+    cells_mm.each([&](double cell_mm) { found.curvature_mm += std::abs(cell_mm); });
     return found;
   }
 
@@ -416,13 +401,11 @@ class Modeller {
       bool flat = false;
     };
     in_order<Pair>(
-        mesh_.n_edges(),
+        linked_.opposite.size(),
         [&](std::size_t number) {
-          const OpenMesh::EdgeHandle edge(static_cast<int>(number));
-          if (mesh_.is_boundary(edge)) return Pair{};
-          const auto side = mesh_.halfedge_handle(edge, 0);
-          const auto a = static_cast<std::uint32_t>(mesh_.face_handle(side).idx());
-          const auto b = static_cast<std::uint32_t>(mesh_.opposite_face_handle(side).idx());
+          const auto side = static_cast<std::uint32_t>(number);
+          if (!linked_.is_inner_edge(side)) return Pair{};
+          const std::uint32_t a = side / 3, b = linked_.opposite[side] / 3;
           if (moved_[a] || moved_[b]) return Pair{};
           const glm::dvec3 from = in_voxels(a).area_vector(), to = in_voxels(b).area_vector();
           const bool a_larger = glm::dot(from, from) >= glm::dot(to, to);
@@ -445,14 +428,10 @@ class Modeller {
 
   /// The sides of a face beyond which its facet ends.
   void add_rims(Facet& facet, std::uint32_t face, const std::vector<std::uint32_t>& set) const {
-    const brep::Mesh::FaceHandle handle(static_cast<int>(face));
-    for (auto side = mesh_.cfh_begin(handle); side != mesh_.cfh_end(handle); ++side) {
-      const auto beyond = mesh_.opposite_face_handle(*side);
-      if (beyond.is_valid() && !moved_[static_cast<std::size_t>(beyond.idx())] &&
-          set[static_cast<std::size_t>(beyond.idx())] == set[face])
-        continue;
-      facet.sides.push_back({frame_.lattice.voxel(point(mesh_.from_vertex_handle(*side))),
-                             frame_.lattice.voxel(point(mesh_.to_vertex_handle(*side)))});
+    for (std::uint32_t side = 3 * face; side != 3 * face + 3; ++side) {
+      const std::uint32_t beyond = linked_.opposite[side] / 3;
+      if (!moved_[beyond] && set[beyond] == set[face]) continue;
+      facet.sides.push_back({frame_.lattice.voxel(from(side)), frame_.lattice.voxel(to(side))});
     }
   }
 
@@ -510,12 +489,18 @@ class Modeller {
     return moved;
   }
 
-  /// A part of a cell's sum.
+  /// What an edge adds to its cell, or the sum of a cell, which stands where its last edge does.
   struct Bend {
     std::uint64_t cell = 0;  // of three samples a side, and the direction of the normal
     double mm = 0.0;
     double mm3 = 0.0;
     glm::dvec3 arm_mm{0.0};
+
+    void add(const Bend& other) {
+      mm += other.mm;
+      mm3 += other.mm3;
+      arm_mm = other.arm_mm;
+    }
   };
 
   /// An edge with its angle, and what it adds to its cell if it has any.
@@ -524,19 +509,17 @@ class Modeller {
     bool is_inner = false, bends = false;
     Bend bend;
   };
-  BentEdge bent_edge(std::size_t number) const {
-    const OpenMesh::EdgeHandle edge(static_cast<int>(number));
+  /// Of the first side of an edge; nothing of the second.
+  BentEdge bent_edge(std::uint32_t side) const {
     BentEdge made;
-    if (mesh_.is_boundary(edge)) return made;
+    if (!linked_.is_inner_edge(side)) return made;
     made.is_inner = true;
-    const auto side = mesh_.halfedge_handle(edge, 0);
-    const auto a = static_cast<std::size_t>(mesh_.face_handle(side).idx());
-    const auto b = static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx());
-    const glm::dvec3 from = point(mesh_.from_vertex_handle(side)), to = point(mesh_.to_vertex_handle(side));
+    const Triangle a = triangle(side / 3), b = triangle(linked_.opposite[side] / 3);
+    const glm::dvec3 from = this->from(side), to = this->to(side);
     const glm::dvec3 middle = 0.5 * (from + to);
-    made.angle = mesh_.calc_dihedral_angle(edge);
-    if (!std::isfinite(made.angle) || made.angle == 0.0) return made;
-    const glm::dvec3 normal = normal_of(triangle(a)) + normal_of(triangle(b));
+    made.angle = brep::dihedral_angle(a.area_vector(), b.area_vector(), to - from);
+    if (made.angle == 0.0) return made;
+    const glm::dvec3 normal = normal_of(a) + normal_of(b);
     const glm::dvec3 across = glm::cross(normal, to - from);
     const double length = glm::length(across);
     if (!(length > 0.0)) return made;
@@ -549,22 +532,26 @@ class Modeller {
   }
 
   void add_edges() {
-    std::vector<Bend> bends;
+    CellTable<Bend> cells;
     in_order<BentEdge>(
-        mesh_.n_edges(), [&](std::size_t number) { return bent_edge(number); },
-        [&](std::size_t number, const BentEdge& edge) {
-          if (edge.is_inner) add_displaced(number, edge.angle);
-          if (edge.bends) bends.push_back(edge.bend);
+        linked_.opposite.size(),
+        [&](std::size_t side) { return bent_edge(static_cast<std::uint32_t>(side)); },
+        [&](std::size_t side, const BentEdge& edge) {
+          if (edge.is_inner) add_displaced(static_cast<std::uint32_t>(side), edge.angle);
+          if (!edge.bends) return;
+          model_.bent.add(edge.bend.mm3, edge.bend.arm_mm);
+          cells.at(edge.bend.cell).add(edge.bend);
         });
-    add_bends(bends);
+    cells.each([&](const Bend& cell) {
+      model_.bent_without_sign.add(std::abs(cell.mm3), glm::length(cell.arm_mm));
+      model_.curvature_mm += std::abs(cell.mm);
+    });
   }
   /// What displaced planes gain along an edge, on either side of it or beside one.
-  void add_displaced(std::size_t number, double angle) {
-    const auto side = mesh_.halfedge_handle(OpenMesh::EdgeHandle(static_cast<int>(number)), 0);
-    const auto a = static_cast<std::size_t>(mesh_.face_handle(side).idx());
-    const auto b = static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx());
+  void add_displaced(std::uint32_t side, double angle) {
+    const std::uint32_t a = side / 3, b = linked_.opposite[side] / 3;
     if (!moved_[a] && !moved_[b]) return;
-    const glm::dvec3 from = point(mesh_.from_vertex_handle(side)), to = point(mesh_.to_vertex_handle(side));
+    const glm::dvec3 from = this->from(side), to = this->to(side);
     const glm::dvec3 middle = 0.5 * (from + to);
     if (moved_[a] && moved_[b])
       return add_corner(*moved_[a], *moved_[b], angle, glm::length(to - from), middle - frame_.about_mm);
@@ -584,10 +571,8 @@ class Modeller {
       model_.planes.add(mm2 * length_mm, arm_mm);
     model_.planes_without_sign.add(std::abs(mm2) * length_mm, glm::length(arm_mm));
   }
-  glm::dvec3 point(const OpenMesh::VertexHandle vertex) const {
-    const auto& p = mesh_.point(vertex);
-    return {p[0], p[1], p[2]};
-  }
+  glm::dvec3 from(std::uint32_t side) const { return triangles_.points_mm[linked_.from(side)]; }
+  glm::dvec3 to(std::uint32_t side) const { return triangles_.points_mm[linked_.to(side)]; }
   std::uint64_t cell_of(const glm::dvec3& p_mm, const glm::dvec3& normal) const {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
@@ -603,25 +588,7 @@ class Modeller {
     return key;
   }
 
-  void add_bends(const std::vector<Bend>& bends) {
-    // By cell, those of one in the order of their edges.
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(bends.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = {bends[i].cell, i};
-    tbb::parallel_sort(order.begin(), order.end());
-    double cell_mm = 0.0, cell_mm3 = 0.0;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const Bend& bend = bends[order[i].second];
-      model_.bent.add(bend.mm3, bend.arm_mm);
-      cell_mm += bend.mm;
-      cell_mm3 += bend.mm3;
-      if (i + 1 < order.size() && order[i + 1].first == bend.cell) continue;
-      model_.bent_without_sign.add(std::abs(cell_mm3), glm::length(bend.arm_mm));
-      model_.curvature_mm += std::abs(cell_mm);
-      cell_mm = cell_mm3 = 0.0;
-    }
-  }
-
-  const brep::Mesh& mesh_;
+  const brep::Linked& linked_;
   const BoundaryFrame& frame_;
   const brep::Triangles& triangles_;
   std::vector<glm::dvec3> points_voxel_;     ///< the points of the triangles

@@ -64,7 +64,7 @@ struct BoundaryFrame {
   glm::dvec3 sample_spacing_mm{1.0};  ///< of the isosurface's samples, along the LPS axes
   glm::dvec3 about_mm{0.0};           ///< origin of the moments
 };
-/// Cost: n log n in the solid's edges.
+/// Cost: linear in the solid's edges, parallel.
 BoundaryModel boundary_model(const brep::Solid& solid, const BoundaryFrame& frame);
 
 /// The same area and curvature alone, in a third of the time.

@@ -2,26 +2,40 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <vector>
 
 namespace octotomy::verify {
 
 /// Calls take(i, make(i)) for i from 0 in ascending order, and make() on all threads beforehand, some
-/// thousand items at a time: sums that take() adds to have the same bits on any number of threads.
+/// thousand items at a time: sums that take() adds to have the same bits on any number of threads. The next
+/// items are made while some are taken: make() must not read what take() writes.
 template <typename Item, typename Make, typename Take>
 void in_order(std::size_t count, const Make& make, const Take& take) {
   constexpr std::size_t block = std::size_t{1} << 14, grain = 256;
-  std::vector<Item> items(std::min(count, block));
-  for (std::size_t first = 0; first < count; first += block) {
-    const std::size_t size = std::min(block, count - first);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size, grain),
+  std::array<std::vector<Item>, 2> items;
+  items.fill(std::vector<Item>(std::min(count, block)));
+  std::vector<Item>*made = &items[0], *taken = &items[1];
+  const auto make_from = [&](std::size_t first) {
+    if (first >= count) return;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, std::min(count, first + block), grain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i) items[i] = make(first + i);
+                        for (std::size_t i = range.begin(); i != range.end(); ++i)
+                          (*made)[i - first] = make(i);
                       });
-    for (std::size_t i = 0; i < size; ++i) take(first + i, items[i]);
+  };
+  make_from(0);
+  for (std::size_t first = 0; first < count; first += block) {
+    std::swap(made, taken);
+    tbb::parallel_invoke([&] { make_from(first + block); },
+                         [&] {
+                           for (std::size_t i = first; i < std::min(count, first + block); ++i)
+                             take(i, (*taken)[i - first]);
+                         });
   }
 }
 

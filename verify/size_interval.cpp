@@ -40,9 +40,11 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <unordered_map>
+#include <vector>
 
+#include "brep/mesh/dihedral_angle.h"
 #include "brep/mesh/triangles.h"
+#include "verify/cell_table.h"
 #include "verify/in_order.h"
 
 namespace octotomy::verify {
@@ -77,7 +79,10 @@ struct Shape {
 class Measuring {
  public:
   Measuring(const brep::Solid& solid, const glm::dmat3& edges)
-      : mesh_(solid.mesh()), triangles_(solid.triangles()), edges_(edges), from_lps_(glm::inverse(edges)) {
+      : linked_(solid.linked()),
+        triangles_(linked_.triangles),
+        edges_(edges),
+        from_lps_(glm::inverse(edges)) {
     for (int axis = 0; axis < 3; ++axis) {
       spacing_mm_[axis] = glm::length(edges[axis]);
       units_[axis] = edges[axis] / spacing_mm_[axis];
@@ -91,14 +96,14 @@ class Measuring {
     add_edges();
     const double least_mm2 = 0.5 * std::pow(spacing_mm_.x * spacing_mm_.y * spacing_mm_.z, 2.0 / 3.0);
     const double sample_mm = std::cbrt(spacing_mm_.x * spacing_mm_.y * spacing_mm_.z);
-    for (const auto& [key, part] : parts_) {
+    parts_.each([&](const Part& part) {
       const double bent = part.bent_mm2 / std::max(part.area_mm2, least_mm2);
       shape_.sharp_mm2 += part.bent_mm2 * bent;
       shape_.sharp_mm3 += part.bent_mm2 * bent * bent * sample_mm;
       shape_.sharp_without_sign_mm3 += std::abs(part.bent_mm2) * bent * bent * sample_mm;
       shape_.bent_without_sign_mm3 += std::abs(part.bent_mm3);
       shape_.flat_mm3 += std::max(part.flat_mm3, flat_mm3(part.across_mm2));
-    }
+    });
     smooth();
     return shape_;
   }
@@ -148,7 +153,7 @@ class Measuring {
         },
         [&](std::size_t, const Face& face) {
           if (!(face.size > 0.0)) return;
-          Part& part = parts_[face.part];
+          Part& part = parts_.at(face.part);
           part.area_mm2 += face.size;
           part.across_mm2 += face.across;
           part.flat_mm3 += face.flat_mm3;
@@ -171,19 +176,17 @@ class Measuring {
     std::uint64_t part = 0;
     double mm = 0.0, spacing_mm = 0.0, inverse = 0.0;
   };
-  BentEdge bent_edge(std::size_t number) const {
-    const OpenMesh::EdgeHandle edge(static_cast<int>(number));
+  /// Of the first side of an edge; nothing of the second.
+  BentEdge bent_edge(std::uint32_t side) const {
     BentEdge made;
-    if (mesh_.is_boundary(edge)) return made;
-    const double angle = mesh_.calc_dihedral_angle(edge);
-    if (!std::isfinite(angle) || angle == 0.0) return made;
-    const auto side = mesh_.halfedge_handle(edge, 0);
-    const auto a = static_cast<std::size_t>(mesh_.from_vertex_handle(side).idx()),
-               b = static_cast<std::size_t>(mesh_.to_vertex_handle(side).idx());
-    if (std::abs(angle) > sharpest_rad) return {BentEdge::Kind::Cut, a, b};
+    if (!linked_.is_inner_edge(side)) return made;
+    const std::uint32_t a = linked_.from(side), b = linked_.to(side);
     const glm::dvec3 along = triangles_.points_mm[b] - triangles_.points_mm[a];
-    const glm::dvec3 normal = unit(across(static_cast<std::size_t>(mesh_.face_handle(side).idx()))) +
-                              unit(across(static_cast<std::size_t>(mesh_.opposite_face_handle(side).idx())));
+    const glm::dvec3 here = across(side / 3), beyond = across(linked_.opposite[side] / 3);
+    const double angle = brep::dihedral_angle(here, beyond, along);
+    if (angle == 0.0) return made;
+    if (std::abs(angle) > sharpest_rad) return {BentEdge::Kind::Cut, a, b};
+    const glm::dvec3 normal = unit(here) + unit(beyond);
     const glm::dvec3 t = unit(glm::cross(normal, along));
     if (t == glm::dvec3(0.0)) return made;
     return {BentEdge::Kind::Bent,
@@ -198,12 +201,13 @@ class Measuring {
   void add_edges() {
     cut_.assign(triangles_.points_mm.size(), 0);
     in_order<BentEdge>(
-        mesh_.n_edges(), [&](std::size_t number) { return bent_edge(number); },
+        linked_.opposite.size(),
+        [&](std::size_t side) { return bent_edge(static_cast<std::uint32_t>(side)); },
         [&](std::size_t, const BentEdge& edge) {
           if (edge.kind == BentEdge::Kind::Cut) cut_[edge.a] = cut_[edge.b] = 1;
           if (edge.kind != BentEdge::Kind::Bent) return;
           const double mm = edge.mm, s = edge.spacing_mm;
-          Part& part = parts_[edge.part];
+          Part& part = parts_.at(edge.part);
           part.bent_mm2 += mm * s;
           part.bent_mm3 += mm * s * s;
           shape_.bent_mm3 += mm * s * s;
@@ -239,11 +243,11 @@ class Measuring {
   /// Within 2.5 degrees of the lattice: over six samples less than a quarter of a sample off.
   static constexpr double flat_cosine = 0.99905;
 
-  const brep::Mesh& mesh_;
+  const brep::Linked& linked_;
   const brep::Triangles& triangles_;
   glm::dmat3 edges_, from_lps_, units_{1.0};
   glm::dvec3 spacing_mm_{1.0};
-  std::unordered_map<std::uint64_t, Part> parts_;
+  CellTable<Part> parts_;
   std::vector<std::uint8_t> cut_;  ///< points of edges that are cuts
   Shape shape_;
 };
