@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// 1 sort the sides of all triangles by edge; 2 count edges, fans, shells and duplicates from runs of equal
-// edges; 3 count degenerate triangles; 4 place each shell among the others by a ray; 5 test for intersections
+// 1 gather the sides of all triangles by edge; 2 count edges, fans, shells and duplicates from the sides of
+// each; 3 count degenerate triangles; 4 place each shell among the others by a ray; 5 test for intersections
 // the pairs whose boxes overlap, each by exact predicates, behind a filter in doubles that lets most pass.
 // Works on triangles rather than halfedges so that what is not manifold can be reported. Rays and pairs go
 // through one tree.
@@ -18,6 +18,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/equal_points.h"
@@ -37,16 +39,30 @@ Kernel::Point_3 exact(const glm::dvec3& p) {
 }
 
 void check_points(const Triangles& triangles) {
-  for (std::size_t f = 0; f < triangles.faces.size(); ++f)
-    for (const std::uint32_t v : triangles.faces[f]) {
-      if (v >= triangles.points_mm.size())
-        throw Error(ErrorCode::Input, "triangle " + std::to_string(f) + " refers to point " +
-                                          std::to_string(v) + " of " +
-                                          std::to_string(triangles.points_mm.size()));
-      const glm::dvec3& p = triangles.points_mm[v];
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        throw Error(ErrorCode::Input, "triangle " + std::to_string(f) + " has a point that is not finite");
-    }
+  const auto is_sound = [&](std::uint32_t v) {
+    return v < triangles.points_mm.size() && std::isfinite(triangles.points_mm[v].x) &&
+           std::isfinite(triangles.points_mm[v].y) && std::isfinite(triangles.points_mm[v].z);
+  };
+  const auto is_sound_triangle = [&](const std::array<std::uint32_t, 3>& face) {
+    return is_sound(face[0]) && is_sound(face[1]) && is_sound(face[2]);
+  };
+  using Range = tbb::blocked_range<std::size_t>;
+  const std::size_t count = triangles.faces.size();
+  const std::size_t first = tbb::parallel_reduce(
+      Range(0, count, 4096), count,
+      [&](const Range& range, std::size_t found) {
+        for (std::size_t f = range.begin(); f < std::min(range.end(), found); ++f)
+          if (!is_sound_triangle(triangles.faces[f])) return f;
+        return found;
+      },
+      [](std::size_t a, std::size_t b) { return std::min(a, b); });
+  if (first == count) return;
+  for (const std::uint32_t v : triangles.faces[first])
+    if (v >= triangles.points_mm.size())
+      throw Error(ErrorCode::Input, "triangle " + std::to_string(first) + " refers to point " +
+                                        std::to_string(v) + " of " +
+                                        std::to_string(triangles.points_mm.size()));
+  throw Error(ErrorCode::Input, "triangle " + std::to_string(first) + " has a point that is not finite");
 }
 
 /// The first triangle that each of the findings is about.
@@ -58,11 +74,32 @@ struct Offenders {
   static void note(std::uint32_t& first, std::uint32_t triangle) { first = std::min(first, triangle); }
 };
 
-/// Counts the pairs of triangles with the same points among those that share an edge. `thirds` is scratch.
-void count_duplicates(const Triangles& triangles, const Side* begin, const Side* end,
-                      std::vector<std::pair<std::uint32_t, std::uint32_t>>& thirds, Health& health,
-                      Offenders& offenders) {
+/// What a thread finds of the edges that it visits.
+struct EdgeTally {
+  std::size_t edges = 0, open = 0, nonmanifold = 0, misoriented = 0, duplicates = 0;
+  Offenders first;
+  /// The sides of edges of more than two triangles, or of two that run along it the same way.
+  std::vector<Side> irregular;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> thirds;  ///< scratch
+
+  void add(const EdgeTally& other) {
+    edges += other.edges;
+    open += other.open;
+    nonmanifold += other.nonmanifold;
+    misoriented += other.misoriented;
+    duplicates += other.duplicates;
+    Offenders::note(first.boundary, other.first.boundary);
+    Offenders::note(first.nonmanifold_edge, other.first.nonmanifold_edge);
+    Offenders::note(first.misoriented, other.first.misoriented);
+    Offenders::note(first.duplicate, other.first.duplicate);
+    irregular.insert(irregular.end(), other.irregular.begin(), other.irregular.end());
+  }
+};
+
+/// Counts the pairs of triangles with the same points among those that share an edge.
+void count_duplicates(const Triangles& triangles, const Side* begin, const Side* end, EdgeTally& tally) {
   // A triangle is counted at the edge of its two lowest points.
+  auto& thirds = tally.thirds;
   thirds.clear();
   for (const Side* side = begin; side != end; ++side) {
     const std::uint32_t third = triangles.faces[side->corner / 3][previous_corner(side->corner) % 3];
@@ -75,79 +112,135 @@ void count_duplicates(const Triangles& triangles, const Side* begin, const Side*
   std::size_t earlier = 0;
   for (std::size_t i = 1; i < thirds.size(); ++i) {
     earlier = thirds[i].first == thirds[i - 1].first ? earlier + 1 : 0;
-    health.duplicate_faces += earlier;
-    if (earlier == 1) Offenders::note(offenders.duplicate, thirds[i - 1].second);
+    tally.duplicates += earlier;
+    if (earlier == 1) Offenders::note(tally.first.duplicate, thirds[i - 1].second);
   }
 }
 
-/// Counts what edges and vertices tell; returns the shell of each triangle, named by its first triangle.
-std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health& health,
-                                             Offenders& offenders) {
-  const std::vector<Side> sides = sorted_sides(triangles);
-  DisjointSets shells(triangles.faces.size()), fans(sides.size());
-  std::size_t edges = 0;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> thirds;
-  each_edge(sides, [&](const Side* begin, const Side* end) {
-    for (const Side* other = begin + 1; other != end; ++other) {
-      const Side &a = *begin, &b = *other;
-      shells.join(a.corner / 3, b.corner / 3);
-      const bool same_way = a.upward == b.upward;
-      fans.join(a.corner, same_way ? b.corner : next_corner(b.corner));
-      fans.join(next_corner(a.corner), same_way ? next_corner(b.corner) : b.corner);
-    }
-    ++edges;
+/// Visits all edges; `opposite` is the other side of those that two triangles run along in opposite ways.
+EdgeTally visit_edges(const Triangles& triangles, std::vector<std::uint32_t>& opposite) {
+  opposite.assign(3 * triangles.faces.size(), Linked::none);
+  tbb::enumerable_thread_specific<EdgeTally> tallies;
+  each_edge_in_parallel(triangles, [&](const Side* begin, const Side* end) {
+    EdgeTally& tally = tallies.local();
+    ++tally.edges;
     const std::uint32_t first = begin->corner / 3;
     assert(first < triangles.faces.size());
     if (end - begin == 1) {
-      ++health.boundary_edges;
-      Offenders::note(offenders.boundary, first);
+      ++tally.open;
+      Offenders::note(tally.first.boundary, first);
       return;
     }
-    count_duplicates(triangles, begin, end, thirds, health, offenders);
+    count_duplicates(triangles, begin, end, tally);
+    if (end - begin == 2 && begin[0].upward != begin[1].upward) {
+      opposite[begin[0].corner] = begin[1].corner;
+      opposite[begin[1].corner] = begin[0].corner;
+      return;
+    }
+    tally.irregular.insert(tally.irregular.end(), begin, end);
     if (end - begin > 2) {
-      ++health.nonmanifold_edges;
-      Offenders::note(offenders.nonmanifold_edge, first);
-    } else if (begin[0].upward == begin[1].upward) {
-      ++health.misoriented_edges;
-      Offenders::note(offenders.misoriented, first);
+      ++tally.nonmanifold;
+      Offenders::note(tally.first.nonmanifold_edge, first);
+    } else {
+      ++tally.misoriented;
+      Offenders::note(tally.first.misoriented, first);
     }
   });
+  EdgeTally whole;
+  for (const EdgeTally& tally : tallies) whole.add(tally);
+  return whole;
+}
 
-  std::vector<std::uint32_t> fan_count(triangles.points_mm.size(), 0);
-  for (std::uint32_t c = 0; c < sides.size(); ++c)
-    if (fans.set_of(c) == c) ++fan_count[triangles.faces[c / 3][c % 3]];
-  health.vertices = triangles.points_mm.size();
-  for (const std::uint32_t count : fan_count) {
-    if (count == 0) ++health.unused_vertices;
-    if (count > 1) ++health.nonmanifold_vertices;
+/// By point, the fans about it: triangles joined by any edge at the point.
+std::vector<std::uint32_t> count_fans(const Triangles& triangles, const std::vector<std::uint32_t>& opposite,
+                                      const std::vector<Side>& irregular) {
+  std::vector<std::uint32_t> count(triangles.points_mm.size(), 0);
+  const auto add = [&](std::uint32_t corner) { ++count[triangles.faces[corner / 3][corner % 3]]; };
+  if (irregular.empty()) {
+    each_fan(opposite, add, [](std::uint32_t) {});
+    return count;
   }
-  for (std::uint32_t c = 0; health.nonmanifold_vertices > 0 && c < sides.size(); ++c)
-    if (fan_count[triangles.faces[c / 3][c % 3]] > 1) Offenders::note(offenders.nonmanifold_vertex, c / 3);
+  DisjointSets fans(opposite.size());
+  std::uint32_t first = 0;
+  each_fan(
+      opposite, [&](std::uint32_t corner) { first = corner; },
+      [&](std::uint32_t corner) { fans.join(first, corner); });
+  each_edge(irregular, [&](const Side* begin, const Side* end) {
+    for (const Side* other = begin + 1; other != end; ++other) {
+      const bool same_way = begin->upward == other->upward;
+      fans.join(begin->corner, same_way ? other->corner : next_corner(other->corner));
+      fans.join(next_corner(begin->corner), same_way ? next_corner(other->corner) : other->corner);
+    }
+  });
+  for (std::uint32_t corner = 0; corner < opposite.size(); ++corner)
+    if (fans.set_of(corner) == corner) add(corner);
+  return count;
+}
+
+/// The shell of each triangle, named by its first triangle: those joined by edges.
+std::vector<std::uint32_t> shells_of(const std::vector<std::uint32_t>& opposite,
+                                     const std::vector<Side>& irregular) {
+  DisjointSets shells(opposite.size() / 3);
+  for (std::uint32_t side = 0; side < opposite.size(); ++side)
+    if (opposite[side] != Linked::none && side < opposite[side]) shells.join(side / 3, opposite[side] / 3);
+  each_edge(irregular, [&](const Side* begin, const Side* end) {
+    for (const Side* other = begin + 1; other != end; ++other)
+      shells.join(begin->corner / 3, other->corner / 3);
+  });
+  std::vector<std::uint32_t> shell(opposite.size() / 3);
+  for (std::uint32_t f = 0; f < shell.size(); ++f) shell[f] = shells.set_of(f);
+  return shell;
+}
+
+/// How many parts hang together by points.
+std::size_t count_components(const Triangles& triangles, const std::vector<std::uint32_t>& fan_count) {
   DisjointSets bodies(triangles.points_mm.size());
   for (const auto& face : triangles.faces) {
     bodies.join(face[0], face[1]);
     bodies.join(face[1], face[2]);
   }
-  for (std::uint32_t v = 0; v < fan_count.size(); ++v)
-    if (fan_count[v] > 0 && bodies.set_of(v) == v) ++health.components;
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < fan_count.size(); ++v) count += fan_count[v] > 0 && bodies.set_of(v) == v;
+  return count;
+}
 
-  std::vector<std::uint32_t> shell(triangles.faces.size());
-  for (std::uint32_t f = 0; f < shell.size(); ++f) {
-    shell[f] = shells.set_of(f);
-    if (shell[f] == f) ++health.shells;
+/// Counts what edges and vertices tell; returns the shell of each triangle, named by its first triangle.
+std::vector<std::uint32_t> count_connections(const Triangles& triangles, Health& health,
+                                             Offenders& offenders) {
+  std::vector<std::uint32_t> opposite;
+  const EdgeTally edges = visit_edges(triangles, opposite);
+  offenders = edges.first;
+  health.boundary_edges = edges.open;
+  health.nonmanifold_edges = edges.nonmanifold;
+  health.misoriented_edges = edges.misoriented;
+  health.duplicate_faces = edges.duplicates;
+
+  const std::vector<std::uint32_t> fan_count = count_fans(triangles, opposite, edges.irregular);
+  health.vertices = triangles.points_mm.size();
+  for (const std::uint32_t count : fan_count) {
+    if (count == 0) ++health.unused_vertices;
+    if (count > 1) ++health.nonmanifold_vertices;
   }
+  for (std::uint32_t c = 0; health.nonmanifold_vertices > 0 && c < opposite.size(); ++c)
+    if (fan_count[triangles.faces[c / 3][c % 3]] > 1) Offenders::note(offenders.nonmanifold_vertex, c / 3);
+
+  std::vector<std::uint32_t> shell = shells_of(opposite, edges.irregular);
+  for (std::uint32_t f = 0; f < shell.size(); ++f) health.shells += shell[f] == f;
+  // With one fan about each point, what hangs together by points does so by edges.
+  health.components =
+      health.nonmanifold_vertices == 0 ? health.shells : count_components(triangles, fan_count);
   health.faces = triangles.faces.size();
-  health.euler = static_cast<long>(health.vertices - health.unused_vertices) - static_cast<long>(edges) +
-                 static_cast<long>(health.faces);
+  health.euler = static_cast<long>(health.vertices - health.unused_vertices) -
+                 static_cast<long>(edges.edges) + static_cast<long>(health.faces);
   return shell;
 }
 
 /// For each point in use the first in use at its place; others are named by their own number.
-std::vector<std::uint32_t> first_in_use(const Triangles& triangles, const Health& health) {
-  if (health.unused_vertices == 0) return first_equal_points(triangles.points_mm);
+std::vector<std::uint32_t> first_in_use(const Triangles& triangles) {
   std::vector<std::uint8_t> used(triangles.points_mm.size(), 0);
   for (const auto& face : triangles.faces)
     for (const std::uint32_t v : face) used[v] = 1;
+  if (std::find(used.begin(), used.end(), 0) == used.end()) return first_equal_points(triangles.points_mm);
   std::vector<std::uint32_t> in_use;
   std::vector<glm::dvec3> points_mm;
   for (std::uint32_t v = 0; v < used.size(); ++v) {
@@ -177,26 +270,42 @@ void count_coincident(const Triangles& triangles, const std::vector<std::uint32_
 }
 
 /// The sign of a sum of products whose terms add up to `permanent` without signs, in doubles; 0 where
-/// rounding may decide. The bound is Shewchuk's for a determinant of three differences ("Adaptive precision
-/// floating-point arithmetic and fast robust geometric predicates", 1997), one of two keeps it, too; below
-/// `least` products may be lost to underflow.
+/// rounding may decide: eight half epsilons, and two for the rounding of the bound (Shewchuk, "Adaptive
+/// precision floating-point arithmetic and fast robust geometric predicates", 1997, has seven for a
+/// determinant of three differences). Below `least` products may be lost to underflow.
 int sure_sign(double determinant, double permanent) {
   constexpr double half_epsilon = 0.5 * std::numeric_limits<double>::epsilon();
-  constexpr double share = (7.0 + 56.0 * half_epsilon) * half_epsilon;
+  constexpr double share = 10.0 * half_epsilon;
   constexpr double least = 1e-250;
   const double bound = share * permanent;
   return !(permanent > least) ? 0 : determinant > bound ? 1 : determinant < -bound ? -1 : 0;
 }
 
-/// The side of the plane through a, b and c that p is on, 0 where doubles cannot tell.
-int sure_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p) {
-  const glm::dvec3 u = a - p, v = b - p, w = c - p;
-  const double vw = v.x * w.y, wv = w.x * v.y, wu = w.x * u.y, uw = u.x * w.y, uv = u.x * v.y, vu = v.x * u.y;
-  return sure_sign(u.z * (vw - wv) + v.z * (wu - uw) + w.z * (uv - vu),
-                   (std::abs(vw) + std::abs(wv)) * std::abs(u.z) +
-                       (std::abs(wu) + std::abs(uw)) * std::abs(v.z) +
-                       (std::abs(uv) + std::abs(vu)) * std::abs(w.z));
-}
+/// The plane through three points, and which side of it others are on as far as doubles can tell.
+class SurePlane {
+ public:
+  SurePlane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) : a_(a) {
+    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
+    const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
+    const double yz = uy * vz, zy = uz * vy, zx = uz * vx, xz = ux * vz, xy = ux * vy, yx = uy * vx;
+    nx_ = yz - zy;
+    ny_ = zx - xz;
+    nz_ = xy - yx;
+    px_ = std::abs(yz) + std::abs(zy);
+    py_ = std::abs(zx) + std::abs(xz);
+    pz_ = std::abs(xy) + std::abs(yx);
+  }
+  /// 0 where rounding may decide. A component of the normal is off by four half epsilons of its products at
+  /// most, its product with a difference by two more, and their sum by two more of each.
+  int side(const glm::dvec3& p) const {
+    const double x = p.x - a_.x, y = p.y - a_.y, z = p.z - a_.z;
+    return sure_sign(nx_ * x + ny_ * y + nz_ * z, px_ * std::abs(x) + py_ * std::abs(y) + pz_ * std::abs(z));
+  }
+
+ private:
+  const glm::dvec3& a_;
+  double nx_, ny_, nz_, px_, py_, pz_;
+};
 
 /// Whether three points certainly span a triangle, by its three projections.
 bool surely_has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -341,7 +450,7 @@ class MeetsElsewhere {
     assert(shared == 2);
     for (std::size_t i = 0; i < 3; ++i)
       if (std::find(a.begin(), a.end(), b[i]) == a.end()) own_b = i;
-    if (sure_side(at(a[0]), at(a[1]), at(a[2]), at(b[own_b])) != 0) return false;
+    if (plane_of(a).side(at(b[own_b])) != 0) return false;
     // Folded flat onto each other: coplanar, with both free corners on one side of the shared edge.
     const Kernel::Point_3 p = point(a[(own_a + 1) % 3]), q = point(a[(own_a + 2) % 3]);
     const Kernel::Point_3 r = point(a[own_a]), s = point(b[own_b]);
@@ -351,12 +460,14 @@ class MeetsElsewhere {
  private:
   using Face = std::array<std::uint32_t, 3>;
   const glm::dvec3& at(std::uint32_t v) const { return triangles_.points_mm[v]; }
+  SurePlane plane_of(const Face& f) const { return {at(f[0]), at(f[1]), at(f[2])}; }
   /// Whether all corners of f but one are certainly on one side of g's plane.
   bool is_beside(const Face& f, std::size_t but, const Face& g) const {
+    const SurePlane plane = plane_of(g);
     int side = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (k == but) continue;
-      const int of_corner = sure_side(at(g[0]), at(g[1]), at(g[2]), at(f[k]));
+      const int of_corner = plane.side(at(f[k]));
       if (of_corner == 0 || of_corner == -side) return false;
       side = of_corner;
     }
@@ -446,8 +557,13 @@ Health health(const Triangles& triangles, const HealthOptions& options) {
   check_points(triangles);
   Health health;
   Offenders offenders;
-  const std::vector<std::uint32_t> shell = count_connections(triangles, health, offenders);
-  const std::vector<std::uint32_t> first = first_in_use(triangles, health);
+  std::vector<std::uint32_t> shell, first;
+  std::optional<MortonTree> tree;
+  tbb::parallel_invoke([&] { shell = count_connections(triangles, health, offenders); },
+                       [&] {
+                         if (options.self_intersections) tree.emplace(triangles);
+                       },
+                       [&] { first = first_in_use(triangles); });
   count_coincident(triangles, first, health);
   const std::vector<std::uint8_t> degenerate = mark_degenerate(triangles, health, offenders);
 
@@ -455,8 +571,7 @@ Health health(const Triangles& triangles, const HealthOptions& options) {
   health.manifold = health.faces > 0 && health.nonmanifold_edges == 0 && health.nonmanifold_vertices == 0;
   health.oriented = health.faces > 0 && health.nonmanifold_edges == 0 && health.misoriented_edges == 0;
   const bool places = health.closed && health.oriented;
-  std::optional<MortonTree> tree;
-  if (options.self_intersections || (places && health.shells > 1)) tree.emplace(triangles);
+  if (!tree && places && health.shells > 1) tree.emplace(triangles);
   double volume_mm3 = 0.0;
   if (places) {
     volume_mm3 = place_shells(triangles, first, shell, tree ? &*tree : nullptr, health, offenders);

@@ -3,11 +3,13 @@
 // 3 part the order where the curve leaves a cube, the largest first, and lay boxes over the runs.
 #include "brep/mesh/morton_tree.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <numeric>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <utility>
 
 namespace octotomy::brep {
@@ -28,14 +30,27 @@ std::uint64_t spread(std::uint64_t bits) {
 
 using Keyed = std::pair<std::uint64_t, std::uint32_t>;
 
+/// By key, equal ones in the order given: the same however many parts the threads take.
 void sort_by_digits(std::vector<Keyed>& keyed) {
+  constexpr std::size_t digits = 1u << digit_bits, least_part = 1u << 16;
+  const std::size_t parts = std::clamp<std::size_t>(
+      keyed.size() / least_part, 1, static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+  const auto begin_of = [&](std::size_t part) { return keyed.size() * part / parts; };
   std::vector<Keyed> sorted(keyed.size());
+  std::vector<std::array<std::size_t, digits>> places(parts);
   for (int shift = 0; shift < 3 * cell_bits; shift += digit_bits) {
-    const auto digit = [&](const Keyed& item) { return (item.first >> shift) & ((1u << digit_bits) - 1); };
-    std::array<std::size_t, (1u << digit_bits) + 1> begin{};
-    for (const Keyed& item : keyed) ++begin[digit(item) + 1];
-    for (std::size_t d = 1; d < begin.size(); ++d) begin[d] += begin[d - 1];
-    for (const Keyed& item : keyed) sorted[begin[digit(item)]++] = item;
+    const auto digit = [&](const Keyed& item) { return (item.first >> shift) & (digits - 1); };
+    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+      places[part].fill(0);
+      for (std::size_t i = begin_of(part); i < begin_of(part + 1); ++i) ++places[part][digit(keyed[i])];
+    });
+    std::size_t place = 0;
+    for (std::size_t d = 0; d < digits; ++d)
+      for (auto& of_part : places) place += std::exchange(of_part[d], place);
+    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+      for (std::size_t i = begin_of(part); i < begin_of(part + 1); ++i)
+        sorted[places[part][digit(keyed[i])]++] = keyed[i];
+    });
     keyed.swap(sorted);
   }
 }
@@ -91,45 +106,76 @@ MortonOrder morton_order(const std::vector<glm::dvec3>& points_mm) {
 MortonTree::MortonTree(const Triangles& surface) : MortonTree(surface, all_of(surface)) {}
 
 MortonTree::MortonTree(const Triangles& surface, const std::vector<std::uint32_t>& faces) {
-  MortonOrder order;
-  {
-    std::vector<glm::dvec3> centres_mm(faces.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 4096), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) {
-        const auto& [a, b, c] = surface.faces[faces[i]];
-        const glm::dvec3 &p = surface.points_mm[a], &q = surface.points_mm[b], &r = surface.points_mm[c];
-        centres_mm[i] = 0.5 * glm::min(p, glm::min(q, r)) + 0.5 * glm::max(p, glm::max(q, r));
-      }
+  const auto count = static_cast<std::uint32_t>(faces.size());
+  std::vector<glm::dvec3> centres_mm(count);
+  std::vector<OuterBox> boxes(count);
+  const auto in_parallel = [&](const auto& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
     });
-    order = morton_order(centres_mm);
-  }
-  faces_.resize(faces.size());
-  for (std::size_t i = 0; i < faces_.size(); ++i) faces_[i] = faces[order.numbers[i]];
-  boxes_.resize(faces_.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces_.size(), 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i)
-      for (const std::uint32_t v : surface.faces[faces_[i]]) boxes_[i].add(surface.points_mm[v]);
+  };
+  in_parallel([&](std::size_t i) {
+    const auto& [a, b, c] = surface.faces[faces[i]];
+    const glm::dvec3 &p = surface.points_mm[a], &q = surface.points_mm[b], &r = surface.points_mm[c];
+    centres_mm[i] = 0.5 * glm::min(p, glm::min(q, r)) + 0.5 * glm::max(p, glm::max(q, r));
+    for (const glm::dvec3& corner : {p, q, r}) boxes[i].add(corner);
   });
-  nodes_.reserve(faces_.size());
-  if (!faces_.empty()) build(order, 0, static_cast<std::uint32_t>(faces_.size()));
+  const MortonOrder order = morton_order(centres_mm);
+  centres_mm = {};
+  faces_.resize(count);
+  boxes_.resize(count);
+  in_parallel([&](std::size_t i) {
+    faces_[i] = faces[order.numbers[i]];
+    boxes_[i] = boxes[order.numbers[i]];
+  });
+  // A dozen tasks: joining two runs' nodes copies them.
+  if (count > 0) nodes_ = nodes_of(order, 0, count, std::max(count / 12, std::uint32_t{1} << 14));
 }
 
-void MortonTree::build(const MortonOrder& order, std::uint32_t begin, std::uint32_t end) {
+std::vector<MortonTree::Node> MortonTree::nodes_of(const MortonOrder& order, std::uint32_t begin,
+                                                   std::uint32_t end, std::uint32_t task_size) const {
+  std::vector<Node> nodes;
+  if (end - begin <= task_size) {
+    nodes.reserve(end - begin);
+    append(order, begin, end, nodes);
+    return nodes;
+  }
+  const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
+  std::vector<Node> beyond;
+  tbb::parallel_invoke([&] { nodes = nodes_of(order, begin, middle, task_size); },
+                       [&] { beyond = nodes_of(order, middle, end, task_size); });
+  const auto second = static_cast<std::uint32_t>(nodes.size() + 1);
+  Node node{nodes.front().box, begin, end, second};
+  node.box.add(beyond.front().box);
+  // Children are numbered from the first node of the run.
+  const auto shift = [](std::vector<Node>& of, std::uint32_t by) {
+    for (Node& inner : of)
+      if (!inner.is_leaf()) inner.second += by;
+  };
+  shift(nodes, 1);
+  shift(beyond, second);
+  nodes.insert(nodes.begin(), node);
+  nodes.insert(nodes.end(), beyond.begin(), beyond.end());
+  return nodes;
+}
+
+void MortonTree::append(const MortonOrder& order, std::uint32_t begin, std::uint32_t end,
+                        std::vector<Node>& nodes) const {
   assert(begin < end && end <= faces_.size());
-  const std::size_t self = nodes_.size();
+  const std::size_t self = nodes.size();
   Node node{{}, begin, end, 0};
-  nodes_.push_back(node);
+  nodes.push_back(node);
   if (end - begin <= leaf_size) {
     for (std::uint32_t i = begin; i < end; ++i) node.box.add(boxes_[i]);
   } else {
     const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
-    build(order, begin, middle);
-    node.second = static_cast<std::uint32_t>(nodes_.size());
-    build(order, middle, end);
-    node.box = nodes_[self + 1].box;
-    node.box.add(nodes_[node.second].box);
+    append(order, begin, middle, nodes);
+    node.second = static_cast<std::uint32_t>(nodes.size());
+    append(order, middle, end, nodes);
+    node.box = nodes[self + 1].box;
+    node.box.add(nodes[node.second].box);
   }
-  nodes_[self] = node;
+  nodes[self] = node;
 }
 
 }  // namespace octotomy::brep

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -24,12 +25,8 @@ struct OuterBox {
   void add(const glm::dvec3& p) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto rounded = static_cast<float>(p[axis]);
-      low[axis] = std::min(low[axis], rounded > p[axis]
-                                          ? std::nextafter(rounded, -std::numeric_limits<float>::infinity())
-                                          : rounded);
-      high[axis] = std::max(high[axis], rounded < p[axis]
-                                            ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
-                                            : rounded);
+      low[axis] = std::min(low[axis], rounded > p[axis] ? -next_above(-rounded) : rounded);
+      high[axis] = std::max(high[axis], rounded < p[axis] ? next_above(rounded) : rounded);
     }
   }
   void add(const OuterBox& other) {
@@ -46,6 +43,13 @@ struct OuterBox {
         glm::max(glm::max(glm::dvec3(low) - glm::dvec3(other.high), glm::dvec3(other.low) - glm::dvec3(high)),
                  glm::dvec3(0.0));
     return glm::dot(apart, apart);
+  }
+
+ private:
+  /// As std::nextafter() towards infinity, of what is less, without a call.
+  static float next_above(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value + 0.0f);  // 0 for -0
+    return std::bit_cast<float>((bits >> 31) == 0 ? bits + 1 : bits - 1);
   }
 };
 
@@ -109,7 +113,12 @@ class MortonTree {
     std::uint32_t count() const { return end - begin; }
     bool is_leaf() const { return second == 0; }
   };
-  void build(const MortonOrder& order, std::uint32_t begin, std::uint32_t end);
+  /// The nodes of a run, its own first, from which children are numbered. Runs of more than `task_size` are
+  /// parted among threads.
+  std::vector<Node> nodes_of(const MortonOrder& order, std::uint32_t begin, std::uint32_t end,
+                             std::uint32_t task_size) const;
+  void append(const MortonOrder& order, std::uint32_t begin, std::uint32_t end,
+              std::vector<Node>& nodes) const;
 
   template <typename Reaches, typename Visit>
   void visit_node(std::uint32_t number, const Reaches& reaches, const Visit& visit_face) const {
