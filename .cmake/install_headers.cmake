@@ -6,7 +6,7 @@ file(GLOB pages RELATIVE ${SOURCE_DIR} ${SOURCE_DIR}/voxel/*/README.md ${SOURCE_
 set(found)
 foreach(page ${pages})
   get_filename_component(room ${page} DIRECTORY)
-  if(room STREQUAL "planner/cli")
+  if(room MATCHES "^planner/(cli|suite|verb)$")
     continue()
   endif()
   file(READ ${SOURCE_DIR}/${page} text)

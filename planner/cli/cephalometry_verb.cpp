@@ -3,12 +3,13 @@
 
 #include "planner/cephalometry/cephalogram.h"
 #include "planner/cephalometry/measured.h"
-#include "planner/cli/numbers.h"
-#include "planner/cli/plan_in.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/verbs.h"
 #include "planner/file/landmarks_file.h"
 #include "planner/file/output_path.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/numbers.h"
+#include "planner/verb/plan_in.h"
+#include "planner/verb/verb.h"
 #include "voxel/scan/image_file.h"
 
 namespace octotomy::planner::cli {

@@ -3,7 +3,7 @@
 #include <iterator>
 #include <map>
 
-#include "planner/cli/verb.h"
+#include "planner/cli/verbs.h"
 #include "planner/cohort/engine.h"
 #include "planner/cohort/forecast.h"
 #include "planner/cohort/group.h"
@@ -13,6 +13,7 @@
 #include "planner/cohort/subjects.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/verb.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::cli {

@@ -2,11 +2,12 @@
 #include <algorithm>
 #include <array>
 
-#include "planner/cli/octree_out.h"
-#include "planner/cli/scan_in.h"
+#include "planner/cli/verbs.h"
 #include "planner/file/label_table.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
+#include "planner/verb/octree_out.h"
+#include "planner/verb/scan_in.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/write_dicom_seg.h"
 #include "voxel/scan/write_scene.h"

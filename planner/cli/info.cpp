@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/health.h"
-#include "planner/cli/scan_in.h"
+#include "planner/cli/verbs.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/scan_in.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/numbers.h"
-#include "planner/cli/scan_in.h"
+#include "planner/cli/verbs.h"
 #include "planner/report/first_look.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/numbers.h"
+#include "planner/verb/scan_in.h"
 
 namespace octotomy::planner::cli {
 namespace {

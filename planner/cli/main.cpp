@@ -25,10 +25,12 @@
 #include <vector>
 
 #include "brep/mesh/error.h"
-#include "planner/cli/manual.h"
 #include "planner/cli/operation_verb.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/verbs.h"
+#include "planner/suite/suite.h"
 #include "planner/table/nearest_name.h"
+#include "planner/verb/manual.h"
+#include "planner/verb/verb.h"
 #include "voxel/space/error.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/unfinished_folder.h"

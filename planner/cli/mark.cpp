@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/view/mark.h"
 
-#include "planner/cli/numbers.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/verbs.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/numbers.h"
+#include "planner/verb/verb.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -13,9 +13,6 @@
 
 #include "brep/mesh/health.h"
 #include "convert/voxel/voxelise.h"
-#include "planner/cli/numbers.h"
-#include "planner/cli/octree_out.h"
-#include "planner/cli/scan_in.h"
 #include "planner/file/mesh_file.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
@@ -25,6 +22,9 @@
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "planner/verb/numbers.h"
+#include "planner/verb/octree_out.h"
+#include "planner/verb/scan_in.h"
 
 namespace octotomy::planner::cli {
 namespace {

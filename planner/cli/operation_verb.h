@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "planner/cli/verb.h"
 #include "planner/table/operation.h"
+#include "planner/verb/verb.h"
 
 namespace octotomy::planner::cli {
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/plan_in.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/verbs.h"
 #include "planner/outcome/outcome.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/plan_in.h"
+#include "planner/verb/verb.h"
 
 namespace octotomy::planner::cli {
 namespace {

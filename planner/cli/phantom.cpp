@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/numbers.h"
-#include "planner/cli/verb.h"
+#include "planner/cli/verbs.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/numbers.h"
+#include "planner/verb/verb.h"
 #include "verify/head_phantom.h"
 #include "verify/implicit_solid.h"
 #include "verify/leg_phantom.h"

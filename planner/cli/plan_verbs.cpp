@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "planner/cli/plan_document.h"
-#include "planner/cli/plan_in.h"
 #include "planner/cli/procedure_verb.h"
+#include "planner/cli/verbs.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"
 #include "planner/report/pdf.h"
@@ -13,6 +13,7 @@
 #include "planner/report/report.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/plan_in.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/disk_need.h"
 

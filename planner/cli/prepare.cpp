@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A plan of steps that each make a scan of the one before, from the table of operations.
-#include "planner/cli/octree_out.h"
-#include "planner/cli/scan_in.h"
+#include "planner/cli/verbs.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/octree_out.h"
+#include "planner/verb/scan_in.h"
 #include "voxel/scan/volume_header.h"
 #include "voxel/scan/write_scene.h"
 

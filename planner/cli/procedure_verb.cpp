@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/procedure_verb.h"
 
-#include "planner/cli/numbers.h"
-#include "planner/cli/plan_in.h"
-#include "planner/cli/scan_in.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/landmarks_file.h"
 #include "planner/file/output_path.h"
 #include "planner/procedure/procedure.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/numbers.h"
+#include "planner/verb/plan_in.h"
+#include "planner/verb/scan_in.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "planner/cli/verb.h"
+#include "planner/verb/verb.h"
 
 namespace octotomy::planner::cli {
 

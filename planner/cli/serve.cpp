@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <unistd.h>
 
-#include "planner/cli/verb.h"
+#include "planner/cli/verbs.h"
 #include "planner/serve/folders.h"
 #include "planner/serve/gate.h"
 #include "planner/serve/server.h"
 #include "planner/table/json_file.h"
+#include "planner/verb/verb.h"
 #include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::planner::cli {

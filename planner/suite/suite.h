@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "planner/cli/plan_in.h"
 #include "planner/measure/result_json.h"
 #include "planner/report/random_suite.h"
 #include "planner/report/report.h"
+#include "planner/verb/plan_in.h"
 
 // `octotomy verify`: a plan's certificates, or one of the suites that test the verifier itself.
 namespace octotomy::planner::cli {
@@ -50,5 +50,8 @@ struct Suite {
   CLI::Option* (*add)(CLI::App& verb, VerifyText& text);
   SuiteAnswer (*run)(Program& program, const VerifyText& text);
 };
+
+/// Adds `verify` and its suites to the program.
+void add_verify_verbs(Program& program);
 
 }  // namespace octotomy::planner::cli

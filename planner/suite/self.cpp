@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "convert/tet/mesher_process.h"
-#include "planner/cli/verify_suites.h"
+#include "planner/suite/suites.h"
 #include "voxel/scan/dicom_codec.h"
 #include "voxel/scan/image_file.h"
 #include "voxel/space/helper_file.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/verify_suites.h"
 #include "planner/report/random_suite.h"
+#include "planner/suite/suites.h"
 #include "planner/table/number_format.h"
 
 namespace octotomy::planner::cli {

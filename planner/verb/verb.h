@@ -14,7 +14,7 @@
 #include "planner/plan/evaluate.h"
 #include "voxel/space/lattice.h"
 
-// What the verbs of the command line have in common: one file a verb group adds its verbs to the program.
+// What the verbs of the command line have in common.
 namespace octotomy::planner::cli {
 
 /// Exit statuses. Anything else is a bug.
@@ -64,23 +64,6 @@ std::string line_of(const std::string& text);
 /// and for the same one again.
 enum class Speaker { None, Verb, Watch };
 bool has_last_word(Speaker speaker);
-
-void add_info(Program& program);
-void add_convert(Program& program);
-void add_phantom(Program& program);
-void add_prepare(Program& program);
-void add_segment(Program& program);
-void add_plan_verbs(Program& program);
-void add_look(Program& program);
-void add_verify_verbs(Program& program);
-void add_mark(Program& program);
-void add_cohort(Program& program);
-void add_cephalometry(Program& program);
-void add_outcome(Program& program);
-void add_serve(Program& program);
-
-/// What info does for an .octree file.
-int info_of_octree(const Program& program, const std::filesystem::path& path);
 
 /// Numbers of samples for people: 512 x 512 x 300.
 std::string dims_text(const glm::ivec3& dims);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/verb.h"
+#include "planner/verb/verb.h"
 
 #include <algorithm>
 #include <atomic>
@@ -10,8 +10,8 @@
 #include <thread>
 #include <unistd.h>
 
-#include "planner/cli/numbers.h"
 #include "planner/table/json_file.h"
+#include "planner/verb/numbers.h"
 #include "voxel/filter/tissue.h"
 
 namespace octotomy::planner::cli {

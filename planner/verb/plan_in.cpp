@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/plan_in.h"
+#include "planner/verb/plan_in.h"
 
 #include <cmath>
 

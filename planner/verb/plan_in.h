@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "planner/cli/scan_in.h"
 #include "planner/plan/evaluate.h"
 #include "planner/plan/plan.h"
+#include "planner/verb/scan_in.h"
 
 // What the verbs that replay a plan have in common.
 namespace octotomy::planner::cli {

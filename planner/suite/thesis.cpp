@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <map>
 
-#include "planner/cli/verify_suites.h"
+#include "planner/suite/suites.h"
 #include "verify/thesis_tables.h"
 
 namespace octotomy::planner::cli {

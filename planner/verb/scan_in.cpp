@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/scan_in.h"
+#include "planner/verb/scan_in.h"
 
 #include <algorithm>
 #include <cstdio>
 
-#include "planner/cli/numbers.h"
+#include "planner/verb/numbers.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/numbers.h"
+#include "planner/verb/numbers.h"
 
 #include <functional>
 #include <sstream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "planner/cli/verb.h"
+#include "planner/verb/verb.h"
 #include "voxel/scan/read_scene.h"
 
 // What the verbs that read a scan have in common.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/verify_verbs.h"
-
-#include "planner/cli/verify_suites.h"
 #include "planner/report/result_folder.h"
 #include "planner/report/verification.h"
+#include "planner/suite/suite.h"
+#include "planner/suite/suites.h"
 
 namespace octotomy::planner::cli {
 namespace {

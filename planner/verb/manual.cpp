@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/manual.h"
+#include "planner/verb/manual.h"
 
 #include <cstdio>
 #include <vector>

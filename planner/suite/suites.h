@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "planner/cli/verify_verbs.h"
+#include "planner/suite/suite.h"
 
 // The suites that `verify` has besides plans, a source file each.
 namespace octotomy::planner::cli {

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "brep/io/read_mesh.h"
-#include "planner/cli/numbers.h"
-#include "planner/cli/verify_suites.h"
 #include "planner/file/mesh_file.h"
+#include "planner/suite/suites.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/numbers.h"
 #include "verify/certify_operation.h"
 #include "verify/exact_agreement.h"
 #include "verify/judge_answer.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/verify_suites.h"
+#include "planner/suite/suites.h"
 #include "verify/fault.h"
 
 namespace octotomy::planner::cli {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/octree_out.h"
+#include "planner/verb/octree_out.h"
 
 #include "planner/measure/octree_summary.h"
 
