@@ -94,6 +94,7 @@ int run(Program& program, const RunText& text) {
   need_result_folder(text.out, result_names(result.plan));
   EvaluateOptions options = evaluate_options(program);
   options.certify = text.certify == Certify::Now;
+  options.ahead = true;
   need_disk_of_label_maps(result.plan, text.out, options);
   result.evaluation = evaluated(program, result.plan, options);
   if (!options.certify)

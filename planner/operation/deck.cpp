@@ -147,7 +147,9 @@ struct Filled {
 };
 
 /// The filling, or the reason why there is none.
-std::variant<Filled, std::string> fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
+using Tried = std::variant<Filled, std::string>;
+
+Tried fill(const Object& object, const Deck& deck, const AnswerBench& bench) {
   const Stopwatch watch(bench.timings, "tetrahedralise");
   FillingOptions options;
   options.fallback = deck.fallback;
@@ -168,6 +170,14 @@ std::variant<Filled, std::string> fill(const Object& object, const Deck& deck, c
   return filled;
 }
 
+/// The filling that decks of one object share, made by the first.
+const Tried& filled_once(const Object& object, const Deck& deck, const AnswerBench& bench) {
+  const std::string key = object.id + (deck.fallback ? " or its voxels" : "") + refinement_key(deck);
+  std::shared_ptr<const void>& kept = bench.kept[key];
+  if (!kept) kept = std::make_shared<const Tried>(fill(object, deck, bench));
+  return *static_cast<const Tried*>(kept.get());
+}
+
 /// The motion of all the steps that moved an object.
 glm::dmat4 moved_from_still(const Object& object, const Objects& objects) {
   return object.moved ? object.moved->motion * moved_from_still(objects.at(object.moved->object), objects)
@@ -181,15 +191,10 @@ std::vector<Field> stiffness_record() {
 }
 
 void write_filled(const Object& object, const Deck& deck, const AnswerBench& bench, Exported& made) {
-  const std::string key = object.id + (deck.fallback ? " or its voxels" : "") + refinement_key(deck);
-  std::shared_ptr<const void>& kept = bench.kept[key];
-  if (!kept) {
-    std::variant<Filled, std::string> filled = fill(object, deck, bench);
-    if (const auto* why = std::get_if<std::string>(&filled))
-      return made.findings.push_back("not written: " + *why);
-    kept = std::make_shared<const Filled>(std::get<Filled>(std::move(filled)));
-  }
-  const auto& [filling, surfaces] = *static_cast<const Filled*>(kept.get());
+  const Tried& tried = filled_once(object, deck, bench);
+  if (const auto* why = std::get_if<std::string>(&tried))
+    return made.findings.push_back("not written: " + *why);
+  const auto& [filling, surfaces] = std::get<Filled>(tried);
   made.details["regions"] = filling.bodies;
   made.details["fallback"] = filling.fallback;
   made.findings = filling.findings;
@@ -233,6 +238,13 @@ void write(const Deck& deck, const AnswerBench& bench, Exported& made) {
     write_regions(object, deck, bench, made);
   else
     write_filled(object, deck, bench, made);
+}
+
+/// Of one object the filling; several regions and what others hold take their time when they are written.
+void ahead(const Deck& deck, const AnswerBench& bench) {
+  const Object& object = bench.objects.at(deck.object.name);
+  if (deck.regions.empty() && !deck.is_held() && obstacle_of(object, deck).empty())
+    filled_once(object, deck, bench);
 }
 
 std::vector<Field> material_fields() {
@@ -293,6 +305,7 @@ Operation deck_operation() {
           record("stiffness", &Deck::stiffness, "Materials of the elements from a scan.", stiffness_record()))
       .example(R"({"id": "deck", "do": "deck", "object": "advanced", "path": "maxilla.inp"})")
       .check(check)
+      .ahead(ahead)
       .write(write);
 }
 

@@ -73,8 +73,13 @@ std::vector<Exported> write_files(const Plan& plan, const Evaluation& evaluation
   std::vector<Exported> files;
   Kept kept;
   for (const Step& step : plan.steps)
-    if (step.action.operation().makes == Makes::File)
+    if (step.action.operation().makes == Makes::File) {
+      if (const auto begun = evaluation.ahead.find(step.id); begun != evaluation.ahead.end()) {
+        if (options.progress) options.progress("preparing " + step.id, 0.0);
+        begun->second->finish(kept, timings, options.stop);
+      }
       files.push_back(write_file(plan, evaluation, step, folder, timings, kept, options));
+    }
   return files;
 }
 

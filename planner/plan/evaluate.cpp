@@ -304,6 +304,7 @@ class Evaluator {
     const std::vector<std::string> interpolated = interpolated_parts(step, object);
     object.is_interpolated = !interpolated.empty();
     object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
+    if (options_.ahead) work_ahead(object);
     if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
       const Stopwatch watch(result_.timings, "certify");
       certify(object, object.id + " = " + object.definition, {options_.stop, {}});
@@ -317,6 +318,25 @@ class Evaluator {
     }
     if (options_.cache != nullptr && !options_.only_look_up) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));
+  }
+
+  /// Begins the work on the files that this object was the last to wait for.
+  void work_ahead(const Object& object) {
+    const auto is_made = [&](const std::string& id) {
+      return id == object.id || std::any_of(result_.objects.begin(), result_.objects.end(),
+                                            [&](const Object& made) { return made.id == id; });
+    };
+    for (const Step& step : plan_.steps) {
+      if (!step.action.operation().ahead) continue;
+      const std::vector<std::string> used = objects_used(step.action);
+      if (std::find(used.begin(), used.end(), object.id) == used.end() ||
+          !std::all_of(used.begin(), used.end(), is_made))
+        continue;
+      Objects objects = result_.objects;
+      objects.add(object);
+      result_.ahead[step.id] =
+          std::make_shared<Ahead>(step.action, result_.universe, std::move(objects), options_.stop);
+    }
   }
 
   /// The parts of an object from a scan that no image measured; of an object made of such an object, that it

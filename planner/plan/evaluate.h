@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "planner/plan/ahead.h"
 #include "planner/plan/object_cache.h"
 #include "planner/plan/plan.h"
 #include "planner/table/bench.h"
@@ -24,6 +25,8 @@ struct Evaluation {
   Timings timings;
   /// The scans that measurements and files use, read or made; all of them with EvaluateOptions::keep_scans.
   std::map<std::string, std::shared_ptr<const LoadedScan>> loaded;
+  /// The work on files that was begun ahead, by their steps.
+  std::map<std::string, std::shared_ptr<Ahead>> ahead;
 
   const Object& object(const std::string& id) const { return objects.at(id); }
 };
@@ -41,6 +44,8 @@ struct EvaluateOptions {
   bool meshes = true;
   /// The steps that are wanted; those that they need are evaluated, and no others. Empty: all.
   std::vector<std::string> wanted = {};
+  /// Begins the work on files beside the evaluation; for whoever writes them afterwards.
+  bool ahead = false;
   /// Leaves every scan in Evaluation::loaded, so that slices of it can be drawn.
   bool keep_scans = false;
   /// Answers of earlier evaluations, which are not made again, and to which new ones are added; may be null.

@@ -53,6 +53,9 @@ struct Operation {
   std::function<nlohmann::ordered_json(const void* value, const AnswerBench& bench)> measure;
   /// Writes a file, or tells the reason why there is nothing to write.
   std::function<void(const void* value, const AnswerBench& bench, Exported& made)> write;
+  /// The work on a file that needs no certificate: it puts into the bench's `kept` what `write` finds there.
+  /// Runs beside later steps. Empty where there is none.
+  std::function<void(const void* value, const AnswerBench& bench)> ahead;
   /// The objects that it uses beside those that its fields name.
   std::function<std::vector<std::string>(const void* value)> uses;
   /// Examples of the operation as a verb on files; empty: it is none. Of an operation that makes a scan the
@@ -122,6 +125,7 @@ class Describe {
   Describe&& write(void (*part)(const Value&, const AnswerBench&, Exported&)) && {
     return bind(entry_.write, part);
   }
+  Describe&& ahead(void (*part)(const Value&, const AnswerBench&)) && { return bind(entry_.ahead, part); }
   Describe&& uses(std::vector<std::string> (*part)(const Value&)) && { return bind(entry_.uses, part); }
   operator Operation() && { return std::move(entry_); }
 

@@ -160,6 +160,45 @@ TEST(FragmentDecks, AStopEndsAFillingOfEveryKindAndLeavesNoDeck) {
   }
 }
 
+TEST(FragmentDecks, BegunAheadAreTheSameFilesAndReasons) {
+  const BallFolder folder;
+  // Of several regions nothing is made ahead.
+  for (const char* keys : {R"("path": "ball.inp")", R"("path": "ball.vtu", "fallback": true)",
+                           R"("path": "ball.inp", "regions": ["lower"])"}) {
+    const Plan plan = folder.plan_of_half(keys);
+    std::vector<Exported> made;
+    for (const bool ahead : {false, true}) {
+      EvaluateOptions options;
+      options.ahead = ahead;
+      const Evaluation evaluation = evaluate(plan, options);
+      EXPECT_EQ(evaluation.ahead.size(), ahead ? 1u : 0u) << keys;
+      made.push_back(deck_of(plan, evaluation, folder / (ahead ? "ahead" : "after")));
+    }
+    EXPECT_EQ(made[0].written, made[1].written) << keys;
+    EXPECT_EQ(made[0].findings, made[1].findings) << keys;
+    EXPECT_EQ(made[0].details, made[1].details) << keys;
+    if (made[0].written && made[1].written)
+      EXPECT_EQ(tests::bytes_of(folder / "after" / made[0].path),
+                tests::bytes_of(folder / "ahead" / made[1].path))
+          << keys;
+  }
+}
+
+TEST(FragmentDecks, BegunAheadEndWithTheEvaluationOrTheStop) {
+  const BallFolder folder;
+  const Plan plan = folder.plan_of_half(R"("path": "ball.inp")");
+  std::filesystem::create_directory(folder / "out");
+  std::stop_source source;
+  EvaluateOptions options{source.get_token(), {}};
+  options.ahead = true;
+  const Evaluation evaluation = evaluate(plan, options);
+  evaluate(plan, options);  // begins a filling that nobody wants
+  source.request_stop();
+  Timings timings;
+  EXPECT_THROW(write_files(plan, evaluation, folder / "out", timings, {source.get_token(), {}}), Stopped);
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "out"));
+}
+
 TEST(FragmentDecks, ElementsTooFlatForASolverAreToldOrGiveWayToTheFallback) {
   const BallFolder folder;
   const Plan with = folder.plan(R"("path": "ball.inp", "fallback": true)"),
