@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Booleans and measures of meshes, and the same work in CGAL called plainly.
+// Booleans and measures of meshes, and the same work in CGAL called plainly and in Manifold.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -12,6 +12,7 @@
 #include "brep/mesh/measure.h"
 #include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
+#include "tests/bench/manifold_peer.h"
 #include "tests/bench/subjects.h"
 #include "tests/brep/shapes.h"
 #if defined(OCTOTOMY_HAS_CGAL)
@@ -120,9 +121,29 @@ void run_cgal_size(benchmark::State& state, const brep::Triangles& triangles) {
 }
 #endif
 
+void run_manifold(benchmark::State& state, const Pair& pair) {
+  for (auto _ : state) {
+    const ManifoldAnswer answer = manifold_boolean(pair.a, pair.b, pair.operation == brep::Operation::Union);
+    state.SetIterationTime(answer.seconds);
+    state.counters["triangles_out"] = static_cast<double>(answer.triangles);
+  }
+}
+
+/// Against Manifold alone where CGAL would take minutes.
+template <typename Make>
+void add_large_boolean(const std::string& name, const Make& make) {
+  add(name, [=](benchmark::State& state) { run_ours(state, make()); });
+  if (manifold_folder().empty()) return;
+  benchmark::RegisterBenchmark(("peer/manifold/" + name).c_str(),
+                               [=](benchmark::State& state) { run_manifold(state, make()); })
+      ->Unit(benchmark::kMicrosecond)
+      ->UseManualTime()
+      ->Iterations(1);
+}
+
 template <typename Make>
 void add_boolean(const std::string& name, const Make& make) {
-  add(name, [=](benchmark::State& state) { run_ours(state, make()); });
+  add_large_boolean(name, make);
 #if defined(OCTOTOMY_HAS_CGAL)
   add("peer/cgal/" + name, [=](benchmark::State& state) { run_cgal(state, make()); });
 #endif
@@ -133,6 +154,7 @@ void add_boolean(const std::string& name, const Make& make) {
 void register_mesh_boolean() {
   add_boolean("mesh_boolean/spheres/10k", [] { return balls(71); });
   add_boolean("mesh_boolean/spheres/100k", [] { return balls(224); });
+  add_large_boolean("mesh_boolean/spheres/1M", [] { return balls(708); });
   add_boolean("mesh_boolean/twin_spheres/10k", [] { return twins(71); });
   add_boolean("mesh_boolean/bone_box/100k", [] { return bone_box(128); });
   add_boolean("mesh_boolean/bone_box/500k", [] { return bone_box(256); });
