@@ -3,7 +3,8 @@
 // Steps are evaluated in order, each in both kernels before the next:
 //   1 Read every scan once; sample it into a grey octree, keep its samples until the last step that uses
 //   them. 2 Voxel kernel: the operation's answer from other voxel answers. 3 Mesh kernel: the operation's
-//   answer from other mesh answers and the scan's own samples. 4 Certify: only here do the two answers meet.
+//   answer from other mesh answers and the scan's own samples. 4 Certify, after all steps where files
+//   are worked on meanwhile: only here do the two answers meet.
 // Invariant: the benches of steps 2 and 3 show one kernel each.
 #include "planner/plan/evaluate.h"
 
@@ -80,26 +81,24 @@ class Evaluator {
     if (options_.cache != nullptr)
       keys_ = step_keys(plan_, common_key(), [this](const std::string& scan) { return scan_keys_.at(scan); });
     std::size_t done = 0;
+    const std::size_t works = plan_.steps.size() * (certifies_last() ? 2 : 1);
+    const auto tell = [&](const std::string& doing) {
+      report(doing, static_cast<double>(done++) / static_cast<double>(works));
+    };
     for (const Step& step : plan_.steps) {
-      report(verb(step) + " " + step.id,
-             static_cast<double>(done++) / static_cast<double>(plan_.steps.size()));
+      tell(verb(step) + " " + step.id);
       const Makes makes = step.action.operation().makes;
       if ((makes != Makes::Object && makes != Makes::Scan) || !wanted_.contains(step.id)) continue;
-      try {
+      in_step(step.id, [&] {
         if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
-      } catch (const Stopped&) {
-        throw;
-      } catch (const voxel::Error& error) {
-        throw voxel::Error(error.code(), "step '" + step.id + "': " + error.what());
-      } catch (const brep::Error& error) {
-        throw brep::Error(error.code(), "step '" + step.id + "': " + error.what());
-      } catch (const std::runtime_error& error) {
-        throw std::runtime_error("step '" + step.id + "': " + error.what());
-      } catch (const std::invalid_argument& error) {
-        throw std::runtime_error("step '" + step.id + "': " + error.what());
-      }
+      });
       for (const std::string& scan : scans_used(step.action))
         if (--uses_left_[scan] == 0 && !options_.keep_scans) loaded_.erase(scan);
+    }
+    for (Uncertified& made : uncertified_) {
+      tell("certifying " + made.object.id);
+      in_step(made.object.id, [&] { certify_made(made.object, made.interpolated); });
+      result_.objects.change(made.index).certificate = std::move(made.object.certificate);
     }
     for (auto& [name, scan] : loaded_)
       if (uses_left_[name] > 0 || options_.keep_scans)
@@ -109,6 +108,24 @@ class Evaluator {
   }
 
  private:
+  /// Does a step's work and names the step in what it throws.
+  template <typename Work>
+  void in_step(const std::string& id, const Work& work) {
+    try {
+      work();
+    } catch (const Stopped&) {
+      throw;
+    } catch (const voxel::Error& error) {
+      throw voxel::Error(error.code(), "step '" + id + "': " + error.what());
+    } catch (const brep::Error& error) {
+      throw brep::Error(error.code(), "step '" + id + "': " + error.what());
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error("step '" + id + "': " + error.what());
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error("step '" + id + "': " + error.what());
+    }
+  }
+
   void report(const std::string& doing, double fraction) const {
     if (options_.stop.stop_requested()) throw Stopped("stopped before '" + doing + "': nothing was written");
     if (options_.progress) options_.progress(doing, fraction);
@@ -306,11 +323,10 @@ class Evaluator {
     object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
     if (options_.ahead) work_ahead(object);
     if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
-      const Stopwatch watch(result_.timings, "certify");
-      certify(object, object.id + " = " + object.definition, {options_.stop, {}});
-      // The kernels cannot disagree over samples that both take from the same interpolation.
-      for (const std::string& part : interpolated)
-        verify::lower(*object.certificate, verify::Verdict::Warn, part);
+      if (certifies_last())
+        uncertified_.push_back({object, interpolated, result_.objects.size()});
+      else
+        certify_made(object, interpolated);
     }
     if (object.ends_with_universe) {
       object.mesh.whole = object.mesh.within;
@@ -318,6 +334,17 @@ class Evaluator {
     }
     if (options_.cache != nullptr && !options_.only_look_up) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));
+  }
+
+  /// Work that was begun ahead goes on meanwhile. A cache keeps objects with their certificates.
+  bool certifies_last() const { return options_.ahead && options_.cache == nullptr; }
+
+  void certify_made(Object& object, const std::vector<std::string>& interpolated) {
+    const Stopwatch watch(result_.timings, "certify");
+    certify(object, object.id + " = " + object.definition, {options_.stop, {}});
+    // The kernels cannot disagree over samples that both take from the same interpolation.
+    for (const std::string& part : interpolated)
+      verify::lower(*object.certificate, verify::Verdict::Warn, part);
   }
 
   /// Begins the work on the files that this object was the last to wait for.
@@ -446,6 +473,13 @@ class Evaluator {
   voxel::Box box_;  ///< of the universe
   brep::Solid world_;
   std::unique_ptr<verify::MeshExpressions> expressions_;
+  /// An object as its operation made it, its place among the others, and its interpolated parts.
+  struct Uncertified {
+    Object object;
+    std::vector<std::string> interpolated;
+    std::size_t index = 0;
+  };
+  std::vector<Uncertified> uncertified_;  ///< where objects are certified last
 };
 
 }  // namespace

@@ -121,7 +121,7 @@ class Objects {
   const Object& operator[](std::size_t index) const { return objects_[index]; }
   const Object& front() const { return objects_.front(); }
   const Object& back() const { return objects_.back(); }
-  /// For tests that spoil an object.
+  /// For a certificate that comes last, and for tests that spoil an object.
   Object& change(std::size_t index) { return objects_[index]; }
 
   /// How the head is held: columns are the directions left, back and up of the head, LPS.
