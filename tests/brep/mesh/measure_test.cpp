@@ -80,6 +80,15 @@ TEST(Measure, OfTrianglesIsThatOfTheirMeshToTheBit) {
   EXPECT_EQ(of_list.absolute_mean_curvature_mm, of_mesh.absolute_mean_curvature_mm);
 }
 
+TEST(Measure, OfOpenTrianglesHaveTheCurvatureOfTheirInnerEdges) {
+  Triangles open = shapes::box({0, 0, 0}, {1, 1, 1});
+  open.faces.erase(open.faces.begin());
+  const Measures of_list = measure(linked(open)), of_mesh = measure(mesh_of(open));
+  EXPECT_EQ(of_list.area_mm2, of_mesh.area_mm2);
+  EXPECT_NEAR(of_list.absolute_mean_curvature_mm, of_mesh.absolute_mean_curvature_mm, 1e-14);
+  EXPECT_LT(of_list.absolute_mean_curvature_mm, 3 * std::numbers::pi - 1.0);
+}
+
 TEST(Measure, AMirroredSurfaceHasNegativeVolumeAndTheSameArea) {
   const Triangles sphere = shapes::sphere({1, 1, 1}, 2, 3);
   const Measures out = measure(mesh_of(sphere)), in = measure(mesh_of(shapes::inside_out(sphere)));

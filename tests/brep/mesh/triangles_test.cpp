@@ -96,6 +96,17 @@ TEST(Triangles, LinkedOnesAreTheMeshsOwnAndKnowWhatLiesBeyondEachSide) {
   EXPECT_EQ(open, 3u);
 }
 
+TEST(Triangles, OfAMeshAreLinkedAsTheyAreOfAList) {
+  Triangles t = shapes::together(shapes::sphere({10, -20, 30}, 5, 3), shapes::box({-1, 2, -3}, {2, 4, 1}));
+  t.faces.erase(t.faces.begin() + 7);
+  const Linked of_list = linked(t), of_mesh = linked_of(mesh_of(t));
+  EXPECT_EQ(of_mesh.triangles.points_mm, of_list.triangles.points_mm);
+  EXPECT_EQ(of_mesh.triangles.faces, of_list.triangles.faces);
+  EXPECT_EQ(of_mesh.opposite, of_list.opposite);
+  EXPECT_FALSE(of_mesh.is_closed());
+  EXPECT_TRUE(linked(shapes::box({-1, 2, -3}, {2, 4, 1})).is_closed());
+}
+
 TEST(Triangles, TheFirstOneThatCannotBeJoinedIsNamed) {
   Triangles t = shapes::box({0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(refusal_of(t), "");
