@@ -112,28 +112,46 @@ class WindowWitness {
   }
 
  private:
+  /// The samples about a position, and where it lies between them.
+  struct Cell {
+    std::array<double, 8> v{};
+    std::array<double, 3> t{};
+
+    double value() const {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < 8; ++i)
+        sum += v[i] * ((i & 1) ? t[0] : 1.0 - t[0]) * (((i >> 1) & 1) ? t[1] : 1.0 - t[1]) *
+               ((i >> 2) ? t[2] : 1.0 - t[2]);
+      return sum;
+    }
+  };
+
   /// Positions beyond the outermost samples take the nearest value.
-  CellValue cell(const glm::dvec3& u) const {
-    std::size_t offset[3], step[3];
-    double t[3];
+  Cell cell(const glm::dvec3& u) const {
+    Cell made;
+    std::array<std::size_t, 3> offset{}, step{};
     std::size_t stride = 1;
     for (int axis = 0; axis < 3; ++axis) {
       const double at = std::clamp(u[axis], 0.0, static_cast<double>(dims_[axis] - 1));
       const int first = std::clamp(static_cast<int>(at), 0, std::max(dims_[axis] - 2, 0));
-      t[axis] = at - first;
-      offset[axis] = static_cast<std::size_t>(first) * stride;
-      step[axis] = dims_[axis] > 1 ? stride : 0;
+      const auto i = static_cast<std::size_t>(axis);
+      made.t[i] = at - first;
+      offset[i] = static_cast<std::size_t>(first) * stride;
+      step[i] = dims_[axis] > 1 ? stride : 0;
       stride *= static_cast<std::size_t>(dims_[axis]);
     }
     const Sample* corner = samples_ + offset[0] + offset[1] + offset[2];
-    std::array<double, 8> v{};
     for (std::size_t i = 0; i < 8; ++i)
-      v[i] = static_cast<double>(corner[(i & 1) * step[0] + ((i >> 1) & 1) * step[1] + (i >> 2) * step[2]]);
+      made.v[i] =
+          static_cast<double>(corner[(i & 1) * step[0] + ((i >> 1) & 1) * step[1] + (i >> 2) * step[2]]);
+    return made;
+  }
+
+  CellValue bounds_of(const Cell& at) const {
+    const auto& [v, t] = at;
     const auto [least, most] = std::minmax_element(v.begin(), v.end());
     CellValue cell{.low = *least, .high = *most};
-    for (std::size_t i = 0; i < 8; ++i)
-      cell.value += v[i] * ((i & 1) ? t[0] : 1.0 - t[0]) * (((i >> 1) & 1) ? t[1] : 1.0 - t[1]) *
-                    ((i >> 2) ? t[2] : 1.0 - t[2]);
+    cell.value = at.value();
     const auto stray = [&](double b, double product, double most_mean, double least_mean) {
       const double up = -b * (least_mean - product), down = -b * (most_mean - product);
       cell.above += std::max(up, down);
@@ -175,7 +193,7 @@ class WindowWitness {
   Word mesh_word(const glm::dvec3& u, double slack) const {
     const double past = beyond(u);
     if (past >= 1.0) return certainly_out;
-    const CellValue at = cell(u);
+    const CellValue at = bounds_of(cell(u));
     // In a cell f changes by its samples' range a sample along each axis at most.
     const double moved = 3.0 * slack * (at.high - at.low);
     Word answer = word(at.value, at.above + moved, at.below + moved);
@@ -214,7 +232,7 @@ class WindowWitness {
       // A scan's voxels reach half a sample beyond their centres.
       all_scan = all_scan && past < 0.5 - 1e-6 && in_universe;
       any_scan = any_scan || (past < 0.5 + 1e-6 && in_universe);
-      value += weight * cell(u).value;
+      value += weight * cell(u).value();
     }
     if (!any_scan) return certainly_out;
     const Word answer = word(value, rounded_samples, rounded_samples);
