@@ -8,27 +8,32 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "planner/table/operation.h"
 
 namespace octotomy::planner {
 
-/// Work on a file of a plan's result, begun on a thread of its own as soon as the file's objects are made, so
+/// Work on files of a plan's result, begun on a thread of its own as soon as the files' objects are made, so
 /// that it goes on while they are certified. Its end stops the work and waits for that.
 class Ahead {
  public:
   using Kept = std::map<std::string, std::shared_ptr<const void>>;
 
-  /// `objects` are those made so far, the action's among them. Precondition: the operation works ahead.
-  Ahead(const Action& action, const voxel::Universe& universe, Objects objects, const std::stop_token& stop);
+  /// Works for the actions one after the other; what one keeps the next finds. `objects` are those made so
+  /// far, the actions' among them. Precondition: the operations work ahead.
+  Ahead(std::vector<Action> actions, const voxel::Universe& universe, Objects objects,
+        const std::stop_token& stop);
 
   ~Ahead() { stop_.request_stop(); }
   Ahead(const Ahead&) = delete;
   Ahead& operator=(const Ahead&) = delete;
 
-  /// Waits for the work; adds what it kept for the writing, and its time. Throws what the work threw, and
-  /// Stopped where `stop` or the constructor's token asks for it.
-  void finish(Kept& kept, Timings& timings, const std::stop_token& stop);
+  /// Waits for the work and tells its progress, which may be empty; adds what it kept for the writing and,
+  /// once, its time. Throws what the work threw, and Stopped where `stop` or the constructor's token asks for
+  /// it. Not for several threads at once.
+  void finish(Kept& kept, Timings& timings, const std::stop_token& stop,
+              const std::function<void(const std::string& doing, double fraction)>& progress);
 
  private:
   struct Work;

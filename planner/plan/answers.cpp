@@ -74,10 +74,8 @@ std::vector<Exported> write_files(const Plan& plan, const Evaluation& evaluation
   Kept kept;
   for (const Step& step : plan.steps)
     if (step.action.operation().makes == Makes::File) {
-      if (const auto begun = evaluation.ahead.find(step.id); begun != evaluation.ahead.end()) {
-        if (options.progress) options.progress("preparing " + step.id, 0.0);
-        begun->second->finish(kept, timings, options.stop);
-      }
+      if (const auto begun = evaluation.ahead.find(step.id); begun != evaluation.ahead.end())
+        begun->second->finish(kept, timings, options.stop, options.progress);
       files.push_back(write_file(plan, evaluation, step, folder, timings, kept, options));
     }
   return files;

@@ -353,17 +353,23 @@ class Evaluator {
       return id == object.id || std::any_of(result_.objects.begin(), result_.objects.end(),
                                             [&](const Object& made) { return made.id == id; });
     };
+    std::vector<Action> actions;
+    std::vector<std::string> steps;
     for (const Step& step : plan_.steps) {
       if (!step.action.operation().ahead) continue;
       const std::vector<std::string> used = objects_used(step.action);
       if (std::find(used.begin(), used.end(), object.id) == used.end() ||
           !std::all_of(used.begin(), used.end(), is_made))
         continue;
-      Objects objects = result_.objects;
-      objects.add(object);
-      result_.ahead[step.id] =
-          std::make_shared<Ahead>(step.action, result_.universe, std::move(objects), options_.stop);
+      actions.push_back(step.action);
+      steps.push_back(step.id);
     }
+    if (actions.empty()) return;
+    Objects objects = result_.objects;
+    objects.add(object);
+    const auto begun =
+        std::make_shared<Ahead>(std::move(actions), result_.universe, std::move(objects), options_.stop);
+    for (const std::string& step : steps) result_.ahead[step] = begun;
   }
 
   /// The parts of an object from a scan that no image measured; of an object made of such an object, that it

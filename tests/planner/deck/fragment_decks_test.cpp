@@ -184,6 +184,27 @@ TEST(FragmentDecks, BegunAheadAreTheSameFilesAndReasons) {
   }
 }
 
+TEST(FragmentDecks, BegunAheadShareOneFillingAndTellItsProgressAndTime) {
+  const BallFolder folder;
+  const Plan plan = folder.plan_of_half(
+      R"("path": "ball.inp" }, { "id": "again", "do": "deck", "object": "upper", "path": "ball.vtu")");
+  EvaluateOptions options;
+  options.ahead = true;
+  const Evaluation evaluation = evaluate(plan, options);
+  ASSERT_EQ(evaluation.ahead.size(), 2u);
+  EXPECT_EQ(evaluation.ahead.at("deck"), evaluation.ahead.at("again"));
+  std::filesystem::create_directory(folder / "out");
+  Timings timings;
+  const std::vector<Exported> files = write_files(plan, evaluation, folder / "out", timings);
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[0].details["tets"], files[1].details["tets"]);
+  EXPECT_GT(timings["tetrahedralise"], 0.0);
+  Timings written_again;
+  std::filesystem::create_directory(folder / "again");
+  write_files(plan, evaluation, folder / "again", written_again);
+  EXPECT_EQ(written_again.count("tetrahedralise"), 0u);
+}
+
 TEST(FragmentDecks, BegunAheadEndWithTheEvaluationOrTheStop) {
   const BallFolder folder;
   const Plan plan = folder.plan_of_half(R"("path": "ball.inp")");
