@@ -112,6 +112,8 @@ class Window:
             if first & 0x0F == 9:
                 self.send_bytes(part, 10)
                 continue
+            if first & 0x0F == 10:  # nobody asked: random bytes can be a ping
+                continue
             if first & 0x0F:
                 binary = first & 0x0F == 2
             payload += part
