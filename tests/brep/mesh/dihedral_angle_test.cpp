@@ -43,7 +43,7 @@ TEST(DihedralAngle, IsExactWhereItIsSmallWhateverTheNormalsLengths) {
 }
 
 TEST(DihedralAngle, IsNoneBesideATriangleWithoutArea) {
-  for (const glm::dvec3 normal : {glm::dvec3(1, 2, 3), glm::dvec3(-1, -2, -3), glm::dvec3(0)})
+  for (const glm::dvec3& normal : {glm::dvec3(1, 2, 3), glm::dvec3(-1, -2, -3), glm::dvec3(0)})
     EXPECT_EQ(dihedral_angle(normal, glm::dvec3(0), {0, 0, 1}), 0.0);
 }
 

@@ -177,10 +177,11 @@ TEST(FragmentDecks, BegunAheadAreTheSameFilesAndReasons) {
     EXPECT_EQ(made[0].written, made[1].written) << keys;
     EXPECT_EQ(made[0].findings, made[1].findings) << keys;
     EXPECT_EQ(made[0].details, made[1].details) << keys;
-    if (made[0].written && made[1].written)
+    if (made[0].written && made[1].written) {
       EXPECT_EQ(tests::bytes_of(folder / "after" / made[0].path),
                 tests::bytes_of(folder / "ahead" / made[1].path))
           << keys;
+    }
   }
 }
 
