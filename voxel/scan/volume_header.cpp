@@ -30,7 +30,7 @@ class NiftiGate {
     try {
       held_ = SampleStream(path, 0, is_gzip(path)).read(bytes_.data(), bytes_.size());
     } catch (const Error&) {
-      // Below with what is too short.
+      // Refused below, as what is too short is.
     }
     if (held_ < header_bytes) refuse(path_, "is cut short or damaged within its header");
     constexpr auto size = static_cast<std::int32_t>(header_bytes);
@@ -301,6 +301,18 @@ void place_meta_samples(const fs::path& path, std::size_t header_end, VolumeHead
                     !header.field("elementtointensityfunctionoffset");
 }
 
+/// A packed NIfTI file is packed as a whole, header included; of others the samples are.
+bool is_packed_whole(VolumeFormat format, const VolumeHeader& header) {
+  return header.is_packed && format == VolumeFormat::Nifti;
+}
+SampleStream stream_of(VolumeFormat format, const VolumeHeader& header) {
+  return {header.data_file, is_packed_whole(format, header) ? 0 : header.data_at, header.is_packed};
+}
+/// The bytes of the stream that are no samples yet.
+std::uintmax_t before_samples(VolumeFormat format, const VolumeHeader& header) {
+  return is_packed_whole(format, header) ? header.data_at : 0;
+}
+
 [[noreturn]] void refuse_short(const fs::path& path, std::uintmax_t held, std::uintmax_t bytes) {
   refuse(path, "its samples are cut short: " + std::to_string(held) + " bytes of " + std::to_string(bytes));
 }
@@ -387,10 +399,8 @@ VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
 
 void read_plain_samples(const fs::path& path, VolumeFormat format, const VolumeHeader& header, char* samples,
                         std::uintmax_t bytes) {
-  // A NIfTI file is packed as a whole.
-  const bool is_whole = header.is_packed && format == VolumeFormat::Nifti;
-  SampleStream stream(header.data_file, is_whole ? 0 : header.data_at, header.is_packed);
-  std::vector<char> before(is_whole ? header.data_at : 0);
+  SampleStream stream = stream_of(format, header);
+  std::vector<char> before(before_samples(format, header));
   if (stream.read(before.data(), before.size()) < before.size()) refuse_short(path, 0, bytes);
   const std::uintmax_t held = stream.read(samples, bytes);
   if (held < bytes) refuse_short(path, held, bytes);
@@ -403,14 +413,10 @@ void require_samples(const fs::path& path, VolumeFormat format, const VolumeHead
   const bool is_text = says(header, "binarydata", "false", "true") ||
                        (!header.is_packed && !says(header, "encoding", "raw", "raw"));
   if (is_text) return;  // the library counts the numbers that it parses
-  std::uintmax_t held = 0;
-  if (!header.is_packed)
-    held = fs::file_size(header.data_file);
-  else if (format == VolumeFormat::Nifti)
-    held = SampleStream(path, 0, true).skip_rest();
-  else
-    held = header.data_at + SampleStream(header.data_file, header.data_at, true).skip_rest();
-  if (held < header.data_at + bytes) refuse_short(path, held - std::min(held, header.data_at), bytes);
+  const std::uintmax_t before = header.is_packed ? before_samples(format, header) : header.data_at;
+  const std::uintmax_t held =
+      header.is_packed ? stream_of(format, header).skip_rest() : fs::file_size(header.data_file);
+  if (held < before + bytes) refuse_short(path, held - std::min(held, before), bytes);
 }
 
 }  // namespace octotomy::voxel
