@@ -3,9 +3,9 @@
 // DICOM beyond our own writer: frames of one file, deflated attributes, several series, scout views.
 #include <fstream>
 #include <gtest/gtest.h>
-#include <zlib.h>
 
 #include "tests/voxel/linear_scene.h"
+#include "tests/voxel/scan/deflated.h"
 #include "tests/voxel/scan/dicom_bytes.h"
 #include "tests/voxel/scan/dicom_frames.h"
 #include "tests/voxel/scratch_folder.h"
@@ -16,6 +16,7 @@ namespace octotomy::voxel {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::deflated;
 using tests::DicomBytes;
 using Frames = tests::DicomFrames;
 using tests::ScratchFolder;
@@ -81,24 +82,10 @@ TEST(ReadDicom, RefusesFramesThatDoNotSayWhereTheyLieOrAreCutShort) {
       << reason(DicomBytes::file(explicit_little, cut));
 }
 
-std::string deflated(const std::string& bytes) {
-  z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
-  std::string packed(compressBound(static_cast<uLong>(bytes.size())) + 64, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  packed.resize(packed.size() - stream.avail_out);
-  deflateEnd(&stream);
-  return packed;
-}
-
 TEST(ReadDicom, InflatesWhatIsDeflatedAsAWhole) {
   const ScratchFolder folder;
   const Frames frames;
-  const std::string packed = deflated(frames.attributes());
+  const std::string packed = deflated(frames.attributes(), -MAX_WBITS);
   write_bytes(folder / "deflated.dcm", DicomBytes::file(deflated_little, packed));
   expect_ramp(read_scene(folder / "deflated.dcm"), frames);
   for (const std::size_t keep : {packed.size() / 2, packed.size() - 3}) {

@@ -6,8 +6,8 @@
 #include <random>
 #include <string>
 #include <vector>
-#include <zlib.h>
 
+#include "tests/voxel/scan/deflated.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/space/error.h"
 
@@ -15,22 +15,9 @@ namespace octotomy::voxel {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::deflated;
 
 constexpr int gzip_window = MAX_WBITS + 16, zlib_window = MAX_WBITS;
-
-std::string deflated(const std::string& bytes, int window_bits) {
-  z_stream stream{};
-  EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY), Z_OK);
-  std::string packed(deflateBound(&stream, bytes.size()) + 32, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  packed.resize(packed.size() - stream.avail_out);
-  deflateEnd(&stream);
-  return packed;
-}
 
 /// Bytes of which some repeat and some do not: stored, fixed and dynamic blocks.
 std::string bytes_of(std::size_t count, unsigned seed) {
