@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The surface of a scan's window or of an octree, in files; in a plan it is the mesh kernel's side of window
 // and segment, and the step surface.
-#include <algorithm>
 #include <limits>
 #include <utility>
 

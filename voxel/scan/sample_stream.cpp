@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Inflates by ISA-L, three times as fast as zlib.
+// Inflates by ISA-L: 1.6 to 1.9 times as fast as zlib on a packed CT.
 #include "voxel/scan/sample_stream.h"
 
 #include <algorithm>
