@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Booleans and measures of meshes, and the same work in CGAL called plainly and in Manifold.
+// Booleans, measures and fewer triangles of meshes, and the same work in CGAL and OpenMesh called plainly and
+// in Manifold.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -10,10 +11,12 @@
 #include "brep/measure/gap.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/measure.h"
+#include "brep/shape/decimate.h"
 #include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/manifold_peer.h"
 #include "tests/bench/subjects.h"
+#include "tests/brep/shape/plain_decimation.h"
 #include "tests/brep/shapes.h"
 #if defined(OCTOTOMY_HAS_CGAL)
 #include "tests/bench/cgal_peer.h"
@@ -100,6 +103,17 @@ void run_corners(benchmark::State& state, const brep::Triangles& a, const brep::
   state.counters["gap_mm"] = gap_mm;
 }
 
+/// Takes triangles from a ball of unit radius.
+template <typename Decimate>
+void run_decimate(benchmark::State& state, const Decimate& decimate) {
+  const brep::Mesh mesh = brep::mesh_of(ball({0, 0, 0}, 224));
+  brep::DecimateOptions options;
+  options.max_error_mm = 3e-4;
+  options.max_normal_deviation_deg = 15.0;
+  for (auto _ : state)
+    state.counters["triangles_out"] = static_cast<double>(decimate(mesh, options).n_faces());
+}
+
 #if defined(OCTOTOMY_HAS_CGAL)
 void run_cgal(benchmark::State& state, const Pair& pair) {
   const CgalSurface a(pair.a), b(pair.b);
@@ -172,6 +186,9 @@ void register_mesh_boolean() {
   add("mesh_measure/corners/beside/500k", [](benchmark::State& state) {
     run_corners(state, ball({0, 0, 0}, 500), ball({2.1, 0.2, 0.1}, 500));
   });
+  add("mesh_shape/decimate/ball/100k", [](benchmark::State& state) { run_decimate(state, brep::decimate); });
+  add("peer/openmesh/mesh_shape/decimate/ball/100k",
+      [](benchmark::State& state) { run_decimate(state, brep::plain_decimation); });
   add("mesh_measure/size/500k", [](benchmark::State& state) { run_size(state, ball({0, 0, 0}, 500)); });
 #if defined(OCTOTOMY_HAS_CGAL)
   add("peer/cgal/mesh_measure/size/500k", [](benchmark::State& state) {

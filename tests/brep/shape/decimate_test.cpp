@@ -10,6 +10,7 @@
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/triangles.h"
+#include "tests/brep/shape/plain_decimation.h"
 #include "tests/brep/shapes.h"
 
 namespace octotomy::brep {
@@ -39,6 +40,22 @@ TEST(Decimate, ABallKeepsItsVolumeWithinTheErrorAndItsVerticesAreTheOldOnes) {
     const OpenMesh::Vec3d& p = coarse.point(vertex);
     EXPECT_TRUE(points.contains({p[0], p[1], p[2]}));
   }
+}
+
+TEST(Decimate, CollapsesTheSameEdgesAsTheLibraryOnItsOwnMesh) {
+  const Triangles torus = shapes::torus(20.0, 6.0, 60, 30);
+  for (const Triangles& fine : {ball(30.0, 4), torus, shapes::box({0, 0, 0}, {3, 2, 1})})
+    for (const double error_mm : {0.05, 0.5, 20.0}) {
+      DecimateOptions options;
+      options.max_error_mm = error_mm;
+      options.max_normal_deviation_deg = error_mm > 1.0 ? 90.0 : 45.0;
+      options.max_aspect = error_mm > 1.0 ? 1000.0 : 10.0;
+      const Mesh plain = plain_decimation(mesh_of(fine), options);
+      if (!health(plain).solid()) continue;
+      const Triangles ours = triangles_of(decimate(mesh_of(fine), options)), theirs = triangles_of(plain);
+      EXPECT_EQ(ours.points_mm, theirs.points_mm);
+      EXPECT_EQ(ours.faces, theirs.faces);
+    }
 }
 
 TEST(Decimate, EndsAtTheNumberOfFacesAskedFor) {
