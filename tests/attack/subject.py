@@ -38,15 +38,22 @@ class Ended:
 class Subject:
     """The program, with a folder of its own that is removed at the end."""
 
+    sound = {}  # the files to work on, made by the first subject
+
     def __init__(self, build):
         self.program = str(Path(build).resolve() / "octotomy")
         self.folder = Path(tempfile.mkdtemp(prefix="octotomy-attack-"))
         self.temporary = self.folder / "tmp"
         self.temporary.mkdir()
-        self.need("phantom", "head", "--voxel", "4", "-o", "head.nrrd")
-        self.need("mesh", "head.nrrd", "--window", "300:", "-o", "head.stl")
-        self.need("phantom", "sphere", "--voxels", "32", "--radius", "12", "-o", "ball.octree")
-        self.need("mesh", "ball.octree", "-o", "ball.stl")
+        if not Subject.sound:
+            self.need("phantom", "head", "--voxel", "4", "-o", "head.nrrd")
+            self.need("mesh", "head.nrrd", "--window", "300:", "-o", "head.stl")
+            self.need("phantom", "sphere", "--voxels", "32", "--radius", "12", "-o", "ball.octree")
+            self.need("mesh", "ball.octree", "-o", "ball.stl")
+            for name in ("head.nrrd", "head.stl", "ball.octree", "ball.stl"):
+                Subject.sound[name] = (self.folder / name).read_bytes()
+        for name, content in Subject.sound.items():
+            self.write(name, content)
         self.write("plan.json", json.dumps(PLAN))
 
     def __enter__(self):

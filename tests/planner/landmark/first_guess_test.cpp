@@ -149,7 +149,7 @@ TEST(FirstGuess, LeavesTheMandibleOutWhereThereIsNone) {
 
 // A real head with metal in its teeth, whose landmarks were set by hand in pictures of 1 mm pixels; its
 // slices are 2 mm apart.
-TEST(FirstGuess, FindsARealHeadsPointsWhereAPersonSetThem) {
+TEST(FirstGuessOfARealHead, FindsPointsWhereAPersonSetThem) {
   OCTOTOMY_NEEDS_DATA("ct_unc_cthead.nrrd");
   const Skull skull = skull_of(voxel::read_scene(tests::reference_data("ct_unc_cthead.nrrd")));
   const auto found = by_name(guess_landmarks(skull.drawn, skull.surface));
