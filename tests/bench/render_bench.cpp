@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Whole pictures of the head phantom's skull, partial-volume depth and shading included, and what the same
-// picture takes elsewhere: the isosurface mesh in Embree, its level set in OpenVDB, the scan in VTK. What
-// each builds once is not counted. Peers light a pixel by one head light on the surface they met.
+// picture takes elsewhere: the isosurface mesh in Embree, its level set in OpenVDB and NanoVDB, the scan in
+// VTK. What each builds once is not counted. Peers light a pixel by one head light on the surface they met.
 #include <limits>
 #include <string>
 #include <tbb/global_control.h>
@@ -16,6 +16,9 @@
 #include "voxel/view/render.h"
 #ifdef OCTOTOMY_HAS_EMBREE
 #include "tests/bench/embree_peer.h"
+#endif
+#ifdef OCTOTOMY_HAS_NANOVDB
+#include "tests/bench/nanovdb_peer.h"
 #endif
 #ifdef OCTOTOMY_HAS_OPENVDB
 #include "tests/bench/openvdb_peer.h"
@@ -132,6 +135,17 @@ void run_embree(benchmark::State& state, const Case& the) {
 }
 #endif
 
+#ifdef OCTOTOMY_HAS_NANOVDB
+void run_nanovdb(benchmark::State& state, const Case& the) {
+  const NanoVdbPeer peer(mesh_of(the.side), universe(the.side).lattice().spacing_mm().x);
+  const PicturePlane plane = plane_of(the);
+  std::vector<std::uint8_t> rgb;
+  int lit = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(lit = peer.draw(plane, rgb));
+  state.counters["lit"] = lit;
+}
+#endif
+
 #ifdef OCTOTOMY_HAS_OPENVDB
 void run_openvdb(benchmark::State& state, const Case& the) {
   const OpenVdbSurface peer(mesh_of(the.side), universe(the.side).lattice().spacing_mm().x);
@@ -168,6 +182,9 @@ void register_render() {
           add(the.name(), [=](benchmark::State& state) { run(state, the); });
 #ifdef OCTOTOMY_HAS_EMBREE
           add("peer/embree/" + the.name(), [=](benchmark::State& state) { run_embree(state, the); });
+#endif
+#ifdef OCTOTOMY_HAS_NANOVDB
+          add("peer/nanovdb/" + the.name(), [=](benchmark::State& state) { run_nanovdb(state, the); });
 #endif
 #ifdef OCTOTOMY_HAS_OPENVDB
           add("peer/openvdb/" + the.name(), [=](benchmark::State& state) { run_openvdb(state, the); });
