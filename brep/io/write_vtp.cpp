@@ -43,7 +43,7 @@ std::string field_data(const CellData& cells) {
 std::string cell_data(const CellData& cells, Appended& appended) {
   std::string xml;
   for (const auto& [name, numbers] : cells.numbers)
-    xml += appended.array("Int32", name, 1, [&](std::string& values) {
+    xml += appended.array("Int32", name, 1, [&numbers = numbers](std::string& values) {
       for (const std::int32_t number : numbers) append_little(values, number);
     });
   return xml.empty() ? xml : "<CellData>\n" + xml + "</CellData>\n";

@@ -155,7 +155,6 @@ std::size_t pattern_of(const Label& a, const Label& b, const Label& c, const Lab
   return static_cast<std::size_t>((a == b ? 1 : 0) | (a == c ? 2 : 0) | (a == d ? 4 : 0) | (b == c ? 8 : 0) |
                                   (b == d ? 16 : 0) | (c == d ? 32 : 0));
 }
-constexpr std::size_t all_equal = 63;
 
 /// The pieces of each tetrahedron by the pattern of its labels.
 const std::array<std::array<Pieces, 64>, 6>& pieces() {
