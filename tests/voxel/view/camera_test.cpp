@@ -113,7 +113,8 @@ TEST(Camera, ViewsThatAreNoFrameAreRefused) {
   EXPECT_TRUE(is_frame(options.view));
   options.view.right = -options.view.right;
   EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
-  options.view = stereo_pair(parse_view("anterior"), std::nan(""))[0];
+  options.view = parse_view("anterior");
+  options.view.right.x = std::nan("");
   EXPECT_FALSE(is_frame(options.view));
   EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
 }
