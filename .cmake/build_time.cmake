@@ -52,7 +52,7 @@ function(octotomy_optimize_less)
 endfunction()
 
 # Sources compiled several at once: what their headers make of templates is then made once, which halves a cold build of
-# the planner and of its tests. An edit rebuilds its neighbours too, so developers' presets leave it off.
+# the planner and of its tests. An edit rebuilds its neighbours too, so the preset `dev` leaves it off.
 option(OCTOTOMY_BATCHES "Compile several sources at once: a faster cold build, a slower rebuild" OFF)
 
 # octotomy_batch(SIZE TARGET...): SIZE sources at once.

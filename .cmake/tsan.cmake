@@ -8,3 +8,4 @@ set(OCTOTOMY_WERROR ON CACHE BOOL "")
 # TBB as installed was built without the sanitizer, which then sees races in whatever TBB hands over.
 set(OCTOTOMY_PLAIN_THREADS ON CACHE BOOL "")
 set(OCTOTOMY_PCH ON CACHE BOOL "")
+set(OCTOTOMY_BATCHES ON CACHE BOOL "")
