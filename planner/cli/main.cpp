@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
@@ -22,13 +24,11 @@
 #include <tbb/global_control.h>
 #include <thread>
 #include <unistd.h>
-#include <vector>
 
 #include "brep/mesh/error.h"
 #include "planner/cli/operation_verb.h"
 #include "planner/cli/verbs.h"
 #include "planner/suite/suite.h"
-#include "planner/table/nearest_name.h"
 #include "planner/verb/manual.h"
 #include "planner/verb/verb.h"
 #include "voxel/space/error.h"
@@ -81,8 +81,10 @@ class Watch {
   static void run(Program& program, const std::stop_token& over) {
     const Clock::time_point start = Clock::now();
     std::optional<Clock::time_point> asked;
-    while (!over.stop_requested()) {
-      std::this_thread::sleep_for(look_every);
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any end;  // wakes at once, where a sleep would delay the program's end
+    while (!end.wait_for(lock, over, look_every, [&over] { return over.stop_requested(); })) {
       if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
       const bool late = program.time_limit_s &&
                         std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s;
@@ -142,15 +144,6 @@ int run_chosen(Program& program) {
   }
 }
 
-/// Nothing has that name: the nearest one, or where to find them.
-std::string unknown_verb(CLI::App& app, const std::string& word) {
-  std::vector<std::string> verbs;
-  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
-  const std::optional<std::string> nearest = octotomy::planner::nearest_name(word, verbs);
-  return "there is no verb '" + word + "'" + (nearest ? ", did you mean '" + *nearest + "'?" : "") +
-         "; see octotomy --help";
-}
-
 /// Help and version go to standard output, which may be full.
 int say_help(const CLI::App& app, const CLI::ParseError& error) {
   app.exit(error);
@@ -175,7 +168,7 @@ int parse_and_run(int count, char** arguments) {
       "out of time, memory or "
       "disk.");
   cli::add_manual(app);
-  Program program(app);
+  Program program(app, {arguments + std::min(1, count), arguments + count});
   cli::add_look(program);
   cli::add_plan_verbs(program);
   cli::add_verify_verbs(program);
@@ -195,7 +188,7 @@ int parse_and_run(int count, char** arguments) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return say_help(app, error);
     if (count > 1 && arguments[1][0] != '-' && app.get_subcommands().empty())
-      return refuse(unknown_verb(app, arguments[1]), cli::bad_input);
+      return refuse(cli::unknown_verb(app, arguments[1]), cli::bad_input);
     return refuse(std::string(error.what()) + "; see octotomy --help", cli::bad_input);
   } catch (const std::filesystem::filesystem_error& error) {
     // A path that is too long, or in a folder that is closed.

@@ -289,6 +289,7 @@ void add_verb(Program& program, const Operation& operation) {
     return operation.on_files ? answer_from_files(program, action, *text)
                               : OperationRun(program, action, *text).run();
   });
+  if (!program.is_asked(operation.name)) return;
   const std::vector<Field> fields = fields_of(operation);
   add_field_options(verb, operation, fields, text->words);
   if (!operation.on_files) add_object_options(verb, *text);

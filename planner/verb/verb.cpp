@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "planner/table/json_file.h"
+#include "planner/table/nearest_name.h"
 #include "planner/verb/numbers.h"
 #include "voxel/filter/tissue.h"
 
@@ -43,6 +44,7 @@ CLI::App& Program::verb(const std::string& name, const std::string& does, const 
   const auto blank = name.find(' ');
   if (blank != std::string::npos) parent = app.get_subcommand(name.substr(0, blank));
   CLI::App& sub = *parent->add_subcommand(name.substr(blank == std::string::npos ? 0 : blank + 1), does);
+  if (!is_asked(sub.get_name())) return sub;
   sub.add_flag("--json", json, "One JSON object on standard output, nothing else there");
   sub.add_option("--threads", threads, "Threads to use; the answer is the same on any number")
       ->check(CLI::Range(1, 1024))
@@ -57,6 +59,11 @@ CLI::App& Program::verb(const std::string& name, const std::string& does, const 
   sub.footer("Example:\n  " + example);
   sub.callback([this, act = std::move(action)] { chosen = act; });
   return sub;
+}
+
+bool Program::is_asked(const std::string& name) const {
+  return words_.empty() || words_.front().starts_with('-') ||
+         std::find(words_.begin(), words_.end(), name) != words_.end();
 }
 
 void Program::note_scan(const ScanRecord& scan) const {
@@ -128,6 +135,14 @@ std::function<void(double)> Program::progress(const std::string& doing) const {
   const auto report = progress();
   if (!report) return {};
   return [report, doing](double fraction) { report(doing, fraction); };
+}
+
+std::string unknown_verb(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+  const std::optional<std::string> nearest = nearest_name(word, verbs);
+  return "there is no verb '" + word + "'" + (nearest ? ", did you mean '" + *nearest + "'?" : "") +
+         "; see octotomy --help";
 }
 
 void warn(const std::string& line) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "planner/file/file_kind.h"
@@ -22,7 +23,8 @@ enum Status { done = 0, disagreement = 1, bad_input = 2, out_of_resources = 3 };
 
 /// The program as a verb sees it.
 struct Program {
-  explicit Program(CLI::App& top) : app(top) {}
+  /// `words`: the command line after the program's name.
+  Program(CLI::App& top, std::vector<std::string> words) : app(top), words_(std::move(words)) {}
 
   CLI::App& app;
   bool json = false;
@@ -32,9 +34,12 @@ struct Program {
   std::stop_source stop;
   std::function<int()> chosen;  ///< what the verb on the command line does; its answer is the exit status
 
-  /// Adds a verb with the options that every verb has. `example` ends its --help.
+  /// Adds a verb, and where it is asked for the options that every verb has. `example` ends its --help.
   CLI::App& verb(const std::string& name, const std::string& does, const std::string& example,
                  std::function<int()> action);
+  /// Whether the command line may mean this verb, which then needs its options: adding those of all verbs
+  /// takes longer than most verbs' work. True of all verbs where an option comes first, as --manual.
+  bool is_asked(const std::string& name) const;
   /// Keeps the audit of a scan that the verb has read for say().
   void note_scan(const std::filesystem::path& path, const voxel::Scene& scene) const;
   void note_scan(const ScanRecord& scan) const;
@@ -50,9 +55,13 @@ struct Program {
   std::function<void(double)> progress(const std::string& doing) const;
 
  private:
+  std::vector<std::string> words_;
   std::shared_ptr<std::vector<std::string>> tissues_ = std::make_shared<std::vector<std::string>>();
   std::shared_ptr<std::vector<ScanRecord>> scans_ = std::make_shared<std::vector<ScanRecord>>();
 };
+
+/// Says that no verb is called `word`: with the nearest one's name, and where to find them.
+std::string unknown_verb(const CLI::App& app, const std::string& word);
 
 /// One line on standard error, as line_of() makes it.
 void warn(const std::string& line);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/verb/verb.h"
+
+#include <gtest/gtest.h>
+
+namespace octotomy::planner::cli {
+namespace {
+
+/// The options that a verb called `name` gets from a command line.
+std::size_t option_count(const std::string& name, const std::vector<std::string>& words) {
+  CLI::App app;
+  app.add_subcommand("plan", "");
+  Program program(app, words);
+  return program.verb(name, "", "", [] { return 0; }).get_options().size();
+}
+
+TEST(Verb, HasItsOptionsWhereTheCommandLineMayMeanIt) {
+  const std::size_t all = option_count("info", {"info", "head.nrrd"});
+  EXPECT_GE(all, 5u);
+  EXPECT_EQ(option_count("info", {"--manual", "man"}), all);
+  EXPECT_EQ(option_count("info", {"--json", "info"}), all);
+  EXPECT_EQ(option_count("info", {}), all);
+  EXPECT_EQ(option_count("plan diff", {"plan", "diff", "a", "b"}), all);
+  EXPECT_EQ(option_count("info", {"look", "head.nrrd"}), 1u) << "its --help alone";
+  EXPECT_EQ(option_count("plan diff", {"plan", "merge", "a", "b"}), 1u);
+}
+
+TEST(Verb, OfAnUnknownNameTheNearestIsSaid) {
+  CLI::App app;
+  app.add_subcommand("measure", "");
+  EXPECT_EQ(unknown_verb(app, "mesure"),
+            "there is no verb 'mesure', did you mean 'measure'?; see octotomy --help");
+}
+
+}  // namespace
+}  // namespace octotomy::planner::cli
