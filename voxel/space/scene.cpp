@@ -52,6 +52,10 @@ void check(const Scene& scene) {
     for (int row = 0; row < 4; ++row)
       if (!std::isfinite(lattice.lps_from_voxel[column][row]))
         throw std::invalid_argument(scene.source + ": the lattice's position is not finite");
+  const glm::dvec3 spacing_mm = lattice.spacing_mm();  // squares, which overflow before the steps do
+  if (!std::isfinite(spacing_mm.x + spacing_mm.y + spacing_mm.z) ||
+      !glm::all(glm::greaterThan(spacing_mm, glm::dvec3(0.0))))
+    throw std::invalid_argument(scene.source + ": the lattice's spacing is no length in millimetres");
 }
 
 double interpolate(const Scene& scene, const glm::dvec3& p_voxel) {
