@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
 
 #include "brep/io/mesh_scanner.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/short_text.h"
 
 namespace octotomy::brep {
 namespace {
@@ -198,6 +200,29 @@ std::string bytes_of(const std::filesystem::path& path) {
   return bytes;
 }
 
+/// Sums of a thousand products of sixteen coordinates are finite up to it. The longest products known are of
+/// six: the oriented box compares fractions of areas by squares of sides (CGAL, Area_less_rectangle_2).
+const double largest_coordinate_mm =
+    std::pow(std::numeric_limits<double>::max() / 1e3, 1.0 / 16.0);  // 1.2e19
+
+Triangles within_reach(Triangles triangles) {
+  for (std::size_t i = 0; i < triangles.points_mm.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      if (const double x = triangles.points_mm[i][axis]; std::abs(x) > largest_coordinate_mm)
+        throw Error(ErrorCode::Input, "point " + std::to_string(i) + " has a coordinate of " + short_text(x) +
+                                          " mm, beyond the largest, " + short_text(largest_coordinate_mm) +
+                                          " mm: is the file damaged, or its unit another one?");
+  return triangles;
+}
+
+Triangles read_any(const std::string& bytes, const std::string& extension) {
+  if (extension == ".stl") return read_stl(bytes);
+  if (extension == ".ply") return read_ply(bytes);
+  if (extension == ".obj") return read_obj(bytes);
+  if (extension == ".off") return read_off(bytes);
+  return extension == ".vtk" ? read_vtk(bytes) : read_vtp(bytes);
+}
+
 }  // namespace
 
 Triangles read_triangles(const std::filesystem::path& path) {
@@ -212,11 +237,7 @@ Triangles read_triangles(const std::filesystem::path& path) {
           "'" + extension + "' is no mesh format that is read; use .stl, .ply, .obj, .off, .vtk or .vtp");
     const std::string bytes = bytes_of(path);
     if (bytes.empty()) throw Error(ErrorCode::Input, "the file is empty");
-    if (extension == ".stl") return read_stl(bytes);
-    if (extension == ".ply") return read_ply(bytes);
-    if (extension == ".obj") return read_obj(bytes);
-    if (extension == ".off") return read_off(bytes);
-    return extension == ".vtk" ? read_vtk(bytes) : read_vtp(bytes);
+    return within_reach(read_any(bytes, extension));
   } catch (const std::runtime_error& e) {
     throw Error(ErrorCode::Input, path.string() + ": " + e.what());
   }

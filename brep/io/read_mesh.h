@@ -11,8 +11,8 @@ namespace octotomy::brep {
 /// .off (ASCII), .vtk (legacy polydata, ASCII and binary, versions to 5.1) or .vtp (XML polydata; text,
 /// base64 or appended, plain or packed by zlib). Larger polygons are split into fans from their first corner,
 /// strips into triangles; colours, normals, textures, lines and loose points are passed over. Coordinates are
-/// taken as LPS millimetres: no such format says its frame or unit. Throws Error (Input) with path,
-/// place and reason; never allocates beyond what the file's size can hold.
+/// taken as LPS millimetres: no such format says its frame or unit; those beyond 1.2e19 are refused. Throws
+/// Error (Input) with path, place and reason; never allocates beyond what the file's size can hold.
 Triangles read_triangles(const std::filesystem::path& path);
 
 }  // namespace octotomy::brep

@@ -159,6 +159,17 @@ TEST(ReadMesh, WhatIsBadIsToldWithPathAndPlace) {
   EXPECT_THROW(read_triangles("/nowhere/at/all.stl"), std::runtime_error);
 }
 
+TEST(ReadMesh, CoordinatesWhoseProductsOverflowAreRefused) {
+  const auto tetrahedron = [](const std::string& far) {
+    return "OFF\n4 4 0\n0 0 0\n" + far + " 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  };
+  EXPECT_EQ(read("far.off", tetrahedron("1e19")).points_mm.size(), 4u);
+  for (const char* far : {"2e19", "-1e38", "1e300"})
+    EXPECT_NE(refusal_of("far.off", tetrahedron(far)).find("far.off: point 1 has a coordinate of "),
+              std::string::npos)
+        << far;
+}
+
 TEST(ReadMesh, NoPrefixOfAFileCrashesTheReader) {
   // Every cut of a small file either reads as fewer triangles or is refused with the path.
   const Mesh mesh = mesh_of(shapes::box({0, 0, 0}, {1, 2, 3}));
