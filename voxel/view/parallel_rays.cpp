@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 // All in the mirrored frame, in which rays rise along all axes, so that the order of children's and voxels'
 // numbers is front to back for every ray.
@@ -152,33 +153,65 @@ class ParallelRays::Square {
     const glm::vec2 per_px = static_cast<float>(cells) / (2.0f * half);
     const glm::vec2 first = (0.5f - centre + half) * per_px;
     const auto cell = [](float position) { return std::clamp(static_cast<int>(position), 0, cells - 1); };
+    std::array<std::int8_t, square_px> cell_of_column;
+    for (int x = pixels.left; x <= pixels.right; ++x)
+      cell_of_column[static_cast<std::size_t>(x)] =
+          static_cast<std::int8_t>(cell(first.x + static_cast<float>(x) * per_px.x));
     const std::uint64_t columns = bits_between(pixels.left, pixels.right);
+    batch_.leaf = corner;
     for (int y = pixels.top; y <= pixels.bottom; ++y) {
-      std::uint64_t& open = open_[static_cast<std::size_t>(y)];
-      if ((open & columns) == 0) continue;
+      const std::uint64_t open = open_[static_cast<std::size_t>(y)] & columns;
+      if (open == 0) continue;
       const std::uint64_t* row =
           rays_.passed_.data() + cell(first.y + static_cast<float>(y) * per_px.y) * cells;
-      for (std::uint64_t rest = open & columns; rest != 0; rest &= rest - 1) {
+      for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
         const int x = std::countr_zero(rest);
-        const std::uint64_t voxels = row[cell(first.x + static_cast<float>(x) * per_px.x)] & word;
-        if (voxels != 0 && offer(voxels, {x, y}, corner)) open &= ~(std::uint64_t{1} << x);
+        const std::uint64_t voxels = row[cell_of_column[static_cast<std::size_t>(x)]] & word;
+        if (voxels == 0) continue;
+        add({x, y}, voxels);
+        if (batch_.count == RayBatch::most) offer();
       }
+    }
+    offer();
+  }
+
+  /// Adds a ray that may pass some voxels of the leaf.
+  void add(const glm::ivec2& pixel, std::uint64_t voxels) {
+    const auto ray = static_cast<std::size_t>(batch_.count++);
+    batch_.x[ray] = first_px_.x + pixel.x;
+    batch_.y[ray] = first_px_.y + pixel.y;
+    voxels_[ray] = voxels;
+  }
+
+  /// Offers the batch's rays their voxels, front to back, until each has ended or left the leaf.
+  void offer() {
+    while (batch_.count > 0) {
+      const RayBatch::Rays all = all_children >> (64 - batch_.count);
+      const RayBatch::Rays passing = find_passages(rays_.rays_, rays_.mirror_, voxels_, batch_);
+      // The table's other voxels are dropped first, so that full vectors of rays are offered.
+      if (passing != all) {
+        move_on(~passing, 0);
+        continue;
+      }
+      const RayBatch::Rays ended = accept_(batch_);
+      move_on(~ended, ended);
     }
   }
 
-  /// Offers the voxels that the pixel's ray passes; true once one is accepted.
-  bool offer(std::uint64_t voxels, const glm::ivec2& pixel, const glm::ivec3& corner) {
-    const glm::dvec3 start = rays_.mirror_.mirrored(rays_.rays_.start(glm::dvec2(first_px_ + pixel) + 0.5));
-    for (; voxels != 0; voxels &= voxels - 1) {
-      const glm::ivec3 voxel = corner + child_place(std::countr_zero(voxels));
-      bool passes = true;
-      for (int axis = 0; axis < 3; ++axis)
-        if (rays_.mirror_.still[axis]) passes = passes && std::floor(start[axis]) == voxel[axis];
-      if (!passes) continue;
-      const Passage passage = passage_of(rays_.mirror_, start, voxel);
-      if (passage.enter_mm < passage.leave_mm && accept_(first_px_ + pixel, passage)) return true;
+  /// Moves rays on to the next voxel that each may pass, and drops those that have none or ended.
+  void move_on(RayBatch::Rays moving, RayBatch::Rays ended) {
+    const int count = std::exchange(batch_.count, 0);
+    for (int i = 0; i < count; ++i) {
+      const auto ray = static_cast<std::size_t>(i);
+      const glm::ivec2 pixel = glm::ivec2(batch_.x[ray], batch_.y[ray]) - first_px_;
+      std::uint64_t voxels = voxels_[ray];
+      if (((ended >> i) & 1) != 0) {
+        open_[static_cast<std::size_t>(pixel.y)] &= ~(std::uint64_t{1} << pixel.x);
+        continue;
+      }
+      if (((moving >> i) & 1) != 0) voxels &= voxels - 1;
+      if (voxels != 0) add(pixel, voxels);
     }
-    return false;
   }
 
   const ParallelRays& rays_;
@@ -187,6 +220,8 @@ class ParallelRays::Square {
   const Accept& accept_;
   const Announce& announce_;
   std::array<std::uint64_t, square_px> open_{};  ///< by row
+  RayBatch batch_;
+  RayBatch::ByRay<std::uint64_t> voxels_{};  ///< that each ray of the batch may pass
 };
 
 ParallelRays::ParallelRays(const Octree& octree, const VoxelRays& rays)

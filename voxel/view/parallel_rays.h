@@ -9,6 +9,7 @@
 
 #include "voxel/tree/octree.h"
 #include "voxel/view/camera.h"
+#include "voxel/view/ray_batch.h"
 #include "voxel/view/ray_walk.h"
 
 namespace octotomy::voxel {
@@ -16,13 +17,14 @@ namespace octotomy::voxel {
 /// The parallel rays of a picture through one octree, a square of pixels at a time. One walk of the octree,
 /// front to back (thesis 4.4, theorem 4.1), serves all rays of the square, and skips nodes behind rays that
 /// have ended. Rays differ in a leaf only by their position, so that a table holds the voxels that they pass
-/// there, 64 to a word. The result is that of Walk (ray_walk.h) ray by ray. Any number of threads may cast.
+/// there, 64 to a word. Rays that meet the same leaf are offered its voxels together, as vectors. The result
+/// is that of Walk (ray_walk.h) ray by ray. Any number of threads may cast.
 class ParallelRays {
  public:
   static constexpr int square_px = 64;  ///< edge of a square
 
-  /// Receives a voxel of the octree that a pixel's ray passes. Returns true to end the ray there.
-  using Accept = std::function<bool(const glm::ivec2& pixel, const Passage& passage)>;
+  /// Receives voxels of the octree that rays pass. Returns the rays that end there.
+  using Accept = std::function<RayBatch::Rays(const RayBatch& batch)>;
 
   /// Receives a leaf's first voxel a little before its voxels go to Accept, to prefetch data.
   using Announce = std::function<void(const glm::ivec3& leaf)>;
@@ -34,7 +36,7 @@ class ParallelRays {
 
   /// Calls `accept` with the voxels that the rays of a square of pixels pass, each ray's from front to back.
   /// The square is pixels `first_px` to `last_px`, both included. Precondition: at most square_px pixels a
-  /// side. Cost: the visible blocks of the octree, and one call per ray and voxel.
+  /// side. Cost: the visible blocks of the octree, and a call for up to 64 rays that pass a leaf.
   void cast(const glm::ivec2& first_px, const glm::ivec2& last_px, const Accept& accept,
             const Announce& announce = {}) const;
 

@@ -2,11 +2,13 @@
 #include "voxel/view/ray_cast.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
 
+#include "voxel/view/leaf_surface.h"
 #include "voxel/view/parallel_rays.h"
 #include "voxel/view/pixel_index.h"
 #include "voxel/view/ray_surface.h"
@@ -21,13 +23,19 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Prefetches a leaf's samples, two cache lines.
-void prefetch_leaf(const GreyOctree& grey, const glm::ivec3& leaf) {
-  const glm::ivec3 place = (leaf >> 2) & 3;
-  const std::int16_t* samples =
-      grey.brick(leaf >> 4).samples[static_cast<std::size_t>(child_index(place.x, place.y, place.z))].data();
-  __builtin_prefetch(samples);
-  __builtin_prefetch(samples + 32);
+/// Prefetches the samples of a leaf and of those in front of it, two cache lines each.
+void prefetch_leaf(const GreyOctree& grey, const Mirror& mirror, const glm::ivec3& leaf) {
+  const int side = grey.universe().side();
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 before(i & 1, (i >> 1) & 1, i >> 2);
+    const glm::ivec3 at = leaf - 4 * before * (1 - 2 * mirror.flipped);
+    if (std::min({at.x, at.y, at.z}) < 0 || std::max({at.x, at.y, at.z}) >= side) continue;
+    const glm::ivec3 place = (at >> 2) & 3;
+    const std::int16_t* samples =
+        grey.brick(at >> 4).samples[static_cast<std::size_t>(child_index(place.x, place.y, place.z))].data();
+    __builtin_prefetch(samples);
+    __builtin_prefetch(samples + 32);
+  }
 }
 
 }  // namespace
@@ -42,23 +50,32 @@ struct RayCast::Prepared {
   glm::ivec2 size_px{0};
 
   /// The depth by which a surface may lie in front of the voxel that led to it.
-  static double reach_mm(const DrawnObject& object, const VoxelRay& ray) {
-    return object.grey ? 2.0 / glm::length(ray.per_mm) : 0.0;
+  static double reach_mm(const DrawnObject& object, const glm::dvec3& per_mm) {
+    return object.grey ? 2.0 / glm::length(per_mm) : 0.0;
   }
 
-  /// Updates `nearest` by the surface of object `i` near a voxel. False if there is none and the ray
-  /// continues.
-  bool take(std::size_t i, const VoxelRay& ray, const Mirror& frame, const Passage& passage,
-            Seen& nearest) const {
-    const DrawnObject& object = objects[i];
-    if (nearest.lit() && passage.enter_mm > nearest.depth_mm + reach_mm(object, ray)) return true;
-    std::optional<Seen> seen = Seen{static_cast<float>(passage.enter_mm), 0, true};
-    if (surfaces[i]) seen = surfaces[i]->seen(ray, frame, passage);
+  /// The surface of object `i` near a voxel; none if the ray stays outside it.
+  std::optional<Seen> surface_near(std::size_t i, const VoxelRay& ray, const Mirror& frame,
+                                   const Passage& passage) const {
+    if (!surfaces[i]) return Seen{static_cast<float>(passage.enter_mm), 0, true};
+    return surfaces[i]->seen(ray, frame, passage);
+  }
+
+  /// Updates `nearest` by the surface of object `i` that `find` finds near a voxel. False if there is none
+  /// and the ray continues.
+  template <typename Find>
+  static bool take(std::size_t i, double enter_mm, double reach_mm, const Find& find, Seen& nearest) {
+    if (nearest.lit() && enter_mm > nearest.depth_mm + reach_mm) return true;
+    std::optional<Seen> seen = find();
     if (!seen) return false;
     seen->object = static_cast<std::int16_t>(i);
     if (seen->depth_mm < nearest.depth_mm) nearest = *seen;
     return true;
   }
+
+  /// Pixels of a square, row by row.
+  using Square = std::array<Seen, std::size_t{ParallelRays::square_px} * ParallelRays::square_px>;
+  void cast_square(std::size_t i, const glm::ivec2& first, const glm::ivec2& last, Square& square) const;
 };
 
 RayCast::RayCast(const std::vector<DrawnObject>& objects, const ImagePlane& plane) {
@@ -77,6 +94,49 @@ RayCast::RayCast(const std::vector<DrawnObject>& objects, const ImagePlane& plan
   prepared_ = std::move(prepared);
 }
 
+/// Casts the rays of a square of pixels through object `i`. Each ends in the object's nearest surface.
+void RayCast::Prepared::cast_square(std::size_t i, const glm::ivec2& first, const glm::ivec2& last,
+                                    Square& square) const {
+  const DrawnObject& object = objects[i];
+  const double reach = reach_mm(object, rays.per_mm);
+  const auto pixel_of = [&](const RayBatch& batch, std::size_t ray) -> Seen& {
+    return square[pixel_index(glm::ivec2(ParallelRays::square_px), batch.x[ray] - first.x,
+                              batch.y[ray] - first.y)];
+  };
+  if (!object.grey || object.moved_from_still) {
+    bundles[i].cast(first, last, [&](const RayBatch& batch) {
+      RayBatch::Rays ended = 0;
+      for (int number = 0; number < batch.count; ++number) {
+        const auto ray = static_cast<std::size_t>(number);
+        const VoxelRay line{{batch.start[0][ray], batch.start[1][ray], batch.start[2][ray]}, rays.per_mm};
+        const auto find = [&] { return surface_near(i, line, mirror, batch.passage(ray)); };
+        const bool ends = take(i, batch.enter_mm[ray], reach, find, pixel_of(batch, ray));
+        ended |= RayBatch::Rays{ends} << number;
+      }
+      return ended;
+    });
+    return;
+  }
+  LeafSurface surface(object, rays, mirror);
+  LeafSurface::Found found;
+  const auto take_all = [&](const RayBatch& batch) {
+    surface.find(batch, found);
+    RayBatch::Rays ended = 0;
+    for (int number = 0; number < batch.count; ++number) {
+      const auto ray = static_cast<std::size_t>(number);
+      const auto find = [&]() -> std::optional<Seen> {
+        if (((found.lit >> number) & 1) == 0) return std::nullopt;
+        return Seen{found.depth_mm[ray], 0, ((found.stepped >> number) & 1) != 0};
+      };
+      const bool ends = take(i, batch.enter_mm[ray], reach, find, pixel_of(batch, ray));
+      ended |= RayBatch::Rays{ends} << number;
+    }
+    return ended;
+  };
+  bundles[i].cast(first, last, take_all,
+                  [&](const glm::ivec3& leaf) { prefetch_leaf(*object.grey, mirror, leaf); });
+}
+
 Seen RayCast::seen(const glm::dvec2& p_px) const {
   return seen(p_px, -infinity, infinity);
 }
@@ -92,11 +152,13 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
   for (std::size_t i = 0; i < the.objects.size(); ++i) {
     const DrawnObject& object = the.objects[i];
     // A voxel behind the nearest surface may have its own surface in front of it.
-    const double until_mm =
-        std::min(far_mm, static_cast<double>(nearest.depth_mm)) + the.reach_mm(object, ray);
+    const double reach_mm = the.reach_mm(object, ray.per_mm);
+    const double until_mm = std::min(far_mm, static_cast<double>(nearest.depth_mm)) + reach_mm;
     Walk(object.octree.root(), object.octree.root_height(), frame)
-        .run(mirrored, near_mm, until_mm,
-             [&](const Passage& passage) { return the.take(i, ray, frame, passage, nearest); });
+        .run(mirrored, near_mm, until_mm, [&](const Passage& passage) {
+          const auto find = [&] { return the.surface_near(i, ray, frame, passage); };
+          return the.take(i, passage.enter_mm, reach_mm, find, nearest);
+        });
   }
   return nearest;
 }
@@ -116,17 +178,11 @@ DepthImage RayCast::picture() const {
   tbb::parallel_for(0, squares.x * squares.y, [&](int square) {
     const glm::ivec2 first = glm::ivec2(square % squares.x, square / squares.x) * square_px;
     const glm::ivec2 last = glm::min(first + square_px, the.size_px) - 1;
-    for (std::size_t i = 0; i < the.objects.size(); ++i) {
-      ParallelRays::Announce fetch;
-      if (the.objects[i].grey && !the.objects[i].moved_from_still)
-        fetch = [&grey = *the.objects[i].grey](const glm::ivec3& leaf) { prefetch_leaf(grey, leaf); };
-      const auto take = [&](const glm::ivec2& pixel, const Passage& passage) {
-        const VoxelRay ray{the.rays.start(glm::dvec2(pixel) + 0.5), the.rays.per_mm};
-        Seen& nearest = image.pixels[pixel_index(the.size_px, pixel.x, pixel.y)];
-        return the.take(i, ray, the.mirror, passage, nearest);
-      };
-      the.bundles[i].cast(first, last, take, fetch);
-    }
+    Prepared::Square seen_in_square;
+    for (std::size_t i = 0; i < the.objects.size(); ++i) the.cast_square(i, first, last, seen_in_square);
+    for (int y = first.y; y <= last.y; ++y)
+      std::copy_n(&seen_in_square[static_cast<std::size_t>((y - first.y) * square_px)], last.x - first.x + 1,
+                  &image.pixels[pixel_index(the.size_px, first.x, y)]);
   });
   return image;
 }

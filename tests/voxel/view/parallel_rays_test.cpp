@@ -65,6 +65,14 @@ Subject subject_of(std::uint64_t seed) {
     const Dense dense = blobs(universe.side(), random);
     DrawnObject object{"object", tests::octree_of(universe, dense)};
     if (seed % 3 != 0) object.grey = samples_of(universe, dense, random);
+    // A part of the window's voxels, so that rays meet cut faces, and voxels without samples of the object.
+    if (seed % 4 == 3) {
+      Dense part = dense;
+      part.for_each([&](const glm::ivec3& v) {
+        if (v.x + v.y > universe.side()) part.at(v) = (v.x & 7) == 7 ? 1 : 0;
+      });
+      object.octree = tests::octree_of(universe, part);
+    }
     subject.objects.push_back(object);
   }
   const std::string name = seed % 7 == 0 ? "anterior"
@@ -92,6 +100,7 @@ TEST(ParallelRays, SeeBitForBitWhatEachRaySeesByItself) {
         const Seen other = cast.seen({x + 0.5, y + 0.5});
         ASSERT_EQ(one.object, other.object) << "pixel " << x << ", " << y << ", seed " << seed;
         ASSERT_EQ(one.depth_mm, other.depth_mm) << "pixel " << x << ", " << y << ", seed " << seed;
+        ASSERT_EQ(one.stepped, other.stepped) << "pixel " << x << ", " << y << ", seed " << seed;
         (one.lit() ? lit : unlit)++;
         second += one.object > 0;
         if (one.lit()) (one.stepped ? stepped : smooth)++;
@@ -116,9 +125,10 @@ TEST(ParallelRays, OfferEveryVoxelOfARayInOrderUntilOneIsTaken) {
   const VoxelRays rays = voxel_rays(universe, plane);
   const Mirror mirror(rays.per_mm, 1 << (2 * octree.root_height()));
   std::vector<std::vector<glm::ivec3>> offered(64 * 64);
-  ParallelRays(octree, rays).cast({0, 0}, {63, 63}, [&](const glm::ivec2& pixel, const Passage& passage) {
-    offered[static_cast<std::size_t>(pixel.x + 64 * pixel.y)].push_back(passage.voxel);
-    return false;
+  ParallelRays(octree, rays).cast({0, 0}, {63, 63}, [&](const RayBatch& batch) {
+    for (std::size_t ray = 0; ray < static_cast<std::size_t>(batch.count); ++ray)
+      offered[static_cast<std::size_t>(batch.x[ray] + 64 * batch.y[ray])].push_back(batch.passage(ray).voxel);
+    return RayBatch::Rays{0};
   });
   std::size_t voxels = 0;
   for (int y = 0; y < 64; ++y)

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/view/leaf_surface.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include "voxel/space/vector_clones.h"
+
+// The search of ray_surface.cpp on vectors of rays:
+// 1 copy the samples about the leaf; 2 interpolate them at the entries; 3 take the voxel's face where the
+// object was cut; 4 probe along the other rays until their sample crosses the threshold; 5 interpolate the
+// crossing. Every ray takes the steps of all; those that it does not need have no effect.
+
+#if defined(__GNUC__) && !defined(__clang__)
+// Vectors are passed between functions of this file alone, all of them inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+namespace octotomy::voxel {
+namespace {
+
+constexpr int lanes = 8;
+constexpr int row = LeafSurface::side;
+constexpr int layer = row * row;
+
+/// The sample of voxels beyond the universe: one that was cut away, if it is looked at at all.
+constexpr std::int16_t beyond = std::numeric_limits<std::int16_t>::max();
+
+// Vectors of rays. A comparison gives -1 where it holds.
+using Float = float __attribute__((vector_size(4 * lanes)));
+using Int = std::int32_t __attribute__((vector_size(4 * lanes)));
+using Double4 = double __attribute__((vector_size(32)));
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+template <typename Vector, typename Value>
+[[gnu::always_inline]] inline Vector load(const Value* from) {
+  Vector vector;
+  std::memcpy(&vector, from, sizeof vector);
+  return vector;
+}
+template <typename Vector, typename Value>
+[[gnu::always_inline]] inline void store(const Vector& vector, Value* to) {
+  std::memcpy(to, &vector, sizeof vector);
+}
+template <typename Vector>
+[[gnu::always_inline]] inline Vector clamped(const Vector& v, const Vector& low, const Vector& high) {
+  const Vector least = v < low ? low : v;
+  return least > high ? high : least;
+}
+template <typename Whole, typename Half>
+[[gnu::always_inline]] inline Whole joined(const Half& low, const Half& high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+[[gnu::always_inline]] inline Float floats(const Double4& low, const Double4& high) {
+  return joined<Float>(__builtin_convertvector(low, Float4), __builtin_convertvector(high, Float4));
+}
+[[gnu::always_inline]] inline bool any(const Int& mask) {
+  using Longs = std::int64_t __attribute__((vector_size(4 * lanes)));
+  const auto longs = reinterpret_cast<const Longs&>(mask);
+  return ((longs[0] | longs[1]) | (longs[2] | longs[3])) != 0;
+}
+
+/// What is the same for all rays in a leaf.
+struct Leaf {
+  const std::int32_t* pairs = nullptr;
+  Int first[3];                   ///< voxel of the first pair
+  Int low_cell[3], high_cell[3];  ///< that pairs are there for
+  double per_mm[3];
+  Float per_mm_float[3];
+  float half_voxel_mm = 0.0f;
+  float threshold = 0.0f;
+};
+
+/// One vector of rays.
+struct Lanes {
+  const double* start[3];
+  const double* enter_mm;
+  const double* leave_mm;
+  const std::int32_t* voxel;   ///< number of the pair of the passed voxel
+  const std::int32_t* before;  ///< and of the voxel in front of it
+  float* depth_mm;
+  std::int32_t* kind;
+};
+constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray finds
+
+/// Positions of rays, counted from a voxel near their entry as in RaySamples.
+struct Origins {
+  Float p[3];
+  Int first[3];
+};
+
+/// Pairs by their numbers.
+[[gnu::always_inline]] inline Int pairs_at(const std::int32_t* __restrict pairs, const Int& numbers) {
+  alignas(64) std::int32_t number[lanes], pair[lanes];
+  store(numbers, number);
+  for (int i = 0; i < lanes; ++i) pair[i] = pairs[number[i]];
+  return load<Int>(pair);
+}
+/// The samples of pairs.
+[[gnu::always_inline]] inline Float left_of(const Int& pair) {
+  return __builtin_convertvector((pair << 16) >> 16, Float);
+}
+[[gnu::always_inline]] inline Float right_of(const Int& pair) {
+  return __builtin_convertvector(pair >> 16, Float);
+}
+
+/// Interpolates the samples at a distance from the entry, as RaySamples does.
+[[gnu::always_inline]] inline Float interpolate(const Leaf& leaf, const Origins& origins,
+                                                const Float& distance_mm) {
+  Float t[3];
+  Int at{};
+  for (int axis = 2; axis >= 0; --axis) {
+    const Float p = origins.p[axis] + distance_mm * leaf.per_mm_float[axis];
+    const Int cell = clamped(origins.first[axis] + __builtin_convertvector(p, Int), leaf.low_cell[axis],
+                             leaf.high_cell[axis]);
+    t[axis] =
+        clamped(p - __builtin_convertvector(cell - origins.first[axis], Float), Float{}, Float{} + 1.0f);
+    at = (at << 3) + (cell - leaf.first[axis]);
+  }
+  static_assert(row == 1 << 3);
+  const Int near_below = pairs_at(leaf.pairs, at), far_below = pairs_at(leaf.pairs + row, at);
+  const Int near_above = pairs_at(leaf.pairs + layer, at), far_above = pairs_at(leaf.pairs + layer + row, at);
+  const auto mix = [](const Float& from, const Float& to, const Float& share) __attribute__((always_inline)) {
+    return from + (to - from) * share;
+  };
+  const Float left = mix(mix(left_of(near_below), left_of(near_above), t[2]),
+                         mix(left_of(far_below), left_of(far_above), t[2]), t[1]);
+  const Float right = mix(mix(right_of(near_below), right_of(near_above), t[2]),
+                          mix(right_of(far_below), right_of(far_above), t[2]), t[1]);
+  return mix(left, right, t[0]);
+}
+
+/// Steps 2 to 5 for one vector of rays.
+OCTOTOMY_VECTOR_CLONES void find_vector(const Leaf& leaf, const Lanes& rays) {
+  const Double4 enter_mm[2] = {load<Double4>(rays.enter_mm), load<Double4>(rays.enter_mm + 4)};
+  const Double4 leave_mm[2] = {load<Double4>(rays.leave_mm), load<Double4>(rays.leave_mm + 4)};
+  const Float way = floats(leave_mm[0] - enter_mm[0], leave_mm[1] - enter_mm[1]);
+  Origins origins;
+  for (int axis = 0; axis < 3; ++axis) {
+    Double4 first[2], p[2];
+    for (int half = 0; half < 2; ++half) {
+      p[half] = load<Double4>(rays.start[axis] + 4 * half) + enter_mm[half] * leaf.per_mm[axis];
+      // The floor: down by one where the conversion went up.
+      const Double4 whole = __builtin_convertvector(__builtin_convertvector(p[half], Int4), Double4);
+      constexpr double reach = 8.0;
+      first[half] = (whole > p[half] ? whole - 1.0 : whole) - reach;
+    }
+    origins.first[axis] =
+        joined<Int>(__builtin_convertvector(first[0], Int4), __builtin_convertvector(first[1], Int4));
+    origins.p[axis] = floats(p[0] - first[0], p[1] - first[1]);
+  }
+  const float threshold = leaf.threshold;
+  const Float entry = interpolate(leaf, origins, Float{});
+  const Float voxel = left_of(pairs_at(leaf.pairs, load<Int>(rays.voxel)));
+  const Float before = left_of(pairs_at(leaf.pairs, load<Int>(rays.before)));
+  const Int outside = entry < threshold;
+  Int open = ~((voxel < threshold) | ((before >= threshold) & ~outside));
+  Int faces = ~open, crossed{};
+  // From outside, forward over the voxel in two steps; from inside, back over two voxels in four.
+  Float near_mm{}, near_value = entry, far_mm{}, far_value = entry;
+  for (int step = 1; any(open) && step <= 4; ++step) {
+    const Float probe_mm =
+        outside ? way * (step == 1 ? 0.5f : 1.0f) : Float{} - static_cast<float>(step) * leaf.half_voxel_mm;
+    const Float value = interpolate(leaf, origins, probe_mm);
+    near_mm = open ? far_mm : near_mm;
+    near_value = open ? far_value : near_value;
+    far_mm = open ? probe_mm : far_mm;
+    far_value = open ? value : far_value;
+    const Int crosses = open & ((value < threshold) ^ outside);
+    crossed |= crosses;
+    open &= ~crosses;
+    if (step >= 2) open &= ~outside;
+  }
+  faces |= open;
+  Float below_mm = outside ? near_mm : far_mm, below_value = outside ? near_value : far_value;
+  Float above_mm = outside ? far_mm : near_mm, above_value = outside ? far_value : near_value;
+  // A ray without a crossing stays at its entry.
+  const Float middle_mm =
+      crossed ? below_mm + (above_mm - below_mm) * (threshold - below_value) / (above_value - below_value)
+              : Float{};
+  const Float middle = interpolate(leaf, origins, middle_mm);
+  const Int under = middle < threshold;
+  below_mm = under ? middle_mm : below_mm;
+  below_value = under ? middle : below_value;
+  above_mm = under ? above_mm : middle_mm;
+  above_value = under ? above_value : middle;
+  const Float again_mm =
+      below_mm + (above_mm - below_mm) * (threshold - below_value) / (above_value - below_value);
+  const Float crossing_mm = above_value > below_value ? again_mm : middle_mm;
+  const Float shift = crossed ? crossing_mm : Float{};
+  const Float4 low = __builtin_shufflevector(shift, shift, 0, 1, 2, 3);
+  const Float4 high = __builtin_shufflevector(shift, shift, 4, 5, 6, 7);
+  store(floats(enter_mm[0] + __builtin_convertvector(low, Double4),
+               enter_mm[1] + __builtin_convertvector(high, Double4)),
+        rays.depth_mm);
+  store((crossed & (Int{} + smooth)) | (faces & (Int{} + face)), rays.kind);
+}
+
+/// Four samples of a leaf's row.
+std::uint64_t row_of(const std::int16_t* leaf, int y, int z) {
+  std::uint64_t four;
+  std::memcpy(&four, leaf + child_index(0, y & 3, z & 3), sizeof four);
+  return four;
+}
+
+/// Copies the samples of a cube of `row` voxels a side whose first voxel lies one to three behind a leaf's
+/// first along each axis. Precondition: the three leaves along each axis lie within the universe.
+void copy_samples(const GreyOctree& grey, const glm::ivec3& first, std::int16_t* to) {
+  const glm::ivec3 first_brick = first >> 4;
+  std::array<const GreyBrick*, 8> bricks;
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 last = first + (row - 1) * glm::ivec3(i & 1, (i >> 1) & 1, i >> 2);
+    bricks[static_cast<std::size_t>(i)] = &grey.brick(last >> 4);
+  }
+  const glm::ivec3 skipped = first & 3;
+  std::array<const std::int16_t*, 27> leaves;
+  std::size_t next = 0;
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x) {
+        const glm::ivec3 leaf = (first >> 2) + glm::ivec3(x, y, z);
+        const glm::ivec3 place = leaf & 3, brick = (leaf >> 2) - first_brick;
+        const auto number = static_cast<std::size_t>(child_index(place.x, place.y, place.z));
+        leaves[next++] =
+            bricks[static_cast<std::size_t>(brick.x + 2 * brick.y + 4 * brick.z)]->samples[number].data();
+      }
+  const int low = 16 * skipped.x, high = 64 - low;
+  for (int z = skipped.z; z < skipped.z + row; ++z)
+    for (int y = skipped.y; y < skipped.y + row; ++y, to += row) {
+      const std::int16_t* const* const leaf = &leaves[static_cast<std::size_t>(3 * (y >> 2) + 9 * (z >> 2))];
+      const std::uint64_t middle = row_of(leaf[1], y, z);
+      const std::uint64_t eight[2] = {(row_of(leaf[0], y, z) >> low) | (middle << high),
+                                      (middle >> low) | (row_of(leaf[2], y, z) << high)};
+      std::memcpy(to, eight, sizeof eight);
+    }
+}
+
+/// Pairs each sample with the next.
+OCTOTOMY_VECTOR_CLONES void pair_samples(const std::int16_t* __restrict samples, int count,
+                                         std::int32_t* __restrict pairs) {
+  for (int i = 0; i < count; ++i)
+    pairs[i] = static_cast<std::uint16_t>(samples[i]) | (std::int32_t{samples[i + 1]} << 16);
+}
+
+}  // namespace
+
+LeafSurface::LeafSurface(const DrawnObject& object, const VoxelRays& rays, const Mirror& mirror)
+    : grey_(*object.grey),
+      mirror_(mirror),
+      per_mm_(rays.per_mm),
+      threshold_(static_cast<float>(object.threshold)),
+      universe_side_(object.grey->universe().side()) {
+  assert(object.grey && !object.moved_from_still);
+}
+
+void LeafSurface::go_to(const glm::ivec3& leaf) {
+  leaf_ = leaf;
+  native_ = mirror_.native(leaf + 3 * mirror_.flipped);
+  // In front of the leaf is above it along a flipped axis.
+  first_ = native_ - 3 + 2 * mirror_.flipped;
+  std::array<std::int16_t, layer * side + 1> samples;
+  samples.back() = beyond;
+  const glm::ivec3 end = first_ + side;
+  if (glm::all(glm::greaterThanEqual(first_, glm::ivec3(0))) &&
+      glm::all(glm::lessThanEqual(end, glm::ivec3(universe_side_)))) {
+    copy_samples(grey_, first_, samples.data());
+  } else {
+    std::size_t next = 0;
+    for (int z = first_.z; z < end.z; ++z)
+      for (int y = first_.y; y < end.y; ++y)
+        for (int x = first_.x; x < end.x; ++x) {
+          const bool inside = std::min({x, y, z}) >= 0 && std::max({x, y, z}) < universe_side_;
+          samples[next++] = inside ? grey_.sample({x, y, z}) : beyond;
+        }
+  }
+  pair_samples(samples.data(), static_cast<int>(pairs_.size()), pairs_.data());
+}
+
+void LeafSurface::find(const RayBatch& batch, Found& found) {
+  if (batch.leaf != leaf_) go_to(batch.leaf);
+  Leaf leaf;
+  leaf.pairs = pairs_.data();
+  leaf.half_voxel_mm = static_cast<float>(0.5 / glm::length(per_mm_));
+  leaf.threshold = threshold_;
+  for (int axis = 0; axis < 3; ++axis) {
+    leaf.first[axis] = Int{} + first_[axis];
+    leaf.low_cell[axis] = Int{} + std::max(first_[axis], 0);
+    leaf.high_cell[axis] = Int{} + std::min(first_[axis] + side, universe_side_) - 2;
+    leaf.per_mm[axis] = per_mm_[axis];
+    leaf.per_mm_float[axis] = Float{} + static_cast<float>(per_mm_[axis]);
+  }
+  alignas(64) RayBatch::ByRay<std::int32_t> voxel, before, kind;
+  // Along a flipped axis voxels count down.
+  const glm::ivec3 stride = glm::ivec3(1, row, layer) * (1 - 2 * mirror_.flipped);
+  const glm::ivec3 corner = native_ - first_ + 3 * mirror_.flipped;
+  const int origin = corner.x + row * corner.y + layer * corner.z;
+  const int count = (batch.count + lanes - 1) / lanes * lanes;
+  for (int i = 0; i < count; ++i) {
+    const auto ray = static_cast<std::size_t>(i);
+    voxel[ray] =
+        origin + stride.x * batch.at[0][ray] + stride.y * batch.at[1][ray] + stride.z * batch.at[2][ray];
+    const std::int32_t through = batch.entered_through[ray];
+    before[ray] = voxel[ray] - (through == 0 ? stride.x : through == 1 ? stride.y : stride.z);
+  }
+  for (int first = 0; first < count; first += lanes)
+    find_vector(
+        leaf, {{batch.start[0].data() + first, batch.start[1].data() + first, batch.start[2].data() + first},
+               batch.enter_mm.data() + first,
+               batch.leave_mm.data() + first,
+               voxel.data() + first,
+               before.data() + first,
+               found.depth_mm.data() + first,
+               kind.data() + first});
+  found.lit = found.stepped = 0;
+  for (int i = 0; i < batch.count; ++i) {
+    found.lit |= RayBatch::Rays{kind[static_cast<std::size_t>(i)] != nothing} << i;
+    found.stepped |= RayBatch::Rays{kind[static_cast<std::size_t>(i)] == face} << i;
+  }
+}
+
+}  // namespace octotomy::voxel

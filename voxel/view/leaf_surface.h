@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "voxel/view/camera.h"
+#include "voxel/view/drawn_object.h"
+#include "voxel/view/ray_batch.h"
+#include "voxel/view/ray_walk.h"
+
+namespace octotomy::voxel {
+
+/// Finds an object's surface near the voxels of a leaf that parallel rays pass, for many rays at once: bit
+/// for bit what GreySurface::seen() finds for each. Keeps the samples about the last leaf. For one thread.
+class LeafSurface {
+ public:
+  /// Preconditions: the object has its samples and has not moved from them; the mirror is that of the rays.
+  /// Refers to the object's samples and the mirror.
+  LeafSurface(const DrawnObject& object, const VoxelRays& rays, const Mirror& mirror);
+
+  /// What the rays of a batch see.
+  struct Found {
+    RayBatch::Rays lit = 0;      ///< the rays that meet the surface
+    RayBatch::Rays stepped = 0;  ///< at the voxel's face
+    RayBatch::ByRay<float> depth_mm;
+  };
+  /// Finds the surface of every ray in the batch. Precondition: all of them pass their voxels.
+  void find(const RayBatch& batch, Found& found);
+
+  /// Samples that the surface in a leaf may depend on: from three voxels in front of the leaf to one behind,
+  /// because a surface is sought up to two voxels in front of a voxel (ray_surface.cpp).
+  static constexpr int side = 8;
+
+ private:
+  void go_to(const glm::ivec3& leaf);
+
+  const GreyOctree& grey_;
+  const Mirror& mirror_;
+  glm::dvec3 per_mm_;
+  float threshold_;
+  int universe_side_;
+  glm::ivec3 leaf_{std::numeric_limits<int>::min()};
+  glm::ivec3 native_{0};  ///< the leaf's first voxel
+  glm::ivec3 first_{0};   ///< the voxel of the first sample
+  /// By x + 8y + 64z from `first_`: a voxel's sample in the lower half, that of the next along x in the
+  /// upper.
+  alignas(64) std::array<std::int32_t, side * side * side> pairs_;
+};
+
+}  // namespace octotomy::voxel
