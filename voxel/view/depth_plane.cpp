@@ -77,19 +77,26 @@ int stride_px(const Scenery& scenery) {
 
 DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
   const int step = stride_px(scenery);
+  const int margin = smoothing_taps * step;
   const auto rows = static_cast<std::size_t>(image.size_px.y);
-  DepthPlane plane{Plane(image.size_px, smoothing_taps * step, beyond_mm), std::vector<glm::ivec2>(rows)};
+  DepthPlane plane{Plane(image.size_px, margin), std::vector<glm::ivec2>(rows)};
+  Plane found(image.size_px, margin), between(image.size_px, margin);
   std::vector<RowFacts> facts(rows);
-  tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t y) {
-    facts[y] = copy_row(image, static_cast<int>(y), plane.depth.row(static_cast<int>(y)), plane.lit[y]);
+  tbb::parallel_for(-margin, image.size_px.y + margin, [&](int y) {
+    float* const row = found.row(y);
+    std::fill_n(row - margin, found.width, beyond_mm);
+    if (y >= 0 && y < image.size_px.y) {
+      const auto number = static_cast<std::size_t>(y);
+      facts[number] = copy_row(image, y, row, plane.lit[number]);
+    }
+    for (Plane* const other : {&between, &plane.depth})
+      std::copy_n(row - margin, found.width, other->row(y) - margin);
   });
   bool any_stepped = false;
   for (const RowFacts& row : facts) {
     plane.nearest_mm = std::min(plane.nearest_mm, row.nearest_mm);
     any_stepped = any_stepped || row.stepped.y > 0;
   }
-  const Plane found = plane.depth;
-  Plane between = plane.depth;
   Smoothing smoothing;
   smoothing.limit_mm = static_cast<float>(break_mm(step * scenery.pixel_mm) / 2.0);
   smoothing.band_mm = static_cast<float>(0.5 * scenery.voxel_mm);

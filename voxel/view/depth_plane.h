@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "voxel/view/depth_image.h"
@@ -14,20 +15,21 @@ namespace octotomy::voxel {
 inline constexpr float beyond_mm = 1e9f;
 inline constexpr float surely_lit_mm = 0.5f * beyond_mm;
 
-/// A plane of values with a margin on all sides.
+/// A plane of values with a margin on all sides. Its values are not set until somebody does.
 struct Plane {
-  Plane(const glm::ivec2& size, int margin_px, float value)
+  Plane(const glm::ivec2& size, int margin_px)
       : width(size.x + 2 * margin_px),
         margin(margin_px),
-        values(static_cast<std::size_t>(width) * static_cast<std::size_t>(size.y + 2 * margin_px), value) {}
+        values(std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(width) *
+                                                       static_cast<std::size_t>(size.y + 2 * margin_px))) {}
   /// Pixel 0 of a row; rows and pixels may reach into the margin.
-  float* row(int y) { return values.data() + offset(y); }
-  const float* row(int y) const { return values.data() + offset(y); }
+  float* row(int y) { return values.get() + offset(y); }
+  const float* row(int y) const { return values.get() + offset(y); }
   std::ptrdiff_t offset(int y) const { return static_cast<std::ptrdiff_t>(y + margin) * width + margin; }
 
   int width;
   int margin;
-  std::vector<float> values;
+  std::unique_ptr<float[]> values;
 };
 
 /// The distance in pixels between the points of a difference: one voxel, and at least one pixel. A closer

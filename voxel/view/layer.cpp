@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <tbb/parallel_for.h>
 
 #include "voxel/tree/interpolate.h"
@@ -213,6 +214,10 @@ DrawnObject as_shaded(const DrawnObject& object, Shading shading) {
 }
 
 void number_objects(DepthImage& image, const std::vector<std::int16_t>& numbers) {
+  // Most often each object has its own number already.
+  std::vector<std::int16_t> same(numbers.size());
+  std::iota(same.begin(), same.end(), std::int16_t{0});
+  if (numbers == same) return;
   for (Seen& seen : image.pixels) {
     assert(seen.object < static_cast<int>(numbers.size()));
     if (seen.lit()) seen.object = numbers[static_cast<std::size_t>(seen.object)];

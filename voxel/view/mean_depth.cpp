@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <utility>
 
@@ -51,7 +52,14 @@ MeanDepth::MeanDepth(const DepthPlane& plane, const glm::ivec2& size_px)
 /// Sums over 2 reach + 1 cells along x, then y.
 void MeanDepth::blur(std::vector<float>& values, int reach) const {
   std::vector<float> between(values.size(), 0.0f);
-  for (int y = 0; y < cells_.y; ++y)
+  const auto each_row = [&](const auto& row) {
+    constexpr int rows_a_task = 32;
+    tbb::parallel_for(tbb::blocked_range<int>(0, cells_.y, rows_a_task),
+                      [&](const tbb::blocked_range<int>& range) {
+                        for (int y = range.begin(); y < range.end(); ++y) row(y);
+                      });
+  };
+  each_row([&](int y) {
     for (int i = -reach; i <= reach; ++i) {
       const int first = std::max(0, -i);
       const int last = std::min(cells_.x, cells_.x - i);
@@ -59,13 +67,15 @@ void MeanDepth::blur(std::vector<float>& values, int reach) const {
       const float* from = &values[index(0, y)];
       for (int x = first; x < last; ++x) to[x] += from[x + i];
     }
-  std::fill(values.begin(), values.end(), 0.0f);
-  for (int y = 0; y < cells_.y; ++y)
+  });
+  each_row([&](int y) {
+    float* to = &values[index(0, y)];
+    std::fill_n(to, cells_.x, 0.0f);
     for (int j = std::max(0, y - reach); j <= std::min(cells_.y - 1, y + reach); ++j) {
-      float* to = &values[index(0, y)];
       const float* from = &between[index(0, j)];
       for (int x = 0; x < cells_.x; ++x) to[x] += from[x];
     }
+  });
 }
 
 void MeanDepth::mean_row(int y, const glm::ivec2& span, std::vector<float>& to) const {

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include "voxel/view/layer.h"
 #include "voxel/view/pixel_index.h"
@@ -95,13 +98,20 @@ void lay_together(DepthImage opaque, std::vector<std::uint8_t> rgb, std::vector<
   }
   picture.depth_mm.resize(opaque.pixels.size());
   picture.object.resize(opaque.pixels.size());
-  picture.lit_pixels = 0;
-  for (std::size_t i = 0; i < opaque.pixels.size(); ++i) {
-    const Seen& seen = opaque.pixels[i];
-    picture.depth_mm[i] = seen.depth_mm;
-    picture.object[i] = seen.object;
-    picture.lit_pixels += seen.lit() ? 1 : 0;
-  }
+  using Span = tbb::blocked_range<std::size_t>;
+  constexpr std::size_t pixels_a_task = std::size_t{1} << 16;
+  picture.lit_pixels = tbb::parallel_reduce(
+      Span(0, opaque.pixels.size(), pixels_a_task), std::uint64_t{0},
+      [&](const Span& range, std::uint64_t lit) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const Seen& seen = opaque.pixels[i];
+          picture.depth_mm[i] = seen.depth_mm;
+          picture.object[i] = seen.object;
+          lit += seen.lit() ? 1 : 0;
+        }
+        return lit;
+      },
+      std::plus<>());
 }
 
 std::optional<glm::dvec3> Picture::point_mm(const glm::ivec2& pixel) const {
