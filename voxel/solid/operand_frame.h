@@ -77,4 +77,14 @@ struct VoxelBox {
   glm::ivec3 low, high;
 };
 
+/// The source leaves first..last that the leaves of a block of height 2 lie in, and the voxels before them in
+/// the first, under a translation by whole voxels. `source` is the block's first voxel in the source.
+struct ShiftedLeaves {
+  explicit ShiftedLeaves(const glm::ivec3& source)
+      : first(source >> 2),
+        shift(source & 3),
+        last(first + 3 + glm::ivec3(glm::notEqual(shift, glm::ivec3(0)))) {}
+  glm::ivec3 first, shift, last;
+};
+
 }  // namespace octotomy::voxel

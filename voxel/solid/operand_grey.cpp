@@ -7,6 +7,7 @@
 
 #include "voxel/solid/operand.h"
 #include "voxel/solid/operand_frame.h"
+#include "voxel/tree/leaf_words.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -174,6 +175,16 @@ bool SampledWindowOperand::contains(const glm::dvec3& p_voxel) const {
 }
 
 void SampledWindowOperand::words(const WantedLeaves& leaves) const {
+  if (!source_offset_) return interpolated_words(leaves);
+  const std::optional<Window16> window = window16(window_->low, window_->high);
+  if (!window) return for_each_wanted(leaves, [](const glm::ivec3&) { return std::uint64_t{0}; });
+  const ShiftedLeaves from(leaves.origin + *source_offset_);
+  LeafWords region;
+  region.read(window_->grey, *window, from.first, from.last);
+  region.shifted(from.shift, leaves.words);
+}
+
+void SampledWindowOperand::interpolated_words(const WantedLeaves& leaves) const {
   const GreyOctree& grey = window_->grey;
   NearSamples near;
   for_each_wanted(leaves, [&](const glm::ivec3& origin) -> std::uint64_t {

@@ -11,25 +11,6 @@
 #include "voxel/tree/leaf_words.h"
 
 namespace octotomy::voxel {
-namespace {
-
-// Nibbles of x, groups of y and layers of z that stay in their own leaf when a row is shifted by s of 4.
-constexpr std::array<std::array<std::uint64_t, 4>, 3> staying{{
-    {all_children, 0x7777777777777777, 0x3333333333333333, 0x1111111111111111},
-    {all_children, 0x0fff0fff0fff0fff, 0x00ff00ff00ff00ff, 0x000f000f000f000f},
-    {all_children, 0x0000ffffffffffff, 0x00000000ffffffff, 0x000000000000ffff},
-}};
-
-// The leaf that begins `shift` voxels into `low` along an axis and ends in the leaf after it.
-std::uint64_t joined_words(std::uint64_t low, std::uint64_t high, int axis, int shift) {
-  assert(axis >= 0 && axis < 3 && shift >= 0 && shift < 4);
-  if (shift == 0) return low;
-  const std::uint64_t stay = staying[static_cast<std::size_t>(axis)][static_cast<std::size_t>(shift)];
-  const int stride = 1 << (2 * axis);
-  return ((low >> (stride * shift)) & stay) | ((high << (stride * (4 - shift))) & ~stay);
-}
-
-}  // namespace
 
 Meets ShiftedOctreeOperand::meets(const Cube& cube) const {
   assert(cube.half > 0.0);
@@ -43,25 +24,11 @@ bool ShiftedOctreeOperand::contains(const glm::dvec3& p_voxel) const {
   return octree_->contains(nearest_voxel(p_voxel) + source_offset_);
 }
 
-// Separable: 5 x 5 x 5 leaves are joined along x to 4 x 5 x 5, then along y, then along z.
 void ShiftedOctreeOperand::words(const WantedLeaves& leaves) const {
-  const glm::ivec3 source = leaves.origin + source_offset_;
-  const glm::ivec3 shift = source & 3;
-  const glm::ivec3 first = source >> 2;
+  const ShiftedLeaves from(leaves.origin + source_offset_);
   LeafWords region;
-  region.read(*octree_, first, first + 3 + glm::ivec3(glm::notEqual(shift, glm::ivec3(0))));
-  std::array<std::uint64_t, 4 * 5 * 5> along_x;
-  for (int z = 0; z < 5; ++z)
-    for (int y = 0; y < 5; ++y)
-      for (int x = 0; x < 4; ++x)
-        along_x[static_cast<std::size_t>(x + 4 * (y + 5 * z))] =
-            joined_words(region.word(x, y, z), region.word(x + 1, y, z), 0, shift.x);
-  std::array<std::uint64_t, 4 * 4 * 5> along_y;
-  for (std::size_t z = 0; z < 5; ++z)
-    for (std::size_t i = 0; i < 16; ++i)
-      along_y[i + 16 * z] = joined_words(along_x[i + 20 * z], along_x[i + 4 + 20 * z], 1, shift.y);
-  for (std::size_t i = 0; i < 64; ++i)
-    leaves.words[i] = joined_words(along_y[i], along_y[i + 16], 2, shift.z);
+  region.read(*octree_, from.first, from.last);
+  region.shifted(from.shift, leaves.words);
 }
 
 namespace {

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "voxel/tree/grey_octree.h"
 #include "voxel/tree/octree.h"
+#include "voxel/tree/window_bits.h"
 
 namespace octotomy::voxel {
 
@@ -19,6 +21,12 @@ class LeafWords {
   /// Reads the leaves of the box first..last, both included; the others of the array stay empty.
   /// Precondition: at most `side` leaves along each axis.
   void read(const Octree& octree, const glm::ivec3& first, const glm::ivec3& last);
+  /// The same of the voxels whose sample lies in the window. Outside the universe it is the background.
+  void read(const GreyOctree& grey, Window16 window, const glm::ivec3& first, const glm::ivec3& last);
+
+  /// Writes the words of the 4 x 4 x 4 leaves, x fastest, that begin `shift` voxels into the box, 0..3 an
+  /// axis. Precondition: the box that was read is 5 leaves along each axis with a shift, 4 along the others.
+  void shifted(const glm::ivec3& shift, std::uint64_t* words) const;
 
   std::uint64_t word(int x, int y, int z) const {
     assert(x >= 0 && y >= 0 && z >= 0 && x < side && y < side && z < side);
@@ -30,6 +38,9 @@ class LeafWords {
   std::uint64_t every() const { return every_; }
 
  private:
+  template <typename Words>
+  void fill(const glm::ivec3& first, const glm::ivec3& last, const Words& words_of);
+
   std::array<std::uint64_t, side * side * side> words_;
   std::uint64_t any_ = 0;
   std::uint64_t every_ = 0;

@@ -153,6 +153,33 @@ void circle(const Step& step) {
   for (int i = 0; i < 36; ++i) step(ten);
 }
 
+TEST(Resampling, WindowsMovedByWholeVoxelsAreTheirVoxelsMoved) {
+  const Universe universe{6, glm::dmat4(glm::dmat3(0.7))};
+  std::uint32_t state = 5;
+  const auto noise = [&](const glm::dvec3&) {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<double>(static_cast<int>(state >> 28));
+  };
+  const GreyOctree grey = grey_octree_of(universe, scene_of(universe, noise), 3);
+  std::uint64_t voxels = 0;
+  // Bounds that samples have, bounds between samples, none between them, and the background's value.
+  for (const auto& [low, high] : {std::pair(5.0, 9.0), {4.5, 20.0}, {4.2, 4.7}, {2.0, 6.0}})
+    for (const glm::ivec3 by : {glm::ivec3(3, -11, 6), {0, 16, -32}, {-1, 0, 0}, {70, 0, 0}})
+      for (const Interpolation between :
+           {Interpolation::Nearest, Interpolation::Linear, Interpolation::Cubic}) {
+        Motion motion;
+        motion.translate_mm = 0.7 * glm::dvec3(by);
+        const Expression window = Window{grey, low, high};
+        const Resampling resampling{Resampling::Voxels::Centre, between};
+        const Octree still = combine(universe, window);
+        const Octree direct = combine(universe, moved(window, moved_from_still(motion)), resampling);
+        EXPECT_EQ(direct, combine(universe, moved(still, moved_from_still(motion))))
+            << low << ".." << high << " by " << by.x << ' ' << by.y << ' ' << by.z;
+        voxels += direct.voxel_count();
+      }
+  EXPECT_GT(voxels, 100000U);
+}
+
 TEST(Resampling, AFullCircleOfSmallRotationsLosesNothingWhileItIsSymbolic) {
   const Universe universe{6, glm::dmat4(1.0)};
   const Octree ball =
