@@ -3,148 +3,33 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
-#include <optional>
+#include <numeric>
 #include <stdexcept>
-#include <string>
 #include <tbb/parallel_for.h>
-#include <type_traits>
+#include <unordered_map>
 #include <vector>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#include "voxel/space/vector_clones.h"
 #include "voxel/tree/build.h"
 #include "voxel/tree/octree_node.h"
+#include "voxel/tree/scan_rows.h"
 
-// Passes: 1 find the blocks that the scan reaches and number their bricks; 2 fill the bricks, each with the
-// ranges of its leaves and the block of its voxels that lie in the scan; 3 join ranges level by level up to
-// the root, and the blocks to the scan's octree.
+// Passes: 1 find the blocks that the scan reaches; 2 fill their bricks, each with the ranges of its leaves
+// and the block of its voxels that lie in the scan, a layer of blocks of the same z at a time; 3 join ranges
+// level by level up to the root, and the blocks to the scan's octree.
+//
+// Memory is what building costs: new pages take longer than what is written to them. So a brick of one value
+// is shared, the others of a layer follow each other, and samples that are taken over as they are go from
+// the scan to their place without a stop: ranges first, row by row of the whole run of blocks, then, while
+// the run is in the cache, the samples, past the cache.
 
 namespace octotomy::voxel {
 namespace {
-
-std::int16_t rounded(double value, const Scene& scene) {
-  const double nearest = std::floor(value + 0.5);
-  if (!(nearest >= std::numeric_limits<std::int16_t>::min() &&
-        nearest <= std::numeric_limits<std::int16_t>::max()))
-    throw std::invalid_argument(scene.source + ": the sample " + std::to_string(value) +
-                                " does not fit into 16 bits: rescale the scan first");
-  return static_cast<std::int16_t>(nearest);
-}
-
-constexpr int row_length = 16;
-using Row = std::array<std::int16_t, row_length>;
-
-// Reads the scan along the universe's rows, 16 voxels at a time.
-template <typename Sample>
-class Resampler {
- public:
-  Resampler(const Universe& universe, const Scene& scene, const Sample* samples, std::int16_t background)
-      : scene_(scene),
-        samples_(samples),
-        dims_(scene.lattice.dims),
-        background_(background),
-        scan_from_universe_(glm::inverse(scene.lattice.lps_from_voxel) * universe.lps_from_voxel),
-        offset_(whole_voxel_offset(scan_from_universe_)) {
-    if (!offset_ && is_diagonal()) {
-      for (int axis = 0; axis < 3; ++axis)
-        for (int i = 0; i < std::max(universe.side(), row_length); ++i) {
-          glm::dvec3 voxel(0.0);
-          voxel[axis] = i;
-          along_[static_cast<std::size_t>(axis)].push_back(place(axis, position(voxel)[axis]));
-        }
-    }
-  }
-
-  // Fills the row; bit i of the answer is set if its voxel i lies in the scan.
-  std::uint16_t read(const glm::ivec3& first, Row& row) const {
-    if (offset_) return copy(first + *offset_, row);
-    unsigned inside = 0;
-    for (int i = 0; i < row_length; ++i) {
-      const auto [x, y, z] = places(first + glm::ivec3(i, 0, 0));
-      const bool in = x.inside && y.inside && z.inside;
-      row[static_cast<std::size_t>(i)] = in ? value(x, y, z) : background_;
-      inside |= static_cast<unsigned>(in) << i;
-    }
-    return static_cast<std::uint16_t>(inside);
-  }
-
- private:
-  // The place of a position along one axis: between two samples, or outside.
-  struct Place {
-    int low = 0;
-    int high = 0;
-    double share = 0.0;  ///< of the higher one
-    bool inside = false;
-  };
-
-  glm::dvec3 position(const glm::dvec3& voxel) const {
-    return glm::dvec3(scan_from_universe_ * glm::dvec4(voxel, 1.0));
-  }
-  bool is_diagonal() const {
-    for (int column = 0; column < 3; ++column)
-      for (int row = 0; row < 3; ++row)
-        if (column != row && scan_from_universe_[column][row] != 0.0) return false;
-    return true;
-  }
-  Place place(int axis, double p) const {
-    Place result;
-    result.inside = p >= -0.5 && p <= dims_[axis] - 0.5;
-    if (!result.inside) return result;
-    const double clamped = std::clamp(p, 0.0, dims_[axis] - 1.0);
-    result.low = static_cast<int>(clamped);
-    result.high = std::min(result.low + 1, dims_[axis] - 1);
-    result.share = clamped - result.low;
-    return result;
-  }
-
-  std::array<Place, 3> places(const glm::ivec3& voxel) const {
-    const auto known = [&](int axis) {
-      return along_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(voxel[axis])];
-    };
-    if (!along_[0].empty()) return {known(0), known(1), known(2)};
-    const glm::dvec3 p = position(glm::dvec3(voxel));
-    return {place(0, p.x), place(1, p.y), place(2, p.z)};
-  }
-
-  std::uint16_t copy(const glm::ivec3& first, Row& row) const {
-    row.fill(background_);
-    if (first.y < 0 || first.z < 0 || first.y >= dims_.y || first.z >= dims_.z) return 0;
-    const Sample* source = sample_row(first.y, first.z) + first.x;
-    const int begin = std::max(0, -first.x);
-    const int end = std::min(row_length, dims_.x - first.x);
-    if (begin >= end) return 0;
-    for (int i = begin; i < end; ++i) {
-      if constexpr (std::is_same_v<Sample, std::int16_t>)
-        row[static_cast<std::size_t>(i)] = source[i];
-      else
-        row[static_cast<std::size_t>(i)] = rounded(source[i], scene_);
-    }
-    return static_cast<std::uint16_t>((0xffff >> (row_length - end)) & (0xffff << begin));
-  }
-
-  const Sample* sample_row(int y, int z) const {
-    const auto row =
-        static_cast<std::size_t>(z) * static_cast<std::size_t>(dims_.y) + static_cast<std::size_t>(y);
-    return samples_ + row * static_cast<std::size_t>(dims_.x);
-  }
-  std::int16_t value(const Place& x, const Place& y, const Place& z) const {
-    const auto along_x = [&](int j, int k) {
-      const Sample* row = sample_row(j, k);
-      return static_cast<double>(row[x.low]) * (1.0 - x.share) + static_cast<double>(row[x.high]) * x.share;
-    };
-    const double below = along_x(y.low, z.low) * (1.0 - y.share) + along_x(y.high, z.low) * y.share;
-    const double above = along_x(y.low, z.high) * (1.0 - y.share) + along_x(y.high, z.high) * y.share;
-    return rounded(below * (1.0 - z.share) + above * z.share, scene_);
-  }
-
-  const Scene& scene_;
-  const Sample* samples_;
-  glm::ivec3 dims_;
-  std::int16_t background_;
-  glm::dmat4 scan_from_universe_;
-  std::optional<glm::ivec3> offset_;         ///< of the scan's samples, if the two lattices coincide
-  std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, if the lattices' axes are parallel
-};
 
 // First and last universe voxel, clamped to the universe, that a scan can reach.
 std::pair<glm::ivec3, glm::ivec3> reach(const Universe& universe, const Lattice& lattice) {
@@ -170,9 +55,9 @@ void set_leaf_ranges(GreyBrick& brick) {
   }
 }
 
-MinMax range_of(const GreyBrick& brick) {
-  MinMax range = brick.leaf_range.front();
-  for (const MinMax& leaf : brick.leaf_range) range.widen(leaf);
+MinMax joined(const std::array<MinMax, 64>& leaves) {
+  MinMax range = leaves.front();
+  for (const MinMax& leaf : leaves) range.widen(leaf);
   return range;
 }
 
@@ -212,34 +97,199 @@ void clear(Storage& storage, Level& bottom, const Universe& universe, std::int16
   bottom.ranges.assign(side * side * side, {background, background});
   storage.brick_of_block.assign(side * side * side, 0);
   storage.bricks.resize(brick_count + 1);
+  storage.brick_count = brick_count + 1;
   for (auto& leaf : storage.bricks.front().samples) leaf.fill(background);
   storage.bricks.front().leaf_range.fill({background, background});
 }
 
-// Fills a brick and gives the block of its voxels that lie in the scan.
-template <typename Sample>
-Block fill(GreyBrick& brick, const glm::ivec3& origin, int side, const Resampler<Sample>& resampler,
-           std::int16_t background) {
-  Row row;
-  BlockRows scan{};
-  const auto within = static_cast<std::uint16_t>(0xffff >> std::max(0, 16 - side));
-  for (int z = 0; z < 16; ++z)
-    for (int y = 0; y < 16; ++y) {
-      // Only universes of less than 16 voxels a side have rows beyond them.
-      if (origin.y + y >= side || origin.z + z >= side)
-        row.fill(background);
-      else
-        scan[static_cast<std::size_t>(y + 16 * z)] =
-            resampler.read(origin + glm::ivec3(0, y, z), row) & within;
-      for (int leaf = 0; leaf < 4; ++leaf)
-        std::copy_n(row.begin() + 4 * leaf, 4,
-                    brick.samples[static_cast<std::size_t>(child_index(leaf, y >> 2, z >> 2))].begin() +
-                        child_index(0, y & 3, z & 3));
-    }
-  set_leaf_ranges(brick);
-  const bool whole = std::all_of(scan.begin(), scan.end(), [](std::uint16_t bits) { return bits == 0xffff; });
-  return whole ? Block::adopt(BlockRef::full()) : leaf_block_of_rows(scan);
+using LeafRanges = std::array<MinMax, 64>;
+
+// Blocks along x that are taken over at once: their 256 rows of 512 samples stay in a cache of 256 KiB until
+// they are copied.
+constexpr std::size_t longest_run = 32;
+
+// Widens ranges by column by a row of samples.
+OCTOTOMY_VECTOR_CLONES void widen(const std::int16_t* samples, std::size_t width, std::int16_t* low,
+                                  std::int16_t* high) {
+  for (std::size_t x = 0; x < width; ++x) {
+    const std::int16_t sample = samples[x];
+    low[x] = sample < low[x] ? sample : low[x];
+    high[x] = sample > high[x] ? sample : high[x];
+  }
 }
+
+// The ranges of the leaves of a run of blocks along x, from the samples of the first one. Rows are read in
+// the order in which they lie in memory.
+void find_ranges(const std::int16_t* first, const RowSteps& steps, std::size_t count, LeafRanges* ranges) {
+  const std::size_t width = 16 * count;
+  for (std::size_t z = 0; z < 16; z += 4) {
+    // By column; then four columns to a leaf.
+    std::array<std::array<std::int16_t, 16 * longest_run>, 4> low, high;
+    for (std::size_t slice = z; slice < z + 4; ++slice)
+      for (std::size_t y = 0; y < 16; ++y) {
+        const std::int16_t* const samples = first + y * steps.row + slice * steps.slice;
+        if (slice == z && y % 4 == 0) {
+          std::copy_n(samples, width, low[y / 4].begin());
+          std::copy_n(samples, width, high[y / 4].begin());
+        } else {
+          widen(samples, width, low[y / 4].data(), high[y / 4].data());
+        }
+      }
+    for (std::size_t y = 0; y < 4; ++y)
+      for (std::size_t leaf = 0; leaf < 4 * count; ++leaf) {
+        MinMax range{low[y][4 * leaf], high[y][4 * leaf]};
+        for (std::size_t x = 1; x < 4; ++x) range.widen({low[y][4 * leaf + x], high[y][4 * leaf + x]});
+        ranges[leaf / 4][leaf % 4 + 4 * (y + z)] = range;
+      }
+  }
+}
+
+// Copies a block's samples into their order by leaves.
+void copy_block(const std::int16_t* first, const RowSteps& steps, GreyBrick& brick) {
+  for (std::size_t line = 0; line < 16; ++line)
+    for (std::size_t row = 0; row < 16; row += 2) {
+      const std::int16_t* const a =
+          first + (4 * (line % 4) + row % 4) * steps.row + (4 * (line / 4) + row / 4) * steps.slice;
+      const std::int16_t* const b = a + steps.row;
+#if defined(__SSE2__)
+      for (std::size_t half = 0; half < 2; ++half) {
+        const __m128i of_a = _mm_loadu_si128(reinterpret_cast<const __m128i*>(a + 8 * half));
+        const __m128i of_b = _mm_loadu_si128(reinterpret_cast<const __m128i*>(b + 8 * half));
+        auto* const to = &brick.samples[4 * line + 2 * half];
+        _mm_stream_si128(reinterpret_cast<__m128i*>(&to[0][4 * row]), _mm_unpacklo_epi64(of_a, of_b));
+        _mm_stream_si128(reinterpret_cast<__m128i*>(&to[1][4 * row]), _mm_unpackhi_epi64(of_a, of_b));
+      }
+#else
+      for (std::size_t leaf = 0; leaf < 4; ++leaf) {
+        std::copy_n(a + 4 * leaf, 4, &brick.samples[4 * line + leaf][4 * row]);
+        std::copy_n(b + 4 * leaf, 4, &brick.samples[4 * line + leaf][4 * row + 4]);
+      }
+#endif
+    }
+}
+
+// The blocks that the scan reaches.
+struct Reached {
+  glm::ivec3 first{0}, count{0};
+  int per_layer() const { return count.x * count.y; }
+  int number(const glm::ivec3& at) const { return at.x + count.x * (at.y + count.y * at.z); }
+};
+
+// A layer of blocks of the same z. Its bricks follow each other from a place of its own on.
+template <typename Storage, typename Level>
+class LayerFill {
+ public:
+  LayerFill(const ScanRows& rows, const Reached& reached, int z, Storage& storage, Level& bottom)
+      : scan_rows_(rows),
+        reached_(reached),
+        z_(z),
+        storage_(storage),
+        bottom_(bottom),
+        next_(1 + static_cast<std::uint32_t>(reached.number({0, 0, z}))),
+        shared_{{storage.background, 0}} {}
+
+  // `scan` takes the blocks of voxels that lie in the scan. Returns how many bricks there are.
+  std::size_t run(std::vector<Block>& scan) {
+    const std::uint32_t first = next_;
+    for (int y = 0; y < reached_.count.y; ++y)
+      for (int x = 0; x < reached_.count.x;) {
+        const glm::ivec3 at(x, y, z_);
+        const std::int16_t* const own = scan_samples(at);
+        const auto is_alike = [&](int i) {
+          return (scan_samples(at + glm::ivec3(i, 0, 0)) != nullptr) == (own != nullptr);
+        };
+        int count = 1;
+        while (count < static_cast<int>(longest_run) && x + count < reached_.count.x && is_alike(count))
+          ++count;
+        if (own != nullptr) {
+          for (int i = 0; i < count; ++i) scan[number(at, i)] = Block::adopt(BlockRef::full());
+          place(at, count, own, scan_rows_.steps());
+        } else {
+          resample(at, count, scan);
+          place(at, count, rows_.data(), {16 * longest_run, 256 * longest_run});
+        }
+        x += count;
+      }
+#if defined(__SSE2__)
+    _mm_sfence();  // before other threads read what was stored past the cache
+#endif
+    return next_ - first;
+  }
+
+ private:
+  glm::ivec3 origin(const glm::ivec3& at) const {
+    return 16 * (reached_.first + at);
+  }
+  std::size_t number(const glm::ivec3& at, int i) const {
+    return static_cast<std::size_t>(reached_.number(at + glm::ivec3(i, 0, 0)));
+  }
+
+  // The scan's sample of a block's first voxel, if all of the block's samples are the scan's own; else null.
+  const std::int16_t* scan_samples(const glm::ivec3& at) const {
+    // Blocks of a smaller universe reach beyond it.
+    return storage_.universe.side() < 16 ? nullptr : scan_rows_.own_samples(origin(at));
+  }
+
+  // Fills rows_ with `count` blocks along x from `at` on.
+  void resample(const glm::ivec3& at, int count, std::vector<Block>& scan) {
+    rows_.resize(256 * 16 * longest_run);
+    std::array<BlockRows, longest_run> inside{};
+    const glm::ivec3 first = origin(at);
+    const int side = storage_.universe.side();
+    const auto within = static_cast<std::uint16_t>(0xffff >> std::max(0, 16 - side));
+    std::int16_t* row = rows_.data();
+    for (int z = 0; z < 16; ++z)
+      for (int y = 0; y < 16; ++y, row += 16 * longest_run) {
+        // Only universes of less than 16 voxels a side have rows beyond them.
+        if (first.y + y >= side || first.z + z >= side) {
+          std::fill_n(row, 16 * count, storage_.background);
+          continue;
+        }
+        for (int i = 0; i < count; ++i)
+          inside[static_cast<std::size_t>(i)][static_cast<std::size_t>(y + 16 * z)] =
+              scan_rows_.read(first + glm::ivec3(16 * i, y, z), row + 16 * i) & within;
+      }
+    for (int i = 0; i < count; ++i) {
+      const BlockRows& bits = inside[static_cast<std::size_t>(i)];
+      const bool whole = std::all_of(bits.begin(), bits.end(), [](std::uint16_t b) { return b == 0xffff; });
+      scan[number(at, i)] = whole ? Block::adopt(BlockRef::full()) : leaf_block_of_rows(bits);
+    }
+  }
+
+  // Gives `count` blocks along x their bricks, from the samples of the first one.
+  void place(const glm::ivec3& at, int count, const std::int16_t* samples, const RowSteps& steps) {
+    std::array<LeafRanges, longest_run> ranges;
+    find_ranges(samples, steps, static_cast<std::size_t>(count), ranges.data());
+    for (int i = 0; i < count; ++i)
+      if (GreyBrick* const brick = placed(at + glm::ivec3(i, 0, 0), ranges[static_cast<std::size_t>(i)]))
+        copy_block(samples + 16 * i, steps, *brick);
+  }
+
+  // Gives a block its brick. Returns it with its ranges, if its samples are still to be written.
+  GreyBrick* placed(const glm::ivec3& at, const LeafRanges& ranges) {
+    const std::size_t index = bottom_.index(reached_.first + at);
+    const MinMax range = bottom_.ranges[index] = joined(ranges);
+    std::uint32_t& number = storage_.brick_of_block[index];
+    if (range.low == range.high) {
+      const auto [known, is_new] = shared_.try_emplace(range.low, next_);
+      number = known->second;
+      if (!is_new) return nullptr;
+    }
+    number = next_++;
+    GreyBrick& brick = storage_.bricks[number];
+    brick.leaf_range = ranges;
+    return &brick;
+  }
+
+  const ScanRows& scan_rows_;
+  const Reached& reached_;
+  int z_;
+  Storage& storage_;
+  Level& bottom_;
+  std::uint32_t next_;                                      // brick
+  std::unordered_map<std::int16_t, std::uint32_t> shared_;  // bricks of one value
+  std::vector<std::int16_t> rows_;                          // of a run that is resampled, z after y
+};
 
 }  // namespace
 
@@ -256,49 +306,37 @@ std::int16_t GreyOctree::sample(const glm::ivec3& voxel) const {
 
 std::uint64_t GreyOctree::bytes_memory() const {
   std::uint64_t bytes =
-      storage_->bricks.size() * sizeof(GreyBrick) + storage_->brick_of_block.size() * sizeof(std::uint32_t);
+      storage_->brick_count * sizeof(GreyBrick) + storage_->brick_of_block.size() * sizeof(std::uint32_t);
   for (const Level& level : storage_->levels) bytes += level.ranges.size() * sizeof(MinMax);
   return bytes + octotomy::voxel::bytes_memory(scan());
 }
 
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background) {
   check(scene);
-  // 1. Number the bricks: 0 is background, then the blocks within reach, x fastest.
+  // 1. Find the blocks.
   const auto [first_voxel, last_voxel] = reach(universe, scene.lattice);
-  const glm::ivec3 first = first_voxel >> 4;
-  const glm::ivec3 count = (last_voxel >> 4) - first + 1;
+  const Reached reached{first_voxel >> 4, (last_voxel >> 4) - (first_voxel >> 4) + 1};
+  const auto block_count =
+      static_cast<std::size_t>(reached.per_layer()) * static_cast<std::size_t>(reached.count.z);
   auto storage = std::make_shared<GreyOctree::Storage>();
   GreyOctree::Level bottom;
-  clear(*storage, bottom, universe, background,
-        static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y) *
-            static_cast<std::size_t>(count.z));
-  std::uint32_t next = 1;
-  for (int z = 0; z < count.z; ++z)
-    for (int y = 0; y < count.y; ++y)
-      for (int x = 0; x < count.x; ++x)
-        storage->brick_of_block[bottom.index(first + glm::ivec3(x, y, z))] = next++;
+  clear(*storage, bottom, universe, background, block_count);
 
-  // 2. Fill them.
-  std::vector<Block> scan(storage->bricks.size());
-  std::visit(
-      [&](const auto& samples) {
-        const Resampler resampler(universe, scene, samples.data(), background);
-        tbb::parallel_for(0, count.y * count.z, [&](int row) {
-          for (int x = 0; x < count.x; ++x) {
-            const glm::ivec3 block = first + glm::ivec3(x, row % count.y, row / count.y);
-            const std::uint32_t number = storage->brick_of_block[bottom.index(block)];
-            GreyBrick& brick = storage->bricks[number];
-            scan[number] = fill(brick, block * 16, universe.side(), resampler, background);
-            bottom.ranges[bottom.index(block)] = range_of(brick);
-          }
-        });
-      },
-      scene.samples);
+  // 2. Fill their bricks.
+  std::vector<Block> scan(block_count);
+  std::vector<std::size_t> brick_counts(static_cast<std::size_t>(reached.count.z));
+  const ScanRows rows(universe, scene, background);
+  tbb::parallel_for(0, reached.count.z, [&](int z) {
+    brick_counts[static_cast<std::size_t>(z)] = LayerFill(rows, reached, z, *storage, bottom).run(scan);
+  });
+  storage->brick_count = std::accumulate(brick_counts.begin(), brick_counts.end(), std::size_t{1});
 
   // 3. Join the ranges and the scan's blocks.
   storage->scan = octree_of_blocks(universe, [&](const glm::ivec3& block) {
-    const std::uint32_t number = storage->brick_of_block[bottom.index(block)];
-    return number == 0 ? Block() : std::move(scan[number]);
+    const glm::ivec3 at = block - reached.first;
+    const bool is_reached =
+        glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, reached.count));
+    return is_reached ? std::move(scan[static_cast<std::size_t>(reached.number(at))]) : Block();
   });
   storage->levels.push_back(std::move(bottom));
   join_ranges(storage->levels, universe.depth);
@@ -327,7 +365,7 @@ GreyOctree grey_octree_of_bricks(const Universe& universe, std::int16_t backgrou
     GreyBrick& brick = storage->bricks[i + 1];
     fill(i, brick);
     set_leaf_ranges(brick);
-    bottom.ranges[bottom.index(blocks[i])] = range_of(brick);
+    bottom.ranges[bottom.index(blocks[i])] = joined(brick.leaf_range);
   });
   storage->levels.push_back(std::move(bottom));
   join_ranges(storage->levels, universe.depth);

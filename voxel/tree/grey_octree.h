@@ -18,10 +18,11 @@
 
 namespace octotomy::voxel {
 
-/// Smallest and largest sample of a block.
+/// Smallest and largest sample of a block. Without default values, so that bricks are first touched by the
+/// threads that fill them.
 struct MinMax {
-  std::int16_t low = 0;
-  std::int16_t high = 0;
+  std::int16_t low;
+  std::int16_t high;
 
   void widen(const MinMax& by) {
     low = std::min(low, by.low);
@@ -96,7 +97,9 @@ class GreyOctree {
     Octree scan = Octree::empty({});
     std::vector<Level> levels;                  ///< heights 2, 3, ... up to the root's
     std::vector<std::uint32_t> brick_of_block;  ///< brick 0 is all background
+    /// With gaps: a brick that no block has was never touched, and takes no memory but within a page.
     std::vector<GreyBrick, LargeAllocator<GreyBrick>> bricks;
+    std::size_t brick_count = 0;  ///< of those that blocks have, and brick 0
   };
   explicit GreyOctree(std::shared_ptr<const Storage> storage) : storage_(std::move(storage)) {}
   std::shared_ptr<const Storage> storage_;
@@ -106,7 +109,7 @@ class GreyOctree {
 /// trilinear interpolation rounded to the nearest integer, halves upward. Voxels whose centre lies outside
 /// the scene's bounds become `background`. Throws std::invalid_argument if float samples leave the int16
 /// range. Parallel; same bits on any thread count. Memory: the samples within the scan's bounds and three per
-/// cent; a sixteenth more while it is built.
+/// cent, without blocks of 16 x 16 x 16 voxels that have one value, as air beside a head has.
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
 
 /// The grey octree whose blocks of height 2 numbered `blocks` have samples and whose others are background.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <stdexcept>
+#include <tbb/global_control.h>
 
 #include "voxel/tree/build.h"
 #include "voxel/tree/grey_node.h"
@@ -180,6 +181,83 @@ TEST(GreyOctree, TakesLittleMoreMemoryThanItsSamples) {
   const GreyOctree grey =
       grey_octree_of(universe, ramp_scene({{256, 256, 256}, universe.lps_from_voxel}, {1, 2, 3, 4}));
   EXPECT_LT(static_cast<double>(grey.bytes_memory()), 1.15 * 2.0 * 256 * 256 * 256);
+}
+
+// Samples of any value in a ball of so many of the height, and two values beside it.
+Scene noisy_scene(const glm::ivec3& dims, double radius = 0.3) {
+  Scene scene;
+  scene.lattice = {dims, glm::dmat4(1.0)};
+  Int16Samples samples;
+  std::uint32_t state = 1;
+  for (int z = 0; z < dims.z; ++z)
+    for (int y = 0; y < dims.y; ++y)
+      for (int x = 0; x < dims.x; ++x) {
+        state = state * 1664525U + 1013904223U;
+        const bool noisy = glm::distance(glm::dvec3(x, y, z), 0.5 * glm::dvec3(dims)) < radius * dims.y;
+        samples.push_back(noisy ? static_cast<std::int16_t>(state >> 16) : std::int16_t(x < 80 ? -1000 : 7));
+      }
+  scene.samples = std::move(samples);
+  return scene;
+}
+
+std::int16_t sample_of(const Scene& scene, const glm::ivec3& at) {
+  const glm::ivec3& dims = scene.lattice.dims;
+  return std::get<Int16Samples>(
+      scene.samples)[static_cast<std::size_t>(at.x + dims.x * (at.y + dims.y * at.z))];
+}
+
+TEST(GreyOctree, SharesBricksOfOneValueAndKeepsAllSamplesOnAnyNumberOfThreads) {
+  // More blocks along x than are taken over at once, and ends within blocks.
+  const Scene scene = noisy_scene({700, 60, 50});
+  Universe universe{10, glm::dmat4(1.0)};
+  universe.lps_from_voxel[3] = glm::dvec4(-3, -5, -2, 1);
+  std::uint64_t bytes = 0;
+  for (const std::size_t threads : {1, 2}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const GreyOctree grey = grey_octree_of(universe, scene, -1024);
+    for (int z = -1; z < 54; ++z)
+      for (int y = -1; y < 68; ++y)
+        for (int x = -1; x < 706; ++x) {
+          const glm::ivec3 at = glm::ivec3(x, y, z) - glm::ivec3(3, 5, 2);
+          const bool inside = glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) &&
+                              glm::all(glm::lessThan(at, scene.lattice.dims));
+          ASSERT_EQ(grey.sample({x, y, z}), inside ? sample_of(scene, at) : -1024)
+              << x << ' ' << y << ' ' << z << ", " << threads << " threads";
+        }
+    const auto brick_at = [&](int x, int z) { return &grey.brick({x, 1, z}); };
+    EXPECT_EQ(brick_at(1, 1), brick_at(2, 1));   // -1000
+    EXPECT_NE(brick_at(1, 1), brick_at(7, 1));   // 7
+    EXPECT_EQ(brick_at(7, 1), brick_at(40, 1));  // two runs
+    EXPECT_EQ(brick_at(0, 9), brick_at(50, 9));  // beyond the scan
+    for (const glm::ivec3 block : {glm::ivec3(1, 1, 1), {7, 1, 1}, {21, 2, 1}, {0, 0, 0}}) {
+      MinMax found{32767, -32768};
+      for (const MinMax& leaf : grey.brick(block).leaf_range) found.widen(leaf);
+      EXPECT_EQ(found.low, grey.range(2, block).low);
+      EXPECT_EQ(found.high, grey.range(2, block).high);
+    }
+    if (bytes != 0) EXPECT_EQ(grey.bytes_memory(), bytes);
+    bytes = grey.bytes_memory();
+  }
+  const GreyOctree all_noise = grey_octree_of(universe, noisy_scene({700, 60, 50}, 100.0), -1024);
+  EXPECT_LT(bytes + 200 * sizeof(GreyBrick), all_noise.bytes_memory());
+}
+
+TEST(GreyOctree, ResamplesWholeNumbersAsItDoesTheSameFloats) {
+  const Scene whole = noisy_scene({40, 37, 31});
+  Scene floats = whole;
+  const auto& samples = std::get<Int16Samples>(whole.samples);
+  floats.samples = FloatSamples(samples.begin(), samples.end());
+  for (const double edge : {0.37, 0.5, 1.0, 1.93}) {
+    Universe universe{6, glm::dmat4(glm::dmat3(edge))};
+    universe.lps_from_voxel[3] = glm::dvec4(-2.3, 0.25, -0.5, 1);
+    const GreyOctree a = grey_octree_of(universe, whole), b = grey_octree_of(universe, floats);
+    EXPECT_EQ(a.scan(), b.scan()) << edge;
+    for (int z = 0; z < 64; ++z)
+      for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+          ASSERT_EQ(a.sample({x, y, z}), b.sample({x, y, z}))
+              << x << ' ' << y << ' ' << z << ", edge " << edge;
+  }
 }
 
 }  // namespace

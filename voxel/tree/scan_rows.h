@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "voxel/space/scene.h"
+
+namespace octotomy::voxel {
+
+/// Steps between rows and slices, in samples.
+struct RowSteps {
+  std::size_t row = 0, slice = 0;
+};
+
+/// A scan's samples at the voxel centres of a universe, read along the universe's rows, 16 voxels at a time:
+/// the scan's own if the lattices coincide, otherwise by trilinear interpolation rounded to the nearest
+/// integer, halves upward. Refers to the scene.
+class ScanRows {
+ public:
+  static constexpr int length = 16;
+  /// Voxels whose centre lies outside the scene's bounds have the sample `background`.
+  ScanRows(const Universe& universe, const Scene& scene, std::int16_t background);
+
+  /// The sample of the first of 16 x 16 x 16 voxels from `origin` on, if all of them have samples of the
+  /// scan's own; else null. steps() lead to the others.
+  const std::int16_t* own_samples(const glm::ivec3& origin) const;
+  RowSteps steps() const;
+
+  /// Fills a row; bit i of the answer is set if its voxel i lies in the scan. Precondition: `first` lies in
+  /// the universe. Throws std::invalid_argument if a float sample leaves the int16 range.
+  std::uint16_t read(const glm::ivec3& first, std::int16_t* row) const;
+
+ private:
+  /// The place of a position along one axis: between two samples, or outside.
+  struct Place {
+    int low = 0;
+    int high = 0;
+    double share = 0.0;  ///< of the higher one
+    bool inside = false;
+  };
+  bool is_diagonal() const;
+  glm::dvec3 position(const glm::dvec3& voxel) const;
+  Place place(int axis, double p) const;
+  std::array<Place, 3> places(const glm::ivec3& voxel) const;
+  std::size_t index(int y, int z) const;
+  template <typename Sample>
+  std::uint16_t copy(const Sample* samples, const glm::ivec3& first, std::int16_t* row) const;
+  template <typename Sample>
+  std::uint16_t interpolate(const Sample* samples, const glm::ivec3& first, std::int16_t* row) const;
+  std::uint16_t interpolate_along(const std::int16_t* samples, const glm::ivec3& first,
+                                  std::int16_t* row) const;
+  std::int16_t rounded(double value) const;
+
+  const Scene& scene_;
+  glm::ivec3 dims_;
+  std::int16_t background_;
+  glm::dmat4 scan_from_universe_;
+  std::optional<glm::ivec3> offset_;         ///< of the scan's samples, if the two lattices coincide
+  std::array<std::vector<Place>, 3> along_;  ///< per axis and voxel, if the lattices' axes are parallel
+  struct {
+    std::vector<std::int32_t> low, high;
+    std::vector<double> share;
+  } in_row_;  ///< the places along x, an array each
+};
+
+}  // namespace octotomy::voxel
