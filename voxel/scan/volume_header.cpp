@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "voxel/scan/fill_ahead.h"
 #include "voxel/scan/sample_stream.h"
 #include "voxel/space/file_text.h"
 
@@ -402,7 +403,8 @@ void read_plain_samples(const fs::path& path, VolumeFormat format, const VolumeH
   SampleStream stream = stream_of(format, header);
   std::vector<char> before(before_samples(format, header));
   if (stream.read(before.data(), before.size()) < before.size()) refuse_short(path, 0, bytes);
-  const std::uintmax_t held = stream.read(samples, bytes);
+  const std::uintmax_t held =
+      fill_ahead(samples, bytes, [&](char* part, std::size_t count) { return stream.read(part, count); });
   if (held < bytes) refuse_short(path, held, bytes);
   if (header.is_packed) stream.skip_rest();
 }

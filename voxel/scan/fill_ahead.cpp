@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/fill_ahead.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <tbb/task_group.h>
+#include <vector>
+
+namespace octotomy::voxel {
+namespace {
+
+/// The smallest page. Of a larger one, all touches but the first cost nothing.
+constexpr std::size_t page_bytes = 4096;
+/// Two of the largest pages that are given without being asked for one by one.
+constexpr std::size_t part_bytes = std::size_t{4} << 20;
+constexpr std::size_t most_parts_ahead = 16;
+
+/// Parts that are touched by tasks, unless the filling thread comes to one first.
+class PartsAhead {
+ public:
+  PartsAhead(char* memory, std::size_t bytes)
+      : memory_(memory), bytes_(bytes), places_((bytes + part_bytes - 1) / part_bytes) {}
+  PartsAhead(const PartsAhead&) = delete;
+  PartsAhead& operator=(const PartsAhead&) = delete;
+  ~PartsAhead() {
+    // Tasks that have not begun find nothing to do.
+    for (std::size_t part = 0; part < asked_; ++part) own(part);
+    tasks_.wait();
+  }
+
+  std::size_t count() const { return places_.size(); }
+  char* begin(std::size_t part) const { return memory_ + part * part_bytes; }
+  std::size_t size(std::size_t part) const { return std::min(part_bytes, bytes_ - part * part_bytes); }
+
+  /// Makes a part this thread's own, and has those after it touched.
+  void take(std::size_t part) {
+    for (; asked_ < std::min(part + most_parts_ahead, count()); ++asked_)
+      tasks_.run([this, next = asked_] { touch(next); });
+    own(part);
+  }
+
+ private:
+  enum class Place : std::uint32_t { New, Touching, Taken };
+
+  void own(std::size_t part) {
+    Place expected = Place::New;
+    if (places_[part].compare_exchange_strong(expected, Place::Taken)) return;
+    places_[part].wait(Place::Touching);
+  }
+
+  void touch(std::size_t part) {
+    Place expected = Place::New;
+    if (!places_[part].compare_exchange_strong(expected, Place::Touching)) return;
+    for (std::size_t at = 0; at < size(part); at += page_bytes) begin(part)[at] = 0;
+    places_[part].store(Place::Taken);
+    places_[part].notify_all();
+  }
+
+  char* memory_;
+  std::size_t bytes_;
+  std::size_t asked_ = 0;
+  std::vector<std::atomic<Place>> places_;
+  tbb::task_group tasks_;
+};
+
+}  // namespace
+
+std::size_t fill_ahead(char* memory, std::size_t bytes,
+                       const std::function<std::size_t(char* part, std::size_t bytes)>& fill) {
+  PartsAhead parts(memory, bytes);
+  std::size_t filled = 0;
+  for (std::size_t part = 0; part < parts.count(); ++part) {
+    parts.take(part);
+    const std::size_t count = fill(parts.begin(part), parts.size(part));
+    filled += count;
+    if (count < parts.size(part)) break;
+  }
+  return filled;
+}
+
+}  // namespace octotomy::voxel
