@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "voxel/solid/status_within.h"
+#include "voxel/space/vector_clones.h"
 
 // A cell is the cube between eight neighbouring voxel centres. Cells are taken in blocks of 16 x 16 x 16 by
 // their first corner; blocks one before the universe's first hold the cells that reach into it from outside.
@@ -23,12 +24,51 @@ constexpr int corner_side = block_side + 1;
 constexpr int lines_an_axis = 4;
 
 // Length of the part of 0..1 over which a value that changes linearly from `from` to `to` lies in the window.
+// Without branches, so that several are found at once.
 double length_within(double from, double to, double low, double high) {
-  if (from > to) std::swap(from, to);
-  const double above = std::max(low, from);
-  const double below = std::min(high, to);
-  if (above > below) return 0.0;
-  return to > from ? (below - above) / (to - from) : 1.0;
+  const double first = from > to ? to : from;
+  const double last = from > to ? from : to;
+  const double above = low < first ? first : low;
+  const double below = last < high ? last : high;
+  const double length = last > first ? (below - above) / (last - first) : 1.0;
+  return above > below ? 0.0 : length;
+}
+
+constexpr int line_count = lines_an_axis * lines_an_axis;
+
+// The ends of a cell's lines along z, and the lengths of the parts of them in the window.
+struct Lines {
+  std::array<double, line_count> from, to, length;
+};
+OCTOTOMY_VECTOR_CLONES void find_lines(const std::array<double, 8>& c, double low, double high,
+                                       Lines& lines) {
+  for (int line = 0; line < line_count; ++line) {
+    const double s = (line % lines_an_axis + 0.5) / lines_an_axis;
+    const double t = (line / lines_an_axis + 0.5) / lines_an_axis;
+    const auto at = [&](std::size_t k) {
+      const double near = c[k] + s * (c[k + 1] - c[k]);
+      const double far = c[k + 2] + s * (c[k + 3] - c[k + 2]);
+      return near + t * (far - near);
+    };
+    const auto i = static_cast<std::size_t>(line);
+    lines.from[i] = at(0);
+    lines.to[i] = at(4);
+  }
+  for (std::size_t i = 0; i < line_count; ++i)
+    lines.length[i] = length_within(lines.from[i], lines.to[i], low, high);
+}
+
+// The samples at the corners of a block's cells, x fastest.
+using Corners = std::array<std::int16_t, corner_side * corner_side * corner_side>;
+
+// The least and greatest of each cell's corners, where the cell's first corner stands.
+OCTOTOMY_VECTOR_CLONES void find_cell_ranges(const Corners& corners, Corners& low, Corners& high) {
+  low = high = corners;
+  for (const std::size_t step : {1, corner_side, corner_side * corner_side})
+    for (std::size_t i = 0; i + step < corners.size(); ++i) {
+      low[i] = low[i + step] < low[i] ? low[i + step] : low[i];
+      high[i] = high[i + step] > high[i] ? high[i + step] : high[i];
+    }
 }
 
 // Which of the 8 corners of a cell, x + 2y + 4z, are the scan's.
@@ -48,14 +88,20 @@ class BlockSum {
     if (scanned == Status::Empty) return 0.0;
     if (scanned == Status::Full && range.low >= low_ && range.high <= high_)
       return block_side * block_side * block_side;
-    std::array<std::int16_t, corner_side * corner_side * corner_side> corners;
+    Corners corners, low, high;
     fetch(block, corners);
+    find_cell_ranges(corners, low, high);
     double sum = 0.0;
     for (int z = 0; z < block_side; ++z)
       for (int y = 0; y < block_side; ++y)
-        for (int x = 0; x < block_side; ++x)
-          sum += share(&corners[index(x, y, z)],
-                       scanned == Status::Full ? all_corners : scanned_corners(first + glm::ivec3(x, y, z)));
+        for (int x = 0; x < block_side; ++x) {
+          const std::size_t cell = index(x, y, z);
+          if (high[cell] < low_ || low[cell] > high_) continue;
+          const CornerBits of_scan =
+              scanned == Status::Full ? all_corners : scanned_corners(first + glm::ivec3(x, y, z));
+          const bool is_full = low[cell] >= low_ && high[cell] <= high_;
+          sum += is_full ? std::popcount(of_scan) / 8.0 : share(&corners[cell], of_scan);
+        }
     return sum;
   }
 
@@ -83,12 +129,29 @@ class BlockSum {
     return range;
   }
 
-  void fetch(const glm::ivec3& block,
-             std::array<std::int16_t, corner_side * corner_side * corner_side>& corners) const {
-    for (int z = 0; z < corner_side; ++z)
-      for (int y = 0; y < corner_side; ++y)
-        for (int x = 0; x < corner_side; ++x)
-          corners[index(x, y, z)] = grey_.sample(block_side * block + glm::ivec3(x, y, z));
+  // A row of a brick's samples at a time; the last corner of a row is the first sample of the next brick.
+  void fetch(const glm::ivec3& block, Corners& corners) const {
+    const int blocks = (grey_.universe().side() + block_side - 1) / block_side;
+    for (int next = 0; next < 8; ++next) {
+      const glm::ivec3 by(next & 1, (next >> 1) & 1, next >> 2), at = block + by;
+      const bool outside = glm::any(glm::lessThan(at, glm::ivec3(0))) ||
+                           glm::any(glm::greaterThanEqual(at, glm::ivec3(blocks)));
+      const GreyBrick* const brick = outside ? nullptr : &grey_.brick(at);
+      const glm::ivec3 count = block_side - (block_side - 1) * by;
+      for (int z = 0; z < count.z; ++z)
+        for (int y = 0; y < count.y; ++y)
+          for (int x = 0; x < count.x; x += 4) {
+            std::int16_t* const to =
+                &corners[index(block_side * by.x + x, block_side * by.y + y, block_side * by.z + z)];
+            const int width = std::min(4, count.x);
+            if (brick == nullptr)
+              std::fill_n(to, width, grey_.background());
+            else
+              std::copy_n(&brick->samples[static_cast<std::size_t>(child_index(x >> 2, y >> 2, z >> 2))]
+                                         [static_cast<std::size_t>(child_index(0, y & 3, z & 3))],
+                          width, to);
+          }
+    }
   }
 
   CornerBits scanned_corners(const glm::ivec3& first) const {
@@ -99,7 +162,8 @@ class BlockSum {
     return static_cast<CornerBits>(bits);
   }
 
-  // The part of a cell in the window and in the scan; `corner` is its first one.
+  // The part of a cell in the window and in the scan; `corner` is its first one. Some of its corners are in
+  // the window and some are not.
   double share(const std::int16_t* corner, CornerBits scanned) const {
     constexpr int along_y = corner_side;
     constexpr int along_z = corner_side * corner_side;
@@ -111,30 +175,23 @@ class BlockSum {
                                   static_cast<double>(corner[along_z + 1]),
                                   static_cast<double>(corner[along_z + along_y]),
                                   static_cast<double>(corner[along_z + along_y + 1])};
-    const auto [least, most] = std::minmax_element(c.begin(), c.end());
-    if (*most < low_ || *least > high_) return 0.0;
-    if (*least >= low_ && *most <= high_) return std::popcount(scanned) / 8.0;
+    Lines lines;
+    find_lines(c, low_, high_, lines);
     double sum = 0.0;
-    for (int j = 0; j < lines_an_axis; ++j)
-      for (int i = 0; i < lines_an_axis; ++i) {
-        const double s = (i + 0.5) / lines_an_axis;
-        const double t = (j + 0.5) / lines_an_axis;
-        const auto at = [&](std::size_t k) {
-          const double near = c[k] + s * (c[k + 1] - c[k]);
-          const double far = c[k + 2] + s * (c[k + 3] - c[k + 2]);
-          return near + t * (far - near);
-        };
-        if (scanned == all_corners) {
-          sum += length_within(at(0), at(4), low_, high_);
-          continue;
-        }
-        // Either half of the line is nearest to one corner.
-        const int nearest = (i < lines_an_axis / 2 ? 0 : 1) + (j < lines_an_axis / 2 ? 0 : 2);
-        const double middle = 0.5 * (at(0) + at(4));
-        if ((scanned >> nearest) & 1) sum += 0.5 * length_within(at(0), middle, low_, high_);
-        if ((scanned >> (nearest + 4)) & 1) sum += 0.5 * length_within(middle, at(4), low_, high_);
+    for (int line = 0; line < line_count; ++line) {
+      const auto i = static_cast<std::size_t>(line);
+      if (scanned == all_corners) {
+        sum += lines.length[i];
+        continue;
       }
-    return sum / (lines_an_axis * lines_an_axis);
+      // Either half of the line is nearest to one corner.
+      const int nearest = (line % lines_an_axis < lines_an_axis / 2 ? 0 : 1) +
+                          (line / lines_an_axis < lines_an_axis / 2 ? 0 : 2);
+      const double middle = 0.5 * (lines.from[i] + lines.to[i]);
+      if ((scanned >> nearest) & 1) sum += 0.5 * length_within(lines.from[i], middle, low_, high_);
+      if ((scanned >> (nearest + 4)) & 1) sum += 0.5 * length_within(middle, lines.to[i], low_, high_);
+    }
+    return sum / line_count;
   }
 
   const GreyOctree& grey_;
