@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "tests/fuzz/file_kinds.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <utility>
+
+#include "tests/file_bytes.h"
+#include "tests/fuzz/mutation.h"
+#include "tests/fuzz/sound_bytes.h"
+#include "tests/voxel/scan/dicom_frames.h"
+#include "tests/voxel/scan/structure_set.h"
+
+namespace octotomy::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using Command = std::vector<std::string>;
+
+constexpr const char* marks =
+    R"({"landmarks": [{"name": "nasion", "point_mm": [0, 0, 0]}, {"name": "ans", "point_mm": [9, 0, 1.5]},)"
+    R"( {"name": "menton", "point_mm": [0, -7e0, 0], "weight": 2.0}]})";
+constexpr const char* region =
+    R"({"polygons_mm": [[[-40, -60], [40, -60], [40, -25.5], [-4e1, -25]], [[0, 0], [9, 0], [0, 9]]]})";
+constexpr const char* drawing =
+    R"(<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm" viewBox="0 0 80 60">)"
+    R"~(<g transform="translate(2,3)"><path d="M 1 1 L 40,1 C 45,5 45,20 40,30 Z"/></g>)~"
+    R"(<rect x="5" y="35" width="30" height="10"/></svg>)";
+constexpr const char* curves =
+    R"({"markups": [{"type": "ClosedCurve", "coordinateSystem": "RAS", "coordinateUnits": "mm",)"
+    R"( "controlPoints": [{"label": "a", "position": [-40, 0, -60]}, {"label": "b", "position": [40, 0, -60],)"
+    R"( "positionStatus": "defined"}, {"label": "c", "position": [0, 5.5, 2e1]}]}]})";
+constexpr const char* points =
+    R"({"markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "controlPoints": [)"
+    R"({"label": "nasion", "position": [0, 0, 0]}, {"label": "ans", "position": [9, 0, 1]},)"
+    R"( {"label": "menton", "position": [0, -7.5, 0], "positionStatus": "defined"}]}]})";
+constexpr const char* edits =
+    R"({"edits": [{"slice": 3, "contour": 0, "do": "remove"}, {"slice": 4, "do": "add",)"
+    R"( "points_mm": [[-12.5, 4e1], [9, 40], [0, 55]]}]})";
+constexpr const char* transfer =
+    R"({"octotomy_transfer": 1, "surface_per_mm": 60, "points": [{"sample": -500, "colour": "#cc7a29",)"
+    R"( "per_mm": 0.0}, {"sample": 100.5, "colour": "#ffffff", "per_mm": 1e-1}]})";
+constexpr const char* plan =
+    R"({"octotomy_plan": 1, "name": "small", "scans": {"ct": {"path": "head.nrrd"}},)"
+    R"( "universe": {"voxel_mm": 12}, "steps": [{"id": "s", "do": "window", "scan": "ct", "low": 300},)"
+    R"( {"id": "m", "do": "move", "object": "s", "translate_mm": [0, -6, 2]},)"
+    R"( {"id": "u", "do": "combine", "expression": "s | m"}, {"id": "n", "do": "measure", "object": "u"}]})";
+constexpr const char* definitions =
+    R"({"cephalometry": "mine", "says": "Two.", "landmarks": [{"name": "nasion", "says": "a"},)"
+    R"( {"name": "ans", "says": "b"}, {"name": "menton", "says": "c"},)"
+    R"( {"name": "middle", "says": "d", "mean_of": ["ans", "menton"]}], "measures": [{"name": "A", "says": "e",)"
+    R"( "kind": "angle", "points": ["ans", "nasion", "menton"], "norm": 82, "deviation": 3.5, "source": "f"},)"
+    R"( {"name": "B", "says": "g", "kind": "angle", "points": ["middle", "nasion", "menton"]},)"
+    R"( {"name": "C", "says": "h", "kind": "difference", "of": ["A", "B"]}]})";
+
+constexpr const char* chin =
+    R"({"landmarks": [{"name": "foramen_left", "point_mm": [23, -65, -62]},)"
+    R"( {"name": "foramen_right", "point_mm": [-23, -65, -62]}, {"name": "border_left", "point_mm": [30, -50, -75]},)"
+    R"( {"name": "border_right", "point_mm": [-30, -50, -75]}, {"name": "pogonion", "point_mm": [0, -85, -70]},)"
+    R"( {"name": "menton", "point_mm": [0, -80, -80]}]})";
+
+/// What the sound files are made with, and lie in.
+class SoundFiles {
+ public:
+  SoundFiles(fs::path folder, const std::function<void(const Command&)>& make)
+      : folder_(std::move(folder)), make_(make) {}
+
+  std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  std::string bytes(const std::string& name) const { return bytes_of(folder_ / name); }
+  void make(const Command& arguments) const { make_(arguments); }
+  void write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+
+  void make_all() const {
+    make({"phantom", "head", "--voxel", "12", "-o", at("head.nrrd")});
+    for (const char* name : {"head.nii", "head.mha", "head.mhd", "head.nhdr"})
+      make({"convert", at("head.nrrd"), "-o", at(name)});
+    make({"convert", at("head.nrrd"), "-o", at("dicom"), "--dicom"});
+    make({"octree", at("head.nrrd"), "--window", "300:", "-o", at("binary.octree")});
+    make({"octree", at("head.nrrd"), "--grey", "-o", at("grey.octree")});
+    for (const char* name : {"labels.nrrd", "labels.nii"})
+      make({"segment", at("head.nrrd"), "--window", "bone", "--window", "soft_tissue", "-o", at(name)});
+    make({"segment", at("dicom"), "--window", "bone", "--window", "soft_tissue", "-o", at("seg.dcm")});
+    write("box.stl", stl_text());
+    write("marks.json", marks);
+    write("region.json", region);
+    write("chin.json", chin);
+    write("small.plan.json", plan);
+    make({"contours", at("head.nrrd"), "--window", "300:", "-o", at("bone.json")});
+    make({"phantom", "sphere", "--voxel", "10", "--voxels", "8", "--radius", "1.6", "-o", at("ball.octree")});
+    for (const char* name : {"ball.stl", "ball.ply", "ball.obj", "ball.off", "ball.vtp"})
+      make({"mesh", at("ball.octree"), "-o", at(name)});
+    for (const char* view : {"anterior", "left"})
+      make({"render", at("head.nrrd"), "--shading", "mip", "--view", view, "--size", "48x48", "-o",
+            at(std::string("slice_") + view + ".png")});
+    make({"run", at("small.plan.json"), "--certify", "never", "-o", at("result")});
+  }
+
+ private:
+  fs::path folder_;
+  const std::function<void(const Command&)>& make_;
+};
+
+class Kinds {
+ public:
+  explicit Kinds(const SoundFiles& sound) : sound_(sound) {}
+
+  std::vector<FileKind> all() {
+    add_scans();
+    add_dicom();
+    add_labels();
+    add_octrees();
+    add_meshes();
+    add_drawings();
+    add_documents();
+    return std::move(all_);
+  }
+
+ private:
+  std::string at(const std::string& name) const { return sound_.at(name); }
+
+  FileKind& add(const std::string& name, const std::string& file, std::string sound,
+                Command command = {"info", "MUTANT"}) {
+    all_.push_back({name, file, std::move(sound), {}, {}, false, std::move(command), {}});
+    return all_.back();
+  }
+
+  /// A scan, with the options that every verb needs to read it.
+  FileKind& scan(const std::string& name, const std::string& file, std::string sound,
+                 const Command& options = {}) {
+    FileKind& kind = add(name, file, std::move(sound));
+    kind.verbs = {{"octree", "MUTANT", "--window", "300:", "-o", "OUT.octree"},
+                  {"octree", "MUTANT", "--grey", "-o", "OUT.octree"},
+                  {"render", "MUTANT", "--window", "300:", "--size", "16x16", "-o", "OUT.png"},
+                  {"slice", "MUTANT", "--size", "16x16", "-o", "OUT.png"},
+                  {"mesh", "MUTANT", "--window", "300:", "-o", "OUT.stl"},
+                  {"measure", "MUTANT", "--window", "300:"},
+                  {"contours", "MUTANT", "--window", "300:", "-o", "OUT.json"},
+                  {"segment", "MUTANT", "--window", "300:", "--largest", "-o", "OUT.octree"},
+                  {"segment", "MUTANT", "--otsu", "2", "-o", "OUT.nrrd"},
+                  {"prepare", "MUTANT", "--step", "median=1", "-o", "OUT.nrrd"},
+                  {"prepare", "MUTANT", "--step", "average_down=2", "-o", "OUT.nrrd"},
+                  {"convert", "MUTANT", "-o", "OUT.nii.gz"},
+                  {"convert", "MUTANT", "-o", "OUT_dicom", "--dicom"}};
+    kind.command.insert(kind.command.end(), options.begin(), options.end());
+    for (Command& verb : kind.verbs) verb.insert(verb.end(), options.begin(), options.end());
+    return kind;
+  }
+
+  void add_scans() {
+    const Command spacing{"--spacing", "1,1,1"};
+    scan("nifti", "head.nii", sound_.bytes("head.nii"));
+    scan("nifti_gz", "head.nii.gz", sound_.bytes("head.nii")).finish = packed;
+    scan("nifti_bomb", "head.nii.gz", sound_.bytes("head.nii")).finish =
+        [bomb = gzip_bomb()](const std::string& bytes) { return packed(bytes) + bomb; };
+    scan("nifti2", "head.nii", nifti2());
+    scan("nrrd", "head.nrrd", sound_.bytes("head.nrrd"));
+    scan("nrrd_header", "head.nhdr", sound_.bytes("head.nhdr")).beside = {at("head.raw.gz")};
+    scan("metaimage", "head.mha", sound_.bytes("head.mha"));
+    scan("metaimage_header", "head.mhd", sound_.bytes("head.mhd")).beside = {at("head.zraw")};
+    FileKind& stack = scan("png_stack", "slice_2.png", sound_.bytes("slice_left.png"), spacing);
+    stack.beside = {at("slice_anterior.png")};
+    stack.is_folder = true;
+    scan("tiff_stack", "slice.tif", tiff(), spacing);
+    std::string ramp;
+    for (std::uint32_t i = 0; i < 20 * 20 * 20; ++i) ramp += DicomBytes::number(i % 1000, 2);
+    scan("raw", "head.raw", ramp, {"--raw", "20x20x20", "int16", "--spacing", "1,1,1"});
+  }
+
+  void add_dicom() {
+    const std::string slice = "dicom/slice_0010.dcm";
+    scan("dicom", "slice.dcm", sound_.bytes(slice));
+    FileKind& series = scan("dicom_series", "slice_0010.dcm", sound_.bytes(slice));
+    series.beside = {at("dicom/slice_0009.dcm"), at("dicom/slice_0011.dcm"), at("dicom/slice_0012.dcm")};
+    series.is_folder = true;
+    DicomFrames frames;
+    scan("dicom_frames", "frames.dcm", DicomBytes::file("1.2.840.10008.1.2.1", frames.attributes()));
+    frames.open = true;
+    scan("dicom_open_frames", "frames.dcm", DicomBytes::file("1.2.840.10008.1.2.1", frames.attributes()));
+    for (const auto& [name, command] :
+         {std::pair{"dicom_jpeg_2000", "gdcmconv --j2k"}, std::pair{"dicom_jpeg_ls", "gdcmconv --jpegls"},
+          std::pair{"dicom_jpeg", "gdcmconv --jpeg"}, std::pair{"dicom_rle", "gdcmconv --rle"},
+          std::pair{"dicom_deflated", "dcmconv +td"}, std::pair{"dicom_big_endian", "dcmconv +tb"}}) {
+      const std::string to = std::string(name) + ".dcm";
+      if (std::system((std::string(command) + " " + at(slice) + " " + at(to) + " >/dev/null 2>&1").c_str()) ==
+          0)
+        scan(name, "slice.dcm", sound_.bytes(to));
+      else
+        std::printf("%-18s left out: '%s' is not installed\n", name, command);
+    }
+    add("structure_set", "rs.dcm",
+        structure_set({{1, "Mandible", {rectangle({-30, -20}, {30, 40}, -12), rectangle({0, 0}, {9, 9}, 0)}},
+                       {3, "Isocentre", {{{1, 2, 3}}}, "POINT"}}),
+        {"mask", "--slices", "MUTANT", "--structure", "Mandible", "--like", at("head.nrrd"), "-o",
+         "OUT.octree"});
+  }
+
+  void add_labels() {
+    const Command surfaces{"surfaces", "MUTANT", "-o", "OUT.vtp"},
+        one{"segment", "MUTANT", "--label", "1", "-o", "OUT.octree"};
+    for (const auto& [name, file] :
+         {std::pair{"labels", "labels.nrrd"}, std::pair{"labels_nifti", "labels.nii"},
+          std::pair{"dicom_seg", "seg.dcm"}})
+      add(name, file, sound_.bytes(file)).verbs = {surfaces, one};
+    all_[all_.size() - 2].verbs.push_back({"convert", "MUTANT", "--source", at("dicom"), "-o", "OUT.dcm"});
+    const auto table = [&](const std::string& name, const std::string& file, const std::string& text) {
+      add(name, file, text,
+          {"segment", at("labels.nrrd"), "--named", "bone", "--names", "MUTANT", "-o", "OUT.octree"});
+    };
+    table("label_table", "names.json", R"({"bone": 1, "soft tissue": 2})");
+    table("label_table_csv", "names.csv", "label,name\n1,bone\n2,\"soft, tissue\"\n");
+    table("label_table_txt", "names.txt", "# ITK-SNAP\n1 255 0 0 1 1 1 \"bone\"\n2 0 255 0 1 1 1 \"soft\"\n");
+  }
+
+  void add_octrees() {
+    const Command render{"render", "MUTANT", "--size", "16x16", "-o", "OUT.png"},
+        slice{"slice", "MUTANT", "--size", "16x16", "-o", "OUT.png"};
+    FileKind& binary = add("octree", "binary.octree", sound_.bytes("binary.octree"));
+    binary.finish = resealed_octree;
+    binary.verbs = {
+        render,
+        slice,
+        {"eval", "a", "--let", "a=MUTANT", "-o", "OUT.octree"},
+        {"eval", "~(a - move(a, m))", "--let", "a=MUTANT", "--motion", "m=3,0,12", "-o", "OUT.octree"},
+        {"mesh", "MUTANT", "-o", "OUT.stl"},
+        {"mesh", "MUTANT", "--surface", "cuberille", "-o", "OUT.stl"},
+        {"measure", "MUTANT"},
+        {"octree", "MUTANT", "--as", "linear", "-o", "OUT.txt"},
+        {"convert", "MUTANT", "--source", at("dicom"), "-o", "OUT.dcm"},
+        {"tet", "MUTANT", "-o", "OUT.inp"},
+        {"parts", "MUTANT", "--largest", "1", "-o", "OUT.octree"},
+        {"fill", "MUTANT", "-o", "OUT.octree"},
+        {"mask", "--edit", "MUTANT", "--region", "anterior:" + at("region.json"), "-o", "OUT.octree"},
+        {"voxelise", at("box.stl"), "--like", "MUTANT", "-o", "OUT.octree"}};
+    FileKind& grey = add("octree_grey", "grey.octree", sound_.bytes("grey.octree"));
+    grey.finish = resealed_octree;
+    grey.verbs = {render,
+                  slice,
+                  {"measure", "MUTANT", "--window", "300:"},
+                  {"mesh", "MUTANT", "--window", "300:", "-o", "OUT.stl"},
+                  {"octree", "MUTANT", "--window", "300:", "-o", "OUT.octree"}};
+    for (const char* form : {"treecode", "linear", "explicit", "runs", "segments", "marginal", "faces",
+                             "array", "packed", "bits"}) {
+      const std::string file = std::string(form) + ".txt";
+      sound_.make({"octree", at("binary.octree"), "--as", form, "-o", at(file)});
+      add(std::string("form_") + form, file, sound_.bytes(file),
+          {"octree", "MUTANT", "--from", form, "--depth", "5", "-o", "OUT.octree"});
+    }
+  }
+
+  void add_meshes() {
+    const auto mesh = [&](const std::string& name, const std::string& file, std::string sound) {
+      add(name, file, std::move(sound)).verbs = {
+          {"measure", "MUTANT"},
+          {"measure", "MUTANT", "--section", "1,1,1", "0,0,1"},
+          {"measure", "MUTANT", "--curvature"},
+          {"voxelise", "MUTANT", "--voxel", "6", "-o", "OUT.octree"},
+          {"boolean", "MUTANT", "union", at("box.stl"), "-o", "OUT.stl"},
+          {"boolean", at("box.stl"), "intersection", "MUTANT", "--mend", "-o", "OUT.stl"},
+          {"repair", "MUTANT", "--orient", "--flat", "--duplicates", "--weld", "0.001", "-o", "OUT.stl"},
+          {"repair", "MUTANT", "--solid", "--cell", "8", "-o", "OUT.ply"},
+          {"smooth", "MUTANT", "--rounds", "1", "-o", "OUT.ply"},
+          {"decimate", "MUTANT", "--faces", "100", "-o", "OUT.obj"},
+          {"saw", "MUTANT", "--line", "-60,-120,-20", "60,-120,-20", "--direction", "0,1,0", "-o", "OUT.stl"},
+          {"parts", "MUTANT", "--largest", "1", "-o", "OUT.off"},
+          {"separate", "MUTANT", "-o", "OUT.stl"},
+          {"compare", "MUTANT", at("box.stl"), "--spacing", "10"},
+          {"slice", at("head.nrrd"), "--octree", "MUTANT", "--size", "16x16", "-o", "OUT.png"}};
+    };
+    for (const char* kind : {"stl", "ply", "obj", "off", "vtp"})
+      mesh(kind, std::string("ball.") + kind, sound_.bytes(std::string("ball.") + kind));
+    mesh("vtk", "box.vtk", vtk());
+    mesh("vtk_binary", "box.vtk", vtk_binary());
+    mesh("vtp_text", "box.vtp", vtp_text());
+    mesh("stl_text", "box.stl", stl_text());
+    mesh("ply_text", "box.ply", ply_text());
+    add("frd", "face.frd", frd(), {"warp", at("box.stl"), "--result", "MUTANT", "-o", "OUT.stl"});
+  }
+
+  /// What is drawn or marked by hand.
+  void add_drawings() {
+    const auto mask = [&](const std::string& name, const std::string& file, std::string sound,
+                          Command command) {
+      command.insert(command.begin(), "mask");
+      command.insert(command.end(), {"--like", at("head.nrrd"), "-o", "OUT.octree"});
+      add(name, file, std::move(sound), std::move(command));
+    };
+    mask("region", "region.json", region, {"--region", "anterior:MUTANT"});
+    mask("region_svg", "region.svg", drawing, {"--region", "anterior:MUTANT"});
+    mask("region_curves", "region.mrk.json", curves, {"--region", "anterior:MUTANT"});
+    mask("region_picture", "front.png", sound_.bytes("slice_anterior.png"),
+         {"--region-pixels", "MUTANT:10,10 40,10 40,40"});
+    mask("slices", "slices.json", sound_.bytes("bone.json"), {"--slices", "MUTANT"});
+    add("contours", "slices.json", sound_.bytes("bone.json"),
+        {"contours", "MUTANT", "--by", "1", "-o", "OUT.json"});
+    add("edits", "edits.json", edits, {"contours", at("bone.json"), "--edits", "MUTANT", "-o", "OUT.json"});
+    const Command registration{"register", at("box.stl"),    at("box.stl"),     "--landmarks",
+                               "MUTANT",   at("marks.json"), "--landmarks-only"};
+    add("landmarks", "marks.json", marks, registration);
+    add("landmarks_markups", "marks.mrk.json", points, registration);
+    add("curve", "curve.json", R"({"points_mm": [[-30, 10, 5], [-15.5, -25, 5], [1.5e1, -25, 5]]})",
+        {"slice", at("head.nrrd"), "--curve", "MUTANT", "--size", "16x16", "-o", "OUT.png"});
+    add("transfer", "transfer.json", transfer,
+        {"render", at("head.nrrd"), "--shading", "composite", "--transfer", "MUTANT", "--size", "16x16", "-o",
+         "OUT.png"});
+  }
+
+  void add_documents() {
+    const std::string whole = at("small.plan.json");
+    FileKind& plans = add("plan", "small.plan.json", plan, {"verify", "MUTANT"});
+    plans.beside = {at("head.nrrd")};
+    plans.verbs = {{"plan", "diff", "MUTANT", whole},
+                   {"plan", "merge", whole, "MUTANT", whole, "-o", "OUT.plan.json"},
+                   {"preview", "MUTANT", "u", "-o", "OUT.png"},
+                   {"run", "MUTANT", "--certify", "never", "-o", "OUT_result"}};
+    add("question", "question.json",
+        R"({"name": "both", "operands": ["box.stl", "box.stl"], "operation": "union", "result": "box.stl"})",
+        {"verify", "MUTANT"})
+        .beside = {at("box.stl")};
+    add("procedure", "mine.procedure.json",
+        bytes_of(OCTOTOMY_SOURCE_DIR "/planner/procedure/genioplasty.procedure.json"),
+        {"procedure", "MUTANT", "--scan", at("head.nrrd"), "--landmarks", at("chin.json"), "--set",
+         "forward_mm=5", "--voxel", "12", "-o", "OUT.plan.json"});
+    add("definitions", "mine.json", definitions,
+        {"cephalometry", at("marks.json"), "--definitions", "MUTANT"});
+    add("result", "result.json", sound_.bytes("result/result.json"), {"table", "MUTANT", "-o", "OUT.csv"});
+    add("subjects", "scans.csv", "participant_id,scan\nsub-1,head.nrrd\nsub-2,\"head.nrrd\"\n",
+        {"cohort", "MUTANT", "OUT_cohort", "participant", "--plan", whole, "--dry-run"})
+        .beside = {at("head.nrrd")};
+  }
+
+  const SoundFiles& sound_;
+  std::vector<FileKind> all_;
+};
+
+}  // namespace
+
+std::vector<FileKind> file_kinds(const fs::path& folder, const std::function<void(const Command&)>& make) {
+  const SoundFiles sound(folder, make);
+  sound.make_all();
+  return Kinds(sound).all();
+}
+
+}  // namespace octotomy::tests

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+// Sound files that the program reads and does not write.
+namespace octotomy::tests {
+
+std::string nifti2();                ///< 6 x 5 x 4 samples of int16
+std::string tiff();                  ///< one grey page of 16 x 12 pixels, uncompressed
+std::string vtk(), vtk_binary();     ///< a tetrahedron
+std::string vtp_text(), stl_text();  ///< the same
+std::string ply_text();              ///< the same
+std::string frd();                   ///< CalculiX's result of a tetrahedron about it, with displacements
+std::string gzip_bomb();             ///< a gzip member of 64 MiB of zeros
+
+}  // namespace octotomy::tests
