@@ -98,28 +98,36 @@ struct Lighting {
   glm::vec3 halfway{0.0f, 0.0f, -1.0f};
 };
 
-/// Pass 4: Phong's model over a row of slopes, into diffuse and mirrored light.
+/// Pass 4: Phong's model over a row of slopes, into diffuse and mirrored light. Light by light, because a
+/// loop over pixels alone becomes vectors.
 OCTOTOMY_VECTOR_CLONES void light_row(const Lighting& lighting, const float* __restrict to_right,
                                       const float* __restrict to_top, int first, int last,
                                       float* __restrict diffuse, float* __restrict mirrored) {
+  float* __restrict const per_length = mirrored;
+  const float ambient = lighting.ambient;
   for (int i = first; i < last; ++i) {
     // A surface turns towards the side to which its depth grows, and so does its normal.
     const float nx = to_right[i], ny = to_top[i];
-    const float per_length = 1.0f / std::sqrt(nx * nx + ny * ny + 1.0f);
-    float light = lighting.ambient;
-    for (int l = 0; l < lighting.count; ++l) {
-      const float facing = (nx * lighting.x[l] + ny * lighting.y[l] - lighting.z[l]) * per_length;
-      light += facing > 0.0f ? facing : 0.0f;
+    per_length[i] = 1.0f / std::sqrt(nx * nx + ny * ny + 1.0f);
+    diffuse[i] = ambient;
+  }
+  for (int l = 0; l < lighting.count; ++l) {
+    const float x = lighting.x[l], y = lighting.y[l], z = lighting.z[l];
+    for (int i = first; i < last; ++i) {
+      const float facing = (to_right[i] * x + to_top[i] * y - z) * per_length[i];
+      diffuse[i] += facing > 0.0f ? facing : 0.0f;
     }
-    diffuse[i] = light;
-    const float mirror =
-        (nx * lighting.halfway.x + ny * lighting.halfway.y - lighting.halfway.z) * per_length;
+  }
+  const glm::vec3 halfway = lighting.halfway;
+  const float gloss = lighting.gloss;
+  for (int i = first; i < last; ++i) {
+    const float mirror = (to_right[i] * halfway.x + to_top[i] * halfway.y - halfway.z) * per_length[i];
     // The power of 48 by squarings.
     const float m1 = mirror > 0.0f ? mirror : 0.0f;
     const float m2 = m1 * m1;
     const float m8 = m2 * m2 * m2 * m2;
     const float m16 = m8 * m8;
-    mirrored[i] = lighting.gloss * (m16 * m16 * m16);
+    mirrored[i] = gloss * (m16 * m16 * m16);
   }
 }
 
