@@ -90,7 +90,7 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
       facts[number] = copy_row(image, y, row, plane.lit[number]);
     }
     for (Plane* const other : {&between, &plane.depth})
-      std::copy_n(row - margin, found.width, other->row(y) - margin);
+      std::fill_n(other->row(y) - margin, found.width, beyond_mm);
   });
   bool any_stepped = false;
   for (const RowFacts& row : facts) {
@@ -102,7 +102,7 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
   smoothing.band_mm = static_cast<float>(0.5 * scenery.voxel_mm);
   for (int pass = 0; pass < (any_stepped ? 4 : 2); ++pass) {
     const bool along_x = pass % 2 == 0;
-    const Plane& from = along_x ? plane.depth : between;
+    const Plane& from = pass == 0 ? found : along_x ? plane.depth : between;
     Plane& to = along_x ? between : plane.depth;
     Smoothing along = smoothing;
     along.tap = along_x ? step : static_cast<std::ptrdiff_t>(step) * found.width;

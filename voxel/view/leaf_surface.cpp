@@ -70,6 +70,8 @@ struct Leaf {
   Int low_cell[3], high_cell[3];  ///< that pairs are there for
   double per_mm[3];
   Float per_mm_float[3];
+  std::int32_t corner = 0;  ///< number of the pair of the leaf's first voxel in the mirrored frame
+  std::int32_t stride[3];   ///< from there to the next voxel along an axis
   float half_voxel_mm = 0.0f;
   float threshold = 0.0f;
 };
@@ -79,8 +81,8 @@ struct Lanes {
   const double* start[3];
   const double* enter_mm;
   const double* leave_mm;
-  const std::int32_t* voxel;   ///< number of the pair of the passed voxel
-  const std::int32_t* before;  ///< and of the voxel in front of it
+  const std::int32_t* at[3];  ///< place of the passed voxel in the leaf
+  const std::int32_t* through;
   float* depth_mm;
   std::int32_t* kind;
 };
@@ -154,8 +156,14 @@ OCTOTOMY_VECTOR_CLONES void find_vector(const Leaf& leaf, const Lanes& rays) {
   }
   const float threshold = leaf.threshold;
   const Float entry = interpolate(leaf, origins, Float{});
-  const Float voxel = left_of(pairs_at(leaf.pairs, load<Int>(rays.voxel)));
-  const Float before = left_of(pairs_at(leaf.pairs, load<Int>(rays.before)));
+  const auto through = load<Int>(rays.through);
+  Int number = Int{} + leaf.corner, step_back{};
+  for (int axis = 0; axis < 3; ++axis) {
+    number += load<Int>(rays.at[axis]) * leaf.stride[axis];
+    step_back |= (through == axis) & leaf.stride[axis];
+  }
+  const Float voxel = left_of(pairs_at(leaf.pairs, number));
+  const Float before = left_of(pairs_at(leaf.pairs, number - step_back));
   const Int outside = entry < threshold;
   Int open = ~((voxel < threshold) | ((before >= threshold) & ~outside));
   Int faces = ~open, crossed{};
@@ -251,6 +259,7 @@ LeafSurface::LeafSurface(const DrawnObject& object, const VoxelRays& rays, const
     : grey_(*object.grey),
       mirror_(mirror),
       per_mm_(rays.per_mm),
+      half_voxel_mm_(static_cast<float>(0.5 / glm::length(rays.per_mm))),
       threshold_(static_cast<float>(object.threshold)),
       universe_side_(object.grey->universe().side()) {
   assert(object.grey && !object.moved_from_still);
@@ -283,7 +292,7 @@ void LeafSurface::find(const RayBatch& batch, Found& found) {
   if (batch.leaf != leaf_) go_to(batch.leaf);
   Leaf leaf;
   leaf.pairs = pairs_.data();
-  leaf.half_voxel_mm = static_cast<float>(0.5 / glm::length(per_mm_));
+  leaf.half_voxel_mm = half_voxel_mm_;
   leaf.threshold = threshold_;
   for (int axis = 0; axis < 3; ++axis) {
     leaf.first[axis] = Int{} + first_[axis];
@@ -292,28 +301,20 @@ void LeafSurface::find(const RayBatch& batch, Found& found) {
     leaf.per_mm[axis] = per_mm_[axis];
     leaf.per_mm_float[axis] = Float{} + static_cast<float>(per_mm_[axis]);
   }
-  alignas(64) RayBatch::ByRay<std::int32_t> voxel, before, kind;
   // Along a flipped axis voxels count down.
   const glm::ivec3 stride = glm::ivec3(1, row, layer) * (1 - 2 * mirror_.flipped);
   const glm::ivec3 corner = native_ - first_ + 3 * mirror_.flipped;
-  const int origin = corner.x + row * corner.y + layer * corner.z;
-  const int count = (batch.count + lanes - 1) / lanes * lanes;
-  for (int i = 0; i < count; ++i) {
-    const auto ray = static_cast<std::size_t>(i);
-    voxel[ray] =
-        origin + stride.x * batch.at[0][ray] + stride.y * batch.at[1][ray] + stride.z * batch.at[2][ray];
-    const std::int32_t through = batch.entered_through[ray];
-    before[ray] = voxel[ray] - (through == 0 ? stride.x : through == 1 ? stride.y : stride.z);
-  }
-  for (int first = 0; first < count; first += lanes)
-    find_vector(
-        leaf, {{batch.start[0].data() + first, batch.start[1].data() + first, batch.start[2].data() + first},
-               batch.enter_mm.data() + first,
-               batch.leave_mm.data() + first,
-               voxel.data() + first,
-               before.data() + first,
-               found.depth_mm.data() + first,
-               kind.data() + first});
+  leaf.corner = corner.x + row * corner.y + layer * corner.z;
+  for (int axis = 0; axis < 3; ++axis) leaf.stride[axis] = stride[axis];
+  alignas(64) RayBatch::ByRay<std::int32_t> kind;
+  for (int i = 0; i < batch.count; i += lanes)
+    find_vector(leaf, {{batch.start[0].data() + i, batch.start[1].data() + i, batch.start[2].data() + i},
+                       batch.enter_mm.data() + i,
+                       batch.leave_mm.data() + i,
+                       {batch.at[0].data() + i, batch.at[1].data() + i, batch.at[2].data() + i},
+                       batch.entered_through.data() + i,
+                       found.depth_mm.data() + i,
+                       kind.data() + i});
   found.lit = found.stepped = 0;
   for (int i = 0; i < batch.count; ++i) {
     found.lit |= RayBatch::Rays{kind[static_cast<std::size_t>(i)] != nothing} << i;

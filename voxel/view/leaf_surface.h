@@ -40,6 +40,7 @@ class LeafSurface {
   const GreyOctree& grey_;
   const Mirror& mirror_;
   glm::dvec3 per_mm_;
+  float half_voxel_mm_;  ///< along a ray, in depth
   float threshold_;
   int universe_side_;
   glm::ivec3 leaf_{std::numeric_limits<int>::min()};
