@@ -21,6 +21,7 @@
 #include "voxel/measure/measure.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/partial_volume.h"
+#include "voxel/space/drop_samples.h"
 #include "voxel/tree/octree_file.h"
 
 namespace octotomy::planner {
@@ -249,7 +250,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   {
     const Stopwatch watch(timings, "isosurface");
     brep::Triangles triangles = convert::isosurface(scene, window.low, asked.window->high_or_infinity());
-    scene.samples = {};  // from here on the octree's serve
+    voxel::drop_samples(scene);  // from here on the octree's serve
     isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
   }
   const brep::Size& surface = isosurface.size();
