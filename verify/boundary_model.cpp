@@ -240,22 +240,6 @@ class Modeller {
     return model_;
   }
 
-  AreaAndCurvature area_and_curvature() const {
-    AreaAndCurvature found;
-    in_order<double>(
-        triangles_.faces.size(), [&](std::size_t face) { return glm::length(triangle(face).area_vector()); },
-        [&](std::size_t, double area_mm2) { found.area_mm2 += area_mm2; });
-    CellTable<double> cells_mm;
-    in_order<BentEdge>(
-        linked_.opposite.size(),
-        [&](std::size_t side) { return bent_edge(static_cast<std::uint32_t>(side)); },
-        [&](std::size_t, const BentEdge& edge) {
-          if (edge.bends) cells_mm.at(edge.bend.cell) += edge.bend.mm;
-        });
-    cells_mm.each([&](double cell_mm) { found.curvature_mm += std::abs(cell_mm); });
-    return found;
-  }
-
  private:
   glm::dvec3 normal_of(const Triangle& triangle) const {
     const glm::dvec3 across = triangle.area_vector();
@@ -599,10 +583,6 @@ class Modeller {
 };
 
 }  // namespace
-
-AreaAndCurvature area_and_curvature(const brep::Solid& solid, const BoundaryFrame& frame) {
-  return Modeller(solid, frame).area_and_curvature();
-}
 
 BoundaryModel boundary_model(const brep::Solid& solid, const BoundaryFrame& frame) {
   return Modeller(solid, frame).run();

@@ -67,11 +67,4 @@ struct BoundaryFrame {
 /// Cost: linear in the solid's edges, parallel.
 BoundaryModel boundary_model(const brep::Solid& solid, const BoundaryFrame& frame);
 
-/// The same area and curvature alone, in a third of the time.
-struct AreaAndCurvature {
-  double area_mm2 = 0.0;
-  double curvature_mm = 0.0;
-};
-AreaAndCurvature area_and_curvature(const brep::Solid& solid, const BoundaryFrame& frame);
-
 }  // namespace octotomy::verify

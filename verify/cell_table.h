@@ -2,42 +2,64 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace octotomy::verify {
 
-/// What is gathered of a surface, by the cells of a lattice that name its parts. Neighbours are mostly of one
-/// cell: what was asked for lately is found without the table.
+/// What is gathered of a surface, by the cells of a lattice that name its parts. No cell's number is all
+/// ones.
 template <typename Value>
 class CellTable {
  public:
+  /// The reference holds until the next call.
   Value& at(std::uint64_t cell) {
-    Recent& recent = recent_[(cell * 0x9E3779B97F4A7C15ULL) >> (64 - recent_bits)];
-    if (recent.value == nullptr || recent.cell != cell) recent = {cell, &values_[cell]};
-    return *recent.value;
+    assert(cell != none);
+    if (2 * count_ >= slots_.size()) grow();
+    Slot& slot = slot_of(cell);
+    if (slot.cell == none) {
+      slot.cell = cell;
+      ++count_;
+    }
+    return slot.value;
   }
 
   /// Calls visit(value) in the order of the cells' numbers.
   template <typename Visit>
   void each(const Visit& visit) const {
     std::vector<std::pair<std::uint64_t, const Value*>> sorted;
-    sorted.reserve(values_.size());
-    for (const auto& [cell, value] : values_) sorted.emplace_back(cell, &value);
+    sorted.reserve(count_);
+    for (const Slot& slot : slots_)
+      if (slot.cell != none) sorted.emplace_back(slot.cell, &slot.value);
     std::sort(sorted.begin(), sorted.end());
     for (const auto& [cell, value] : sorted) visit(*value);
   }
 
  private:
-  static constexpr int recent_bits = 12;
-  struct Recent {
-    std::uint64_t cell = 0;
-    Value* value = nullptr;
+  static constexpr std::uint64_t none = ~std::uint64_t{0};
+  struct Slot {
+    std::uint64_t cell = none;
+    Value value{};
   };
-  std::unordered_map<std::uint64_t, Value> values_;
-  std::vector<Recent> recent_{std::size_t{1} << recent_bits};
+
+  /// The cell's own slot, or the empty one where it belongs.
+  Slot& slot_of(std::uint64_t cell) {
+    const std::size_t last = slots_.size() - 1;
+    std::size_t at = (cell * 0x9E3779B97F4A7C15ULL) >> (64 - bits_);
+    while (slots_[at].cell != none && slots_[at].cell != cell) at = (at + 1) & last;
+    return slots_[at];
+  }
+  void grow() {
+    const std::vector<Slot> before = std::exchange(slots_, std::vector<Slot>(std::size_t{1} << ++bits_));
+    for (const Slot& slot : before)
+      if (slot.cell != none) slot_of(slot.cell) = slot;
+  }
+
+  int bits_ = 9;
+  std::size_t count_ = 0;
+  std::vector<Slot> slots_;  ///< 2^bits_ of them, at least half of them empty; none at first
 };
 
 }  // namespace octotomy::verify

@@ -11,11 +11,12 @@
 
 namespace octotomy::verify {
 
-/// Calls take(i, make(i)) for i from 0 in ascending order, and make() on all threads beforehand, some
-/// thousand items at a time: sums that take() adds to have the same bits on any number of threads. The next
-/// items are made while some are taken: make() must not read what take() writes.
+/// Calls take(i, item) for i from 0 in ascending order, and make(first, end, items) for some hundred items at
+/// a time on all threads beforehand: sums that take() adds to have the same bits on any number of threads.
+/// The next items are made while some are taken: make() must not read what take() writes, and must set every
+/// item, which may hold an earlier one.
 template <typename Item, typename Make, typename Take>
-void in_order(std::size_t count, const Make& make, const Take& take) {
+void in_order_by_batch(std::size_t count, const Make& make, const Take& take) {
   constexpr std::size_t block = std::size_t{1} << 14, grain = 256;
   std::array<std::vector<Item>, 2> items;
   items.fill(std::vector<Item>(std::min(count, block)));
@@ -24,8 +25,7 @@ void in_order(std::size_t count, const Make& make, const Take& take) {
     if (first >= count) return;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, std::min(count, first + block), grain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i)
-                          (*made)[i - first] = make(i);
+                        make(range.begin(), range.end(), made->data() + (range.begin() - first));
                       });
   };
   make_from(0);
@@ -37,6 +37,17 @@ void in_order(std::size_t count, const Make& make, const Take& take) {
                              take(i, (*taken)[i - first]);
                          });
   }
+}
+
+/// The same for items that are made one by one: item i is make(i).
+template <typename Item, typename Make, typename Take>
+void in_order(std::size_t count, const Make& make, const Take& take) {
+  in_order_by_batch<Item>(
+      count,
+      [&](std::size_t first, std::size_t end, Item* items) {
+        for (std::size_t i = first; i != end; ++i) *items++ = make(i);
+      },
+      take);
 }
 
 }  // namespace octotomy::verify

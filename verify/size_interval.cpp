@@ -40,12 +40,15 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <vector>
 
-#include "brep/mesh/dihedral_angle.h"
 #include "brep/mesh/triangles.h"
+#include "verify/bend_of_edges.h"
 #include "verify/cell_table.h"
 #include "verify/in_order.h"
+#include "voxel/space/large_allocator.h"
 
 namespace octotomy::verify {
 namespace {
@@ -78,80 +81,84 @@ struct Shape {
 
 class Measuring {
  public:
-  Measuring(const brep::Solid& solid, const glm::dmat3& edges)
-      : linked_(solid.linked()),
-        triangles_(linked_.triangles),
-        edges_(edges),
-        from_lps_(glm::inverse(edges)) {
+  Measuring(const brep::Solid& solid, const SampledFrom& from)
+      : linked_(solid.linked()), triangles_(linked_.triangles), has_cells_(from.along_lps_mm) {
+    const glm::dmat3& edges = from.sample_edges;
+    frame_.from_lps = glm::inverse(edges);
     for (int axis = 0; axis < 3; ++axis) {
-      spacing_mm_[axis] = glm::length(edges[axis]);
-      units_[axis] = edges[axis] / spacing_mm_[axis];
+      frame_.spacing_mm[axis] = glm::length(edges[axis]);
+      frame_.units[axis] = edges[axis] / frame_.spacing_mm[axis];
     }
-    shape_.volume_mm3 = solid.measures().volume_mm3;
-    shape_.area_mm2 = solid.measures().area_mm2;
+    frame_.part_samples = 6.0;
+    frame_.cell_mm = 3.0 * from.along_lps_mm.value_or(glm::dvec3(1.0));
+    shape_.volume_mm3 = solid.size().volume_mm3;
+    shape_.area_mm2 = solid.size().area_mm2;
   }
 
   Shape run() {
     add_faces();
     add_edges();
-    const double least_mm2 = 0.5 * std::pow(spacing_mm_.x * spacing_mm_.y * spacing_mm_.z, 2.0 / 3.0);
-    const double sample_mm = std::cbrt(spacing_mm_.x * spacing_mm_.y * spacing_mm_.z);
+    const glm::dvec3& spacing_mm = frame_.spacing_mm;
+    const double least_mm2 = 0.5 * std::pow(spacing_mm.x * spacing_mm.y * spacing_mm.z, 2.0 / 3.0);
+    const double sample_mm = std::cbrt(spacing_mm.x * spacing_mm.y * spacing_mm.z);
     parts_.each([&](const Part& part) {
       const double bent = part.bent_mm2 / std::max(part.area_mm2, least_mm2);
       shape_.sharp_mm2 += part.bent_mm2 * bent;
       shape_.sharp_mm3 += part.bent_mm2 * bent * bent * sample_mm;
       shape_.sharp_without_sign_mm3 += std::abs(part.bent_mm2) * bent * bent * sample_mm;
       shape_.bent_without_sign_mm3 += std::abs(part.bent_mm3);
-      shape_.flat_mm3 += std::max(part.flat_mm3, flat_mm3(part.across_mm2));
+      shape_.flat_mm3 +=
+          std::max(part.flat_mm3, flat_mm3(glm::length(part.across_mm2), part.across_mm2 * frame_.units));
     });
+    cells_mm_.each([&](double cell_mm) { triangles_as_they_are_.curvature_mm += std::abs(cell_mm); });
     smooth();
     return shape_;
   }
+  const AreaAndCurvature& triangles() const { return triangles_as_they_are_; }
 
  private:
-  static constexpr double part_samples = 6.0;
+  const std::array<std::uint32_t, 3>& corners(std::size_t face) const { return triangles_.faces[face]; }
+  const glm::dvec3& point(std::uint32_t number) const { return triangles_.points_mm[number]; }
 
-  glm::dvec3 across(std::size_t face) const {
-    const auto& [a, b, c] = triangles_.faces[face];
-    const auto& p = triangles_.points_mm;
-    return 0.5 * glm::cross(p[b] - p[a], p[c] - p[a]);
-  }
-
-  /// The part at a point of the surface: the lattice's cells of six samples, by the axis that the normal is
-  /// nearest to. Cells are numbered to half a million from the origin.
-  std::uint64_t part_of(const glm::dvec3& p_mm, const glm::dvec3& normal) const {
-    const glm::dvec3 along = normal * units_;
+  /// The number of a lattice's cell, by the axis that a direction is nearest to and its sign. Cells are
+  /// numbered to half a million from the origin.
+  static std::uint64_t numbered(const glm::dvec3& cell, const glm::dvec3& along) {
     int direction = 0;
     for (int axis = 1; axis < 3; ++axis)
       if (std::abs(along[axis]) > std::abs(along[direction])) direction = axis;
     auto key = static_cast<std::uint64_t>(along[direction] < 0.0 ? direction : direction + 3);
-    const glm::dvec3 cell = glm::floor(from_lps_ * p_mm / part_samples);
     for (int axis = 0; axis < 3; ++axis)
       key = (key << 20) |
             (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell[axis]) + (1 << 19)) & 0xFFFFFU);
     return key;
   }
 
+  struct Face {
+    double size = 0.0, flat_mm3 = 0.0;
+    glm::dvec3 across{0.0};
+    std::uint64_t part = 0;
+  };
+  void make_faces(std::size_t first, std::size_t end, Face* made) const {
+    FaceBatch faces;
+    for (; first != end; first += std::min(batch, end - first)) {
+      const std::size_t count = std::min(batch, end - first);
+      for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t k = 0; k < 3; ++k) faces.corner[k].set(i, point(corners(first + i)[k]));
+      measure_faces(faces, frame_, count);
+      for (std::size_t i = 0; i < count; ++i, ++made) {
+        *made = {faces.size[i], 0.0, faces.across.at(i), 0};
+        if (!(made->size > 0.0)) continue;
+        made->part = numbered(faces.part.at(i), faces.along.at(i));
+        made->flat_mm3 = flat_mm3(made->size, faces.along.at(i));
+      }
+    }
+  }
   void add_faces() {
-    struct Face {
-      double size = 0.0, flat_mm3 = 0.0;
-      glm::dvec3 across{0.0};
-      std::uint64_t part = 0;
-    };
-    in_order<Face>(
+    in_order_by_batch<Face>(
         triangles_.faces.size(),
-        [&](std::size_t face) {
-          Face made;
-          made.across = across(face);
-          made.size = glm::length(made.across);
-          if (!(made.size > 0.0)) return made;
-          const auto& [a, b, c] = triangles_.faces[face];
-          const auto& p = triangles_.points_mm;
-          made.part = part_of((p[a] + p[b] + p[c]) / 3.0, made.across);
-          made.flat_mm3 = flat_mm3(made.across);
-          return made;
-        },
+        [&](std::size_t first, std::size_t end, Face* made) { make_faces(first, end, made); },
         [&](std::size_t, const Face& face) {
+          triangles_as_they_are_.area_mm2 += face.size;
           if (!(face.size > 0.0)) return;
           Part& part = parts_.at(face.part);
           part.area_mm2 += face.size;
@@ -160,51 +167,78 @@ class Measuring {
         });
   }
 
-  /// The size of an area along the lattice times the spacing across; zero for any other.
-  double flat_mm3(const glm::dvec3& area) const {
-    const double size = glm::length(area);
-    const glm::dvec3 along = glm::abs(area * units_);
+  /// The size of an area along the lattice times the spacing across; zero for any other. `along` is the area
+  /// by the lattice's directions.
+  double flat_mm3(double size, const glm::dvec3& along) const {
     for (int axis = 0; axis < 3; ++axis)
-      if (along[axis] > flat_cosine * size) return size * spacing_mm_[axis];
+      if (std::abs(along[axis]) > flat_cosine * size) return size * frame_.spacing_mm[axis];
     return 0.0;
   }
 
-  /// What an edge adds: to its part, or its points to those of cuts.
+  /// What an edge adds: to its part, or its points to those of cuts; and to its cell.
   struct BentEdge {
     enum class Kind : std::uint8_t { None, Cut, Bent } kind = Kind::None;
-    std::size_t a = 0, b = 0;
-    std::uint64_t part = 0;
+    bool has_cell = false;
+    std::uint32_t a = 0, b = 0;
+    std::uint64_t part = 0, cell = 0;
     double mm = 0.0, spacing_mm = 0.0, inverse = 0.0;
   };
-  /// Of the first side of an edge; nothing of the second.
-  BentEdge bent_edge(std::uint32_t side) const {
+  /// Of the first side of each edge; nothing of the second.
+  void make_edges(std::size_t first, std::size_t end, BentEdge* made) const {
+    EdgeBatch edges;
+    std::array<std::size_t, batch> sides;
+    std::size_t count = 0;
+    const auto flush = [&] {
+      open_edges(edges, count);
+      for (std::size_t i = 0; i < count; ++i) edges.angle[i] = std::atan2(edges.sine[i], edges.cosine[i]);
+      bend_edges(edges, frame_, count);
+      for (std::size_t i = 0; i < count; ++i) made[sides[i] - first] = edge_of(edges, i, sides[i]);
+      count = 0;
+    };
+    for (std::size_t number = first; number != end; ++number) {
+      const auto side = static_cast<std::uint32_t>(number);
+      made[number - first] = {};
+      if (!linked_.is_inner_edge(side)) continue;
+      edges.from.set(count, point(linked_.from(side)));
+      edges.to.set(count, point(linked_.to(side)));
+      for (std::size_t k = 0; k < 3; ++k) {
+        edges.here[k].set(count, point(corners(side / 3)[k]));
+        edges.beyond[k].set(count, point(corners(linked_.opposite[side] / 3)[k]));
+      }
+      sides[count++] = number;
+      if (count == batch) flush();
+    }
+    flush();
+  }
+  BentEdge edge_of(const EdgeBatch& edges, std::size_t i, std::size_t number) const {
     BentEdge made;
-    if (!linked_.is_inner_edge(side)) return made;
-    const std::uint32_t a = linked_.from(side), b = linked_.to(side);
-    const glm::dvec3 along = triangles_.points_mm[b] - triangles_.points_mm[a];
-    const glm::dvec3 here = across(side / 3), beyond = across(linked_.opposite[side] / 3);
-    const double angle = brep::dihedral_angle(here, beyond, along);
+    const double angle = edges.angle[i];
     if (angle == 0.0) return made;
-    if (std::abs(angle) > sharpest_rad) return {BentEdge::Kind::Cut, a, b};
-    const glm::dvec3 normal = unit(here) + unit(beyond);
-    const glm::dvec3 t = unit(glm::cross(normal, along));
-    if (t == glm::dvec3(0.0)) return made;
-    return {BentEdge::Kind::Bent,
-            a,
-            b,
-            part_of(0.5 * (triangles_.points_mm[a] + triangles_.points_mm[b]), normal),
-            0.5 * glm::length(along) * angle,
-            glm::length((t * units_) * spacing_mm_),
-            glm::length(from_lps_ * t)};
+    const auto side = static_cast<std::uint32_t>(number);
+    made.a = linked_.from(side);
+    made.b = linked_.to(side);
+    const bool is_cut = std::abs(angle) > sharpest_rad;
+    if (is_cut) made.kind = BentEdge::Kind::Cut;
+    if (!(edges.tangent[i] > 0.0)) return made;
+    made.mm = edges.mm[i];
+    made.has_cell = has_cells_;
+    if (has_cells_) made.cell = numbered(edges.cell.at(i), edges.normal.at(i));
+    if (is_cut) return made;
+    made.kind = BentEdge::Kind::Bent;
+    made.part = numbered(edges.part.at(i), edges.along.at(i));
+    made.spacing_mm = edges.spacing_mm[i];
+    made.inverse = edges.inverse[i];
+    return made;
   }
 
   void add_edges() {
     cut_.assign(triangles_.points_mm.size(), 0);
-    in_order<BentEdge>(
+    in_order_by_batch<BentEdge>(
         linked_.opposite.size(),
-        [&](std::size_t side) { return bent_edge(static_cast<std::uint32_t>(side)); },
+        [&](std::size_t first, std::size_t end, BentEdge* made) { make_edges(first, end, made); },
         [&](std::size_t, const BentEdge& edge) {
           if (edge.kind == BentEdge::Kind::Cut) cut_[edge.a] = cut_[edge.b] = 1;
+          if (edge.has_cell) cells_mm_.at(edge.cell) += edge.mm;
           if (edge.kind != BentEdge::Kind::Bent) return;
           const double mm = edge.mm, s = edge.spacing_mm;
           Part& part = parts_.at(edge.part);
@@ -217,26 +251,37 @@ class Measuring {
     shape_.curvature_mm = std::abs(shape_.curvature_mm);
   }
 
-  static glm::dvec3 unit(const glm::dvec3& v) {
-    const double length = glm::length(v);
-    return length > 0.0 ? v / length : glm::dvec3(0.0);
-  }
-
-  /// Takes every point half-way to the mean of its neighbours; points of cuts stay.
+  /// Takes every point half-way to the mean of its neighbours; points of cuts stay. Each thread has points of
+  /// its own and looks at all triangles for them, so that a point's sum goes by the triangles' order.
   void smooth() {
     const std::vector<glm::dvec3>& p = triangles_.points_mm;
-    std::vector<glm::dvec3> sum(p.size(), glm::dvec3(0.0));
-    std::vector<std::uint32_t> count(p.size(), 0);
-    for (const auto& face : triangles_.faces)
-      for (std::size_t i = 0; i < 3; ++i) {
-        sum[face[i]] += p[face[(i + 1) % 3]];
-        ++count[face[i]];
+    std::vector<glm::dvec3, voxel::LargeAllocator<glm::dvec3>> moved(p.size());
+    const auto shares = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t share) {
+      const std::size_t first = p.size() * share / shares, end = p.size() * (share + 1) / shares;
+      std::fill(moved.begin() + static_cast<std::ptrdiff_t>(first),
+                moved.begin() + static_cast<std::ptrdiff_t>(end), glm::dvec3(0.0));
+      std::vector<std::uint32_t> count(end - first, 0);
+      for (const auto& face : triangles_.faces)
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (face[i] - first >= end - first) continue;
+          moved[face[i]] += p[face[(i + 1) % 3]];
+          ++count[face[i] - first];
+        }
+      for (std::size_t v = first; v < end; ++v) {
+        const std::uint32_t neighbours = count[v - first];
+        moved[v] =
+            neighbours == 0 || cut_[v] ? p[v] : 0.5 * p[v] + 0.5 * moved[v] / static_cast<double>(neighbours);
       }
-    for (std::size_t v = 0; v < p.size(); ++v)
-      sum[v] = count[v] == 0 || cut_[v] ? p[v] : 0.5 * p[v] + 0.5 * sum[v] / static_cast<double>(count[v]);
+    });
     double area_mm2 = 0.0;
-    for (const auto& [a, b, c] : triangles_.faces)
-      area_mm2 += 0.5 * glm::length(glm::cross(sum[b] - sum[a], sum[c] - sum[a]));
+    in_order<double>(
+        triangles_.faces.size(),
+        [&](std::size_t face) {
+          const auto& [a, b, c] = triangles_.faces[face];
+          return 0.5 * glm::length(glm::cross(moved[b] - moved[a], moved[c] - moved[a]));
+        },
+        [&](std::size_t, double face_mm2) { area_mm2 += face_mm2; });
     shape_.ripple_mm2 = std::max(shape_.area_mm2 - area_mm2, 0.0);
   }
 
@@ -245,9 +290,11 @@ class Measuring {
 
   const brep::Linked& linked_;
   const brep::Triangles& triangles_;
-  glm::dmat3 edges_, from_lps_, units_{1.0};
-  glm::dvec3 spacing_mm_{1.0};
+  BendFrame frame_;
+  bool has_cells_;
   CellTable<Part> parts_;
+  CellTable<double> cells_mm_;  ///< the curvature in cells of three samples along the LPS axes
+  AreaAndCurvature triangles_as_they_are_;
   std::vector<std::uint8_t> cut_;  ///< points of edges that are cuts
   Shape shape_;
 };
@@ -305,7 +352,8 @@ double sheet_mm3(const Shape& shape, double blur_samples2, double sample_mm) {
 
 SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from) {
   if (solid.empty()) return {};
-  const Shape shape = Measuring(solid, from.sample_edges).run();
+  Measuring measuring(solid, from);
+  const Shape shape = measuring.run();
   const double b2 = from.blur_samples2, lost = voxel_mean + chords;
   const double s_mm = std::cbrt(std::abs(glm::determinant(from.sample_edges)));
   std::vector<DoubtSource> volume{
@@ -329,7 +377,7 @@ SizeIntervals size_intervals(const brep::Solid& solid, const SampledFrom& from) 
   const double volume_mm3 =
       shape.volume_mm3 + voxel_mean * shape.bent_mm3 + chords * shape.chord_mm3 + 0.15 * shape.sharp_mm3;
   const double area_mm2 = shape.area_mm2 + lost * shape.sharp_mm2 + 0.5 * shape.ripple_mm2;
-  return {summed(volume_mm3, std::move(volume)), summed(area_mm2, std::move(area))};
+  return {summed(volume_mm3, std::move(volume)), summed(area_mm2, std::move(area)), measuring.triangles()};
 }
 
 double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,
@@ -339,7 +387,7 @@ double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,
   const brep::Triangles& triangles = solid.triangles();
   const std::size_t stride = 1 + triangles.faces.size() / most_points;
   if (solid.empty()) return 0.0;
-  const double half_thickness_mm = solid.measures().volume_mm3 / solid.measures().area_mm2;
+  const double half_thickness_mm = solid.size().volume_mm3 / solid.size().area_mm2;
   double contrast = 0.0, step = 0.0, depth = 0.0, thickness = 0.0;
   int points = 0;
   for (std::size_t face = 0; face < triangles.faces.size(); face += stride) {

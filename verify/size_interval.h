@@ -35,10 +35,19 @@ struct SampledFrom {
   double blur_samples2 = 0.0;    ///< blur_of()
   /// How far the surface moves for the doubt about its window's bound; none: the bound is certain.
   std::optional<double> window_shift_mm = {};
+  /// Spacing of the samples along the LPS axes; set: the curvature by such samples is wanted, too.
+  std::optional<glm::dvec3> along_lps_mm = {};
+};
+
+/// Of the triangles as they are.
+struct AreaAndCurvature {
+  double area_mm2 = 0.0;
+  double curvature_mm = 0.0;  ///< as BoundaryModel's; zero if it was not asked for
 };
 
 struct SizeIntervals {
   Interval volume_mm3, area_mm2;
+  AreaAndCurvature triangles;
 };
 /// Of a surface that samples were interpolated for. An edge sharper than an isosurface has is a cut, which
 /// errs by nothing. Motions keep both; a part has the doubt of its own surface, so that parts of one whole

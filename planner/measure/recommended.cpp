@@ -44,6 +44,7 @@ verify::SizeIntervals intervals_of_surface(const brep::Solid& solid, const Surfa
   verify::SampledFrom from;
   from.sample_edges = glm::dmat3(samples.moved_from_still) * samples.scan_edges;
   from.window_shift_mm = samples.window_shift_mm;
+  from.along_lps_mm = samples.along_lps_mm;
   if (samples.grey) {
     const glm::dvec3 voxel_mm = samples.grey->universe().lattice().spacing_mm();
     double coarsest = 0.0;

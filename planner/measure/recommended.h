@@ -23,6 +23,7 @@ struct SurfaceSamples {
   std::optional<voxel::GreyOctree> grey;  ///< of that scan; none: no blur is looked for
   bool voxels_are_samples = false;        ///< of the grey octree
   std::optional<double> window_shift_mm;
+  std::optional<glm::dvec3> along_lps_mm = {};  ///< as verify::SampledFrom's
 };
 /// By the mesh kernel, whose surface samples place to a part of their spacing.
 verify::SizeIntervals intervals_of_surface(const brep::Solid& solid, const SurfaceSamples& samples);

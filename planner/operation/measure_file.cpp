@@ -14,7 +14,6 @@
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
 #include "planner/table/plan_universe.h"
-#include "verify/boundary_model.h"
 #include "voxel/filter/components.h"
 #include "voxel/measure/cell_counts.h"
 #include "voxel/measure/flat_parts.h"
@@ -156,15 +155,6 @@ void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures
   json["area"] = to_json(recommended.area_mm2, "mm2");
 }
 
-void add_area_half_width(const brep::Solid& surface, const voxel::Lattice& lattice,
-                         const Digitised& digitised, Json& json) {
-  const verify::AreaAndCurvature model =
-      verify::area_and_curvature(surface, {lattice, digitised.sample_mm, glm::dvec3(0.0)});
-  const HalfWidth width = area_half_width({model.area_mm2, model.curvature_mm}, digitised);
-  json["area_half_width_mm2"] = width.value;
-  json["area_half_width_terms"] = to_json(width);
-}
-
 void add_partial_volume(const voxel::Window& window, Timings& timings, Json& json) {
   const Stopwatch watch(timings, "partial volume");
   json["volume_partial_mm3"] = nullptr;
@@ -253,11 +243,16 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
     voxel::drop_samples(scene);  // from here on the octree's serve
     isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
   }
+  const Stopwatch watch(timings, "intervals");
   const brep::Size& surface = isosurface.size();
-  add_area_half_width(isosurface, grey->universe().lattice(), digitised, json);
-  const verify::SizeIntervals recommended = intervals_of_surface(
-      isosurface, {glm::dmat3(scene.lattice.lps_from_voxel), glm::dmat4(1.0), grey,
-                   on_samples(scene.lattice, grey->universe().lattice()), digitised.shift_mm});
+  const verify::SizeIntervals recommended =
+      intervals_of_surface(isosurface, {glm::dmat3(scene.lattice.lps_from_voxel), glm::dmat4(1.0), grey,
+                                        on_samples(scene.lattice, grey->universe().lattice()),
+                                        digitised.shift_mm, digitised.sample_mm});
+  const HalfWidth width =
+      area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);
+  json["area_half_width_mm2"] = width.value;
+  json["area_half_width_terms"] = to_json(width);
   json["volume"] = to_json(recommended.volume_mm3, "mm3");
   json["area"] = to_json(recommended.area_mm2, "mm2");
   json["area_crofton13_mm2"] = json["area_mm2"];

@@ -11,6 +11,7 @@
 #include "brep/mesh/move.h"
 #include "brep/shape/prism.h"
 #include "convert/surface/isosurface.h"
+#include "verify/boundary_model.h"
 #include "verify/implicit_solid.h"
 #include "verify/phantom_scan.h"
 
@@ -117,6 +118,25 @@ TEST(SizeInterval, PartsAddUpToTheirWholeAndAreNoSurerOfTheirWindow) {
   EXPECT_NEAR(piece.volume_mm3.value + rest.volume_mm3.value, all.volume_mm3.value,
               0.002 * all.volume_mm3.value);
   EXPECT_GE(window_of(piece) + window_of(rest), window_of(all));
+}
+
+TEST(SizeInterval, TellsTheCurvatureThatTheBoundarysModelHas) {
+  brep::Prism prism;  // its edges are cuts, which bend no part but have their curvature
+  prism.polygons_mm = {{{-8.0, -8.0}, {3.3, -7.0}, {3.3, 8.0}, {-8.0, 9.0}}};
+  prism.from_mm = -5.0;
+  prism.to_mm = 6.0;
+  SampledFrom from;
+  for (const brep::Solid& surface : {surface_of(scan_of_ball(0.5)), brep::solid_of(prism)}) {
+    from.along_lps_mm.reset();
+    EXPECT_EQ(size_intervals(surface, from).triangles.curvature_mm, 0.0);
+    from.along_lps_mm = glm::dvec3(1.0, 0.8, 1.3);
+    const AreaAndCurvature found = size_intervals(surface, from).triangles;
+    const BoundaryModel model =
+        boundary_model(surface, {scan_of_ball(0.5).lattice, *from.along_lps_mm, glm::dvec3(0.0)});
+    EXPECT_EQ(found.curvature_mm, model.curvature_mm);
+    EXPECT_GT(found.curvature_mm, 50.0);
+    EXPECT_NEAR(found.area_mm2, surface.size().area_mm2, 1e-9 * found.area_mm2);
+  }
 }
 
 }  // namespace
