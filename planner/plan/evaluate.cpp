@@ -3,13 +3,14 @@
 // Steps are evaluated in order, each in both kernels before the next:
 //   1 Read every scan once; sample it into a grey octree, keep its samples until the last step that uses
 //   them. 2 Voxel kernel: the operation's answer from other voxel answers. 3 Mesh kernel: the operation's
-//   answer from other mesh answers and the scan's own samples. 4 Certify, after all steps where files
-//   are worked on meanwhile: only here do the two answers meet.
+//   answer from other mesh answers and the scan's own samples. 4 Certify, beside the steps that follow where
+//   no cache waits for the certificate: only here do the two answers meet.
 // Invariant: the benches of steps 2 and 3 show one kernel each.
 #include "planner/plan/evaluate.h"
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -20,6 +21,7 @@
 #include "convert/voxel/voxelise.h"
 #include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
+#include "planner/plan/beside.h"
 #include "planner/plan/dependence.h"
 #include "planner/plan/sha256.h"
 #include "planner/table/number_format.h"
@@ -81,7 +83,7 @@ class Evaluator {
     if (options_.cache != nullptr)
       keys_ = step_keys(plan_, common_key(), [this](const std::string& scan) { return scan_keys_.at(scan); });
     std::size_t done = 0;
-    const std::size_t works = plan_.steps.size() * (certifies_last() ? 2 : 1);
+    const std::size_t works = plan_.steps.size() * (certifies_beside() ? 2 : 1);
     const auto tell = [&](const std::string& doing) {
       report(doing, static_cast<double>(done++) / static_cast<double>(works));
     };
@@ -90,15 +92,19 @@ class Evaluator {
       const Makes makes = step.action.operation().makes;
       if ((makes != Makes::Object && makes != Makes::Scan) || !wanted_.contains(step.id)) continue;
       in_step(step.id, [&] {
-        if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
+        beside_.apart([&] {
+          if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
+        });
       });
       for (const std::string& scan : scans_used(step.action))
         if (--uses_left_[scan] == 0 && !options_.keep_scans) loaded_.erase(scan);
     }
-    for (Uncertified& made : uncertified_) {
+    for (std::size_t i = 0; i < uncertified_.size(); ++i) {
+      Uncertified& made = uncertified_[i];
       tell("certifying " + made.object.id);
-      in_step(made.object.id, [&] { certify_made(made.object, made.interpolated); });
+      in_step(made.object.id, [&] { beside_.wait(i); });
       result_.objects.change(made.index).certificate = std::move(made.object.certificate);
+      for (const auto& [stage, ms] : made.timings) result_.timings[stage] += ms;
     }
     for (auto& [name, scan] : loaded_)
       if (uses_left_[name] > 0 || options_.keep_scans)
@@ -323,10 +329,14 @@ class Evaluator {
     object.findings.insert(object.findings.end(), interpolated.begin(), interpolated.end());
     if (options_.ahead) work_ahead(object);
     if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
-      if (certifies_last())
-        uncertified_.push_back({object, interpolated, result_.objects.size()});
-      else
-        certify_made(object, interpolated);
+      if (certifies_beside()) {
+        Uncertified& made = uncertified_.emplace_back(Uncertified{object, result_.objects.size(), {}});
+        beside_.begin([&made, interpolated](const std::stop_token& stop) {
+          certify_made(made.object, interpolated, made.timings, stop);
+        });
+      } else {
+        certify_made(object, interpolated, result_.timings, options_.stop);
+      }
     }
     if (object.ends_with_universe) {
       object.mesh.whole = object.mesh.within;
@@ -336,12 +346,14 @@ class Evaluator {
     result_.objects.add(std::move(object));
   }
 
-  /// Work that was begun ahead goes on meanwhile. A cache keeps objects with their certificates.
-  bool certifies_last() const { return options_.ahead && options_.cache == nullptr; }
+  /// A cache keeps objects with their certificates.
+  bool certifies_beside() const { return options_.cache == nullptr; }
 
-  void certify_made(Object& object, const std::vector<std::string>& interpolated) {
-    const Stopwatch watch(result_.timings, "certify");
-    certify(object, object.id + " = " + object.definition, {options_.stop, {}});
+  static void certify_made(Object& object, const std::vector<std::string>& interpolated, Timings& timings,
+                           const std::stop_token& stop) {
+    // Certificates overlap: their times add up to more than passes.
+    const Stopwatch watch(timings, "certify");
+    certify(object, object.id + " = " + object.definition, {stop, {}});
     // The kernels cannot disagree over samples that both take from the same interpolation.
     for (const std::string& part : interpolated)
       verify::lower(*object.certificate, verify::Verdict::Warn, part);
@@ -479,13 +491,14 @@ class Evaluator {
   voxel::Box box_;  ///< of the universe
   brep::Solid world_;
   std::unique_ptr<verify::MeshExpressions> expressions_;
-  /// An object as its operation made it, its place among the others, and its interpolated parts.
+  /// An object as its operation made it, its place among the others, and the time of its certificate.
   struct Uncertified {
     Object object;
-    std::vector<std::string> interpolated;
     std::size_t index = 0;
+    Timings timings;
   };
-  std::vector<Uncertified> uncertified_;  ///< where objects are certified last
+  std::deque<Uncertified> uncertified_;  ///< in the order of the pieces beside
+  Beside beside_{options_.stop};         ///< the certificates; ends before what they are made of
 };
 
 }  // namespace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/beside.h"
+
+#include <deque>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+#include <utility>
+
+namespace octotomy::planner {
+
+struct Beside::Pieces {
+  explicit Pieces(const std::stop_token& asked) : with(asked, [this] { stop.request_stop(); }) {}
+
+  std::stop_source stop;
+  std::stop_callback<std::function<void()>> with;
+  std::deque<tbb::task_group> groups;  ///< one a piece, so that each is waited for by itself
+};
+
+Beside::Beside(const std::stop_token& stop) : pieces_(std::make_unique<Pieces>(stop)) {}
+
+Beside::~Beside() {
+  pieces_->stop.request_stop();
+  for (tbb::task_group& group : pieces_->groups) group.cancel();
+  for (tbb::task_group& group : pieces_->groups) {
+    try {
+      group.wait();
+    } catch (...) {
+      // Nobody waits for the piece any more.
+    }
+  }
+}
+
+void Beside::begin(std::function<void(const std::stop_token&)> piece) {
+  pieces_->groups.emplace_back().run([piece = std::move(piece), stop = pieces_->stop.get_token()] {
+    // A thread that waits within a piece begins no other: that would have to end first.
+    tbb::this_task_arena::isolate([&] { piece(stop); });
+  });
+}
+
+void Beside::wait(std::size_t piece) {
+  pieces_->groups.at(piece).wait();
+}
+
+void Beside::apart(const std::function<void()>& work) const {
+  tbb::this_task_arena::isolate([&] { work(); });
+}
+
+}  // namespace octotomy::planner

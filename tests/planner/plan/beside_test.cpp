@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/plan/beside.h"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <gtest/gtest.h>
+#include <stdexcept>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <thread>
+
+namespace octotomy::planner {
+namespace {
+
+TEST(Beside, WorksOnEveryPieceAndThrowsWhatAPieceThrewWhereItIsWaitedFor) {
+  for (const std::size_t threads : {1, 4}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    std::array<std::atomic<int>, 3> done{};
+    Beside beside({});
+    for (std::size_t i = 0; i < done.size(); ++i)
+      beside.begin([&done, i](const std::stop_token&) {
+        if (i == 1) throw std::runtime_error("the second piece");
+        tbb::parallel_for(0, 100, [&](int) { ++done[i]; });
+      });
+    beside.wait(0);
+    EXPECT_EQ(done[0], 100) << threads << " threads";
+    EXPECT_THROW(beside.wait(1), std::runtime_error);
+    beside.wait(2);
+    EXPECT_EQ(done[2], 100) << threads << " threads";
+  }
+}
+
+TEST(Beside, TakesUpNoPieceWithinWorkThatStandsApart) {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+  std::atomic<bool> is_begun = false;
+  Beside beside({});
+  beside.begin([&](const std::stop_token&) { is_begun = true; });
+  beside.apart([&] {
+    tbb::parallel_for(0, 1000, [](int) {});
+    EXPECT_FALSE(is_begun);
+  });
+  beside.wait(0);
+  EXPECT_TRUE(is_begun);
+}
+
+TEST(Beside, ItsEndAndTheCallersTokenStopThePieces) {
+  using namespace std::chrono_literals;
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 2);
+  std::stop_source source;
+  std::atomic<int> stopped = 0;
+  const auto until_stopped = [&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) std::this_thread::sleep_for(1ms);
+    ++stopped;
+  };
+  {
+    Beside beside(source.get_token());
+    beside.begin(until_stopped);
+    source.request_stop();
+    beside.wait(0);
+    EXPECT_EQ(stopped, 1);
+  }
+  std::atomic<bool> is_begun = false;
+  {
+    Beside beside({});
+    beside.begin([&](const std::stop_token& stop) {
+      is_begun = true;
+      until_stopped(stop);
+    });
+    while (!is_begun) std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(stopped, 2);
+}
+
+}  // namespace
+}  // namespace octotomy::planner
