@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <set>
+#include <tbb/parallel_for.h>
 
 #include "planner/operation/combine.h"
 #include "planner/plan/dependence.h"
@@ -101,7 +102,7 @@ struct Frame {
 Frame loose_frame(const std::vector<voxel::DrawnObject>& objects, const voxel::View& view) {
   glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const voxel::DrawnObject& object : objects) {
-    const auto extents = voxel::measure(object.octree).extents;
+    const auto extents = voxel::extents_of(object.octree);
     if (!extents) continue;
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec3 p_mm(corner & 1 ? extents->high_mm.x : extents->low_mm.x,
@@ -203,11 +204,13 @@ DrawnView draw_view(const std::vector<voxel::DrawnObject>& objects,
 void draw(PictureGroup& group, const std::vector<std::string>& views,
           const std::vector<voxel::DrawnObject>& framed, int size_px, const glm::dmat3& lps_from_head) {
   if (group.objects.empty()) return;
-  for (const std::string& name : views) {
-    DrawnView view = draw_view(group.objects, framed, name, lps_from_head, size_px);
-    view.frame.png = voxel::encode_image("png", view.pixels.size_px, view.pixels.rgb);
-    group.pictures.push_back(std::move(view.frame));
-  }
+  std::vector<DrawnView> drawn;
+  for (const std::string& name : views)
+    drawn.push_back(draw_view(group.objects, framed, name, lps_from_head, size_px));
+  tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t i) {
+    drawn[i].frame.png = voxel::encode_image("png", drawn[i].pixels.size_px, drawn[i].pixels.rgb);
+  });
+  for (DrawnView& view : drawn) group.pictures.push_back(std::move(view.frame));
 }
 
 std::vector<std::string> all_views() {

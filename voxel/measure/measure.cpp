@@ -6,7 +6,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <numbers>
 #include <tbb/parallel_for.h>
@@ -14,6 +13,7 @@
 
 #include "voxel/measure/cell_counts.h"
 #include "voxel/measure/crofton.h"
+#include "voxel/measure/distance_map.h"
 #include "voxel/space/vector_clones.h"
 #include "voxel/tree/slice_bits.h"
 
@@ -109,8 +109,6 @@ class Sums {
   std::array<std::uint64_t, 13> crossings{};
   glm::dvec3 first_moment{0.0};   ///< sum of voxel indices: exact below 2^53
   glm::dmat3 second_moment{0.0};  ///< sum of products of voxel indices: the lower triangle
-  glm::ivec3 low{std::numeric_limits<int>::max()};
-  glm::ivec3 high{-1};
 
   // Counts the pairs (v, v - direction) with v in slice z, rows one beyond each end of the slice included.
   // `none` is an empty row.
@@ -142,8 +140,6 @@ class Sums {
     for (std::size_t d = 0; d < crossings.size(); ++d) crossings[d] += other.crossings[d];
     first_moment += other.first_moment;
     second_moment += other.second_moment;
-    low = glm::min(low, other.low);
-    high = glm::max(high, other.high);
   }
 
  private:
@@ -169,8 +165,6 @@ class Sums {
     for (int i = 0; i < words; ++i) {
       std::uint64_t word = row[i];
       if (word == 0) continue;
-      low.x = std::min(low.x, 64 * i + std::countr_zero(word));
-      high.x = std::max(high.x, 64 * i + 63 - std::countl_zero(word));
       const int bits = std::popcount(word);
       count += bits;
       const double first = 64.0 * i;
@@ -179,8 +173,6 @@ class Sums {
       sum_xx += first * (first * bits + 2.0 * place_sum) + sum_of_square_places(word);
     }
     if (count == 0.0) return;
-    low = {low.x, std::min(low.y, y), std::min(low.z, z)};
-    high = {high.x, std::max(high.y, y), std::max(high.z, z)};
     first_moment += glm::dvec3(sum_x, count * y, count * z);
     second_moment[0] += glm::dvec3(sum_xx, sum_x * y, sum_x * z);
     second_moment[1] += glm::dvec3(0.0, count * y * y, count * y * z);
@@ -317,6 +309,15 @@ glm::dvec3 crofton13_of_flat(const Lattice& lattice) {
   return seen;
 }
 
+std::optional<Box> extents_of(const Octree& octree) {
+  const VoxelRange range = range_of(octree);
+  if (range.is_empty()) return std::nullopt;
+  Lattice part = octree.universe().lattice();
+  part.lps_from_voxel[3] = glm::dvec4(part.lps_mm(glm::dvec3(range.low)), 1.0);
+  part.dims = range.dims();
+  return bounds(part);
+}
+
 Measures measure(const Octree& octree) {
   const Lattice lattice = octree.universe().lattice();
   Measures measures;
@@ -329,10 +330,7 @@ Measures measure(const Octree& octree) {
   measures.inertia_mm5 =
       inertia_mm5(lattice, static_cast<double>(measures.voxel_count), sums.first_moment, sums.second_moment);
   measures.area_lindblad_mm2 = lindblad_mm2(octree);
-  Lattice part = lattice;
-  part.dims = sums.high - sums.low + 1;
-  part.lps_from_voxel[3] = glm::dvec4(lattice.lps_mm(glm::dvec3(sums.low)), 1.0);
-  measures.extents = bounds(part);
+  measures.extents = extents_of(octree);
 
   const std::array<double, 13> share = shares(lattice);
   for (std::size_t d = 0; d < directions.size(); ++d) {

@@ -33,4 +33,7 @@ struct Measures {
 /// Cost: two walks over the slices, word by word.
 Measures measure(const Octree& octree);
 
+/// Measures::extents alone. Cost: a walk over the blocks at the object's ends.
+std::optional<Box> extents_of(const Octree& octree);
+
 }  // namespace octotomy::voxel

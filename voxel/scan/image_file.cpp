@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "voxel/scan/encode_png.h"
 #include "voxel/scan/image_file_oiio.h"
 #include "voxel/scan/png_text.h"
 #include "voxel/space/file_text.h"
@@ -47,12 +48,16 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
                                 std::to_string(rgb.size()) + " bytes");
   if (format != "png" && format != "jpeg" && format != "webp")
     throw Error(ErrorCode::Input, "no picture is encoded as '" + format + "'; choose png, jpeg or webp");
+  if (format == "png") {
+    const std::vector<std::uint8_t> png = encode_png(size_px, rgb);
+    return text ? with_png_text(png, text->keyword, text->text) : png;
+  }
   static const Encode encode = reinterpret_cast<Encode>(symbol_of_library("octotomy_encode_image"));
   std::vector<std::uint8_t> encoded;
   std::string error;
   if (!encode(format.c_str(), size_px.x, size_px.y, rgb.data(), &encoded, &error))
     throw Error(ErrorCode::Resource, "a picture cannot be encoded as " + format + ": " + error);
-  return text && format == "png" ? with_png_text(encoded, text->keyword, text->text) : encoded;
+  return encoded;
 }
 
 std::vector<StoredImage> read_images(const fs::path& path) {

@@ -14,10 +14,7 @@ extern "C" bool octotomy_encode_image(const char* format, int width, int height,
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     const std::string name = format;
-    if (name == "png")
-      spec.attribute("png:compressionLevel", 3);  // a tenth larger than the best, in a third of the time
-    else
-      spec.attribute("Compression", name + ":92");
+    spec.attribute("Compression", name + ":92");
     const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(name);
     OIIO::Filesystem::IOVecOutput memory(*encoded);
     if (!out || !out->supports("ioproxy")) {

@@ -137,5 +137,13 @@ TEST(Measure, CountsEveryNeighbouringPairOnce) {
   }
 }
 
+TEST(Measure, TheExtentsOfNothingAreNone) {
+  const Universe universe = cube_mm(32, 0.5);
+  EXPECT_FALSE(extents_of(Octree::empty(universe)));
+  const std::optional<Box> one = extents_of(combine(universe, Box{{0, 0, 0}, {0.5, 0.5, 0.5}}));
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->high_mm - one->low_mm, glm::dvec3(0.5));
+}
+
 }  // namespace
 }  // namespace octotomy::voxel
