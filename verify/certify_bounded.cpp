@@ -379,7 +379,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   const voxel::Lattice lattice = octree.universe().lattice();
   Evidence evidence;
   progress.at(0.0);
-  evidence.voxels = voxel::measure(octree);
+  evidence.voxels = inputs.voxel_measures ? *inputs.voxel_measures : voxel::measure(octree);
   progress.at(0.1);
   evidence.mesh = solid.measures();
   evidence.voxel_mm = lattice.spacing_mm();

@@ -7,6 +7,7 @@
 #include "brep/mesh/solid.h"
 #include "verify/certificate.h"
 #include "verify/reading.h"
+#include "voxel/measure/measure.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
 
@@ -17,7 +18,8 @@ struct BoundInputs {
   std::string operation;
   std::string voxel_lineage;
   std::string mesh_lineage;
-  glm::dvec3 scan_spacing_mm{1.0};  ///< of the samples that the isosurface was made from
+  std::optional<voxel::Measures> voxel_measures = {};  ///< of the octree, if they are known
+  glm::dvec3 scan_spacing_mm{1.0};                     ///< of the samples that the isosurface was made from
   /// Area of flat cuts by direction of their normal (x, y, z). Counts only cuts along the universe's planes.
   glm::dvec3 flat_cut_mm2{0.0};
   /// The box that the scan's voxels fill, if the solid may end with the scan.

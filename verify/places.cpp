@@ -14,6 +14,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <random>
@@ -93,6 +94,30 @@ bool before(const glm::ivec3& a, const glm::ivec3& b) {
   return a.z != b.z ? a.z < b.z : a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 
+/// Sorts voxels of a universe and leaves each once: dealt out to their slices, these sorted by themselves.
+void sort_and_unify(std::vector<glm::ivec3>& voxels, int side) {
+  std::vector<std::size_t> end(static_cast<std::size_t>(side) + 1, 0);
+  for (const glm::ivec3& at : voxels) ++end[static_cast<std::size_t>(at.z) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::size_t> next(end.begin(), end.end() - 1);
+  // Within a slice, rows of the universe one after the other.
+  std::vector<std::uint32_t> places(voxels.size());
+  for (const glm::ivec3& at : voxels)
+    places[next[static_cast<std::size_t>(at.z)]++] = static_cast<std::uint32_t>(at.y * side + at.x);
+  tbb::parallel_for(std::size_t{0}, next.size(), [&](std::size_t z) {
+    const auto begin = places.begin() + static_cast<std::ptrdiff_t>(end[z]);
+    std::sort(begin, places.begin() + static_cast<std::ptrdiff_t>(end[z + 1]));
+    next[z] = static_cast<std::size_t>(
+        std::unique(begin, places.begin() + static_cast<std::ptrdiff_t>(end[z + 1])) - places.begin());
+  });
+  voxels.clear();
+  for (std::size_t z = 0; z < next.size(); ++z)
+    for (std::size_t i = end[z]; i < next[z]; ++i) {
+      const auto place = static_cast<int>(places[i]);
+      voxels.emplace_back(place % side, place / side, static_cast<int>(z));
+    }
+}
+
 /// The voxels at which answers can be wrong and are compared: where the kernels differ, and beside the
 /// boundary.
 std::vector<glm::ivec3> compared_voxels(const voxel::Octree& octree, const voxel::Octree& digitised,
@@ -108,8 +133,7 @@ std::vector<glm::ivec3> compared_voxels(const voxel::Octree& octree, const voxel
     beyond[face.axis] += face.side;
     if (beyond[face.axis] >= 0 && beyond[face.axis] < side) voxels.push_back(beyond);
   }
-  std::sort(voxels.begin(), voxels.end(), before);
-  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+  sort_and_unify(voxels, side);
   return voxels;
 }
 
@@ -222,14 +246,14 @@ void add_stray_triangles(const brep::Triangles& mesh, const Witness& witness, co
     return wrong;
   };
   const std::vector<std::uint8_t> stray_vertex = for_all(mesh.points_mm.size(), [&](std::size_t i) {
-    const Reading reading = witness(mesh.points_mm[i], 0.0);
+    const Reading reading = witness.of_mesh(mesh.points_mm[i]);
     return reading.mesh.near && reading.surfaces >= 2;
   });
   const std::vector<std::uint8_t> stray = for_all(mesh.faces.size(), [&](std::size_t i) {
     const auto& face = mesh.faces[i];
     return std::none_of(face.begin(), face.end(),
                         [&](std::uint32_t vertex) { return stray_vertex[vertex] != 0; }) &&
-           witness(facet_of(mesh, i).centroid_mm, 0.0).mesh.near;
+           witness.of_mesh(facet_of(mesh, i).centroid_mm).mesh.near;
   });
   progress.at(0.8);
   double largest_mm2 = 0.0;
@@ -369,7 +393,7 @@ std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_m
       glm::dvec3 by_mm(0.0);
       by_mm[direction / 2] = (direction % 2 == 0 ? 1.0 : -1.0) * voxels * voxel_mm;
       seen_everywhere = std::any_of(points_mm.begin(), points_mm.end(), [&](const glm::dvec3& p_mm) {
-        return !witness(p_mm + by_mm, 0.0).mesh.near;
+        return !witness.of_mesh(p_mm + by_mm).mesh.near;
       });
     }
     if (seen_everywhere) return voxels * voxel_mm;

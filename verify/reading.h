@@ -3,6 +3,8 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <type_traits>
+#include <utility>
 
 // A third reading of a plan's objects, at single points: neither octrees nor meshes, but the scan's samples
 // and the plan's own numbers, by code that neither kernel uses. It decides which of two kernels that differ
@@ -33,8 +35,38 @@ struct Reading {
   int surfaces = 0;
 };
 
+/// The words that are asked for.
+enum class Asked { Both, MeshOnly };
+
 /// Answers for one object at a point, LPS millimetres, whose surfaces may lie `slack_mm` elsewhere. Empty:
 /// the object has no witness. Safe to call from several threads.
-using Witness = std::function<Reading(const glm::dvec3& p_mm, double slack_mm)>;
+class Witness {
+ public:
+  using Read = std::function<Reading(const glm::dvec3& p_mm, double slack_mm, Asked asked)>;
+
+  Witness() = default;
+  /// `read` answers both words, or takes what is asked for as well; it may then leave out the other word.
+  template <typename Reader>
+  requires std::is_invocable_v<const Reader&, const glm::dvec3&, double> ||
+      std::is_invocable_v<const Reader&, const glm::dvec3&, double, Asked>
+      Witness(Reader read) {  // NOLINT(google-explicit-constructor): any reader is a witness
+    if constexpr (std::is_invocable_v<const Reader&, const glm::dvec3&, double, Asked>)
+      read_ = std::move(read);
+    else
+      read_ = [read = std::move(read)](const glm::dvec3& p_mm, double slack_mm, Asked) {
+        return read(p_mm, slack_mm);
+      };
+  }
+
+  explicit operator bool() const { return static_cast<bool>(read_); }
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked = Asked::Both) const {
+    return read_(p_mm, slack_mm, asked);
+  }
+  /// The mesh's word and the surfaces alone, at a fraction of the cost; nothing is said of the voxels.
+  Reading of_mesh(const glm::dvec3& p_mm) const { return read_(p_mm, 0.0, Asked::MeshOnly); }
+
+ private:
+  Read read_;
+};
 
 }  // namespace octotomy::verify

@@ -50,16 +50,17 @@ Word exclusive(const Word& a, const Word& b) {
 template <Word (*Rule)(const Word&, const Word&)>
 Witness joined(Witness a, Witness b) {
   if (!a || !b) return {};
-  return [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
-    const Reading x = a(p_mm, slack_mm), y = b(p_mm, slack_mm);
-    return {Rule(x.voxel, y.voxel), Rule(x.mesh, y.mesh), x.surfaces + y.surfaces};
-  };
+  return
+      [a = std::move(a), b = std::move(b)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
+        const Reading x = a(p_mm, slack_mm, asked), y = b(p_mm, slack_mm, asked);
+        return {Rule(x.voxel, y.voxel), Rule(x.mesh, y.mesh), x.surfaces + y.surfaces};
+      };
 }
 
 Witness complement(Witness a) {
   if (!a) return {};
-  return [a = std::move(a)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
-    const Reading x = a(p_mm, slack_mm);
+  return [a = std::move(a)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
+    const Reading x = a(p_mm, slack_mm, asked);
     return {negated(x.voxel), negated(x.mesh), x.surfaces};
   };
 }
@@ -103,12 +104,13 @@ class WindowWitness {
     finest_mm_ = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   }
 
-  Reading operator()(const glm::dvec3& p_mm, double slack_mm) const {
+  Reading operator()(const glm::dvec3& p_mm, double slack_mm, Asked asked) const {
     const glm::dvec3 u(scan_from_lps_ * glm::dvec4(p_mm, 1.0));
     const double slack = slack_mm / finest_mm_;
     const Word mesh = mesh_word(u, slack);
-    return {voxel_word(glm::dvec3(universe_from_lps_ * glm::dvec4(p_mm, 1.0))), mesh,
-            mesh.near ? surfaces(u, slack) : 0};
+    return {asked == Asked::MeshOnly ? Word{}
+                                     : voxel_word(glm::dvec3(universe_from_lps_ * glm::dvec4(p_mm, 1.0))),
+            mesh, mesh.near ? surfaces(u, slack) : 0};
   }
 
  private:
@@ -408,33 +410,33 @@ Witness without(Witness a, Witness b) {
 
 Witness carried(Witness still, const glm::dmat4& moved_from_still) {
   if (!still) return {};
-  return [still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](const glm::dvec3& p_mm,
-                                                                                       double slack_mm) {
-    return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0)), slack_mm);
+  return [still = std::move(still), still_from_moved = glm::inverse(moved_from_still)](
+             const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+    return still(glm::dvec3(still_from_moved * glm::dvec4(p_mm, 1.0)), slack_mm, asked);
   };
 }
 
 Witness loosened(Witness tight, double by_mm) {
   if (!tight) return {};
-  return [tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm) {
-    return tight(p_mm, slack_mm + by_mm);
+  return [tight = std::move(tight), by_mm](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
+    return tight(p_mm, slack_mm + by_mm, asked);
   };
 }
 
 Witness witness_of_parts(Witness whole) {
   if (!whole) return {};
-  return [whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
+  return [whole = std::move(whole)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
     const auto part = [](const Word& word) { return word == certainly_in ? untold : word; };
-    const Reading reading = whole(p_mm, slack_mm);
+    const Reading reading = whole(p_mm, slack_mm, asked);
     return {part(reading.voxel), part(reading.mesh), reading.surfaces};
   };
 }
 
 Witness witness_of_filled(Witness hollow) {
   if (!hollow) return {};
-  return [hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm) -> Reading {
+  return [hollow = std::move(hollow)](const glm::dvec3& p_mm, double slack_mm, Asked asked) -> Reading {
     const auto filled = [](const Word& word) { return word == certainly_out ? untold : word; };
-    const Reading reading = hollow(p_mm, slack_mm);
+    const Reading reading = hollow(p_mm, slack_mm, asked);
     return {filled(reading.voxel), filled(reading.mesh), reading.surfaces};
   };
 }
@@ -448,10 +450,10 @@ Witness witness_of_expression(std::string_view text,
     leaves.push_back(lookup(name));
     if (!leaves.back()) return {};
   }
-  return [tree, leaves = std::move(leaves)](const glm::dvec3& p_mm, double slack_mm) {
+  return [tree, leaves = std::move(leaves)](const glm::dvec3& p_mm, double slack_mm, Asked asked) {
     std::vector<Reading> readings;
     readings.reserve(leaves.size());
-    for (const Witness& leaf : leaves) readings.push_back(leaf(p_mm, slack_mm));
+    for (const Witness& leaf : leaves) readings.push_back(leaf(p_mm, slack_mm, asked));
     return reading_of(*tree, readings);
   };
 }

@@ -116,16 +116,12 @@ std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<s
   return source == nullptr ? std::nullopt : std::optional(*source);
 }
 
-glm::dvec3 area_on_planes(const brep::Mesh& mesh, const std::vector<CutPlane>& planes) {
+glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<CutPlane>& planes) {
   glm::dvec3 area_mm2(0.0);
   if (planes.empty()) return area_mm2;
-  for (const auto face : mesh.faces()) {
-    glm::dvec3 corner[3];
-    int count = 0;
-    for (const auto vertex : face.vertices()) {
-      const auto& p = mesh.point(vertex);
-      corner[count++] = glm::dvec3(p[0], p[1], p[2]);
-    }
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3 corner[] = {triangles.points_mm[face[1]], triangles.points_mm[face[2]],
+                                 triangles.points_mm[face[0]]};
     const double reach_mm = glm::length(corner[0]) + glm::length(corner[1]) + glm::length(corner[2]);
     for (const CutPlane& plane : planes) {
       const auto off = [&](const glm::dvec3& p) {

@@ -30,7 +30,7 @@ void carry(const Object& still, const glm::dmat4& moved_from_still, const voxel:
 /// Masks have none. A union of several windows, or of pieces moved apart, does not lie where one scan says.
 std::optional<Shown> shown_in_common(const Objects& objects, const std::vector<std::string>& names);
 
-/// Area of a mesh's triangles on the planes, by the planes' axes and weighted by their errors.
-glm::dvec3 area_on_planes(const brep::Mesh& mesh, const std::vector<CutPlane>& planes);
+/// Area of triangles on the planes, by the planes' axes and weighted by their errors.
+glm::dvec3 area_on_planes(const brep::Triangles& triangles, const std::vector<CutPlane>& planes);
 
 }  // namespace octotomy::planner

@@ -382,5 +382,32 @@ TEST(Places, OfRightAnswersOnRealHeadsAreNeverContradicted) {
       expect_right(subject);
 }
 
+TEST(Witness, SaysOfTheMeshAloneWhatItSaysOfBoth) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> at(-70.0, 70.0);
+  std::size_t near = 0;
+  std::vector<Subject> subjects = subjects_of("phantom", phantom(), 300.0, 1.5, {0, 0});
+  subjects.push_back(
+      {"expression", subjects[0].octree, subjects[0].mesh,
+       loosened(witness_of_expression(
+                    "a ^ b", [&](const std::string& name) { return subjects[name == "a" ? 1 : 2].witness; }),
+                0.05)});
+  subjects.push_back({"parts", subjects[0].octree, subjects[0].mesh,
+                      witness_of_filled(witness_of_parts(subjects[3].witness))});
+  for (const Subject& subject : subjects) {
+    std::vector<glm::dvec3> points(500);
+    for (glm::dvec3& p : points) p = {at(random), at(random), at(random)};
+    const std::vector<glm::dvec3>& vertices = subject.mesh.triangles().points_mm;
+    for (std::size_t i = 0; i < 500; ++i) points.push_back(vertices[random() % vertices.size()]);
+    for (const glm::dvec3& p : points) {
+      const Reading both = subject.witness(p, 0.0), mesh = subject.witness.of_mesh(p);
+      ASSERT_EQ(mesh.mesh, both.mesh) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
+      ASSERT_EQ(mesh.surfaces, both.surfaces) << subject.name << " at " << p.x << ", " << p.y << ", " << p.z;
+      near += both.mesh.near ? 1 : 0;
+    }
+  }
+  EXPECT_GT(near, 1000u);
+}
+
 }  // namespace
 }  // namespace octotomy::verify
