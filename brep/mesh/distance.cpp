@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A binary tree of axis-aligned boxes, split at the median centre along the longest axis. Nearest point of a
-// triangle: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
+// A tree of axis-aligned boxes, split at the median centre along the longest axis. Two levels of halves are
+// one node, whose four boxes are looked at at once (Wald, Benthin, Boulos, "Getting rid of packets", RT
+// 2008); boxes are floats, rounded outward. Nearest point of a triangle: Ericson, Real-Time Collision
+// Detection, 2005, 5.1.5.
 #include "brep/mesh/distance.h"
 
 #include <algorithm>
@@ -23,8 +25,9 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::uint32_t leaf_size = 4;
-/// A tree is 32 deep at most, along a curve 60 more, and each level leaves one node waiting.
-constexpr std::size_t most_waiting = 96;
+/// Halves are 32 deep at most, along a curve 60 more; two of them are a node's depth, which leaves three
+/// others waiting.
+constexpr std::size_t most_waiting = 3 * 46 + 4;
 
 struct Corners {
   glm::dvec3 a, b, c;
@@ -33,9 +36,9 @@ struct Corners {
 struct TreeBox {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-  void add(const Corners& t) {
-    low = glm::min(low, glm::min(t.a, glm::min(t.b, t.c)));
-    high = glm::max(high, glm::max(t.a, glm::max(t.b, t.c)));
+  void add(const TreeBox& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
   }
   double squared_distance(const glm::dvec3& p) const {
     const glm::dvec3 d = glm::max(glm::max(low - p, p - high), glm::dvec3(0.0));
@@ -47,19 +50,161 @@ TreeBox box_of(const Corners& t) {
   return {glm::min(t.a, glm::min(t.b, t.c)), glm::max(t.a, glm::max(t.b, t.c))};
 }
 
-/// Square of what rounding may take off a distance: some units in the last place of the largest coordinate.
-double squared_rounding(const glm::dvec3& p, const TreeBox& all) {
+/// What rounding may add to the distance of a box or take off that of a triangle. A float is good to 2^-24 of
+/// itself: along each axis the point is rounded, and its difference from the box, at most the sum of both.
+/// Doubles are better by far. 2^-20 of the largest coordinates is five times as much.
+double rounding_of_floats_mm(const glm::dvec3& p, const TreeBox& all) {
   const glm::dvec3 most = glm::max(glm::abs(p), glm::max(glm::abs(all.low), glm::abs(all.high)));
-  const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * (most.x + most.y + most.z);
-  return rounding * rounding;
+  return 0x1p-20 * (most.x + most.y + most.z);
 }
 
-/// A squared distance to a box from which on no triangle in it is computed to be as near as `nearest`: with a
-/// rounding of r, (d + r)^2 <= (1 + s) d^2 + (1 + 1 / s) r^2 for any s > 0.
-double surely_farther(double nearest, double rounding_mm2) {
-  constexpr double share = 1e-6;
-  return (1.0 + share) * nearest + (1.0 + 1.0 / share) * rounding_mm2;
+/// A squared distance to a box, in floats, from which on no triangle in it is computed to be as near as
+/// `nearest`. Five roundings of its squares and their sums are less than the share that is added.
+float surely_farther(double nearest, double rounding_mm) {
+  const double mm = std::sqrt(nearest) + rounding_mm;
+  return static_cast<float>(mm * mm * (1.0 + 0x1p-20));
 }
+
+/// Floats that enclose a number.
+float rounded_down(double number) {
+  const auto nearest = static_cast<float>(number);
+  return static_cast<double>(nearest) <= number
+             ? nearest
+             : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
+}
+float rounded_up(double number) {
+  return -rounded_down(-number);
+}
+glm::vec3 rounded_down(const glm::dvec3& p) {
+  return {rounded_down(p.x), rounded_down(p.y), rounded_down(p.z)};
+}
+glm::vec3 rounded_up(const glm::dvec3& p) {
+  return {rounded_up(p.x), rounded_up(p.y), rounded_up(p.z)};
+}
+
+/// Four numbers that a processor works on at once.
+using Lanes = float __attribute__((vector_size(16)));
+using ThreeLanes = std::array<Lanes, 3>;
+
+Lanes lanes_of(float number) {
+  return Lanes{number, number, number, number};
+}
+ThreeLanes lanes_of(const glm::vec3& p) {
+  return {lanes_of(p.x), lanes_of(p.y), lanes_of(p.z)};
+}
+Lanes larger(Lanes a, Lanes b) {
+  return a > b ? a : b;
+}
+
+/// Four triangles, which a processor measures at once: coordinates by corner, axis and triangle.
+struct FourTriangles {
+  double corner[3][3][4];
+
+  void put(std::size_t lane, const Corners& t) {
+    for (int axis = 0; axis < 3; ++axis) {
+      corner[0][axis][lane] = t.a[axis];
+      corner[1][axis][lane] = t.b[axis];
+      corner[2][axis][lane] = t.c[axis];
+    }
+  }
+  Corners at(std::size_t lane) const {
+    const auto point = [&](const double(&axes)[3][4]) {
+      return glm::dvec3(axes[0][lane], axes[1][lane], axes[2][lane]);
+    };
+    return {point(corner[0]), point(corner[1]), point(corner[2])};
+  }
+};
+
+// Compiles a loop for the vectors of several processors. Nothing is contracted or summed in another order, so
+// all give the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define OCTOTOMY_FOR_VECTORS __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define OCTOTOMY_FOR_VECTORS
+#endif
+
+/// Of a point to each. Where the point stands above the triangle, by the barycentric coordinates of its foot
+/// in the plane, the height is the distance; otherwise the nearest side's.
+OCTOTOMY_FOR_VECTORS void squared_distances(const FourTriangles& four, double px, double py, double pz,
+                                            double* squared) {
+  for (int i = 0; i < 4; ++i) {
+    const double ax = four.corner[0][0][i], ay = four.corner[0][1][i], az = four.corner[0][2][i];
+    const double bx = four.corner[1][0][i], by = four.corner[1][1][i], bz = four.corner[1][2][i];
+    const double cx = four.corner[2][0][i], cy = four.corner[2][1][i], cz = four.corner[2][2][i];
+    // Sides a b, b c and c a; the cross products take a c.
+    const double ux = bx - ax, uy = by - ay, uz = bz - az, vx = cx - bx, vy = cy - by, vz = cz - bz,
+                 wx = ax - cx, wy = ay - cy, wz = az - cz, ex = cx - ax, ey = cy - ay, ez = cz - az;
+    const double nx = uy * ez - ey * uz, ny = uz * ex - ez * ux, nz = ux * ey - ex * uy;
+    const double normal2 = nx * nx + ny * ny + nz * nz;
+    const double qx = px - ax, qy = py - ay, qz = pz - az;
+    const double v = (qy * ez - ey * qz) * nx + (qz * ex - ez * qx) * ny + (qx * ey - ex * qy) * nz;
+    const double w = (uy * qz - qy * uz) * nx + (uz * qx - qz * ux) * ny + (ux * qy - qx * uy) * nz;
+    const double height = qx * nx + qy * ny + qz * nz;
+    const double above = height * height / normal2;
+
+    const double rx = px - bx, ry = py - by, rz = pz - bz, sx = px - cx, sy = py - cy, sz = pz - cz;
+    const double u2 = ux * ux + uy * uy + uz * uz, v2 = vx * vx + vy * vy + vz * vz,
+                 w2 = wx * wx + wy * wy + wz * wz;
+    double along_u = (qx * ux + qy * uy + qz * uz) / u2, along_v = (rx * vx + ry * vy + rz * vz) / v2,
+           along_w = (sx * wx + sy * wy + sz * wz) / w2;
+    along_u = along_u < 0.0 ? 0.0 : 1.0 < along_u ? 1.0 : along_u;
+    along_v = along_v < 0.0 ? 0.0 : 1.0 < along_v ? 1.0 : along_v;
+    along_w = along_w < 0.0 ? 0.0 : 1.0 < along_w ? 1.0 : along_w;
+    along_u = u2 > 0.0 ? along_u : 0.0;
+    along_v = v2 > 0.0 ? along_v : 0.0;
+    along_w = w2 > 0.0 ? along_w : 0.0;
+    const double ux_off = px - (ax + along_u * ux), uy_off = py - (ay + along_u * uy),
+                 uz_off = pz - (az + along_u * uz);
+    const double vx_off = px - (bx + along_v * vx), vy_off = py - (by + along_v * vy),
+                 vz_off = pz - (bz + along_v * vz);
+    const double wx_off = px - (cx + along_w * wx), wy_off = py - (cy + along_w * wy),
+                 wz_off = pz - (cz + along_w * wz);
+    const double to_u = ux_off * ux_off + uy_off * uy_off + uz_off * uz_off,
+                 to_v = vx_off * vx_off + vy_off * vy_off + vz_off * vz_off,
+                 to_w = wx_off * wx_off + wy_off * wy_off + wz_off * wz_off;
+    double beside = to_v < to_u ? to_v : to_u;
+    beside = to_w < beside ? to_w : beside;
+    // Bits of conditions, as branches would part the lanes.
+    const bool inside = (normal2 > 0.0) & (v >= 0.0) & (w >= 0.0) & (v + w <= normal2);
+    squared[i] = inside ? above : beside;
+  }
+}
+
+/// From here on a child is a leaf.
+constexpr std::uint32_t first_leaf = std::uint32_t{1} << 31;
+
+/// A node of the tree: boxes, rounded outward, with what is in them.
+struct FourBoxes {
+  ThreeLanes low{}, high{};
+  std::array<std::uint32_t, 4> child{};
+  int count = 0;
+
+  void add(const TreeBox& box, std::uint32_t number) {
+    assert(count < 4);
+    const glm::vec3 from = rounded_down(box.low), to = rounded_up(box.high);
+    for (int axis = 0; axis < 3; ++axis) {
+      low[static_cast<std::size_t>(axis)][count] = from[axis];
+      high[static_cast<std::size_t>(axis)][count] = to[axis];
+    }
+    child[static_cast<std::size_t>(count++)] = number;
+  }
+
+  Lanes squared_distances(const ThreeLanes& p) const {
+    const auto apart = [&](std::size_t axis) {
+      return larger(larger(low[axis] - p[axis], p[axis] - high[axis]), Lanes{});
+    };
+    const Lanes x = apart(0), y = apart(1), z = apart(2);
+    return x * x + y * y + z * z;
+  }
+
+  /// Not 0 where a ray towards +x may pass the box; the point that it leaves lies in low_mm .. high_mm.
+  auto passed(const glm::vec3& low_mm, const glm::vec3& high_mm) const {
+    const ThreeLanes from = lanes_of(low_mm), to = lanes_of(high_mm);
+    return (high[0] >= from[0]) & (low[1] <= to[1]) & (high[1] >= from[1]) & (low[2] <= to[2]) &
+           (high[2] >= from[2]);
+  }
+};
 
 /// Share of the way from a to b at which a segment is nearest.
 double share_along(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
@@ -73,23 +218,7 @@ double squared_distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, con
   return glm::dot(d, d);
 }
 
-double squared_distance_to_triangle(const glm::dvec3& p, const Corners& t) {
-  const glm::dvec3 ab = t.b - t.a, ac = t.c - t.a, normal = glm::cross(ab, ac);
-  const double normal2 = glm::dot(normal, normal);
-  if (normal2 > 0.0) {
-    // Barycentric coordinates of the foot in the plane; inside, the height is the distance.
-    const glm::dvec3 ap = p - t.a;
-    const double v = glm::dot(glm::cross(ap, ac), normal), w = glm::dot(glm::cross(ab, ap), normal);
-    if (v >= 0.0 && w >= 0.0 && v + w <= normal2) {
-      const double height = glm::dot(ap, normal);
-      return height * height / normal2;
-    }
-  }
-  return std::min({squared_distance_to_segment(p, t.a, t.b), squared_distance_to_segment(p, t.b, t.c),
-                   squared_distance_to_segment(p, t.c, t.a)});
-}
-
-/// Barycentric coordinates of the triangle's nearest point, by the cases of squared_distance_to_triangle().
+/// Barycentric coordinates of the triangle's nearest point, by the cases of squared_distances().
 glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
   const glm::dvec3 ab = t.b - t.a, ac = t.c - t.a, normal = glm::cross(ab, ac);
   const double normal2 = glm::dot(normal, normal);
@@ -140,68 +269,54 @@ struct SurfaceTree::Tree {
     TreeBox box;
     std::uint32_t first = 0, count = 0;
   };
-  std::vector<Corners> triangles;  ///< in the order of the leaves
+  std::vector<FourTriangles> triangles;  ///< in the order of the leaves, numbered by it
   std::vector<std::uint32_t> faces;
   std::vector<Node> nodes;
+  std::vector<FourBoxes> wide;  ///< two levels of nodes each; the first is the root
+  bool is_halved;               ///< nodes halve their triangles
 
-  Tree(const Triangles& source, SurfaceTree::Build build) {
+  Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build == SurfaceTree::Build::Searched) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());
     if (count == 0) return;
-    faces.resize(count);
-    std::vector<Corners> unordered(count);
     std::vector<Centred> items(count);
+    const auto corners_of = [&](std::uint32_t face) -> Corners {
+      const auto& f = source.faces[face];
+      assert(std::max({f[0], f[1], f[2]}) < source.points_mm.size());
+      return {source.points_mm[f[0]], source.points_mm[f[1]], source.points_mm[f[2]]};
+    };
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 4096), [&](const auto& range) {
       for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-        const auto& f = source.faces[i];
-        assert(std::max({f[0], f[1], f[2]}) < source.points_mm.size());
-        unordered[i] = {source.points_mm[f[0]], source.points_mm[f[1]], source.points_mm[f[2]]};
-        TreeBox box;
-        box.add(unordered[i]);
+        const TreeBox box = box_of(corners_of(i));
         items[i] = {0.5 * box.low + 0.5 * box.high, i};
       }
     });
-    triangles.resize(count);
+    faces.resize(count);
+    triangles.resize((count + 3) / 4);
     nodes.resize(halving_nodes(count, leaf_size));
     const auto leaf = [&](std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t i = begin; i < end; ++i) {
         faces[i] = items[i].number;
-        triangles[i] = unordered[faces[i]];
-        nodes[self].box.add(triangles[i]);
+        const Corners t = corners_of(faces[i]);
+        triangles[i / 4].put(i % 4, t);
+        nodes[self].box.add(box_of(t));
       }
       nodes[self].first = begin;
       nodes[self].count = end - begin;
     };
     const auto inner = [&](std::uint32_t self, std::uint32_t second) {
       nodes[self].first = second;
-      for (const std::uint32_t half : {self + 1, second}) {
-        nodes[self].box.low = glm::min(nodes[self].box.low, nodes[half].box.low);
-        nodes[self].box.high = glm::max(nodes[self].box.high, nodes[half].box.high);
-      }
+      for (const std::uint32_t half : {self + 1, second}) nodes[self].box.add(nodes[half].box);
     };
-    if (build == SurfaceTree::Build::Searched) {
+    if (is_halved)
       halve(items, leaf_size, leaf, inner, 0, 0, count);
-      return;
-    }
-    std::vector<glm::dvec3> centres_mm(count);
-    for (std::uint32_t i = 0; i < count; ++i) centres_mm[i] = items[i].centre_mm;
-    const MortonOrder order = morton_order(centres_mm);
-    for (std::uint32_t i = 0; i < count; ++i) items[i].number = order.numbers[i];
-    nodes.clear();
-    const auto build_run = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
-      const auto self = static_cast<std::uint32_t>(nodes.size());
-      nodes.emplace_back();
-      if (end - begin <= leaf_size) {
-        leaf(self, begin, end);
-        return;
-      }
-      const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
-      again(again, begin, middle);
-      const auto second = static_cast<std::uint32_t>(nodes.size());
-      again(again, middle, end);
-      inner(self, second);
-    };
-    build_run(build_run, 0, count);
+    else
+      halve_along_curve(items, leaf, inner);
+    for (std::uint32_t i = count; i < 4 * triangles.size(); ++i)
+      triangles.back().put(i % 4, triangle(count - 1));
+    widen();
   }
+
+  Corners triangle(std::uint32_t number) const { return triangles[number / 4].at(number % 4); }
 
   void check_not_empty() const {
     if (nodes.empty())
@@ -209,34 +324,53 @@ struct SurfaceTree::Tree {
           "there is no distance to a surface without triangles; ask whether it is empty first");
   }
 
-  /// The least of what squared_distance_to_triangle() says of all triangles, wherever the search starts.
+  /// The least distance of all triangles, wherever the search starts. Of triangles that are equally near it
+  /// names the one that it started with, or the first that a search through the halves would meet.
   double distance(const glm::dvec3& p, std::uint32_t& nearest_triangle, double enough_mm = 0.0) const {
-    assert(nearest_triangle < triangles.size());
-    double nearest = squared_distance_to_triangle(p, triangles[nearest_triangle]);
-    const double rounding_mm2 = squared_rounding(p, nodes[0].box);
-    std::array<std::pair<std::uint32_t, double>, most_waiting> waiting;
+    assert(nearest_triangle < faces.size());
+    const std::uint32_t start = nearest_triangle;
+    double nearest = std::numeric_limits<double>::infinity();
+    const double rounding_mm = rounding_of_floats_mm(p, nodes[0].box);
+    float farther = std::numeric_limits<float>::infinity();
+    const auto look_at = [&](std::uint32_t four, std::uint32_t begin, std::uint32_t end) {
+      std::array<double, 4> squared;
+      squared_distances(triangles[four], p.x, p.y, p.z, squared.data());
+      for (std::uint32_t i = std::max(begin, 4 * four); i < std::min(end, 4 * four + 4); ++i) {
+        const double own = squared[i % 4];
+        if (!(own < nearest || (own == nearest && comes_before(p, i, nearest_triangle, start)))) continue;
+        nearest = own;
+        nearest_triangle = i;
+        farther = surely_farther(nearest, rounding_mm);
+      }
+    };
+    look_at(start / 4, start, start + 1);
+    const ThreeLanes at = lanes_of(glm::vec3(p));
+    struct Waiting {
+      float bound;
+      std::uint32_t child;
+    };
+    std::array<Waiting, most_waiting> waiting;
     std::size_t top = 0;
-    waiting[top++] = {0, nodes[0].box.squared_distance(p)};
+    waiting[top++] = {0.0f, 0};
     while (top > 0 && nearest >= enough_mm * enough_mm) {
-      const auto [index, bound] = waiting[--top];
-      if (bound > surely_farther(nearest, rounding_mm2)) continue;
-      const Node& node = nodes[index];
-      if (node.count > 0) {
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-          if (box_of(triangles[i]).squared_distance(p) > surely_farther(nearest, rounding_mm2)) continue;
-          const double squared = squared_distance_to_triangle(p, triangles[i]);
-          if (squared >= nearest) continue;
-          nearest = squared;
-          nearest_triangle = i;
-        }
+      const auto [bound, child] = waiting[--top];
+      if (bound > farther) continue;
+      if (child >= first_leaf) {
+        const auto [first, end] = triangles_of_leaf(child - first_leaf);
+        for (std::uint32_t four = first / 4; 4 * four < end; ++four) look_at(four, first, end);
         continue;
       }
-      std::pair<std::uint32_t, double> near{index + 1, nodes[index + 1].box.squared_distance(p)};
-      std::pair<std::uint32_t, double> far{node.first, nodes[node.first].box.squared_distance(p)};
-      if (far.second < near.second) std::swap(near, far);
-      assert(top + 2 <= waiting.size());
-      waiting[top++] = far;
-      waiting[top++] = near;
+      // The nearest of the four comes last, to be the next.
+      const FourBoxes& node = wide[child];
+      const Lanes bounds = node.squared_distances(at);
+      assert(top + 4 <= waiting.size());
+      const std::size_t first = top;
+      for (int lane = 0; lane < node.count; ++lane) {
+        if (bounds[lane] > farther) continue;
+        std::size_t to = top++;
+        for (; to > first && waiting[to - 1].bound < bounds[lane]; --to) waiting[to] = waiting[to - 1];
+        waiting[to] = {bounds[lane], node.child[static_cast<std::size_t>(lane)]};
+      }
     }
     return std::sqrt(nearest);
   }
@@ -259,24 +393,99 @@ struct SurfaceTree::Tree {
   template <typename Visit>
   void visit_crossings(const glm::dvec3& p, Visit visit) const {
     if (nodes.empty()) return;
+    const glm::vec3 low = rounded_down(p), high = rounded_up(p);
     std::array<std::uint32_t, most_waiting> waiting;
     std::size_t top = 0;
     waiting[top++] = 0;
     while (top > 0) {
-      const std::uint32_t index = waiting[--top];
-      const Node& node = nodes[index];
-      if (node.box.high.x < p.x || node.box.low.y > p.y || node.box.high.y < p.y || node.box.low.z > p.z ||
-          node.box.high.z < p.z)
-        continue;
-      if (node.count == 0) {
-        assert(top + 2 <= waiting.size());
-        waiting[top++] = node.first;
-        waiting[top++] = index + 1;
+      const std::uint32_t child = waiting[--top];
+      if (child >= first_leaf) {
+        const auto [first, end] = triangles_of_leaf(child - first_leaf);
+        for (std::uint32_t i = first; i < end; ++i)
+          if (const Corners t = triangle(i); passing_of(p, t.a, t.b, t.c) != RayPassing::Beside) visit(i);
         continue;
       }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-        if (const Corners& t = triangles[i]; passing_of(p, t.a, t.b, t.c) != RayPassing::Beside) visit(i);
+      const FourBoxes& node = wide[child];
+      assert(top + 4 <= waiting.size());
+      const auto passed = node.passed(low, high);
+      for (int lane = 0; lane < node.count; ++lane)
+        if (passed[lane] != 0) waiting[top++] = node.child[static_cast<std::size_t>(lane)];
     }
+  }
+
+ private:
+  /// The leaves and inner nodes of triangles parted along a curve.
+  template <typename Leaf, typename Inner>
+  void halve_along_curve(std::vector<Centred>& items, const Leaf& leaf, const Inner& inner) {
+    std::vector<glm::dvec3> centres_mm(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) centres_mm[i] = items[i].centre_mm;
+    const MortonOrder order = morton_order(centres_mm);
+    for (std::size_t i = 0; i < items.size(); ++i) items[i].number = order.numbers[i];
+    nodes.clear();
+    const auto build_run = [&](const auto& again, std::uint32_t begin, std::uint32_t end) -> void {
+      const auto self = static_cast<std::uint32_t>(nodes.size());
+      nodes.emplace_back();
+      if (end - begin <= leaf_size) {
+        leaf(self, begin, end);
+        return;
+      }
+      const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
+      again(again, begin, middle);
+      const auto second = static_cast<std::uint32_t>(nodes.size());
+      again(again, middle, end);
+      inner(self, second);
+    };
+    build_run(build_run, 0, static_cast<std::uint32_t>(items.size()));
+  }
+
+  /// Makes a wide node of every second level's inner nodes, and of a root that is a leaf.
+  void widen() {
+    std::vector<std::uint8_t> is_even(nodes.size(), 1);
+    std::vector<std::uint32_t> own, number(nodes.size(), 0);
+    for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+      if (nodes[n].count == 0) is_even[n + 1] = is_even[nodes[n].first] = is_even[n] ^ 1;
+      if (n > 0 && (nodes[n].count > 0 || is_even[n] == 0)) continue;
+      number[n] = static_cast<std::uint32_t>(own.size());
+      own.push_back(n);
+    }
+    wide.resize(own.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own.size(), 1024), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        const auto add = [&](std::uint32_t n) {
+          wide[i].add(nodes[n].box, nodes[n].count > 0 ? first_leaf + n : number[n]);
+        };
+        const auto add_children = [&](std::uint32_t n) {
+          if (nodes[n].count > 0) return add(n);
+          add(n + 1);
+          add(nodes[n].first);
+        };
+        if (nodes[own[i]].count > 0) return add(own[i]);
+        add_children(own[i] + 1);
+        add_children(nodes[own[i]].first);
+      }
+    });
+  }
+
+  std::pair<std::uint32_t, std::uint32_t> triangles_of_leaf(std::uint32_t node) const {
+    return {nodes[node].first, nodes[node].first + nodes[node].count};
+  }
+
+  /// Of two triangles that are equally near: the start, or the one that is met first where the nearer of two
+  /// halves is searched first.
+  bool comes_before(const glm::dvec3& p, std::uint32_t a, std::uint32_t b, std::uint32_t start) const {
+    if (b == start || !is_halved) return false;
+    std::uint32_t node = 0, begin = 0, end = static_cast<std::uint32_t>(faces.size());
+    while (nodes[node].count == 0) {
+      const std::uint32_t middle = begin + (end - begin) / 2, second = nodes[node].first;
+      if ((a < middle) != (b < middle)) {
+        const bool second_first =
+            nodes[second].box.squared_distance(p) < nodes[node + 1].box.squared_distance(p);
+        return (a < middle) != second_first;
+      }
+      (a < middle ? end : begin) = middle;
+      node = a < middle ? node + 1 : second;
+    }
+    return a < b;
   }
 };
 
@@ -301,13 +510,18 @@ double SurfaceTree::distance_mm(const glm::dvec3& p_mm, std::uint32_t& triangle,
 
 std::vector<Foot> SurfaceTree::feet(const std::vector<glm::dvec3>& points_mm) const {
   std::vector<Foot> feet(points_mm.size());
-  tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t triangle) {
-    const Corners& t = tree_->triangles[triangle];
-    const glm::dvec3 weights = nearest_weights(points_mm[i], t);
-    feet[i] = {weights.x * t.a + weights.y * t.b + weights.z * t.c, distance, tree_->faces[triangle],
-               weights};
-  });
+  visit_feet(points_mm, [&](std::size_t i, const Foot& foot) { feet[i] = foot; });
   return feet;
+}
+
+void SurfaceTree::visit_feet(const std::vector<glm::dvec3>& points_mm,
+                             const std::function<void(std::size_t point, const Foot& foot)>& visit) const {
+  tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t triangle) {
+    const Corners t = tree_->triangle(triangle);
+    const glm::dvec3 weights = nearest_weights(points_mm[i], t);
+    visit(i,
+          {weights.x * t.a + weights.y * t.b + weights.z * t.c, distance, tree_->faces[triangle], weights});
+  });
 }
 
 std::vector<std::uint8_t> SurfaceTree::inside(const std::vector<glm::dvec3>& points_mm) const {
@@ -322,7 +536,7 @@ std::vector<std::uint8_t> SurfaceTree::inside(const std::vector<glm::dvec3>& poi
 std::vector<Crossing> SurfaceTree::crossings(const glm::dvec3& p_mm) const {
   std::vector<Crossing> crossings;
   tree_->visit_crossings(p_mm, [&](std::uint32_t i) {
-    const Corners& t = tree_->triangles[i];
+    const Corners t = tree_->triangle(i);
     crossings.push_back({tree_->faces[i], glm::cross(t.b - t.a, t.c - t.a).x > 0.0});
   });
   std::sort(crossings.begin(), crossings.end(),

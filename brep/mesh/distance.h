@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <vector>
@@ -60,6 +61,9 @@ class SurfaceTree {
 
   /// The foot of each point, by the same search. Throws as distances_mm() and costs as much.
   std::vector<Foot> feet(const std::vector<glm::dvec3>& points_mm) const;
+  /// The same, each told by the point's number, from several threads.
+  void visit_feet(const std::vector<glm::dvec3>& points_mm,
+                  const std::function<void(std::size_t point, const Foot& foot)>& visit) const;
 
   /// 1 for each point inside, 0 outside, by parity along +x: a ray through an edge or vertex counts once, by
   /// the half-open rule, and exactly, however near the surface the point is; on it, it may be either.

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/mesh/distance.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 #include <tbb/global_control.h>
 
+#include "brep/mesh/halving.h"
 #include "tests/brep/shapes.h"
 
 namespace octotomy::brep {
@@ -98,6 +102,109 @@ TEST(SurfaceTree, OfNothingHasNoDistanceAndNoInside) {
   const SurfaceTree tree{Triangles{}};
   EXPECT_THROW(tree.distances_mm({{0, 0, 0}}), std::invalid_argument);
   EXPECT_EQ(tree.inside({{0, 0, 0}}), std::vector<std::uint8_t>{0});
+}
+
+/// The search that SurfaceTree's answers are defined by, one box and one triangle at a time.
+class PlainSearch {
+ public:
+  explicit PlainSearch(const Triangles& surface)
+      : surface_(surface), nodes_(halving_nodes(static_cast<std::uint32_t>(surface.faces.size()), 4)) {
+    for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
+      const auto [low, high] = box_of(f);
+      items_.push_back({0.5 * low + 0.5 * high, f});
+    }
+    halve(
+        items_, 4,
+        [&](std::uint32_t self, std::uint32_t begin, std::uint32_t end) {
+          nodes_[self].first = begin;
+          nodes_[self].count = end - begin;
+          for (std::uint32_t i = begin; i < end; ++i) nodes_[self].add(box_of(items_[i].number));
+        },
+        [&](std::uint32_t self, std::uint32_t second) {
+          nodes_[self].first = second;
+          for (const std::uint32_t half : {self + 1, second}) nodes_[self].add(nodes_[half].box);
+        },
+        0, 0, static_cast<std::uint32_t>(items_.size()));
+  }
+
+  /// Returns the face; the search starts with, and leaves, the place of a triangle among the leaves.
+  std::uint32_t nearest(const glm::dvec3& p, std::uint32_t& place) const {
+    double squared = squared_to(p, place);
+    visit(p, 0, squared, place);
+    return items_[place].number;
+  }
+
+ private:
+  using Box = std::pair<glm::dvec3, glm::dvec3>;
+  struct Node {
+    Box box{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    std::uint32_t first = 0, count = 0;
+    void add(const Box& other) {
+      box = {glm::min(box.first, other.first), glm::max(box.second, other.second)};
+    }
+    double squared_to(const glm::dvec3& p) const {
+      const glm::dvec3 d = glm::max(glm::max(box.first - p, p - box.second), glm::dvec3(0.0));
+      return glm::dot(d, d);
+    }
+  };
+  const glm::dvec3& corner(std::uint32_t face, std::size_t k) const {
+    return surface_.points_mm[surface_.faces[face][k]];
+  }
+  Box box_of(std::uint32_t face) const {
+    const glm::dvec3 &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
+    return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+  }
+  double squared_to(const glm::dvec3& p, std::uint32_t place) const {
+    const std::uint32_t face = items_[place].number;
+    const glm::dvec3 &a = corner(face, 0), &b = corner(face, 1), &c = corner(face, 2);
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const double normal2 = glm::dot(normal, normal);
+    const double v = glm::dot(glm::cross(p - a, c - a), normal),
+                 w = glm::dot(glm::cross(b - a, p - a), normal);
+    if (normal2 > 0.0 && v >= 0.0 && w >= 0.0 && v + w <= normal2) {
+      const double height = glm::dot(p - a, normal);
+      return height * height / normal2;
+    }
+    const auto to_side = [&](const glm::dvec3& from, const glm::dvec3& to) {
+      const glm::dvec3 along = to - from;
+      const double length2 = glm::dot(along, along);
+      const double share = length2 > 0.0 ? std::clamp(glm::dot(p - from, along) / length2, 0.0, 1.0) : 0.0;
+      const glm::dvec3 d = p - (from + share * along);
+      return glm::dot(d, d);
+    };
+    return std::min({to_side(a, b), to_side(b, c), to_side(c, a)});
+  }
+  void visit(const glm::dvec3& p, std::uint32_t node, double& squared, std::uint32_t& place) const {
+    const Node& own = nodes_[node];
+    for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
+      if (const double here = squared_to(p, i); here < squared) squared = here, place = i;
+    if (own.count > 0) return;
+    std::array<std::uint32_t, 2> halves{node + 1, own.first};
+    if (nodes_[halves[1]].squared_to(p) < nodes_[halves[0]].squared_to(p)) std::swap(halves[0], halves[1]);
+    for (const std::uint32_t half : halves) visit(p, half, squared, place);
+  }
+
+  const Triangles& surface_;
+  std::vector<Node> nodes_;
+  std::vector<Centred> items_;
+};
+
+TEST(SurfaceTree, OfTrianglesEquallyNearItNamesTheOneThatAPlainSearchMeetsFirst) {
+  for (const Triangles& surface :
+       {shapes::sphere({0.1, 0.2, 0.3}, 1, 3), shapes::box({-1, -1, -1}, {1, 1, 1}),
+        shapes::together(shapes::sphere({0, 0, 0}, 1, 2), shapes::sphere({0, 0, 0}, 1, 2))}) {
+    std::vector<glm::dvec3> points = surface.points_mm;  // each as near to all triangles about it
+    for (const auto& face : surface.faces)
+      points.push_back(0.6 * (surface.points_mm[face[0]] + surface.points_mm[face[1]]));
+    for (const glm::dvec3& p : random_points(300, 2.0, 3)) points.push_back(p);
+    const std::vector<Foot> feet = SurfaceTree(surface).feet(points);
+    const PlainSearch plain(surface);
+    std::uint32_t place = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i % 256 == 0) place = 0;  // as SurfaceTree's blocks do
+      ASSERT_EQ(feet[i].face, plain.nearest(points[i], place)) << "point " << i;
+    }
+  }
 }
 
 }  // namespace
