@@ -117,7 +117,7 @@ void MeshScanner::skip(std::size_t byte_count) {
   assert(at_ <= bytes_.size());
 }
 
-void add_fan(Triangles& triangles, const std::vector<long long>& corners) {
+void add_fan(Triangles& triangles, std::span<const long long> corners) {
   if (corners.size() < 3)
     throw Error(ErrorCode::Input, "a polygon of " + std::to_string(corners.size()) +
                                       " corners after triangle " + std::to_string(triangles.faces.size()));

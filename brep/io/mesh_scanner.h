@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +40,8 @@ class MeshScanner {
     binary_ = true;
     if (rest() < sizeof(T)) fail("the file ends too early");
     char raw[sizeof(T)];
-    for (std::size_t i = 0; i < sizeof(T); ++i)
-      raw[i] = bytes_[at_ + (order == std::endian::native ? i : sizeof(T) - 1 - i)];
+    std::memcpy(raw, bytes_.data() + at_, sizeof(T));
+    if (order != std::endian::native) std::reverse(raw, raw + sizeof(T));
     at_ += sizeof(T);
     T value;
     std::memcpy(&value, raw, sizeof(T));
@@ -61,7 +63,7 @@ double number_of(std::string_view word);
 long long integer_of(std::string_view word);
 
 /// Adds a polygon as a fan; throws Error (Input) if it has too few corners or a corner is no point.
-void add_fan(Triangles& triangles, const std::vector<long long>& corners);
+void add_fan(Triangles& triangles, std::span<const long long> corners);
 /// Adds a strip of triangles; ones that repeat a point only turn the strip and are left out.
 void add_strip(Triangles& triangles, const std::vector<long long>& corners);
 

@@ -3,8 +3,8 @@
 // each with scalar and list properties. Only x, y, z of "vertex" and the corner list of "face" are kept.
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "brep/io/mesh_scanner.h"
@@ -139,9 +139,9 @@ std::size_t least_row_bytes(const Element& element, bool binary) {
 }
 
 /// Reads an element's rows; `take` is given each property's number in the row and its values.
-void read_rows(MeshScanner& scanner, const Header& header, const Element& element,
-               const std::function<void(std::size_t, const std::vector<double>&)>& take,
-               const std::function<void()>& end_row) {
+template <typename Take, typename EndRow>
+void read_rows(MeshScanner& scanner, const Header& header, const Element& element, const Take& take,
+               const EndRow& end_row) {
   if (element.properties.empty()) return;
   const std::size_t rows =
       scanner.bounded(element.count, least_row_bytes(element, header.binary.has_value()));
@@ -170,11 +170,14 @@ Triangles read_ply(std::string_view bytes) {
   MeshScanner scanner(bytes);
   const Header header = read_header(scanner);
   Triangles triangles;
-  std::vector<std::vector<long long>> polygons;
+  std::vector<long long> corners;        // of all polygons, one after the other
+  std::vector<std::size_t> polygon_end;  // in them
   bool has_points = false;
   for (const Element& element : header.elements) {
-    const auto named = [&](std::size_t p, std::string_view name) {
-      return element.properties[p].name == name;
+    const auto are_named = [&](std::string_view name) {
+      std::vector<bool> named;
+      for (const Property& p : element.properties) named.push_back(p.name == name);
+      return named;
     };
     if (element.name == "vertex") {
       has_points = true;
@@ -182,28 +185,29 @@ Triangles read_ply(std::string_view bytes) {
       for (const Property& p : element.properties)
         if (!p.list_count && (p.name == "x" || p.name == "y" || p.name == "z")) ++coordinates;
       if (coordinates != 3) scanner.fail("the vertices have no x, y and z");
+      const std::vector<bool> x = are_named("x"), y = are_named("y"), z = are_named("z");
       glm::dvec3 point(0.0);
       read_rows(
           scanner, header, element,
           [&](std::size_t p, const std::vector<double>& values) {
-            if (named(p, "x")) point.x = values[0];
-            if (named(p, "y")) point.y = values[0];
-            if (named(p, "z")) point.z = values[0];
+            if (x[p]) point.x = values[0];
+            if (y[p]) point.y = values[0];
+            if (z[p]) point.z = values[0];
           },
           [&] { triangles.points_mm.push_back(point); });
     } else if (element.name == "face") {
+      std::vector<bool> lists;
+      for (const Property& p : element.properties)
+        lists.push_back(p.list_count && (p.name == "vertex_indices" || p.name == "vertex_index"));
       read_rows(
           scanner, header, element,
           [&](std::size_t p, const std::vector<double>& values) {
-            if (!element.properties[p].list_count ||
-                !(named(p, "vertex_indices") || named(p, "vertex_index")))
-              return;
-            std::vector<long long> corners;
+            if (!lists[p]) return;
             for (const double value : values) {
               if (!(value >= 0.0 && value < 4294967296.0)) scanner.fail("a corner that is no point's number");
               corners.push_back(static_cast<long long>(value));
             }
-            polygons.push_back(std::move(corners));
+            polygon_end.push_back(corners.size());
           },
           [] {});
     } else if (element.name == "tristrips") {
@@ -214,7 +218,12 @@ Triangles read_ply(std::string_view bytes) {
     }
   }
   if (!has_points) scanner.fail("the file has no vertices");
-  for (const auto& corners : polygons) add_fan(triangles, corners);
+  triangles.faces.reserve(polygon_end.size());
+  std::size_t begin = 0;
+  for (const std::size_t end : polygon_end) {
+    add_fan(triangles, std::span(corners).subspan(begin, end - begin));
+    begin = end;
+  }
   for (const glm::dvec3& p : triangles.points_mm)
     if (!(std::abs(p.x) < INFINITY && std::abs(p.y) < INFINITY && std::abs(p.z) < INFINITY))
       throw Error(ErrorCode::Input, "a point is not finite");

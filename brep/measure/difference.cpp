@@ -10,6 +10,9 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_sort.h>
+#include <utility>
 
 #include "brep/mesh/measure.h"
 #include "brep/mesh/oriented_surface.h"
@@ -48,13 +51,6 @@ struct Distances {
   std::size_t on_border_count = 0;
 };
 
-std::vector<double> signed_mm(const std::vector<SignedFoot>& feet) {
-  std::vector<double> distances(feet.size());
-  std::transform(feet.begin(), feet.end(), distances.begin(),
-                 [](const SignedFoot& foot) { return foot.distance_mm; });
-  return distances;
-}
-
 /// Triangles no longer than the spacing are stood for by their corners, a third of the area each; larger ones
 /// by samples of their own.
 struct Split {
@@ -85,15 +81,15 @@ Split split_at(const Triangles& surface, double spacing) {
 Distances distances_to(const Triangles& from, const OrientedSurface& to, double spacing) {
   Split split = split_at(from, spacing);
   Distances found;
-  const std::vector<SignedFoot> corners = to.feet(from.points_mm);
-  found.vertex_mm = signed_mm(corners);
+  const std::vector<OrientedSurface::Distance> corners = to.distances(from.points_mm);
+  for (const OrientedSurface::Distance& corner : corners) found.vertex_mm.push_back(corner.mm);
   found.vertex_has_face.assign(from.points_mm.size(), false);
   for (const auto& face : from.faces)
     for (const std::uint32_t v : face) found.vertex_has_face[v] = true;
-  const auto add = [&](const SignedFoot& foot, double area_mm2) {
-    found.sample_mm.push_back(foot.distance_mm);
+  const auto add = [&](const OrientedSurface::Distance& distance, double area_mm2) {
+    found.sample_mm.push_back(distance.mm);
     found.areas_mm2.push_back(area_mm2);
-    found.on_border_count += foot.on_border;
+    found.on_border_count += distance.on_border;
   };
   for (std::size_t v = 0; v < corners.size(); ++v)
     if (split.corner_mm2[v] > 0.0) add(corners[v], split.corner_mm2[v]);
@@ -101,26 +97,24 @@ Distances distances_to(const Triangles& from, const OrientedSurface& to, double 
   if (split.large.faces.empty()) return found;
   split.large.points_mm = from.points_mm;
   const SurfaceSamples samples = sample_surface(split.large, spacing);
-  const std::vector<SignedFoot> feet = to.feet(samples.points_mm);
-  for (std::size_t i = 0; i < feet.size(); ++i) add(feet[i], samples.areas_mm2[i]);
+  const std::vector<OrientedSurface::Distance> distances = to.distances(samples.points_mm);
+  for (std::size_t i = 0; i < distances.size(); ++i) add(distances[i], samples.areas_mm2[i]);
   found.reach_mm = std::max(found.reach_mm, samples.reach_mm);
   return found;
 }
 
 double percentile_mm(const Distances& distances, double share) {
   assert(!distances.sample_mm.empty() && distances.areas_mm2.size() == distances.sample_mm.size());
-  std::vector<std::size_t> order(distances.sample_mm.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto size = [&](std::size_t i) { return std::abs(distances.sample_mm[i]); };
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t i, std::size_t j) { return size(i) != size(j) ? size(i) < size(j) : i < j; });
+  std::vector<std::pair<double, std::size_t>> sizes(distances.sample_mm.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = {std::abs(distances.sample_mm[i]), i};
+  tbb::parallel_sort(sizes.begin(), sizes.end());
   double whole = 0.0, reached = 0.0;
-  for (const std::size_t i : order) whole += distances.areas_mm2[i];
-  for (const std::size_t i : order) {
+  for (const auto& [size, i] : sizes) whole += distances.areas_mm2[i];
+  for (const auto& [size, i] : sizes) {
     reached += distances.areas_mm2[i];
-    if (reached >= share * whole) return size(i);
+    if (reached >= share * whole) return size;
   }
-  return size(order.back());
+  return sizes.back().first;
 }
 
 OneWay one_way(const Distances& distances, const std::vector<double>& tolerances) {
@@ -173,16 +167,21 @@ double area_of(const Distances& distances) {
 
 }  // namespace
 
-Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& options) {
-  const double area_a = size_of(a).area_mm2, area_b = size_of(b).area_mm2;
+Difference difference(const Linked& a, const Linked& b, const DifferenceOptions& options) {
+  const double area_a = size_of(a.triangles).area_mm2, area_b = size_of(b.triangles).area_mm2;
   check(options, area_a, area_b);
   const double spacing = options.spacing_mm.value_or(spacing_mm(std::max(area_a, area_b)));
-  const Distances from_a = distances_to(triangles_of(a), OrientedSurface(b), spacing);
-  const Distances from_b = distances_to(triangles_of(b), OrientedSurface(a), spacing);
-
   Difference answer;
-  answer.a_to_b = one_way(from_a, options.tolerances_mm);
-  answer.b_to_a = one_way(from_b, options.tolerances_mm);
+  Distances from_a, from_b;
+  tbb::parallel_invoke(
+      [&] {
+        from_a = distances_to(a.triangles, OrientedSurface(b), spacing);
+        answer.a_to_b = one_way(from_a, options.tolerances_mm);
+      },
+      [&] {
+        from_b = distances_to(b.triangles, OrientedSurface(a), spacing);
+        answer.b_to_a = one_way(from_b, options.tolerances_mm);
+      });
   answer.hausdorff_mm = std::max(answer.a_to_b.max_mm, answer.b_to_a.max_mm);
   answer.hausdorff95_mm = std::max(answer.a_to_b.p95_mm, answer.b_to_a.p95_mm);
   const double share_a = area_of(from_a) / (area_of(from_a) + area_of(from_b)), share_b = 1.0 - share_a;
@@ -196,6 +195,10 @@ Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& opt
   answer.on_border_count = from_a.on_border_count + from_b.on_border_count;
   answer.spacing_mm = spacing;
   return answer;
+}
+
+Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& options) {
+  return difference(linked_of(a), linked_of(b), options);
 }
 
 }  // namespace octotomy::brep

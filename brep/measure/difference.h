@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 
@@ -53,6 +54,7 @@ struct Difference {
 /// is out of its range. The same bits on any number of threads. Cost: n log n of samples and triangles;
 /// about 0.3 s for 2 x 200 000 samples on two cores. Source: Aspert et al., "MESH: measuring errors between
 /// surfaces using the Hausdorff distance", ICME 2002, with percentiles.
+Difference difference(const Linked& a, const Linked& b, const DifferenceOptions& options = {});
 Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& options = {});
 
 }  // namespace octotomy::brep

@@ -39,13 +39,12 @@ struct OrientedSurface::Surface {
   std::vector<glm::dvec3> corner_normals;
   std::vector<std::uint8_t> corner_on_border;
 
-  explicit Surface(const Mesh& mesh) : Surface(mesh, triangles_of(mesh)) {}
-
-  Surface(const Mesh& mesh, const Triangles& triangles)
-      : tree(triangles),
-        faces(mesh.n_faces()),
-        corner_normals(mesh.n_vertices(), glm::dvec3(0.0)),
-        corner_on_border(mesh.n_vertices(), 0) {
+  explicit Surface(const Linked& linked)
+      : tree(linked.triangles),
+        faces(linked.triangles.faces.size()),
+        corner_normals(linked.triangles.points_mm.size(), glm::dvec3(0.0)),
+        corner_on_border(linked.triangles.points_mm.size(), 0) {
+    const Triangles& triangles = linked.triangles;
     std::vector<std::array<double, 3>> angles(faces.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 1024), [&](const auto& range) {
       for (std::size_t f = range.begin(); f != range.end(); ++f) {
@@ -54,10 +53,9 @@ struct OrientedSurface::Surface {
         std::array<glm::dvec3, 3> p;
         for (std::size_t k = 0; k < 3; ++k) p[k] = triangles.points_mm[face.corners[k]];
         face.normal = unit(glm::cross(p[1] - p[0], p[2] - p[0]));
-        Mesh::HalfedgeHandle side = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
-        for (std::size_t k = 0; k < 3; ++k, side = mesh.next_halfedge_handle(side)) {
-          const Mesh::FaceHandle beyond = mesh.opposite_face_handle(side);
-          face.across[k] = beyond.is_valid() ? static_cast<std::uint32_t>(beyond.idx()) : nothing;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t beyond = linked.opposite[3 * f + k];
+          face.across[k] = beyond != Linked::none ? beyond / 3 : nothing;
           angles[f][k] = angle_between(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
         }
       }
@@ -99,19 +97,28 @@ struct OrientedSurface::Surface {
   }
 };
 
-OrientedSurface::OrientedSurface(const Mesh& mesh) : surface_(std::make_unique<Surface>(mesh)) {}
+OrientedSurface::OrientedSurface(const Mesh& mesh) : OrientedSurface(linked_of(mesh)) {}
+OrientedSurface::OrientedSurface(const Linked& linked) : surface_(std::make_unique<Surface>(linked)) {}
 OrientedSurface::~OrientedSurface() = default;
 OrientedSurface::OrientedSurface(OrientedSurface&&) noexcept = default;
 OrientedSurface& OrientedSurface::operator=(OrientedSurface&&) noexcept = default;
 
 std::vector<SignedFoot> OrientedSurface::feet(const std::vector<glm::dvec3>& points_mm) const {
-  const std::vector<Foot> feet = surface_->tree.feet(points_mm);
-  std::vector<SignedFoot> signed_feet(feet.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, feet.size(), 1024), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      signed_feet[i] = surface_->signed_foot(points_mm[i], feet[i]);
+  std::vector<SignedFoot> feet(points_mm.size());
+  surface_->tree.visit_feet(points_mm, [&](std::size_t i, const Foot& foot) {
+    feet[i] = surface_->signed_foot(points_mm[i], foot);
   });
-  return signed_feet;
+  return feet;
+}
+
+std::vector<OrientedSurface::Distance> OrientedSurface::distances(
+    const std::vector<glm::dvec3>& points_mm) const {
+  std::vector<Distance> distances(points_mm.size());
+  surface_->tree.visit_feet(points_mm, [&](std::size_t i, const Foot& foot) {
+    const SignedFoot found = surface_->signed_foot(points_mm[i], foot);
+    distances[i] = {found.distance_mm, found.on_border};
+  });
+  return distances;
 }
 
 }  // namespace octotomy::brep

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
 
@@ -25,6 +26,7 @@ struct SignedFoot {
 class OrientedSurface {
  public:
   explicit OrientedSurface(const Mesh& mesh);
+  explicit OrientedSurface(const Linked& linked);
   ~OrientedSurface();
   OrientedSurface(OrientedSurface&&) noexcept;
   OrientedSurface& operator=(OrientedSurface&&) noexcept;
@@ -32,6 +34,14 @@ class OrientedSurface {
   /// The foot of each point, the same on any number of threads. Throws std::invalid_argument where the
   /// surface has no triangles. Cost: about log n a point, parallel.
   std::vector<SignedFoot> feet(const std::vector<glm::dvec3>& points_mm) const;
+
+  /// Of a foot, without its place.
+  struct Distance {
+    double mm = 0.0;  ///< negative inside
+    bool on_border = false;
+  };
+  /// As feet(), at a fifth of the memory.
+  std::vector<Distance> distances(const std::vector<glm::dvec3>& points_mm) const;
 
  private:
   struct Surface;

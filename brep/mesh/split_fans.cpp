@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -124,10 +125,22 @@ void check(const Triangles& triangles) {
     }
 }
 
-std::size_t open_edges(const Triangles& triangles) {
-  std::size_t open = 0;
-  each_edge(sorted_sides(triangles), [&](const Side* begin, const Side* end) { open += end - begin == 1; });
-  return open;
+/// What keeps triangles from being joined two and two.
+struct Unfit {
+  std::size_t open = 0;  ///< edges of one triangle
+  bool any = false;      ///< an edge of more than two or of contrary ones, or a triangle that repeats a point
+};
+
+Unfit unfit_of(const Triangles& triangles) {
+  std::atomic<std::size_t> open = 0;
+  std::atomic<bool> any = std::any_of(triangles.faces.begin(), triangles.faces.end(), [](const auto& face) {
+    return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+  });
+  each_edge_in_parallel(triangles, [&](const Side* begin, const Side* end) {
+    if (end - begin == 1) ++open;
+    if (!fits(begin, end)) any = true;
+  });
+  return {open, any};
 }
 
 std::string counted(std::size_t count, const std::string& what) {
@@ -229,22 +242,26 @@ std::string to_string(const SplitEdge& edge) {
          " joined" + (ends == 0 ? "" : ", " + counted(ends, "triangle") + " ending there");
 }
 
-JoinedSurface joined_surface(const Triangles& triangles) {
+JoinedSurface joined_surface(Triangles triangles) {
   check(triangles);
-  JoinedSurface joined{triangles, {}};
-  const std::size_t open = open_edges(triangles);
-  if (open > 0) {
+  JoinedSurface joined;
+  Unfit unfit = unfit_of(triangles);
+  if (unfit.open > 0) {
     const std::vector<std::uint32_t> first = first_equal_points(triangles.points_mm);
-    for (auto& face : joined.surface.faces)
+    Triangles welded = triangles;
+    for (auto& face : welded.faces)
       for (std::uint32_t& v : face) v = first[v];
-    const std::size_t still_open = open_edges(joined.surface);
-    if (still_open < open)
-      joined.findings.push_back("unwelded: " + std::to_string(open - still_open) + " of " +
-                                std::to_string(open) +
+    const Unfit still = unfit_of(welded);
+    if (still.open < unfit.open) {
+      joined.findings.push_back("unwelded: " + std::to_string(unfit.open - still.open) + " of " +
+                                std::to_string(unfit.open) +
                                 " open edges closed by taking points that coincide for one");
-    else
-      joined.surface = triangles;
+      triangles = std::move(welded);
+      unfit = still;
+    }
   }
+  joined.surface = std::move(triangles);
+  if (!unfit.any) return joined;
   SplitFans split = split_fans(joined.surface);
   if (!split.left_out.empty())
     joined.findings.push_back(counted(split.left_out.size(), "triangle") + " that repeat" +

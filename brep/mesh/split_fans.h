@@ -51,6 +51,6 @@ struct JoinedSurface {
 
 /// Points that coincide become one where that closes open edges; then split_fans() where mesh_of() needs it.
 /// At most ten edges are told one by one. Throws as split_fans().
-JoinedSurface joined_surface(const Triangles& triangles);
+JoinedSurface joined_surface(Triangles triangles);
 
 }  // namespace octotomy::brep

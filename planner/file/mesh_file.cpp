@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/file/mesh_file.h"
 
+#include <exception>
+#include <tbb/parallel_for.h>
+#include <utility>
+
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/health.h"
@@ -11,6 +15,21 @@
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
+namespace {
+
+brep::Linked joined(const std::filesystem::path& path, std::vector<std::string>& findings) {
+  brep::Triangles triangles = brep::read_triangles(path);
+  try {
+    brep::JoinedSurface joined = brep::joined_surface(std::move(triangles));
+    for (const std::string& finding : joined.findings)
+      findings.push_back(path.filename().string() + ": " + finding);
+    return brep::linked(std::move(joined.surface));
+  } catch (const brep::Error& error) {
+    throw brep::Error(error.code(), path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
 
 brep::Solid read_solid(const std::filesystem::path& path, Timings& timings) {
   const Stopwatch watch(timings, "read");
@@ -58,15 +77,30 @@ brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timing
 brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
                         std::vector<std::string>* findings) {
   const Stopwatch watch(timings, "read");
-  const brep::Triangles triangles = brep::read_triangles(path);
-  try {
-    const brep::JoinedSurface joined = brep::joined_surface(triangles);
-    for (const std::string& finding : joined.findings)
-      if (findings != nullptr) findings->push_back(path.filename().string() + ": " + finding);
-    return brep::mesh_of(joined.surface);
-  } catch (const brep::Error& error) {
-    throw brep::Error(error.code(), path.string() + ": " + error.what());
+  std::vector<std::string> told;
+  const brep::Mesh mesh = brep::mesh_of(joined(path, told));
+  if (findings != nullptr) findings->insert(findings->end(), told.begin(), told.end());
+  return mesh;
+}
+
+std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path, 2>& paths, Timings& timings,
+                                          std::vector<std::string>& findings) {
+  const Stopwatch watch(timings, "read");
+  std::array<brep::Linked, 2> surfaces;
+  std::array<std::vector<std::string>, 2> told;
+  std::array<std::exception_ptr, 2> failed;
+  tbb::parallel_for(std::size_t{0}, paths.size(), [&](std::size_t i) {
+    try {
+      surfaces[i] = joined(paths[i], told[i]);
+    } catch (...) {
+      failed[i] = std::current_exception();
+    }
+  });
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (failed[i]) std::rethrow_exception(failed[i]);
+    findings.insert(findings.end(), told[i].begin(), told[i].end());
   }
+  return surfaces;
 }
 
 void write_surface(const brep::Triangles& triangles, const std::filesystem::path& out, Timings& timings,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ brep::Solid read_mended_solid(const std::filesystem::path& path, Timings& timing
 /// std::runtime_error, naming the path.
 brep::Mesh read_surface(const std::filesystem::path& path, Timings& timings,
                         std::vector<std::string>* findings = nullptr);
+
+/// The same of two files at once, as triangles with their neighbours.
+std::array<brep::Linked, 2> read_surfaces(const std::array<std::filesystem::path, 2>& paths, Timings& timings,
+                                          std::vector<std::string>& findings);
 
 /// Writes a mesh by brep::write_mesh() and replaces what `out` means, as voxel::StagedFiles; "write" in the
 /// timings.

@@ -48,8 +48,9 @@ constexpr double most_open_lines() {
 }
 
 /// None with a finding where the surfaces have no inside.
-std::optional<Dice> dice(const brep::Mesh& a, const brep::Mesh& b, std::vector<std::string>& findings) {
-  const brep::LineVolumes volumes = brep::line_volumes(brep::triangles_of(a), brep::triangles_of(b));
+std::optional<Dice> dice(const brep::Triangles& a, const brep::Triangles& b,
+                         std::vector<std::string>& findings) {
+  const brep::LineVolumes volumes = brep::line_volumes(a, b);
   const auto of = [](const brep::LineVolume& v) { return 2.0 * v.common_mm3 / (v.a_mm3 + v.b_mm3); };
   const double open =
       volumes.lines == 0 ? 1.0 : static_cast<double>(volumes.open_lines) / static_cast<double>(volumes.lines);
@@ -84,7 +85,7 @@ struct Compared {
   std::vector<std::string> findings;
 };
 
-Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b, Timings& timings) {
+Compared compared(const Compare& asked, const brep::Linked& a, const brep::Linked& b, Timings& timings) {
   Compared made;
   {
     const Stopwatch watch(timings, "distances");
@@ -96,7 +97,7 @@ Compared compared(const Compare& asked, const brep::Mesh& a, const brep::Mesh& b
   }
   if (!asked.no_dice) {
     const Stopwatch watch(timings, "dice");
-    made.dice = dice(a, b, made.findings);
+    made.dice = dice(a.triangles, b.triangles, made.findings);
   }
   if (made.difference.on_border_count > 0)
     made.findings.push_back(std::to_string(made.difference.on_border_count) + " of " +
@@ -134,14 +135,14 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
     json["findings"] = {"'" + name.name + (mesh ? "' is empty" : "' has no mesh, see its findings")};
     return json;
   }
-  const Compared made = compared(asked, *bench.objects.at(asked.a.name).mesh.within,
-                                 *bench.objects.at(asked.b.name).mesh.within, bench.timings);
+  const Compared made = compared(asked, bench.objects.at(asked.a.name).mesh.within->linked(),
+                                 bench.objects.at(asked.b.name).mesh.within->linked(), bench.timings);
   json.update(comparison_json(asked, made));
   json["findings"] = made.findings;
   return json;
 }
 
-void write_coloured(const Compare& asked, const brep::Mesh& a, const brep::Difference& difference,
+void write_coloured(const Compare& asked, const brep::Triangles& a, const brep::Difference& difference,
                     double range_mm, Timings& timings) {
   brep::VertexData data;
   for (const double distance : difference.vertex_mm)
@@ -166,12 +167,11 @@ FileAnswer on_files(const Compare& asked, const FileBench& bench) {
     need_folder_of(asked.picture);
   }
   std::vector<std::string> joined;
-  const brep::Mesh a = read_surface(asked.a.name, bench.timings, &joined),
-                   b = read_surface(asked.b.name, bench.timings, &joined);
+  const auto [a, b] = read_surfaces({asked.a.name, asked.b.name}, bench.timings, joined);
   Compared made = compared(asked, a, b, bench.timings);
   made.findings.insert(made.findings.begin(), joined.begin(), joined.end());
   const double range_mm = asked.range_mm.value_or(made.difference.hausdorff95_mm);
-  if (!asked.out.empty()) write_coloured(asked, a, made.difference, range_mm, bench.timings);
+  if (!asked.out.empty()) write_coloured(asked, a.triangles, made.difference, range_mm, bench.timings);
   if (!asked.picture.empty()) {
     const Stopwatch watch(bench.timings, "picture");
     const HistogramPicture picture = draw_histogram(made.difference, range_mm);

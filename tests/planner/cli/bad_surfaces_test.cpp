@@ -47,6 +47,17 @@ TEST_F(BadSurfaces, AreComparedMirroredAndMeasuredAsTheyAre) {
   EXPECT_TRUE(open["volume_mm3"].is_null());
 }
 
+TEST_F(BadSurfaces, OfTwoThatCannotBeReadTheFirstIsNamed) {
+  write("a.off", "OFF\n3 1 0\n");
+  write("b.off", "OFF\n");
+  for (int i = 0; i < 10; ++i) {
+    const CommandAnswer answer = run("compare " + at("a.off") + " " + at("b.off"));
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_NE(answer.errors.find("a.off"), std::string::npos) << answer.errors;
+    EXPECT_EQ(answer.errors.find("b.off"), std::string::npos) << answer.errors;
+  }
+}
+
 TEST_F(BadSurfaces, AreToldUnweldedAndWhatWeldingCloses) {
   const SortedJson info =
       json_of("info " + off("soup.off", brep::shapes::unwelded(brep::shapes::sphere({0, 0, 0}, 5, 1))));
