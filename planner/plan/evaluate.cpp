@@ -102,7 +102,7 @@ class Evaluator {
     for (std::size_t i = 0; i < uncertified_.size(); ++i) {
       Uncertified& made = uncertified_[i];
       tell("certifying " + made.object.id);
-      in_step(made.object.id, [&] { beside_.wait(i); });
+      in_step(made.object.id, [&] { works_ahead() ? made.certify(options_.stop) : beside_.wait(i); });
       result_.objects.change(made.index).certificate = std::move(made.object.certificate);
       for (const auto& [stage, ms] : made.timings) result_.timings[stage] += ms;
     }
@@ -330,10 +330,11 @@ class Evaluator {
     if (options_.ahead) work_ahead(object);
     if (object.mesh.within && options_.certify && options_.meshes && !object.is_tool && operation.voxel) {
       if (certifies_beside()) {
-        Uncertified& made = uncertified_.emplace_back(Uncertified{object, result_.objects.size(), {}});
-        beside_.begin([&made, interpolated](const std::stop_token& stop) {
+        Uncertified& made = uncertified_.emplace_back(Uncertified{object, result_.objects.size(), {}, {}});
+        made.certify = [&made, interpolated](const std::stop_token& stop) {
           certify_made(made.object, interpolated, made.timings, stop);
-        });
+        };
+        if (!works_ahead()) beside_.begin(made.certify);
       } else {
         certify_made(object, interpolated, result_.timings, options_.stop);
       }
@@ -344,6 +345,14 @@ class Evaluator {
     }
     if (options_.cache != nullptr && !options_.only_look_up) options_.cache->keep(key_of(step), object);
     result_.objects.add(std::move(object));
+  }
+
+  /// The work ahead takes longer than all else: it should begin as soon as can be, and certificates go on
+  /// beside it.
+  bool works_ahead() const {
+    return options_.ahead && std::any_of(plan_.steps.begin(), plan_.steps.end(), [](const Step& step) {
+             return step.action.operation().ahead != nullptr;
+           });
   }
 
   /// A cache keeps objects with their certificates.
@@ -496,6 +505,7 @@ class Evaluator {
     Object object;
     std::size_t index = 0;
     Timings timings;
+    std::function<void(const std::stop_token&)> certify;
   };
   std::deque<Uncertified> uncertified_;  ///< in the order of the pieces beside
   Beside beside_{options_.stop};         ///< the certificates; ends before what they are made of
