@@ -19,6 +19,7 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -108,9 +109,9 @@ class KindRun {
  public:
   KindRun(const Options& options, const FileKind& kind) : options_(options), kind_(kind) {}
 
-  /// The sound file is read, alone and in a batch, and most verbs take it: a harness that only ever sees
-  /// refusals tests nothing.
-  void need_sound(Worker& worker) const {
+  /// The sound file is read, alone and in a batch, and most verbs take it, where they are new: a harness that
+  /// only ever sees refusals tests nothing.
+  void need_sound(Worker& worker, bool has_new_verbs) const {
     const fs::path file = worker.lay(kind_, kind_.finish ? kind_.finish(kind_.sound) : kind_.sound);
     const auto taken = [&](const std::vector<std::string>& command, bool computes) {
       const auto judged = worker.judge(command, file, !computes, computes);
@@ -120,6 +121,7 @@ class KindRun {
       return judged.outcome.status == 0;
     };
     taken(kind_.command, false);
+    if (!has_new_verbs) return;
     const auto done = std::count_if(kind_.verbs.begin(), kind_.verbs.end(),
                                     [&](const auto& command) { return taken(command, true); });
     if (2 * static_cast<std::size_t>(done) < kind_.verbs.size())
@@ -225,12 +227,13 @@ int judge_kinds(const Options& options) {
   }
   std::uint64_t faults = 0;
   std::size_t judged = 0;
+  std::set<std::vector<std::vector<std::string>>> tried;  // lists of verbs, which kinds share
   for (const FileKind& kind : kinds) {
     const bool wanted = options.readers.empty() || std::find(options.readers.begin(), options.readers.end(),
                                                              kind.name) != options.readers.end();
     if (!wanted) continue;
     KindRun run(options, kind);
-    run.need_sound(*workers.front());
+    run.need_sound(*workers.front(), tried.insert(kind.verbs).second);
     faults += run.run(workers).faults;
     ++judged;
   }
