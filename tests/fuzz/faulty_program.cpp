@@ -42,6 +42,7 @@ int main(int count, char** arguments) {
   if (asked == "two lines") return refuse("octotomy: no such file\nand more\n");
   if (asked == "keep 8 MiB") keep(8);
   if (asked == "keep 48 MiB") keep(48);
+  if (asked == "keep 96 MiB") keep(96);
   if (asked == "say nothing") return 0;
   std::printf(R"({"calls": %d, "timings_ms": {"all": %d}})", asked == "calls" ? calls : 0, getpid());
   if (asked == "refuse late") return refuse("octotomy: no such file\n");

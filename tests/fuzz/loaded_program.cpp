@@ -90,11 +90,11 @@ bool are_alike(const Outcome& a, const Outcome& b) {
 }
 
 /// Never of a sanitized program, whose shadow memory is no measure.
-bool took_too_much([[maybe_unused]] const Outcome& outcome, [[maybe_unused]] const Subject& subject) {
+bool took_more([[maybe_unused]] const Outcome& outcome, [[maybe_unused]] std::size_t most_mib) {
 #ifdef OCTOTOMY_SANITIZED
   return false;
 #else
-  return outcome.resident_mib > subject.resident_mib;
+  return outcome.resident_mib > most_mib;
 #endif
 }
 
@@ -135,7 +135,7 @@ std::string fault_of(const Outcome& outcome, const Subject& subject, bool may_la
   // A plan's kernels may disagree about a damaged plan.
   if (outcome.status != 0 && outcome.status != 1 && !is_refused)
     return "status " + std::to_string(outcome.status) + ": " + outcome.errors;
-  if (took_too_much(outcome, subject))
+  if (took_more(outcome, may_lack ? subject.computing_mib : subject.resident_mib))
     return "took " + std::to_string(outcome.resident_mib) + " MiB of memory";
   if (!is_refused) return outcome.out.starts_with("{") ? "" : "read, but no JSON was said";
   const auto lines = std::count(outcome.errors.begin(), outcome.errors.end(), '\n');
@@ -196,7 +196,7 @@ Outcome LoadedProgram::run(const std::vector<std::string>& arguments) {
   outcome.out = bytes_of(out_in(folder_));
   outcome.errors = bytes_of(errors_in(folder_));
   // What a child keeps may add up; so may a child return just when its time is over.
-  const bool is_spent = outcome.timed_out || took_too_much(outcome, subject_);
+  const bool is_spent = outcome.timed_out || took_more(outcome, subject_.resident_mib);
   if (is_spent) kill(child_, SIGKILL);
   while (is_spent && report.kind != CaseReport::Ended) report = next_report();
   if (report.kind == CaseReport::Ended) begin_child();
@@ -211,7 +211,7 @@ LoadedProgram::Judged LoadedProgram::judge(const std::vector<std::string>& argum
   before_each();
   Judged judged{run_alone(subject_, arguments, folder_), ""};
   judged.fault = fault_of(judged.outcome, subject_, may_lack);
-  const bool wanted = batched.timed_out || batched.status == 3 || took_too_much(batched, subject_);
+  const bool wanted = batched.timed_out || batched.status == 3 || took_more(batched, subject_.resident_mib);
   if (judged.fault.empty() && !wanted && !are_alike(batched, judged.outcome))
     judged.fault = "in a batch " + text_of(batched) + "; alone " + text_of(judged.outcome);
   return judged;

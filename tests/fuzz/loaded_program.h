@@ -19,6 +19,8 @@ struct Subject {
   double seconds = 20.0;
   std::size_t address_space_mib = 1536;
   std::size_t resident_mib = 384;
+  /// The same of a verb that computes: it follows the work, as the triangles of a noisy scan, not the file.
+  std::size_t computing_mib = 1024;
   /// Cases that a child of the loaded program runs: what a child loads and keeps is paid once for them.
   unsigned batch = 500;
 };

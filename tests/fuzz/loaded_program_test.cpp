@@ -17,6 +17,7 @@ class LoadedProgramTest : public testing::Test {
     subject.program = OCTOTOMY_FAULTY_PROGRAM;
     subject.seconds = 2.0;
     subject.resident_mib = 40;
+    subject.computing_mib = 80;
     subject.batch = 10;
     return subject;
   }
@@ -67,6 +68,10 @@ TEST_F(LoadedProgramTest, EveryFaultIsToldAndTheNextCaseRuns) {
 TEST_F(LoadedProgramTest, WantOfResourcesIsARefusalWhereAllowed) {
   EXPECT_EQ(fault("lack", checked, true), "");
   EXPECT_EQ(fault("read", checked, true), "");
+#ifndef OCTOTOMY_SANITIZED
+  EXPECT_EQ(fault("keep 48 MiB", unchecked, true), "");
+  EXPECT_NE(fault("keep 96 MiB", unchecked, true).find("MiB of memory"), std::string::npos);
+#endif
 }
 
 TEST_F(LoadedProgramTest, AnExitThatCrashesIsSeenAtTheEndOfABatch) {
