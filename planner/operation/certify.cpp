@@ -14,7 +14,9 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.operation = title;
   inputs.voxel_lineage = made.voxel.lineage;
   inputs.mesh_lineage = made.mesh.lineage;
-  inputs.voxel_measures = made.voxel.measures;
+  // What verbs make of files has not been measured.
+  if (made.voxel.measures.voxel_count == made.voxel.octree.voxel_count())
+    inputs.voxel_measures = made.voxel.measures;
   inputs.scan_spacing_mm = made.bound.spacing_mm;
   inputs.flat_cut_mm2 = area_on_planes(made.mesh.within->triangles(), made.bound.planes);
   inputs.scan_box_mm = made.bound.scan_box_mm;

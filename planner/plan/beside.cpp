@@ -20,7 +20,7 @@ Beside::Beside(const std::stop_token& stop) : pieces_(std::make_unique<Pieces>(s
 
 Beside::~Beside() {
   pieces_->stop.request_stop();
-  for (tbb::task_group& group : pieces_->groups) group.cancel();
+  // No group is cancelled: TBB would leave out parts of loops within a piece, which then works on with them.
   for (tbb::task_group& group : pieces_->groups) {
     try {
       group.wait();

@@ -59,6 +59,8 @@ std::vector<Byte> filtered_rows(const glm::ivec2& size_px, const std::vector<Byt
     std::copy_n(from, count, row.begin() + pixel_bytes);
     std::size_t least = SIZE_MAX;
     for (std::size_t number = 0; number < filters.size(); ++number) {
+      // A picture one pixel wide or high is without the neighbours that a filter asks for.
+      if ((size_px.x == 1 && number != 0 && number != 2) || (size_px.y == 1 && number >= 2)) continue;
       tried[0] = static_cast<Byte>(number);
       const std::size_t sum = filters[number](row.data(), above.data(), count, tried.data() + 1);
       if (sum >= least) continue;
@@ -89,6 +91,13 @@ std::vector<Byte> deflated(std::vector<Byte>& bytes) {
   assert(state == Z_STREAM_END);
   made.resize(stream.total_out);
   deflateEnd(&stream);
+  // Packing takes a window that reaches 262 bytes past the data, unpacking none: the stream's first byte
+  // tells the window that unpacking takes, its second completes a multiple of 31.
+  int told = made[0] >> 4;
+  while (told > 0 && bytes.size() <= std::size_t{1} << (told + 7)) --told;
+  made[0] = static_cast<Byte>(told << 4 | Z_DEFLATED);
+  made[1] &= 0xe0;
+  made[1] = static_cast<Byte>(made[1] + 31 - (256 * made[0] + made[1]) % 31);
   return made;
 }
 

@@ -9,7 +9,7 @@
 #include <tbb/parallel_for.h>
 #include <tuple>
 
-#include "voxel/view/depth_span.h"
+#include "voxel/view/layer.h"
 #include "voxel/view/tone.h"
 
 // 1 mark the leaves and blocks near visible samples; 2 march every ray: find the next marked leaf, take the

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tbb/parallel_for.h>
 
-#include "voxel/view/depth_span.h"
+#include "voxel/view/layer.h"
 #include "voxel/view/pixel_index.h"
 
 namespace octotomy::voxel {

@@ -74,5 +74,24 @@ TEST(Beside, ItsEndAndTheCallersTokenStopThePieces) {
   EXPECT_EQ(stopped, 2);
 }
 
+TEST(Beside, ItsEndLeavesNothingOutOfALoopThatHasBegun) {
+  using namespace std::chrono_literals;
+  if (std::thread::hardware_concurrency() < 2)
+    GTEST_SKIP() << "one processor begins no piece beside its own work";
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 2);
+  std::atomic<bool> is_begun = false;
+  std::atomic<int> done = 0;
+  {
+    Beside beside({});
+    beside.begin([&](const std::stop_token& stop) {
+      is_begun = true;
+      while (!stop.stop_requested()) std::this_thread::sleep_for(1ms);
+      tbb::parallel_for(0, 1000, [&](int) { ++done; });
+    });
+    while (!is_begun) std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(done, 1000);
+}
+
 }  // namespace
 }  // namespace octotomy::planner
