@@ -19,6 +19,7 @@ class Beside {
   Beside& operator=(const Beside&) = delete;
 
   /// Begins a piece, which heeds the token that it is given. Pieces are numbered from 0 and begun in order.
+  /// Precondition: not within apart().
   void begin(std::function<void(const std::stop_token&)> piece);
   /// Waits for a piece, at work on the others meanwhile; throws what the piece threw.
   void wait(std::size_t piece);

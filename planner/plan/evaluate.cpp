@@ -95,6 +95,8 @@ class Evaluator {
         beside_.apart([&] {
           if (!take_cached(step)) makes == Makes::Scan ? make_scan(step) : make(step);
         });
+        // Not within apart(), whose loops could take up what is begun there.
+        if (begun_ < uncertified_.size() && !works_ahead()) beside_.begin(uncertified_[begun_++].certify);
       });
       for (const std::string& scan : scans_used(step.action))
         if (--uses_left_[scan] == 0 && !options_.keep_scans) loaded_.erase(scan);
@@ -334,7 +336,6 @@ class Evaluator {
         made.certify = [&made, interpolated](const std::stop_token& stop) {
           certify_made(made.object, interpolated, made.timings, stop);
         };
-        if (!works_ahead()) beside_.begin(made.certify);
       } else {
         certify_made(object, interpolated, result_.timings, options_.stop);
       }
@@ -508,6 +509,7 @@ class Evaluator {
     std::function<void(const std::stop_token&)> certify;
   };
   std::deque<Uncertified> uncertified_;  ///< in the order of the pieces beside
+  std::size_t begun_ = 0;                ///< of these, beside
   Beside beside_{options_.stop};         ///< the certificates; ends before what they are made of
 };
 

@@ -156,6 +156,7 @@ LoadedProgram::LoadedProgram(Subject subject, fs::path folder)
   for (char** entry = environ; *entry != nullptr; ++entry) environment.push_back(*entry);
   environment.push_back(nullptr);
   server_ = fork();
+  if (server_ < 0) throw std::runtime_error("no process can be started");
   if (server_ == 0) {
     fcntl(ends[1], F_SETFD, 0);
     start.become(environment.data());
@@ -197,7 +198,8 @@ Outcome LoadedProgram::run(const std::vector<std::string>& arguments) {
   outcome.errors = bytes_of(errors_in(folder_));
   // What a child keeps may add up; so may a child return just when its time is over.
   const bool is_spent = outcome.timed_out || took_more(outcome, subject_.resident_mib);
-  if (is_spent) kill(child_, SIGKILL);
+  // The number of a child that has ended may be another process's.
+  if (is_spent && report.kind != CaseReport::Ended) kill(child_, SIGKILL);
   while (is_spent && report.kind != CaseReport::Ended) report = next_report();
   if (report.kind == CaseReport::Ended) begin_child();
   return outcome;

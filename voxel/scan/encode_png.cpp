@@ -8,6 +8,7 @@
 #include <array>
 #include <cassert>
 #include <cstdlib>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <zlib.h>
@@ -80,17 +81,18 @@ std::vector<Byte> deflated(std::vector<Byte>& bytes) {
   while (window_bits > 9 && bytes.size() + least_lookahead <= std::size_t{1} << (window_bits - 1))
     --window_bits;
   z_stream stream{};
-  if (deflateInit2(&stream, deflate_level, Z_DEFLATED, window_bits, 8, Z_FILTERED) != Z_OK)
-    throw Error(ErrorCode::Resource, "a picture cannot be deflated: there is no memory");
+  const auto need = [](bool done) {
+    if (!done) throw Error(ErrorCode::Resource, "a picture cannot be deflated: zlib refused");
+  };
+  need(deflateInit2(&stream, deflate_level, Z_DEFLATED, window_bits, 8, Z_FILTERED) == Z_OK);
+  const std::unique_ptr<z_stream, decltype(&deflateEnd)> end(&stream, deflateEnd);
   std::vector<Byte> made(deflateBound(&stream, static_cast<uLong>(bytes.size())));
   stream.next_in = bytes.data();
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = made.data();
   stream.avail_out = static_cast<uInt>(made.size());
-  [[maybe_unused]] const int state = deflate(&stream, Z_FINISH);
-  assert(state == Z_STREAM_END);
+  need(deflate(&stream, Z_FINISH) == Z_STREAM_END);
   made.resize(stream.total_out);
-  deflateEnd(&stream);
   // Packing takes a window that reaches 262 bytes past the data, unpacking none: the stream's first byte
   // tells the window that unpacking takes, its second completes a multiple of 31.
   int told = made[0] >> 4;
@@ -124,6 +126,7 @@ std::vector<std::uint8_t> encode_png(const glm::ivec2& size_px, const std::vecto
   png += png_chunk("oFFs", std::string(9, '\0'));
   png += png_chunk("tEXt", std::string("oiio:ColorSpace\0sRGB", 20));
   const std::string_view all(reinterpret_cast<const char*>(stream.data()), stream.size());
+  // A stream of whole chunks ends with an empty one, as libpng has it.
   for (std::size_t at = 0; at <= all.size(); at += chunk_bytes)
     png += png_chunk("IDAT", all.substr(at, chunk_bytes));
   png += png_chunk("IEND", "");

@@ -5,9 +5,8 @@
 
 namespace octotomy::voxel {
 
-/// Gives the memory of a scene's samples back, as emptying them does, but at no cost for each sample: a
-/// vector with an allocator of its own destroys its elements one by one, in a loop without effect that is
-/// there wherever sources are optimised less than this one.
+/// Gives the memory of a scene's samples back. Emptying them does the same, but a caller that is compiled
+/// with little optimisation then visits each sample to destroy it.
 void drop_samples(Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -100,6 +100,8 @@ std::optional<glm::ivec3> whole_voxel_offset(const glm::dmat4& source_from_targe
     const double nearest = std::floor(constant + 0.5);
     if (stray.x + stray.y + stray.z + std::abs(constant - nearest) > whole_voxel_tolerance)
       return std::nullopt;
+    // Farther than any universe reaches, an offset serves nobody and may not fit into an int.
+    if (!(std::abs(nearest) < 1 << 30)) return std::nullopt;
     offset[row] = static_cast<int>(nearest);
   }
   return offset;

@@ -24,9 +24,9 @@
 // level by level up to the root, and the blocks to the scan's octree.
 //
 // Memory is what building costs: new pages take longer than what is written to them. So a brick of one value
-// is shared, the others of a layer follow each other, and samples that are taken over as they are go from
-// the scan to their place without a stop: ranges first, row by row of the whole run of blocks, then, while
-// the run is in the cache, the samples, past the cache.
+// is shared, and the others of a layer follow each other. Samples that stay unchanged are copied straight
+// into bricks: of each run of blocks first the ranges are found, row by row; then, while the run is in the
+// cache, its samples are stored past it.
 
 namespace octotomy::voxel {
 namespace {
@@ -240,7 +240,7 @@ class LayerFill {
     std::int16_t* row = rows_.data();
     for (int z = 0; z < 16; ++z)
       for (int y = 0; y < 16; ++y, row += 16 * longest_run) {
-        // Only universes of less than 16 voxels a side have rows beyond them.
+        // Only universes of less than 16 voxels a side end within a block.
         if (first.y + y >= side || first.z + z >= side) {
           std::fill_n(row, 16 * count, storage_.background);
           continue;
@@ -248,6 +248,7 @@ class LayerFill {
         for (int i = 0; i < count; ++i)
           inside[static_cast<std::size_t>(i)][static_cast<std::size_t>(y + 16 * z)] =
               scan_rows_.read(first + glm::ivec3(16 * i, y, z), row + 16 * i) & within;
+        if (side < 16) std::fill(row + side, row + 16, storage_.background);
       }
     for (int i = 0; i < count; ++i) {
       const BlockRows& bits = inside[static_cast<std::size_t>(i)];

@@ -59,7 +59,7 @@ template <typename Whole, typename Half>
 }
 [[gnu::always_inline]] inline bool any(const Int& mask) {
   using Longs = std::int64_t __attribute__((vector_size(4 * lanes)));
-  const auto longs = reinterpret_cast<const Longs&>(mask);
+  const auto longs = load<Longs>(&mask);
   return ((longs[0] | longs[1]) | (longs[2] | longs[3])) != 0;
 }
 

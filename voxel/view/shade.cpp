@@ -103,7 +103,7 @@ struct Lighting {
 OCTOTOMY_VECTOR_CLONES void light_row(const Lighting& lighting, const float* __restrict to_right,
                                       const float* __restrict to_top, int first, int last,
                                       float* __restrict diffuse, float* __restrict mirrored) {
-  float* __restrict const per_length = mirrored;
+  float* const per_length = mirrored;
   const float ambient = lighting.ambient;
   for (int i = first; i < last; ++i) {
     // A surface turns towards the side to which its depth grows, and so does its normal.

@@ -242,6 +242,23 @@ TEST(GreyOctree, SharesBricksOfOneValueAndKeepsAllSamplesOnAnyNumberOfThreads) {
   EXPECT_LT(bytes + 200 * sizeof(GreyBrick), all_noise.bytes_memory());
 }
 
+TEST(GreyOctree, HoldsTheBackgroundBeyondAUniverseThatIsSmallerThanABrick) {
+  Scene scene = noisy_scene({20, 20, 20}, 100.0);
+  for (const int depth : {2, 3}) {
+    const GreyOctree grey = grey_octree_of(Universe{depth, glm::dmat4(1.0)}, scene, -1024);
+    const int side = 1 << depth;
+    for (int z = 0; z < 16; ++z)
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+          const auto leaf = static_cast<std::size_t>(child_index(x >> 2, y >> 2, z >> 2));
+          const auto place = static_cast<std::size_t>(child_index(x & 3, y & 3, z & 3));
+          const bool within = std::max({x, y, z}) < side;
+          ASSERT_EQ(grey.brick({0, 0, 0}).samples[leaf][place], within ? sample_of(scene, {x, y, z}) : -1024)
+              << x << ' ' << y << ' ' << z << ", " << side << " voxels a side";
+        }
+  }
+}
+
 TEST(GreyOctree, ResamplesWholeNumbersAsItDoesTheSameFloats) {
   const Scene whole = noisy_scene({40, 37, 31});
   Scene floats = whole;
