@@ -11,8 +11,8 @@
 
 namespace octotomy::verify {
 
-/// Calls take(i, item) for i from 0 in ascending order, and make(first, end, items) for some hundred items at
-/// a time on all threads beforehand: sums that take() adds to have the same bits on any number of threads.
+/// Calls take(i, item) for i from 0 in ascending order. Beforehand calls make(first, end, items) for runs of
+/// any length on all threads. So sums that take() adds to have the same bits on any number of threads.
 /// The next items are made while some are taken: make() must not read what take() writes, and must set every
 /// item, which may hold an earlier one.
 template <typename Item, typename Make, typename Take>

@@ -17,6 +17,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include "brep/mesh/for_vectors.h"
 #include "brep/mesh/halving.h"
 #include "brep/mesh/morton_tree.h"
 #include "brep/mesh/ray_passing.h"
@@ -114,15 +115,6 @@ struct FourTriangles {
     return {point(corner[0]), point(corner[1]), point(corner[2])};
   }
 };
-
-// Compiles a loop for the vectors of several processors. Nothing is contracted or summed in another order, so
-// all give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define OCTOTOMY_FOR_VECTORS __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define OCTOTOMY_FOR_VECTORS
-#endif
 
 /// Of a point to each. Where the point stands above the triangle, by the barycentric coordinates of its foot
 /// in the plane, the height is the distance; otherwise the nearest side's.

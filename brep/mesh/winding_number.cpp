@@ -14,6 +14,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "brep/mesh/for_vectors.h"
 #include "brep/mesh/halving.h"
 #include "brep/mesh/morton_tree.h"
 
@@ -28,15 +29,6 @@ constexpr double nearness() {
 }
 
 using Corners = std::array<glm::dvec3, 3>;
-
-// Compiles a loop for the vectors of several processors. Nothing is contracted or summed in another order, so
-// all give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define OCTOTOMY_FOR_VECTORS __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define OCTOTOMY_FOR_VECTORS
-#endif
 
 /// Points near each other, which are answered by one descent, and their sums.
 struct Points {

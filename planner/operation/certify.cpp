@@ -15,7 +15,8 @@ void certify(Object& made, const std::string& title, const voxel::Progress& prog
   inputs.voxel_lineage = made.voxel.lineage;
   inputs.mesh_lineage = made.mesh.lineage;
   // What verbs make of files has not been measured.
-  if (made.voxel.measures.voxel_count == made.voxel.octree.voxel_count())
+  if (made.voxel.measures.voxel_count > 0 &&
+      made.voxel.measures.voxel_count == made.voxel.octree.voxel_count())
     inputs.voxel_measures = made.voxel.measures;
   inputs.scan_spacing_mm = made.bound.spacing_mm;
   inputs.flat_cut_mm2 = area_on_planes(made.mesh.within->triangles(), made.bound.planes);
