@@ -13,10 +13,8 @@
 // object was cut; 4 probe along the other rays until their sample crosses the threshold; 5 interpolate the
 // crossing. Every ray takes the steps of all; those that it does not need have no effect.
 
-#if defined(__GNUC__) && !defined(__clang__)
 // Vectors are passed between functions of this file alone, all of them inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
-#endif
 
 namespace octotomy::voxel {
 namespace {

@@ -7,10 +7,8 @@
 
 #include "voxel/space/vector_clones.h"
 
-#if defined(__GNUC__) && !defined(__clang__)
 // Vectors are passed between functions of this file alone, all of them inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
-#endif
 
 namespace octotomy::voxel {
 namespace {
