@@ -17,9 +17,9 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
-#include <oneapi/tbb/parallel_for.h>
 #include <stdexcept>
 #include <string>
+#include <tbb/parallel_for.h>
 
 #include "verify/head_solids.h"
 #include "voxel/space/rounded.h"

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <oneapi/tbb/parallel_for.h>
+#include <tbb/parallel_for.h>
 
 #include "verify/head_phantom.h"
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <oneapi/tbb/parallel_for.h>
 #include <stdexcept>
+#include <tbb/parallel_for.h>
 #include <tuple>
 
 #include "convert/surface/isosurface.h"

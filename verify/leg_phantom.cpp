@@ -7,8 +7,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
-#include <oneapi/tbb/parallel_for.h>
 #include <stdexcept>
+#include <tbb/parallel_for.h>
 
 #include "verify/chance.h"
 #include "voxel/space/rounded.h"

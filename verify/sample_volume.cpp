@@ -8,9 +8,9 @@
 #include "verify/sample_volume.h"
 
 #include <cmath>
-#include <oneapi/tbb/parallel_for.h>
 #include <stdexcept>
 #include <string>
+#include <tbb/parallel_for.h>
 #include <vector>
 
 namespace octotomy::verify {

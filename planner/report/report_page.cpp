@@ -537,10 +537,11 @@ std::string footer(const Result& result) {
   std::string times;
   for (const auto& [stage, milliseconds] : result.evaluation.timings)
     times += (times.empty() ? "" : " \u00b7 ") + stage + " " + grouped(milliseconds, 0) + " ms";
-  return element("footer", "Octotomy " OCTOTOMY_VERSION
-                           ". A planning and research tool, not a medical device. Which checks support which "
-                           "number: <a href=\"credibility.html\">credibility</a>. Times: " +
-                               times + ".");
+  return element("footer",
+                 "Octotomy " OCTOTOMY_VERSION
+                 ". A planning and research tool, not a medical device. Which checks support which "
+                 "number: <a href=\"credibility.html\">credibility</a>. Times, some of them side by side: " +
+                     times + ".");
 }
 
 }  // namespace

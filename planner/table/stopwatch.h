@@ -7,7 +7,8 @@
 
 namespace octotomy::planner {
 
-/// Wall-clock milliseconds by stage ("read", "octree", "isosurface", ...).
+/// Wall-clock milliseconds by stage ("read", "octree", "isosurface", ...). Stages may overlap: certificates
+/// are made while further objects are.
 using Timings = std::map<std::string, double>;
 
 /// Adds the time from its making to its end to a stage.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
+#include <tbb/global_control.h>
 
 #include "verify/head_solids.h"
 #include "verify/sample_volume.h"

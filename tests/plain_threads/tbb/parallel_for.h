@@ -76,5 +76,10 @@ void parallel_for(const blocked_range<Value>& range, const Body& body) {
   const auto parts = plain::parts(range);
   plain::loop(parts.size(), [&](std::size_t i) { body(parts[i]); });
 }
+struct simple_partitioner {};
+template <typename Value, typename Body>
+void parallel_for(const blocked_range<Value>& range, const Body& body, simple_partitioner) {
+  parallel_for(range, body);
+}
 
 }  // namespace tbb

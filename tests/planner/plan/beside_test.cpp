@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 #include <thread>
 
 namespace octotomy::planner {
@@ -31,17 +32,39 @@ TEST(Beside, WorksOnEveryPieceAndThrowsWhatAPieceThrewWhereItIsWaitedFor) {
   }
 }
 
-TEST(Beside, TakesUpNoPieceWithinWorkThatStandsApart) {
-  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
-  std::atomic<bool> is_begun = false;
+/// Whether the caller takes up a piece while it waits, within apart() or not, for what the other thread does.
+bool takes_up_a_piece(bool apart) {
+  using namespace std::chrono_literals;
+  std::atomic<bool> is_held = false, has_piece = false, is_begun = false, was_begun = false;
+  tbb::task_group held;
+  held.run([&] {
+    is_held = true;
+    while (!has_piece) std::this_thread::sleep_for(1ms);
+    for (int i = 0; i < (apart ? 100 : 10000) && !is_begun; ++i) std::this_thread::sleep_for(1ms);
+    was_begun = is_begun.load();
+  });
+  while (!is_held) std::this_thread::sleep_for(1ms);
   Beside beside({});
   beside.begin([&](const std::stop_token&) { is_begun = true; });
-  beside.apart([&] {
-    tbb::parallel_for(0, 1000, [](int) {});
-    EXPECT_FALSE(is_begun);
-  });
+  has_piece = true;
+  if (apart)
+    beside.apart([&] { held.wait(); });
+  else
+    held.wait();
   beside.wait(0);
   EXPECT_TRUE(is_begun);
+  return was_begun;
+}
+
+TEST(Beside, TakesUpNoPieceWithinWorkThatStandsApart) {
+  if (std::thread::hardware_concurrency() < 2)
+    GTEST_SKIP() << "one processor has no other thread to wait for";
+#ifdef OCTOTOMY_PLAIN_THREADS
+  GTEST_SKIP() << "plain threads take up no work of others";
+#endif
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 2);
+  EXPECT_TRUE(takes_up_a_piece(false));
+  EXPECT_FALSE(takes_up_a_piece(true));
 }
 
 TEST(Beside, ItsEndAndTheCallersTokenStopThePieces) {
