@@ -158,7 +158,7 @@ FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
       pieces.size() > 1 &&
       std::any_of(pieces.begin(), pieces.end(), [&](const std::string& id) { return is_added(plan, id); }) &&
       !std::all_of(pieces.begin(), pieces.end(), [&](const std::string& id) { return is_added(plan, id); });
-  std::size_t accent = 0;
+  std::size_t next_accent = 0;
   bool bone_taken = false;
   const auto show_before = [&](const Object& first) {
     const bool is_there = std::any_of(scene.before.begin(), scene.before.end(),
@@ -169,7 +169,7 @@ FinalScene final_scene(const Plan& plan, const Evaluation& evaluation) {
   for (const std::string& id : pieces) {
     const std::string still = still_of(evaluation, id);
     const bool plain = still == id && !bone_taken;
-    const glm::vec3 colour = plain ? bone_colour : accents[accent++ % accents.size()];
+    const glm::vec3 colour = plain ? bone_colour : accents[next_accent++ % accents.size()];
     bone_taken = bone_taken || plain;
     scene.moves = scene.moves || still != id;
     if (adds) {

@@ -164,7 +164,7 @@ TEST(Resampling, WindowsMovedByWholeVoxelsAreTheirVoxelsMoved) {
   std::uint64_t voxels = 0;
   // Bounds that samples have, bounds between samples, none between them, and the background's value.
   for (const auto& [low, high] : {std::pair(5.0, 9.0), {4.5, 20.0}, {4.2, 4.7}, {2.0, 6.0}})
-    for (const glm::ivec3 by : {glm::ivec3(3, -11, 6), {0, 16, -32}, {-1, 0, 0}, {70, 0, 0}})
+    for (const glm::ivec3& by : {glm::ivec3(3, -11, 6), {0, 16, -32}, {-1, 0, 0}, {70, 0, 0}})
       for (const Interpolation between :
            {Interpolation::Nearest, Interpolation::Linear, Interpolation::Cubic}) {
         Motion motion;

@@ -229,7 +229,7 @@ TEST(GreyOctree, SharesBricksOfOneValueAndKeepsAllSamplesOnAnyNumberOfThreads) {
     EXPECT_NE(brick_at(1, 1), brick_at(7, 1));   // 7
     EXPECT_EQ(brick_at(7, 1), brick_at(40, 1));  // two runs
     EXPECT_EQ(brick_at(0, 9), brick_at(50, 9));  // beyond the scan
-    for (const glm::ivec3 block : {glm::ivec3(1, 1, 1), {7, 1, 1}, {21, 2, 1}, {0, 0, 0}}) {
+    for (const glm::ivec3& block : {glm::ivec3(1, 1, 1), {7, 1, 1}, {21, 2, 1}, {0, 0, 0}}) {
       MinMax found{32767, -32768};
       for (const MinMax& leaf : grey.brick(block).leaf_range) found.widen(leaf);
       EXPECT_EQ(found.low, grey.range(2, block).low);
