@@ -46,7 +46,7 @@ Bytes picture(const glm::ivec2& size_px, unsigned seed) {
 
 TEST(EncodePng, WritesTheBytesThatOpenImageIOWrites) {
   std::array<std::size_t, 2> chunks{};
-  for (const glm::ivec2 size_px :
+  for (const glm::ivec2& size_px :
        {glm::ivec2(1, 1), {1, 40}, {300, 1}, {17, 5}, {48, 32}, {73, 74}, {480, 97}})
     for (unsigned seed = 0; seed < 3; ++seed) {
       const Bytes rgb = picture(size_px, seed), png = encode_png(size_px, rgb);
