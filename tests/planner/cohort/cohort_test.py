@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -40,21 +41,47 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-def kill_at_random(out, is_running, seed):
-    """Ends a worker that is at a subject of `out` with SIGKILL now and then, until nothing runs; how many."""
+def workers(out):
+    """The processes that are at a subject of `out`."""
+    command = re.compile(re.escape(str(out)).encode() + rb".*participant-label.? '?[0-9]", re.DOTALL)
+    found = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if command.search(path.read_bytes().replace(b"\0", b" ")):
+                found.append(int(path.parent.name))
+        except OSError:  # it has ended
+            pass
+    return found
+
+
+def end_at_work(process):
+    """Ends a process with SIGKILL; whether it was still at work. A stopped process cannot end by itself in between."""
+    try:
+        os.kill(process, signal.SIGSTOP)
+        while (state := Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]) not in "TZX":
+            time.sleep(0.001)
+        os.kill(process, signal.SIGKILL)
+        return state == "T"
+    except (ProcessLookupError, FileNotFoundError):
+        return False
+
+
+def kill_at_random(out, begin, seed):
+    """Ends workers at subjects of `out` now and then, until what `begin` started no longer runs; how many. The first is
+    ended as soon as it is seen. Where all were too quick to be seen, `out` is emptied and begun again."""
     choice = random.Random(seed)
     kills = 0
-    while is_running():
-        time.sleep(choice.uniform(0.05, 0.5) if SUBJECTS < 50 else choice.uniform(0.2, 3.0))
-        found = subprocess.run(["pgrep", "-f", f"{out}.*participant-label.? '?[0-9]"], capture_output=True, text=True,
-                               check=False).stdout.split()
-        try:
-            if found:
-                os.kill(int(choice.choice(found)), signal.SIGKILL)
-                kills += 1
-        except ProcessLookupError:
-            pass
-    return kills
+    for _ in range(20):
+        is_running = begin()
+        while is_running():
+            longest = 0.01 if kills == 0 else 0.5 if SUBJECTS < 50 else 3.0
+            time.sleep(choice.uniform(longest / 10, longest))
+            found = workers(out)
+            kills += bool(found) and end_at_work(choice.choice(found))
+        if kills > 0:
+            return kills
+        shutil.rmtree(out, ignore_errors=True)
+    raise AssertionError("no worker was seen at work")
 
 
 def assert_complete(test, out, serial, count=SUBJECTS):
@@ -196,7 +223,9 @@ class Cohort(unittest.TestCase):
 
     def test_killed_workers_leave_a_table_that_can_be_completed(self):
         table = self.cohort()
+        begun = time.monotonic()
         self.participants(table, "whole")
+        longest = (time.monotonic() - begun) / 2
         whole = (self.group(table, "whole") / "measurements.csv").read_bytes()
         random.seed(5)
         kills = 0
@@ -204,10 +233,13 @@ class Cohort(unittest.TestCase):
         for _ in range(SUBJECTS):
             process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                        start_new_session=True)
-            time.sleep(random.uniform(0.02, 0.4))
+            time.sleep(random.uniform(0, longest))
             if process.poll() is None:
                 kills += 1
                 os.killpg(process.pid, 9)
+            elif kills == 0:  # it was too quick
+                shutil.rmtree(self.folder / "out")
+                longest /= 4
             process.wait()
         self.assertGreater(kills, 0)
         self.participants(table, "out")
@@ -259,9 +291,12 @@ class Cohort(unittest.TestCase):
         self.participants(table, "whole")
         self.group(table, "whole")
         command = [PROGRAM, "cohort", table, out, "participant", "--plan", self.plan, "--engine", "parallel", "--jobs", "2"]
-        engine = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        kills = kill_at_random(out, lambda: engine.poll() is None, 11)
-        self.assertGreater(kills, 0)
+
+        def begin():
+            engine = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            return lambda: engine.poll() is None
+
+        kills = kill_at_random(out, begin, 11)
         self.participants(table, "out", "--engine", "parallel", "--jobs", "2")
         self.group(table, "out")
         assert_complete(self, out, self.folder / "whole")
@@ -279,10 +314,14 @@ class Cohort(unittest.TestCase):
         (self.folder / "Snakefile").write_text(text)
         table.write_text(table.read_text().replace("sub-", ""))
         command = ["snakemake", "--cores", "2", "--keep-going", "group"]
-        engine = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        kills = kill_at_random(out, lambda: engine.poll() is None, 12)
-        self.assertGreater(kills, 0)
-        self.assertNotEqual(engine.returncode, 0)
+        engines = []
+
+        def begin():
+            engines.append(subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+            return lambda: engines[-1].poll() is None
+
+        kills = kill_at_random(out, begin, 12)
+        self.assertNotEqual(engines[-1].returncode, 0)
         subprocess.run(command, cwd=self.folder, check=True, capture_output=True)
         assert_complete(self, out, self.folder / "whole")
         print(f"Snakemake: {SUBJECTS} subjects, {kills} workers killed")
