@@ -257,10 +257,12 @@ def long_and_deep_expressions_neither_crash_nor_hang(subject):
     expressions = {"long": " | ".join(["a"] * 50000), "mixed": " - ".join(["a", "b"] * 25000),
                    "deep": "(" * 100000 + "a" + ")" * 100000, "waves": "~" * 100000 + "a",
                    "operands": "|".join(f"move(a, m{i % 7})" for i in range(5000))}
+    # Every operand is read at every face that the certificate looks at: of teeth, which have few.
+    teeth = {"id": "skull", "do": "window", "scan": "ct", "low": 1200}
     for name, expression in expressions.items():
-        steps = PLAN["steps"][:1] + [{"id": "a", "do": "combine", "expression": "skull"},
-                                     {"id": "b", "do": "combine", "expression": "skull"},
-                                     {"id": "c", "do": "combine", "expression": expression}]
+        steps = [teeth, {"id": "a", "do": "combine", "expression": "skull"},
+                 {"id": "b", "do": "combine", "expression": "skull"},
+                 {"id": "c", "do": "combine", "expression": expression}]
         subject.write("long.json", json.dumps(dict(PLAN, steps=steps)))
         ended = subject.run("run", "long.json", "-o", "long", most_s=400)
         if ended.status not in (0, 2):
@@ -289,6 +291,7 @@ def a_limit_on_memory_is_respected(subject):
     for verb in (("look", "head.nrrd", "-o", "limited"), ("run", "plan.json", "-o", "limited"),
                  ("mesh", "head.nrrd", "--window", "300:", "-o", "limited.stl"),
                  ("tet", "ball.stl", "-o", "limited.inp")):
+        sufficed = 0
         for tenths in range(10):
             limit = 0.02 * 1.3 ** tenths
             ended = subject.run(*verb, "--memory", f"{limit:.4f}", most_s=60)
@@ -296,6 +299,9 @@ def a_limit_on_memory_is_respected(subject):
                 found.append(f"{verb[0]} in {limit:.4f} GB: {why}")
             if subject.hidden_left():
                 found.append(f"{verb[0]} in {limit:.4f} GB left {subject.hidden_left()}")
+            sufficed += ended.status == 0
+            if sufficed == 2:  # more than enough is no attack
+                break
     return [why for why in found if why]
 
 
