@@ -7,7 +7,7 @@ import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { PlannerWindow, program, start_server } from './planner_window.mjs';
+import { PlannerWindow, lay_phantom, program, start_server } from './planner_window.mjs';
 
 const most_actions = 60;
 const most_bundle_bytes = 300 * 1024;
@@ -21,7 +21,7 @@ const names = () => one.plan(plan_path).steps.map((each) => each.id);
 const has = (name) => one.until(() => names().includes(name), `step ${name}`);
 
 before(async () => {
-  execFileSync(program, ['phantom', 'head', '-o', path.join(folder, 'head_phantom.nrrd')]);
+  lay_phantom(folder);
   server = await start_server(folder);
   one = await PlannerWindow.open(server.url);
 });

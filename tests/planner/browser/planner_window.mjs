@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A planner's server and a window of headless Chromium, started without any GL, that looks at it. Actions are counted as a
 // person would: a click, a drag, a key, a typed field.
-import { spawn } from 'node:child_process';
+import { execFileSync, spawn } from 'node:child_process';
 import fs from 'node:fs';
 import http from 'node:http';
 import net from 'node:net';
@@ -15,6 +15,13 @@ export const browser_path = process.env.OCTOTOMY_CHROMIUM ?? '/usr/bin/chromium'
 export const head_scan = path.join(process.env.OCTOTOMY_SHARED_DATA ?? '.', 'ct_unc_cthead.nrrd');
 export const jaw_marks = { flap_1: [-56, -44, 45], flap_2: [-37, -70, 43], flap_3: [-8, -79, 41], flap_4: [7, -62, 43], flap_before: [-63, -32, 50], flap_after: [14, -50, 46] };
 export const donor_marks = { donor_from: [30, 12, 105], donor_to: [33, 16, -105], donor_face: [45, 12, 105] };
+
+/// Lays the head phantom into a folder, of voxels of 1 or 2 mm; copied where OCTOTOMY_PHANTOMS names a folder that has it.
+export function lay_phantom(folder, voxel_mm = 1) {
+  const laid = path.join(folder, 'head_phantom.nrrd'), made = path.join(process.env.OCTOTOMY_PHANTOMS ?? '', `head_phantom_${voxel_mm}.nrrd`);
+  if (process.env.OCTOTOMY_PHANTOMS) fs.copyFileSync(made, laid);
+  else execFileSync(program, ['phantom', 'head', '--voxel', `${voxel_mm}`, '-o', laid]);
+}
 
 /// Starts `octotomy serve` in a folder; answers its URL, and stop().
 export function start_server(folder, more = []) {

@@ -7,7 +7,7 @@ import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { PlannerWindow, program, start_proxy, start_server } from './planner_window.mjs';
+import { PlannerWindow, lay_phantom, program, start_proxy, start_server } from './planner_window.mjs';
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-tools-'));
 const plan_path = path.join(folder, 'head_phantom.plan.json');
@@ -22,7 +22,7 @@ const picture = async (name) => {
 const newest = (pane) => one.frames.filter(({ header }) => header.pane === pane).pop()?.header;
 
 before(async () => {
-  execFileSync(program, ['phantom', 'head', '-o', path.join(folder, 'head_phantom.nrrd')]);
+  lay_phantom(folder);
   server = await start_server(folder);
   one = await PlannerWindow.open(server.url);
 });
@@ -211,7 +211,7 @@ test('what is pressed stays, though the plan changes meanwhile', async () => {
   // A slider is drawn through many pictures.
   await one.tab('Objects');
   const slider = one.page.getByLabel('Opacity of rest');
-  const box = await slider.boundingBox();
+  const box = await one.until(() => slider.boundingBox(), 'the slider');
   await one.page.mouse.move(box.x + box.width - 6, box.y + box.height / 2);
   await one.page.mouse.down();
   for (let i = 1; i <= 8; ++i) {
@@ -233,9 +233,11 @@ test('a network that is cut in mid-drag is noticed, and nothing is lost', async 
     await far.at_rest();
     // Back to a motion that is dragged.
     await far.select('piece_moved');
-    await far.press('Control+z');
-    await far.until(() => step('piece_moved').points === undefined || step('piece_moved').by, 'undone', 20000).catch(() => {});
-    while (step('piece_moved').points) await far.press('Control+z').then(() => far.page.waitForTimeout(200));
+    while (step('piece_moved').points) {
+      const before_undo = JSON.stringify(plan());
+      await far.press('Control+z');
+      await far.until(() => JSON.stringify(plan()) !== before_undo, 'one step undone');
+    }
     await far.at_rest();
     await far.press('g');
     await far.page.locator('[data-key="move-forward_mm"]').waitFor();

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Fingers and a pen in the panes of the head phantom, and a tab that sleeps while another window works on.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { PlannerWindow, program, start_server } from './planner_window.mjs';
+import { PlannerWindow, lay_phantom, start_server } from './planner_window.mjs';
 
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-touch-'));
 const plan_path = path.join(folder, 'head_phantom.plan.json');
@@ -16,7 +15,7 @@ let devtools;
 const step = (name) => one.plan(plan_path).steps.find((each) => each.id === name);
 
 before(async () => {
-  execFileSync(program, ['phantom', 'head', '-o', path.join(folder, 'head_phantom.nrrd')]);
+  lay_phantom(folder, 2);
   server = await start_server(folder);
   one = await PlannerWindow.open(server.url);
   devtools = await one.context.newCDPSession(one.page);

@@ -43,8 +43,7 @@ class Plans(unittest.TestCase):
     def setUpClass(cls):
         cls.place = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.place.name)
-        cls.head = cls.folder / "head.nrrd"
-        subprocess.run([PROGRAM, "phantom", "head", "-o", cls.head], check=True, capture_output=True)
+        cls.head = Path(os.environ["OCTOTOMY_PHANTOMS"]) / "head_phantom_1.nrrd"
 
     @classmethod
     def tearDownClass(cls):
