@@ -39,6 +39,17 @@ void append_faces(const Octree& octree, const glm::ivec3& leaf, std::vector<Voxe
     }
 }
 
+// The edge, in leaves, of the largest empty block that holds a leaf; 0 if its leaf block is not empty.
+int empty_edge(const Octree& octree, const glm::ivec3& leaf) {
+  BlockRef block = octree.root();
+  for (int height = octree.root_height(); block.node() != nullptr && height > 2; --height) {
+    const glm::ivec3 child = (leaf >> (2 * height - 4)) & 3;
+    block = block.child(child_index(child.x, child.y, child.z));
+    if (block.is_empty()) return 1 << (2 * height - 4);
+  }
+  return block.is_empty() ? octree.universe().side() / 4 : 0;
+}
+
 }  // namespace
 
 std::vector<VoxelFace> voxel_boundary(const Octree& octree) {
@@ -47,8 +58,9 @@ std::vector<VoxelFace> voxel_boundary(const Octree& octree) {
   tbb::parallel_for(0, leaves, [&](int z) {
     for (int y = 0; y < leaves; ++y)
       for (int x = 0; x < leaves; ++x) {
-        if (x % 4 == 0 && octree.leaf_block(glm::ivec3(x, y, z) >> 2).is_empty())
-          x += 3;
+        const int edge = x % 4 == 0 ? empty_edge(octree, {x, y, z}) : 0;
+        if (edge > 0)
+          x |= edge - 1;  // blocks begin at multiples of their edge
         else
           append_faces(octree, {x, y, z}, layers[static_cast<std::size_t>(z)]);
       }
