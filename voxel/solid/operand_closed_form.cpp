@@ -68,13 +68,31 @@ double nearest_square(const glm::dmat3& columns, const glm::dvec3& c) {
   return least;
 }
 
-double farthest_square(const glm::dmat3& columns, const glm::dvec3& c) {
+struct CornerSquares {
+  double least = std::numeric_limits<double>::infinity();
   double most = 0.0;
+};
+
+// Of the corners' distances from the origin.
+CornerSquares corner_squares(const glm::dmat3& columns, const glm::dvec3& c) {
+  CornerSquares squares;
   for (int number = 0; number < 8; ++number) {
     const glm::dvec3 p = c + columns * corner(number);
-    most = std::max(most, glm::dot(p, p));
+    squares.least = std::min(squares.least, glm::dot(p, p));
+    squares.most = std::max(squares.most, glm::dot(p, p));
   }
-  return most;
+  return squares;
+}
+
+// Whether the parallelepiped comes nearer to the origin than a radius. Most do by their centre or a corner,
+// or lie beyond a plane across the way to their centre; the others, and those too near to call, are searched.
+bool comes_within(double radius, const glm::dmat3& columns, const glm::dvec3& c, double nearest_corner2) {
+  const double centre2 = glm::dot(c, c), radius2 = square(radius);
+  if (std::min(centre2, nearest_corner2) < radius2 * (1.0 - vanishing)) return true;
+  double along = centre2;  // the least along the way to the centre, times the way's length
+  for (int i = 0; i < 3; ++i) along -= std::abs(glm::dot(columns[i], c));
+  if (along > radius * std::sqrt(centre2) + vanishing * centre2) return false;
+  return nearest_square(columns, c) < radius2;
 }
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
@@ -318,8 +336,8 @@ Meets BallOperand::meets(const Cube& cube) const {
                           glm::dot(farthest, farthest) > square(radius_));
   }
   const glm::dmat3 columns = local_.map * cube.half;
-  return Meets::exactly(nearest_square(columns, c) < square(radius_),
-                        farthest_square(columns, c) > square(radius_));
+  const CornerSquares corners = corner_squares(columns, c);
+  return Meets::exactly(comes_within(radius_, columns, c, corners.least), corners.most > square(radius_));
 }
 
 Sheets BallOperand::sheets(const Cube& cube) const {

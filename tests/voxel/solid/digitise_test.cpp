@@ -3,12 +3,14 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <tbb/global_control.h>
 
 #include "tests/voxel/dense.h"
 #include "voxel/solid/combine.h"
+#include "voxel/solid/operand.h"
 #include "voxel/solid/target_expression.h"
 
 namespace octotomy::voxel {
@@ -325,6 +327,50 @@ TEST(PartialOctree, ChecksItsFractionsAndItsOrder) {
   EXPECT_THROW(check(short_of_one), std::invalid_argument);
   PartialOctree swapped{partial.touching, partial.inside, partial.fractions};
   EXPECT_THROW(check(swapped), std::invalid_argument);
+}
+
+// The answer comes from a corner, from a plane, or from a search of the cube's faces: all must be met.
+TEST(BallOperand, MeetsACubeThatIsSkewToItWhereTheCubesPointsSay) {
+  const Ellipsoid ellipsoid{{0.3, -0.7, 0.2}, {9, 4, 2.5}, some_turn()};
+  const BallOperand ball(ellipsoid, glm::dmat4(1.0));
+  int met = 0, dips = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    std::mt19937 random(seed);
+    const auto between = [&](double low, double high) {
+      return std::uniform_real_distribution(low, high)(random);
+    };
+    const glm::dvec3 way =
+        glm::normalize(glm::dvec3(between(-1, 1), between(-1, 1), between(-1, 1)) + glm::dvec3(1e-3));
+    const Cube cube{
+        ellipsoid.centre_mm + ellipsoid.lps_from_axes * (ellipsoid.radii_mm * way * between(0.8, 1.5)),
+        between(0.1, 2.0)};
+    constexpr int parts = 8;
+    double nearest = std::numeric_limits<double>::infinity(), nearest_corner = nearest, farthest = 0.0;
+    for (int z = 0; z <= parts; ++z)
+      for (int y = 0; y <= parts; ++y)
+        for (int x = 0; x <= parts; ++x) {
+          const glm::dvec3 p = cube.centre + cube.half * (glm::dvec3(x, y, z) * (2.0 / parts) - 1.0);
+          const double far = glm::length(glm::transpose(ellipsoid.lps_from_axes) * (p - ellipsoid.centre_mm) /
+                                         ellipsoid.radii_mm);
+          nearest = std::min(nearest, far);
+          farthest = std::max(farthest, far);
+          if (x % parts == 0 && y % parts == 0 && z % parts == 0)
+            nearest_corner = std::min(nearest_corner, far);
+        }
+    // The nearest point lies within half a part's diagonal of one that was asked.
+    const double slack = std::sqrt(3.0) * cube.half / parts / 2.5;
+    const Meets meets = ball.meets(cube);
+    ASSERT_TRUE(meets.decided());
+    if (nearest < 1.0 || nearest > 1.0 + slack) {
+      ASSERT_EQ(meets.in, nearest < 1.0) << "seed " << seed << ": " << nearest;
+    }
+    ASSERT_EQ(meets.out, farthest > 1.0) << "seed " << seed << ": " << farthest;
+    met += meets.in;
+    dips += nearest < 1.0 && nearest_corner > 1.0;
+  }
+  EXPECT_GT(met, 200);
+  EXPECT_LT(met, 1800);
+  EXPECT_GT(dips, 20);
 }
 
 }  // namespace
