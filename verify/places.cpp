@@ -401,19 +401,31 @@ std::optional<double> shift_limit_mm(const brep::Triangles& mesh, double voxel_m
   return std::nullopt;
 }
 
+/// Without the limit.
+Places contradictions(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
+                      const std::vector<voxel::VoxelFace>& boundary, const Witness& witness,
+                      const voxel::Progress& progress) {
+  Places places;
+  const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
+  progress.at(0.2);
+  add_groups(failed_voxels(octree, digitised, voxels, witness, progress), octree, digitised, witness, places);
+  add_stray_triangles(solid.triangles(), witness, progress, places);
+  return places;
+}
+
 }  // namespace
+
+Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& digitised,
+                           const brep::Solid& solid, const Witness& witness) {
+  return contradictions(octree, digitised, solid, voxel::voxel_boundary(octree), witness, {});
+}
 
 Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress) {
-  Places places;
   const brep::Triangles& mesh = solid.triangles();
   const std::vector<voxel::VoxelFace> boundary = voxel::voxel_boundary(octree);
-  const std::vector<glm::ivec3> voxels = compared_voxels(octree, digitised, boundary);
-  progress.at(0.2);
-  const voxel::Lattice lattice = octree.universe().lattice();
-  add_groups(failed_voxels(octree, digitised, voxels, witness, progress), octree, digitised, witness, places);
-  add_stray_triangles(mesh, witness, progress, places);
-  const glm::dvec3 voxel_mm = lattice.spacing_mm();
+  Places places = contradictions(octree, digitised, solid, boundary, witness, progress);
+  const glm::dvec3 voxel_mm = octree.universe().lattice().spacing_mm();
   places.limit.volume_mm3 = piece_limit_mm3(solid, mesh, octree, witness);
   if (!boundary.empty())
     places.limit.volume_mm3 =

@@ -29,4 +29,8 @@ struct Places {
 Places judge_places(const voxel::Octree& octree, const voxel::Octree& digitised, const brep::Solid& solid,
                     const Witness& witness, const voxel::Progress& progress = {});
 
+/// The same without the limit, which is left at zero.
+Places contradicted_places(const voxel::Octree& octree, const voxel::Octree& digitised,
+                           const brep::Solid& solid, const Witness& witness);
+
 }  // namespace octotomy::verify

@@ -42,10 +42,9 @@ struct Subject {
   brep::Solid mesh;
   Witness witness;
 
-  Places judged(const voxel::Octree& voxels, const brep::Solid& surface) const {
-    return judge_places(voxels, convert::voxelise(octree.universe(), surface), surface, witness);
+  voxel::Octree digitised(const brep::Solid& surface) const {
+    return convert::voxelise(octree.universe(), surface);
   }
-  Places judged() const { return judged(octree, mesh); }
 };
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -101,7 +100,8 @@ std::string told(const Places& places) {
 }
 
 void expect_right(const Subject& subject) {
-  const Places places = subject.judged();
+  const Places places =
+      judge_places(subject.octree, subject.digitised(subject.mesh), subject.mesh, subject.witness);
   EXPECT_EQ(places.voxel_count, 0u) << subject.name << ": " << told(places);
   EXPECT_EQ(places.stray_mm2, 0.0) << subject.name << ": " << told(places);
 }
@@ -114,6 +114,7 @@ struct Spoiled {
   brep::Solid mesh;
   double volume_mm3 = 0.0;
   double shift_mm = 0.0;
+  bool keeps_mesh = false;
 };
 
 /// Of errors that a Spoiler makes.
@@ -224,8 +225,8 @@ class Spoiler {
     const voxel::Octree made = voxel::combine(subject_.octree.universe(), expression);
     const std::uint64_t changed =
         voxel::combine(made.universe(), voxel::Expression(made) ^ here()).voxel_count();
-    return {what, made, subject_.mesh, static_cast<double>(changed) * made.universe().lattice().voxel_mm3(),
-            0.0};
+    const double changed_mm3 = static_cast<double>(changed) * made.universe().lattice().voxel_mm3();
+    return {what, made, subject_.mesh, changed_mm3, 0.0, true};
   }
   Spoiled lost_part() {
     const std::vector<brep::Component> pieces = brep::components(subject_.mesh);
@@ -250,7 +251,8 @@ class Spoiler {
 
 /// Every error over the limit must be found. Returns how many of each kind were over it.
 void expect_errors_found(const Subject& subject, std::uint64_t seeds, std::map<std::string, int>& over) {
-  const Places right = subject.judged();
+  const voxel::Octree digitised = subject.digitised(subject.mesh);
+  const Places right = judge_places(subject.octree, digitised, subject.mesh, subject.witness);
   ASSERT_TRUE(right.limit.shift_mm) << subject.name;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     Spoiler spoiler(subject, seed);
@@ -258,7 +260,9 @@ void expect_errors_found(const Subject& subject, std::uint64_t seeds, std::map<s
     if (spoiled.volume_mm3 <= right.limit.volume_mm3) continue;
     if (spoiled.shift_mm > 0.0 && spoiled.shift_mm <= *right.limit.shift_mm) continue;
     ++over[spoiled.what];
-    const Places places = subject.judged(spoiled.octree, spoiled.mesh);
+    const Places places =
+        contradicted_places(spoiled.octree, spoiled.keeps_mesh ? digitised : subject.digitised(spoiled.mesh),
+                            spoiled.mesh, subject.witness);
     EXPECT_TRUE(places.voxel_count > 0 || places.stray_mm2 > 0.0)
         << subject.name << ", seed " << seed << ": " << spoiled.what << " of " << spoiled.volume_mm3
         << " mm3, " << spoiled.shift_mm << " mm passes; " << told(right);
