@@ -87,9 +87,10 @@ Found found(const voxel::Scene& scene) {
 
 void expect_the_head(const voxel::Scene& scene) {
   static const Found straight = found(voxel::read_scene(scanned(0, voxel_mm)));
+  static const double whole_mm3 = truth_mm3(head_bounds(), 1.5), fragment_mm3 = truth_mm3(cut, 0.5);
   const Found now = found(scene);
-  EXPECT_NEAR(now.whole_mm3 / truth_mm3(head_bounds(), 1.5), 1.0, 0.01);
-  EXPECT_NEAR(now.fragment_mm3 / truth_mm3(cut, 0.5), 1.0, 0.01);
+  EXPECT_NEAR(now.whole_mm3 / whole_mm3, 1.0, 0.01);
+  EXPECT_NEAR(now.fragment_mm3 / fragment_mm3, 1.0, 0.01);
   // The fragment's centroid stands for its landmarks: a mirrored, shifted or sheared head moves it.
   EXPECT_LT(glm::distance(now.fragment_centroid_mm, straight.fragment_centroid_mm), 0.5 * voxel_mm);
 }
