@@ -3,8 +3,7 @@
 // Scans the head's closed forms.
 // 1 The lattice covers head_bounds(), tilted or not.
 // 2 Blocks of up to 4^3 voxels prune the solids of their brick to those that matter in the block. A field
-// whose
-//   value exceeds the block's radius is decided for the whole block.
+//   whose value exceeds the distance from the centre to the farthest sample is decided for the whole block.
 // 3 A voxel near a surface is halved three times. A part whose fields are decided counts at once; a part left
 //   after the third halving is one sample at its centre. The count equals that of 8^3 samples, as no decided
 //   part holds a surface.
@@ -68,7 +67,7 @@ class Scanner {
   void scan_block(const glm::ivec3& first, const glm::ivec3& end, const Store& store) const {
     const glm::dvec3 centre_mm = lattice_.lps_mm(glm::dvec3(first + end - 1) * 0.5);
     const glm::ivec3 size = end - first;
-    const double radius_mm = half_diagonal_mm_ * std::max({size.x, size.y, size.z});
+    const double radius_mm = reach_mm(std::max({size.x, size.y, size.z}));
     HeadBricks::Fields pruned;
     const Places places = pruned_places(centre_mm, radius_mm, pruned);
     const std::optional<Tissue> everywhere = tissue(places);
@@ -88,6 +87,10 @@ class Scanner {
   static constexpr int samples_per_voxel = 1 << (3 * halvings);
 
  private:
+  // From the centre of a cube, with its edge in voxels, to the samples at its corners: these lie at the
+  // centres of cubes of 2^-halvings.
+  double reach_mm(double edge) const { return half_diagonal_mm_ * (edge - 1.0 / (1 << halvings)); }
+
   using Halvings = std::array<HeadBricks::Fields, halvings>;
 
   static Places pruned_places(const glm::dvec3& centre_mm, double radius_mm, HeadBricks::Fields& pruned) {
@@ -100,7 +103,7 @@ class Scanner {
   void scan_voxel(const glm::dvec3& centre_mm, Places places, const HeadBricks::Fields& block,
                   TissueCount& count) const {
     thread_local Halvings pruned;
-    narrow(centre_mm, half_diagonal_mm_, block, places, pruned[0]);
+    narrow(centre_mm, reach_mm(1.0), block, places, pruned[0]);
     halve(centre_mm, 0, places, pruned, count);
   }
 
@@ -128,7 +131,7 @@ class Scanner {
       const glm::dvec3 p_mm = centre_mm + edges_ * ((side - 0.5) * size);
       Places inner = places;
       if (level + 1 < halvings) {
-        narrow(p_mm, half_diagonal_mm_ * size, fields, inner, pruned[static_cast<std::size_t>(level) + 1]);
+        narrow(p_mm, reach_mm(size), fields, inner, pruned[static_cast<std::size_t>(level) + 1]);
         halve(p_mm, level + 1, inner, pruned, count);
       } else {
         for (const HeadBricks::Field field : scanned) {
@@ -292,7 +295,19 @@ bool head_contains(HeadPart part, const glm::dvec3& p_mm) {
   if (part == HeadPart::Teeth) field = HeadBricks::Teeth;
   if (part == HeadPart::Skin) field = HeadBricks::Skin;
   const HeadBricks::Brick& brick = HeadBricks::instance().at(p_mm);
-  return brick.places[field] < 0 ? value(brick.steps[field], p_mm) < 0.0 : brick.places[field] == 1;
+  if (brick.places[field] >= 0) return brick.places[field] == 1;
+  // Points are often asked one beside the other: those in the ball that the last value decided lie where it
+  // did.
+  struct Asked {
+    glm::dvec3 p_mm{0.0};
+    double value = 0.0;
+  };
+  thread_local std::array<Asked, HeadBricks::field_count> last_of;
+  Asked& last = last_of[field];
+  if (const signed char there = place(last.value, glm::distance(p_mm, last.p_mm)); there >= 0)
+    return there == 1;
+  last = {p_mm, value(brick.steps[field], p_mm)};
+  return last.value < 0.0;
 }
 
 voxel::Scene head_phantom(const HeadOptions& options, const voxel::Progress& progress) {

@@ -19,6 +19,7 @@ struct Primitive {
   glm::dmat3 local_from_lps{1.0};
   double scale = 1.0;
   glm::dvec3 extent{0.0};  // capsule: the vector between its ends; box: half edges less rounding
+  double extent2 = 0.0;    // capsule: the square of its length
   double first = 1.0;      // capsule: radius at the origin; box: rounding
   double taper = 0.0;      // capsule: change of radius to its other end
 };
@@ -26,22 +27,24 @@ struct Primitive {
 namespace {
 
 double value(const Primitive& form, const glm::dvec3& p_mm) {
-  const glm::dvec3 q = form.local_from_lps * (p_mm - form.origin_mm);
+  const glm::dvec3 from_origin = p_mm - form.origin_mm;
+  const glm::dmat3& map = form.local_from_lps;
   switch (form.kind) {
     case Primitive::Kind::Ball:
-      return form.scale * (glm::length(q) - 1.0);
+      return form.scale * (glm::length(map * from_origin) - 1.0);
     case Primitive::Kind::Capsule: {
-      const double along =
-          glm::clamp(glm::dot(q, form.extent) / glm::dot(form.extent, form.extent), 0.0, 1.0);
+      // A capsule's frame is stretched along the axes and not turned.
+      const glm::dvec3 q = glm::dvec3(map[0].x, map[1].y, map[2].z) * from_origin;
+      const double along = glm::clamp(glm::dot(q, form.extent) / form.extent2, 0.0, 1.0);
       return form.scale * (glm::length(q - along * form.extent) - (form.first + along * form.taper));
     }
     case Primitive::Kind::Box: {
-      const glm::dvec3 beyond = glm::abs(q) - form.extent;
+      const glm::dvec3 beyond = glm::abs(map * from_origin) - form.extent;
       const double inside = std::min(std::max({beyond.x, beyond.y, beyond.z}), 0.0);
       return glm::length(glm::max(beyond, glm::dvec3(0.0))) + inside - form.first;
     }
     case Primitive::Kind::HalfSpace:
-      return q.x;
+      return map[0].x * from_origin.x + map[1].x * from_origin.y + map[2].x * from_origin.z;
   }
   return 0.0;
 }
@@ -49,9 +52,9 @@ double value(const Primitive& form, const glm::dvec3& p_mm) {
 // The polynomial smooth minimum: equal to the minimum where a and b are further apart than the width. Its
 // gradient is a convex combination of theirs, so it keeps their Lipschitz constant.
 double smooth_min(double a, double b, double width) {
-  const double lesser = std::min(a, b);
-  if (width <= 0.0) return lesser;
-  const double near = std::max(width - std::abs(a - b), 0.0) / width;
+  const double lesser = std::min(a, b), apart = std::abs(a - b);
+  if (apart >= width) return lesser;
+  const double near = (width - apart) / width;
   return lesser - 0.25 * near * near * width;
 }
 
@@ -227,6 +230,7 @@ ImplicitSolid tapered_capsule(const Station& from, const Station& to, const glm:
   capsule.origin_mm = from.p_mm;
   capsule.local_from_lps = glm::dmat3(1.0 / stretch.x, 0, 0, 0, 1.0 / stretch.y, 0, 0, 0, 1.0 / stretch.z);
   capsule.extent = (to.p_mm - from.p_mm) / stretch;
+  capsule.extent2 = glm::dot(capsule.extent, capsule.extent);
   capsule.first = from.radius_mm;
   capsule.taper = to.radius_mm - from.radius_mm;
   // Beside the axis the value changes by 1 across and by the taper's slope along.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
+#include <random>
 #include <tbb/global_control.h>
 
 #include "verify/head_solids.h"
@@ -179,6 +180,37 @@ TEST(HeadPhantom, TheFaceLooksToTheFrontAndTheCrownIsUp) {
   EXPECT_FALSE(head_contains(HeadPart::Mandible, {4, -82, -52}));  // an upper tooth
   EXPECT_FALSE(head_contains(HeadPart::Bone, {33, -75, 10}));      // orbit
   EXPECT_FALSE(head_contains(HeadPart::Bone, {0, 33, -25}));       // foramen magnum
+}
+
+// Rows as sampling asks them, points as chance does, and both by turns.
+TEST(HeadPhantom, APartHoldsAPointWhereItsClosedFormIsNegativeInAnyOrderOfAsking) {
+  const HeadSolids& head = head_solids();
+  const std::array<std::pair<HeadPart, const ImplicitSolid*>, 4> parts{{{HeadPart::Bone, &head.bone},
+                                                                        {HeadPart::Mandible, &head.mandible},
+                                                                        {HeadPart::Teeth, &head.teeth},
+                                                                        {HeadPart::Skin, &head.skin}}};
+  std::mt19937_64 random(1);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  int inside = 0, outside = 0;
+  for (int row = 0; row < 60; ++row) {
+    glm::dvec3 p(between(-60, 20), between(-95, -20), between(-90, 20));
+    const double step_mm = between(0.1, 2.5);
+    for (int i = 0; i < 25; ++i, p.x += step_mm) {
+      const glm::dvec3 elsewhere(between(-90, 90), between(-110, 110), between(-120, 110));
+      for (const auto& [part, form] : parts)
+        for (const glm::dvec3& asked : {p, elsewhere}) {
+          if (asked == elsewhere && row % 3 > 0) continue;
+          const bool is_inside = (*form)(asked) < 0.0;
+          ASSERT_EQ(head_contains(part, asked), is_inside)
+              << "row " << row << ", point " << i << ": " << asked.x << " " << asked.y << " " << asked.z;
+          ++(is_inside ? inside : outside);
+        }
+    }
+  }
+  EXPECT_GT(inside, 500);
+  EXPECT_GT(outside, 500);
 }
 
 TEST(HeadPhantom, PlanesAtWholeMillimetresLieBetweenVoxels) {
