@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -45,10 +47,14 @@ inline Triangles unwelded(const Triangles& t, double noise = 0.0) {
 
 /// Points that coincide are one.
 inline Triangles welded(Triangles t) {
+  std::map<std::array<double, 3>, std::uint32_t> first;
+  const auto place = [&](std::size_t v) -> std::array<double, 3> {
+    return {t.points_mm[v].x, t.points_mm[v].y, t.points_mm[v].z};
+  };
+  for (std::size_t v = 0; v < t.points_mm.size(); ++v)
+    first.try_emplace(place(v), static_cast<std::uint32_t>(v));
   for (auto& face : t.faces)
-    for (std::uint32_t& v : face)
-      for (std::uint32_t w = 0; w < v; ++w)
-        if (t.points_mm[w] == t.points_mm[v]) v = w;
+    for (std::uint32_t& v : face) v = first.at(place(v));
   return t;
 }
 
