@@ -39,6 +39,7 @@ class Subject:
     """The program, with a folder of its own that is removed at the end."""
 
     sound = {}  # the files to work on, made by the first subject
+    patience = 1  # of the seconds that a process may take
 
     def __init__(self, build):
         self.program = str(Path(build).resolve() / "octotomy")
@@ -71,6 +72,7 @@ class Subject:
             environment=None):
         """Runs the program; sends `stop` `after` seconds. A process that ignores it is killed after most_s."""
         variables = dict(os.environ, TMPDIR=str(self.temporary), **(environment or {}))
+        most_s *= Subject.patience
         start = time.monotonic()
         with subprocess.Popen([self.program, *arguments], stdin=subprocess.DEVNULL, stdout=out,
                               stderr=subprocess.PIPE, cwd=cwd or self.folder, env=variables,
