@@ -263,7 +263,9 @@ int answer_from_files(const Program& program, const Action& action, const Operat
   for (const auto& [field, words] : text.words)
     if (field.starts_with("window")) program.note_tissues(words);
   const FileBench bench{timings, program.stop.get_token(), program.progress(),
-                        [&](const fs::path& path) { return read_scan(program, path, text.scan, timings); }};
+                        [&](const fs::path& path, const voxel::SlicesFinal& slices_final) {
+                          return read_scan(program, path, text.scan, timings, slices_final);
+                        }};
   return say(program, action.operation().on_files(action.value(), bench), timings);
 }
 

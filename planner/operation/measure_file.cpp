@@ -21,6 +21,7 @@
 #include "voxel/solid/combine.h"
 #include "voxel/solid/partial_volume.h"
 #include "voxel/space/drop_samples.h"
+#include "voxel/tree/grey_octree_build.h"
 #include "voxel/tree/octree_file.h"
 
 namespace octotomy::planner {
@@ -216,21 +217,45 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
   return said(std::move(whole));
 }
 
+/// A scan, and its octree, which is built while the scan is read.
+struct ScanAndOctree {
+  voxel::Scene scene;
+  voxel::GreyOctree grey;
+};
+
+ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& asked,
+                             const FileBench& bench) {
+  std::optional<voxel::GreyOctreeBuild> build;
+  std::optional<voxel::GreyOctree> grey;
+  bool has_failed = false;
+  voxel::Scene scene = bench.read_scan(file, [&](const voxel::Scene& read, int count) {
+    if (count == 0) return build.reset();
+    if (has_failed) return;
+    try {
+      if (!build) build.emplace(universe_of(read.lattice, asked.voxel_mm), read);
+      build->add(count);
+      if (count == read.lattice.dims.z) grey = build->finished();
+    } catch (...) {
+      // The reader has no part in it. It fails again below, after what the reader has to say.
+      has_failed = true;
+      build.reset();
+    }
+  });
+  if (asked.window) need_hounsfield(*asked.window, scene);
+  const Stopwatch watch(bench.timings, "octree");
+  if (!grey) grey = voxel::grey_octree_of(universe_of(scene.lattice, asked.voxel_mm), scene);
+  return {std::move(scene), std::move(*grey)};
+}
+
 FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
   Timings& timings = bench.timings;
-  voxel::Scene scene = bench.read_scan(file);
-  if (asked.window) need_hounsfield(*asked.window, scene);
-  std::optional<voxel::GreyOctree> grey;
-  {
-    const Stopwatch watch(timings, "octree");
-    grey = voxel::grey_octree_of(universe_of(scene.lattice, asked.voxel_mm), scene);
-  }
-  const voxel::Window window = window_of(*grey, file, asked);
-  const voxel::Octree inside = voxel::combine(grey->universe(), window);
+  auto [scene, grey] = read_to_octree(file, asked, bench);
+  const voxel::Window window = window_of(grey, file, asked);
+  const voxel::Octree inside = voxel::combine(grey.universe(), window);
   voxel::Measures measures;
   Json json = of_voxels(inside, timings, measures);
   add_partial_volume(window, timings, json);
-  Digitised digitised{grey->universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
+  Digitised digitised{grey.universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
   {
     const Stopwatch watch(timings, "half_width");
     digitised.shift_mm = window_shift_mm(window);
@@ -247,7 +272,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   const brep::Size& surface = isosurface.size();
   const verify::SizeIntervals recommended =
       intervals_of_surface(isosurface, {glm::dmat3(scene.lattice.lps_from_voxel), glm::dmat4(1.0), grey,
-                                        on_samples(scene.lattice, grey->universe().lattice()),
+                                        on_samples(scene.lattice, grey.universe().lattice()),
                                         digitised.shift_mm, digitised.sample_mm});
   const HalfWidth width =
       area_half_width({recommended.triangles.area_mm2, recommended.triangles.curvature_mm}, digitised);

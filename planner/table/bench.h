@@ -12,6 +12,7 @@
 #include "planner/table/object.h"
 #include "planner/table/stopwatch.h"
 #include "verify/expression_on_meshes.h"
+#include "voxel/scan/read_scene.h"
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 
@@ -148,8 +149,13 @@ struct FileBench {
   std::stop_token stop = {};
   /// Called with what is being done and a fraction of it, 0..1; may be empty.
   std::function<void(const std::string& doing, double fraction)> report = {};
-  /// Reads a scan as the command line's options say; timed.
-  std::function<voxel::Scene(const std::filesystem::path& path)> read_scan = {};
+  /// Reads a scan as the command line's options say, with `slices_final` as in voxel::ReadOptions; timed.
+  std::function<voxel::Scene(const std::filesystem::path& path, const voxel::SlicesFinal& slices_final)>
+      scan_reader = {};
+  voxel::Scene read_scan(const std::filesystem::path& path,
+                         const voxel::SlicesFinal& slices_final = {}) const {
+    return scan_reader(path, slices_final);
+  }
 
   voxel::Progress progress(const std::string& doing) const;
 };

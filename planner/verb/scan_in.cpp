@@ -93,9 +93,11 @@ bool is_dicom(const voxel::Scene& scene) {
 }
 
 voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
-                       Timings& timings) {
+                       Timings& timings, const voxel::SlicesFinal& slices_final) {
   const Stopwatch watch(timings, "read");
-  voxel::Scene scene = voxel::read_scene(path, read_options(program, in));
+  voxel::ReadOptions options = read_options(program, in);
+  options.slices_final = slices_final;
+  voxel::Scene scene = voxel::read_scene(path, options);
   program.note_scan(path, scene);
   return scene;
 }

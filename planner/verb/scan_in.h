@@ -24,9 +24,10 @@ CLI::Validator scan_path();
 /// Throws CLI::ValidationError where an option cannot be understood.
 voxel::ReadOptions read_options(const Program& program, const ScanIn& in);
 
-/// Reads the scan; "read" in the timings, progress on a terminal. Throws as voxel::read_scene().
+/// Reads the scan; "read" in the timings, progress on a terminal; `slices_final` as in voxel::ReadOptions.
+/// Throws as voxel::read_scene().
 voxel::Scene read_scan(const Program& program, const std::filesystem::path& path, const ScanIn& in,
-                       Timings& timings);
+                       Timings& timings, const voxel::SlicesFinal& slices_final = {});
 
 /// Whether a scene was read from DICOM, by its audit.
 bool is_dicom(const voxel::Scene& scene);

@@ -73,6 +73,14 @@ template <typename Iterator>
 void parallel_sort(Iterator first, Iterator last) {
   std::sort(first, last);
 }
+struct isolated_task_group {
+  template <typename Task>
+  void run(const Task& task) {
+    task();
+  }
+  void wait() {}
+  void cancel() {}
+};
 template <typename Key, typename Value>
 using concurrent_unordered_map = std::unordered_map<Key, Value>;
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#define TBB_PREVIEW_ISOLATED_TASK_GROUP 1
 #include "voxel/scan/fill_ahead.h"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ class PartsAhead {
   std::size_t bytes_;
   std::size_t asked_ = 0;
   std::vector<std::atomic<Place>> places_;
-  tbb::task_group tasks_;
+  tbb::isolated_task_group tasks_;  ///< the thread that waits for them takes up no other work
 };
 
 }  // namespace

@@ -31,7 +31,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
     const std::optional<VolumeFormat> format = volume_format(path);
     if (!format) return is_dicom_seg(path) ? read_dicom_seg(path) : read_dicom(path, options);
     if (format == VolumeFormat::Nifti && is_nifti2(path)) return read_nifti2(path);
-    return read_volume_file(path, *format);
+    return read_volume_file(path, *format, options.slices_final);
   }
   // A folder of images may hold DICOM as well. DICOM comes first because it holds positions.
   if (image_files(path).empty()) return read_dicom(path, options);

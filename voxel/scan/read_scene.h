@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,10 @@ struct RawLayout {
   std::uint64_t offset = 0;  ///< bytes before the first sample
 };
 
+/// Told of a scan that is being read: the first `count` slices of the scene, which passes check(), have their
+/// samples.
+using SlicesFinal = std::function<void(const Scene& scene, int count)>;
+
 struct ReadOptions {
   /// The DICOM series: its choice in list_series() ("2", or "2.1" of a series that holds several stacks), its
   /// UID, or a part of its description or of the attributes that tell its stacks apart. Empty: the series
@@ -33,6 +38,11 @@ struct ReadOptions {
   std::optional<glm::dvec3> spacing_mm;
   std::optional<RawLayout> raw;  ///< set: the path is a raw file
   Progress progress;
+  /// Called on the reading thread with growing counts, for work on the first slices beside the reading; may
+  /// be empty. The last call has all slices, or none if reading fails: work on the scene must be over when it
+  /// returns. Never called where reading is more than unpacking samples of 16 bits: of NIfTI, NRRD and
+  /// MetaImage.
+  SlicesFinal slices_final = {};
 };
 
 /// Reads "1:40" or "1:40,45:60" or "7", as images are counted by ReadOptions::slices. Throws

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
@@ -126,21 +127,57 @@ struct Volume {
   VolumeFormat format;
   const VolumeHeader& header;
   itk::ImageIOBase& io;
+  const SlicesFinal& slices_final;
 };
+
+using BytesHeld = std::function<void(std::uintmax_t held)>;
+
+template <typename Stored>
+void fill(const Volume& volume, Samples<Stored>& samples, const BytesHeld& held = {}) {
+  // The libraries behind ITK unpack into memory of their own.
+  if (volume.header.is_plain)
+    read_plain_samples(volume.path, volume.format, volume.header, reinterpret_cast<char*>(samples.data()),
+                       samples.size() * sizeof(Stored), held);
+  else
+    volume.io.Read(samples.data());
+}
 
 template <typename Stored>
 void read_as(const Volume& volume, Scene& scene) {
   Samples<Stored> stored(scene.lattice.sample_count());
-  // The libraries behind ITK unpack into memory of their own.
-  if (volume.header.is_plain)
-    read_plain_samples(volume.path, volume.format, volume.header, reinterpret_cast<char*>(stored.data()),
-                       stored.size() * sizeof(Stored));
-  else
-    volume.io.Read(stored.data());
-  if constexpr (std::is_same_v<Stored, std::int16_t>)
-    scene.samples = std::move(stored);
-  else
-    take_samples(stored, scene);
+  fill(volume, stored);
+  take_samples(stored, scene);
+}
+
+bool passes_check(const Scene& scene) {
+  try {
+    check(scene);
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;  // read_scene() says so when the samples are known to be sound
+  }
+}
+
+/// Reads samples that are the scene's as they are.
+void read_own(const Volume& volume, Scene& scene) {
+  auto& samples = scene.samples.emplace<Int16Samples>(scene.lattice.sample_count());
+  if (!volume.slices_final || !passes_check(scene)) return fill(volume, samples);
+  const std::uintmax_t slice_bytes =
+      samples.size() * sizeof(std::int16_t) / static_cast<std::size_t>(scene.lattice.dims.z);
+  int told = 0;
+  const auto tell = [&](int count) {
+    told = count;
+    volume.slices_final(scene, count);
+  };
+  try {
+    fill(volume, samples, [&](std::uintmax_t held) {
+      if (const auto count = static_cast<int>(held / slice_bytes); count > told) tell(count);
+    });
+    tell(scene.lattice.dims.z);
+  } catch (...) {
+    tell(0);
+    throw;
+  }
 }
 
 void read_samples(const Volume& volume, Scene& scene) {
@@ -152,7 +189,7 @@ void read_samples(const Volume& volume, Scene& scene) {
     case itk::IOComponentEnum::USHORT:
       return read_as<unsigned short>(volume, scene);
     case itk::IOComponentEnum::SHORT:
-      return read_as<std::int16_t>(volume, scene);
+      return read_own(volume, scene);
     case itk::IOComponentEnum::UINT:
       return read_as<unsigned int>(volume, scene);
     case itk::IOComponentEnum::INT:
@@ -320,7 +357,7 @@ void take_exact_geometry(const VolumeHeader& header, Scene& scene) {
 
 }  // namespace
 
-Scene read_volume_file(const fs::path& path, VolumeFormat format) {
+Scene read_volume_file(const fs::path& path, VolumeFormat format, const SlicesFinal& slices_final) {
   const VolumeHeader header = read_volume_header(path, format);
   const itk::ImageIOBase::Pointer io = new_io(format);
   io->SetFileName(path.string());
@@ -338,7 +375,7 @@ Scene read_volume_file(const fs::path& path, VolumeFormat format) {
     region.SetSize(axis, io->GetDimensions(axis));
   io->SetIORegion(region);
   call_itk(path, format, "its samples cannot be read", [&] {
-    read_samples({path, format, header, *io}, scene);
+    read_samples({path, format, header, *io, slices_final}, scene);
   });
   audit_frame(*io, format, header, scene);
   take_meaning(*io, header, scene);

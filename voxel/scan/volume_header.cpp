@@ -399,13 +399,15 @@ VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
 }
 
 void read_plain_samples(const fs::path& path, VolumeFormat format, const VolumeHeader& header, char* samples,
-                        std::uintmax_t bytes) {
+                        std::uintmax_t bytes, const std::function<void(std::uintmax_t held)>& held) {
   SampleStream stream = stream_of(format, header);
   std::vector<char> before(before_samples(format, header));
   if (stream.read(before.data(), before.size()) < before.size()) refuse_short(path, 0, bytes);
-  const std::uintmax_t held =
-      fill_ahead(samples, bytes, [&](char* part, std::size_t count) { return stream.read(part, count); });
-  if (held < bytes) refuse_short(path, held, bytes);
+  const std::uintmax_t count = fill_ahead(samples, bytes, [&](char* part, std::size_t wanted) {
+    if (held) held(static_cast<std::uintmax_t>(part - samples));
+    return stream.read(part, wanted);
+  });
+  if (count < bytes) refuse_short(path, count, bytes);
   if (header.is_packed) stream.skip_rest();
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
@@ -47,10 +48,12 @@ inline constexpr std::int32_t nifti_text_extension = 6;
 /// Throws Error, Input, with path and reason.
 VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
 
-/// Reads `bytes` bytes of samples. Precondition: they are plain. Throws Error, Input, with path and reason
+/// Reads `bytes` bytes of samples; calls `held`, if any, with the count of those that are final, every few
+/// megabytes before the last ones. Precondition: they are plain. Throws Error, Input, with path and reason
 /// where they are cut short or damaged. Cost: reads and unpacks the file once.
 void read_plain_samples(const std::filesystem::path& path, VolumeFormat format, const VolumeHeader& header,
-                        char* samples, std::uintmax_t bytes);
+                        char* samples, std::uintmax_t bytes,
+                        const std::function<void(std::uintmax_t held)>& held);
 
 /// Refuses a file whose samples are cut short or damaged, for which the libraries behind ITK return
 /// uninitialised memory. Throws as read_plain_samples(). Cost: unpacks packed samples once.

@@ -30,6 +30,13 @@ struct MinMax {
   }
 };
 
+/// The range of all.
+inline MinMax joined(const std::array<MinMax, 64>& ranges) {
+  MinMax whole = ranges.front();
+  for (const MinMax& range : ranges) whole.widen(range);
+  return whole;
+}
+
 /// Status of a block whose values lie in a range, seen through the window low..high, both included.
 template <typename Range>
 Status window_status(const Range& range, double low, double high) {
@@ -67,7 +74,8 @@ class GreyOctree {
     const Level& level = storage_->levels[static_cast<std::size_t>(height - 2)];
     return level.ranges[level.index(block)];
   }
-  /// Samples of block number `block` of height 2. Precondition: within the grid.
+  /// Samples of block number `block` of height 2. Blocks of one value may share a brick. Precondition: within
+  /// the grid.
   const GreyBrick& brick(const glm::ivec3& block) const {
     return storage_->bricks[storage_->brick_of_block[storage_->levels.front().index(block)]];
   }
@@ -76,7 +84,7 @@ class GreyOctree {
   std::uint64_t bytes_memory() const;
 
  private:
-  friend GreyOctree grey_octree_of(const Universe&, const Scene&, std::int16_t);
+  friend class GreyOctreeBuild;
   friend GreyOctree grey_octree_of_bricks(const Universe&, std::int16_t, std::span<const glm::ivec3>,
                                           const std::function<void(std::size_t, GreyBrick&)>&,
                                           std::optional<Octree>);
@@ -92,8 +100,14 @@ class GreyOctree {
     }
   };
   struct Storage {
+    /// All background: brick 0, and room for others.
+    Storage(const Universe& universe, std::int16_t background, std::size_t brick_count);
+    Level& bottom() { return levels.front(); }
+    /// Adds the levels above the bottom one.
+    void join_ranges();
+
     Universe universe;
-    std::int16_t background = 0;
+    std::int16_t background;
     Octree scan = Octree::empty({});
     std::vector<Level> levels;                  ///< heights 2, 3, ... up to the root's
     std::vector<std::uint32_t> brick_of_block;  ///< brick 0 is all background
@@ -108,8 +122,9 @@ class GreyOctree {
 /// Samples the scene at the universe's voxel centres: exactly if the lattices coincide, otherwise by
 /// trilinear interpolation rounded to the nearest integer, halves upward. Voxels whose centre lies outside
 /// the scene's bounds become `background`. Throws std::invalid_argument if float samples leave the int16
-/// range. Parallel; same bits on any thread count. Memory: the samples within the scan's bounds and three per
-/// cent, without blocks of 16 x 16 x 16 voxels that have one value, as air beside a head has.
+/// range. Parallel; same bits on any thread count. GreyOctreeBuild (grey_octree_build.h) makes it while the
+/// scan is read. Memory: the samples within the scan's bounds and three per cent, without blocks of 16 x 16 x
+/// 16 voxels that have one value, as air beside a head has.
 GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
 
 /// The grey octree whose blocks of height 2 numbered `blocks` have samples and whose others are background.

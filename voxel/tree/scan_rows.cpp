@@ -169,6 +169,17 @@ std::uint16_t ScanRows::interpolate_along(const std::int16_t* samples, const glm
   return static_cast<std::uint16_t>(inside);
 }
 
+int ScanRows::slices_read(int first, int last) const {
+  if (offset_) return std::clamp(last + offset_->z + 1, 0, dims_.z);
+  const std::vector<Place>& along_z = along_[2];
+  if (along_z.empty()) return dims_.z;
+  int count = 0;
+  for (int z = first; z <= last; ++z)
+    if (const Place& place = along_z[static_cast<std::size_t>(z)]; place.inside)
+      count = std::max(count, place.high + 1);
+  return count;
+}
+
 const std::int16_t* ScanRows::own_samples(const glm::ivec3& origin) const {
   const auto* shorts = std::get_if<Int16Samples>(&scene_.samples);
   if (shorts == nullptr || !offset_) return nullptr;

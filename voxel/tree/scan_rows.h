@@ -26,6 +26,10 @@ class ScanRows {
   /// Voxels whose centre lies outside the scene's bounds have the sample `background`.
   ScanRows(const Universe& universe, const Scene& scene, std::int16_t background);
 
+  /// How many of the scan's slices, from the first on, hold all samples that the universe's slices
+  /// first..last are made of.
+  int slices_read(int first, int last) const;
+
   /// The sample of the first of 16 x 16 x 16 voxels from `origin` on, if all of them have samples of the
   /// scan's own; else null. steps() lead to the others.
   const std::int16_t* own_samples(const glm::ivec3& origin) const;

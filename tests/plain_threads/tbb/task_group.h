@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <mutex>
@@ -12,41 +14,69 @@
 
 namespace tbb {
 
-/// A thread for each task; with one thread they run where they are waited for.
-class task_group {
+/// Tasks that begin on other threads at once, if there may be any; the thread that waits takes up the rest.
+class isolated_task_group {
  public:
-  task_group() = default;
-  task_group(const task_group&) = delete;
-  task_group& operator=(const task_group&) = delete;
+  isolated_task_group() = default;
+  isolated_task_group(const isolated_task_group&) = delete;
+  isolated_task_group& operator=(const isolated_task_group&) = delete;
+  ~isolated_task_group() {
+    cancel();
+    join();
+  }
 
-  template <typename Task>
-  void run(Task task) {
-    if (global_control::most() < 2)
-      waiting_.emplace_back(std::move(task));
-    else
-      threads_.emplace_back([this, task = std::move(task)] { call(task); });
+  void run(std::function<void()> task) {
+    const std::lock_guard lock(guard_);
+    tasks_.push_back(std::move(task));
+    if (at_work_ + 1 >= global_control::most()) return;
+    ++at_work_;
+    threads_.emplace_back([this] {
+      work();
+      const std::lock_guard done(guard_);
+      --at_work_;
+    });
   }
   void wait() {
-    for (std::thread& thread : std::exchange(threads_, {})) thread.join();
-    for (const std::function<void()>& task : std::exchange(waiting_, {})) call(task);
+    work();
+    join();
     if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+  }
+  void cancel() {
+    const std::lock_guard lock(guard_);
+    tasks_.clear();
   }
 
  private:
-  template <typename Task>
-  void call(const Task& task) {
-    try {
-      task();
-    } catch (...) {
-      const std::lock_guard lock(guard_);
-      if (!thrown_) thrown_ = std::current_exception();
+  void work() {
+    std::unique_lock lock(guard_);
+    while (!tasks_.empty()) {
+      const std::function<void()> task = std::move(tasks_.front());
+      tasks_.pop_front();
+      lock.unlock();
+      std::exception_ptr thrown;
+      try {
+        task();
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+      lock.lock();
+      if (!thrown) continue;
+      if (!thrown_) thrown_ = thrown;
+      tasks_.clear();
     }
   }
+  void join() {
+    for (std::thread& thread : threads_) thread.join();
+    threads_.clear();
+  }
 
-  std::vector<std::thread> threads_;
-  std::vector<std::function<void()>> waiting_;
   std::mutex guard_;
+  std::deque<std::function<void()>> tasks_;
+  std::size_t at_work_ = 0;
   std::exception_ptr thrown_;
+  std::vector<std::thread> threads_;
 };
+/// A thread that waits takes up no work of others here anyway.
+using task_group = isolated_task_group;
 
 }  // namespace tbb

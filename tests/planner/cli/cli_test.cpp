@@ -160,6 +160,41 @@ TEST_F(CommandLine, TheAnswerIsTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(measured("1"), measured("2"));
 }
 
+// Of samples of 16 bits the octree is built while they are read, of others afterwards.
+TEST_F(CommandLine, MeasuresAlikeWhetherTheOctreeIsBuiltBesideTheReadingOrAfterIt) {
+  voxel::Scene scene = tests::ball_scene(40.0, 160);
+  voxel::write_scene(scene, folder_ / "shorts.nrrd");
+  const auto& shorts = std::get<voxel::Int16Samples>(scene.samples);
+  scene.samples = voxel::FloatSamples(shorts.begin(), shorts.end());
+  voxel::write_scene(scene, folder_ / "floats.nrrd");
+  for (const std::string options : {"", " --voxel 1.7", " --threads 1"}) {
+    const auto measured = [&](const std::string& name) {
+      SortedJson json = SortedJson::parse(run("measure " + at(name) + " --window 0: --json" + options).out);
+      for (const char* key : {"timings_ms", "source", "audit", "inputs", "scans"}) json.erase(key);
+      return json;
+    };
+    EXPECT_EQ(measured("shorts.nrrd"), measured("floats.nrrd")) << options;
+  }
+  const auto refusal = [&](const std::string& name, const std::string& options) {
+    const tests::CommandAnswer answer = run("measure " + at(name) + options);
+    expect_refused(answer, "");
+    return answer.errors;
+  };
+  for (const std::string options : {" --window 0: --voxel 0.00001", ""}) {
+    std::string of_floats = refusal("floats.nrrd", options);
+    if (const std::size_t name = of_floats.find("floats"); name != std::string::npos)
+      of_floats.replace(name, 6, "shorts");
+    EXPECT_EQ(refusal("shorts.nrrd", options), of_floats);
+  }
+  std::string bytes = tests::bytes_of(folder_ / "shorts.nrrd");
+  bytes[bytes.size() - 5] ^= 1;
+  write("checksum.nrrd", bytes);
+  write("short.nrrd", bytes.substr(0, bytes.size() / 2));
+  for (const std::string name : {"checksum.nrrd", "short.nrrd"})
+    EXPECT_NE(refusal(name, " --window 0:").find("packed samples are damaged or cut short"),
+              std::string::npos);
+}
+
 TEST_F(CommandLine, MeasuresAScansWindowAndAMesh) {
   const SortedJson scan = SortedJson::parse(run("measure " + at("ball.nrrd") + " --window 0: --json").out);
   EXPECT_NEAR(scan["volume_mm3"].get<double>(), tests::ball_mm3(12.0), 60.0);

@@ -65,7 +65,9 @@ TEST(SurfacesVerb, WritesAFileALabelUnderItsName) {
                 action.value(), {});
     Timings timings;
     FileBench bench{timings};
-    bench.read_scan = [](const std::filesystem::path& path) { return voxel::read_scene(path); };
+    bench.scan_reader = [](const std::filesystem::path& path, const voxel::SlicesFinal&) {
+      return voxel::read_scene(path);
+    };
     return operation.on_files(action.value(), bench);
   };
   const FileAnswer answer = run("{name}.ply");

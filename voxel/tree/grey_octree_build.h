@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "voxel/tree/grey_octree.h"
+
+namespace octotomy::voxel {
+
+/// Builds grey_octree_of() a scene while its slices become final: other threads build what the first ones
+/// determine, the bits are the same. Refers to the scene until it is finished or gone; either waits for the
+/// other threads and takes up no other work meanwhile.
+class GreyOctreeBuild {
+ public:
+  /// Preconditions: the scene passes check(); its samples need no values yet, but their place.
+  GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
+  ~GreyOctreeBuild();
+  GreyOctreeBuild(const GreyOctreeBuild&) = delete;
+  GreyOctreeBuild& operator=(const GreyOctreeBuild&) = delete;
+
+  /// The scene's first `count` slices are final. Does not wait.
+  void add(int count);
+  /// Precondition: all slices were added. Throws as grey_octree_of(). To be called once.
+  GreyOctree finished();
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace octotomy::voxel
