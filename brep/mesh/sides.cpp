@@ -9,24 +9,44 @@
 
 namespace octotomy::brep {
 
+PointShares::PointShares(const Triangles& triangles)
+    : triangles_(triangles), blocks_((triangles.faces.size() + block - 1) / block) {
+  tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t b) {
+    Points points{triangles.faces[b * block][0], 0};
+    for (std::size_t f = b * block; f < std::min((b + 1) * block, triangles.faces.size()); ++f)
+      for (const std::uint32_t point : triangles.faces[f]) {
+        assert(point < triangles.points_mm.size());
+        points = {std::min(points.low, point), std::max(points.high, point)};
+      }
+    blocks_[b] = points;
+  });
+}
+
 SidesOfPoints::SidesOfPoints(const Triangles& triangles)
-    : triangles_(triangles), end_(triangles.points_mm.size(), 0), corners_(3 * triangles.faces.size()) {
-  const auto low_of = [](const std::array<std::uint32_t, 3>& face, std::size_t k) {
-    return std::min(face[k], face[k == 2 ? 0 : k + 1]);
+    : triangles_(triangles),
+      end_(triangles.points_mm.size(), 0),
+      corners_(std::make_unique_for_overwrite<std::uint32_t[]>(3 * triangles.faces.size())) {
+  const PointShares shares(triangles);
+  // Each thread takes the sides whose lower points are its own.
+  const auto each_side = [&](const auto& take) {
+    shares.visit([&](std::uint32_t first, std::uint32_t end, const auto& each) {
+      each([&](std::uint32_t f) {
+        const auto& face = triangles.faces[f];
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const std::uint32_t low = std::min(face[k], face[k == 2 ? 0 : k + 1]);
+          if (low - first < end - first) take(low, 3 * f + k);
+        }
+      });
+    });
   };
-  for (const auto& face : triangles.faces)
-    for (std::size_t k = 0; k < 3; ++k) {
-      assert(face[k] < end_.size());
-      ++end_[low_of(face, k)];
-    }
+  each_side([&](std::uint32_t low, std::uint32_t) { ++end_[low]; });
   std::uint32_t sum = 0;
   for (std::uint32_t& end : end_) {
     const std::uint32_t count = end;
     end = sum;  // where the point's sides begin: laying them out takes it to their end
     sum += count;
   }
-  for (std::uint32_t f = 0; f < triangles.faces.size(); ++f)
-    for (std::uint32_t k = 0; k < 3; ++k) corners_[end_[low_of(triangles.faces[f], k)]++] = 3 * f + k;
+  each_side([&](std::uint32_t low, std::uint32_t corner) { corners_[end_[low]++] = corner; });
 }
 
 void SidesOfPoints::put(std::size_t point, Side* sides) const {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <vector>
 
 #include "brep/mesh/triangles.h"
@@ -24,6 +27,41 @@ constexpr std::uint32_t previous_corner(std::uint32_t corner) {
   return corner % 3 == 0 ? corner + 2 : corner - 1;
 }
 
+/// The points of a surface shared out among the threads, as far as it goes without locks.
+class PointShares {
+ public:
+  /// Cost: linear, parallel.
+  explicit PointShares(const Triangles& triangles);
+
+  /// Calls visit(first, end, each) for shares of the points, first..end - 1, from several threads. each(take)
+  /// calls take(f), in ascending order, for all triangles with a point of the share and some others. Cost
+  /// beside the calls: the triangles once where they are about in the order of their points, else once a
+  /// share.
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    const std::size_t points = triangles_.points_mm.size();
+    const auto shares = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t share) {
+      const auto first = static_cast<std::uint32_t>(points * share / shares);
+      const auto end = static_cast<std::uint32_t>(points * (share + 1) / shares);
+      visit(first, end, [&](const auto& take) {
+        for (std::size_t b = 0; b < blocks_.size(); ++b)
+          if (blocks_[b].low < end && blocks_[b].high >= first)
+            for (std::size_t f = b * block; f < std::min((b + 1) * block, triangles_.faces.size()); ++f)
+              take(static_cast<std::uint32_t>(f));
+      });
+    });
+  }
+
+ private:
+  static constexpr std::size_t block = 1024;
+  struct Points {
+    std::uint32_t low, high;
+  };
+  const Triangles& triangles_;
+  std::vector<Points> blocks_;  ///< of triangles: the ends of their points
+};
+
 /// The sides of triangles by the lower of their points. Preconditions: every triangle refers to points; 32
 /// bits number three corners of each. Cost: linear; 4 bytes a side and 4 a point.
 class SidesOfPoints {
@@ -38,8 +76,8 @@ class SidesOfPoints {
 
  private:
   const Triangles& triangles_;
-  std::vector<std::uint32_t> end_;      ///< by point, where its sides end among the corners
-  std::vector<std::uint32_t> corners_;  ///< that the sides leave
+  std::vector<std::uint32_t> end_;            ///< by point, where its sides end among the corners
+  std::unique_ptr<std::uint32_t[]> corners_;  ///< that the sides leave
 };
 
 /// Calls visit(begin, end) with the sides of each edge, in their order.
@@ -58,8 +96,7 @@ void each_edge(const std::vector<Side>& sides, const Visit& visit) {
 /// The same from several threads, the edges in no order; those of one edge are ordered by `corner`.
 /// Preconditions as SidesOfPoints.
 template <typename Visit>
-void each_edge_in_parallel(const Triangles& triangles, const Visit& visit) {
-  const SidesOfPoints sides(triangles);
+void each_edge_in_parallel(const SidesOfPoints& sides, const Visit& visit) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides.point_count(), 4096), [&](const auto& range) {
     std::vector<Side> of_point;
     for (std::size_t point = range.begin(); point != range.end(); ++point) {
@@ -68,6 +105,11 @@ void each_edge_in_parallel(const Triangles& triangles, const Visit& visit) {
       each_edge(of_point, visit);
     }
   });
+}
+
+template <typename Visit>
+void each_edge_in_parallel(const Triangles& triangles, const Visit& visit) {
+  each_edge_in_parallel(SidesOfPoints(triangles), visit);
 }
 
 /// Calls begin(corner) for the first corner of each fan, the triangles about a point that are joined by

@@ -2,14 +2,18 @@
 #include "brep/mesh/triangles.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
 #include <tuple>
 #include <utility>
 
@@ -30,35 +34,58 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   throw Error(ErrorCode::Input, "triangle " + std::to_string(face) + " " + why + "; " + advice);
 }
 
+enum class Flaw { None, NoPoint, NotFinite, Repeated };
+Flaw flaw_of(const Triangles& triangles, const std::array<std::uint32_t, 3>& face) {
+  for (const std::uint32_t v : face) {
+    if (v >= triangles.points_mm.size()) return Flaw::NoPoint;
+    const glm::dvec3& p = triangles.points_mm[v];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return Flaw::NotFinite;
+  }
+  return face[0] == face[1] || face[1] == face[2] || face[2] == face[0] ? Flaw::Repeated : Flaw::None;
+}
+
 void check_triangles(const Triangles& triangles) {
   // Three corners of each triangle are numbered in 32 bits.
   if (triangles.faces.size() >= none / 3 || triangles.points_mm.size() >= none / 2)
     throw Error(ErrorCode::Resource, "a mesh of " + std::to_string(triangles.faces.size()) +
                                          " triangles is more than 32-bit numbers hold; reduce it first");
-  for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
-    const auto& face = triangles.faces[f];
-    for (const std::uint32_t v : face) {
-      if (v >= triangles.points_mm.size())
-        refuse(f,
-               "refers to point " + std::to_string(v) + " of " + std::to_string(triangles.points_mm.size()),
-               "the file or generator is at fault");
-      const glm::dvec3& p = triangles.points_mm[v];
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        refuse(f, "has a point that is not finite", "the file or generator is at fault");
-    }
-    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])
-      refuse(f, "repeats a point", "remove triangles without area first");
+  const std::size_t count = triangles.faces.size();
+  const auto& faces = triangles.faces;
+  const std::size_t first = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, count, 4096), count,
+      [&](const tbb::blocked_range<std::size_t>& range, std::size_t found) {
+        for (std::size_t f = range.begin(); f < std::min(found, range.end()); ++f)
+          if (flaw_of(triangles, faces[f]) != Flaw::None) found = f;
+        return found;
+      },
+      [](std::size_t one, std::size_t other) { return std::min(one, other); });
+  if (first == count) return;
+  const auto no_point = std::find_if(faces[first].begin(), faces[first].end(),
+                                     [&](std::uint32_t v) { return v >= triangles.points_mm.size(); });
+  switch (flaw_of(triangles, faces[first])) {
+    case Flaw::NoPoint:
+      refuse(first,
+             "refers to point " + std::to_string(*no_point) + " of " +
+                 std::to_string(triangles.points_mm.size()),
+             "the file or generator is at fault");
+    case Flaw::NotFinite:
+      refuse(first, "has a point that is not finite", "the file or generator is at fault");
+    default:
+      refuse(first, "repeats a point", "remove triangles without area first");
   }
 }
 
 /// By side, the one along the same edge the other way, or none.
 std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
-  std::vector<std::uint32_t> opposite(3 * triangles.faces.size(), none);
+  std::vector<std::uint32_t> opposite;
+  std::optional<SidesOfPoints> sides;
+  tbb::parallel_invoke([&] { opposite.assign(3 * triangles.faces.size(), none); },
+                       [&] { sides.emplace(triangles); });
   // The first offender, and the edge that it offends at.
   using Offence = std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, bool>;
   constexpr Offence no_offence{none, none, none, false};
   tbb::enumerable_thread_specific<Offence> found(no_offence);
-  each_edge_in_parallel(triangles, [&](const Side* begin, const Side* end) {
+  each_edge_in_parallel(*sides, [&](const Side* begin, const Side* end) {
     if (end - begin == 1) return;
     const bool same_way = begin[0].upward == begin[1].upward;
     if (same_way || end - begin > 2) {
@@ -76,6 +103,35 @@ std::vector<std::uint32_t> pair_sides(const Triangles& triangles) {
            too_many ? "is the third along one of its edges" : "runs along an edge the same way as another",
            "ask for the health of the triangles and repair or separate them first");
   return opposite;
+}
+
+/// Whether the triangles about each point form one fan that is closed.
+bool has_closed_fans_alone(const Linked& linked) {
+  std::atomic<bool> alone = true;
+  PointShares(linked.triangles).visit([&](std::uint32_t first, std::uint32_t end, const auto& each) {
+    // By point, one more than the corners to come of the fan that its first corner is of.
+    std::vector<std::uint32_t> to_come(end - first, 0);
+    each([&](std::uint32_t f) {
+      if (!alone.load(std::memory_order_relaxed)) return;
+      for (std::uint32_t corner = 3 * f; corner < 3 * f + 3; ++corner) {
+        const std::uint32_t point = linked.from(corner) - first;
+        if (point >= end - first) continue;
+        std::uint32_t& count = to_come[point];
+        if (count == 0) {
+          count = 1;
+          std::uint32_t turning = corner;
+          do {
+            ++count;
+            turning = linked.opposite[turning] == none ? none : next_corner(linked.opposite[turning]);
+          } while (turning != none && turning != corner);
+          if (turning == none) count = 1;
+        }
+        if (count == 1) alone = false;  // of a boundary, or of another fan
+        --count;
+      }
+    });
+  });
+  return alone;
 }
 
 /// Gives each further fan about a point a copy of the point, so that one fan is left about each. The fan
@@ -113,7 +169,7 @@ Linked linked(Triangles triangles) {
   check_triangles(triangles);
   std::vector<std::uint32_t> opposite = pair_sides(triangles);
   Linked linked{std::move(triangles), std::move(opposite)};
-  separate_fans(linked);
+  if (!has_closed_fans_alone(linked)) separate_fans(linked);
   return linked;
 }
 

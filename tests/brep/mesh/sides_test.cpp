@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
+#include <tbb/task_arena.h>
 #include <tuple>
 
 namespace octotomy::brep {
@@ -32,6 +33,34 @@ TEST(Sides, StandInTheOrderOfTheirEdgesWhateverTheTriangles) {
           << "seed " << seed;
     }
     ASSERT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(sides.size()));
+  }
+}
+
+TEST(Sides, OfTrianglesInAnyOrderAreTheSameOnAnyNumberOfThreads) {
+  std::mt19937 random(5);
+  Triangles triangles;
+  triangles.points_mm.resize(9000);
+  for (std::uint32_t f = 0; f < 20000; ++f) {
+    // About in the order of their points, then in none.
+    const auto point = [&] {
+      return static_cast<std::uint32_t>(f < 10000 ? (f * 8999 / 10000 + random() % 40) % 9000
+                                                  : random() % 9000);
+    };
+    triangles.faces.push_back({point(), point(), point()});
+  }
+  std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> expected;
+  for (std::uint32_t corner = 0; corner < 3 * triangles.faces.size(); ++corner) {
+    const std::uint32_t from = triangles.faces[corner / 3][corner % 3],
+                        to = triangles.faces[corner / 3][next_corner(corner) % 3];
+    expected.emplace_back(std::min(from, to), std::max(from, to), corner);
+  }
+  std::sort(expected.begin(), expected.end());
+  for (const int threads : {1, 2, 5}) {
+    tbb::task_arena arena(threads);
+    const std::vector<Side> sides = arena.execute([&] { return sorted_sides(triangles); });
+    std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> found;
+    for (const Side& side : sides) found.emplace_back(side.low, side.high, side.corner);
+    EXPECT_TRUE(found == expected) << threads << " threads";
   }
 }
 

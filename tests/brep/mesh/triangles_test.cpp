@@ -2,6 +2,7 @@
 #include "brep/mesh/triangles.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include "tests/brep/shapes.h"
 
@@ -66,6 +67,36 @@ TEST(Triangles, FansThatOnlyTouchGetAVertexEachSoThatBothSurfacesStayClosed) {
   EXPECT_EQ(mesh.point(Mesh::VertexHandle(7)), Mesh::Point(0, 0, 0));
   EXPECT_EQ(mesh.n_edges(), 12u);
   for (const auto e : mesh.edges()) EXPECT_FALSE(mesh.is_boundary(e));
+}
+
+TEST(Triangles, OfManyTheFewFansThatTouchAreFoundOnAnyNumberOfThreads) {
+  // Tetrahedra, each of which has points of its own, but for one that stands on the point of another.
+  for (const std::uint32_t touching : {0u, 1u, 700u, 1999u})
+    for (const int threads : {1, 2, 5}) {
+      Triangles triangles;
+      for (std::uint32_t i = 0; i < 2000; ++i) {
+        const std::uint32_t p = 4 * i;
+        for (const glm::dvec3& corner : {glm::dvec3(0, 0, 0), {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+          triangles.points_mm.push_back(corner + glm::dvec3(2.0 * i, 0, 0));
+        const std::uint32_t first = i > 0 && i == touching ? 3 : p;
+        triangles.faces.insert(
+            triangles.faces.end(),
+            {{first, p + 2, p + 1}, {first, p + 1, p + 3}, {first, p + 3, p + 2}, {p + 1, p + 2, p + 3}});
+      }
+      tbb::task_arena arena(threads);
+      const Linked made = arena.execute([&] { return linked(triangles); });
+      EXPECT_TRUE(made.is_closed());
+      ASSERT_EQ(made.triangles.points_mm.size(), touching > 0 ? 8001U : 8000U) << touching;
+      if (touching > 0) {
+        EXPECT_EQ(made.triangles.points_mm.back(), triangles.points_mm[3]);
+        for (const std::size_t face : {0, 1, 2})
+          EXPECT_EQ(made.triangles.faces[4 * touching + face][0], 8000U);
+        triangles.faces = made.triangles.faces;
+        for (auto& face : triangles.faces)
+          for (std::uint32_t& point : face) point = point == 8000 ? 4 * touching : point;
+      }
+      for (std::uint32_t i = 0; i < 2000; ++i) EXPECT_EQ(triangles.faces[4 * i][0], 4 * i);
+    }
 }
 
 TEST(Triangles, KeepPointsThatNoneOfThemUses) {
