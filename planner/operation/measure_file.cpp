@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/measure_file.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include "brep/io/read_mesh.h"
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/components.h"
@@ -256,17 +258,19 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   Json json = of_voxels(inside, timings, measures);
   add_partial_volume(window, timings, json);
   Digitised digitised{grey.universe().lattice().spacing_mm(), scene.lattice.spacing_mm()};
-  {
-    const Stopwatch watch(timings, "half_width");
-    digitised.shift_mm = window_shift_mm(window);
-    add_half_width(inside, measures, digitised, json);
-  }
   brep::Solid isosurface;
   {
     const Stopwatch watch(timings, "isosurface");
     brep::Triangles triangles = convert::isosurface(scene, window.low, asked.window->high_or_infinity());
     voxel::drop_samples(scene);  // from here on the octree's serve
-    isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction);
+    // Both have parts that take one thread alone.
+    tbb::parallel_invoke(
+        [&] { isosurface = brep::trusted_solid(std::move(triangles), brep::Proof::Construction); },
+        [&] {
+          const Stopwatch own_watch(timings, "half_width");
+          digitised.shift_mm = window_shift_mm(window);
+          add_half_width(inside, measures, digitised, json);
+        });
   }
   const Stopwatch watch(timings, "intervals");
   const brep::Size& surface = isosurface.size();
