@@ -43,7 +43,7 @@ std::vector<Place> places(int pixel_count, double first, double per_px, int side
 
 DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRays& rays,
                       const glm::ivec2& size_px) {
-  DepthImage image = unlit(size_px);
+  DepthImage image = unset(size_px);
   const std::vector<Place> across =
       places(size_px.x, rays.first[axes.axis[0]], rays.per_px_x[axes.axis[0]], map.side);
   const std::vector<Place> down =
@@ -52,11 +52,12 @@ DepthImage picture_of(const ColumnMap& map, const AxisView& axes, const VoxelRay
   tbb::parallel_for(tbb::blocked_range<int>(0, size_px.y, 8), [&](const tbb::blocked_range<int>& range) {
     for (int y = range.begin(); y < range.end(); ++y) {
       const Place& j = down[static_cast<std::size_t>(y)];
+      Seen* const pixel = &image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x)];
+      std::fill_n(pixel, across.size(), Seen{});
       if (j.nearest < 0) continue;
       const Seen* const nearest = &map.at(0, j.nearest);
       const Seen* const low = &map.at(0, j.low);
       const Seen* const high = &map.at(0, j.high);
-      Seen* const pixel = &image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(size_px.x)];
       for (std::size_t x = 0; x < across.size(); ++x) {
         const Place& i = across[x];
         if (i.nearest < 0 || !nearest[i.nearest].lit()) continue;

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
+#include "voxel/space/large_allocator.h"
 #include "voxel/view/pixel_index.h"
 
 namespace octotomy::voxel {
@@ -20,17 +22,37 @@ struct Seen {
   bool lit() const { return object >= 0; }
 };
 
+/// Leaves pixels made without a value unset, so that only the threads that find them write them. Their memory
+/// needs no constructor, because a Seen is an aggregate that may be copied bytewise.
+struct PixelAllocator : LargeAllocator<Seen> {
+  template <typename Other>
+  struct rebind {
+    using other = PixelAllocator;
+  };
+  using LargeAllocator<Seen>::construct;
+  void construct(Seen*) { static_assert(std::is_aggregate_v<Seen> && std::is_trivially_copyable_v<Seen>); }
+};
+
 /// The surface at every pixel, row by row from the top left.
 struct DepthImage {
   glm::ivec2 size_px{0};
-  std::vector<Seen> pixels;
+  std::vector<Seen, PixelAllocator> pixels;
 
   const Seen& at(int x, int y) const { return pixels[pixel_index(size_px, x, y)]; }
 };
 
+/// An image whose pixels are not set until somebody does.
+inline DepthImage unset(const glm::ivec2& size_px) {
+  DepthImage image{size_px, {}};
+  image.pixels.resize(pixel_count(size_px));
+  return image;
+}
+
 /// An image of background.
 inline DepthImage unlit(const glm::ivec2& size_px) {
-  return {size_px, std::vector<Seen>(pixel_count(size_px))};
+  DepthImage image{size_px, {}};
+  image.pixels.assign(pixel_count(size_px), Seen{});
+  return image;
 }
 
 /// Overwrites the pixels of `image` at which `own` is nearer. Precondition: images of one size.

@@ -326,7 +326,7 @@ ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& ax
   const TracedFrame frame(axes, universe);
   const auto side = static_cast<std::size_t>(frame.side);
   ColumnMap map{frame.side, {spacing_mm[axes.axis[0]], spacing_mm[axes.axis[1]]}, {}};
-  map.columns.resize(side * side);
+  map.columns.assign(side * side, Seen{});
   const int tiles = (frame.side + tile_side - 1) / tile_side;
   tbb::parallel_for(0, tiles * tiles, [&](int tile) {
     const int tile_p = tile % tiles * tile_side;
