@@ -9,9 +9,9 @@
 #include "voxel/space/vector_clones.h"
 
 // The search of ray_surface.cpp on vectors of rays:
-// 1 copy the samples about the leaf; 2 interpolate them at the entries; 3 take the voxel's face where the
-// object was cut; 4 probe along the other rays until their sample crosses the threshold; 5 interpolate the
-// crossing. Every ray takes the steps of all; those that it does not need have no effect.
+// 1 copy the samples about the leaf in pairs; 2 interpolate them at the entries; 3 take the voxel's face
+// where the object was cut; 4 probe along the other rays until their sample crosses the threshold; 5
+// interpolate the crossing. Every ray takes the steps of all; those that it does not need have no effect.
 
 // Vectors are passed between functions of this file alone, all of them inlined.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -212,9 +212,30 @@ std::uint64_t row_of(const std::int16_t* leaf, int y, int z) {
   return four;
 }
 
-/// Copies the samples of a cube of `row` voxels a side whose first voxel lies one to three behind a leaf's
-/// first along each axis. Precondition: the three leaves along each axis lie within the universe.
-void copy_samples(const GreyOctree& grey, const glm::ivec3& first, std::int16_t* to) {
+/// The voxels in front of a leaf, along an axis, that a surface in the leaf may depend on. A ray enters a
+/// voxel up to half a voxel in front of its centre and is searched over two voxels' length back, of which
+/// `share` is along the axis. The margin is far beyond the rounding of positions.
+int in_front(double share) {
+  constexpr double margin = 1.0 / 64.0;
+  return std::min(row - 5, static_cast<int>(std::ceil(0.5 + 2.0 * std::abs(share) + margin)));
+}
+
+/// Pairs each of a row's samples, lowest first, with the next. The last, which has none, gets itself.
+void pair_samples(std::uint64_t first, std::uint64_t last, std::int32_t* pairs) {
+  using Short8 = std::int16_t __attribute__((vector_size(16)));
+  using Long2 = std::uint64_t __attribute__((vector_size(16)));
+  // Not through memory, where two writes of eight bytes delay a read of sixteen.
+  const auto low = reinterpret_cast<Short8>(Long2{first, last});
+  const Short8 high = __builtin_shufflevector(low, low, 1, 2, 3, 4, 5, 6, 7, 7);
+  store(__builtin_shufflevector(low, high, 0, 8, 1, 9, 2, 10, 3, 11), pairs);
+  store(__builtin_shufflevector(low, high, 4, 12, 5, 13, 6, 14, 7, 15), pairs + 4);
+}
+
+/// Pairs the samples of the rows from `from` up to, not including, `until` along y and z of a cube of `row`
+/// voxels a side. The cube's first voxel lies one to three behind a leaf's first along each axis.
+/// Precondition: the three leaves along each axis lie within the universe.
+void pair_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& from,
+                 const glm::ivec3& until, std::int32_t* pairs) {
   const glm::ivec3 first_brick = first >> 4;
   std::array<const GreyBrick*, 8> bricks;
   for (int i = 0; i < 8; ++i) {
@@ -234,21 +255,15 @@ void copy_samples(const GreyOctree& grey, const glm::ivec3& first, std::int16_t*
             bricks[static_cast<std::size_t>(brick.x + 2 * brick.y + 4 * brick.z)]->samples[number].data();
       }
   const int low = 16 * skipped.x, high = 64 - low;
-  for (int z = skipped.z; z < skipped.z + row; ++z)
-    for (int y = skipped.y; y < skipped.y + row; ++y, to += row) {
-      const std::int16_t* const* const leaf = &leaves[static_cast<std::size_t>(3 * (y >> 2) + 9 * (z >> 2))];
-      const std::uint64_t middle = row_of(leaf[1], y, z);
-      const std::uint64_t eight[2] = {(row_of(leaf[0], y, z) >> low) | (middle << high),
-                                      (middle >> low) | (row_of(leaf[2], y, z) << high)};
-      std::memcpy(to, eight, sizeof eight);
+  for (int z = from.z; z < until.z; ++z)
+    for (int y = from.y; y < until.y; ++y) {
+      const int in_y = y + skipped.y, in_z = z + skipped.z;
+      const std::int16_t* const* const leaf =
+          &leaves[static_cast<std::size_t>(3 * (in_y >> 2) + 9 * (in_z >> 2))];
+      const std::uint64_t middle = row_of(leaf[1], in_y, in_z);
+      pair_samples((row_of(leaf[0], in_y, in_z) >> low) | (middle << high),
+                   (middle >> low) | (row_of(leaf[2], in_y, in_z) << high), pairs + row * y + layer * z);
     }
-}
-
-/// Pairs each sample with the next.
-OCTOTOMY_VECTOR_CLONES void pair_samples(const std::int16_t* __restrict samples, int count,
-                                         std::int32_t* __restrict pairs) {
-  for (int i = 0; i < count; ++i)
-    pairs[i] = static_cast<std::uint16_t>(samples[i]) | (std::int32_t{samples[i + 1]} << 16);
 }
 
 }  // namespace
@@ -261,29 +276,35 @@ LeafSurface::LeafSurface(const DrawnObject& object, const VoxelRays& rays, const
       threshold_(static_cast<float>(object.threshold)),
       universe_side_(object.grey->universe().side()) {
   assert(object.grey && !object.moved_from_still);
+  // In front of the leaf is above it along a flipped axis.
+  for (int axis = 0; axis < 3; ++axis) {
+    const int unused = side - 5 - in_front(rays.per_mm[axis] / glm::length(rays.per_mm));
+    (mirror.flipped[axis] != 0 ? until_ : from_)[axis] += mirror.flipped[axis] != 0 ? -unused : unused;
+  }
 }
 
 void LeafSurface::go_to(const glm::ivec3& leaf) {
   leaf_ = leaf;
   native_ = mirror_.native(leaf + 3 * mirror_.flipped);
-  // In front of the leaf is above it along a flipped axis.
   first_ = native_ - 3 + 2 * mirror_.flipped;
-  std::array<std::int16_t, layer * side + 1> samples;
-  samples.back() = beyond;
   const glm::ivec3 end = first_ + side;
   if (glm::all(glm::greaterThanEqual(first_, glm::ivec3(0))) &&
       glm::all(glm::lessThanEqual(end, glm::ivec3(universe_side_)))) {
-    copy_samples(grey_, first_, samples.data());
-  } else {
-    std::size_t next = 0;
-    for (int z = first_.z; z < end.z; ++z)
-      for (int y = first_.y; y < end.y; ++y)
-        for (int x = first_.x; x < end.x; ++x) {
-          const bool inside = std::min({x, y, z}) >= 0 && std::max({x, y, z}) < universe_side_;
-          samples[next++] = inside ? grey_.sample({x, y, z}) : beyond;
-        }
+    pair_leaves(grey_, first_, from_, until_, pairs_.data());
+    return;
   }
-  pair_samples(samples.data(), static_cast<int>(pairs_.size()), pairs_.data());
+  for (int z = from_.z; z < until_.z; ++z)
+    for (int y = from_.y; y < until_.y; ++y) {
+      std::array<std::int16_t, side> samples;
+      for (int x = 0; x < side; ++x) {
+        const glm::ivec3 at = first_ + glm::ivec3(x, y, z);
+        const bool inside =
+            std::min({at.x, at.y, at.z}) >= 0 && std::max({at.x, at.y, at.z}) < universe_side_;
+        samples[static_cast<std::size_t>(x)] = inside ? grey_.sample(at) : beyond;
+      }
+      pair_samples(load<std::uint64_t>(samples.data()), load<std::uint64_t>(samples.data() + 4),
+                   pairs_.data() + row * y + layer * z);
+    }
 }
 
 void LeafSurface::find(const RayBatch& batch, Found& found) {
@@ -294,8 +315,8 @@ void LeafSurface::find(const RayBatch& batch, Found& found) {
   leaf.threshold = threshold_;
   for (int axis = 0; axis < 3; ++axis) {
     leaf.first[axis] = Int{} + first_[axis];
-    leaf.low_cell[axis] = Int{} + std::max(first_[axis], 0);
-    leaf.high_cell[axis] = Int{} + std::min(first_[axis] + side, universe_side_) - 2;
+    leaf.low_cell[axis] = Int{} + std::max(first_[axis] + from_[axis], 0);
+    leaf.high_cell[axis] = Int{} + std::min(first_[axis] + until_[axis], universe_side_) - 2;
     leaf.per_mm[axis] = per_mm_[axis];
     leaf.per_mm_float[axis] = Float{} + static_cast<float>(per_mm_[axis]);
   }

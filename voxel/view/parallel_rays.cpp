@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <tbb/parallel_for.h>
 #include <utility>
 
 // All in the mirrored frame, in which rays rise along all axes, so that the order of children's and voxels'
@@ -248,7 +249,7 @@ void ParallelRays::tabulate() {
     return std::abs(glm::dot(normal, between)) > reach;
   };
   passed_.assign(static_cast<std::size_t>(cells) * cells, 0);
-  for (int y = 0; y < cells; ++y)
+  tbb::parallel_for(0, int{cells}, [&](int y) {
     for (int x = 0; x < cells; ++x) {
       const glm::dvec2 cell = half_leaf * ((glm::dvec2(x, y) + 0.5) * 2.0 / double{cells} - 1.0);
       std::uint64_t voxels = 0;
@@ -263,6 +264,7 @@ void ParallelRays::tabulate() {
       }
       passed_[static_cast<std::size_t>(y) * cells + static_cast<std::size_t>(x)] = voxels;
     }
+  });
 }
 
 ParallelRays ParallelRays::through(const Octree& octree) const {

@@ -23,19 +23,20 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Prefetches the samples of a leaf and of those in front of it, two cache lines each.
-void prefetch_leaf(const GreyOctree& grey, const Mirror& mirror, const glm::ivec3& leaf) {
+/// Prefetches the samples of a leaf and of all leaves around it, two cache lines each.
+void prefetch_leaf(const GreyOctree& grey, const glm::ivec3& leaf) {
   const int side = grey.universe().side();
-  for (int i = 0; i < 8; ++i) {
-    const glm::ivec3 before(i & 1, (i >> 1) & 1, i >> 2);
-    const glm::ivec3 at = leaf - 4 * before * (1 - 2 * mirror.flipped);
-    if (std::min({at.x, at.y, at.z}) < 0 || std::max({at.x, at.y, at.z}) >= side) continue;
-    const glm::ivec3 place = (at >> 2) & 3;
-    const std::int16_t* samples =
-        grey.brick(at >> 4).samples[static_cast<std::size_t>(child_index(place.x, place.y, place.z))].data();
-    __builtin_prefetch(samples);
-    __builtin_prefetch(samples + 32);
-  }
+  const glm::ivec3 first = glm::max(leaf - 4, glm::ivec3(0));
+  const glm::ivec3 last = glm::min(leaf + 4, glm::ivec3(side - 4));
+  for (int z = first.z; z <= last.z; z += 4)
+    for (int y = first.y; y <= last.y; y += 4)
+      for (int x = first.x; x <= last.x; x += 4) {
+        const int number = child_index((x >> 2) & 3, (y >> 2) & 3, (z >> 2) & 3);
+        const std::int16_t* samples =
+            grey.brick({x >> 4, y >> 4, z >> 4}).samples[static_cast<std::size_t>(number)].data();
+        __builtin_prefetch(samples);
+        __builtin_prefetch(samples + 32);
+      }
 }
 
 }  // namespace
@@ -133,8 +134,7 @@ void RayCast::Prepared::cast_square(std::size_t i, const glm::ivec2& first, cons
     }
     return ended;
   };
-  bundles[i].cast(first, last, take_all,
-                  [&](const glm::ivec3& leaf) { prefetch_leaf(*object.grey, mirror, leaf); });
+  bundles[i].cast(first, last, take_all, [&](const glm::ivec3& leaf) { prefetch_leaf(*object.grey, leaf); });
 }
 
 Seen RayCast::seen(const glm::dvec2& p_px) const {
@@ -166,7 +166,7 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
 DepthImage RayCast::picture() const {
   constexpr int square_px = ParallelRays::square_px;
   const Prepared& the = *prepared_;
-  DepthImage image = unlit(the.size_px);
+  DepthImage image = unset(the.size_px);
   const glm::ivec2 squares = (the.size_px + (square_px - 1)) / square_px;
   if (the.eye) {
     tbb::parallel_for(0, the.size_px.y, [&](int y) {
