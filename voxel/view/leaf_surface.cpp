@@ -61,17 +61,26 @@ template <typename Whole, typename Half>
   return ((longs[0] | longs[1]) | (longs[2] | longs[3])) != 0;
 }
 
-/// What is the same for all rays in a leaf.
+/// What is the same for all rays.
+struct Way {
+  double per_mm[3];
+  float half_voxel_mm = 0.0f;
+  float threshold = 0.0f;
+};
+
+/// The samples about a leaf.
 struct Leaf {
   const std::int32_t* pairs = nullptr;
   Int first[3];                   ///< voxel of the first pair
   Int low_cell[3], high_cell[3];  ///< that pairs are there for
-  double per_mm[3];
-  Float per_mm_float[3];
-  std::int32_t corner = 0;  ///< number of the pair of the leaf's first voxel in the mirrored frame
-  std::int32_t stride[3];   ///< from there to the next voxel along an axis
-  float half_voxel_mm = 0.0f;
-  float threshold = 0.0f;
+  std::int32_t corner = 0;        ///< number of the pair of the leaf's first voxel in the mirrored frame
+  std::int32_t stride[3];         ///< from there to the next voxel along an axis
+};
+
+/// The samples of a moved object, among which its rays run.
+struct StillSamples {
+  const GreyOctree* grey = nullptr;
+  glm::dmat4 still_from_voxel{1.0};
 };
 
 /// One vector of rays.
@@ -107,42 +116,84 @@ struct Origins {
   return __builtin_convertvector(pair >> 16, Float);
 }
 
-/// Interpolates the samples at a distance from the entry, as RaySamples does.
-[[gnu::always_inline]] inline Float interpolate(const Leaf& leaf, const Origins& origins,
+/// Interpolates from the eight samples about positions, numbered x + 2y + 4z, as RaySamples does.
+[[gnu::always_inline]] inline Float mixed(const Float corners[8], const Float t[3]) {
+  const auto mix = [](const Float& from, const Float& to, const Float& share) __attribute__((always_inline)) {
+    return from + (to - from) * share;
+  };
+  const Float left = mix(mix(corners[0], corners[4], t[2]), mix(corners[2], corners[6], t[2]), t[1]);
+  const Float right = mix(mix(corners[1], corners[5], t[2]), mix(corners[3], corners[7], t[2]), t[1]);
+  return mix(left, right, t[0]);
+}
+
+/// The cell, along an axis, of positions at a distance from the entry, and their place in it.
+[[gnu::always_inline]] inline Int cell_of(const Way& way, const Origins& origins, int axis,
+                                          const Float& distance_mm, const Int& low, const Int& high,
+                                          Float& t) {
+  const Float p = origins.p[axis] + distance_mm * static_cast<float>(way.per_mm[axis]);
+  const Int cell = clamped(origins.first[axis] + __builtin_convertvector(p, Int), low, high);
+  t = clamped(p - __builtin_convertvector(cell - origins.first[axis], Float), Float{}, Float{} + 1.0f);
+  return cell;
+}
+
+/// Interpolates at a distance from the entry.
+[[gnu::always_inline]] inline Float interpolate(const Way& way, const Leaf& leaf, const Origins& origins,
                                                 const Float& distance_mm) {
   Float t[3];
   Int at{};
   for (int axis = 2; axis >= 0; --axis) {
-    const Float p = origins.p[axis] + distance_mm * leaf.per_mm_float[axis];
-    const Int cell = clamped(origins.first[axis] + __builtin_convertvector(p, Int), leaf.low_cell[axis],
-                             leaf.high_cell[axis]);
-    t[axis] =
-        clamped(p - __builtin_convertvector(cell - origins.first[axis], Float), Float{}, Float{} + 1.0f);
+    const Int cell =
+        cell_of(way, origins, axis, distance_mm, leaf.low_cell[axis], leaf.high_cell[axis], t[axis]);
     at = (at << 3) + (cell - leaf.first[axis]);
   }
   static_assert(row == 1 << 3);
-  const Int near_below = pairs_at(leaf.pairs, at), far_below = pairs_at(leaf.pairs + row, at);
-  const Int near_above = pairs_at(leaf.pairs + layer, at), far_above = pairs_at(leaf.pairs + layer + row, at);
-  const auto mix = [](const Float& from, const Float& to, const Float& share) __attribute__((always_inline)) {
-    return from + (to - from) * share;
-  };
-  const Float left = mix(mix(left_of(near_below), left_of(near_above), t[2]),
-                         mix(left_of(far_below), left_of(far_above), t[2]), t[1]);
-  const Float right = mix(mix(right_of(near_below), right_of(near_above), t[2]),
-                          mix(right_of(far_below), right_of(far_above), t[2]), t[1]);
-  return mix(left, right, t[0]);
+  Float corners[8];
+  for (int i = 0; i < 4; ++i) {
+    const Int pair = pairs_at(leaf.pairs + row * (i & 1) + layer * (i >> 1), at);
+    corners[2 * i] = left_of(pair);
+    corners[2 * i + 1] = right_of(pair);
+  }
+  return mixed(corners, t);
+}
+[[gnu::always_inline]] inline Float interpolate(const Way& way, const StillSamples& samples,
+                                                const Origins& origins, const Float& distance_mm) {
+  const Int low{}, high = low + (samples.grey->universe().side() - 2);
+  Float t[3];
+  alignas(64) std::int32_t cells[3][lanes], values[8][lanes];
+  for (int axis = 0; axis < 3; ++axis)
+    store(cell_of(way, origins, axis, distance_mm, low, high, t[axis]), cells[axis]);
+  for (int i = 0; i < lanes; ++i) {
+    const glm::ivec3 cell(cells[0][i], cells[1][i], cells[2][i]);
+    // The part of a coordinate in the number of a brick's sample, which counts leaves, then voxels, each by
+    // x + 4y + 16z.
+    const auto along = [](int at) { return ((at >> 2) & 3) * 64 + (at & 3); };
+    const int number[3][2] = {{along(cell.x), along(cell.x + 1)},
+                              {along(cell.y) << 2, along(cell.y + 1) << 2},
+                              {along(cell.z) << 4, along(cell.z + 1) << 4}};
+    const std::int16_t* const near = samples.grey->brick(cell >> 4).samples.front().data();
+    // Five cells in six lie within one brick.
+    const bool within = ((cell ^ (cell + 1)) & ~15) == glm::ivec3(0);
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = corner & 1, y = (corner >> 1) & 1, z = corner >> 2;
+      const std::int16_t* const from =
+          within ? near : samples.grey->brick((cell + glm::ivec3(x, y, z)) >> 4).samples.front().data();
+      values[corner][i] = from[number[0][x] + number[1][y] + number[2][z]];
+    }
+  }
+  Float corners[8];
+  for (int corner = 0; corner < 8; ++corner)
+    corners[corner] = __builtin_convertvector(load<Int>(values[corner]), Float);
+  return mixed(corners, t);
 }
 
-/// Steps 2 to 5 for one vector of rays.
-OCTOTOMY_VECTOR_CLONES void find_vector(const Leaf& leaf, const Lanes& rays) {
-  const Double4 enter_mm[2] = {load<Double4>(rays.enter_mm), load<Double4>(rays.enter_mm + 4)};
-  const Double4 leave_mm[2] = {load<Double4>(rays.leave_mm), load<Double4>(rays.leave_mm + 4)};
-  const Float way = floats(leave_mm[0] - enter_mm[0], leave_mm[1] - enter_mm[1]);
+/// Positions near the entries.
+[[gnu::always_inline]] inline Origins origins_of(const Way& way, const Lanes& rays,
+                                                 const Double4 start[3][2]) {
   Origins origins;
   for (int axis = 0; axis < 3; ++axis) {
     Double4 first[2], p[2];
     for (int half = 0; half < 2; ++half) {
-      p[half] = load<Double4>(rays.start[axis] + 4 * half) + enter_mm[half] * leaf.per_mm[axis];
+      p[half] = start[axis][half] + load<Double4>(rays.enter_mm + 4 * half) * way.per_mm[axis];
       // The floor: down by one where the conversion went up.
       const Double4 whole = __builtin_convertvector(__builtin_convertvector(p[half], Int4), Double4);
       constexpr double reach = 8.0;
@@ -152,25 +203,26 @@ OCTOTOMY_VECTOR_CLONES void find_vector(const Leaf& leaf, const Lanes& rays) {
         joined<Int>(__builtin_convertvector(first[0], Int4), __builtin_convertvector(first[1], Int4));
     origins.p[axis] = floats(p[0] - first[0], p[1] - first[1]);
   }
-  const float threshold = leaf.threshold;
-  const Float entry = interpolate(leaf, origins, Float{});
-  const auto through = load<Int>(rays.through);
-  Int number = Int{} + leaf.corner, step_back{};
-  for (int axis = 0; axis < 3; ++axis) {
-    number += load<Int>(rays.at[axis]) * leaf.stride[axis];
-    step_back |= (through == axis) & leaf.stride[axis];
-  }
-  const Float voxel = left_of(pairs_at(leaf.pairs, number));
-  const Float before = left_of(pairs_at(leaf.pairs, number - step_back));
+  return origins;
+}
+
+/// Steps 4 and 5 for one vector of rays. Those that are not `sought` see their voxel's face.
+template <typename Samples>
+[[gnu::always_inline]] inline void find_crossings(const Way& way, const Samples& samples, const Lanes& rays,
+                                                  const Origins& origins, const Float& entry,
+                                                  const Int& sought) {
+  const Double4 enter_mm[2] = {load<Double4>(rays.enter_mm), load<Double4>(rays.enter_mm + 4)};
+  const Double4 leave_mm[2] = {load<Double4>(rays.leave_mm), load<Double4>(rays.leave_mm + 4)};
+  const Float way_mm = floats(leave_mm[0] - enter_mm[0], leave_mm[1] - enter_mm[1]);
+  const float threshold = way.threshold;
   const Int outside = entry < threshold;
-  Int open = ~((voxel < threshold) | ((before >= threshold) & ~outside));
-  Int faces = ~open, crossed{};
+  Int open = sought, faces = ~open, crossed{};
   // From outside, forward over the voxel in two steps; from inside, back over two voxels in four.
   Float near_mm{}, near_value = entry, far_mm{}, far_value = entry;
   for (int step = 1; any(open) && step <= 4; ++step) {
     const Float probe_mm =
-        outside ? way * (step == 1 ? 0.5f : 1.0f) : Float{} - static_cast<float>(step) * leaf.half_voxel_mm;
-    const Float value = interpolate(leaf, origins, probe_mm);
+        outside ? way_mm * (step == 1 ? 0.5f : 1.0f) : Float{} - static_cast<float>(step) * way.half_voxel_mm;
+    const Float value = interpolate(way, samples, origins, probe_mm);
     near_mm = open ? far_mm : near_mm;
     near_value = open ? far_value : near_value;
     far_mm = open ? probe_mm : far_mm;
@@ -187,7 +239,7 @@ OCTOTOMY_VECTOR_CLONES void find_vector(const Leaf& leaf, const Lanes& rays) {
   const Float middle_mm =
       crossed ? below_mm + (above_mm - below_mm) * (threshold - below_value) / (above_value - below_value)
               : Float{};
-  const Float middle = interpolate(leaf, origins, middle_mm);
+  const Float middle = interpolate(way, samples, origins, middle_mm);
   const Int under = middle < threshold;
   below_mm = under ? middle_mm : below_mm;
   below_value = under ? middle : below_value;
@@ -203,6 +255,42 @@ OCTOTOMY_VECTOR_CLONES void find_vector(const Leaf& leaf, const Lanes& rays) {
                enter_mm[1] + __builtin_convertvector(high, Double4)),
         rays.depth_mm);
   store((crossed & (Int{} + smooth)) | (faces & (Int{} + face)), rays.kind);
+}
+
+/// Steps 2 to 5 for one vector of rays.
+OCTOTOMY_VECTOR_CLONES void find_vector(const Way& way, const Leaf& leaf, const Lanes& rays) {
+  Double4 start[3][2];
+  for (int axis = 0; axis < 3; ++axis)
+    for (int half = 0; half < 2; ++half) start[axis][half] = load<Double4>(rays.start[axis] + 4 * half);
+  const Origins origins = origins_of(way, rays, start);
+  const Float entry = interpolate(way, leaf, origins, Float{});
+  const auto through = load<Int>(rays.through);
+  Int number = Int{} + leaf.corner, step_back{};
+  for (int axis = 0; axis < 3; ++axis) {
+    number += load<Int>(rays.at[axis]) * leaf.stride[axis];
+    step_back |= (through == axis) & leaf.stride[axis];
+  }
+  const Float voxel = left_of(pairs_at(leaf.pairs, number));
+  const Float before = left_of(pairs_at(leaf.pairs, number - step_back));
+  const Int outside = entry < way.threshold;
+  find_crossings(way, leaf, rays, origins, entry,
+                 ~((voxel < way.threshold) | ((before >= way.threshold) & ~outside)));
+}
+
+/// Steps 2, 4 and 5 for one vector of rays of a moved object.
+OCTOTOMY_VECTOR_CLONES void find_moved(const Way& way, const StillSamples& samples, const Lanes& rays) {
+  const glm::dmat4& still = samples.still_from_voxel;
+  Double4 start[3][2];
+  for (int axis = 0; axis < 3; ++axis)
+    for (int half = 0; half < 2; ++half) {
+      Double4 p[3];
+      for (int from = 0; from < 3; ++from) p[from] = load<Double4>(rays.start[from] + 4 * half);
+      // In the order of GLM's product.
+      start[axis][half] =
+          (still[0][axis] * p[0] + still[1][axis] * p[1]) + (still[2][axis] * p[2] + still[3][axis]);
+    }
+  const Origins origins = origins_of(way, rays, start);
+  find_crossings(way, samples, rays, origins, interpolate(way, samples, origins, Float{}), ~Int{});
 }
 
 /// Four samples of a leaf's row.
@@ -268,17 +356,17 @@ void pair_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ive
 
 }  // namespace
 
-LeafSurface::LeafSurface(const DrawnObject& object, const VoxelRays& rays, const Mirror& mirror)
+LeafSurface::LeafSurface(const DrawnObject& object, const glm::dvec3& per_mm, const Mirror& mirror)
     : grey_(*object.grey),
       mirror_(mirror),
-      per_mm_(rays.per_mm),
-      half_voxel_mm_(static_cast<float>(0.5 / glm::length(rays.per_mm))),
+      still_from_voxel_(object.still_from_voxel()),
+      per_mm_(still_from_voxel_ ? glm::dmat3(*still_from_voxel_) * per_mm : per_mm),
+      half_voxel_mm_(static_cast<float>(0.5 / glm::length(per_mm_))),
       threshold_(static_cast<float>(object.threshold)),
       universe_side_(object.grey->universe().side()) {
-  assert(object.grey && !object.moved_from_still);
   // In front of the leaf is above it along a flipped axis.
   for (int axis = 0; axis < 3; ++axis) {
-    const int unused = side - 5 - in_front(rays.per_mm[axis] / glm::length(rays.per_mm));
+    const int unused = side - 5 - in_front(per_mm_[axis] / glm::length(per_mm_));
     (mirror.flipped[axis] != 0 ? until_ : from_)[axis] += mirror.flipped[axis] != 0 ? -unused : unused;
   }
 }
@@ -308,32 +396,36 @@ void LeafSurface::go_to(const glm::ivec3& leaf) {
 }
 
 void LeafSurface::find(const RayBatch& batch, Found& found) {
-  if (batch.leaf != leaf_) go_to(batch.leaf);
-  Leaf leaf;
-  leaf.pairs = pairs_.data();
-  leaf.half_voxel_mm = half_voxel_mm_;
-  leaf.threshold = threshold_;
-  for (int axis = 0; axis < 3; ++axis) {
-    leaf.first[axis] = Int{} + first_[axis];
-    leaf.low_cell[axis] = Int{} + std::max(first_[axis] + from_[axis], 0);
-    leaf.high_cell[axis] = Int{} + std::min(first_[axis] + until_[axis], universe_side_) - 2;
-    leaf.per_mm[axis] = per_mm_[axis];
-    leaf.per_mm_float[axis] = Float{} + static_cast<float>(per_mm_[axis]);
-  }
-  // Along a flipped axis voxels count down.
-  const glm::ivec3 stride = glm::ivec3(1, row, layer) * (1 - 2 * mirror_.flipped);
-  const glm::ivec3 corner = native_ - first_ + 3 * mirror_.flipped;
-  leaf.corner = corner.x + row * corner.y + layer * corner.z;
-  for (int axis = 0; axis < 3; ++axis) leaf.stride[axis] = stride[axis];
+  const Way way{{per_mm_.x, per_mm_.y, per_mm_.z}, half_voxel_mm_, threshold_};
   alignas(64) RayBatch::ByRay<std::int32_t> kind;
-  for (int i = 0; i < batch.count; i += lanes)
-    find_vector(leaf, {{batch.start[0].data() + i, batch.start[1].data() + i, batch.start[2].data() + i},
-                       batch.enter_mm.data() + i,
-                       batch.leave_mm.data() + i,
-                       {batch.at[0].data() + i, batch.at[1].data() + i, batch.at[2].data() + i},
-                       batch.entered_through.data() + i,
-                       found.depth_mm.data() + i,
-                       kind.data() + i});
+  const auto lanes_from = [&](int i) {
+    return Lanes{{batch.start[0].data() + i, batch.start[1].data() + i, batch.start[2].data() + i},
+                 batch.enter_mm.data() + i,
+                 batch.leave_mm.data() + i,
+                 {batch.at[0].data() + i, batch.at[1].data() + i, batch.at[2].data() + i},
+                 batch.entered_through.data() + i,
+                 found.depth_mm.data() + i,
+                 kind.data() + i};
+  };
+  if (still_from_voxel_) {
+    const StillSamples samples{&grey_, *still_from_voxel_};
+    for (int i = 0; i < batch.count; i += lanes) find_moved(way, samples, lanes_from(i));
+  } else {
+    if (batch.leaf != leaf_) go_to(batch.leaf);
+    Leaf leaf;
+    leaf.pairs = pairs_.data();
+    for (int axis = 0; axis < 3; ++axis) {
+      leaf.first[axis] = Int{} + first_[axis];
+      leaf.low_cell[axis] = Int{} + std::max(first_[axis] + from_[axis], 0);
+      leaf.high_cell[axis] = Int{} + std::min(first_[axis] + until_[axis], universe_side_) - 2;
+    }
+    // Along a flipped axis voxels count down.
+    const glm::ivec3 stride = glm::ivec3(1, row, layer) * (1 - 2 * mirror_.flipped);
+    const glm::ivec3 corner = native_ - first_ + 3 * mirror_.flipped;
+    leaf.corner = corner.x + row * corner.y + layer * corner.z;
+    for (int axis = 0; axis < 3; ++axis) leaf.stride[axis] = stride[axis];
+    for (int i = 0; i < batch.count; i += lanes) find_vector(way, leaf, lanes_from(i));
+  }
   found.lit = found.stepped = 0;
   for (int i = 0; i < batch.count; ++i) {
     found.lit |= RayBatch::Rays{kind[static_cast<std::size_t>(i)] != nothing} << i;

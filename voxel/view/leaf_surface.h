@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 
-#include "voxel/view/camera.h"
 #include "voxel/view/drawn_object.h"
 #include "voxel/view/ray_batch.h"
 #include "voxel/view/ray_walk.h"
@@ -17,9 +17,9 @@ namespace octotomy::voxel {
 /// for bit what GreySurface::seen() finds for each. Keeps the samples about the last leaf. For one thread.
 class LeafSurface {
  public:
-  /// Preconditions: the object has its samples and has not moved from them; the mirror is that of the rays.
-  /// Refers to the object's samples and the mirror.
-  LeafSurface(const DrawnObject& object, const VoxelRays& rays, const Mirror& mirror);
+  /// For rays of `per_mm` voxels per millimetre of depth. Preconditions: the object has its samples; the
+  /// mirror is that of the rays. Refers to the object's samples and the mirror.
+  LeafSurface(const DrawnObject& object, const glm::dvec3& per_mm, const Mirror& mirror);
 
   /// What the rays of a batch see.
   struct Found {
@@ -27,7 +27,8 @@ class LeafSurface {
     RayBatch::Rays stepped = 0;  ///< at the voxel's face
     RayBatch::ByRay<float> depth_mm;
   };
-  /// Finds the surface of every ray in the batch. Precondition: all of them pass their voxels.
+  /// Finds the surface of every ray in the batch. Precondition: all of them pass their voxels. The voxels of
+  /// a moved object need not be of one leaf, and only the rays' starts and the depths of their voxels count.
   void find(const RayBatch& batch, Found& found);
 
   /// Samples that the surface in a leaf may depend on: from three voxels in front of the leaf to one behind,
@@ -39,8 +40,9 @@ class LeafSurface {
 
   const GreyOctree& grey_;
   const Mirror& mirror_;
-  glm::dvec3 per_mm_;
-  float half_voxel_mm_;  ///< along a ray, in depth
+  std::optional<glm::dmat4> still_from_voxel_;  ///< DrawnObject::still_from_voxel()
+  glm::dvec3 per_mm_;                           ///< among the samples
+  float half_voxel_mm_;                         ///< along a ray, in depth
   float threshold_;
   int universe_side_;
   glm::ivec3 leaf_{std::numeric_limits<int>::min()};

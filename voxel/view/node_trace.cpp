@@ -6,12 +6,13 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <tbb/parallel_for.h>
 
 #include "voxel/tree/octant_order.h"
 #include "voxel/tree/octree_node.h"
-#include "voxel/view/surface_break.h"
+#include "voxel/view/leaf_surface.h"
 
 // Node tracing (thesis 4.5) with the physical nodes. Departures from the thesis: a quadtree node has the 16
 // columns of a node's 64 children instead of four; instead of a ray that seeks its next neighbour from the
@@ -268,30 +269,74 @@ class ColumnSamples {
   glm::ivec3 block_{-1};
 };
 
+/// Finds a moved object's surface in columns, a batch of them at a time.
+class MovedColumns {
+ public:
+  MovedColumns(const DrawnObject& object, const TracedFrame& frame, double spacing_mm)
+      : frame_(frame),
+        spacing_mm_(spacing_mm),
+        forward_(frame.reversed ? -1.0 : 1.0),
+        mirror_(per_mm(), 1 << (2 * object.octree.root_height())),
+        surface_(object, per_mm(), mirror_) {}
+
+  /// Sets `seen`, whose depth is a number of voxels, now or when the batch is full.
+  void add(Seen& seen, int p, int q) {
+    const auto ray = static_cast<std::size_t>(batch_.count);
+    const double d = static_cast<double>(seen.depth_mm);
+    columns_[ray] = &seen;
+    // A ray through the column's centre, from the universe's front face.
+    batch_.start[static_cast<std::size_t>(frame_.p_axis)][ray] = p;
+    batch_.start[static_cast<std::size_t>(frame_.q_axis)][ray] = q;
+    batch_.start[static_cast<std::size_t>(frame_.look)][ray] = frame_.index(0) - 0.5 * forward_;
+    batch_.enter_mm[ray] = d * spacing_mm_;
+    batch_.leave_mm[ray] = (d + 1.0) * spacing_mm_;
+    if (++batch_.count == RayBatch::most) find();
+  }
+  /// Sets all that were added. A column that stays outside the surface keeps the voxel's face.
+  void find() {
+    surface_.find(batch_, found_);
+    for (std::size_t ray = 0; ray < static_cast<std::size_t>(batch_.count); ++ray) {
+      columns_[ray]->depth_mm = found_.depth_mm[ray];
+      columns_[ray]->stepped = ((~found_.lit | found_.stepped) >> ray & 1) != 0;
+    }
+    batch_.count = 0;
+  }
+
+ private:
+  glm::dvec3 per_mm() const {
+    glm::dvec3 per_mm(0.0);
+    per_mm[frame_.look] = forward_ / spacing_mm_;
+    return per_mm;
+  }
+
+  const TracedFrame& frame_;
+  double spacing_mm_, forward_;
+  Mirror mirror_;
+  LeafSurface surface_;
+  RayBatch batch_;
+  RayBatch::ByRay<Seen*> columns_{};
+  LeafSurface::Found found_;
+};
+
 /// Pass 2 for a tile: depths of the first voxels in millimetres.
 class Depths {
  public:
-  Depths(const std::vector<DrawnObject>& objects, const AxisView& axes, const TracedFrame& frame,
-         double spacing_mm)
-      : objects_(objects), axes_(axes), frame_(frame), spacing_mm_(spacing_mm) {
-    for (const DrawnObject& object : objects) surfaces_.emplace_back(object, axes);
+  Depths(const std::vector<DrawnObject>& objects, const TracedFrame& frame, double spacing_mm)
+      : objects_(objects), frame_(frame), spacing_mm_(spacing_mm), moved_(objects.size()) {
     for (const DrawnObject& object : objects)
       readers_.push_back(object.grey ? std::optional<ColumnSamples>(std::in_place, *object.grey, frame)
                                      : std::nullopt);
   }
 
+  /// Those of moved objects are known after finish().
   void interpolate(Seen& seen, int p, int q) {
     const auto object = static_cast<std::size_t>(seen.object);
-    const int d = static_cast<int>(seen.depth_mm);
-    if (objects_[object].moved_from_still) {
-      glm::ivec2 column;
-      column[frame_.p_axis == axes_.axis[0] ? 0 : 1] = p;
-      column[frame_.q_axis == axes_.axis[0] ? 0 : 1] = q;
-      const std::int16_t number = seen.object;
-      seen = surfaces_[object].seen(column, d);
-      seen.object = number;
-      return;
+    if (readers_[object] && objects_[object].moved_from_still) {
+      if (moved_[object] == nullptr)
+        moved_[object] = std::make_unique<MovedColumns>(objects_[object], frame_, spacing_mm_);
+      return moved_[object]->add(seen, p, q);
     }
+    const int d = static_cast<int>(seen.depth_mm);
     double depth_voxels = d;
     if (readers_[object] && d > 0) {
       const double threshold = objects_[object].threshold;
@@ -307,14 +352,17 @@ class Depths {
     }
     seen.depth_mm = static_cast<float>(depth_voxels * spacing_mm_);
   }
+  void finish() {
+    for (const auto& columns : moved_)
+      if (columns != nullptr) columns->find();
+  }
 
  private:
   const std::vector<DrawnObject>& objects_;
-  const AxisView& axes_;
   const TracedFrame& frame_;
-  std::vector<ColumnSurface> surfaces_;  ///< of moved objects
   double spacing_mm_;
   std::vector<std::optional<ColumnSamples>> readers_;
+  std::vector<std::unique_ptr<MovedColumns>> moved_;  ///< of objects seen away from their samples
 };
 
 }  // namespace
@@ -334,7 +382,7 @@ ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& ax
     // 1. Find the first voxel of every column.
     TileTrace(objects, frame, tile_p, tile_q, map.columns).run();
     // 2. Turn it into a depth, leaf by leaf so that a leaf's samples stay in the cache.
-    Depths depths(objects, axes, frame, spacing_mm[frame.look]);
+    Depths depths(objects, frame, spacing_mm[frame.look]);
     const int last_p = std::min(tile_p + tile_side, frame.side);
     const int last_q = std::min(tile_q + tile_side, frame.side);
     for (int leaf_q = tile_q; leaf_q < last_q; leaf_q += 4)
@@ -345,6 +393,7 @@ ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& ax
           Seen& seen = map.columns[frame.entry(p, q)];
           if (seen.lit()) depths.interpolate(seen, p, q);
         }
+    depths.finish();
   });
   return map;
 }

@@ -104,13 +104,14 @@ void RayCast::Prepared::cast_square(std::size_t i, const glm::ivec2& first, cons
     return square[pixel_index(glm::ivec2(ParallelRays::square_px), batch.x[ray] - first.x,
                               batch.y[ray] - first.y)];
   };
-  if (!object.grey || object.moved_from_still) {
+  if (!object.grey) {
     bundles[i].cast(first, last, [&](const RayBatch& batch) {
       RayBatch::Rays ended = 0;
       for (int number = 0; number < batch.count; ++number) {
         const auto ray = static_cast<std::size_t>(number);
-        const VoxelRay line{{batch.start[0][ray], batch.start[1][ray], batch.start[2][ray]}, rays.per_mm};
-        const auto find = [&] { return surface_near(i, line, mirror, batch.passage(ray)); };
+        const auto find = [&] {
+          return std::optional(Seen{static_cast<float>(batch.enter_mm[ray]), 0, true});
+        };
         const bool ends = take(i, batch.enter_mm[ray], reach, find, pixel_of(batch, ray));
         ended |= RayBatch::Rays{ends} << number;
       }
@@ -118,7 +119,7 @@ void RayCast::Prepared::cast_square(std::size_t i, const glm::ivec2& first, cons
     });
     return;
   }
-  LeafSurface surface(object, rays, mirror);
+  LeafSurface surface(object, rays.per_mm, mirror);
   LeafSurface::Found found;
   const auto take_all = [&](const RayBatch& batch) {
     surface.find(batch, found);
@@ -134,6 +135,7 @@ void RayCast::Prepared::cast_square(std::size_t i, const glm::ivec2& first, cons
     }
     return ended;
   };
+  if (object.moved_from_still) return bundles[i].cast(first, last, take_all);
   bundles[i].cast(first, last, take_all, [&](const glm::ivec3& leaf) { prefetch_leaf(*object.grey, leaf); });
 }
 

@@ -103,6 +103,32 @@ TEST(DrawnObject, AMovedBallIsAsRoundAsItWasFromAnyDirection) {
   }
 }
 
+TEST(DrawnObject, ColumnsFoundTogetherAreThoseFoundAloneOnCutsAndOutsideTheSurface) {
+  // Cut by slabs, so that columns begin inside the samples' surface, and with a shell around one half, whose
+  // columns pass voxels outside of it.
+  DrawnObject ball = moved_ball();
+  const glm::dvec3 centre_mm(motion() * glm::dvec4(still_centre_mm(), 1.0));
+  Expression solid = ball.octree;
+  for (int slab = -2; slab <= 2; ++slab)
+    solid = solid - Box{centre_mm + glm::dvec3(8.0 * slab, -30, -30),
+                        centre_mm + glm::dvec3(8.0 * slab + 3.0, 30, 30)};
+  const Expression shell = Expression(Sphere{centre_mm, radius_mm + 4.0}) &
+                           Box{centre_mm - glm::dvec3(40, 40, 40), centre_mm + glm::dvec3(40, 40, 0)};
+  ball.octree = combine(universe(), solid | shell);
+  int stepped = 0, smooth = 0;
+  for (const char* view : {"anterior", "posterior", "left", "right", "superior", "inferior"}) {
+    const AxisView axes = axis_view(universe(), parse_view(view)).value();
+    const ColumnMap together = node_trace({ball}, axes), alone = front_to_back({ball}, axes);
+    for (std::size_t i = 0; i < together.columns.size(); ++i) {
+      ASSERT_EQ(together.columns[i].depth_mm, alone.columns[i].depth_mm) << view << ", column " << i;
+      ASSERT_EQ(together.columns[i].stepped, alone.columns[i].stepped) << view << ", column " << i;
+      if (together.columns[i].lit()) ++(together.columns[i].stepped ? stepped : smooth);
+    }
+  }
+  EXPECT_GT(stepped, 1000);
+  EXPECT_GT(smooth, 1000);
+}
+
 TEST(DrawnObject, ColumnsOfAMovedBallAreInterpolatedToo) {
   const DrawnObject ball = moved_ball();
   for (const char* view : {"anterior", "right", "superior"}) {

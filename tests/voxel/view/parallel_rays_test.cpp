@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/voxel/dense.h"
+#include "voxel/solid/expression.h"
 #include "voxel/view/ray_cast.h"
 
 namespace octotomy::voxel {
@@ -65,6 +66,9 @@ Subject subject_of(std::uint64_t seed) {
     const Dense dense = blobs(universe.side(), random);
     DrawnObject object{"object", tests::octree_of(universe, dense)};
     if (seed % 3 != 0) object.grey = samples_of(universe, dense, random);
+    if (object.grey && seed % 5 == 2)
+      object.moved_from_still =
+          moved_from_still({{1.3, -0.7, 0.4}, 11.0, {1, 2, -1}, universe.lattice().lps_mm(glm::dvec3(3.5))});
     // A part of the window's voxels, so that rays meet cut faces, and voxels without samples of the object.
     if (seed % 4 == 3) {
       Dense part = dense;
@@ -89,7 +93,7 @@ Subject subject_of(std::uint64_t seed) {
 }
 
 TEST(ParallelRays, SeeBitForBitWhatEachRaySeesByItself) {
-  int lit = 0, unlit = 0, second = 0, stepped = 0, smooth = 0;
+  int lit = 0, unlit = 0, second = 0, stepped = 0, smooth = 0, moved_smooth = 0, moved_stepped = 0;
   for (std::uint64_t seed = 0; seed < 80; ++seed) {
     const Subject subject = subject_of(seed);
     const RayCast cast(subject.objects, subject.plane);
@@ -104,6 +108,8 @@ TEST(ParallelRays, SeeBitForBitWhatEachRaySeesByItself) {
         (one.lit() ? lit : unlit)++;
         second += one.object > 0;
         if (one.lit()) (one.stepped ? stepped : smooth)++;
+        if (one.lit() && subject.objects[static_cast<std::size_t>(one.object)].moved_from_still)
+          (one.stepped ? moved_stepped : moved_smooth)++;
       }
   }
   EXPECT_GT(lit, 100000);
@@ -111,6 +117,8 @@ TEST(ParallelRays, SeeBitForBitWhatEachRaySeesByItself) {
   EXPECT_GT(second, 10000);
   EXPECT_GT(stepped, 10000);
   EXPECT_GT(smooth, 10000);
+  EXPECT_GT(moved_stepped, 1000);
+  EXPECT_GT(moved_smooth, 1000);
 }
 
 TEST(ParallelRays, OfferEveryVoxelOfARayInOrderUntilOneIsTaken) {
