@@ -62,23 +62,28 @@ Status status_of(const std::vector<Edge>& edges, const Patch& patch) {
   return inside ? Status::Full : Status::Empty;
 }
 
-/// A number for each voxel of a leaf.
-using LeafValues = std::array<double, 64>;
+/// A number for each child of a block, or voxel of a leaf.
+using Values = std::array<double, 64>;
 
-OCTOTOMY_VECTOR_CLONES void values_in_leaf(const Linear& f, const glm::ivec3& origin, LeafValues& values) {
+/// Values of f at the places first + step (x, y, z) of children or voxels.
+OCTOTOMY_VECTOR_CLONES void values_at(const Linear& f, const glm::dvec3& first, double step, Values& values) {
+  double along_x[4], along_y[4], along_z[4];
+  for (int i = 0; i < 4; ++i) {
+    along_x[i] = f.gradient.x * (first.x + i * step);
+    along_y[i] = f.gradient.y * (first.y + i * step);
+    along_z[i] = f.gradient.z * (first.z + i * step);
+  }
   // In Linear's order of summation, so that a voxel on an edge is on the same side for every caller.
+  double* to = values.data();
   for (int z = 0; z < 4; ++z)
-    for (int y = 0; y < 4; ++y)
-      for (int x = 0; x < 4; ++x)
-        values[static_cast<std::size_t>(child_index(x, y, z))] = f.gradient.x * (origin.x + x) +
-                                                                 f.gradient.y * (origin.y + y) +
-                                                                 f.gradient.z * (origin.z + z) + f.constant;
+    for (int y = 0; y < 4; ++y, to += 4)
+      for (int x = 0; x < 4; ++x) to[x] = along_x[x] + along_y[y] + along_z[z] + f.constant;
 }
 
-/// Adds to each voxel's count whether the ray from it crosses the edge: crosses_ray_from() without a branch.
+/// Adds to each place's count whether the ray from it crosses the edge: crosses_ray_from() without a branch.
 /// Precondition: the edge is not level.
-OCTOTOMY_VECTOR_CLONES void count_crossings(const Edge& edge, const LeafValues& u, const LeafValues& v,
-                                            LeafValues& counts) {
+OCTOTOMY_VECTOR_CLONES void count_crossings(const Edge& edge, const Values& u, const Values& v,
+                                            Values& counts) {
   const auto [a, b] = edge;
   const glm::dvec2 along = b - a;
   assert(along.y != 0.0);
@@ -90,11 +95,42 @@ OCTOTOMY_VECTOR_CLONES void count_crossings(const Edge& edge, const LeafValues& 
   }
 }
 
-/// The voxels of odd counts.
-std::uint64_t odd(const LeafValues& counts) {
+/// Adds to each place's count whether the edge meets the patch about it: meets_rectangle() without a branch.
+OCTOTOMY_VECTOR_CLONES void count_meetings(const Edge& edge, const glm::dvec2& half, const Values& u,
+                                           const Values& v, Values& counts) {
+  const auto [a, b] = edge;
+  const glm::dvec2 middle = 0.5 * (a + b), arm = 0.5 * (b - a);
+  const glm::dvec2 farthest = half + glm::abs(arm);
+  const double farthest_across = half.x * std::abs(arm.y) + half.y * std::abs(arm.x);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double x = middle.x - u[i], y = middle.y - v[i];
+    const double near_x = std::abs(x) > farthest.x ? 0.0 : 1.0;
+    const double near_y = std::abs(y) > farthest.y ? 0.0 : 1.0;
+    const double near_across = std::abs(x * arm.y - y * arm.x) <= farthest_across ? 1.0 : 0.0;
+    counts[i] += near_x * near_y * near_across;
+  }
+}
+
+/// The places whose count, below 2^31, has a bit of `bits` set.
+OCTOTOMY_VECTOR_CLONES std::uint64_t places_of(const Values& counts, std::int32_t bits) {
+  std::array<std::uint8_t, 64> set;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    set[i] = (static_cast<std::int32_t>(counts[i]) & bits) != 0 ? 1 : 0;
   std::uint64_t word = 0;
-  for (std::size_t i = 0; i < counts.size(); ++i) word |= (static_cast<std::uint64_t>(counts[i]) & 1) << i;
+  for (std::size_t i = 0; i < counts.size(); ++i) word |= std::uint64_t{set[i]} << i;
   return word;
+}
+
+/// Status by status_of() of the patches about the centres of a block's children.
+Cover cover_of_patches(const std::vector<Edge>& edges, const glm::dvec2& half, const Values& u,
+                       const Values& v) {
+  Values meetings{}, crossings{};
+  for (const Edge& edge : edges) {
+    count_meetings(edge, half, u, v, meetings);
+    if (edge[0].y != edge[1].y) count_crossings(edge, u, v, crossings);
+  }
+  const std::uint64_t partial = places_of(meetings, -1), inside = places_of(crossings, 1);
+  return {inside & ~partial, inside | partial};
 }
 
 }  // namespace
@@ -113,11 +149,11 @@ Cover MaskOperand::cover(const TargetBlock& block) const {
     const Status status = status_of(edges, whole);
     if (status == Status::Empty) return {};
     if (status == Status::Full) continue;
-    const glm::dvec2 half = patch_of(projected.u, projected.v, block.child(0)).half;
-    cover =
-        cover & cover_of_children(block, [&](const Cube& child) {
-          return Meets::of(status_of(edges, {{projected.u(child.centre), projected.v(child.centre)}, half}));
-        });
+    const Cube first = block.child(0);
+    Values u, v;
+    values_at(projected.u, first.centre, block.child_side, u);
+    values_at(projected.v, first.centre, block.child_side, v);
+    cover = cover & cover_of_patches(edges, patch_of(projected.u, projected.v, first).half, u, v);
     if (cover.some == 0) break;
   }
   return cover;
@@ -141,12 +177,12 @@ void MaskOperand::words(const WantedLeaves& leaves) const {
       if (status == Status::Empty) word = 0;
       if (status != Status::Partial) continue;
       const glm::ivec3 origin = leaves.origin + 4 * child_place(child);
-      LeafValues u, v, crossings{};
-      values_in_leaf(projected.u, origin, u);
-      values_in_leaf(projected.v, origin, v);
+      Values u, v, crossings{};
+      values_at(projected.u, origin, 1.0, u);
+      values_at(projected.v, origin, 1.0, v);
       for (const Edge& edge : edges)
         if (within_reach(edge, patch)) count_crossings(edge, u, v, crossings);
-      word &= odd(crossings);
+      word &= places_of(crossings, 1);
     }
   }
 }
