@@ -297,9 +297,13 @@ void colours_of_row(const DepthImage& image, const std::vector<glm::vec3>& colou
     }
     return;
   }
+  // Most often all objects are parts of one bone. Colours of background are not used.
+  const bool same =
+      !colours.empty() && std::all_of(colours.begin(), colours.end(),
+                                      [&](const glm::vec3& colour) { return colour == colours.front(); });
   for (int channel = 0; channel < 3; ++channel) {
     std::vector<float>& row = rows.colour[static_cast<std::size_t>(channel)];
-    if (colours.size() == 1) {
+    if (same) {
       std::fill(row.begin() + lit.x, row.begin() + lit.y, colours.front()[channel]);
       continue;
     }
