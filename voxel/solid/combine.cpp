@@ -96,9 +96,7 @@ class Combiner {
     Scratch scratch(*this, height);
     const TargetBlock block{origin, 1 << (2 * height - 2), rule_ ? rule_->margin : TargetBlock::centres};
     for (std::size_t i = 0; i < operands_.size(); ++i) scratch.covers[i] = cover_of(i, operations[i], block);
-    Cover result =
-        postfix_.run<Cover>([&](std::uint32_t i) { return scratch.covers[i]; }, scratch.cover_stack.data());
-    result = result & Cover{allowed, allowed};
+    const Cover result = run(scratch) & Cover{allowed, allowed};
     assert((result.full & ~result.some) == 0);
     return height == 2 ? evaluate_leaves(origin, operations, scratch, result)
                        : evaluate_children(height, origin, operations, scratch, result);
@@ -127,7 +125,7 @@ class Combiner {
 
   Block evaluate_leaves(const glm::ivec3& origin, const Operation* operations, Scratch& scratch,
                         Cover result) const {
-    const std::uint64_t undecided = result.undecided();
+    std::uint64_t undecided = result.undecided();
     std::array<std::uint64_t, 64> words;
     std::size_t count = 0;
     if (rule_ != nullptr) {
@@ -135,14 +133,44 @@ class Combiner {
         words[count++] = rule_->word(origin + 4 * child_place(std::countr_zero(rest)));
       return make_leaf_block(result.full, undecided, words.data());
     }
-    for (std::size_t i = 0; i < operands_.size(); ++i)
+    for (std::size_t i = 0; i < operands_.size(); ++i) {
       fetch_words(i, operations[i], origin, undecided, scratch);
+      // A node's words are neither empty nor full.
+      if (i + 1 == operands_.size() || operations[i].node != nullptr || !settle(i, undecided, scratch))
+        continue;
+      // What these words decide, the other operands are not asked.
+      const Cover settled = run(scratch);
+      result.full |= undecided & settled.full;
+      undecided &= settled.undecided();
+    }
     for (std::uint64_t rest = undecided; rest != 0; rest &= rest - 1) {
       const auto child = static_cast<std::size_t>(std::countr_zero(rest));
       words[count++] = postfix_.run<std::uint64_t>([&](std::uint32_t i) { return scratch.words[i][child]; },
                                                    scratch.word_stack.data());
     }
     return make_leaf_block(result.full, undecided, words.data());
+  }
+
+  // What the operands' covers make of the expression.
+  Cover run(Scratch& scratch) const {
+    return postfix_.run<Cover>([&](std::uint32_t i) { return scratch.covers[i]; },
+                               scratch.cover_stack.data());
+  }
+
+  // Adds to an operand's cover the leaves whose words are empty or full. False if there are none.
+  static bool settle(std::size_t i, std::uint64_t wanted, Scratch& scratch) {
+    Cover& cover = scratch.covers[i];
+    const std::uint64_t open = wanted & cover.undecided();
+    std::uint64_t full = 0, empty = 0;
+    for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
+      const int child = std::countr_zero(rest);
+      const std::uint64_t word = scratch.words[i][static_cast<std::size_t>(child)];
+      full |= std::uint64_t{word == all_children} << child;
+      empty |= std::uint64_t{word == 0} << child;
+    }
+    cover.full |= full;
+    cover.some &= ~empty;
+    return (full | empty) != 0;
   }
 
   // Words of an operand for the wanted leaves of a block.

@@ -134,6 +134,39 @@ TEST(Combine, AMovedObjectIsTheStillOneSampledAtTheCentreMovedBack) {
   }
 }
 
+TEST(Combine, OperandsTogetherGiveWhatTheyGiveApart) {
+  const Universe universe = universe_of(6);
+  const glm::dvec3 middle(31.3, 32.1, 30.7);
+  // A turned shell has leaves of all kinds: empty, full and passed by its surface.
+  const Octree still = combine(universe, Expression(Sphere{middle, 27.0}) - Sphere{middle, 18.5});
+  const Expression shell = moved(still, moved_from_still({{1.3, -2.2, 0.6}, 17.0, {1, 2, -1}, middle}));
+  const Expression ball = moved(combine(universe, Sphere{middle + 9.0, 16.0}),
+                                moved_from_still({{-1.7, 0.4, 2.9}, -31.0, {0, 1, 1}, middle}));
+  RegionMask regions;
+  for (const char* name : {"anterior", "left"}) {
+    const View view = parse_view(name);
+    const glm::dvec2 p = view.project(middle);
+    regions.regions.push_back(
+        {view, {{p + glm::dvec2(-25, -14), p + glm::dvec2(19, -17), p + glm::dvec2(22, 21)}}});
+  }
+  const Expression mask = regions;
+  const Expression apart[3] = {combine(universe, shell), combine(universe, mask), combine(universe, ball)};
+  const auto check = [&](const auto& rule) {
+    const Octree together = combine(universe, rule(shell, mask, ball));
+    EXPECT_TRUE(together == combine(universe, rule(apart[0], apart[1], apart[2])));
+    EXPECT_GT(together.voxel_count(), 1000u);
+  };
+  using E = Expression;
+  check([](const E& a, const E& b, const E&) { return a & b; });
+  check([](const E& a, const E& b, const E&) { return b & a; });
+  check([](const E& a, const E& b, const E&) { return a | b; });
+  check([](const E& a, const E& b, const E&) { return a - b; });
+  check([](const E& a, const E& b, const E&) { return b - a; });
+  check([](const E& a, const E& b, const E&) { return a ^ b; });
+  check([](const E& a, const E& b, const E& c) { return (a & b) | (c - a); });
+  check([](const E& a, const E& b, const E& c) { return (a ^ b) & (c | ~a); });
+}
+
 TEST(Combine, WholeVoxelTranslationsAreExactAndComposeBeforeSampling) {
   const Universe universe = universe_around({{0, 0, 0}, {64, 64, 64}}, 0.7);
   const Octree still = tests::octree_of(universe, tests::random_dense(128, 77));
