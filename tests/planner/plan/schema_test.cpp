@@ -92,7 +92,8 @@ TEST(Schema, EveryPlanOfTheProjectFits) {
 }
 
 TEST(Schema, EveryExampleOfAnOperationFitsItsOwnAlternative) {
-  for (const SortedJson& step : schema()["properties"]["steps"]["items"]["anyOf"]) {
+  const SortedJson whole = schema();
+  for (const SortedJson& step : whole["properties"]["steps"]["items"]["anyOf"]) {
     std::string why;
     EXPECT_TRUE(fits(step["examples"][0], step, step["title"], why)) << why;
   }

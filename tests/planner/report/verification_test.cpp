@@ -85,7 +85,7 @@ TEST_F(VerificationPage, AnObjectThatIsNotResolvedIsMarkedAndNoSuccess) {
   EXPECT_EQ(to_json(verification_.counts),
             Json({{"PASS", 1}, {"WARN", 0}, {"FAIL", 0}, {"not_resolved", 1}, {"without_evidence", 0}}));
   EXPECT_EQ(text_of(verification_.counts), "1 PASS (1 not resolved), 0 WARN, 0 FAIL");
-  verification_.answer["certificates"] = {to_json(certificate)};
+  verification_.answer["certificates"] = Json::array({to_json(certificate)});
   EXPECT_EQ(verification_.answer["certificates"][0]["resolved"], false);
   EXPECT_EQ(verification_.answer["certificates"][0]["verdict"], "PASS");
   const std::string page = verification_html(verification_);

@@ -53,7 +53,8 @@ TEST_F(DeskTest, AStepThatFailsTakesOnlyThoseThatNeedItAlong) {
   EXPECT_EQ(made.evaluation->objects.size(), 2u);
   ASSERT_EQ(made.errors.size(), 1u);
   EXPECT_EQ(made.errors.begin()->first, "lost");
-  for (const Json& object : desk_->state()["objects"])
+  const Json state = desk_->state();
+  for (const Json& object : state["objects"])
     EXPECT_EQ(object.contains("error"), object["id"] == "lost") << object;
 }
 
