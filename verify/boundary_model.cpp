@@ -565,9 +565,10 @@ class Modeller {
     constexpr std::int64_t middle = 1 << 19;
     auto key = static_cast<std::uint64_t>(normal[direction] < 0.0 ? direction : direction + 3);
     for (int axis = 0; axis < 3; ++axis) {
-      const auto cell =
-          static_cast<std::int64_t>(std::floor(p_mm[axis] / (3.0 * frame_.sample_spacing_mm[axis])));
-      key = (key << 20) | (static_cast<std::uint64_t>(cell + middle) & 0xFFFFFU);
+      const double cell = std::floor(p_mm[axis] / (3.0 * frame_.sample_spacing_mm[axis]));
+      // Where there are no samples, their spacing is zero and all edges are of one cell.
+      const std::int64_t number = std::abs(cell) < 0x1p62 ? static_cast<std::int64_t>(cell) : 0;
+      key = (key << 20) | (static_cast<std::uint64_t>(number + middle) & 0xFFFFFU);
     }
     return key;
   }
