@@ -235,7 +235,9 @@ TEST(GreyOctree, SharesBricksOfOneValueAndKeepsAllSamplesOnAnyNumberOfThreads) {
       EXPECT_EQ(found.low, grey.range(2, block).low);
       EXPECT_EQ(found.high, grey.range(2, block).high);
     }
-    if (bytes != 0) EXPECT_EQ(grey.bytes_memory(), bytes);
+    if (bytes != 0) {
+      EXPECT_EQ(grey.bytes_memory(), bytes);
+    }
     bytes = grey.bytes_memory();
   }
   const GreyOctree all_noise = grey_octree_of(universe, noisy_scene({700, 60, 50}, 100.0), -1024);
