@@ -76,8 +76,9 @@ Solid solid_of(const Triangles& triangles);
 Solid solid_of(const Mesh& mesh);
 
 /// The solid of triangles that their maker vouches for; no triangles make the empty set. Preconditions: the
-/// proof holds, Health where the caller has asked it; a volume by Construction is not negative. Throws
-/// std::invalid_argument naming the first triangle if the surface is open; as mesh_of(). Cost: linear.
+/// proof holds; for Health the caller has just called health() on these triangles; a volume by Construction
+/// is not negative. Throws std::invalid_argument naming the first triangle if the surface is open; as
+/// mesh_of(). Cost: linear.
 Solid trusted_solid(Triangles triangles, Proof proof);
 Solid trusted_solid(const Mesh& mesh, Proof proof);
 
