@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-glm::dvec3 point_of(const SortedJson& numbers, const std::string& name) {
+glm::dvec3 position_of(const SortedJson& numbers, const std::string& name) {
   const bool three = numbers.is_array() && numbers.size() == 3 && numbers[0].is_number() &&
                      numbers[1].is_number() && numbers[2].is_number();
   if (!three) throw std::runtime_error("the point of '" + name + "' is not a list of three numbers");
@@ -41,7 +41,7 @@ std::vector<brep::Landmark> own_landmarks(const SortedJson& list) {
       throw std::runtime_error("'" + landmark.name +
                                "' is a guess that nobody has confirmed: look at it, correct it, and set its "
                                "'confirmed' to true, or leave it out");
-    landmark.p_mm = point_of(entry.value("point_mm", SortedJson()), landmark.name);
+    landmark.p_mm = position_of(entry.value("point_mm", SortedJson()), landmark.name);
     const SortedJson weight = entry.value("weight", SortedJson(1.0));
     if (!weight.is_number()) throw std::runtime_error("the weight of '" + landmark.name + "' is no number");
     landmark.weight = weight.get<double>();
@@ -64,7 +64,7 @@ std::vector<brep::Landmark> slicer_landmarks(const SortedJson& markups) {
       landmark.name = entry.value("label", "");
       if (landmark.name.empty())
         throw std::runtime_error("control point " + std::to_string(landmarks.size()) + " has no label");
-      landmark.p_mm = point_of(entry.value("position", SortedJson()), landmark.name);
+      landmark.p_mm = position_of(entry.value("position", SortedJson()), landmark.name);
       if (ras) landmark.p_mm *= glm::dvec3(-1.0, -1.0, 1.0);
       landmarks.push_back(landmark);
     }
