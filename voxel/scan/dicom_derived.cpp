@@ -7,8 +7,6 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr DicomTag character_set_tag = 0x00080005;
-
 std::vector<DicomAttributes> references(const std::vector<DicomSource::Image>& images) {
   std::vector<DicomAttributes> items(images.size());
   for (std::size_t i = 0; i < images.size(); ++i) {

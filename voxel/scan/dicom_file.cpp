@@ -21,7 +21,6 @@ constexpr DicomTag item_tag = 0xfffee000;
 constexpr DicomTag item_end_tag = 0xfffee00d;
 constexpr DicomTag sequence_end_tag = 0xfffee0dd;
 constexpr DicomTag transfer_syntax_tag = 0x00020010;
-constexpr DicomTag character_set_tag = 0x00080005;
 constexpr DicomTag pixels_tag = 0x7fe00010;
 
 bool has_prefix(std::string_view bytes) {
@@ -48,7 +47,7 @@ bool begins_little_endian_item(std::string_view bytes) {
   return bytes.starts_with(std::string_view("\xfe\xff\x00\xe0", 4));
 }
 
-std::string trimmed(std::string_view text) {
+std::string unpadded(std::string_view text) {
   constexpr std::string_view padding(" \t\r\n\0", 5);
   const std::size_t first = text.find_first_not_of(padding);
   if (first == std::string_view::npos) return {};
@@ -238,7 +237,7 @@ std::vector<DicomFile> DicomFile::items(DicomTag sequence) const {
 
 std::string DicomFile::text(DicomTag tag) const {
   const auto found = values_.find(tag);
-  return found == values_.end() ? std::string() : trimmed(found->second);
+  return found == values_.end() ? std::string() : unpadded(found->second);
 }
 
 std::string DicomFile::readable_text(DicomTag tag) const {
@@ -262,7 +261,7 @@ std::optional<std::vector<double>> DicomFile::decimals(DicomTag tag) const {
   std::vector<double> numbers;
   std::istringstream parts(text(tag));
   for (std::string part; std::getline(parts, part, '\\');) {
-    part = trimmed(part);
+    part = unpadded(part);
     if (part.starts_with('+')) part.erase(0, 1);
     double number = 0.0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);

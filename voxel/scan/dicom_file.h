@@ -13,6 +13,8 @@ namespace octotomy::voxel {
 
 /// Group and element of a DICOM attribute as one number: (0028,0010) is 0x00280010.
 using DicomTag = std::uint32_t;
+/// Which character set a file's texts are in.
+constexpr DicomTag character_set_tag = 0x00080005;
 
 /// A range of bytes in a file.
 struct DicomExtent {

@@ -12,18 +12,19 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, SampleType>, 12> words{{{"int8", SampleType::Int8},
-                                                                         {"uint8", SampleType::UInt8},
-                                                                         {"int16", SampleType::Int16},
-                                                                         {"uint16", SampleType::UInt16},
-                                                                         {"int32", SampleType::Int32},
-                                                                         {"uint32", SampleType::UInt32},
-                                                                         {"int64", SampleType::Int64},
-                                                                         {"uint64", SampleType::UInt64},
-                                                                         {"float", SampleType::Float},
-                                                                         {"float32", SampleType::Float},
-                                                                         {"double", SampleType::Double},
-                                                                         {"float64", SampleType::Double}}};
+constexpr std::array<std::pair<std::string_view, SampleType>, 12> named_types{
+    {{"int8", SampleType::Int8},
+     {"uint8", SampleType::UInt8},
+     {"int16", SampleType::Int16},
+     {"uint16", SampleType::UInt16},
+     {"int32", SampleType::Int32},
+     {"uint32", SampleType::UInt32},
+     {"int64", SampleType::Int64},
+     {"uint64", SampleType::UInt64},
+     {"float", SampleType::Float},
+     {"float32", SampleType::Float},
+     {"double", SampleType::Double},
+     {"float64", SampleType::Double}}};
 
 template <typename Stored>
 void take(std::span<const char> bytes, const StoredSamples& how, Scene& scene) {
@@ -91,13 +92,13 @@ std::size_t bytes_of(SampleType type) {
 }
 
 std::optional<SampleType> sample_type(std::string_view word) {
-  for (const auto& [name, type] : words)
+  for (const auto& [name, type] : named_types)
     if (name == word) return type;
   return std::nullopt;
 }
 
 std::string name_of(SampleType type) {
-  for (const auto& [name, known] : words)
+  for (const auto& [name, known] : named_types)
     if (known == type) return std::string(name);
   throw std::invalid_argument("no type of samples");
 }
