@@ -2,9 +2,7 @@
 #include "planner/file/slice_contours.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +10,7 @@
 #include "brep/contour/contour_edit.h"
 #include "brep/contour/offset_contours.h"
 #include "convert/surface/trace_contours.h"
+#include "planner/file/picture_frame.h"
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "voxel/filter/slice_contour.h"
@@ -20,25 +19,6 @@ namespace octotomy::planner {
 namespace {
 
 using Polygon = std::vector<glm::dvec2>;
-
-constexpr std::array view_names = {"anterior", "posterior", "left", "right", "superior", "inferior"};
-constexpr double rounding = 1e-6;  // of unit vectors that files hold
-
-/// The text that parse_view() makes this view of.
-std::string name_of(const voxel::View& view) {
-  for (const char* name : view_names) {
-    const voxel::View named = voxel::parse_view(name);
-    if (glm::distance(view.look, named.look) < rounding && glm::distance(view.up, named.up) < rounding)
-      return name;
-  }
-  const double elevation = std::asin(glm::clamp(-view.look.z, -1.0, 1.0));
-  // Straight from above or below only `up` tells the azimuth.
-  const glm::dvec2 forward = std::abs(view.look.z) < 1.0 - rounding
-                                 ? glm::dvec2(view.look)
-                                 : glm::dvec2(view.up) * (view.look.z > 0.0 ? -1.0 : 1.0);
-  const double azimuth = std::atan2(-forward.x, forward.y);
-  return std::to_string(glm::degrees(azimuth)) + "," + std::to_string(glm::degrees(elevation));
-}
 
 std::string place_of(const voxel::SliceMask::Slice& slice) {
   return "the slice at " + std::to_string(slice.position_mm) + " mm";

@@ -13,8 +13,8 @@ voxel::ImagePlane plane_of(const std::string& view) {
 }
 
 TEST(PictureFrameTest, PixelsLieWhereThePlaneSays) {
-  for (const char* view :
-       {"anterior", "posterior", "left", "right", "superior", "inferior", "35,15", "-120,-40"}) {
+  for (const char* view : {"anterior", "posterior", "left", "right", "superior", "inferior", "35,15",
+                           "-120,-40", "30,90", "-45,-90"}) {
     const voxel::ImagePlane plane = plane_of(view);
     const PictureFrame frame = frame_of(plane);
     const glm::dvec2 shown_mm(frame.view_mm_from_pixel() * glm::dvec3(4.0, 9.0, 1.0));
