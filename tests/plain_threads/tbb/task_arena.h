@@ -1,9 +1,28 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
+
 #include "tbb/global_control.h"
 
-namespace tbb::this_task_arena {
+namespace tbb {
+
+/// As many threads as were asked for; the limit holds for the whole program.
+class task_arena {
+ public:
+  explicit task_arena(int threads) : threads_(static_cast<std::size_t>(threads)) {}
+
+  template <typename Function>
+  auto execute(const Function& function) {
+    const global_control limit(global_control::max_allowed_parallelism, threads_);
+    return function();
+  }
+
+ private:
+  std::size_t threads_;
+};
+
+namespace this_task_arena {
 
 inline int max_concurrency() {
   return static_cast<int>(global_control::most());
@@ -15,4 +34,5 @@ auto isolate(const Function& function) {
   return function();
 }
 
-}  // namespace tbb::this_task_arena
+}  // namespace this_task_arena
+}  // namespace tbb
