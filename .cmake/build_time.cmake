@@ -42,22 +42,31 @@ set(OCTOTOMY_STANDARD_HEADERS algorithm array bit cmath cstdint filesystem fstre
     numeric optional set span stdexcept stop_token string string_view unordered_map utility variant vector glm/glm.hpp
     glm/gtc/matrix_transform.hpp)
 
-# octotomy_optimize_less(TARGET...): for what drives the kernels and does not compute itself.
+# octotomy_optimize_less(TARGET...), octotomy_optimize_sources_less(SOURCE...): for what drives the kernels or a library
+# and does not compute itself. g++ stops there to collect its garbage only past 2 GiB, a twentieth of its time.
+if(CMAKE_CXX_FLAGS_RELEASE MATCHES "-O3")
+  set(OCTOTOMY_LESS_OPTIMIZED
+      $<$<CONFIG:Release>:-O1> $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:--param=ggc-min-heapsize=2097152>)
+endif()
 function(octotomy_optimize_less)
-  if(CMAKE_CXX_FLAGS_RELEASE MATCHES "-O3")
-    foreach(target ${ARGN})
-      target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-    endforeach()
-  endif()
+  foreach(target ${ARGN})
+    target_compile_options(${target} PRIVATE ${OCTOTOMY_LESS_OPTIMIZED})
+  endforeach()
+endfunction()
+function(octotomy_optimize_sources_less)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS ${OCTOTOMY_LESS_OPTIMIZED})
 endfunction()
 
 # Sources compiled several at once: what their headers make of templates is then made once, which halves a cold build of
-# the planner and of its tests. An edit rebuilds its neighbours too, so the preset `dev` leaves it off.
+# the planner and more than halves one of the tests. An edit rebuilds its neighbours too, so the preset `dev` leaves it
+# off. Rooms whose loops are the product's speed are not batched: how much a compiler inlines depends on a unit's size.
 option(OCTOTOMY_BATCHES "Compile several sources at once: a faster cold build, a slower rebuild" OFF)
 
-# octotomy_batch(SIZE TARGET...): SIZE sources at once.
-function(octotomy_batch size)
+# octotomy_batch(SIZE TARGET [ALONE SOURCES...]): SIZE sources at once, but for those whose loops count.
+function(octotomy_batch size target)
   if(OCTOTOMY_BATCHES)
-    set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+    cmake_parse_arguments(ARG "" "" ALONE ${ARGN})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
 endfunction()

@@ -50,3 +50,7 @@ inline bool has_program(const std::string& name) {
 #define OCTOTOMY_NEEDS_PROGRAM(name, package) \
   if (!octotomy::tests::has_program(name))    \
   GTEST_SKIP() << "'" << (name) << "' is not installed (package " << (package) << ")"
+
+/// Skips the test where Python lacks a package: tests/planner/cli/*.py then answer with status 77.
+#define OCTOTOMY_NEEDS_PYTHON(answer) \
+  if ((answer).status == 77) GTEST_SKIP() << "/usr/bin/python3: " << (answer).errors

@@ -12,9 +12,10 @@ inline voxel::Universe unit_universe(int depth) {
   return universe;
 }
 
-/// 64 voxels of 1 mm a side about the origin.
-inline voxel::Universe universe_of_64() {
-  return voxel::universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
+/// 2^depth voxels of 1 mm a side, their middle at the patient frame's origin.
+inline voxel::Universe universe_about_origin(int depth) {
+  const double half_mm = 0.5 * (1 << depth);
+  return voxel::universe_around({glm::dvec3(-half_mm), glm::dvec3(half_mm)}, 1.0);
 }
 
 }  // namespace octotomy::tests

@@ -70,20 +70,20 @@ struct Triangle {
 };
 
 /// A point and its share of a triangle.
-struct Piece {
+struct SharePoint {
   glm::dvec3 p{0.0};
   double share = 0.0;
 };
 
 /// Points that stand for a triangle: integrals of polynomials up to the fourth degree are exact (Dunavant,
 /// "High degree efficient symmetrical Gaussian quadrature rules for the triangle", 1985).
-std::array<Piece, 6> pieces_of(const Triangle& triangle) {
+std::array<SharePoint, 6> share_points_of(const Triangle& triangle) {
   struct Orbit {
     double share, corner, side;  // weights of one corner and of the two others
   };
   constexpr std::array<Orbit, 2> orbits{{{0.223381589678011, 0.108103018168070, 0.445948490915965},
                                          {0.109951743655322, 0.816847572980459, 0.091576213509771}}};
-  std::array<Piece, 6> pieces;
+  std::array<SharePoint, 6> pieces;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Orbit& orbit = orbits[i / 3];
     const glm::dvec3 sum = triangle.p[0] + triangle.p[1] + triangle.p[2];
@@ -289,7 +289,7 @@ class Modeller {
   };
   ArmsOfFace arms_of(const Triangle& triangle) const {
     ArmsOfFace made{glm::length(triangle.area_vector()), {}, {}};
-    const std::array<Piece, 6> pieces = pieces_of(triangle);
+    const std::array<SharePoint, 6> pieces = share_points_of(triangle);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const glm::dvec3 arm_mm = pieces[i].p - frame_.about_mm;
       const double square = glm::dot(arm_mm, arm_mm);
@@ -367,7 +367,7 @@ class Modeller {
       if (std::abs(across[i]) > std::abs(across[axis])) axis = i;
     if (!(std::abs(across[axis]) > nearly_along * glm::length(across))) return made;
     const Triangle at_mm = triangle(face), at_voxel = in_voxels(face);
-    const std::array<Piece, 6> places = pieces_of(at_voxel), points = pieces_of(at_mm);
+    const std::array<SharePoint, 6> places = share_points_of(at_voxel), points = share_points_of(at_mm);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double step = std::floor(places[i].p[axis]) + 0.5 - places[i].p[axis];
       made.mm3[i] = places[i].share * step * across[axis] * frame_.lattice.voxel_mm3();
@@ -461,7 +461,7 @@ class Modeller {
     const Moved moved{outward * shift / glm::length(normal),
                       0.5 - std::abs(shift) < flatness_voxels * largest_index, plane.normal};
     const double most_mm = moved.tied ? 0.5 / glm::length(normal) : std::abs(moved.mm);
-    for (const Piece& piece : pieces_of(triangle)) {
+    for (const SharePoint& piece : share_points_of(triangle)) {
       const double arm_mm = glm::distance(piece.p, frame_.about_mm);
       if (moved.tied) model_.unsure.add(piece.share * most_mm * area_mm2, arm_mm);
       model_.planes_without_sign.add(piece.share * most_mm * area_mm2, arm_mm);

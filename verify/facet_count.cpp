@@ -29,14 +29,14 @@ namespace {
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-constexpr int reach = 6;
+constexpr int longest_wave = 6;
 constexpr int reach_along_normals = 64;
 constexpr std::size_t normals_followed = 32;
 
 /// As many sides of one facet as are taken at once: their powers fit a core's own cache.
 constexpr std::size_t part_sides = 48;
 /// Parts are summed in as many groups, so that a sum has the same order on any number of threads.
-constexpr std::size_t groups = 32;
+constexpr std::size_t sum_groups = 32;
 
 /// Sides end to end: side i goes from points[i] to points[i + 1]. Where the facet's outline ends and another
 /// begins, a side of no weight leads there.
@@ -194,7 +194,7 @@ class Part {
 };
 
 /// One of k and -k.
-glm::ivec3 half_space(const glm::ivec3& k) {
+glm::ivec3 one_of_opposites(const glm::ivec3& k) {
   const bool lower = k.z != 0 ? k.z < 0 : k.y != 0 ? k.y < 0 : k.x < 0;
   return lower ? -k : k;
 }
@@ -212,7 +212,7 @@ void add_along(const glm::dvec3& normal, std::vector<glm::ivec3>& vectors) {
         glm::ivec3 k = nearest;
         k[u] += i;
         k[v] += j;
-        vectors.push_back(half_space(k));
+        vectors.push_back(one_of_opposites(k));
       }
   }
 }
@@ -224,10 +224,10 @@ std::vector<glm::ivec3> count_vectors(const std::vector<Facet>& facets) {
     return glm::dot(a.area, a.area) > glm::dot(b.area, b.area);
   }));
   std::vector<glm::ivec3> vectors;
-  for (int z = -reach; z <= reach; ++z)
-    for (int y = -reach; y <= reach; ++y)
-      for (int x = -reach; x <= reach; ++x)
-        if (x != 0 || y != 0 || z != 0) vectors.push_back(half_space({x, y, z}));
+  for (int z = -longest_wave; z <= longest_wave; ++z)
+    for (int y = -longest_wave; y <= longest_wave; ++y)
+      for (int x = -longest_wave; x <= longest_wave; ++x)
+        if (x != 0 || y != 0 || z != 0) vectors.push_back(one_of_opposites({x, y, z}));
   for (std::size_t i = 0; i < std::min(facets.size(), normals_followed); ++i)
     add_along(glm::normalize(facets[i].area), vectors);
   const auto earlier = [](const glm::ivec3& a, const glm::ivec3& b) {
@@ -255,10 +255,11 @@ double count_variance(const std::vector<Facet>& facets) {
   for (std::size_t i = 0; i < flat.size(); ++i)
     for (std::size_t first = 0; first < paths[i].counts.size(); first += part_sides)
       parts.push_back({i, first});
-  std::vector<std::vector<Complex>> totals(groups);
-  tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t group) {
+  std::vector<std::vector<Complex>> totals(sum_groups);
+  tbb::parallel_for(std::size_t{0}, sum_groups, [&](std::size_t group) {
     totals[group].resize(vectors.size());
-    for (std::size_t n = group * parts.size() / groups; n < (group + 1) * parts.size() / groups; ++n) {
+    for (std::size_t n = group * parts.size() / sum_groups; n < (group + 1) * parts.size() / sum_groups;
+         ++n) {
       const auto& [i, first] = parts[n];
       const std::size_t last = std::min(first + part_sides, paths[i].counts.size());
       Part(flat[i], paths[i], first, last).add(vectors, most, totals[group]);

@@ -298,12 +298,12 @@ bool head_contains(HeadPart part, const glm::dvec3& p_mm) {
   if (brick.places[field] >= 0) return brick.places[field] == 1;
   // Points are often asked one beside the other: those in the ball that the last value decided lie where it
   // did.
-  struct Asked {
+  struct LastAsked {
     glm::dvec3 p_mm{0.0};
     double value = 0.0;
   };
-  thread_local std::array<Asked, HeadBricks::field_count> last_of;
-  Asked& last = last_of[field];
+  thread_local std::array<LastAsked, HeadBricks::field_count> last_of;
+  LastAsked& last = last_of[field];
   if (const signed char there = place(last.value, glm::distance(p_mm, last.p_mm)); there >= 0)
     return there == 1;
   last = {p_mm, value(brick.steps[field], p_mm)};

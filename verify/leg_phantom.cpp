@@ -21,7 +21,7 @@ constexpr int sub_samples = 4;  ///< along each edge of a voxel near a surface
 const voxel::Box leg_box{{-60, -60, -150}, {60, 60, 150}};
 
 /// The least value of the leg's surfaces at a point, and the tissue there.
-struct Reading {
+struct LegReading {
   double nearest_mm = 0.0;
   double hounsfield = 0.0;
 };
@@ -37,7 +37,7 @@ class Leg {
     third_ = glm::cross(along_, face_);
   }
 
-  Reading read(const glm::dvec3& p_mm) const {
+  LegReading read(const glm::dvec3& p_mm) const {
     const double skin = std::hypot(p_mm.x - 8.0, p_mm.y - 10.0) - 46.0;
     const double tibia = tibia_at(p_mm),
                  tibia_canal = std::max(std::hypot(p_mm.x, p_mm.y) - 6.0, std::abs(p_mm.z) - 110.0);
@@ -100,7 +100,7 @@ voxel::Lattice lattice_of(double voxel_mm) {
 
 /// The mean over a voxel.
 double mean_at(const Leg& leg, const glm::dvec3& centre_mm, double voxel_mm) {
-  const Reading middle = leg.read(centre_mm);
+  const LegReading middle = leg.read(centre_mm);
   if (middle.nearest_mm > 0.5 * std::sqrt(3.0) * voxel_mm) return middle.hounsfield;
   double sum = 0.0;
   for (int z = 0; z < sub_samples; ++z)

@@ -304,7 +304,7 @@ double normal_distribution(double z) {
 }
 
 /// How far beyond the surface nothing is left of it, in samples.
-constexpr double beyond = 2.5;
+constexpr double away = 2.5;
 
 /// The mean step across a face over distances of up to one sample on either side; `level` is taken at a
 /// depth in samples. Over a whole sample the ripple of linear interpolation cancels, which at a face along
@@ -321,12 +321,12 @@ double mean_step(const Level& level) {
 }
 
 /// The mean step at the face of a sheet that a Gaussian of this deviation has blurred, as a share of the
-/// contrast between a depth and `beyond`; all in samples.
+/// contrast between a depth and `away`; all in samples.
 double step_share(double deviation, double depth, double thickness) {
   const auto level = [&](double at) {
     return normal_distribution(at / deviation) - normal_distribution((at - thickness) / deviation);
   };
-  return mean_step(level) / (level(depth) - level(-beyond));
+  return mean_step(level) / (level(depth) - level(-away));
 }
 
 Interval summed(double value, std::vector<DoubtSource> sources) {
@@ -400,8 +400,8 @@ double blur_of(const brep::Solid& solid, const glm::dmat3& sample_edges,
     const glm::dvec3 n = normal / length, one = n * glm::length(glm::transpose(sample_edges) * n);
     const glm::dvec3 at = (p + q + r) / 3.0;
     const double half_thickness = half_thickness_mm / glm::length(one);
-    const double deep = std::clamp(half_thickness, 0.5, beyond);
-    contrast += sample_at(at - deep * one) - sample_at(at + beyond * one);
+    const double deep = std::clamp(half_thickness, 0.5, away);
+    contrast += sample_at(at - deep * one) - sample_at(at + away * one);
     step += mean_step([&](double inwards) { return sample_at(at - inwards * one); });
     depth += deep;
     thickness += 2.0 * half_thickness;

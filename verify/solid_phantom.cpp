@@ -211,15 +211,15 @@ SolidPhantom figure_3_1(const Place& place) {
   return solid;
 }
 
-struct Kind {
+struct BuiltKind {
   SolidPhantomKind said;
   Builder build;
   double reach;  ///< farthest point from the centre, in radii; 0 for what fills its universe by itself
   bool on_lattice = false;
 };
 
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all{
+const std::vector<BuiltKind>& built_kinds() {
+  static const std::vector<BuiltKind> all{
       {{"sphere", "a ball of radius R"}, sphere, 1.0},
       {{"chequered_sphere", "the ball in every other cell of 8 x 8 x 8"}, chequered_sphere, 1.0, true},
       {{"figure_3_1", "the thesis's 13 cells of 4 x 4 x 4"}, figure_3_1, 0.0, true},
@@ -250,7 +250,7 @@ voxel::Universe universe_of(const SolidPhantomOptions& options) {
   return universe;
 }
 
-void check_fit(const Kind& kind, const Place& place) {
+void check_fit(const BuiltKind& kind, const Place& place) {
   const voxel::Box bounds = voxel::bounds(place.universe.lattice());
   const double reach_mm = kind.reach * place.radius_mm;
   for (int axis = 0; axis < 3; ++axis)
@@ -266,16 +266,17 @@ void check_fit(const Kind& kind, const Place& place) {
 const std::vector<SolidPhantomKind>& solid_phantom_kinds() {
   static const std::vector<SolidPhantomKind> said = [] {
     std::vector<SolidPhantomKind> all;
-    for (const Kind& kind : kinds()) all.push_back(kind.said);
+    for (const BuiltKind& kind : built_kinds()) all.push_back(kind.said);
     return all;
   }();
   return said;
 }
 
 SolidPhantom solid_phantom(std::string_view kind, const SolidPhantomOptions& options) {
-  const auto found =
-      std::find_if(kinds().begin(), kinds().end(), [&](const Kind& k) { return k.said.name == kind; });
-  if (found == kinds().end()) throw std::invalid_argument("there is no solid called " + std::string(kind));
+  const auto found = std::find_if(built_kinds().begin(), built_kinds().end(),
+                                  [&](const BuiltKind& k) { return k.said.name == kind; });
+  if (found == built_kinds().end())
+    throw std::invalid_argument("there is no solid called " + std::string(kind));
   const voxel::Universe universe = universe_of(options);
   const double radius_voxels = options.radius_voxels.value_or(0.25 * options.voxels);
   if (!(radius_voxels > 0.0) || !std::isfinite(radius_voxels))

@@ -87,7 +87,7 @@ Unmatched told(const Octree& of_voxels, const Octree& of_mesh, Neighbours neighb
 }
 
 /// What of `parts` shares no voxel with a set.
-Octree beyond(const Octree& parts, const Octree& set, Neighbours neighbours) {
+Octree apart_from(const Octree& parts, const Octree& set, Neighbours neighbours) {
   return parts.is_empty() ? parts : difference(parts, voxel::components_that_meet(parts, set, neighbours));
 }
 
@@ -107,7 +107,7 @@ struct Hollow {
 
 Unmatched unmatched_cavities(const Hollow& voxels, const Hollow& mesh) {
   const auto filled_by = [](const Hollow& own, const Octree& other) {
-    return beyond(own.cavities, difference(own.cavities, other), Neighbours::Faces);
+    return apart_from(own.cavities, difference(own.cavities, other), Neighbours::Faces);
   };
   return told(filled_by(voxels, mesh.set), filled_by(mesh, voxels.set), Neighbours::Faces,
               {"the mesh has filled a cavity there", "the voxels have filled a cavity there"});
@@ -120,7 +120,7 @@ Topology topology(const Octree& octree) {
 }
 
 Unmatched unmatched_parts(const Octree& voxels, const Octree& mesh) {
-  return told(beyond(voxels, mesh, Neighbours::Corners), beyond(mesh, voxels, Neighbours::Corners),
+  return told(apart_from(voxels, mesh, Neighbours::Corners), apart_from(mesh, voxels, Neighbours::Corners),
               Neighbours::Corners, {part_of_voxels_only, part_of_mesh_only});
 }
 

@@ -10,7 +10,7 @@
 namespace octotomy::brep {
 namespace {
 
-struct Reader {
+struct VtkReader {
   MeshScanner scanner;
   bool binary = false;
   bool offsets = false;  ///< version 5 and later
@@ -75,7 +75,7 @@ struct Reader {
 }  // namespace
 
 Triangles read_vtk(std::string_view bytes) {
-  Reader reader{MeshScanner(bytes)};
+  VtkReader reader{MeshScanner(bytes)};
   MeshScanner& scanner = reader.scanner;
   const std::string_view signature = scanner.line();
   constexpr std::string_view wanted = "# vtk DataFile Version ";

@@ -15,7 +15,7 @@ namespace octotomy::brep {
 namespace {
 
 /// A tag and what stands before the next one.
-struct Element {
+struct XmlElement {
   std::string_view name;
   std::map<std::string_view, std::string_view> attributes;
   std::string_view content;
@@ -28,8 +28,8 @@ struct Element {
 
 constexpr std::string_view blanks = " \t\r\n";
 
-Element element_of(std::string_view tag, std::string_view content) {
-  Element element;
+XmlElement element_of(std::string_view tag, std::string_view content) {
+  XmlElement element;
   element.content = content;
   element.name = tag.substr(0, tag.find_first_of(" \t\r\n/", 1));
   for (std::size_t at = element.name.size(); at < tag.size();) {
@@ -69,16 +69,17 @@ std::size_t base64_length(std::size_t bytes) {
   return (bytes + 2) / 3 * 4;
 }
 
-class Reader {
+class VtpReader {
  public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  explicit VtpReader(std::string_view bytes) : bytes_(bytes) {}
 
   Triangles run() {
     for (std::size_t at = bytes_.find('<'); at != bytes_.npos;) {
       const std::size_t end = bytes_.find('>', at), next = end == bytes_.npos ? end : bytes_.find('<', end);
       if (end == bytes_.npos) throw Error(ErrorCode::Input, "a tag does not end");
-      const Element element = element_of(bytes_.substr(at + 1, end - at - 1),
-                                         bytes_.substr(end + 1, next == bytes_.npos ? next : next - end - 1));
+      const XmlElement element =
+          element_of(bytes_.substr(at + 1, end - at - 1),
+                     bytes_.substr(end + 1, next == bytes_.npos ? next : next - end - 1));
       if (element.name == "AppendedData") {
         appended_ = bytes_.substr(end + 1);
         appended_.remove_prefix(std::min(appended_.find('_'), appended_.size() - 1) + 1);
@@ -95,11 +96,11 @@ class Reader {
 
  private:
   struct Piece {
-    Element points;
-    std::map<std::string_view, Element> polys, strips;
+    XmlElement points;
+    std::map<std::string_view, XmlElement> polys, strips;
   };
 
-  void take(const Element& element) {
+  void take(const XmlElement& element) {
     if (element.name == "VTKFile") {
       is_polydata_ = element.get("type") == "PolyData";
       order_ =
@@ -138,7 +139,7 @@ class Reader {
     for (const auto& corners : cells_of(piece.strips, first)) add_strip(triangles_, corners);
   }
 
-  std::vector<std::vector<long long>> cells_of(const std::map<std::string_view, Element>& arrays,
+  std::vector<std::vector<long long>> cells_of(const std::map<std::string_view, XmlElement>& arrays,
                                                long long first) {
     if (!arrays.contains("connectivity") || !arrays.contains("offsets")) return {};
     const std::vector<long long> list = numbers_of<long long>(arrays.at("connectivity"));
@@ -158,7 +159,7 @@ class Reader {
   }
 
   template <typename Number>
-  std::vector<Number> numbers_of(const Element& array) const {
+  std::vector<Number> numbers_of(const XmlElement& array) const {
     const std::string_view type = array.get("type");
     std::vector<Number> numbers;
     if (array.get("format", "ascii") == "ascii") {
@@ -204,7 +205,7 @@ class Reader {
   std::size_t header_bytes() const { return wide_header_ ? 8 : 4; }
 
   /// An array's bytes, without its header.
-  std::string data_of(const Element& array) const {
+  std::string data_of(const XmlElement& array) const {
     std::string_view source = array.content;
     bool raw = false;
     if (array.get("format") == "appended") {
@@ -268,7 +269,7 @@ class Reader {
 }  // namespace
 
 Triangles read_vtp(std::string_view bytes) {
-  return Reader(bytes).run();
+  return VtpReader(bytes).run();
 }
 
 }  // namespace octotomy::brep

@@ -20,7 +20,7 @@
 namespace octotomy::convert {
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void refuse_to_write(const std::filesystem::path& path, const std::string& why) {
   throw std::invalid_argument(path.string() + ": " + why);
 }
 
@@ -30,53 +30,54 @@ void check_name(const std::filesystem::path& path, const std::string& what, cons
   };
   if (name.empty() || name.size() > 80 || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
       !std::all_of(name.begin(), name.end(), fits))
-    refuse(path,
-           what + " '" + name +
-               "' is no name that Abaqus and CalculiX take: a letter, then letters, digits, '_', '-', at "
-               "most 80 in all");
+    refuse_to_write(
+        path, what + " '" + name +
+                  "' is no name that Abaqus and CalculiX take: a letter, then letters, digits, '_', '-', at "
+                  "most 80 in all");
 }
 
 void check_nodes(const Tetrahedra& tetrahedra, const std::filesystem::path& path) {
-  if (tetrahedra.tets.empty()) refuse(path, "there are no tetrahedra to write");
+  if (tetrahedra.tets.empty()) refuse_to_write(path, "there are no tetrahedra to write");
   const auto nodes = tetrahedra.nodes_mm.size();
   for (std::size_t t = 0; t < tetrahedra.tets.size(); ++t)
     for (const std::uint32_t node : tetrahedra.tets[t])
       if (node >= nodes)
-        refuse(path, "tetrahedron " + std::to_string(t) + " names node " + std::to_string(node) + " of " +
-                         std::to_string(nodes));
+        refuse_to_write(path, "tetrahedron " + std::to_string(t) + " names node " + std::to_string(node) +
+                                  " of " + std::to_string(nodes));
   for (const std::uint32_t node : tetrahedra.boundary_nodes)
     if (node >= nodes)
-      refuse(path, "the surface names node " + std::to_string(node) + " of " + std::to_string(nodes));
+      refuse_to_write(path,
+                      "the surface names node " + std::to_string(node) + " of " + std::to_string(nodes));
   for (const glm::dvec3& p : tetrahedra.nodes_mm)
-    if (!std::isfinite(p.x + p.y + p.z)) refuse(path, "a node is not finite");
+    if (!std::isfinite(p.x + p.y + p.z)) refuse_to_write(path, "a node is not finite");
   if (!tetrahedra.mid_nodes.empty() && tetrahedra.mid_nodes.size() != tetrahedra.tets.size())
-    refuse(path, "nodes on sides are given of " + std::to_string(tetrahedra.mid_nodes.size()) + " of " +
-                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+    refuse_to_write(path, "nodes on sides are given of " + std::to_string(tetrahedra.mid_nodes.size()) +
+                              " of " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
   for (const auto& middles : tetrahedra.mid_nodes)
     for (const std::uint32_t node : middles)
       if (node >= nodes)
-        refuse(path, "a side names node " + std::to_string(node) + " of " + std::to_string(nodes));
+        refuse_to_write(path, "a side names node " + std::to_string(node) + " of " + std::to_string(nodes));
   if (!tetrahedra.region_of_tet.empty() && tetrahedra.region_of_tet.size() != tetrahedra.tets.size())
-    refuse(path, "regions are given of " + std::to_string(tetrahedra.region_of_tet.size()) + " of " +
-                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+    refuse_to_write(path, "regions are given of " + std::to_string(tetrahedra.region_of_tet.size()) + " of " +
+                              std::to_string(tetrahedra.tets.size()) + " tetrahedra");
 }
 
 void check_materials(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                      const DeckOptions& options) {
-  if (options.materials.empty()) refuse(path, "there is no material");
+  if (options.materials.empty()) refuse_to_write(path, "there is no material");
   for (const DeckMaterial& material : options.materials) {
     check_name(path, "material", material.name);
     if (!(material.youngs_modulus_mpa > 0.0) || !std::isfinite(material.youngs_modulus_mpa))
-      refuse(path, "Young's modulus of " + material.name + " must be positive");
+      refuse_to_write(path, "Young's modulus of " + material.name + " must be positive");
     if (!(material.poisson_ratio > -1.0 && material.poisson_ratio < 0.5))
-      refuse(path, "Poisson's ratio of " + material.name + " must lie between -1 and 0.5");
+      refuse_to_write(path, "Poisson's ratio of " + material.name + " must lie between -1 and 0.5");
   }
   if (!options.material_of_tet.empty() && options.material_of_tet.size() != tetrahedra.tets.size())
-    refuse(path, "materials are given of " + std::to_string(options.material_of_tet.size()) + " of " +
-                     std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+    refuse_to_write(path, "materials are given of " + std::to_string(options.material_of_tet.size()) +
+                              " of " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
   for (const std::uint32_t material : options.material_of_tet)
     if (material >= options.materials.size())
-      refuse(path, "a tetrahedron names a material that is not there");
+      refuse_to_write(path, "a tetrahedron names a material that is not there");
 }
 
 void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
@@ -86,38 +87,40 @@ void check_sets(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     check_name(path, "node set", set.name);
     for (const std::uint32_t node : set.nodes)
       if (node >= tetrahedra.nodes_mm.size())
-        refuse(path, "set " + set.name + " names a node that is not there");
+        refuse_to_write(path, "set " + set.name + " names a node that is not there");
   }
   for (const DeckSurface& surface : options.surfaces) {
     check_name(path, "surface", surface.name);
     for (const ElementFace& face : surface.faces)
       if (face.tet >= tetrahedra.tets.size() || face.opposite > 3)
-        refuse(path, "surface " + surface.name + " names a face that is not there");
+        refuse_to_write(path, "surface " + surface.name + " names a face that is not there");
   }
   for (const ContactPair& pair : options.contacts) {
     check_name(path, "contact pair", pair.name);
     for (const std::string& name : {pair.slave, pair.master})
       if (std::none_of(options.surfaces.begin(), options.surfaces.end(),
                        [&](const DeckSurface& surface) { return surface.name == name; }))
-        refuse(path, "contact pair " + pair.name + " names a surface '" + name + "' that is not there");
+        refuse_to_write(path,
+                        "contact pair " + pair.name + " names a surface '" + name + "' that is not there");
   }
   for (const Prescribed& prescribed : options.prescribed) {
     const auto set = std::find_if(options.node_sets.begin(), options.node_sets.end(),
                                   [&](const NodeSet& s) { return s.name == prescribed.node_set; });
     if (set == options.node_sets.end())
-      refuse(path, "displacements are prescribed of a set '" + prescribed.node_set + "' that is not there");
+      refuse_to_write(
+          path, "displacements are prescribed of a set '" + prescribed.node_set + "' that is not there");
     if (!prescribed.displacement_mm.empty() && prescribed.displacement_mm.size() != set->nodes.size())
-      refuse(path, "set " + set->name + " has " + std::to_string(set->nodes.size()) + " nodes and " +
-                       std::to_string(prescribed.displacement_mm.size()) + " displacements");
+      refuse_to_write(path, "set " + set->name + " has " + std::to_string(set->nodes.size()) + " nodes and " +
+                                std::to_string(prescribed.displacement_mm.size()) + " displacements");
     for (const glm::dvec3& u : prescribed.displacement_mm)
       if (!std::isfinite(u.x + u.y + u.z))
-        refuse(path, "a displacement of set " + set->name + " is not finite");
+        refuse_to_write(path, "a displacement of set " + set->name + " is not finite");
   }
   for (const ElementField& field : options.fields) {
     check_name(path, "field", field.name);
     if (field.values.size() != tetrahedra.tets.size())
-      refuse(path, "field " + field.name + " has " + std::to_string(field.values.size()) + " values for " +
-                       std::to_string(tetrahedra.tets.size()) + " tetrahedra");
+      refuse_to_write(path, "field " + field.name + " has " + std::to_string(field.values.size()) +
+                                " values for " + std::to_string(tetrahedra.tets.size()) + " tetrahedra");
   }
 }
 
@@ -141,7 +144,7 @@ std::vector<Part> parts_of(const std::filesystem::path& path) {
             {with(".ele"), write_tetgen_ele},
             {with(".face"), write_tetgen_face}};
   }
-  refuse(path, "'" + extension + "' is no deck this program writes: " + deck_extensions());
+  refuse_to_write(path, "'" + extension + "' is no deck this program writes: " + deck_extensions());
 }
 
 /// The approximate size of a deck in bytes, for its progress: text of nodes, elements and entries of sets.
@@ -215,7 +218,7 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
   check_materials(tetrahedra, path, options);
   check_sets(tetrahedra, path, options);
   if (options.second_order) {
-    if (parts.size() > 1) refuse(path, "TetGen's files are of linear elements: choose another deck");
+    if (parts.size() > 1) refuse_to_write(path, "TetGen's files are of linear elements: choose another deck");
     const SecondOrder made = second_order(tetrahedra, options);
     write_deck(made.tetrahedra, path, made.options);
     return;

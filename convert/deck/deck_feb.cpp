@@ -127,7 +127,7 @@ void write_boundary(const DeckOptions& options, std::ostream& out) {
          "</load_controller>\n</LoadData>\n";
 }
 
-void write_contacts(const DeckOptions& options, std::ostream& out) {
+void write_contact_section(const DeckOptions& options, std::ostream& out) {
   if (options.contacts.empty()) return;
   out << "<Contact>\n";
   for (const ContactPair& pair : options.contacts)
@@ -154,7 +154,7 @@ void write_feb(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
         << full_number(options.materials[m].poisson_ratio).data() << "</v></material>\n";
   out << "</Material>\n";
   write_mesh(tetrahedra, options, blocks, out);
-  write_contacts(options, out);
+  write_contact_section(options, out);
   if (!options.prescribed.empty()) {
     write_maps(options, out);
     write_boundary(options, out);

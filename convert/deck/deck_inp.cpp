@@ -135,7 +135,7 @@ void write_materials(const Tetrahedra& tetrahedra, const DeckOptions& options, s
       });
 }
 
-void write_contacts(const DeckOptions& options, std::ostream& out) {
+void write_contact_cards(const DeckOptions& options, std::ostream& out) {
   for (const ContactPair& pair : options.contacts)
     out << "*SURFACE INTERACTION, NAME=" << pair.name << "\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n"
         << deck_number(contact_stiffness(options)).data() << "\n*CONTACT PAIR, INTERACTION=" << pair.name
@@ -178,7 +178,7 @@ void write_inp(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
   write_nodes_and_elements(tetrahedra, options, out);
   write_sets(tetrahedra, options, out);
   write_materials(tetrahedra, options, out);
-  write_contacts(options, out);
+  write_contact_cards(options, out);
   write_step(tetrahedra, options, out);
 }
 

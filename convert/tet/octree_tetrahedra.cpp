@@ -166,11 +166,11 @@ class Filling {
       : lattice_(universe.lattice()), cells_(cells) {}
 
   Tetrahedra run(const voxel::Progress& progress) {
-    constexpr std::size_t look_every = 4096;  // cells: some milliseconds
+    constexpr std::size_t cells_between_looks = 4096;  // some milliseconds
     std::size_t done = 0;
     for (std::size_t level = 0; level < cells_.levels(); ++level)
       for (const Cell& cell : cells_.sorted(level)) {
-        if (done++ % look_every == 0)
+        if (done++ % cells_between_looks == 0)
           progress.at(static_cast<double>(done) / static_cast<double>(cells_.count()));
         add_cell(cell.first, static_cast<int>(level));
         result_.region_of_tet.resize(result_.tets.size(), cell.region);

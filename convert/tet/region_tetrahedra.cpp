@@ -26,23 +26,24 @@
 namespace octotomy::convert {
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) {
+[[noreturn]] void refuse_regions(const std::string& why) {
   throw std::invalid_argument("smooth_tetrahedra_of: " + why);
 }
 
 using voxel::rounded;
 
 void check(const std::vector<voxel::Octree>& regions, const RegionMeshOptions& options) {
-  if (regions.empty()) refuse("there is no region");
-  if (regions.size() > std::numeric_limits<std::uint8_t>::max()) refuse("there are over 255 regions");
+  if (regions.empty()) refuse_regions("there is no region");
+  if (regions.size() > std::numeric_limits<std::uint8_t>::max()) refuse_regions("there are over 255 regions");
   for (const voxel::Octree& region : regions) {
-    if (region.is_empty()) refuse("a region is empty");
+    if (region.is_empty()) refuse_regions("a region is empty");
     if (!(region.universe() == regions.front().universe()))
-      refuse("regions are of different universes: evaluate them in one");
+      refuse_regions("regions are of different universes: evaluate them in one");
   }
-  if (!(options.size_mm > 0.0) || !std::isfinite(options.size_mm)) refuse("the size must be positive");
+  if (!(options.size_mm > 0.0) || !std::isfinite(options.size_mm))
+    refuse_regions("the size must be positive");
   if (!(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 30.0))
-    refuse("the smallest dihedral angle to reach must be 0 to 30 degrees");
+    refuse_regions("the smallest dihedral angle to reach must be 0 to 30 degrees");
 }
 
 /// Calls f(voxel, how many along x) for each run of a region's voxels.
@@ -228,7 +229,7 @@ Tetrahedra smooth_tetrahedra_of(const std::vector<voxel::Octree>& regions, const
   const std::vector<Counted> counted = add_starts(image, options.size_mm, regions.size());
   for (std::size_t label = 1; label < counted.size(); ++label)
     if (counted[label].voxels == 0)
-      refuse("region " + std::to_string(label) + " lies wholly within the regions before it");
+      refuse_regions("region " + std::to_string(label) + " lies wholly within the regions before it");
 
   const glm::dvec3& edge_mm = image.image.spacing_mm;
   // The voxels' steps, which are to be smoothed, are half a voxel off. A cell twice as large as a facet still

@@ -36,7 +36,7 @@ namespace {
 using voxel::rounded;
 
 /// The surface cannot be filled.
-[[noreturn]] void refuse(const std::string& why) {
+[[noreturn]] void refuse_surface(const std::string& why) {
   throw voxel::Error(voxel::ErrorCode::Geometry, "tetrahedralise: " + why);
 }
 /// An option is out of its range.
@@ -95,10 +95,10 @@ MesherInput surface_of(const brep::Mesh& solid) {
       const auto vertex = solid.to_vertex_handle(halfedge);
       const OpenMesh::Vec3d& p = solid.point(vertex);
       if (solid.is_boundary(solid.opposite_halfedge_handle(halfedge)))
-        refuse("the surface is open at " + rounded({p[0], p[1], p[2]}) +
-               " mm, so it has no inside: close its holes first");
+        refuse_surface("the surface is open at " + rounded({p[0], p[1], p[2]}) +
+                       " mm, so it has no inside: close its holes first");
       if (!std::isfinite(p[0] + p[1] + p[2]))
-        refuse("vertex " + std::to_string(vertex.idx()) + " is not finite");
+        refuse_surface("vertex " + std::to_string(vertex.idx()) + " is not finite");
       std::uint32_t& known = number[static_cast<std::size_t>(vertex.idx())];
       if (known == unused) {
         known = static_cast<std::uint32_t>(input.points_mm.size());
@@ -197,8 +197,9 @@ glm::dvec3 hole_point(const MesherInput& surface, const std::vector<Part>& parts
 
   double nearest = nearest_hit(surface, cavity, start, from, direction);
   if (!std::isfinite(nearest))
-    refuse("a cavity at " + rounded(from) +
-           " mm has no other side: its triangles do not all face the same way; check the mesh's health");
+    refuse_surface(
+        "a cavity at " + rounded(from) +
+        " mm has no other side: its triangles do not all face the same way; check the mesh's health");
   Bounds way;
   way.add(from);
   way.add(from + nearest * direction);
@@ -240,13 +241,13 @@ double checked_volume_mm3(const MesherInput& surface, const std::vector<Part>& p
   const glm::dvec3 extent = bounds.high - bounds.low;
   const double largest = std::max({extent.x, extent.y, extent.z});
   if (largest < tiny_extent_mm())
-    refuse("the solid is only " + rounded(largest) + " mm large: is its unit millimetres?");
+    refuse_surface("the solid is only " + rounded(largest) + " mm large: is its unit millimetres?");
   const double volume = six / 6.0;
   if (std::abs(volume) < flat_volume() * largest * largest * largest)
-    refuse("the solid is flat: " + rounded(volume) + " mm3 within " + rounded(largest) + " mm, of " +
-           std::to_string(surface.triangles.size()) + " triangles");
+    refuse_surface("the solid is flat: " + rounded(volume) + " mm3 within " + rounded(largest) + " mm, of " +
+                   std::to_string(surface.triangles.size()) + " triangles");
   if (volume < 0.0)
-    refuse("the surface is inside out: it encloses " + rounded(volume) + " mm3; flip its triangles");
+    refuse_surface("the surface is inside out: it encloses " + rounded(volume) + " mm3; flip its triangles");
   return volume;
 }
 
@@ -415,7 +416,8 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   MesherInput surface = surface_of(solid);
   const SizeLimits limits = refine(surface, options.finer);
   if (surface.triangles.size() < 4)
-    refuse("a surface of " + std::to_string(surface.triangles.size()) + " triangles encloses nothing");
+    refuse_surface("a surface of " + std::to_string(surface.triangles.size()) +
+                   " triangles encloses nothing");
   const std::vector<Part> parts = parts_of(surface);
   const double surface_mm3 = checked_volume_mm3(surface, parts);
   for (const Part& part : parts)

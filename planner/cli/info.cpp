@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/health.h"
 #include "planner/cli/verbs.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
 
 namespace octotomy::planner::cli {

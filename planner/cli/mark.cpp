@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/view/mark.h"
 
+#include <CLI/CLI.hpp>
+
 #include "planner/cli/verbs.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"

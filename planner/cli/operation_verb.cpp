@@ -7,6 +7,7 @@
 //   4 The answer is written, measured and told.
 #include "planner/cli/operation_verb.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>

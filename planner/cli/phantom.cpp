@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
 #include "planner/cli/verbs.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A plan of steps that each make a scan of the one before, from the table of operations.
+#include <CLI/CLI.hpp>
+
 #include "planner/cli/verbs.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cli/procedure_verb.h"
 
+#include <CLI/CLI.hpp>
+
 #include "planner/file/file_kind.h"
 #include "planner/file/landmarks_file.h"
 #include "planner/file/output_path.h"

@@ -3,6 +3,8 @@
 // or a DICOM segmentation.
 #include "planner/operation/segment.h"
 
+#include <CLI/CLI.hpp>
+
 #include "planner/cli/operation_verb.h"
 #include "planner/cli/verbs.h"
 #include "planner/file/slice_contours.h"

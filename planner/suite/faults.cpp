@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
 #include "planner/suite/suites.h"
 #include "verify/fault.h"
 

@@ -2,6 +2,7 @@
 //
 // One question is A OP B, and perhaps C, somebody's answer to it. Both kernels answer it and are held against
 // each other; then C is held against each of them. A triple is such a question as JSON, or a folder of files.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "brep/io/read_mesh.h"

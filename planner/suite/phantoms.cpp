@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
 #include "planner/suite/suites.h"
 #include "planner/table/number_format.h"
 #include "verify/interval_suite.h"

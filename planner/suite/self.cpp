@@ -2,6 +2,7 @@
 //
 // Of each part that the program starts or loads: whether it is there, carries the program's own mark of its
 // build, and does a small piece of work whose answer is known.
+#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iterator>
 

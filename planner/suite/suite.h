@@ -12,6 +12,10 @@
 #include "planner/report/report.h"
 #include "planner/verb/plan_in.h"
 
+namespace CLI {
+class Option;
+}  // namespace CLI
+
 // `octotomy verify`: a plan's certificates, or one of the suites that test the verifier itself.
 namespace octotomy::planner::cli {
 

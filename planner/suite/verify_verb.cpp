@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
 #include "planner/report/result_folder.h"
 #include "planner/report/verification.h"
 #include "planner/suite/suite.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/verb/manual.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <vector>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/verb/plan_in.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "planner/report/report.h"

@@ -4,6 +4,10 @@
 #include "planner/verb/verb.h"
 #include "voxel/scan/read_scene.h"
 
+namespace CLI {
+class Validator;
+}  // namespace CLI
+
 // What the verbs that read a scan have in common.
 namespace octotomy::planner::cli {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -14,6 +13,10 @@
 #include "planner/measure/result_json.h"
 #include "planner/plan/evaluate.h"
 #include "voxel/space/lattice.h"
+
+namespace CLI {
+class App;
+}  // namespace CLI
 
 // What the verbs of the command line have in common.
 namespace octotomy::planner::cli {

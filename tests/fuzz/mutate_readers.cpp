@@ -16,7 +16,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -25,6 +24,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/file_bytes.h"
 #include "tests/fuzz/file_kinds.h"
 #include "tests/fuzz/loaded_program.h"
 #include "tests/fuzz/mutation.h"
@@ -35,10 +35,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace octotomy::tests;
 using Clock = std::chrono::steady_clock;
-
-void write_bytes(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
 
 struct Options {
   Subject subject{.program = fs::path(OCTOTOMY_BINARY_DIR) / "octotomy"};

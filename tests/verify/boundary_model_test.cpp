@@ -2,6 +2,7 @@
 #include "verify/boundary_model.h"
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <vector>
@@ -32,12 +33,6 @@ brep::Solid surface_of(const char* kind, double radius, const glm::dvec3& centre
                              brep::Proof::Construction);
 }
 
-glm::dmat4 shifted(const glm::dvec3& by_mm) {
-  glm::dmat4 matrix(1.0);
-  matrix[3] = glm::dvec4(by_mm, 1.0);
-  return matrix;
-}
-
 TEST(BoundaryModel, ASphereCountsWithKendallsDeviation) {
   const BoundaryModel model = boundary_model(surface_of("sphere", 16, {0.1, 0.2, 0.3}, glm::dmat3(1)),
                                              {unit_lattice(), glm::dvec3(1.0), {}});
@@ -57,8 +52,9 @@ TEST(BoundaryModel, TheDeviationPredictedIsThatOfACountOverManyPlaces) {
       // Additive recurrence: spread evenly over a voxel.
       const glm::dvec3 by_mm =
           glm::fract(glm::dvec3(i) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
-      const auto count =
-          static_cast<double>(convert::voxelise(universe, brep::moved(mesh, shifted(by_mm))).voxel_count());
+      const auto count = static_cast<double>(
+          convert::voxelise(universe, brep::moved(mesh, glm::translate(glm::dmat4(1.0), by_mm)))
+              .voxel_count());
       squares += (count - truth_mm3) * (count - truth_mm3);
     }
     const double found = std::sqrt(squares / places), predicted = std::sqrt(model.count_mm6);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -22,10 +23,10 @@ namespace {
 // Signed distances, negative inside, in millimetres.
 using Distance = std::function<double(const glm::dvec3&)>;
 
-Distance ball(const glm::dvec3& centre_mm, double radius_mm) {
+Distance ball_distance(const glm::dvec3& centre_mm, double radius_mm) {
   return [=](const glm::dvec3& p) { return glm::length(p - centre_mm) - radius_mm; };
 }
-Distance box(const glm::dvec3& centre_mm, const glm::dvec3& half_mm) {
+Distance box_distance(const glm::dvec3& centre_mm, const glm::dvec3& half_mm) {
   return [=](const glm::dvec3& p) {
     const glm::dvec3 q = glm::abs(p - centre_mm) - half_mm;
     return std::max({q.x, q.y, q.z});
@@ -113,18 +114,12 @@ struct Named {
 
 std::vector<Named> phantoms() {
   const glm::dvec3 oblique = glm::normalize(glm::dvec3(0.31, 0.53, 0.79));
-  return {{"sphere", ball({0.13, -0.21, 0.32}, 14.3)},
-          {"small sphere", ball({0.4, 0.1, -0.3}, 6.2)},
-          {"box", box({0.2, 0.3, -0.1}, {9.4, 12.1, 7.3})},
-          {"cut sphere", cut_by(ball({0.3, 0.2, 0.1}, 14.0), oblique, 3.2)},
-          {"flatly cut sphere", cut_by(ball({0.3, 0.2, 0.1}, 14.0), {0, 0, 1}, 4.3)},
-          {"two spheres", either(ball({-7, 0.3, 0.2}, 7.1), ball({8.2, 1.1, 0.4}, 6.3))}};
-}
-
-glm::dmat4 shifted(const glm::dvec3& by_mm) {
-  glm::dmat4 matrix(1.0);
-  matrix[3] = glm::dvec4(by_mm, 1.0);
-  return matrix;
+  return {{"sphere", ball_distance({0.13, -0.21, 0.32}, 14.3)},
+          {"small sphere", ball_distance({0.4, 0.1, -0.3}, 6.2)},
+          {"box", box_distance({0.2, 0.3, -0.1}, {9.4, 12.1, 7.3})},
+          {"cut sphere", cut_by(ball_distance({0.3, 0.2, 0.1}, 14.0), oblique, 3.2)},
+          {"flatly cut sphere", cut_by(ball_distance({0.3, 0.2, 0.1}, 14.0), {0, 0, 1}, 4.3)},
+          {"two spheres", either(ball_distance({-7, 0.3, 0.2}, 7.1), ball_distance({8.2, 1.1, 0.4}, 6.3))}};
 }
 
 TEST(CertifyBounded, RightAnswersPassAtSeveralResolutions) {
@@ -142,7 +137,8 @@ TEST(CertifyBounded, AShiftOfHalfAVoxelDoesNotPassOnAnyPhantom) {
     Pair pair = both_kernels(phantom.distance, 1.0, 1.0, 18.0);
     // Faces along the voxels' planes can move half a voxel without any voxel changing, so the box moves by
     // one.
-    pair.solid = brep::moved(pair.solid, shifted({phantom.name == "box" ? 1.0 : 0.5, 0, 0}));
+    pair.solid =
+        brep::moved(pair.solid, glm::translate(glm::dmat4(1.0), {phantom.name == "box" ? 1.0 : 0.5, 0, 0}));
     const Certificate certificate = certify(pair);
     EXPECT_NE(certificate.verdict, Verdict::Pass) << phantom.name << ": " << told(certificate);
   }
@@ -161,7 +157,7 @@ TEST(CertifyBounded, AShiftThatNoVolumeSeesHasVerdictsOfItsOwn) {
   for (const char* quantity :
        {"volume", "symmetric difference", "centroid", "area", "inertia", "hausdorff95", "mean distance"})
     EXPECT_EQ(verdict_on(right, quantity), Verdict::Pass) << quantity;
-  pair.solid = brep::moved(pair.solid, shifted({0.5, 0, 0}));
+  pair.solid = brep::moved(pair.solid, glm::translate(glm::dmat4(1.0), {0.5, 0, 0}));
   const Certificate wrong = certify(pair);
   EXPECT_EQ(verdict_on(wrong, "volume"), Verdict::Pass);
   EXPECT_EQ(verdict_on(wrong, "area"), Verdict::Pass);
@@ -173,7 +169,8 @@ TEST(CertifyBounded, TheVolumesToleranceIsWithinThreeTimesWhatSpheresShow) {
   for (int i = 0; i < 12; ++i) {
     const glm::dvec3 centre =
         glm::fract(glm::dvec3(i) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
-    const Certificate certificate = certify(both_kernels(ball(centre, 12.0 + 0.09 * i), 1.0, 1.0, 16.0));
+    const Certificate certificate =
+        certify(both_kernels(ball_distance(centre, 12.0 + 0.09 * i), 1.0, 1.0, 16.0));
     ASSERT_EQ(certificate.verdict, Verdict::Pass) << told(certificate);
     worst = std::max(worst, std::abs(certificate.difference_mm3) / certificate.tolerance_mm3);
   }
@@ -192,11 +189,11 @@ TEST(CertifyBounded, WhereVoxelsAreTheSamplesTopologyIsCertifiedAndALostHandleFa
   inputs.voxels_are_samples = true;
   const Certificate right = certify_bounded(octree, isosurface_solid(scan), inputs);
   EXPECT_EQ(verdict_on(right, "euler"), Verdict::Pass) << told(right);
-  const voxel::Scene plug = scan_of(either(ring, ball({0, 0, 0}, 8.0)), 1.0, 16.0);
+  const voxel::Scene plug = scan_of(either(ring, ball_distance({0, 0, 0}, 8.0)), 1.0, 16.0);
   const Certificate wrong = certify_bounded(octree, isosurface_solid(plug), inputs);
   EXPECT_EQ(verdict_on(wrong, "euler"), Verdict::Fail) << told(wrong);
   EXPECT_EQ(verdict_on(right, "components"), Verdict::Pass) << told(right);
-  const voxel::Scene stray = scan_of(either(ring, ball({0, 0, 0}, 3.0)), 1.0, 16.0);
+  const voxel::Scene stray = scan_of(either(ring, ball_distance({0, 0, 0}, 3.0)), 1.0, 16.0);
   const Certificate parted = certify_bounded(octree, isosurface_solid(stray), inputs);
   EXPECT_EQ(verdict_on(parted, "components"), Verdict::Fail) << told(parted);
 }
@@ -210,16 +207,18 @@ TEST(CertifyBounded, AMeshTurnedInsideOutFails) {
 }
 
 TEST(CertifyBounded, ASmallLostComponentDoesNotPass) {
-  Pair pair = both_kernels(either(ball({-4, 0, 0}, 11.0), ball({14.2, 1.1, 0.4}, 2.4)), 1.0, 1.0, 18.0);
+  Pair pair = both_kernels(either(ball_distance({-4, 0, 0}, 11.0), ball_distance({14.2, 1.1, 0.4}, 2.4)), 1.0,
+                           1.0, 18.0);
   EXPECT_EQ(certify(pair).verdict, Verdict::Pass) << told(certify(pair));
-  pair.solid = both_kernels(ball({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0).solid;
+  pair.solid = both_kernels(ball_distance({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0).solid;
   EXPECT_NE(certify(pair).verdict, Verdict::Pass) << told(certify(pair));
 }
 
 TEST(CertifyBounded, NamesThePlaceThatDiffersMostAndTheKernelThatHasAPartThere) {
   const glm::dvec3 lost_mm(14.2, 1.1, 0.4);
-  const Pair both = both_kernels(either(ball({-4, 0, 0}, 11.0), ball(lost_mm, 2.4)), 1.0, 1.0, 18.0);
-  const Pair one = both_kernels(ball({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0);
+  const Pair both =
+      both_kernels(either(ball_distance({-4, 0, 0}, 11.0), ball_distance(lost_mm, 2.4)), 1.0, 1.0, 18.0);
+  const Pair one = both_kernels(ball_distance({-4, 0, 0}, 11.0), 1.0, 1.0, 18.0);
   const auto expect_at = [&](const Pair& pair, const std::string& what) {
     const Certificate certificate = certify(pair);
     ASSERT_TRUE(certificate.worst);
@@ -255,7 +254,7 @@ TEST(CertifyBounded, ReasonsQuoteBothKernelsInRoundedNumbersWithUnits) {
 }
 
 TEST(CertifyBounded, StopsWhenAsked) {
-  const Pair pair = both_kernels(ball({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
+  const Pair pair = both_kernels(ball_distance({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
   std::stop_source source;
   int reports = 0;
   const voxel::Progress progress{source.get_token(), [&](double) {
@@ -266,8 +265,8 @@ TEST(CertifyBounded, StopsWhenAsked) {
 }
 
 TEST(CertifyBounded, ADifferenceOfMeshesPassesAndItsSwappedOperandsFail) {
-  const Pair a = both_kernels(ball({-3, 0.2, 0.1}, 11.0), 1.0, 1.0, 18.0);
-  const Pair b = both_kernels(ball({5, 0.4, 0.3}, 9.0), 1.0, 1.0, 18.0);
+  const Pair a = both_kernels(ball_distance({-3, 0.2, 0.1}, 11.0), 1.0, 1.0, 18.0);
+  const Pair b = both_kernels(ball_distance({5, 0.4, 0.3}, 9.0), 1.0, 1.0, 18.0);
   const voxel::Octree octree =
       voxel::combine(a.octree.universe(), voxel::Expression(a.octree) - voxel::Expression(b.octree));
   const Pair right{octree, brep::boolean(a.solid, brep::Operation::Difference, b.solid).solid, 1.0};
@@ -277,7 +276,7 @@ TEST(CertifyBounded, ADifferenceOfMeshesPassesAndItsSwappedOperandsFail) {
 }
 
 TEST(CertifyBounded, ACutAt45DegreesErrsInStepAndIsAllowedThatNoMore) {
-  const Pair a = both_kernels(box({0.2, 0.3, -0.1}, {13, 13, 13}), 1.0, 1.0, 18.0);
+  const Pair a = both_kernels(box_distance({0.2, 0.3, -0.1}, {13, 13, 13}), 1.0, 1.0, 18.0);
   const glm::dvec3 diagonal = glm::normalize(glm::dvec3(1, 1, 0));
   brep::Prism prism;
   prism.look = {0, 0, 1};
@@ -302,7 +301,7 @@ TEST(CertifyBounded, ACutAt45DegreesErrsInStepAndIsAllowedThatNoMore) {
 }
 
 TEST(CertifyBounded, AFewVoxelsProveNothing) {
-  const Certificate certificate = certify(both_kernels(ball({0, 0, 0}, 2.5), 1.0, 1.0, 6.0));
+  const Certificate certificate = certify(both_kernels(ball_distance({0, 0, 0}, 2.5), 1.0, 1.0, 6.0));
   EXPECT_EQ(certificate.verdict, Verdict::Pass) << told(certificate);
   ASSERT_FALSE(certificate.resolved());
   EXPECT_NEAR(certificate.unresolved->extent_voxels.value(), 4.0, 0.1);
@@ -312,9 +311,9 @@ TEST(CertifyBounded, AFewVoxelsProveNothing) {
 
 TEST(CertifyBounded, HalfOfAnObjectThatIsNotResolvedMissingDoesNotPass) {
   // A ball of five voxels, a sheet of three and one thinner than a voxel.
-  const std::vector<Named> small{{"ball", ball({0.1, 0, 0.2}, 2.5)},
-                                 {"sheet", box({0.2, 0.3, 0.1}, {8.2, 9.1, 1.6})},
-                                 {"thin sheet", box({0.2, 0.3, 0.1}, {8.2, 9.1, 0.4})}};
+  const std::vector<Named> small{{"ball", ball_distance({0.1, 0, 0.2}, 2.5)},
+                                 {"sheet", box_distance({0.2, 0.3, 0.1}, {8.2, 9.1, 1.6})},
+                                 {"thin sheet", box_distance({0.2, 0.3, 0.1}, {8.2, 9.1, 0.4})}};
   for (const Named& object : small) {
     const Pair whole = both_kernels(object.distance, 1.0, 1.0, 12.0);
     const Certificate right = certify(whole);
@@ -330,7 +329,7 @@ TEST(CertifyBounded, HalfOfAnObjectThatIsNotResolvedMissingDoesNotPass) {
 }
 
 TEST(CertifyBounded, AFailureOfWhatIsNotResolvedStaysAFailure) {
-  Pair pair = both_kernels(ball({0, 0, 0}, 2.5), 1.0, 1.0, 6.0);
+  Pair pair = both_kernels(ball_distance({0, 0, 0}, 2.5), 1.0, 1.0, 6.0);
   brep::Triangles triangles = pair.solid.triangles();
   for (auto& face : triangles.faces) std::swap(face[0], face[1]);
   pair.solid = brep::trusted_solid(triangles, brep::Proof::Connection);
@@ -352,7 +351,7 @@ TEST(Certificates, AreRankedByVerdictThenByWhetherVoxelsResolveThem) {
 }
 
 TEST(CertifyBounded, NothingAgreesWithNothingOnly) {
-  const Pair something = both_kernels(ball({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
+  const Pair something = both_kernels(ball_distance({0, 0, 0}, 8.0), 1.0, 1.0, 12.0);
   const voxel::Octree none = voxel::Octree::empty(something.octree.universe());
   EXPECT_EQ(certify({none, brep::Solid(), 1.0}).verdict, Verdict::Pass);
   EXPECT_EQ(certify({none, something.solid, 1.0}).verdict, Verdict::Fail);

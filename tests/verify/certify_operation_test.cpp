@@ -11,7 +11,7 @@ namespace octotomy::verify {
 namespace {
 
 /// An ellipsoid's surface by chords, off any lattice.
-brep::Solid ellipsoid(const glm::dvec3& centre_mm, const glm::dvec3& radii_mm) {
+brep::Solid ellipsoid_surface(const glm::dvec3& centre_mm, const glm::dvec3& radii_mm) {
   voxel::Universe universe;
   universe.depth = 5;
   const voxel::Octree octree = voxel::combine(universe, voxel::Ellipsoid{centre_mm, radii_mm});
@@ -21,7 +21,8 @@ brep::Solid ellipsoid(const glm::dvec3& centre_mm, const glm::dvec3& radii_mm) {
 class Operations : public testing::TestWithParam<brep::Operation> {};
 
 TEST_P(Operations, OfTerracedSolidsAgreeAtEveryCentreWhateverTheVoxels) {
-  const brep::Solid a = ellipsoid({15, 15, 15}, {11, 8, 6}), b = ellipsoid({19.3, 16, 13}, {6, 7, 9});
+  const brep::Solid a = ellipsoid_surface({15, 15, 15}, {11, 8, 6}),
+                    b = ellipsoid_surface({19.3, 16, 13}, {6, 7, 9});
   for (const double voxel_mm : {0.37, 0.8, 1.3}) {
     const OperationAnswers answers = certify_operation(a, GetParam(), b, {voxel_mm});
     EXPECT_EQ(answers.certificate.verdict, Verdict::Pass)
@@ -32,7 +33,8 @@ TEST_P(Operations, OfTerracedSolidsAgreeAtEveryCentreWhateverTheVoxels) {
 }
 
 TEST(CertifyOperation, StopsWhenAsked) {
-  const brep::Solid a = ellipsoid({15, 15, 15}, {11, 8, 6}), b = ellipsoid({19.3, 16, 13}, {6, 7, 9});
+  const brep::Solid a = ellipsoid_surface({15, 15, 15}, {11, 8, 6}),
+                    b = ellipsoid_surface({19.3, 16, 13}, {6, 7, 9});
   std::stop_source source;
   MeshOperationOptions options;
   options.progress = {source.get_token(), [&](double fraction) {

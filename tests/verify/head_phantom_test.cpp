@@ -8,11 +8,14 @@
 #include <random>
 #include <tbb/global_control.h>
 
+#include "tests/verify/le_fort_cut.h"
 #include "verify/head_solids.h"
 #include "verify/sample_volume.h"
 
 namespace octotomy::verify {
 namespace {
+
+using tests::le_fort_cut;
 
 using Samples = voxel::Int16Samples;
 using Inside = std::function<bool(const glm::dvec3&)>;
@@ -59,10 +62,9 @@ voxel::Scene coarse_scan(const std::function<void(HeadOptions&)>& change = [](He
 bool anywhere(const glm::dvec3&) {
   return true;
 }
-// The cut of the Le Fort I plan: maxilla with the upper teeth and the lower zygomas.
-const voxel::Box cut{{-40, -90, -60}, {40, -20, -25}};
 bool in_cut(const glm::dvec3& p) {
-  return glm::all(glm::greaterThanEqual(p, cut.low_mm)) && glm::all(glm::lessThanEqual(p, cut.high_mm));
+  return glm::all(glm::greaterThanEqual(p, le_fort_cut.low_mm)) &&
+         glm::all(glm::lessThanEqual(p, le_fort_cut.high_mm));
 }
 bool in_bone(const glm::dvec3& p) {
   return head_contains(HeadPart::Bone, p);
@@ -74,7 +76,7 @@ const SampledVolume& bone_truth() {
   return truth;
 }
 const SampledVolume& maxilla_truth() {
-  static const SampledVolume truth = sample_volume(cut, 0.61, in_bone);
+  static const SampledVolume truth = sample_volume(le_fort_cut, 0.61, in_bone);
   return truth;
 }
 

@@ -11,16 +11,16 @@
 namespace octotomy::verify {
 namespace {
 
-constexpr double bone_hu = 300.0;
+constexpr double skull_hu = 300.0;
 
 /// The skull of a head scanned at 1 mm, as a window of its grey octree.
 const voxel::DrawnObject& skull() {
   static const voxel::DrawnObject drawn = [] {
     const voxel::Universe universe = voxel::universe_around(head_bounds(), 1.0);
     const voxel::GreyOctree grey = voxel::grey_octree_of(universe, head_phantom());
-    voxel::DrawnObject object{"skull", voxel::combine(universe, voxel::Window{grey, bone_hu, 32767.0})};
+    voxel::DrawnObject object{"skull", voxel::combine(universe, voxel::Window{grey, skull_hu, 32767.0})};
     object.grey = grey;
-    object.threshold = bone_hu;
+    object.threshold = skull_hu;
     return object;
   }();
   return drawn;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/run_command.h"
+#include "tests/verify/le_fort_cut.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scratch_folder.h"
 #include "verify/head_phantom.h"
@@ -21,11 +22,10 @@ namespace octotomy::verify {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::le_fort_cut;
 using voxel::Verdict;
 
 constexpr double bone_hu = 300.0;
-// The cut of a Le Fort I plan, its planes on faces of voxels of half a millimetre.
-const voxel::Box cut{{-40, -90, -60}, {40, -20, -25}};
 
 const tests::ScratchFolder& scratch() {
   static const tests::ScratchFolder folder;
@@ -45,13 +45,14 @@ const voxel::Scene& head() {
 }
 
 double fragment_mm3(const voxel::Scene& scene) {
-  const voxel::Universe fine = voxel::universe_around({cut.low_mm - 4.0, cut.high_mm + 4.0}, 0.5);
+  const voxel::Universe fine =
+      voxel::universe_around({le_fort_cut.low_mm - 4.0, le_fort_cut.high_mm + 4.0}, 0.5);
   const voxel::Window bone{voxel::grey_octree_of(fine, scene), bone_hu};
-  return voxel::measure(voxel::combine(fine, voxel::Expression(bone) & cut)).volume_mm3;
+  return voxel::measure(voxel::combine(fine, voxel::Expression(bone) & le_fort_cut)).volume_mm3;
 }
 
 double truth_mm3() {
-  return sample_volume(cut, 0.5, [](const glm::dvec3& p) { return head_contains(HeadPart::Bone, p); })
+  return sample_volume(le_fort_cut, 0.5, [](const glm::dvec3& p) { return head_contains(HeadPart::Bone, p); })
       .volume_mm3;
 }
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+#include "tests/verify/le_fort_cut.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scratch_folder.h"
 #include "verify/head_phantom.h"
@@ -22,13 +23,12 @@ namespace octotomy::verify {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::le_fort_cut;
 using tests::verdict;
 using voxel::Verdict;
 
 constexpr double voxel_mm = 1.0;
 constexpr double bone_hu = 300.0;
-// The cut of a Le Fort I plan: maxilla with the upper teeth.
-const voxel::Box cut{{-40, -90, -60}, {40, -20, -25}};
 
 double truth_mm3(const voxel::Box& box, double step_mm) {
   return sample_volume(box, step_mm, [](const glm::dvec3& p) { return head_contains(HeadPart::Bone, p); })
@@ -79,15 +79,17 @@ Found found(const voxel::Scene& scene) {
   const voxel::Universe universe = voxel::universe_around(voxel::bounds(scene.lattice), voxel_mm);
   const double whole_mm3 = voxel::partial_volume_mm3({voxel::grey_octree_of(universe, scene), bone_hu});
   // About the cut, with its planes on faces of voxels, or each would err by up to half a voxel.
-  const voxel::Universe fine = voxel::universe_around({cut.low_mm - 4.0, cut.high_mm + 4.0}, 0.5);
+  const voxel::Universe fine =
+      voxel::universe_around({le_fort_cut.low_mm - 4.0, le_fort_cut.high_mm + 4.0}, 0.5);
   const voxel::Window bone{voxel::grey_octree_of(fine, scene), bone_hu};
-  const voxel::Measures fragment = voxel::measure(voxel::combine(fine, voxel::Expression(bone) & cut));
+  const voxel::Measures fragment =
+      voxel::measure(voxel::combine(fine, voxel::Expression(bone) & le_fort_cut));
   return {whole_mm3, fragment.volume_mm3, fragment.centroid_mm.value()};
 }
 
 void expect_the_head(const voxel::Scene& scene) {
   static const Found straight = found(voxel::read_scene(scanned(0, voxel_mm)));
-  static const double whole_mm3 = truth_mm3(head_bounds(), 1.5), fragment_mm3 = truth_mm3(cut, 0.5);
+  static const double whole_mm3 = truth_mm3(head_bounds(), 1.5), fragment_mm3 = truth_mm3(le_fort_cut, 0.5);
   const Found now = found(scene);
   EXPECT_NEAR(now.whole_mm3 / whole_mm3, 1.0, 0.01);
   EXPECT_NEAR(now.fragment_mm3 / fragment_mm3, 1.0, 0.01);

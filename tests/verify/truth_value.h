@@ -3,10 +3,10 @@
 
 #include "verify/expression_tree.h"
 
-namespace octotomy::verify::tests {
+namespace octotomy::tests {
 
 /// The answer of a formula where leaf i is bit i of `values`.
-inline bool truth_value(const ExpressionTree& tree, unsigned values) {
+inline bool truth_value(const verify::ExpressionTree& tree, unsigned values) {
   if (tree.parts.empty()) return (values >> tree.leaf) & 1;
   const bool a = truth_value(tree.parts[0], values);
   if (tree.symbol == '~') return !a;
@@ -23,4 +23,4 @@ inline bool truth_value(const ExpressionTree& tree, unsigned values) {
   }
 }
 
-}  // namespace octotomy::verify::tests
+}  // namespace octotomy::tests

@@ -16,7 +16,7 @@ std::vector<Landmark> face() {
           {"B", {-1, -88, -60}},    {"left orbit", {35, -80, 20}}, {"right orbit", {-34, -79, 21}}};
 }
 
-std::vector<Landmark> moved(std::vector<Landmark> marks, const glm::dmat4& motion) {
+std::vector<Landmark> moved_marks(std::vector<Landmark> marks, const glm::dmat4& motion) {
   for (Landmark& mark : marks) mark.p_mm = glm::dvec3(motion * glm::dvec4(mark.p_mm, 1.0));
   return marks;
 }
@@ -37,7 +37,7 @@ TEST(RegisterLandmarks, AnyMotionIsRecoveredWhateverTheOrderOfNames) {
     glm::dmat4 motion = glm::translate(glm::dmat4(1.0), 100.0 * glm::dvec3(any(random), any(random), 5.0));
     motion = glm::rotate(motion, 3.14159 * any(random), glm::normalize(axis));
     motion = glm::scale(motion, glm::dvec3(scale));
-    auto there = moved(face(), motion);
+    auto there = moved_marks(face(), motion);
     std::shuffle(there.begin(), there.end(), random);
     const auto fit = register_landmarks(face(), there, seed % 2 == 0 ? Motion::rigid : Motion::similarity);
     EXPECT_LT(largest_difference(fit.fixed_from_moving, motion), 1e-9) << "seed " << seed;
@@ -49,13 +49,13 @@ TEST(RegisterLandmarks, AnyMotionIsRecoveredWhateverTheOrderOfNames) {
 TEST(RegisterLandmarks, NoSmallMotionNearTheAnswerFitsNoisyLandmarksBetter) {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 1.0);
-  auto there = moved(face(), glm::rotate(glm::dmat4(1.0), 0.4, glm::normalize(glm::dvec3(1, 2, 3))));
+  auto there = moved_marks(face(), glm::rotate(glm::dmat4(1.0), 0.4, glm::normalize(glm::dvec3(1, 2, 3))));
   for (Landmark& mark : there) mark.p_mm += glm::dvec3(noise(random), noise(random), noise(random));
   there[2].weight = 5.0;
   const auto fit = register_landmarks(face(), there);
   const auto cost = [&](const glm::dmat4& motion) {
     double sum = 0.0;
-    const auto here = moved(face(), motion);
+    const auto here = moved_marks(face(), motion);
     for (std::size_t k = 0; k < here.size(); ++k) {
       const glm::dvec3 d = here[k].p_mm - there[k].p_mm;
       sum += there[k].weight * glm::dot(d, d);
@@ -75,7 +75,7 @@ TEST(RegisterLandmarks, NoSmallMotionNearTheAnswerFitsNoisyLandmarksBetter) {
 }
 
 TEST(RegisterLandmarks, AMirroredFaceIsTurnedNotReflected) {
-  const auto there = moved(face(), glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1)));
+  const auto there = moved_marks(face(), glm::scale(glm::dmat4(1.0), glm::dvec3(-1, 1, 1)));
   const auto fit = register_landmarks(face(), there);
   EXPECT_NEAR(glm::determinant(glm::dmat3(fit.fixed_from_moving)), 1.0, 1e-12);
   EXPECT_GT(fit.rms_mm, 1.0) << "and the misfit tells";
@@ -106,7 +106,7 @@ TEST(RegisterLandmarks, LandmarksThatDoNotFixAMotionAreRefused) {
 TEST(RegisterLandmarks, ThreePointsTrustTheFirstThenTheDirectionToTheSecond) {
   const glm::dmat4 motion = glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(5, 6, 7)), 0.8,
                                         glm::normalize(glm::dvec3(1, 2, 3)));
-  auto there = moved(face(), motion);
+  auto there = moved_marks(face(), motion);
   EXPECT_LT(
       largest_difference(register_landmarks(face(), there, Motion::three_points).fixed_from_moving, motion),
       1e-12);

@@ -60,12 +60,12 @@ Mesh without(const Mesh& mesh, double share, const glm::dvec3& direction) {
 }
 
 /// Of the motion found against the true one: the turn between them, and the largest displacement of a vertex.
-struct Error {
+struct MotionError {
   double degrees = 0.0, mm = 0.0;
 };
 
-Error error_of(const glm::dmat4& found, const glm::dmat4& truth, const Mesh& mesh) {
-  Error error;
+MotionError error_of(const glm::dmat4& found, const glm::dmat4& truth, const Mesh& mesh) {
+  MotionError error;
   const glm::dmat3 between = glm::dmat3(found) * glm::transpose(glm::dmat3(truth));
   const glm::dvec3 skew(between[1][2] - between[2][1], between[2][0] - between[0][2],
                         between[0][1] - between[1][0]);
@@ -87,7 +87,7 @@ TEST(RegisterSurfaces, AFaceWithNoiseAndThirtyPerCentMissingIsBroughtBack) {
     const Mesh moving = with_noise(moved(without(fixed, 0.3, direction), glm::inverse(truth)), 0.1,
                                    static_cast<unsigned>(++case_number));
     const SurfaceFit fit = register_surfaces(moving, fixed);
-    const Error error = error_of(fit.fixed_from_moving, truth, moving);
+    const MotionError error = error_of(fit.fixed_from_moving, truth, moving);
     EXPECT_LT(error.mm, 0.05) << "case " << case_number;
     EXPECT_LT(error.degrees, 0.05) << "case " << case_number;
     EXPECT_TRUE(fit.converged);
@@ -103,7 +103,7 @@ TEST(RegisterSurfaces, TheWholeFindsItsPlaceOnAPartThatLacksThirtyPerCent) {
   const glm::dmat4 truth = motion(20.0, {0, 1, 1}, {-15, 30, 5});
   const Mesh fixed = with_noise(without(whole, 0.3, {0, 1, 0}), 0.1, 5);
   const SurfaceFit fit = register_surfaces(moved(whole, glm::inverse(truth)), fixed);
-  const Error error = error_of(fit.fixed_from_moving, truth, moved(whole, glm::inverse(truth)));
+  const MotionError error = error_of(fit.fixed_from_moving, truth, moved(whole, glm::inverse(truth)));
   EXPECT_LT(error.mm, 0.05);
   EXPECT_LT(error.degrees, 0.05);
 }
@@ -116,7 +116,7 @@ TEST(RegisterSurfaces, AnyTurnIsFoundWithoutAStart) {
       const glm::dmat4 truth = motion(degrees, axis, {100, -200, 50});
       const Mesh moving = moved(fixed, glm::inverse(truth));
       const SurfaceFit fit = register_surfaces(moving, fixed, {.overlap = 0.95});
-      const Error error = error_of(fit.fixed_from_moving, truth, moving);
+      const MotionError error = error_of(fit.fixed_from_moving, truth, moving);
       EXPECT_LT(error.mm, 1e-6) << degrees << " degrees, case " << number;
       ++number;
     }

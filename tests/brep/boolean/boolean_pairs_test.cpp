@@ -252,14 +252,14 @@ TEST(BooleanPairs, SurfacesARoundingApartEndAndAddUp) {
   }
 }
 
-struct ReferenceMesh {
+struct ReferenceSolid {
   std::string name;
   Triangles triangles;
 };
 
 /// The healthy ones of the reference meshes; of each other it is checked that a refusal can name a triangle.
-std::vector<ReferenceMesh> reference_solids() {
-  std::vector<ReferenceMesh> solids;
+std::vector<ReferenceSolid> reference_solids() {
+  std::vector<ReferenceSolid> solids;
   int refused = 0;
   for (const auto& entry : std::filesystem::directory_iterator(tests::reference_data("meshes"))) {
     const Triangles triangles = read_triangles(entry.path());
@@ -275,7 +275,7 @@ std::vector<ReferenceMesh> reference_solids() {
   EXPECT_EQ(refused, 5);
   EXPECT_EQ(solids.size(), 5u);
   std::sort(solids.begin(), solids.end(),
-            [](const ReferenceMesh& a, const ReferenceMesh& b) { return a.name < b.name; });
+            [](const ReferenceSolid& a, const ReferenceSolid& b) { return a.name < b.name; });
   return solids;
 }
 
@@ -289,7 +289,7 @@ Triangles centred(Triangles triangles) {
 
 TEST(BooleanPairs, EveryPairOfReferenceMeshesGivesSolidsOrIsRefusedByWhatIsWrong) {
   OCTOTOMY_NEEDS_DATA("meshes/ballA.off");
-  const std::vector<ReferenceMesh> solids = reference_solids();
+  const std::vector<ReferenceSolid> solids = reference_solids();
   int cutting = 0;
   for (const auto& [name_a, a] : solids)
     for (const auto& [name_b, b] : solids)

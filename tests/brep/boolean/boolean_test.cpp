@@ -13,33 +13,29 @@
 #include "brep/mesh/move.h"
 #include "brep/shape/prism.h"
 #include "tests/brep/shapes.h"
+#include "tests/brep/told.h"
 #include "tests/reference_data.h"
 
 namespace octotomy::brep {
 namespace {
 
 using std::numbers::pi;
+using tests::told;
 
-Solid box(const glm::dvec3& low, const glm::dvec3& high) {
+Solid solid_box(const glm::dvec3& low, const glm::dvec3& high) {
   return solid_of(shapes::box(low, high));
 }
-Solid sphere(const glm::dvec3& centre, double radius, int splits) {
+Solid solid_sphere(const glm::dvec3& centre, double radius, int splits) {
   return solid_of(shapes::sphere(centre, radius, splits));
 }
 double volume(const Mesh& mesh) {
   return measure(mesh).volume_mm3;
 }
 
-std::string told(const std::vector<std::string>& findings) {
-  std::string text;
-  for (const std::string& finding : findings) text += finding + "; ";
-  return text;
-}
-
 /// Closed, manifold, oriented and without intersections; degenerate slivers are judged apart.
 void expect_solid(const Mesh& mesh, const char* what) {
   const Health h = health(mesh);
-  EXPECT_TRUE(h.solid()) << what << ": " << told(h.findings);
+  EXPECT_TRUE(h.solid()) << what << ": " << told(h);
 }
 
 /// All four results of overlapping operands of known volumes.
@@ -54,7 +50,7 @@ void expect_volumes(const Booleans& results, double a, double b, double common, 
 }
 
 TEST(Boolean, BoxesInGeneralPositionGiveFourExactSolids) {
-  const Booleans results = booleans(box({0, 0, 0}, {2, 2, 2}), box({1, 1, 1}, {4, 3.5, 3}));
+  const Booleans results = booleans(solid_box({0, 0, 0}, {2, 2, 2}), solid_box({1, 1, 1}, {4, 3.5, 3}));
   expect_volumes(results, 8, 3 * 2.5 * 2, 1, 1e-13);
   expect_solid(*results.united, "union");
   expect_solid(*results.intersection, "intersection");
@@ -64,14 +60,14 @@ TEST(Boolean, BoxesInGeneralPositionGiveFourExactSolids) {
 }
 
 TEST(Boolean, TheOperandsAreNotChanged) {
-  const Solid a = box({0, 0, 0}, {2, 2, 2}), b = box({1, 1, 1}, {3, 3, 3});
+  const Solid a = solid_box({0, 0, 0}, {2, 2, 2}), b = solid_box({1, 1, 1}, {3, 3, 3});
   boolean(a, Operation::Difference, b);
   EXPECT_EQ(a.mesh().n_faces(), 12u);
   EXPECT_EQ(triangles_of(b).points_mm, shapes::box({1, 1, 1}, {3, 3, 3}).points_mm);
 }
 
 TEST(Boolean, DifferenceTakesTheSecondFromTheFirst) {
-  const Solid a = box({0, 0, 0}, {2, 2, 2}), b = box({1, -1, -1}, {9, 9, 9});
+  const Solid a = solid_box({0, 0, 0}, {2, 2, 2}), b = solid_box({1, -1, -1}, {9, 9, 9});
   EXPECT_NEAR(volume(boolean(a, Operation::Difference, b).solid), 4, 1e-13);
   EXPECT_NEAR(volume(boolean(b, Operation::Difference, a).solid), 800 - 4, 1e-11);
 }
@@ -82,8 +78,8 @@ TEST(Boolean, ALensConvergesToItsClosedFormAtSecondOrder) {
   double last = 0;
   for (int splits = 2; splits <= 5; ++splits) {
     const BooleanResult result =
-        boolean(sphere({0.1, 0.2, 0.3}, r, splits), Operation::Intersection,
-                moved(sphere({0, 0, 0}, r, splits),
+        boolean(solid_sphere({0.1, 0.2, 0.3}, r, splits), Operation::Intersection,
+                moved(solid_sphere({0, 0, 0}, r, splits),
                       glm::translate(glm::dmat4(1.0),
                                      glm::dvec3(0.1, 0.2, 0.3) + d * glm::normalize(glm::dvec3(1, 2, 3)))));
     expect_solid(result.solid, "lens");
@@ -108,7 +104,7 @@ TEST(Boolean, ACubeCutByAnObliquePrismIsExact) {
   prism.from_mm = -10;
   prism.to_mm = 10;
   prism.polygons_mm = {{{-4, -1}, {8, 5}, {8, -9}, {-4, -9}}};
-  const Solid cube = box({0, 0, 0}, {4, 4, 4});
+  const Solid cube = solid_box({0, 0, 0}, {4, 4, 4});
   const Booleans results = booleans(cube, solid_of(prism), {false, true, true, false});
   ASSERT_TRUE(results.intersection && results.a_minus_b);
   EXPECT_NEAR(volume(*results.intersection), 32, 1e-12);
@@ -120,7 +116,7 @@ TEST(Boolean, ACubeCutByAnObliquePrismIsExact) {
 }
 
 TEST(Boolean, IsTheSameInAnyPose) {
-  const Solid a = sphere({0, 0, 0}, 3, 3), b = box({-1, -2, -1.5}, {4, 2.1, 1.7});
+  const Solid a = solid_sphere({0, 0, 0}, 3, 3), b = solid_box({-1, -2, -1.5}, {4, 2.1, 1.7});
   const Booleans still = booleans(a, b);
   for (int pose = 1; pose <= 5; ++pose) {
     glm::dmat4 motion = glm::translate(glm::dmat4(1.0), glm::dvec3(50.0 * pose, -30.0, 7.0 * pose));
@@ -134,8 +130,8 @@ TEST(Boolean, IsTheSameInAnyPose) {
 }
 
 TEST(Boolean, DisjointNestedAndEmptyOperandsNeedNoCorefinement) {
-  const Solid a = box({0, 0, 0}, {4, 4, 4}), far = box({9, 9, 9}, {10, 10, 10}),
-              within = box({1, 1, 1}, {2, 2, 2});
+  const Solid a = solid_box({0, 0, 0}, {4, 4, 4}), far = solid_box({9, 9, 9}, {10, 10, 10}),
+              within = solid_box({1, 1, 1}, {2, 2, 2});
   const Booleans apart = booleans(a, far);
   expect_volumes(apart, 64, 1, 0, 1e-12);
   EXPECT_EQ(apart.intersection->mesh().n_faces(), 0u);
@@ -154,7 +150,7 @@ TEST(Boolean, DisjointNestedAndEmptyOperandsNeedNoCorefinement) {
 }
 
 TEST(Boolean, IdenticalOperandsGiveThemselvesOrNothing) {
-  const Solid a = sphere({0, 0, 0}, 2, 2);
+  const Solid a = solid_sphere({0, 0, 0}, 2, 2);
   const Booleans results = booleans(a, a);
   expect_volumes(results, volume(a), volume(a), volume(a), 1e-12);
   EXPECT_EQ(results.a_minus_b->mesh().n_faces(), 0u);
@@ -162,9 +158,9 @@ TEST(Boolean, IdenticalOperandsGiveThemselvesOrNothing) {
 }
 
 TEST(Boolean, ASharedFaceVanishesInTheUnionAndIsEmptyInTheIntersection) {
-  const Solid a = box({0, 0, 0}, {2, 2, 2});
+  const Solid a = solid_box({0, 0, 0}, {2, 2, 2});
   for (const double slide : {0.0, 0.5, 1.0}) {
-    const Booleans results = booleans(a, box({2, slide, 0}, {4, 2 + slide, 2}));
+    const Booleans results = booleans(a, solid_box({2, slide, 0}, {4, 2 + slide, 2}));
     expect_volumes(results, 8, 8, 0, 1e-12);
     EXPECT_EQ(results.intersection->mesh().n_faces(), 0u);
     EXPECT_EQ(components(*results.united).size(), 1u);
@@ -174,7 +170,7 @@ TEST(Boolean, ASharedFaceVanishesInTheUnionAndIsEmptyInTheIntersection) {
 }
 
 TEST(Boolean, ASharedEdgeTakesTheShiftAndTellsIt) {
-  const Solid a = box({0, 0, 0}, {2, 2, 2}), b = box({2, 2, 0}, {4, 4, 2});
+  const Solid a = solid_box({0, 0, 0}, {2, 2, 2}), b = solid_box({2, 2, 0}, {4, 4, 2});
   const BooleanResult united = boolean(a, Operation::Union, b);
   const double shift_bound = std::sqrt(4 * 4 + 4 * 4 + 2 * 2) * 0x1p-18 * 24;
   EXPECT_NEAR(volume(united.solid), 16, shift_bound);
@@ -190,8 +186,8 @@ TEST(Boolean, ASharedEdgeTakesTheShiftAndTellsIt) {
 TEST(Boolean, TheShiftThatIsToldIsTheShiftThatWasMadeAndAShareOfTheExtent) {
   // Far from the origin, so that neither corner stands for the extent.
   const glm::dvec3 at(100, 200, 300);
-  const Solid a = box(at, at + glm::dvec3(2, 2, 2)),
-              b = box(at + glm::dvec3(2, 2, 0), at + glm::dvec3(4, 4, 2));
+  const Solid a = solid_box(at, at + glm::dvec3(2, 2, 2)),
+              b = solid_box(at + glm::dvec3(2, 2, 0), at + glm::dvec3(4, 4, 2));
   const BooleanResult united = boolean(a, Operation::Union, b);
   const std::string findings = told(united.findings);
   const std::size_t begin = findings.find("shifted: b was moved by (");
@@ -238,8 +234,9 @@ TEST(Boolean, SheetsThatMeetInOnePointAreOnePointHoweverManyTheyAre) {
 }
 
 TEST(Boolean, TellsOfTheDifferenceThatItIsInTheCallersOrder) {
-  const Solid cube = box({0, 0, 0}, {6, 6, 6});
-  const Solid pair = boolean(box({1, 1, 1}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4})).solid;
+  const Solid cube = solid_box({0, 0, 0}, {6, 6, 6});
+  const Solid pair =
+      boolean(solid_box({1, 1, 1}, {2, 2, 2}), Operation::Union, solid_box({2, 2, 2}, {4, 4, 4})).solid;
   const Booleans ab = booleans(cube, pair, {false, false, true, false}),
                  ba = booleans(pair, cube, {false, false, false, true});
   EXPECT_EQ(told(ab.findings), "a - b touches itself at 1 point; ");
@@ -249,7 +246,7 @@ TEST(Boolean, TellsOfTheDifferenceThatItIsInTheCallersOrder) {
 
 TEST(Boolean, OneResultAloneIsVouchedForToo) {
   // All triangles meet, so that the whole is corefined.
-  const Solid a = box({-1, -1, -1}, {1, 1, 1});
+  const Solid a = solid_box({-1, -1, -1}, {1, 1, 1});
   const Solid b = moved(a, glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1, 2, 3))));
   for (const Operation operation : {Operation::Union, Operation::Intersection, Operation::Difference}) {
     const BooleanResult result = boolean(a, operation, b);
@@ -265,7 +262,7 @@ TEST(Boolean, ResultsThatDoNotAddUpAreNotGiven) {
                     Proof::Connection);
   for (const Operation operation : {Operation::Union, Operation::Intersection, Operation::Difference}) {
     try {
-      const BooleanResult result = boolean(twice, operation, box({-5, -5, 0.1}, {5, 5, 5}));
+      const BooleanResult result = boolean(twice, operation, solid_box({-5, -5, 0.1}, {5, 5, 5}));
       ADD_FAILURE() << volume(result.solid) << " mm3; " << told(result.findings);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::Geometry);
@@ -275,9 +272,10 @@ TEST(Boolean, ResultsThatDoNotAddUpAreNotGiven) {
 }
 
 TEST(Boolean, WhereAnOperandTouchesItselfAwayFromTheOtherIsNotToldOfTheResult) {
-  const Solid pair = boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4})).solid;
+  const Solid pair =
+      boolean(solid_box({0, 0, 0}, {2, 2, 2}), Operation::Union, solid_box({2, 2, 2}, {4, 4, 4})).solid;
   for (const double at : {-11.0, 10.0}) {
-    const BooleanResult apart = boolean(pair, Operation::Union, box({at, -1, -1}, {at + 1, 5, 5}));
+    const BooleanResult apart = boolean(pair, Operation::Union, solid_box({at, -1, -1}, {at + 1, 5, 5}));
     EXPECT_NEAR(volume(apart.solid), 16 + 36, 1e-12);
     EXPECT_EQ(told(apart.findings).find("touches itself"), std::string::npos) << told(apart.findings);
   }
@@ -287,7 +285,7 @@ TEST(Boolean, PointsWhereItTouchesItselfAreCountedOnceEach) {
   const Triangles corners = shapes::together(
       shapes::together(shapes::box({-1, -1, -1}, {0, 0, 0}), shapes::box({2, 2, 2}, {3, 3, 3})),
       shapes::box({-1, 2, -1}, {0, 3, 0}));
-  const BooleanResult three = boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, solid_of(corners));
+  const BooleanResult three = boolean(solid_box({0, 0, 0}, {2, 2, 2}), Operation::Union, solid_of(corners));
   EXPECT_NEAR(volume(three.solid), 8 + 3, 1e-12);
   EXPECT_NE(told(three.findings).find("touches itself at 3 points;"), std::string::npos)
       << told(three.findings);
@@ -296,9 +294,10 @@ TEST(Boolean, PointsWhereItTouchesItselfAreCountedOnceEach) {
 TEST(Boolean, TheResidualIsMeasuredAndNotMerelySmall) {
   double largest = 0;
   for (int i = 1; i <= 5; ++i) {
-    const Booleans results = booleans(sphere({0, 0, 0}, 3, 3), sphere({0.3 * i, 0.5, 0.25}, 2.7, 3));
+    const Booleans results =
+        booleans(solid_sphere({0, 0, 0}, 3, 3), solid_sphere({0.3 * i, 0.5, 0.25}, 2.7, 3));
     ASSERT_TRUE(results.residual);
-    const double whole = volume(sphere({0, 0, 0}, 3, 3));
+    const double whole = volume(solid_sphere({0, 0, 0}, 3, 3));
     const double seen =
         std::abs(whole - volume(*results.intersection) - volume(*results.a_minus_b)) / (2 * whole);
     EXPECT_GE(*results.residual, 0.9 * seen - 1e-17);
@@ -306,19 +305,19 @@ TEST(Boolean, TheResidualIsMeasuredAndNotMerelySmall) {
   }
   EXPECT_GT(largest, 0.0);
   EXPECT_LT(largest, 1e-13);
-  const BooleanResult all =
-      boolean({sphere({0, 0, 0}, 3, 3), sphere({1, 0.5, 0.25}, 2.7, 3), sphere({0.3, 1, 0.6}, 2.5, 3)},
-              Operation::Union);
+  const BooleanResult all = boolean({solid_sphere({0, 0, 0}, 3, 3), solid_sphere({1, 0.5, 0.25}, 2.7, 3),
+                                     solid_sphere({0.3, 1, 0.6}, 2.5, 3)},
+                                    Operation::Union);
   ASSERT_TRUE(all.residual);
   EXPECT_GT(*all.residual, 0.0);
 }
 
 TEST(Boolean, ASharedVertexIsKeptOnceForEachSheetAndTold) {
   const BooleanResult united =
-      boolean(box({0, 0, 0}, {2, 2, 2}), Operation::Union, box({2, 2, 2}, {4, 4, 4}));
+      boolean(solid_box({0, 0, 0}, {2, 2, 2}), Operation::Union, solid_box({2, 2, 2}, {4, 4, 4}));
   EXPECT_NEAR(volume(united.solid), 16, 1e-12);
   const Health h = health(united.solid, {.self_intersections = false});
-  EXPECT_TRUE(h.solid()) << told(h.findings);
+  EXPECT_TRUE(h.solid()) << told(h);
   EXPECT_EQ(h.vertices, 16u);
   EXPECT_NE(told(united.findings).find("touches itself at 1 point"), std::string::npos)
       << told(united.findings);
@@ -326,7 +325,7 @@ TEST(Boolean, ASharedVertexIsKeptOnceForEachSheetAndTold) {
 
 TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
   // The everyday of osteotomy: both cut faces lie in one plane again.
-  const Solid ball = sphere({0, 0, 0}, 10, 4);
+  const Solid ball = solid_sphere({0, 0, 0}, 10, 4);
   Prism prism;
   prism.polygons_mm = {{{-20, -20}, {20, -20}, {20, -2.5}, {-20, -2.5}}};
   prism.from_mm = -30;
@@ -343,23 +342,23 @@ TEST(Boolean, APieceCutOffAndSlidAlongTheCutUnitesWithItsRest) {
     EXPECT_NEAR(volume(united.solid), volume(ball), shifted ? 3 * step_mm * cut_mm2 : 1e-4)
         << told(united.findings);
     const Health h = health(united.solid);
-    EXPECT_TRUE(h.closed && h.manifold && h.oriented) << told(h.findings);
+    EXPECT_TRUE(h.closed && h.manifold && h.oriented) << told(h);
   }
 }
 
 TEST(Boolean, TheFirstLessAllOthersHowManyTheyAre) {
-  std::vector<Solid> operands = {box({0, 0, 0}, {10, 10, 10})};
+  std::vector<Solid> operands = {solid_box({0, 0, 0}, {10, 10, 10})};
   EXPECT_NEAR(volume(boolean(operands, Operation::Difference).solid), 1000, 1e-11);
   for (int others = 1; others <= 5; ++others) {
     // A corner of one cubic millimetre of each lies in the one before.
-    operands.push_back(box(glm::dvec3(others), glm::dvec3(others + 2)));
+    operands.push_back(solid_box(glm::dvec3(others), glm::dvec3(others + 2)));
     EXPECT_NEAR(volume(boolean(operands, Operation::Difference).solid), 999 - 7 * others, 1e-11) << others;
   }
 }
 
 TEST(Boolean, StopsWhereAskedTo) {
   std::stop_source stop;
-  const Solid a = sphere({0, 0, 0}, 3, 6), b = sphere({1, 0.5, 0.25}, 3, 6);
+  const Solid a = solid_sphere({0, 0, 0}, 3, 6), b = solid_sphere({1, 0.5, 0.25}, 3, 6);
   std::jthread asker([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     stop.request_stop();
@@ -387,7 +386,7 @@ TEST(Boolean, RefusesOpenAndInsideOutOperands) {
 }
 
 TEST(Boolean, TheSameBitsComeEveryTime) {
-  const Solid a = sphere({0, 0, 0}, 3, 3), b = sphere({1, 0.5, 0.25}, 3, 3);
+  const Solid a = solid_sphere({0, 0, 0}, 3, 3), b = solid_sphere({1, 0.5, 0.25}, 3, 3);
   const Triangles once = triangles_of(boolean(a, Operation::Union, b).solid);
   const Triangles again = triangles_of(boolean(a, Operation::Union, b).solid);
   EXPECT_EQ(once.points_mm, again.points_mm);
@@ -412,7 +411,7 @@ TEST(Boolean, AHundredSpheresAgainstABoxAddUp) {
   }
   const Solid spheres = solid_of(many);
   whole = volume(spheres);
-  const Booleans cut = booleans(spheres, box({-5, -5, 0.5}, {14.2, 40, 50}));
+  const Booleans cut = booleans(spheres, solid_box({-5, -5, 0.5}, {14.2, 40, 50}));
   EXPECT_NEAR(volume(*cut.intersection) + volume(*cut.a_minus_b), whole, 1e-10);
   EXPECT_GT(components(*cut.intersection).size(), 40u);
   expect_solid(*cut.intersection, "pieces");

@@ -10,9 +10,9 @@
 namespace octotomy::brep {
 namespace {
 
-constexpr Wanted all = {true, true, true, true};
+constexpr Wanted all_results = {true, true, true, true};
 
-NearBoolean near(const Triangles& a, const Triangles& b, const Wanted& wanted = all) {
+NearBoolean near(const Triangles& a, const Triangles& b, const Wanted& wanted = all_results) {
   return near_boolean(trusted_solid(a, Proof::Connection), trusted_solid(b, Proof::Connection), wanted);
 }
 
@@ -20,8 +20,8 @@ TEST(NearBoolean, HasTheVolumesOfWholeCorefinementAndIsSolid) {
   const Triangles a = shapes::sphere({0.1, 0.2, 0.3}, 3, 4), b = shapes::sphere({2.5, 0.5, 0.25}, 2, 4);
   const NearBoolean sewn = near(a, b);
   ASSERT_EQ(sewn.obstacle, "");
-  const Corefined whole = corefine(mesh_of(a), mesh_of(b), all);
-  for (std::size_t r = 0; r < all.size(); ++r) {
+  const Corefined whole = corefine(mesh_of(a), mesh_of(b), all_results);
+  for (std::size_t r = 0; r < all_results.size(); ++r) {
     ASSERT_TRUE(sewn.results[r] && whole.results[r]) << r;
     EXPECT_NEAR(size_of(*sewn.results[r]).volume_mm3, size_of(*whole.results[r]).volume_mm3, 1e-11) << r;
     EXPECT_NEAR(*sewn.volumes_mm3[r], size_of(*sewn.results[r]).volume_mm3, 1e-11) << r;

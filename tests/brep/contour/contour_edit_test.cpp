@@ -7,51 +7,51 @@
 namespace octotomy::brep {
 namespace {
 
-const Contour square{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, true};
-const Contour line{{{0, 0}, {1, 0}, {2, 1}}, false};
+const Contour closed_square{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, true};
+const Contour open_line{{{0, 0}, {1, 0}, {2, 1}}, false};
 
 TEST(ContourEdit, PointsAreMovedInsertedAndDeleted) {
-  EXPECT_NEAR(signed_area_mm2(point_moved(square, 2, {6, 6})), 24.0, 1e-14);
-  const Contour more = point_inserted(square, 3, {-1, 2});
+  EXPECT_NEAR(signed_area_mm2(point_moved(closed_square, 2, {6, 6})), 24.0, 1e-14);
+  const Contour more = point_inserted(closed_square, 3, {-1, 2});
   EXPECT_EQ(more.points_mm.size(), 5u);
   EXPECT_NEAR(signed_area_mm2(more), 18.0, 1e-14);
-  EXPECT_EQ(point_deleted(more, 4).points_mm, square.points_mm);
-  EXPECT_EQ(point_inserted(line, 0, {0.5, 3}).points_mm[1], glm::dvec2(0.5, 3));
-  EXPECT_EQ(square.points_mm.size(), 4u);
+  EXPECT_EQ(point_deleted(more, 4).points_mm, closed_square.points_mm);
+  EXPECT_EQ(point_inserted(open_line, 0, {0.5, 3}).points_mm[1], glm::dvec2(0.5, 3));
+  EXPECT_EQ(closed_square.points_mm.size(), 4u);
 }
 
 TEST(ContourEdit, SplitPartsHaveTheWholesAreaAndJoinBackToIt) {
   for (std::size_t first = 0; first < 4; ++first) {
-    const auto [one, other] = split(square, first, (first + 2) % 4);
+    const auto [one, other] = split(closed_square, first, (first + 2) % 4);
     EXPECT_NEAR(signed_area_mm2(one), 8.0, 1e-14);
     EXPECT_NEAR(signed_area_mm2(other), 8.0, 1e-14);
-    EXPECT_EQ(one.points_mm.front(), square.points_mm[first]);
+    EXPECT_EQ(one.points_mm.front(), closed_square.points_mm[first]);
   }
-  EXPECT_THROW(split(square, 0, 1), std::invalid_argument);
-  const auto [start, end] = split(line, 1);
+  EXPECT_THROW(split(closed_square, 0, 1), std::invalid_argument);
+  const auto [start, end] = split(open_line, 1);
   EXPECT_EQ(start.points_mm.back(), end.points_mm.front());
-  EXPECT_NEAR(perimeter_mm(start) + perimeter_mm(end), perimeter_mm(line), 1e-15);
-  EXPECT_NEAR(perimeter_mm(joined(start, end)), perimeter_mm(line), 1e-15);
-  EXPECT_THROW(split(line, 0), std::invalid_argument);
+  EXPECT_NEAR(perimeter_mm(start) + perimeter_mm(end), perimeter_mm(open_line), 1e-15);
+  EXPECT_NEAR(perimeter_mm(joined(start, end)), perimeter_mm(open_line), 1e-15);
+  EXPECT_THROW(split(open_line, 0), std::invalid_argument);
 }
 
 TEST(ContourEdit, TwoAreJoinedThroughAGateWithTheObjectOnTheLeft) {
   // Side 1 of one, x = 4, and side 3 of the other, x = 6, face each other: the gate adds what lies between.
-  Contour right = square;
+  Contour right = closed_square;
   for (glm::dvec2& p : right.points_mm) p.x += 6.0;
-  const Contour both = joined(square, 1, right, 3);
+  const Contour both = joined(closed_square, 1, right, 3);
   EXPECT_NEAR(signed_area_mm2(both), 16 + 16 + 2 * 4, 1e-13);
   EXPECT_FALSE(first_crossing(both));
   // Sides that look away from each other cross.
-  EXPECT_TRUE(first_crossing(joined(square, 3, right, 1)));
-  EXPECT_THROW(joined(line, 0, square, 0), std::invalid_argument);
-  EXPECT_THROW(joined(square, line), std::invalid_argument);
+  EXPECT_TRUE(first_crossing(joined(closed_square, 3, right, 1)));
+  EXPECT_THROW(joined(open_line, 0, closed_square, 0), std::invalid_argument);
+  EXPECT_THROW(joined(closed_square, open_line), std::invalid_argument);
 }
 
 TEST(ContourEdit, CrossingsAreFoundExactlyAndCornersAreNone) {
-  EXPECT_FALSE(first_crossing(square));
-  EXPECT_FALSE(first_crossing(line));
-  const auto crossed = first_crossing(point_moved(square, 2, {-2, 2}));
+  EXPECT_FALSE(first_crossing(closed_square));
+  EXPECT_FALSE(first_crossing(open_line));
+  const auto crossed = first_crossing(point_moved(closed_square, 2, {-2, 2}));
   ASSERT_TRUE(crossed);
   EXPECT_EQ(*crossed, (std::pair<std::size_t, std::size_t>(1, 3)));
   // A spike that runs back over itself, and a point that touches a side by no more than its last place.
@@ -62,12 +62,13 @@ TEST(ContourEdit, CrossingsAreFoundExactlyAndCornersAreNone) {
 }
 
 TEST(ContourEdit, ALineIsClosedAndWhatWouldBeTooFewPointsIsRefused) {
-  EXPECT_TRUE(closed(line).closed);
+  EXPECT_TRUE(closed(open_line).closed);
   EXPECT_THROW(closed(Contour{{{0, 0}, {1, 0}}, false}), std::invalid_argument);
-  EXPECT_THROW(point_deleted(point_deleted(square, 0), 0), std::invalid_argument);
-  EXPECT_THROW(point_moved(square, 4, {0, 0}), std::invalid_argument);
-  EXPECT_THROW(point_inserted(line, 2, {0, 0}), std::invalid_argument);
-  EXPECT_THROW(point_moved(square, 0, {std::numeric_limits<double>::quiet_NaN(), 0}), std::invalid_argument);
+  EXPECT_THROW(point_deleted(point_deleted(closed_square, 0), 0), std::invalid_argument);
+  EXPECT_THROW(point_moved(closed_square, 4, {0, 0}), std::invalid_argument);
+  EXPECT_THROW(point_inserted(open_line, 2, {0, 0}), std::invalid_argument);
+  EXPECT_THROW(point_moved(closed_square, 0, {std::numeric_limits<double>::quiet_NaN(), 0}),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace octotomy::brep {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A slice that owns its samples of a function of the plane in mm.
 struct Picture {

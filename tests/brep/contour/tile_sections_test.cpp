@@ -9,11 +9,13 @@
 
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
+#include "tests/brep/told.h"
 
 namespace octotomy::brep {
 namespace {
 
 using std::numbers::pi;
+using tests::told;
 
 Contour ring(const glm::dvec2& centre, double radius, int points = 48) {
   Contour contour;
@@ -24,7 +26,7 @@ Contour ring(const glm::dvec2& centre, double radius, int points = 48) {
   return contour;
 }
 
-Contour square(const glm::dvec2& low, const glm::dvec2& high) {
+Contour rectangle(const glm::dvec2& low, const glm::dvec2& high) {
   return {{low, {high.x, low.y}, high, {low.x, high.y}}, true};
 }
 
@@ -34,12 +36,6 @@ std::vector<Section> sections_of(double low, double step, int count, const At& a
   std::vector<Section> sections;
   for (int s = 0; s < count; ++s) sections.push_back({low + s * step, at(low + s * step)});
   return sections;
-}
-
-std::string told(const Health& health) {
-  std::string text;
-  for (const std::string& finding : health.findings) text += finding + "; ";
-  return text;
 }
 
 /// Both ways of joining give a solid; returns the volume of the default one.
@@ -103,7 +99,7 @@ TEST(TileSections, ATorusOnItsSideBranchesAndMerges) {
 
 TEST(TileSections, ABoxOfEqualSectionsHasItsVolume) {
   const auto sections = sections_of(0.5, 1.0, 6, [](double) {
-    return std::vector<Contour>{square({0, 0}, {4, 3})};
+    return std::vector<Contour>{rectangle({0, 0}, {4, 3})};
   });
   // Five slabs between sections and a roof above and below, each at least a third and at most all of a half.
   const double volume = expect_solid(sections, "box");

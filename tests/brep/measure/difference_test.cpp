@@ -16,7 +16,7 @@
 namespace octotomy::brep {
 namespace {
 
-Mesh box(const glm::dvec3& low, const glm::dvec3& high) {
+Mesh box_mesh(const glm::dvec3& low, const glm::dvec3& high) {
   return mesh_of(shapes::box(low, high));
 }
 
@@ -50,7 +50,7 @@ TEST(Difference, APointThatNoTriangleUsesIsNotOnTheSurface) {
 
 TEST(Difference, ABoxInABoxHasItsClosedForm) {
   // Every point of the inner one is 1 from the outer; the outer one's corners are sqrt(3) from the inner.
-  const Difference d = difference(box({0, 0, 0}, {8, 8, 8}), box({1, 1, 1}, {7, 7, 7}),
+  const Difference d = difference(box_mesh({0, 0, 0}, {8, 8, 8}), box_mesh({1, 1, 1}, {7, 7, 7}),
                                   {.spacing_mm = 0.04, .tolerances_mm = {0.99, 1.01, 2}});
   EXPECT_NEAR(d.b_to_a.mean_mm, 1.0, 1e-13);
   EXPECT_NEAR(d.b_to_a.signed_mean_mm, -1.0, 1e-13);
@@ -87,9 +87,9 @@ TEST(Difference, WeighsByAreaAndNotByTriangles) {
       fine.faces.push_back({face[2], face[0], v});
     }
   }
-  const Mesh other = box({0, 0, 0}, {2, 1, 1});
+  const Mesh other = box_mesh({0, 0, 0}, {2, 1, 1});
   const Difference of_fine = difference(mesh_of(fine), other),
-                   of_coarse = difference(box({0, 0, 0}, {1, 1, 1}), other);
+                   of_coarse = difference(box_mesh({0, 0, 0}, {1, 1, 1}), other);
   EXPECT_GT(fine.faces.size(), 400u);
   EXPECT_NEAR(of_fine.a_to_b.mean_mm, of_coarse.a_to_b.mean_mm, 1e-3 * of_coarse.a_to_b.mean_mm);
 }
@@ -124,8 +124,8 @@ TEST(Difference, AFaceMovedAMillimetreAlongItsNormalsReadsAMillimetre) {
 }
 
 TEST(Difference, TheHistogramHasAllOfTheAreaAndItsBinsLieAboutZero) {
-  const Difference d =
-      difference(box({0, 0, 0}, {4, 4, 4}), box({0.5, 0, 0}, {4.5, 4, 4}), {.spacing_mm = 0.02, .bins = 5});
+  const Difference d = difference(box_mesh({0, 0, 0}, {4, 4, 4}), box_mesh({0.5, 0, 0}, {4.5, 4, 4}),
+                                  {.spacing_mm = 0.02, .bins = 5});
   EXPECT_NEAR(std::accumulate(d.histogram.shares.begin(), d.histogram.shares.end(), 0.0), 1.0, 1e-10);
   EXPECT_NEAR(d.histogram.low_mm, -0.5, 1e-12);
   EXPECT_NEAR(d.histogram.width_mm, 0.2, 1e-12);
@@ -146,7 +146,7 @@ TEST(Difference, AShiftIsSeenThoughVolumesAndAreasAreTheSame) {
 }
 
 TEST(Difference, ThreadsDoNotChangeTheBits) {
-  const Mesh a = mesh_of(shapes::sphere({0, 0, 0}, 20, 3)), b = box({-15, -15, -15}, {15, 15, 15});
+  const Mesh a = mesh_of(shapes::sphere({0, 0, 0}, 20, 3)), b = box_mesh({-15, -15, -15}, {15, 15, 15});
   const DifferenceOptions options{.spacing_mm = 0.5};
   const Difference many = difference(a, b, options);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -157,7 +157,7 @@ TEST(Difference, ThreadsDoNotChangeTheBits) {
 }
 
 TEST(Difference, RefusesWhatHasNoAreaAndOptionsOutOfRange) {
-  const Mesh mesh = box({0, 0, 0}, {1, 1, 1});
+  const Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   EXPECT_THROW(difference(mesh, Mesh()), std::invalid_argument);
   EXPECT_THROW(difference(Mesh(), mesh), std::invalid_argument);
   EXPECT_THROW(difference(mesh, mesh, {.spacing_mm = 0.0}), std::invalid_argument);

@@ -13,11 +13,11 @@
 namespace octotomy::brep {
 namespace {
 
-const Triangles cube = shapes::box({0, 0, 0}, {2, 2, 2});
+const Triangles cube_of_2 = shapes::box({0, 0, 0}, {2, 2, 2});
 
 TEST(Gap, FaceToFaceCornerToFaceAndCornerToCornerHaveTheirClosedForms) {
-  EXPECT_NEAR(gap(cube, shapes::box({2.5, 0.5, 0.5}, {3, 1, 1})).distance_mm, 0.5, 1e-15);
-  const Gap corners = gap(cube, shapes::box({3, 4, 4}, {5, 6, 7}));
+  EXPECT_NEAR(gap(cube_of_2, shapes::box({2.5, 0.5, 0.5}, {3, 1, 1})).distance_mm, 0.5, 1e-15);
+  const Gap corners = gap(cube_of_2, shapes::box({3, 4, 4}, {5, 6, 7}));
   EXPECT_NEAR(corners.distance_mm, 3.0, 1e-15);
   EXPECT_EQ(corners.on_a_mm, glm::dvec3(2, 2, 2));
   EXPECT_EQ(corners.on_b_mm, glm::dvec3(3, 4, 4));
@@ -37,7 +37,7 @@ TEST(Gap, EdgesThatPassEachOtherAreNearerThanAnyCorner) {
 }
 
 TEST(Gap, MeetingSurfacesHaveNoneAndAPointInCommon) {
-  const Triangles a = cube, b = shapes::box({1, 1, 1}, {3, 3, 3});
+  const Triangles a = cube_of_2, b = shapes::box({1, 1, 1}, {3, 3, 3});
   const Gap none = gap(a, b);
   EXPECT_EQ(none.distance_mm, 0.0);
   EXPECT_LT(SurfaceTree(a).distances_mm({none.on_a_mm})[0], 1e-14);
@@ -54,7 +54,7 @@ TEST(Gap, NoSampleOfEitherSurfaceIsNearer) {
     const glm::dvec3 axis = glm::normalize(glm::dvec3(any(random), any(random), any(random)));
     const glm::dmat4 motion = glm::rotate(glm::translate(glm::dmat4(1.0), 4.0 * axis), 3.0 * any(random),
                                           glm::normalize(glm::dvec3(any(random), any(random), 1.5)));
-    const Mesh a = mesh_of(cube), b = moved(mesh_of(cube), motion);
+    const Mesh a = mesh_of(cube_of_2), b = moved(mesh_of(cube_of_2), motion);
     const Gap found = gap(triangles_of(a), triangles_of(b));
     if (found.distance_mm == 0.0) continue;
     EXPECT_NEAR(glm::distance(found.on_a_mm, found.on_b_mm), found.distance_mm, 1e-12) << "seed " << seed;
@@ -103,7 +103,7 @@ TEST(Gap, OfFineSurfacesIsThatOfAllCornersAndEdges) {
 }
 
 TEST(Gap, RefusesNothing) {
-  EXPECT_THROW(gap(Triangles(), cube), std::invalid_argument);
+  EXPECT_THROW(gap(Triangles(), cube_of_2), std::invalid_argument);
 }
 
 }  // namespace

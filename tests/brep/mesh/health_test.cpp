@@ -7,16 +7,13 @@
 
 #include "brep/io/read_mesh.h"
 #include "tests/brep/shapes.h"
+#include "tests/brep/told.h"
 #include "tests/reference_data.h"
 
 namespace octotomy::brep {
 namespace {
 
-std::string told(const Health& health) {
-  std::string text;
-  for (const std::string& finding : health.findings) text += finding + "; ";
-  return text;
-}
+using tests::told;
 
 TEST(Health, ASolidHasNoFindings) {
   const Health h = health(mesh_of(shapes::sphere({0, 0, 0}, 1, 3)));

@@ -10,7 +10,12 @@
 namespace octotomy::brep {
 namespace {
 
-using namespace shapes;
+using shapes::box;
+using shapes::inside_out;
+using shapes::sphere;
+using shapes::together;
+using shapes::torus;
+using shapes::without;
 
 TEST(LineVolume, OfABallComesToTheTrianglesOwnAsLinesGrow) {
   const Triangles ball = sphere({1, 2, 3}, 5, 4);

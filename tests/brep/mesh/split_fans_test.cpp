@@ -12,7 +12,11 @@
 namespace octotomy::brep {
 namespace {
 
-using namespace shapes;
+using shapes::box;
+using shapes::sphere;
+using shapes::together;
+using shapes::unwelded;
+using shapes::welded;
 
 TEST(SplitFans, SoundTrianglesStayAsTheyAre) {
   const Triangles ball = sphere({1, 2, 3}, 5, 2);

@@ -10,7 +10,9 @@
 namespace octotomy::brep {
 namespace {
 
-using namespace shapes;
+using shapes::inside_out;
+using shapes::sphere;
+using shapes::together;
 
 std::vector<glm::dvec3> points_about(double reach, std::size_t count) {
   std::mt19937_64 random(7);

@@ -16,17 +16,18 @@
 namespace octotomy::brep {
 namespace {
 
-Triangles ball(double radius_mm, int splits) {
+Triangles centred_ball(double radius_mm, int splits) {
   return shapes::sphere({0, 0, 0}, radius_mm, splits);
 }
 
 /// A ball with a concentric cavity.
 Mesh shell(double outer_mm, double inner_mm, int splits) {
-  return mesh_of(shapes::together(ball(outer_mm, splits), shapes::inside_out(ball(inner_mm, splits))));
+  return mesh_of(
+      shapes::together(centred_ball(outer_mm, splits), shapes::inside_out(centred_ball(inner_mm, splits))));
 }
 
 TEST(Decimate, ABallKeepsItsVolumeWithinTheErrorAndItsVerticesAreTheOldOnes) {
-  const Triangles fine = ball(30.0, 5);
+  const Triangles fine = centred_ball(30.0, 5);
   DecimateOptions options;
   options.max_error_mm = 0.3;
   const Mesh coarse = decimate(mesh_of(fine), options);
@@ -44,7 +45,7 @@ TEST(Decimate, ABallKeepsItsVolumeWithinTheErrorAndItsVerticesAreTheOldOnes) {
 
 TEST(Decimate, CollapsesTheSameEdgesAsTheLibraryOnItsOwnMesh) {
   const Triangles torus = shapes::torus(20.0, 6.0, 60, 30);
-  for (const Triangles& fine : {ball(30.0, 4), torus, shapes::box({0, 0, 0}, {3, 2, 1})})
+  for (const Triangles& fine : {centred_ball(30.0, 4), torus, shapes::box({0, 0, 0}, {3, 2, 1})})
     for (const double error_mm : {0.05, 0.5, 20.0}) {
       DecimateOptions options;
       options.max_error_mm = error_mm;
@@ -62,7 +63,7 @@ TEST(Decimate, EndsAtTheNumberOfFacesAskedFor) {
   DecimateOptions options;
   options.max_error_mm = 10.0;
   options.faces = 1000;
-  const Mesh coarse = decimate(mesh_of(ball(30.0, 5)), options);
+  const Mesh coarse = decimate(mesh_of(centred_ball(30.0, 5)), options);
   EXPECT_LE(coarse.n_faces(), 1000U);
   EXPECT_GE(coarse.n_faces(), 998U) << "a collapse takes two";
   EXPECT_TRUE(health(coarse).solid());
@@ -83,7 +84,7 @@ TEST(Decimate, WallsThinnerThanTheErrorDoNotPassThroughEachOther) {
 }
 
 TEST(Decimate, AMeshThatIntersectsItselfBeforeIsNamedAsTheLikelyCause) {
-  const Triangles t = shapes::together(ball(10.0, 2), shapes::sphere({7.1, 0.3, 0.2}, 10.0, 2));
+  const Triangles t = shapes::together(centred_ball(10.0, 2), shapes::sphere({7.1, 0.3, 0.2}, 10.0, 2));
   try {
     decimate(mesh_of(t));
     FAIL() << "two balls through each other came out well";
@@ -93,17 +94,17 @@ TEST(Decimate, AMeshThatIntersectsItselfBeforeIsNamedAsTheLikelyCause) {
 }
 
 TEST(Decimate, OpenMeshesAndOptionsOutOfRangeAreRefused) {
-  Triangles open = ball(10.0, 1);
+  Triangles open = centred_ball(10.0, 1);
   open.faces.pop_back();
   EXPECT_THROW(decimate(mesh_of(open)), std::invalid_argument);
   DecimateOptions options;
   options.max_error_mm = 0.0;
-  EXPECT_THROW(decimate(mesh_of(ball(10.0, 1)), options), std::invalid_argument);
+  EXPECT_THROW(decimate(mesh_of(centred_ball(10.0, 1)), options), std::invalid_argument);
 }
 
 TEST(Decimate, GivesTheSameMeshTwice) {
-  const Triangles once = triangles_of(decimate(mesh_of(ball(30.0, 4))));
-  const Triangles again = triangles_of(decimate(mesh_of(ball(30.0, 4))));
+  const Triangles once = triangles_of(decimate(mesh_of(centred_ball(30.0, 4))));
+  const Triangles again = triangles_of(decimate(mesh_of(centred_ball(30.0, 4))));
   EXPECT_EQ(once.points_mm, again.points_mm);
   EXPECT_EQ(once.faces, again.faces);
 }

@@ -14,7 +14,11 @@
 namespace octotomy::brep {
 namespace {
 
-using namespace shapes;
+using shapes::inside_out;
+using shapes::sheet;
+using shapes::sphere;
+using shapes::together;
+using shapes::torus;
 
 double largest_mm(const Triangles& from, const Triangles& to) {
   const std::vector<double> distances = SurfaceTree(to).distances_mm(from.points_mm);

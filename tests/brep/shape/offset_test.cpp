@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-Solid ball(double radius) {
+Solid solid_ball(double radius) {
   return solid_of(shapes::sphere({0.1, 0.2, 0.3}, radius, 5));
 }
 
@@ -41,7 +41,7 @@ TEST(Offset, ABallGrowsAndShrinksToBallsAtSecondOrder) {
   for (const double by : {3.0, -3.0}) {
     double last = 0.0;
     for (const double cell : {2.0, 1.0, 0.5}) {
-      const Solid grown = offset(ball(10), {.by_mm = by, .cell_mm = cell});
+      const Solid grown = offset(solid_ball(10), {.by_mm = by, .cell_mm = cell});
       expect_solid(grown);
       // The given ball has facets: its own closed form is within 2e-3 of a ball's.
       const double truth = 4.0 / 3.0 * pi * std::pow(10 + by, 3);
@@ -95,9 +95,9 @@ TEST(Offset, ANeckThinnerThanTwiceTheOffsetFallsApartAndACleftFills) {
 }
 
 TEST(Offset, ByNothingIsTheSurfaceItself) {
-  const Solid same = offset(ball(8), {.by_mm = 0.0, .cell_mm = 0.5});
+  const Solid same = offset(solid_ball(8), {.by_mm = 0.0, .cell_mm = 0.5});
   expect_solid(same);
-  EXPECT_NEAR(volume_mm3(same), volume_mm3(ball(8)), 3e-3 * volume_mm3(ball(8)));
+  EXPECT_NEAR(volume_mm3(same), volume_mm3(solid_ball(8)), 3e-3 * volume_mm3(solid_ball(8)));
 }
 
 TEST(Offset, ShellsThatFaceInwardAreCavitiesThatShrinkAsTheSolidGrows) {

@@ -33,10 +33,10 @@ long count_of(const Repair& repaired, const std::string& step) {
                        [&](const Change& change) { return change.step == step; });
 }
 
-const Triangles ball = shapes::sphere({1, 2, 3}, 5, 2);
+const Triangles sound_ball = shapes::sphere({1, 2, 3}, 5, 2);
 
 TEST(Repair, DoesNothingUnasked) {
-  Triangles bad = soup_of(ball, 1e-4);
+  Triangles bad = soup_of(sound_ball, 1e-4);
   std::swap(bad.faces[3][0], bad.faces[3][1]);
   const Repair untouched = repair(bad, {});
   EXPECT_TRUE(untouched.changes.empty());
@@ -48,18 +48,20 @@ TEST(Repair, DoesNothingUnasked) {
 TEST(Repair, ASoupOfTrianglesIsWeldedAndEveryPointThatMovedIsListed) {
   RepairOptions options;
   options.weld_mm = 1e-3;
-  const Repair welded = repair(soup_of(ball, 1e-4), options);
+  const Repair welded = repair(soup_of(sound_ball, 1e-4), options);
   EXPECT_TRUE(health(welded.surface).solid());
-  EXPECT_EQ(welded.surface.points_mm.size(), ball.points_mm.size());
-  EXPECT_EQ(count_of(welded, "weld"), static_cast<long>(3 * ball.faces.size() - ball.points_mm.size()));
-  EXPECT_NEAR(size_of(welded.surface).volume_mm3, size_of(ball).volume_mm3, 1e-3 * size_of(ball).area_mm2);
+  EXPECT_EQ(welded.surface.points_mm.size(), sound_ball.points_mm.size());
+  EXPECT_EQ(count_of(welded, "weld"),
+            static_cast<long>(3 * sound_ball.faces.size() - sound_ball.points_mm.size()));
+  EXPECT_NEAR(size_of(welded.surface).volume_mm3, size_of(sound_ball).volume_mm3,
+              1e-3 * size_of(sound_ball).area_mm2);
   options.weld_mm = 0.0;
-  EXPECT_EQ(repair(soup_of(ball, 0.0), options).surface.points_mm.size(), ball.points_mm.size());
-  EXPECT_TRUE(repair(soup_of(ball, 1e-4), options).changes.empty());
+  EXPECT_EQ(repair(soup_of(sound_ball, 0.0), options).surface.points_mm.size(), sound_ball.points_mm.size());
+  EXPECT_TRUE(repair(soup_of(sound_ball, 1e-4), options).changes.empty());
 }
 
 TEST(Repair, TurnedTrianglesDuplicatesAndFlatOnesAreNamed) {
-  Triangles bad = ball;
+  Triangles bad = sound_ball;
   std::swap(bad.faces[3][0], bad.faces[3][1]);
   bad.faces.push_back(bad.faces[7]);
   bad.faces.push_back({4, 4, 9});
@@ -128,11 +130,11 @@ TEST(Repair, RealScansBecomeSolidsOrSayWhatIsLeft) {
 TEST(Repair, RefusesOptionsOutOfTheirRange) {
   RepairOptions options;
   options.weld_mm = -1.0;
-  EXPECT_THROW(repair(ball, options), std::invalid_argument);
+  EXPECT_THROW(repair(sound_ball, options), std::invalid_argument);
   options = {};
   options.longest_hole_mm = 0.0;
-  EXPECT_THROW(repair(ball, options), std::invalid_argument);
-  Triangles bad = ball;
+  EXPECT_THROW(repair(sound_ball, options), std::invalid_argument);
+  Triangles bad = sound_ball;
   bad.faces[0][0] = 4000;
   EXPECT_THROW(repair(bad, {}), std::runtime_error);
 }

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "convert/deck/calculix_result.h"
 #include "convert/deck/deck.h"
@@ -17,6 +16,8 @@
 #include "convert/tet/tetrahedralise.h"
 #include "tests/convert/surfaces.h"
 #include "tests/file_bytes.h"
+#include "tests/run_command.h"
+#include "tests/voxel/scratch_folder.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::convert {
@@ -24,31 +25,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("octotomy-solver-" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+using tests::has_program;
+using tests::ScratchFolder;
 
 /// Status of a command within a folder; what it says goes to a file there.
-int run_in(const Folder& folder, const std::string& command) {
+int run_in(const ScratchFolder& folder, const std::string& command) {
   return std::system(("cd '" + folder.path().string() + "' && " + command + " > log 2>&1").c_str());
 }
 
-bool have(const std::string& program) {
-  return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0;
-}
-
-std::string log_of(const Folder& folder) {
+std::string log_of(const ScratchFolder& folder) {
   return tests::bytes_of(folder / "log");
 }
 
@@ -96,8 +81,8 @@ struct Rich {
 };
 
 TEST(DeckSolver, ALinearDisplacementOfTheSurfaceIsLinearWithinToABillionthOfAMillimetre) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
+  if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const ScratchFolder folder;
   const Tetrahedra t = graded_block();
   const auto field = [](const glm::dvec3& p) {
     return 1e-6 * glm::dvec3(2.0 * p.x - p.y + 0.5 * p.z, p.x + 3.0 * p.y, -p.y + 1.5 * p.z);
@@ -119,7 +104,8 @@ TEST(DeckSolver, ALinearDisplacementOfTheSurfaceIsLinearWithinToABillionthOfAMil
 }
 
 /// A deck solved, by node.
-std::vector<glm::dvec3> solved_by_ccx(const Folder& folder, const Tetrahedra& t, const DeckOptions& options) {
+std::vector<glm::dvec3> solved_by_ccx(const ScratchFolder& folder, const Tetrahedra& t,
+                                      const DeckOptions& options) {
   write_deck(t, folder / "job.inp", options);
   EXPECT_EQ(run_in(folder, "ccx job"), 0) << log_of(folder);
   std::vector<glm::dvec3> displacements;
@@ -129,7 +115,7 @@ std::vector<glm::dvec3> solved_by_ccx(const Folder& folder, const Tetrahedra& t,
 }
 
 /// How far nodes are from a field at most when those of the surface are put there.
-double worst_within(const Folder& folder, const Tetrahedra& t,
+double worst_within(const ScratchFolder& folder, const Tetrahedra& t,
                     const std::function<glm::dvec3(const glm::dvec3&)>& field) {
   DeckOptions options;
   options.node_sets = {{"SKIN", t.boundary_nodes}};
@@ -142,8 +128,8 @@ double worst_within(const Folder& folder, const Tetrahedra& t,
 }
 
 TEST(DeckSolver, AQuadraticDisplacementIsQuadraticWithinByTenNodesAndNotByFour) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
+  if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const ScratchFolder folder;
   const Tetrahedra linear = graded_block();
   // Without divergence and with a Laplacian of zero: in equilibrium whatever the stiffness.
   const auto field = [](const glm::dvec3& p) {
@@ -177,15 +163,15 @@ struct ThickSphere {
   }
 };
 
-struct Errors {
+struct WallErrors {
   double mean = 0.0, worst = 0.0;
 };
 /// Radial displacements in the wall's middle against the closed form, of them.
-Errors errors_of(const std::vector<glm::dvec3>& nodes_mm, const std::vector<glm::dvec3>& solved) {
+WallErrors errors_of(const std::vector<glm::dvec3>& nodes_mm, const std::vector<glm::dvec3>& solved) {
   constexpr double inner = ThickSphere::inner, outer = ThickSphere::outer;
   const double b = ThickSphere::pushed / (1.0 / (inner * inner) - inner / (outer * outer * outer));
   const double a = -b / (outer * outer * outer);
-  Errors errors;
+  WallErrors errors;
   std::size_t middle = 0;
   for (std::size_t i = 0; i < solved.size(); ++i) {
     const double r = glm::length(nodes_mm[i]);
@@ -201,14 +187,14 @@ Errors errors_of(const std::vector<glm::dvec3>& nodes_mm, const std::vector<glm:
 }
 
 TEST(DeckSolver, AThickSpheresWallMovesAsTheClosedFormSaysAndCloserByTenNodesOfTheSameElements) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
+  if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const ScratchFolder folder;
   const ThickSphere wall(8.0);
-  const Errors by_four = errors_of(wall.t.nodes_mm, solved_by_ccx(folder, wall.t, wall.options));
+  const WallErrors by_four = errors_of(wall.t.nodes_mm, solved_by_ccx(folder, wall.t, wall.options));
   EXPECT_LT(by_four.mean, 0.025);
   EXPECT_LT(by_four.worst, 0.12);
   const SecondOrder finer = second_order(wall.t, wall.options);
-  const Errors by_ten =
+  const WallErrors by_ten =
       errors_of(finer.tetrahedra.nodes_mm, solved_by_ccx(folder, finer.tetrahedra, finer.options));
   // What is left of the mean is the flat triangles', whose middles are prescribed off the balls.
   EXPECT_LT(by_ten.mean, by_four.mean);
@@ -218,8 +204,8 @@ TEST(DeckSolver, AThickSpheresWallMovesAsTheClosedFormSaysAndCloserByTenNodesOfT
 }
 
 TEST(DeckSolver, ASolvedDeckOfTenNodesIsReadAsEightLinearPartsEach) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
+  if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const ScratchFolder folder;
   const Rich rich;
   DeckOptions options = rich.options;
   options.second_order = true;
@@ -265,7 +251,7 @@ struct TwoBlocks {
   }
 
   /// Mean displacement along z of the lower block's nodes between the two.
-  double between_mm(const Folder& folder) const {
+  double between_mm(const ScratchFolder& folder) const {
     const std::vector<glm::dvec3> solved = solved_by_ccx(folder, t, options);
     std::vector<bool> is_lower(t.nodes_mm.size(), false);
     for (std::size_t i = 0; i < t.tets.size(); ++i)
@@ -284,8 +270,8 @@ struct TwoBlocks {
 };
 
 TEST(DeckSolver, ContactPressesAsSharedNodesDoAndLetsGoWhereTheyPull) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
+  if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const ScratchFolder folder;
   // By symmetry what is between two equal blocks moves half as far.
   EXPECT_NEAR(TwoBlocks(false, -0.06).between_mm(folder), -0.03, 1e-4);
   EXPECT_NEAR(TwoBlocks(true, -0.06).between_mm(folder), -0.03, 1e-3);
@@ -294,8 +280,8 @@ TEST(DeckSolver, ContactPressesAsSharedNodesDoAndLetsGoWhereTheyPull) {
 }
 
 TEST(DeckSolver, AFebioDeckHasItsContactPairs) {
-  if (!have("/usr/bin/python3")) GTEST_SKIP() << "python3 is not installed";
-  const Folder folder;
+  if (!has_program("/usr/bin/python3")) GTEST_SKIP() << "python3 is not installed";
+  const ScratchFolder folder;
   const TwoBlocks blocks(true, -0.06);
   write_deck(blocks.t, folder / "blocks.feb", blocks.options);
   std::ofstream(folder / "look.py")
@@ -312,7 +298,7 @@ TEST(DeckSolver, AFebioDeckHasItsContactPairs) {
 }
 
 TEST(DeckSolver, AResultOfAnotherDeckOrOfNoneIsRefused) {
-  const Folder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "a.frd")
       << "    1C\n -4  DISP        4    1\n -1         9 1.00000E-01 0.00000E+00-2.00000E-01\n -3\n";
   EXPECT_EQ(read_displacements(folder / "a.frd", 9)[8], glm::dvec3(0.1, 0.0, -0.2));
@@ -342,8 +328,8 @@ TEST(Deck, FacesOfTheSurfaceFaceOutward) {
 }
 
 TEST(DeckSolver, CalculixTakesRegionsMaterialsSurfacesAndAStep) {
-  if (!have("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
-  const Folder folder;
+  if (!has_program("ccx")) GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const ScratchFolder folder;
   const Rich rich;
   write_deck(rich.t, folder / "rich.inp", rich.options);
   ASSERT_EQ(run_in(folder, "ccx rich"), 0) << log_of(folder);
@@ -354,8 +340,8 @@ TEST(DeckSolver, CalculixTakesRegionsMaterialsSurfacesAndAStep) {
 }
 
 TEST(DeckSolver, GmshFindsNothingWrongWithEitherVersion) {
-  if (!have("gmsh")) GTEST_SKIP() << "gmsh is not installed";
-  const Folder folder;
+  if (!has_program("gmsh")) GTEST_SKIP() << "gmsh is not installed";
+  const ScratchFolder folder;
   Rich rich;
   rich.options.surfaces.pop_back();  // its faces would stand there twice
   for (const auto& [old, second] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
@@ -371,7 +357,7 @@ TEST(DeckSolver, GmshFindsNothingWrongWithEitherVersion) {
 TEST(DeckSolver, MeshioReadsTheSameNodesElementsRegionsAndSets) {
   if (std::system("/usr/bin/python3 -c 'import meshio' > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "python3-meshio is not installed";
-  const Folder folder;
+  const ScratchFolder folder;
   const Rich rich;
   write_deck(rich.t, folder / "rich.inp", rich.options);
   write_deck(rich.t, folder / "rich.vtu", rich.options);
@@ -406,7 +392,7 @@ TEST(DeckSolver, MeshioReadsTheSameNodesElementsRegionsAndSets) {
 TEST(DeckSolver, MeshioFindsNodesInTheMiddleOfTheSidesThatItsOrderSays) {
   if (std::system("/usr/bin/python3 -c 'import meshio' > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "python3-meshio is not installed";
-  const Folder folder;
+  const ScratchFolder folder;
   Rich rich;
   rich.options.second_order = true;
   rich.options.surfaces.pop_back();
@@ -446,8 +432,8 @@ TEST(DeckSolver, MeshioFindsNodesInTheMiddleOfTheSidesThatItsOrderSays) {
 }
 
 TEST(DeckSolver, AFebioDeckIsWholeXmlWithItsSetsAndMaps) {
-  if (!have("/usr/bin/python3")) GTEST_SKIP() << "python3 is not installed";
-  const Folder folder;
+  if (!has_program("/usr/bin/python3")) GTEST_SKIP() << "python3 is not installed";
+  const ScratchFolder folder;
   const Rich rich;
   write_deck(rich.t, folder / "rich.feb", rich.options);
   std::ofstream(folder / "look.py")
@@ -477,7 +463,7 @@ TEST(DeckSolver, AFebioDeckIsWholeXmlWithItsSetsAndMaps) {
 }
 
 TEST(Deck, SetsMaterialsAndDisplacementsThatDoNotFitAreRefused) {
-  const Folder folder;
+  const ScratchFolder folder;
   const auto refused = [&](const std::function<void(Rich&)>& spoil) {
     Rich rich;
     spoil(rich);

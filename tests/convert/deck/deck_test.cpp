@@ -7,47 +7,29 @@
 #include <gtest/gtest.h>
 #include <iterator>
 #include <sstream>
-#include <unistd.h>
 
 #include "convert/tet/octree_tetrahedra.h"
+#include "tests/convert/cube_in_five.h"
 #include "tests/convert/surfaces.h"
+#include "tests/file_bytes.h"
 #include "tests/unit_universe.h"
+#include "tests/voxel/scratch_folder.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::convert {
 namespace {
 
-/// A folder of this test's own that goes with it.
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("octotomy-deck-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  std::ptrdiff_t file_count() const {
-    return std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator());
-  }
+using tests::bytes_of;
+using tests::ScratchFolder;
 
- private:
-  std::filesystem::path path_;
-};
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+std::ptrdiff_t file_count(const ScratchFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.path()),
+                       std::filesystem::directory_iterator());
 }
 
-/// Tetrahedra of a unit cube cut in five, far from the origin, with coordinates that need their digits.
-Tetrahedra cube_in_five() {
-  Tetrahedra t;
-  const glm::dvec3 corner(-123.456789012345, 98.7654321098765, 0.000123456789012345);
-  for (int c = 0; c < 8; ++c) t.nodes_mm.push_back(corner + glm::dvec3(c & 1, (c >> 1) & 1, c >> 2));
-  t.tets = {{0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 2, 7, 4}, {1, 2, 4, 7}};
-  t.boundary_nodes = boundary_nodes(t.tets);
-  return t;
+/// Far from the origin, with coordinates that need their digits.
+Tetrahedra far_cube() {
+  return tests::cube_in_five({-123.456789012345, 98.7654321098765, 0.000123456789012345});
 }
 
 DeckOptions titled(const std::string& title) {
@@ -105,8 +87,8 @@ InpDeck read_inp(const std::filesystem::path& path) {
 }
 
 TEST(Deck, AnAbaqusDeckReadsBackToTheSameElementsAndVolume) {
-  const Folder folder;
-  const Tetrahedra cube = cube_in_five();
+  const ScratchFolder folder;
+  const Tetrahedra cube = far_cube();
   write_deck(cube, folder / "cube.inp", titled("A cube"));
   const InpDeck deck = read_inp(folder / "cube.inp");
   EXPECT_EQ(deck.tetrahedra.tets, cube.tets);
@@ -122,8 +104,8 @@ TEST(Deck, AnAbaqusDeckReadsBackToTheSameElementsAndVolume) {
 }
 
 TEST(Deck, NoFieldOfAnAbaqusDeckIsLongerThanCalculixReadsAndNoSetLineLongerThanAbaqusDoes) {
-  const Folder folder;
-  Tetrahedra cube = cube_in_five();
+  const ScratchFolder folder;
+  Tetrahedra cube = far_cube();
   cube.nodes_mm[0].x = -1.23456789012345e-300;
   for (std::uint32_t i = 0; i < 100; ++i) {
     cube.nodes_mm.emplace_back(0.1 * i, 0, 0);
@@ -138,19 +120,19 @@ TEST(Deck, NoFieldOfAnAbaqusDeckIsLongerThanCalculixReadsAndNoSetLineLongerThanA
 }
 
 TEST(Deck, ATitleCannotBecomeAKeywordOrASecondLine) {
-  const Folder folder;
-  write_deck(cube_in_five(), folder / "cube.inp", titled("*NODE\n*STEP"));
+  const ScratchFolder folder;
+  write_deck(far_cube(), folder / "cube.inp", titled("*NODE\n*STEP"));
   const InpDeck deck = read_inp(folder / "cube.inp");
   EXPECT_EQ(deck.keywords.size(), 7U);
   EXPECT_EQ(deck.tetrahedra.nodes_mm.size(), 8U);
 }
 
 TEST(Deck, AnAbaqusDeckIsAsciiHoweverItsNotesArePrinted) {
-  const Folder folder;
+  const ScratchFolder folder;
   DeckOptions options = titled("Sch\u00e4del");
   options.notes = {"volume 36\u202f938 mm\u00b3 \u00b1 5\u00b0, \u2212 \xff\u00b3 \U0001F480"};
-  write_deck(cube_in_five(), folder / "d.inp", options);
-  const std::string deck = content(folder / "d.inp");
+  write_deck(far_cube(), folder / "d.inp", options);
+  const std::string deck = bytes_of(folder / "d.inp");
   EXPECT_NE(deck.find("\n Sch?del\n"), std::string::npos) << deck.substr(0, 200);
   EXPECT_NE(deck.find("** volume 36 938 mm3 +- 5 degrees, - ?3 ?\n"), std::string::npos)
       << deck.substr(0, 300);
@@ -158,10 +140,10 @@ TEST(Deck, AnAbaqusDeckIsAsciiHoweverItsNotesArePrinted) {
 }
 
 TEST(Deck, ATitleCannotEndACommentAndKeepsItsHyphens) {
-  const Folder folder;
+  const ScratchFolder folder;
   for (const char* name : {"cube.vtu", "cube.feb"}) {
-    write_deck(cube_in_five(), folder / name, titled("SHA-256 a---b-->c"));
-    const std::string text = content(folder / name);
+    write_deck(far_cube(), folder / name, titled("SHA-256 a---b-->c"));
+    const std::string text = bytes_of(folder / name);
     EXPECT_NE(text.find("SHA-256 a-&#45;-b-&#45;&gt;c"), std::string::npos) << name;
     for (auto at = text.find("--"); at != std::string::npos; at = text.find("--", at + 2))
       EXPECT_TRUE(text.compare(at - 2, 4, "<!--") == 0 || text.compare(at, 3, "-->") == 0) << name;
@@ -183,10 +165,10 @@ std::vector<T> appended(const std::string& file, const std::string& name) {
 }
 
 TEST(Deck, AVtkGridHoldsEveryBitOfTheNodes) {
-  const Folder folder;
-  const Tetrahedra cube = cube_in_five();
+  const ScratchFolder folder;
+  const Tetrahedra cube = far_cube();
   write_deck(cube, folder / "cube.vtu", titled("a -- b <c>"));
-  const std::string file = content(folder / "cube.vtu");
+  const std::string file = bytes_of(folder / "cube.vtu");
   EXPECT_NE(file.find("NumberOfPoints=\"8\" NumberOfCells=\"5\""), std::string::npos);
   EXPECT_EQ(file.find("a -- b"), std::string::npos) << "two hyphens end an XML comment";
   std::vector<double> coordinates;
@@ -200,18 +182,18 @@ TEST(Deck, AVtkGridHoldsEveryBitOfTheNodes) {
 }
 
 TEST(Deck, AVtkGridMarksTheFacesOfASurfaceByTheCornersAcross) {
-  const Folder folder;
+  const ScratchFolder folder;
   DeckOptions options;
   options.surfaces = {{"CUT", {{0, 3}, {0, 1}, {4, 0}}}, {"REST", {{2, 2}}}};
-  write_deck(cube_in_five(), folder / "cube.vtu", options);
-  const std::string file = content(folder / "cube.vtu");
+  write_deck(far_cube(), folder / "cube.vtu", options);
+  const std::string file = bytes_of(folder / "cube.vtu");
   EXPECT_EQ(appended<std::uint8_t>(file, "CUT"), (std::vector<std::uint8_t>{0b1010, 0, 0, 0, 0b0001}));
   EXPECT_EQ(appended<std::uint8_t>(file, "REST"), (std::vector<std::uint8_t>{0, 0, 0b0100, 0, 0}));
 }
 
 TEST(Deck, WhatASolverWouldRefuseIsRefusedBeforeAnythingIsWritten) {
-  const Folder folder;
-  const Tetrahedra cube = cube_in_five();
+  const ScratchFolder folder;
+  const Tetrahedra cube = far_cube();
   Tetrahedra spoiled = cube;
   spoiled.tets[3][2] = 8;
   EXPECT_THROW(write_deck(spoiled, folder / "a.inp"), std::invalid_argument);
@@ -226,25 +208,25 @@ TEST(Deck, WhatASolverWouldRefuseIsRefusedBeforeAnythingIsWritten) {
   EXPECT_THROW(write_deck(cube, folder / "a.stl"), std::invalid_argument);
   EXPECT_THROW(write_deck(cube, folder / "a.inp", two_words), std::invalid_argument);
   EXPECT_THROW(write_deck(cube, folder / "a.inp", incompressible), std::invalid_argument);
-  EXPECT_EQ(folder.file_count(), 0);
+  EXPECT_EQ(file_count(folder), 0);
 }
 
 TEST(Deck, AFileThatCannotBeWrittenIsNamedAndNothingIsLeft) {
-  const Folder folder;
+  const ScratchFolder folder;
   try {
-    write_deck(cube_in_five(), folder / "absent" / "a.inp");
+    write_deck(far_cube(), folder / "absent" / "a.inp");
     FAIL() << "a folder that does not exist was written to";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("absent"), std::string::npos) << error.what();
   }
   // A folder in the file's place: the write succeeds, the renaming cannot.
   std::filesystem::create_directories(folder / "b.inp" / "full");
-  EXPECT_THROW(write_deck(cube_in_five(), folder / "b.inp"), std::runtime_error);
-  EXPECT_EQ(folder.file_count(), 1) << "the unfinished file is gone";
+  EXPECT_THROW(write_deck(far_cube(), folder / "b.inp"), std::runtime_error);
+  EXPECT_EQ(file_count(folder), 1) << "the unfinished file is gone";
 }
 
 TEST(Deck, WritingTellsHowFarItIsAndAStopLeavesNoFile) {
-  const Folder folder;
+  const ScratchFolder folder;
   const voxel::Universe universe = tests::unit_universe(5);
   const Tetrahedra ball =
       tetrahedra_of(voxel::combine(universe, voxel::Expression(voxel::Sphere{glm::dvec3(15.5), 15.0})),
@@ -259,23 +241,23 @@ TEST(Deck, WritingTellsHowFarItIsAndAStopLeavesNoFile) {
     EXPECT_LE(fractions.back(), 1.0) << name;
 
     std::filesystem::remove(folder / name);
-    const std::ptrdiff_t files = folder.file_count();
+    const std::ptrdiff_t files = file_count(folder);
     std::stop_source source;
     options.progress.stop = source.get_token();
     options.progress.report = [&](double fraction) {
       if (fraction > 0.1) source.request_stop();
     };
     EXPECT_THROW(write_deck(ball, folder / name, options), voxel::Stopped) << name;
-    EXPECT_EQ(folder.file_count(), files) << name;
+    EXPECT_EQ(file_count(folder), files) << name;
   }
 }
 
 TEST(Deck, ReplacesAnEarlierFileAsAWhole) {
-  const Folder folder;
-  write_deck(cube_in_five(), folder / "a.INP", titled("first"));
-  write_deck(cube_in_five(), folder / "a.INP", titled("second"));
-  EXPECT_EQ(content(folder / "a.INP").find("first"), std::string::npos);
-  EXPECT_EQ(folder.file_count(), 1);
+  const ScratchFolder folder;
+  write_deck(far_cube(), folder / "a.INP", titled("first"));
+  write_deck(far_cube(), folder / "a.INP", titled("second"));
+  EXPECT_EQ(bytes_of(folder / "a.INP").find("first"), std::string::npos);
+  EXPECT_EQ(file_count(folder), 1);
 }
 
 }  // namespace

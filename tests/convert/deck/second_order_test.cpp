@@ -5,17 +5,12 @@
 #include <gtest/gtest.h>
 #include <set>
 
+#include "tests/convert/cube_in_five.h"
+
 namespace octotomy::convert {
 namespace {
 
-/// A unit cube cut in five, with the element in its middle, whose four nodes are the surface's.
-Tetrahedra cube_in_five() {
-  Tetrahedra t;
-  for (int c = 0; c < 8; ++c) t.nodes_mm.emplace_back(c & 1, (c >> 1) & 1, c >> 2);
-  t.tets = {{0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 2, 7, 4}, {1, 2, 4, 7}};
-  t.boundary_nodes = boundary_nodes(t.tets);
-  return t;
-}
+using tests::cube_in_five;
 
 /// Nodes of a set behind the cube's eight, by where they are.
 std::set<std::array<double, 3>> middles(const SecondOrder& made, const std::vector<std::uint32_t>& nodes) {

@@ -12,7 +12,7 @@ namespace octotomy::convert {
 namespace {
 
 /// A block of 4 x 4 x 4 voxels, corners from -0.5 to 3.5.
-Tetrahedra block() {
+Tetrahedra block_of_64_voxels() {
   const voxel::Universe universe = tests::unit_universe(3);
   return tetrahedra_of(
       voxel::combine(universe, voxel::Expression(voxel::Box{{-0.5, -0.5, -0.5}, {3.5, 3.5, 3.5}})),
@@ -20,7 +20,7 @@ Tetrahedra block() {
 }
 
 TEST(Midline, IsTheRingOfNodesOnThePlaneWhereThereAreAny) {
-  const Tetrahedra tetrahedra = block();
+  const Tetrahedra tetrahedra = block_of_64_voxels();
   const std::vector<std::uint32_t> ring = midline_nodes(tetrahedra, {1.5, 7, 7}, {-3, 0, 0});
   ASSERT_EQ(ring.size(), 16U) << "5 x 5 corners without the inner 3 x 3";
   for (const std::uint32_t node : ring) EXPECT_EQ(tetrahedra.nodes_mm[node].x, 1.5);
@@ -28,7 +28,7 @@ TEST(Midline, IsTheRingOfNodesOnThePlaneWhereThereAreAny) {
 }
 
 TEST(Midline, BesideThePlaneTheNearerNodesAreTaken) {
-  const Tetrahedra tetrahedra = block();
+  const Tetrahedra tetrahedra = block_of_64_voxels();
   EXPECT_EQ(midline_nodes(tetrahedra, {1.7, 0, 0}, {1, 0, 0}),
             midline_nodes(tetrahedra, {1.5, 0, 0}, {1, 0, 0}));
   for (const std::uint32_t node : midline_nodes(tetrahedra, {2.3, 0, 0}, {1, 0, 0}))
@@ -36,7 +36,7 @@ TEST(Midline, BesideThePlaneTheNearerNodesAreTaken) {
 }
 
 TEST(Midline, APlaneAlongAFaceTakesTheWholeFaceAndOneBeyondNothing) {
-  const Tetrahedra tetrahedra = block();
+  const Tetrahedra tetrahedra = block_of_64_voxels();
   std::vector<std::uint32_t> face;
   for (const std::uint32_t node : tetrahedra.boundary_nodes)
     if (tetrahedra.nodes_mm[node].z == 3.5) face.push_back(node);

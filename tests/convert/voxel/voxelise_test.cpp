@@ -23,7 +23,7 @@ using tests::unit_universe;
 
 /// Voxel (0, 0, 0) at the origin, edges of one millimetre: millimetres are voxel numbers.
 /// How often the surface winds about a point, by solid angles: another method than rays.
-double winding_number(const brep::Triangles& t, const glm::dvec3& p) {
+double winding_by_solid_angles(const brep::Triangles& t, const glm::dvec3& p) {
   double angle = 0.0;
   for (const auto& [i, j, k] : t.faces) {
     const glm::dvec3 a = t.points_mm[i] - p;
@@ -39,13 +39,13 @@ double winding_number(const brep::Triangles& t, const glm::dvec3& p) {
 }
 
 /// The first voxel that is not as the winding number says, or none.
-std::optional<glm::ivec3> first_difference(const voxel::Octree& octree, const brep::Triangles& t) {
+std::optional<glm::ivec3> first_unlike_winding(const voxel::Octree& octree, const brep::Triangles& t) {
   const int side = octree.universe().side();
   const voxel::Lattice lattice = octree.universe().lattice();
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x)
-        if (octree.contains({x, y, z}) != (winding_number(t, lattice.lps_mm({x, y, z})) > 0.5))
+        if (octree.contains({x, y, z}) != (winding_by_solid_angles(t, lattice.lps_mm({x, y, z})) > 0.5))
           return glm::ivec3(x, y, z);
   return std::nullopt;
 }
@@ -134,7 +134,7 @@ TEST(Voxelise, AgreesWithTheWindingNumberOnEveryVoxelInAnyPoseAndSize) {
     const glm::dvec3 centre = universe.lattice().lps_mm(glm::dvec3(0.5 * (universe.side() - 1)));
     const brep::Triangles solid = ball(centre + 0.37, 10.3, 2);
     const voxel::Octree octree = voxelise(universe, brep::mesh_of(solid));
-    EXPECT_EQ(first_difference(octree, solid), std::nullopt) << "depth " << depth;
+    EXPECT_EQ(first_unlike_winding(octree, solid), std::nullopt) << "depth " << depth;
     EXPECT_GT(octree.voxel_count(), 0U);
   }
 }
@@ -142,9 +142,9 @@ TEST(Voxelise, AgreesWithTheWindingNumberOnEveryVoxelInAnyPoseAndSize) {
 TEST(Voxelise, TheComparisonWithTheWindingNumberSeesAMovedVertex) {
   brep::Triangles solid = ball({15.3, 15.1, 15.2}, 10.3, 1);
   const voxel::Octree octree = voxelise(unit_universe(5), brep::mesh_of(solid));
-  ASSERT_EQ(first_difference(octree, solid), std::nullopt);
+  ASSERT_EQ(first_unlike_winding(octree, solid), std::nullopt);
   solid.points_mm[0].x -= 3.0;
-  EXPECT_NE(first_difference(octree, solid), std::nullopt);
+  EXPECT_NE(first_unlike_winding(octree, solid), std::nullopt);
 }
 
 TEST(Voxelise, ABallsVoxelsTakeItsVolume) {

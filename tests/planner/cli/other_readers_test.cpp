@@ -83,9 +83,6 @@ class OtherReaders : public testing::TestWithParam<Subject> {
   tests::TestFolder folder_;
 };
 
-#define NEEDS_PYTHON(answer) \
-  if ((answer).status == 77) GTEST_SKIP() << "/usr/bin/python3: " << (answer).errors
-
 class PythonsReaders : public OtherReaders {};
 
 TEST_P(PythonsReaders, SayTheSame) {
@@ -97,7 +94,7 @@ TEST_P(PythonsReaders, SayTheSame) {
   const tests::CommandAnswer convert = octotomy("convert " + path + " -o " + converted);
   ASSERT_EQ(convert.status, 0) << convert.errors;
   const tests::CommandAnswer theirs = python(std::string(GetParam().kind) + " " + path + " " + converted);
-  NEEDS_PYTHON(theirs);
+  OCTOTOMY_NEEDS_PYTHON(theirs);
   ASSERT_EQ(theirs.status, 0) << theirs.errors;
   const SortedJson said = SortedJson::parse(theirs.out);
   expect_same(SortedJson::parse(info.out), said, place_tolerance_mm(std::string(GetParam().kind) == "nifti"));
@@ -167,7 +164,7 @@ TEST_P(NumpysReader, NumpyReadsTheSameSlicesWithoutAHeader) {
   const std::string converted = quoted(folder_ / "converted.nii.gz");
   ASSERT_EQ(octotomy("convert " + raw + layout + " -o " + converted).status, 0);
   const tests::CommandAnswer theirs = python("raw " + raw + " 256x256x113 '>u2' 1,1,2 " + converted);
-  NEEDS_PYTHON(theirs);
+  OCTOTOMY_NEEDS_PYTHON(theirs);
   ASSERT_EQ(theirs.status, 0) << theirs.errors;
   const SortedJson said = SortedJson::parse(theirs.out);
   expect_same(SortedJson::parse(info.out), said, place_tolerance_mm(false));

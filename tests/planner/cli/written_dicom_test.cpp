@@ -53,9 +53,6 @@ class WrittenDicom : public testing::Test {
   tests::TestFolder folder_;
 };
 
-#define NEEDS_PYTHON(answer) \
-  if ((answer).status == 77) GTEST_SKIP() << "/usr/bin/python3: " << (answer).errors
-
 TEST_F(WrittenDicom, ASeriesMadeFromAnotherRefersToTheImagesBehindEachSlice) {
   for (const double lean : {0.0, 0.5}) {
     SCOPED_TRACE(lean);
@@ -64,7 +61,7 @@ TEST_F(WrittenDicom, ASeriesMadeFromAnotherRefersToTheImagesBehindEachSlice) {
     const std::string source = quoted(source_series(lean));
     octotomy("convert " + source + " -o " + quoted(folder_ / "derived"));
     const tests::CommandAnswer theirs = python("derived " + quoted(folder_ / "derived") + " " + source);
-    NEEDS_PYTHON(theirs);
+    OCTOTOMY_NEEDS_PYTHON(theirs);
     ASSERT_EQ(theirs.status, 0) << theirs.errors;
     const SortedJson said = SortedJson::parse(theirs.out);
     EXPECT_EQ(said["images"], 40);
@@ -83,7 +80,7 @@ TEST_F(WrittenDicom, AMissingSliceRefersToItsNeighbours) {
   fs::remove(source / "slice_0011.dcm");
   octotomy("convert " + quoted(source) + " -o " + quoted(folder_ / "derived"));
   const tests::CommandAnswer theirs = python("derived " + quoted(folder_ / "derived") + " " + quoted(source));
-  NEEDS_PYTHON(theirs);
+  OCTOTOMY_NEEDS_PYTHON(theirs);
   const SortedJson said = SortedJson::parse(theirs.out);
   EXPECT_EQ(said["references"], 41);
   EXPECT_EQ(said["unknown"], 0);
@@ -118,7 +115,7 @@ TEST_F(WrittenDicom, OfARealSeriesIsHeldToTheStandardToo) {
     octotomy("convert " + source + " -o " + quoted(derived));
     EXPECT_EQ(errors_of(derived / "slice_0007.dcm"), "") << name;
     const tests::CommandAnswer theirs = python("derived " + quoted(derived) + " " + source);
-    NEEDS_PYTHON(theirs);
+    OCTOTOMY_NEEDS_PYTHON(theirs);
     ASSERT_EQ(theirs.status, 0) << theirs.errors;
     const SortedJson said = SortedJson::parse(theirs.out);
     EXPECT_EQ(said["references"], said["images"]);
@@ -136,7 +133,7 @@ TEST_F(WrittenDicom, ASegmentationHoldsTheOctreesVoxelsWhereTheyAre) {
   const fs::path file = folder_ / "ball.dcm";
   octotomy("convert " + octree + " --source " + quoted(source) + " --label Ball -o " + quoted(file));
   const tests::CommandAnswer theirs = python("seg " + quoted(file));
-  NEEDS_PYTHON(theirs);
+  OCTOTOMY_NEEDS_PYTHON(theirs);
   ASSERT_EQ(theirs.status, 0) << theirs.errors;
   const SortedJson said = SortedJson::parse(theirs.out);
   EXPECT_EQ(said["modality"], "SEG");

@@ -13,7 +13,7 @@
 namespace octotomy::planner {
 namespace {
 
-using tests::universe_of_64;
+using tests::universe_about_origin;
 
 TEST(Gap, BetweenBallsIsWithinItsHalfWidthInBothKernelsHoweverTheyLie) {
   double largest_share = 0.0;
@@ -23,8 +23,8 @@ TEST(Gap, BetweenBallsIsWithinItsHalfWidthInBothKernelsHoweverTheyLie) {
     const double truth_mm = 0.5 + 8.0 * chance.x;
     const glm::dvec3 along = glm::normalize(chance - 0.45), first = -11.0 * along + chance;
     const glm::dvec3 second = first + (16.0 + truth_mm) * along;
-    const voxel::Octree a = voxel::combine(universe_of_64(), voxel::Sphere{first, 9.0}),
-                        b = voxel::combine(universe_of_64(), voxel::Sphere{second, 7.0});
+    const voxel::Octree a = voxel::combine(universe_about_origin(6), voxel::Sphere{first, 9.0}),
+                        b = voxel::combine(universe_about_origin(6), voxel::Sphere{second, 7.0});
     const brep::Solid solid_a = brep::solid_of(brep::shapes::sphere(first, 9.0, 5)),
                       solid_b = brep::solid_of(brep::shapes::sphere(second, 7.0, 5));
     const Gap gap = gap_between(a, b, solid_a, solid_b);
@@ -40,8 +40,8 @@ TEST(Gap, BetweenBallsIsWithinItsHalfWidthInBothKernelsHoweverTheyLie) {
 
 TEST(Gap, OfObjectsThatOverlapIsNothingAndTheOverlapIsTold) {
   const glm::dvec3 second(10.0, 0.2, 0.1);
-  const voxel::Octree a = voxel::combine(universe_of_64(), voxel::Sphere{glm::dvec3(0.0), 9.0}),
-                      b = voxel::combine(universe_of_64(), voxel::Sphere{second, 7.0});
+  const voxel::Octree a = voxel::combine(universe_about_origin(6), voxel::Sphere{glm::dvec3(0.0), 9.0}),
+                      b = voxel::combine(universe_about_origin(6), voxel::Sphere{second, 7.0});
   const brep::Solid solid_a = brep::solid_of(brep::shapes::sphere(glm::dvec3(0.0), 9.0, 4)),
                     solid_b = brep::solid_of(brep::shapes::sphere(second, 7.0, 4));
   const Gap gap = gap_between(a, b, solid_a, solid_b);
@@ -53,7 +53,7 @@ TEST(Gap, OfObjectsThatOverlapIsNothingAndTheOverlapIsTold) {
 
 TEST(Gap, OfVoxelsSideBySideIsNothingAndOfOneBetweenIsOne) {
   const auto slab = [](double low, double high) {
-    return voxel::combine(universe_of_64(), voxel::Box{{low, -10, -10}, {high, 10, 10}});
+    return voxel::combine(universe_about_origin(6), voxel::Box{{low, -10, -10}, {high, 10, 10}});
   };
   EXPECT_EQ(gap_between(slab(-10, 0), slab(0, 10), std::nullopt, std::nullopt).voxel_mm, 0.0);
   EXPECT_EQ(gap_between(slab(-10, 0), slab(1, 10), std::nullopt, std::nullopt).voxel_mm, 1.0);

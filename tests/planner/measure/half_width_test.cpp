@@ -17,7 +17,7 @@
 namespace octotomy::planner {
 namespace {
 
-using tests::universe_of_64;
+using tests::universe_about_origin;
 
 TEST(VolumeHalfWidth, HoldsTheTruthOfBallsWhereverTheyLieAndIsNotIdle) {
   int outside_of_a_tenth = 0;
@@ -26,7 +26,7 @@ TEST(VolumeHalfWidth, HoldsTheTruthOfBallsWhereverTheyLieAndIsNotIdle) {
         glm::fract(glm::dvec3(i) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
     const double radius_mm = 9.0 + 0.23 * i;
     const voxel::Measures measures =
-        voxel::measure(voxel::combine(universe_of_64(), voxel::Sphere{centre, radius_mm}));
+        voxel::measure(voxel::combine(universe_about_origin(6), voxel::Sphere{centre, radius_mm}));
     const double truth = 4.0 / 3.0 * std::numbers::pi * radius_mm * radius_mm * radius_mm;
     const HalfWidth found = volume_half_width(measures, {glm::dvec3(1.0)});
     EXPECT_LE(std::abs(measures.volume_mm3 - truth), found.value)
@@ -59,7 +59,7 @@ TEST(VolumeHalfWidth, HoldsTheTruthOfSolidsCutAlongTheLattice) {
               voxel::HalfSpace{{0, 0, 1}, middle.z - radius + height};
       truth_mm3 = std::numbers::pi * height * height * (radius - height / 3.0);
     }
-    const voxel::Octree octree = voxel::combine(universe_of_64(), solid);
+    const voxel::Octree octree = voxel::combine(universe_about_origin(6), solid);
     Digitised digitised{glm::dvec3(1.0)};
     digitised.flat_mm2 = voxel::flat_parts_mm2(octree);
     const voxel::Measures measures = voxel::measure(octree);
@@ -75,7 +75,7 @@ TEST(VolumeHalfWidth, HoldsTheTruthOfSolidsCutAlongTheLattice) {
 
 TEST(VolumeHalfWidth, CoarseSlicesWidenIt) {
   const voxel::Measures measures =
-      voxel::measure(voxel::combine(universe_of_64(), voxel::Sphere{glm::dvec3(0.2), 20.0}));
+      voxel::measure(voxel::combine(universe_about_origin(6), voxel::Sphere{glm::dvec3(0.2), 20.0}));
   const double fine = volume_half_width(measures, {glm::dvec3(1.0), glm::dvec3(1.0)}).value;
   const double coarse = volume_half_width(measures, {glm::dvec3(1.0), {1, 1, 5}}).value;
   EXPECT_GT(coarse, 2.0 * fine);
@@ -147,7 +147,7 @@ TEST(WindowShift, OfARampIsTenUnitsByItsSlope) {
   const voxel::Scene scene = tests::field_scene<std::int16_t>(
       voxel::axis_aligned_lattice({64, 64, 64}, glm::dvec3(1.0), glm::dvec3(-31.5)),
       [](const glm::dvec3& p_mm) { return 40.0 * (20.0 - glm::length(p_mm - glm::dvec3(0.3))); });
-  const voxel::GreyOctree grey = voxel::grey_octree_of(universe_of_64(), scene, -2000);
+  const voxel::GreyOctree grey = voxel::grey_octree_of(universe_about_origin(6), scene, -2000);
   const std::optional<double> shift_mm = window_shift_mm({grey, 0.0});
   ASSERT_TRUE(shift_mm);
   EXPECT_NEAR(*shift_mm, 0.25, 0.03);

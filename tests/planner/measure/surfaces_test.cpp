@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fstream>
 #include <gtest/gtest.h>
 
 #include "brep/io/read_mesh.h"

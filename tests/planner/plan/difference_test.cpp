@@ -15,12 +15,12 @@ Plan plan_of(const std::string& steps, const std::string& name = "p") {
 }
 
 constexpr const char* skull = R"({"id": "skull", "do": "window", "scan": "ct", "low": 300})";
-const std::string moved = R"({"id": "m", "do": "move", "object": "skull", "translate_mm": [0, -6, 2],
+const std::string skull_moved = R"({"id": "m", "do": "move", "object": "skull", "translate_mm": [0, -6, 2],
     "rotate": {"degrees": 5, "axis": [1, 0, 0]}})";
 
 TEST(Difference, ADefaultThatIsSaidAndTheOrderOfKeysAreNone) {
   const PlanDifference none = difference(
-      plan_of(std::string(skull) + "," + moved),
+      plan_of(std::string(skull) + "," + skull_moved),
       plan_of(R"({"low": 300.0, "do": "window", "id": "skull", "scan": "ct"}, {"id": "m", "do": "move",
           "object": "skull", "translate_mm": [0, -6, 2],
           "rotate": {"degrees": 5, "axis": [1, 0, 0], "about_mm": [0, 0, 0]}})"));
@@ -30,7 +30,7 @@ TEST(Difference, ADefaultThatIsSaidAndTheOrderOfKeysAreNone) {
 
 TEST(Difference, StepsAndFieldsAreNamedByTheirPlace) {
   const PlanDifference found = difference(
-      plan_of(std::string(skull) + "," + moved + R"(, {"id": "size", "do": "measure", "object": "m"})"),
+      plan_of(std::string(skull) + "," + skull_moved + R"(, {"id": "size", "do": "measure", "object": "m"})"),
       plan_of(std::string(skull) +
                   R"(, {"id": "twin", "do": "mirror", "object": "skull"}, {"id": "m", "do": "move",
           "object": "skull", "translate_mm": [0, -7, 2], "rotate": {"degrees": 4, "axis": [1, 0, 0]}})",

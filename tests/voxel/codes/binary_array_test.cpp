@@ -12,15 +12,15 @@ using tests::refusal;
 using tests::universe_of;
 
 // Section 3.2.1.
-const std::string figure =
+const std::string binary_array_of_figure =
     "Slice 0 :\n0 0 0 0\n0 0 0 0\n1 1 0 0\n1 1 0 0\n"
     "Slice 1 :\n0 0 0 0\n0 0 0 1\n1 1 1 0\n1 1 0 0\n"
     "Slice 2 :\n0 0 0 0\n0 0 0 0\n0 1 0 0\n1 0 0 0\n"
     "Slice 3 :\n0 0 0 0\n0 0 0 0\n0 1 0 0\n0 0 0 0\n";
 
 TEST(BinaryArray, OfFigure31IsTheThesiss) {
-  EXPECT_EQ(text(binary_array(tests::figure_3_1())), figure);
-  EXPECT_TRUE(octree_of(parse_binary_array(universe_of(2), figure)) == tests::figure_3_1());
+  EXPECT_EQ(text(binary_array(tests::figure_3_1())), binary_array_of_figure);
+  EXPECT_TRUE(octree_of(parse_binary_array(universe_of(2), binary_array_of_figure)) == tests::figure_3_1());
 }
 
 TEST(BinaryArray, HasEightVoxelsToAByteXFastestAndReadBackIsTheSameTree) {
@@ -36,17 +36,17 @@ TEST(BinaryArray, HasEightVoxelsToAByteXFastestAndReadBackIsTheSameTree) {
 
 TEST(BinaryArray, IsNotMadeWhereItWouldNotFit) {
   EXPECT_THROW(binary_array(Octree::empty(universe_of(12))), std::length_error);
-  EXPECT_THROW(parse_binary_array(universe_of(12), figure), std::length_error);
+  EXPECT_THROW(parse_binary_array(universe_of(12), binary_array_of_figure), std::length_error);
   EXPECT_THROW(text(BinaryArray{universe_of(10), {}}), std::length_error);
 }
 
 TEST(BinaryArray, ThatIsWrongIsRefusedWithTheCharacter) {
   const auto with = [](const std::string& from, const std::string& to) {
-    std::string slices = figure;
+    std::string slices = binary_array_of_figure;
     slices.replace(slices.find(from), from.size(), to);
     return refusal([&] { parse_binary_array(universe_of(2), slices); });
   };
-  const std::size_t last_digit = figure.find("1 1 1 0") + 7;
+  const std::size_t last_digit = binary_array_of_figure.find("1 1 1 0") + 7;
   EXPECT_EQ(with("1 1 1 0", "1 1 1 2"),
             "binary array, character " + std::to_string(last_digit) + ": expected '0', found '2'");
   EXPECT_NE(with("Slice 2", "Slice 3").find("expected 'Slice 2 :'"), std::string::npos);
@@ -60,7 +60,7 @@ TEST(BinaryArray, ThatIsWrongIsRefusedWithTheCharacter) {
 
 TEST(BinaryArray, MutatedIsRefusedOrAnotherTree) {
   tests::fuzz_text(
-      figure, "binary array", "01 \n",
+      binary_array_of_figure, "binary array", "01 \n",
       [](const std::string& slices) { return octree_of(parse_binary_array(universe_of(2), slices)); },
       [](const Octree& octree) { return text(binary_array(octree)); });
 }

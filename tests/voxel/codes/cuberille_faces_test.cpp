@@ -13,7 +13,7 @@ using tests::universe_of;
 
 // Section 3.1.2.2, each list x fastest. The thesis prints (3,0,1) among the x- faces, which is no voxel of
 // the object: (3,1,1) is meant, as its y- and z- faces say.
-const std::string figure =
+const std::string faces_of_figure =
     "x+ (1,2,0), (1,3,0), (3,1,1), (2,2,1), (1,3,1), (1,2,2), (0,3,2), (1,2,3)\n"
     "x- (0,2,0), (0,3,0), (3,1,1), (0,2,1), (0,3,1), (1,2,2), (0,3,2), (1,2,3)\n"
     "y+ (0,3,0), (1,3,0), (3,1,1), (2,2,1), (0,3,1), (1,3,1), (1,2,2), (0,3,2), (1,2,3)\n"
@@ -21,13 +21,13 @@ const std::string figure =
     "z+ (3,1,1), (0,2,1), (2,2,1), (1,3,1), (0,3,2), (1,2,3)\n"
     "z- (0,2,0), (1,2,0), (0,3,0), (1,3,0), (3,1,1), (2,2,1)\n";
 
-Octree decoded(int depth, const std::string& lists) {
+Octree decoded_faces(int depth, const std::string& lists) {
   return octree_of(parse_cuberille_faces(universe_of(depth), lists));
 }
 
 TEST(CuberilleFaces, OfFigure31AreTheThesiss) {
-  EXPECT_EQ(text(cuberille_faces(tests::figure_3_1())), figure);
-  EXPECT_TRUE(decoded(2, figure) == tests::figure_3_1());
+  EXPECT_EQ(text(cuberille_faces(tests::figure_3_1())), faces_of_figure);
+  EXPECT_TRUE(decoded_faces(2, faces_of_figure) == tests::figure_3_1());
 }
 
 TEST(CuberilleFaces, AreThoseOfAPlainArrayAndBoundTheSameObject) {
@@ -53,7 +53,7 @@ TEST(CuberilleFaces, ReachTheFarCornersOfTheLargestUniverse) {
   for (const Octree& octree : tests::sparse_subjects()) {
     const CuberilleFaces faces = cuberille_faces(octree);
     EXPECT_TRUE(octree_of(faces) == octree);
-    EXPECT_TRUE(decoded(12, text(faces)) == octree);
+    EXPECT_TRUE(decoded_faces(12, text(faces)) == octree);
   }
 }
 
@@ -65,9 +65,9 @@ TEST(CuberilleFaces, DirectionsStepAlongTheirAxis) {
 
 TEST(CuberilleFaces, ThatAreWrongAreRefusedWithTheFaceOrTheCharacter) {
   const auto with = [](const std::string& from, const std::string& to) {
-    std::string lists = figure;
+    std::string lists = faces_of_figure;
     lists.replace(lists.find(from), from.size(), to);
-    return refusal([&] { decoded(2, lists); });
+    return refusal([&] { decoded_faces(2, lists); });
   };
   EXPECT_EQ(with("(1,2,0)", "(1;2,0)"), "cuberille, character 6: expected ',', found ';'");
   EXPECT_EQ(with("(1,2,0)", "(1,4,0)"), "cuberille, character 7: a number of at most 3 was expected");
@@ -91,7 +91,8 @@ TEST(CuberilleFaces, MutatedAreRefusedOrAnotherObject) {
   // Each object has one text, and hardly any mutation of it is another's: the empty object's are let in by
   // spaces alone.
   tests::fuzz_text(
-      figure, "cuberille", "0123(), xyz+-\n", [](const std::string& lists) { return decoded(2, lists); },
+      faces_of_figure, "cuberille", "0123(), xyz+-\n",
+      [](const std::string& lists) { return decoded_faces(2, lists); },
       [](const Octree& octree) { return text(cuberille_faces(octree)); });
 }
 

@@ -11,15 +11,15 @@ namespace {
 using tests::refusal;
 using tests::universe_of;
 
-const std::string figure = "17, 2, 34, 61, 62, 65";
+const std::string linear_octree_of_figure = "17, 2, 34, 61, 62, 65";
 
-Octree decoded(int depth, const std::string& codes) {
+Octree decoded_linear_octree(int depth, const std::string& codes) {
   return octree_of(parse_linear_octree(universe_of(depth), codes));
 }
 
 TEST(LinearOctree, OfFigure31IsTheThesiss) {
-  EXPECT_EQ(text(linear_octree(tests::figure_3_1())), figure);
-  EXPECT_TRUE(decoded(2, figure) == tests::figure_3_1());
+  EXPECT_EQ(text(linear_octree(tests::figure_3_1())), linear_octree_of_figure);
+  EXPECT_TRUE(decoded_linear_octree(2, linear_octree_of_figure) == tests::figure_3_1());
 }
 
 TEST(LinearOctree, ReadBackIsTheSameTree) {
@@ -29,7 +29,7 @@ TEST(LinearOctree, ReadBackIsTheSameTree) {
     ASSERT_EQ(parse_linear_octree(octree.universe(), text(linear)).full, linear.full);
   });
   for (const Octree& octree : tests::sparse_subjects())
-    EXPECT_TRUE(decoded(12, text(linear_octree(octree))) == octree);
+    EXPECT_TRUE(decoded_linear_octree(12, text(linear_octree(octree))) == octree);
 }
 
 TEST(LinearOctree, HasACodeForEveryFullNodeAndNoOther) {
@@ -38,7 +38,7 @@ TEST(LinearOctree, HasACodeForEveryFullNodeAndNoOther) {
   for (const LevelCount& level : level_counts(octree)) full += level.full;
   EXPECT_EQ(linear_octree(octree).full.size(), full);
   EXPECT_EQ(text(linear_octree(Octree::full(universe_of(7)))), "root");
-  EXPECT_TRUE(decoded(7, "root") == Octree::full(universe_of(7)));
+  EXPECT_TRUE(decoded_linear_octree(7, "root") == Octree::full(universe_of(7)));
 }
 
 TEST(LinearOctree, FindsAVoxelByBinarySearch) {
@@ -50,7 +50,7 @@ TEST(LinearOctree, FindsAVoxelByBinarySearch) {
 }
 
 TEST(LinearOctree, ThatIsWrongIsRefusedWithTheCodeOrTheCharacter) {
-  const auto of = [](const std::string& codes) { return refusal([&] { decoded(2, codes); }); };
+  const auto of = [](const std::string& codes) { return refusal([&] { decoded_linear_octree(2, codes); }); };
   EXPECT_EQ(of("17, 28x"), "linear octree, character 6: expected ',', found '8'");
   EXPECT_EQ(of("17; 2"), "linear octree, character 3: expected ',', found ';'");
   EXPECT_EQ(of("17, "), "linear octree, character 5: expected an octal code, found the end");
@@ -63,7 +63,8 @@ TEST(LinearOctree, ThatIsWrongIsRefusedWithTheCodeOrTheCharacter) {
 
 TEST(LinearOctree, MutatedIsRefusedOrAnotherTree) {
   tests::fuzz_text(
-      figure, "linear octree", "01234567, ", [](const std::string& codes) { return decoded(2, codes); },
+      linear_octree_of_figure, "linear octree", "01234567, ",
+      [](const std::string& codes) { return decoded_linear_octree(2, codes); },
       [](const Octree& octree) { return text(linear_octree(octree)); });
 }
 

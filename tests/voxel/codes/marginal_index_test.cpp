@@ -12,19 +12,19 @@ using tests::refusal;
 using tests::universe_of;
 
 // Figure 3.4.
-const std::string figure =
+const std::string margins_of_figure =
     "0 Null Null 1100 1100\n"
     "1 Null 0001 1110 1100\n"
     "2 Null Null 0100 1000\n"
     "3 Null Null 0100 Null\n";
 
-Octree decoded(int depth, const std::string& slices) {
+Octree decoded_margins(int depth, const std::string& slices) {
   return octree_of(parse_marginal_index(universe_of(depth), slices));
 }
 
 TEST(MarginalIndex, OfFigure31IsTheThesiss) {
-  EXPECT_EQ(text(marginal_index(tests::figure_3_1())), figure);
-  EXPECT_TRUE(decoded(2, figure) == tests::figure_3_1());
+  EXPECT_EQ(text(marginal_index(tests::figure_3_1())), margins_of_figure);
+  EXPECT_TRUE(decoded_margins(2, margins_of_figure) == tests::figure_3_1());
 }
 
 TEST(MarginalIndex, FindsEveryVoxelAndReadBackIsTheSameTree) {
@@ -46,9 +46,9 @@ TEST(MarginalIndex, HasNoRowsForSlicesThatHoldNothing) {
 
 TEST(MarginalIndex, ThatIsWrongIsRefusedWithTheRowOrTheCharacter) {
   const auto with = [](const std::string& from, const std::string& to) {
-    std::string slices = figure;
+    std::string slices = margins_of_figure;
     slices.replace(slices.find(from), from.size(), to);
-    return refusal([&] { decoded(2, slices); });
+    return refusal([&] { decoded_margins(2, slices); });
   };
   EXPECT_EQ(with("0001", "0021"), "marginal index, character 32: expected '0', found '2'");
   EXPECT_EQ(with("0001", "0000"), "marginal index, slice 1, row 1: holds no voxel, so it must be Null");
@@ -62,7 +62,8 @@ TEST(MarginalIndex, ThatIsWrongIsRefusedWithTheRowOrTheCharacter) {
 
 TEST(MarginalIndex, MutatedIsRefusedOrAnotherTree) {
   tests::fuzz_text(
-      figure, "marginal index", "01 \nNul", [](const std::string& slices) { return decoded(2, slices); },
+      margins_of_figure, "marginal index", "01 \nNul",
+      [](const std::string& slices) { return decoded_margins(2, slices); },
       [](const Octree& octree) { return text(marginal_index(octree)); });
 }
 

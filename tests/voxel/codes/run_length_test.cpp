@@ -11,15 +11,15 @@ namespace {
 using tests::refusal;
 using tests::universe_of;
 
-const std::string figure = "8:9 12:13 23:26 28:29 41:41 44:44 57:57";
+const std::string runs_of_figure = "8:9 12:13 23:26 28:29 41:41 44:44 57:57";
 
-Octree decoded(int depth, const std::string& runs) {
+Octree decoded_runs(int depth, const std::string& runs) {
   return octree_of(parse_run_length(universe_of(depth), runs));
 }
 
 TEST(RunLength, OfFigure31IsTheThesiss) {
-  EXPECT_EQ(text(run_length(tests::figure_3_1())), figure);
-  EXPECT_TRUE(decoded(2, figure) == tests::figure_3_1());
+  EXPECT_EQ(text(run_length(tests::figure_3_1())), runs_of_figure);
+  EXPECT_TRUE(decoded_runs(2, runs_of_figure) == tests::figure_3_1());
 }
 
 TEST(RunLength, HoldsTheRunsOfAPlainArrayAndReadBackIsTheSameTree) {
@@ -41,12 +41,12 @@ TEST(RunLength, HoldsTheRunsOfAPlainArrayAndReadBackIsTheSameTree) {
 
 TEST(RunLength, CountsBeyond32BitsInTheLargestUniverse) {
   for (const Octree& octree : tests::sparse_subjects())
-    EXPECT_TRUE(decoded(12, text(run_length(octree))) == octree);
-  EXPECT_EQ(text(run_length(decoded(12, "68719476735:68719476735"))), "68719476735:68719476735");
+    EXPECT_TRUE(decoded_runs(12, text(run_length(octree))) == octree);
+  EXPECT_EQ(text(run_length(decoded_runs(12, "68719476735:68719476735"))), "68719476735:68719476735");
 }
 
 TEST(RunLength, ThatIsWrongIsRefusedWithTheRunOrTheCharacter) {
-  const auto of = [](const std::string& runs) { return refusal([&] { decoded(2, runs); }); };
+  const auto of = [](const std::string& runs) { return refusal([&] { decoded_runs(2, runs); }); };
   EXPECT_EQ(of("8;9"), "run length, character 2: expected ':', found ';'");
   EXPECT_EQ(of("8:9 x"), "run length, character 5: expected a number, found 'x'");
   EXPECT_EQ(of("8:9,12:13"), "run length, character 4: expected a space, found ','");
@@ -60,7 +60,8 @@ TEST(RunLength, ThatIsWrongIsRefusedWithTheRunOrTheCharacter) {
 
 TEST(RunLength, MutatedIsRefusedOrAnotherTree) {
   tests::fuzz_text(
-      figure, "run length", "0123456789: ", [](const std::string& runs) { return decoded(2, runs); },
+      runs_of_figure, "run length",
+      "0123456789: ", [](const std::string& runs) { return decoded_runs(2, runs); },
       [](const Octree& octree) { return text(run_length(octree)); });
 }
 

@@ -12,19 +12,19 @@ using tests::refusal;
 using tests::universe_of;
 
 // The table of section 3.2.4.
-const std::string figure =
+const std::string segments_of_figure =
     "0 Null Null 0:1 0:1\n"
     "1 Null 3:3 0:2 0:1\n"
     "2 Null Null 1:1 0:0\n"
     "3 Null Null 1:1 Null\n";
 
-Octree decoded(int depth, const std::string& slices) {
+Octree decoded_segments(int depth, const std::string& slices) {
   return octree_of(parse_segment_index(universe_of(depth), slices));
 }
 
 TEST(SegmentIndex, OfFigure31IsTheThesiss) {
-  EXPECT_EQ(text(segment_index(tests::figure_3_1())), figure);
-  EXPECT_TRUE(decoded(2, figure) == tests::figure_3_1());
+  EXPECT_EQ(text(segment_index(tests::figure_3_1())), segments_of_figure);
+  EXPECT_TRUE(decoded_segments(2, segments_of_figure) == tests::figure_3_1());
 }
 
 TEST(SegmentIndex, FindsEveryVoxelAndReadBackIsTheSameTree) {
@@ -41,15 +41,15 @@ TEST(SegmentIndex, HasNoRowsForSlicesThatHoldNothing) {
     const SegmentIndex index = segment_index(octree);
     EXPECT_TRUE(octree_of(index) == octree);
     EXPECT_TRUE(index.slices[1].empty());
-    EXPECT_TRUE(decoded(12, text(index)) == octree);
+    EXPECT_TRUE(decoded_segments(12, text(index)) == octree);
   }
 }
 
 TEST(SegmentIndex, ThatIsWrongIsRefusedWithTheSegmentOrTheCharacter) {
   const auto with = [](const std::string& from, const std::string& to) {
-    std::string slices = figure;
+    std::string slices = segments_of_figure;
     slices.replace(slices.find(from), from.size(), to);
-    return refusal([&] { decoded(2, slices); });
+    return refusal([&] { decoded_segments(2, slices); });
   };
   EXPECT_EQ(with("3:3", "3-3"), "segment index, character 29: expected ':', found '-'");
   EXPECT_EQ(with("3:3", "3:4"), "segment index, character 30: a number of at most 3 was expected");
@@ -66,7 +66,8 @@ TEST(SegmentIndex, ThatIsWrongIsRefusedWithTheSegmentOrTheCharacter) {
 
 TEST(SegmentIndex, MutatedIsRefusedOrAnotherTree) {
   tests::fuzz_text(
-      figure, "segment index", "01234:, \nNul", [](const std::string& slices) { return decoded(2, slices); },
+      segments_of_figure, "segment index", "01234:, \nNul",
+      [](const std::string& slices) { return decoded_segments(2, slices); },
       [](const Octree& octree) { return text(segment_index(octree)); });
 }
 

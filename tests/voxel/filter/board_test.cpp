@@ -18,12 +18,12 @@ using tests::field_scene;
 using tests::for_each_index;
 using tests::sample_at;
 
-const Lattice lattice = axis_aligned_lattice({120, 130, 60}, {2, 2, 3}, {-119, -119, -88.5});
+const Lattice board_lattice = axis_aligned_lattice({120, 130, 60}, {2, 2, 3}, {-119, -119, -88.5});
 constexpr double back_mm = 95.0;  // of the head
 using Inside = std::function<bool(const glm::dvec3&)>;
 
 /// An egg of a head with a neck; the vertex lies within the scan.
-bool in_head(const glm::dvec3& p) {
+bool in_egg_head(const glm::dvec3& p) {
   const glm::dvec3 q = (p - glm::dvec3(0, 0, -10)) / glm::dvec3(75, 95, 85);
   return glm::dot(q, q) < 1.0 || (p.z < -40 && p.x * p.x + (p.y - 10) * (p.y - 10) < 55 * 55);
 }
@@ -43,7 +43,7 @@ bool hollow_couch(const glm::dvec3& p) {
 }
 bool strap(const glm::dvec3& p) {
   const glm::dvec3 q = (p - glm::dvec3(0, 0, -10)) / glm::dvec3(79, 99, 89);
-  return glm::dot(q, q) < 1.0 && std::abs(p.z) < 15 && !in_head(p);
+  return glm::dot(q, q) < 1.0 && std::abs(p.z) < 15 && !in_egg_head(p);
 }
 /// A stereotactic ring on four posts.
 bool frame(const glm::dvec3& p) {
@@ -52,14 +52,14 @@ bool frame(const glm::dvec3& p) {
          (std::abs(std::abs(p.x) - 60) < 5 && std::abs(std::abs(p.y) - 85) < 12 && std::abs(p.z + 30) < 8);
 }
 
-Scene scanned(const Inside& support, const Inside& head = in_head) {
-  return field_scene<std::int16_t>(lattice, [&](const glm::dvec3& p) {
+Scene scanned(const Inside& support, const Inside& head = in_egg_head) {
+  return field_scene<std::int16_t>(board_lattice, [&](const glm::dvec3& p) {
     return head(p) ? 40.0 : support(p) ? 200.0 : -1000.0;
   });
 }
 
 /// Samples of the head, and of the support outside of the head, that are still solid.
-std::pair<int, int> solid(const Scene& scene, const Inside& support, const Inside& head = in_head) {
+std::pair<int, int> solid(const Scene& scene, const Inside& support, const Inside& head = in_egg_head) {
   std::pair<int, int> counts{0, 0};
   for_each_index(scene.lattice, 0, [&](const glm::ivec3& p) {
     if (sample_at(scene, p) < -300) return;
@@ -127,20 +127,22 @@ TEST(Board, IsNotSeenInAHeadAloneAFoamCradleAStrapAFrameOrADrySkullsTube) {
   EXPECT_FALSE(
       board_of(scanned(nothing, [](const glm::dvec3& p) { return glm::length(glm::dvec2(p)) < 80.0; })));
   // Foam is no solid part; a cradle of it needs no removal.
-  Scene cradle = field_scene<std::int16_t>(lattice, [](const glm::dvec3& p) {
-    return in_head(p) ? 40.0 : curved_board(p) || flat_board(p) ? -900.0 : -1000.0;
+  Scene cradle = field_scene<std::int16_t>(board_lattice, [](const glm::dvec3& p) {
+    return in_egg_head(p) ? 40.0 : curved_board(p) || flat_board(p) ? -900.0 : -1000.0;
   });
   EXPECT_FALSE(board_of(cradle));
 }
 
 TEST(Board, LiesBehindThePatientForAnyOrderOfTheAxes) {
   // Stored from the back to the front, and by sagittal slices.
-  Lattice turned = lattice;
+  Lattice turned = board_lattice;
   turned.dims = {130, 60, 120};
   turned.lps_from_voxel = glm::dmat4(glm::dvec4(0, -2, 0, 0), glm::dvec4(0, 0, 3, 0), glm::dvec4(2, 0, 0, 0),
                                      glm::dvec4(-119, 139, -88.5, 1));
-  const auto field = [](const glm::dvec3& p) { return in_head(p) ? 40.0 : flat_board(p) ? 200.0 : -1000.0; };
-  const std::optional<Board> straight = board_of(field_scene<std::int16_t>(lattice, field));
+  const auto field = [](const glm::dvec3& p) {
+    return in_egg_head(p) ? 40.0 : flat_board(p) ? 200.0 : -1000.0;
+  };
+  const std::optional<Board> straight = board_of(field_scene<std::int16_t>(board_lattice, field));
   const std::optional<Board> other = board_of(field_scene<std::int16_t>(turned, field));
   ASSERT_TRUE(straight && other);
   EXPECT_DOUBLE_EQ(other->volume_mm3, straight->volume_mm3);

@@ -15,11 +15,11 @@ using tests::field_scene;
 using tests::for_each_index;
 using tests::sample_at;
 
-const Lattice lattice = axis_aligned_lattice({70, 80, 30}, {1, 1, 2}, {-35, -40, -29});
+const Lattice headrest_lattice = axis_aligned_lattice({70, 80, 30}, {1, 1, 2}, {-35, -40, -29});
 constexpr double head_radius_mm = 22.0;
 const glm::dvec3 head_mm(0, -8, 0);
 
-bool in_head(const glm::dvec3& p) {
+bool in_ball_head(const glm::dvec3& p) {
   return glm::distance(p, head_mm) < head_radius_mm;
 }
 bool in_tooth(const glm::dvec3& p) {  // apart from the head, but near it
@@ -32,8 +32,8 @@ bool in_rest(const glm::dvec3& p, double gap_mm) {
 }
 
 Scene scanned(double gap_mm) {
-  return field_scene<std::int16_t>(lattice, [&](const glm::dvec3& p) {
-    if (in_head(p)) return 40.0;
+  return field_scene<std::int16_t>(headrest_lattice, [&](const glm::dvec3& p) {
+    if (in_ball_head(p)) return 40.0;
     if (in_tooth(p)) return 2000.0;
     if (in_rest(p, gap_mm)) return 100.0;
     if (in_rest(p + glm::dvec3(0, 1, 0), gap_mm) || in_rest(p - glm::dvec3(0, 1, 0), gap_mm)) return -600.0;
@@ -47,8 +47,8 @@ std::pair<int, int> solid(const Scene& scene, double gap_mm) {
   for_each_index(scene.lattice, 0, [&](const glm::ivec3& p) {
     const glm::dvec3 p_mm = scene.lattice.lps_mm(p);
     if (sample_at(scene, p) < -300) return;
-    counts.first += in_head(p_mm) || in_tooth(p_mm);
-    counts.second += in_rest(p_mm, gap_mm) && !in_head(p_mm);
+    counts.first += in_ball_head(p_mm) || in_tooth(p_mm);
+    counts.second += in_rest(p_mm, gap_mm) && !in_ball_head(p_mm);
   });
   return counts;
 }
@@ -62,7 +62,7 @@ TEST(Headrest, ApartFromTheHeadIsTakenOutWithItsRimAndTheHeadStays) {
   EXPECT_EQ(solid(removal.scene, 5.0), std::make_pair(head_before, 0));
   EXPECT_EQ(removal.solid_mm3, 2.0 * rest_before);
   // The rim of partial volume, -600, is gone too.
-  for_each_index(lattice, 0, [&](const glm::ivec3& p) {
+  for_each_index(headrest_lattice, 0, [&](const glm::ivec3& p) {
     const double sample = sample_at(removal.scene, p);
     ASSERT_TRUE(sample == 40 || sample == 2000 || sample == -1000) << sample;
   });
@@ -98,8 +98,9 @@ TEST(Headrest, KeepsPartsNearTheHeadAndPartsThatAreNamed) {
   const Scene scene = scanned(5.0);
   HeadrestOptions options;
   const HeadrestRemoval usual = remove_headrest(scene, options);
-  EXPECT_EQ(sample_at(usual.scene, glm::ivec3(glm::round(lattice.voxel(head_mm + glm::dvec3(0, -27, 0))))),
-            2000);
+  EXPECT_EQ(
+      sample_at(usual.scene, glm::ivec3(glm::round(headrest_lattice.voxel(head_mm + glm::dvec3(0, -27, 0))))),
+      2000);
   options.near_mm = 1.0;
   EXPECT_EQ(remove_headrest(scene, options).parts, 2U);  // the tooth, too
   options.keep_mm = {head_mm + glm::dvec3(0, -27, 0)};
@@ -128,7 +129,7 @@ TEST(Headrest, RefusesWhatItCannotJudge) {
   stop.request_stop();
   options.progress.stop = stop.get_token();
   EXPECT_THROW(remove_headrest(scene, options), Stopped);
-  scene.samples = FloatSamples(lattice.sample_count());
+  scene.samples = FloatSamples(headrest_lattice.sample_count());
   EXPECT_THROW(remove_headrest(scene, {}), std::invalid_argument);
 }
 

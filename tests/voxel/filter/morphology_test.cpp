@@ -4,14 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/spaced_universe.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::voxel {
 namespace {
-
-Universe universe_of(int depth, const glm::dvec3& spacing_mm) {
-  return {depth, axis_aligned_lattice(glm::ivec3(1 << depth), spacing_mm, glm::dvec3(0)).lps_from_voxel};
-}
 
 // The voxels whose ball, on an infinite lattice, holds a `wanted` voxel.
 template <typename Wanted>
@@ -42,7 +39,7 @@ TEST(Morphology, AgreesWithBallsDrawnVoxelByVoxel) {
     const int side = 16;
     const glm::dvec3 spacing_mm = seed % 2 == 0 ? glm::dvec3(1) : glm::dvec3(0.7, 1.3, 2.1);
     const double radius_mm = 0.5 * static_cast<double>(seed % 7);
-    const Universe universe = universe_of(4, spacing_mm);
+    const Universe universe = tests::spaced_universe(4, spacing_mm, glm::dvec3(0.0));
     const tests::Dense dense = tests::random_dense(side, seed + 300);
     const Octree octree = tests::octree_of(universe, dense);
     const tests::Dense dilated =

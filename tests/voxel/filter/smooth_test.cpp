@@ -15,12 +15,12 @@ using tests::for_each_index;
 using tests::sample_at;
 
 // More slices than a slab, so that seams would show; sheared out of no axis, spacings that differ.
-const Lattice lattice = axis_aligned_lattice({20, 18, 45}, {1, 0.8, 1.6}, {-9.5, -7, -35});
+const Lattice tall_lattice = axis_aligned_lattice({20, 18, 45}, {1, 0.8, 1.6}, {-9.5, -7, -35});
 
 Scene step_with_noise(double sigma, double height) {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, sigma);
-  return field_scene<float>(lattice,
+  return field_scene<float>(tall_lattice,
                             [&](const glm::dvec3& p) { return (p.x > 0 ? height : 0.0) + noise(random); });
 }
 
@@ -39,7 +39,7 @@ Spread spread_where(const Scene& scene, const std::function<bool(const glm::dvec
 
 TEST(Median, TakesSpecksAwayAndLeavesAnEdgeWhereItIs) {
   Scene scene =
-      field_scene<std::int16_t>(lattice, [](const glm::dvec3& p) { return p.x > 0 ? 1000.0 : -500.0; });
+      field_scene<std::int16_t>(tall_lattice, [](const glm::dvec3& p) { return p.x > 0 ? 1000.0 : -500.0; });
   const Scene clean = scene;
   auto& samples = std::get<Int16Samples>(scene.samples);
   for (std::size_t i = 3; i < samples.size(); i += 97) samples[i] = 3000;
@@ -51,9 +51,10 @@ TEST(Median, TakesSpecksAwayAndLeavesAnEdgeWhereItIs) {
 
 TEST(Median, IsTheMiddleSampleOfEveryNeighbourhoodAcrossSlabsToo) {
   std::mt19937 random(3);
-  const Scene scene = field_scene<std::int16_t>(lattice, [&](const glm::dvec3&) { return random() % 2000; });
+  const Scene scene =
+      field_scene<std::int16_t>(tall_lattice, [&](const glm::dvec3&) { return random() % 2000; });
   const Scene smooth = median(scene, {1, 0, 2});
-  for_each_index(lattice, 2, [&](const glm::ivec3& p) {
+  for_each_index(tall_lattice, 2, [&](const glm::ivec3& p) {
     std::vector<double> around;
     for (int z = -2; z <= 2; ++z)
       for (int x = -1; x <= 1; ++x) around.push_back(sample_at(scene, p + glm::ivec3(x, 0, z)));
@@ -81,7 +82,7 @@ TEST(Gaussian, LeavesALineAndAddsItsVarianceToASquare) {
 }
 
 TEST(Gaussian, HasLindebergsWeights) {
-  Scene impulse = field_scene<float>(lattice, [](const glm::dvec3&) { return 0.0; });
+  Scene impulse = field_scene<float>(tall_lattice, [](const glm::dvec3&) { return 0.0; });
   std::get<FloatSamples>(impulse.samples)[10 + 20 * (9 + 18 * 22)] = 1000.0F;
   const Scene smooth = gaussian(impulse, 1.6);
   double sum = 0.0, squares = 0.0;

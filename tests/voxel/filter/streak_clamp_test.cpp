@@ -10,11 +10,11 @@ namespace {
 
 using tests::sample_at;
 
-const Lattice lattice = axis_aligned_lattice({60, 40, 5}, {1, 1, 2}, {0, 0, 0});
+const Lattice tooth_lattice = axis_aligned_lattice({60, 40, 5}, {1, 1, 2}, {0, 0, 0});
 
 // Soft tissue, a filling at (10, 20) of slice 2, a streak through it along x, bright and dark by turns.
 Scene streaked() {
-  return tests::field_scene<std::int16_t>(lattice, [](const glm::dvec3& p) {
+  return tests::field_scene<std::int16_t>(tooth_lattice, [](const glm::dvec3& p) {
     if (p.z != 4 || p.y != 20) return 40.0;
     if (p.x == 10) return 5000.0;
     return static_cast<int>(p.x) % 2 == 0 ? 2800.0 : -1500.0;

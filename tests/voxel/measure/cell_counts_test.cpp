@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/dense.h"
 #include "voxel/filter/components.h"
 #include "voxel/solid/combine.h"
@@ -11,13 +12,10 @@
 namespace octotomy::voxel {
 namespace {
 
-Universe unit_universe(int depth) {
-  const double half = 0.5 * (1 << depth);
-  return universe_around({glm::dvec3(-half), glm::dvec3(half)}, 1.0);
-}
+using tests::universe_about_origin;
 
 TEST(EulerNumbers, OfBallShellRingAndTwoPartsAreThoseOfTheTextbook) {
-  const Universe universe = unit_universe(6);
+  const Universe universe = universe_about_origin(6);
   const auto both = [&](const Expression& solid) {
     const EulerNumbers numbers = euler_numbers(combine(universe, solid));
     EXPECT_EQ(numbers.by_faces, numbers.by_corners);
@@ -79,7 +77,7 @@ TEST(EulerNumbers, AgreeWithCellsCountedOneByOneOnRandomObjects) {
 }
 
 TEST(CellCounts, AreTheSameOnOneThreadAndTwoAndAcrossWords) {
-  const Octree octree = combine(unit_universe(7), Sphere{{0, 0, 0}, 63.9});
+  const Octree octree = combine(universe_about_origin(7), Sphere{{0, 0, 0}, 63.9});
   const auto two = cell_counts(octree);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(cell_counts(octree), two);

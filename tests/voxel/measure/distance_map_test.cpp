@@ -7,14 +7,12 @@
 #include <tbb/global_control.h>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/spaced_universe.h"
 
 namespace octotomy::voxel {
 namespace {
 
-Universe universe_of(int depth, const glm::dvec3& spacing_mm) {
-  return {depth,
-          axis_aligned_lattice(glm::ivec3(1 << depth), spacing_mm, glm::dvec3(3, -2, 7)).lps_from_voxel};
-}
+using tests::spaced_universe;
 
 // Least squared distance to a voxel in `in`, over the universe and a shell of two voxels around it.
 template <typename In>
@@ -36,7 +34,7 @@ TEST(DistanceMap, IsTheLeastOfAllDistancesOnRandomObjectsWhateverTheSpacing) {
     const int depth = 2 + static_cast<int>(seed % 2);
     const int side = 1 << depth;
     const glm::dvec3 spacing_mm = seed % 3 == 0 ? glm::dvec3(1) : glm::dvec3(0.7, 1.3, 2.1);
-    const Universe universe = universe_of(depth, spacing_mm);
+    const Universe universe = spaced_universe(depth, spacing_mm);
     const tests::Dense dense = tests::random_dense(side, seed + 77);
     const auto inside = [&](const glm::ivec3& v) {
       return glm::all(glm::greaterThanEqual(v, glm::ivec3(0))) &&
@@ -70,7 +68,7 @@ TEST(DistanceMap, IsTheLeastOfAllDistancesOnRandomObjectsWhateverTheSpacing) {
 TEST(DistanceMap, OfOneVoxelIsTheBallsAroundIt) {
   tests::Dense dense(32);
   dense.at({5, 20, 9}) = 1;
-  const Universe universe = universe_of(5, glm::dvec3(0.5));
+  const Universe universe = spaced_universe(5, glm::dvec3(0.5));
   const DistanceMap map = distance_map(tests::octree_of(universe, dense), {{0, 0, 0}, {31, 31, 31}});
   EXPECT_EQ(map.square_mm2[map.index({8, 24, 9})], 6.25F);
   EXPECT_EQ(map.square_mm2[map.index({5, 20, 9})], 0.0F);
@@ -80,7 +78,7 @@ TEST(DistanceMap, OfOneVoxelIsTheBallsAroundIt) {
 }
 
 TEST(DistanceMap, IsTheSameOnOneThreadAndTwo) {
-  const Octree octree = tests::octree_of(universe_of(5, {0.7, 1.3, 2.1}), tests::random_dense(32, 5));
+  const Octree octree = tests::octree_of(spaced_universe(5, {0.7, 1.3, 2.1}), tests::random_dense(32, 5));
   const VoxelRange range{{0, 0, 0}, {31, 31, 31}};
   const std::vector<float> two = signed_distances_mm(octree, range);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
@@ -88,7 +86,7 @@ TEST(DistanceMap, IsTheSameOnOneThreadAndTwo) {
 }
 
 TEST(DistanceMap, RefusesAShearedUniverse) {
-  Universe universe = universe_of(3, glm::dvec3(1));
+  Universe universe = spaced_universe(3, glm::dvec3(1));
   universe.lps_from_voxel[1][0] = 0.2;
   EXPECT_THROW(distance_map(Octree::full(universe), {{0, 0, 0}, {7, 7, 7}}), std::invalid_argument);
 }

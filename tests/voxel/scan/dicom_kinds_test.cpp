@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 //
 // DICOM beyond our own writer: frames of one file, deflated attributes, several series, scout views.
-#include <fstream>
 #include <gtest/gtest.h>
 
+#include "tests/file_bytes.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scan/deflated.h"
 #include "tests/voxel/scan/dicom_bytes.h"
@@ -18,16 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 using tests::deflated;
 using tests::DicomBytes;
-using Frames = tests::DicomFrames;
 using tests::ScratchFolder;
 using tests::verdict;
+using tests::write_bytes;
+using Frames = tests::DicomFrames;
 
 constexpr const char* explicit_little = "1.2.840.10008.1.2.1";
 constexpr const char* deflated_little = "1.2.840.10008.1.2.1.99";
-
-void write_bytes(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
 
 void expect_ramp(const Scene& scene, const Frames& frames) {
   ASSERT_EQ(scene.lattice.dims, glm::ivec3(frames.columns, frames.rows, frames.count));

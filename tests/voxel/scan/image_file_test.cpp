@@ -15,13 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 using tests::ScratchFolder;
 
-constexpr glm::ivec2 size_px(48, 32);
+constexpr glm::ivec2 ramp_px(48, 32);
 
 /// Red grows to the right, green downwards; so neither a flip nor an exchange of channels goes unseen.
 std::vector<std::uint8_t> ramp() {
   std::vector<std::uint8_t> rgb;
-  for (int y = 0; y < size_px.y; ++y)
-    for (int x = 0; x < size_px.x; ++x) {
+  for (int y = 0; y < ramp_px.y; ++y)
+    for (int x = 0; x < ramp_px.x; ++x) {
       rgb.push_back(static_cast<std::uint8_t>(5 * x));
       rgb.push_back(static_cast<std::uint8_t>(7 * y));
       rgb.push_back(30);
@@ -32,24 +32,24 @@ std::vector<std::uint8_t> ramp() {
 std::vector<std::uint8_t> decode(const fs::path& path) {
   const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path.string());
   if (!in) throw std::runtime_error("not an image: " + OIIO::geterror());
-  EXPECT_EQ(in->spec().width, size_px.x);
-  EXPECT_EQ(in->spec().height, size_px.y);
+  EXPECT_EQ(in->spec().width, ramp_px.x);
+  EXPECT_EQ(in->spec().height, ramp_px.y);
   EXPECT_EQ(in->spec().nchannels, 3);
-  std::vector<std::uint8_t> rgb(std::size_t{3} * size_px.x * size_px.y);
+  std::vector<std::uint8_t> rgb(std::size_t{3} * ramp_px.x * ramp_px.y);
   in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rgb.data());
   return rgb;
 }
 
 TEST(WriteImage, PngKeepsEveryPixel) {
   const ScratchFolder folder;
-  write_image(folder / "ramp.png", size_px, ramp());
+  write_image(folder / "ramp.png", ramp_px, ramp());
   EXPECT_EQ(decode(folder / "ramp.png"), ramp());
 }
 
 TEST(WriteImage, LossyFormatsStayNearThePicture) {
   const ScratchFolder folder;
   for (const char* name : {"ramp.jpg", "ramp.JPEG", "ramp.webp"}) {
-    write_image(folder / name, size_px, ramp());
+    write_image(folder / name, ramp_px, ramp());
     const std::vector<std::uint8_t> rgb = decode(folder / name);
     double sum = 0.0;
     for (std::size_t i = 0; i < rgb.size(); ++i) sum += std::abs(rgb[i] - ramp()[i]);
@@ -60,19 +60,19 @@ TEST(WriteImage, LossyFormatsStayNearThePicture) {
 TEST(EncodeImage, GivesTheBytesThatWriteImageWrites) {
   const ScratchFolder folder;
   for (const std::string format : {"png", "jpeg", "webp"}) {
-    const std::vector<std::uint8_t> encoded = encode_image(format, size_px, ramp());
-    write_image(folder / ("ramp." + format), size_px, ramp());
+    const std::vector<std::uint8_t> encoded = encode_image(format, ramp_px, ramp());
+    write_image(folder / ("ramp." + format), ramp_px, ramp());
     EXPECT_EQ(std::string(encoded.begin(), encoded.end()), tests::bytes_of(folder / ("ramp." + format)))
         << format;
   }
 }
 
 TEST(EncodeImage, RefusesUnknownFormatsAndWrongSizes) {
-  EXPECT_THROW(encode_image("dicom", size_px, ramp()), std::runtime_error);
+  EXPECT_THROW(encode_image("dicom", ramp_px, ramp()), std::runtime_error);
   EXPECT_THROW(encode_image("png", {47, 32}, ramp()), std::invalid_argument);
   EXPECT_THROW(encode_image("png", {-48, -32}, ramp()), std::invalid_argument);
-  EXPECT_THROW(write_image("/nowhere/at/all.png", size_px, ramp()), std::runtime_error);
-  EXPECT_THROW(write_image("no_extension", size_px, ramp()), std::runtime_error);
+  EXPECT_THROW(write_image("/nowhere/at/all.png", ramp_px, ramp()), std::runtime_error);
+  EXPECT_THROW(write_image("no_extension", ramp_px, ramp()), std::runtime_error);
 }
 
 }  // namespace

@@ -36,10 +36,7 @@ using tests::linear_scene;
 using tests::oblique_lattice;
 using tests::ScratchFolder;
 using tests::verdict;
-
-void write_bytes(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
+using tests::write_bytes;
 
 /// Replaces a text in a file by another of the same length.
 void exchange(const fs::path& path, const std::string& from, const std::string& to) {

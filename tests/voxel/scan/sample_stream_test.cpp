@@ -20,7 +20,7 @@ using tests::deflated;
 constexpr int gzip_window = MAX_WBITS + 16, zlib_window = MAX_WBITS;
 
 /// Bytes of which some repeat and some do not: stored, fixed and dynamic blocks.
-std::string bytes_of(std::size_t count, unsigned seed) {
+std::string mixed_bytes(std::size_t count, unsigned seed) {
   std::mt19937 random(seed);
   std::string bytes(count, '\0');
   for (std::size_t i = 0; i < count; ++i)
@@ -47,7 +47,7 @@ class SampleStreamTest : public testing::Test {
 };
 
 TEST_F(SampleStreamTest, GivesWhatWasPackedHoweverItIsAskedFor) {
-  const std::string bytes = bytes_of(3'000'017, 1);
+  const std::string bytes = mixed_bytes(3'000'017, 1);
   for (const int window : {gzip_window, zlib_window}) {
     const fs::path packed = file_of("head" + deflated(bytes, window));
     for (const std::size_t part : {std::size_t{1009}, std::size_t{1} << 18, bytes.size(), 2 * bytes.size()})
@@ -60,18 +60,18 @@ TEST_F(SampleStreamTest, GivesWhatWasPackedHoweverItIsAskedFor) {
 TEST_F(SampleStreamTest, StreamsOfGzipFollowEachOtherAndWhatElseFollowsIsLeft) {
   std::string packed, bytes;
   for (unsigned i = 0; i < 40; ++i) {
-    const std::string member = bytes_of(i % 7 == 3 ? 0 : 60'000 + 997 * i, i);
+    const std::string member = mixed_bytes(i % 7 == 3 ? 0 : 60'000 + 997 * i, i);
     packed += deflated(member, gzip_window);
     bytes += member;
   }
   EXPECT_TRUE(all_of(SampleStream(file_of(packed), 0, true), 4096) == bytes);
   EXPECT_TRUE(all_of(SampleStream(file_of(packed + std::string(700, '\0')), 0, true), 4096) == bytes);
-  const std::string one = bytes_of(5000, 3);
+  const std::string one = mixed_bytes(5000, 3);
   EXPECT_EQ(all_of(SampleStream(file_of(deflated(one, zlib_window) + "more"), 0, true), 999), one);
 }
 
 TEST_F(SampleStreamTest, ADamagedOrShortenedStreamIsRefusedByName) {
-  const std::string bytes = bytes_of(200'000, 5);
+  const std::string bytes = mixed_bytes(200'000, 5);
   for (const int window : {gzip_window, zlib_window}) {
     const std::string packed = deflated(bytes, window);
     std::vector<std::string> spoiled;

@@ -4,11 +4,11 @@
 // are put together attribute by attribute, so that each test spoils one of them.
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <map>
 #include <utility>
 
+#include "tests/file_bytes.h"
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scan/dicom_bytes.h"
 #include "tests/voxel/scratch_folder.h"
@@ -22,6 +22,7 @@ using tests::DicomBytes;
 using tests::finding;
 using tests::ScratchFolder;
 using tests::verdict;
+using tests::write_bytes;
 
 constexpr int columns = 6;
 constexpr int rows = 5;
@@ -72,10 +73,6 @@ struct Slice {
   }
   std::string file() const { return DicomBytes::file("1.2.840.10008.1.2.1", attributes()); }
 };
-
-void write_bytes(const fs::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
 
 /// Writes the sound series with its slices changed by `spoil`, and reads it.
 template <typename Spoil>

@@ -56,7 +56,7 @@ Told read(const fs::path& path, const Scene& written) {
   return told;
 }
 
-std::string reason_of(const fs::path& path) {
+std::string error_of_plain_read(const fs::path& path) {
   try {
     read_scene(path);
   } catch (const Error& error) {
@@ -74,7 +74,7 @@ class SlicesFinalTest : public testing::Test {
     std::ofstream(path, std::ios::binary) << bytes;
   }
   void expect_refused(const Told& told, const fs::path& path) const {
-    EXPECT_EQ(told.error, reason_of(path));
+    EXPECT_EQ(told.error, error_of_plain_read(path));
     EXPECT_NE(told.error, "");
     ASSERT_FALSE(told.counts.empty());
     EXPECT_EQ(told.counts.back(), 0);
@@ -143,7 +143,7 @@ TEST_F(SlicesFinalTest, AreNotToldOfALatticeThatFailsTheCheck) {
   });
   const Told told = read(path, scene_);
   EXPECT_TRUE(told.counts.empty());
-  EXPECT_EQ(told.error, reason_of(path));
+  EXPECT_EQ(told.error, error_of_plain_read(path));
   EXPECT_NE(told.error.find("geometry"), std::string::npos) << told.error;
 }
 

@@ -6,21 +6,20 @@
 #include <gtest/gtest.h>
 #include <utility>
 
+#include "tests/unit_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/digitise.h"
 
 namespace octotomy::voxel {
 namespace {
 
-Universe universe_of_32() {
-  return universe_around({glm::dvec3(-16.0), glm::dvec3(16.0)}, 1.0);
-}
+using tests::universe_about_origin;
 
 struct Pair {
   ShareOperand a, b;
 };
 ShareOperand operand(const Expression& solid) {
-  PartialOctree partial = digitise_partial(universe_of_32(), solid);
+  PartialOctree partial = digitise_partial(universe_about_origin(5), solid);
   return {Expression(partial.touching), bracket_of(partial)};
 }
 Pair two_balls() {
@@ -34,9 +33,9 @@ VolumeBracket volume(const Pair& pair, const Expression& expression) {
 TEST(CombineShares, EveryOperationBracketsTheClosedFormsShares) {
   const Pair pair = two_balls();
   const Expression a(Sphere{{-3.1, 0.2, 0.3}, 8.3}), b(Sphere{{2.7, 1.4, -0.6}, 7.4});
-  const double va = volume_mm3(digitise_partial(universe_of_32(), a));
-  const double vb = volume_mm3(digitise_partial(universe_of_32(), b));
-  const double shared = volume_mm3(digitise_partial(universe_of_32(), a & b));
+  const double va = volume_mm3(digitise_partial(universe_about_origin(5), a));
+  const double vb = volume_mm3(digitise_partial(universe_about_origin(5), b));
+  const double shared = volume_mm3(digitise_partial(universe_about_origin(5), a & b));
   const std::array<std::pair<Expression, double>, 4> truths{
       {{pair.a.symbol & pair.b.symbol, shared},
        {pair.a.symbol | pair.b.symbol, va + vb - shared},
@@ -62,14 +61,15 @@ TEST(CombineShares, AnAxisAlignedCutLosesItsCoherentError) {
   // Half a voxel of the cut's area is what a binary count may be off by.
   const ShareOperand ball = operand(Sphere{{0.1, 0.2, 0.3}, 10.2});
   const Expression both = Expression(Sphere{{0.1, 0.2, 0.3}, 10.2}) & HalfSpace{{0, 0, 1}, 2.45};
-  const double truth = volume_mm3(digitise_partial(universe_of_32(), both));
+  const double truth = volume_mm3(digitise_partial(universe_about_origin(5), both));
   const ShareOperand half = operand(HalfSpace{{0, 0, 1}, 2.45});
   const VolumeBracket found = volume_mm3(combine_shares(ball.symbol & half.symbol, {ball, half}));
   EXPECT_LE(found.low_mm3, truth + 0.5);
   EXPECT_GE(found.high_mm3, truth - 0.5);
-  const auto counted = static_cast<double>(
-      combine(universe_of_32(), Expression(Sphere{{0.1, 0.2, 0.3}, 10.2}) & HalfSpace{{0, 0, 1}, 2.45})
-          .voxel_count());
+  const auto counted =
+      static_cast<double>(combine(universe_about_origin(5),
+                                  Expression(Sphere{{0.1, 0.2, 0.3}, 10.2}) & HalfSpace{{0, 0, 1}, 2.45})
+                              .voxel_count());
   EXPECT_GT(std::abs(counted - truth), 100.0);
   EXPECT_LT(std::abs(found.middle_mm3() - truth), 10.0);
   EXPECT_LT(found.half_width_mm3(), 15.0);
@@ -82,7 +82,7 @@ TEST(CombineShares, WholeVoxelsAreCombinedAsOctreesAreAndLeaveNoInterval) {
   for (const Expression& expression :
        {a.symbol & b.symbol, a.symbol | b.symbol, a.symbol - b.symbol, a.symbol ^ b.symbol, ~a.symbol}) {
     const ShareBracket found = combine_shares(expression, {a, b});
-    EXPECT_EQ(found.inside, combine(universe_of_32(), expression));
+    EXPECT_EQ(found.inside, combine(universe_about_origin(5), expression));
     EXPECT_DOUBLE_EQ(volume_mm3(found).half_width_mm3(), 0.0);
   }
 }

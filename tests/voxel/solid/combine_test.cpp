@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/dense.h"
 #include "voxel/solid/combine_grey.h"
 #include "voxel/tree/build.h"
@@ -13,10 +14,7 @@ namespace octotomy::voxel {
 namespace {
 
 using tests::Dense;
-
-Universe universe_of(int depth) {
-  return {depth, glm::dmat4(1.0)};
-}
+using tests::unit_universe;
 
 template <typename Inside>
 void expect_voxels(const Octree& octree, const Inside& inside) {
@@ -38,7 +36,7 @@ TEST(Combine, EveryOperatorAgreesWithAPlainArrayOnRandomTriples) {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const int depth = 2 + static_cast<int>(seed % 4);
     SCOPED_TRACE("depth " + std::to_string(depth) + ", seed " + std::to_string(seed));
-    const Universe universe = universe_of(depth);
+    const Universe universe = unit_universe(depth);
     const Dense a = tests::random_dense(1 << depth, 3 * seed);
     const Dense b = tests::random_dense(1 << depth, 3 * seed + 1);
     const Dense c = tests::random_dense(1 << depth, 3 * seed + 2);
@@ -68,7 +66,7 @@ TEST(Combine, EveryOperatorAgreesWithAPlainArrayOnRandomTriples) {
 }
 
 TEST(Combine, SharesWhatASingleOperandDecides) {
-  const Universe universe = universe_of(7);
+  const Universe universe = unit_universe(7);
   Dense dense(128);
   dense.for_each([&](const glm::ivec3& v) { dense.at(v) = (v.x * 7 + v.y * 3 + v.z * 5) % 11 < 4; });
   const Octree noise = tests::octree_of(universe, dense);
@@ -115,7 +113,7 @@ TEST(Combine, AMaskIsTheIntersectionOfItsRegionsBackProjectionsHolesIncluded) {
 }
 
 TEST(Combine, AMovedObjectIsTheStillOneSampledAtTheCentreMovedBack) {
-  const Universe universe = universe_of(6);
+  const Universe universe = unit_universe(6);
   const Lattice lattice = universe.lattice();
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -135,7 +133,7 @@ TEST(Combine, AMovedObjectIsTheStillOneSampledAtTheCentreMovedBack) {
 }
 
 TEST(Combine, OperandsTogetherGiveWhatTheyGiveApart) {
-  const Universe universe = universe_of(6);
+  const Universe universe = unit_universe(6);
   const glm::dvec3 middle(31.3, 32.1, 30.7);
   // A turned shell has leaves of all kinds: empty, full and passed by its surface.
   const Octree still = combine(universe, Expression(Sphere{middle, 27.0}) - Sphere{middle, 18.5});
@@ -201,7 +199,7 @@ TEST(Combine, AnObjectTurnedTowardsThePatientsLeftGoesTowardsPlusX) {
 }
 
 TEST(Combine, AGreyWindowIsTheOctreeOfItsSamples) {
-  const Universe universe = universe_of(6);
+  const Universe universe = unit_universe(6);
   Scene scene;
   scene.lattice = universe.lattice();
   voxel::Int16Samples samples;
@@ -316,7 +314,7 @@ TEST(Combine, AnOctreeOfAFinerUniverseIsSampledAtTheCoarserOnesCentres) {
 }
 
 TEST(Combine, IndexArithmeticHoldsAcrossAUniverseOf4096VoxelsASide) {
-  const Universe universe = universe_of(12);
+  const Universe universe = unit_universe(12);
   const auto block = [](const glm::dvec3& low, const glm::dvec3& high) {
     return Expression(Box{low - 0.5, high + 0.5});
   };
@@ -350,7 +348,7 @@ TEST(Combine, IndexArithmeticHoldsAcrossAUniverseOf4096VoxelsASide) {
 }
 
 TEST(Combine, GivesTheSameTreeOnOneThreadAndOnTwo) {
-  const Universe universe = universe_of(8);
+  const Universe universe = unit_universe(8);
   const Expression lens = Expression(Sphere{{100, 128, 128}, 70}) & Sphere{{150, 120, 130}, 66};
   Motion motion;
   motion.degrees = 33;

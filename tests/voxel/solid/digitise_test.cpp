@@ -8,6 +8,7 @@
 #include <random>
 #include <tbb/global_control.h>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/dense.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/operand.h"
@@ -16,13 +17,9 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using tests::universe_about_origin;
 
-// A universe of unit voxels around the patient frame's origin.
-Universe unit_universe(int depth) {
-  const double half = 0.5 * (1 << depth);
-  return universe_around({glm::dvec3(-half), glm::dvec3(half)}, 1.0);
-}
+constexpr double pi = std::numbers::pi;
 
 glm::dmat3 some_turn() {
   return glm::dmat3(moved_from_still({.degrees = 37, .axis = {1, 2, -0.5}}));
@@ -74,7 +71,7 @@ std::vector<Named> solids() {
 }
 
 TEST(Digitise, TheThesissSphereHasTheNodesOfTable3_1) {
-  const PartialOctree sphere = digitise_partial(unit_universe(8), Sphere{{0, 0, 0}, 64});
+  const PartialOctree sphere = digitise_partial(universe_about_origin(8), Sphere{{0, 0, 0}, 64});
   const std::vector<LevelCount> expected{{1, 8, 0, 0},           {2, 8, 0, 56},        {3, 56, 8, 0},
                                          {4, 272, 72, 104},      {5, 1160, 480, 536},  {6, 4760, 2240, 2280},
                                          {7, 19232, 9360, 9488}, {8, 0, 115784, 38072}};
@@ -87,12 +84,13 @@ TEST(Digitise, TheThesissSphereHasTheNodesOfTable3_1) {
     EXPECT_EQ(counted[i].empty, expected[i].empty) << "level " << expected[i].level;
   }
   // A sphere that is off the middle by half a voxel has other nodes: the table is not met by accident.
-  const PartialOctree shifted = digitise_partial(unit_universe(8), Sphere{{0.5, 0, 0}, 64});
+  const PartialOctree shifted = digitise_partial(universe_about_origin(8), Sphere{{0.5, 0, 0}, 64});
   EXPECT_NE(level_counts(shifted)[6].partial, 19232U);
 }
 
 TEST(Digitise, InsideAndTouchingSwapUnderComplementToTheVoxel) {
-  for (const Universe& universe : {unit_universe(5), oblique_universe(4), unit_universe(3), unit_universe(2)})
+  for (const Universe& universe :
+       {universe_about_origin(5), oblique_universe(4), universe_about_origin(3), universe_about_origin(2)})
     for (const Named& named : solids()) {
       SCOPED_TRACE(named.name + " in " + std::to_string(universe.side()));
       const Octree inside = digitise(universe, named.solid, Digitisation::Inside);
@@ -119,7 +117,7 @@ void for_each_point(const glm::ivec3& voxel, int fineness, const Visit& visit) {
 
 TEST(Digitise, AgreesWithPointsSampledInEveryVoxel) {
   constexpr int fineness = 12;
-  for (const Universe& universe : {unit_universe(5), oblique_universe(4)})
+  for (const Universe& universe : {universe_about_origin(5), oblique_universe(4)})
     for (const Named& named : solids()) {
       SCOPED_TRACE(named.name + " in " + std::to_string(universe.side()));
       const TargetExpression cut(postfix_of(named.solid), universe);
@@ -163,7 +161,7 @@ TEST(Digitise, AgreesWithPointsSampledInEveryVoxel) {
 
 TEST(Digitise, FractionsAreThoseOfPointsSampledInTheVoxel) {
   constexpr int fineness = 24;
-  for (const Universe& universe : {unit_universe(5), oblique_universe(4)})
+  for (const Universe& universe : {universe_about_origin(5), oblique_universe(4)})
     for (const Named& named : solids()) {
       SCOPED_TRACE(named.name + " in " + std::to_string(universe.side()));
       const TargetExpression cut(postfix_of(named.solid), universe);
@@ -188,7 +186,7 @@ TEST(Digitise, FractionsAreThoseOfPointsSampledInTheVoxel) {
 TEST(Digitise, VolumesByFractionsHoldFromRadiusThree) {
   for (const double radius : {3.0, 3.7, 5.0, 8.0, 12.0}) {
     SCOPED_TRACE("radius " + std::to_string(radius));
-    const Universe universe = unit_universe(5);
+    const Universe universe = universe_about_origin(5);
     const double ball = 4.0 / 3.0 * pi * radius * radius * radius;
     EXPECT_NEAR(volume_mm3(digitise_partial(universe, Sphere{{0.2, 0.1, -0.3}, radius})) / ball, 1.0, 2e-3);
     const glm::dvec3 radii(radius, 0.8 * radius, 0.9 * radius);
@@ -204,11 +202,12 @@ TEST(Digitise, VolumesByFractionsHoldFromRadiusThree) {
     EXPECT_NEAR(volume_mm3(digitise_partial(universe, box)) / std::pow(1.4 * radius, 3), 1.0, 2e-3);
   }
   const Torus torus{{0.2, 0, 0.4}, glm::normalize(glm::dvec3(1, 2, 3)), 8, 3};
-  EXPECT_NEAR(volume_mm3(digitise_partial(unit_universe(5), torus)) / (2 * pi * pi * 8 * 9), 1.0, 2e-3);
+  EXPECT_NEAR(volume_mm3(digitise_partial(universe_about_origin(5), torus)) / (2 * pi * pi * 8 * 9), 1.0,
+              2e-3);
 }
 
 TEST(Digitise, ABoxOfWholeVoxelsIsThoseVoxelsByEveryDigitisation) {
-  const Universe universe = unit_universe(4);
+  const Universe universe = universe_about_origin(4);
   const Box box{{-3, -8, 0}, {5, -2, 8}};
   const Octree expected = combine(universe, box);
   EXPECT_EQ(expected.voxel_count(), 8U * 6 * 8);
@@ -227,7 +226,7 @@ TEST(Digitise, ABoxOfWholeVoxelsIsThoseVoxelsByEveryDigitisation) {
 }
 
 TEST(Digitise, AnOctreeStandsForItsWholeVoxels) {
-  const Universe universe = unit_universe(5);
+  const Universe universe = universe_about_origin(5);
   const Sphere sphere{{1, 2, 3}, 9.3};
   const Octree board =
       combine(universe, Expression(Box{{-20, -20, -20}, {2, 3, 4}}) ^ Box{{-5, -6, -7}, {20, 20, 20}});
@@ -244,7 +243,7 @@ TEST(Digitise, AnOctreeStandsForItsWholeVoxels) {
 }
 
 TEST(Digitise, UnionsAndDifferencesAddUpToTheirParts) {
-  const Universe universe = unit_universe(5);
+  const Universe universe = universe_about_origin(5);
   const Expression a = Sphere{{-3.1, 0.2, 0.3}, 8.3}, b = Torus{{2.7, 1.4, -0.6}, {0, 0, 1}, 6.2, 2.4};
   const auto mm3 = [&](const Expression& solid) { return volume_mm3(digitise_partial(universe, solid)); };
   EXPECT_NEAR(mm3(a | b), mm3(a) + mm3(b) - mm3(a & b), 1.0);
@@ -253,7 +252,7 @@ TEST(Digitise, UnionsAndDifferencesAddUpToTheirParts) {
 }
 
 TEST(Digitise, AMovedSolidIsTheSolidMadeInItsPlace) {
-  const Universe universe = unit_universe(5);
+  const Universe universe = universe_about_origin(5);
   const glm::dmat4 motion = moved_from_still({.translate_mm = {1.5, -2.25, 3}});
   const PartialOctree moved_there = digitise_partial(universe, moved(Sphere{{0, 0, 0}, 7.3}, motion));
   const PartialOctree made_there = digitise_partial(universe, Sphere{{1.5, -2.25, 3}, 7.3});
@@ -263,9 +262,9 @@ TEST(Digitise, AMovedSolidIsTheSolidMadeInItsPlace) {
 
 TEST(Digitise, IsTheSameOnOneThreadAndTwo) {
   const Expression solid = solids().back().solid;
-  const PartialOctree two = digitise_partial(unit_universe(6), solid);
+  const PartialOctree two = digitise_partial(universe_about_origin(6), solid);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const PartialOctree one = digitise_partial(unit_universe(6), solid);
+  const PartialOctree one = digitise_partial(universe_about_origin(6), solid);
   EXPECT_TRUE(one.inside == two.inside && one.touching == two.touching);
   EXPECT_EQ(one.fractions, two.fractions);
 }
@@ -308,7 +307,7 @@ TEST(Digitise, RefusesSolidsThatAreNone) {
 }
 
 TEST(Digitise, RefusesAWindowWhichHasNoShapeWithinAVoxel) {
-  const Universe universe = unit_universe(4);
+  const Universe universe = universe_about_origin(4);
   Scene scene;
   scene.lattice = universe.lattice();
   scene.samples = Int16Samples(16 * 16 * 16, 100);
@@ -319,7 +318,7 @@ TEST(Digitise, RefusesAWindowWhichHasNoShapeWithinAVoxel) {
 }
 
 TEST(PartialOctree, ChecksItsFractionsAndItsOrder) {
-  const Universe universe = unit_universe(4);
+  const Universe universe = universe_about_origin(4);
   PartialOctree partial = digitise_partial(universe, Sphere{{0, 0, 0}, 5});
   EXPECT_NO_THROW(check(partial));
   PartialOctree short_of_one = partial;

@@ -6,13 +6,14 @@
 #include <random>
 #include <stdexcept>
 
+#include "tests/unit_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
 
-const Universe universe = universe_around({{-16, -16, -16}, {16, 16, 16}}, 1.0);
+const Universe universe_of_32 = tests::universe_about_origin(5);
 
 Names names() {
   Names result;
@@ -32,7 +33,7 @@ Names names() {
 }
 
 Octree evaluated(std::string_view text) {
-  return combine(universe, parse_expression(text, names()));
+  return combine(universe_of_32, parse_expression(text, names()));
 }
 
 std::string refusal(std::string_view text) {
@@ -154,27 +155,27 @@ std::string long_text(std::size_t count, const std::string& joint) {
   return text;
 }
 
-constexpr std::size_t many = 50'000;
+constexpr std::size_t many_terms = 50'000;
 
 TEST(ParseExpression, OfFiftyThousandOperandsIsPrintedEvaluatedAndDropped) {
   const std::map<std::string, Expression> objects{
       {"a", Sphere{{-4, 0, 0}, 7}}, {"b", Sphere{{4, 0, 0}, 7}}, {"c", Box{{-9, -3, -3}, {9, 12, 3}}}};
   Names shared = names();
   shared.object = [&](std::string_view name) { return objects.at(std::string(name)); };
-  const std::string text = long_text(many, " | ");
+  const std::string text = long_text(many_terms, " | ");
   const Expression expression = parse_expression(text, shared);
   EXPECT_EQ(print_expression(expression, labels()), text);
-  EXPECT_TRUE(combine(universe, expression) == evaluated("a | b | c"));
+  EXPECT_TRUE(combine(universe_of_32, expression) == evaluated("a | b | c"));
   EXPECT_EQ(names_in(text), (std::vector<std::string>{"a", "b", "c"}));
   // An even number of each leaves nothing of an exclusive or.
-  EXPECT_TRUE(combine(universe, parse_expression(long_text(6 * many, " ^ "), shared)).is_empty());
+  EXPECT_TRUE(combine(universe_of_32, parse_expression(long_text(6 * many_terms, " ^ "), shared)).is_empty());
 }
 
 TEST(Expression, OfFiftyThousandDifferentOperandsIsEvaluated) {
   const Universe small = universe_around({{-8, -8, -8}, {8, 8, 8}}, 1.0);
   Expression expression = HalfSpace{{0, 0, 1}, -100};
-  for (std::size_t i = 1; i < many; ++i)
-    expression = expression | HalfSpace{{0, 0, 1}, -100 + 100.0 * static_cast<double>(i) / many};
+  for (std::size_t i = 1; i < many_terms; ++i)
+    expression = expression | HalfSpace{{0, 0, 1}, -100 + 100.0 * static_cast<double>(i) / many_terms};
   EXPECT_TRUE(combine(small, expression) == combine(small, HalfSpace{{0, 0, 1}, -0.002}));
 }
 
@@ -182,19 +183,19 @@ TEST(Expression, NestedFiftyThousandDeepToTheRightIsEvaluatedAndDropped) {
   const Expression a = names().object("a");
   const Expression b = names().object("b");
   Expression deep = a;
-  for (std::size_t i = 0; i < many; ++i) deep = b - deep;
-  for (std::size_t i = 0; i < many; ++i) deep = ~deep;
-  for (std::size_t i = 0; i < many; ++i) deep = moved(deep, glm::dmat4(1.0));
+  for (std::size_t i = 0; i < many_terms; ++i) deep = b - deep;
+  for (std::size_t i = 0; i < many_terms; ++i) deep = ~deep;
+  for (std::size_t i = 0; i < many_terms; ++i) deep = moved(deep, glm::dmat4(1.0));
   // b - (b - (b - ... a)) alternates between b & a and b - a.
-  EXPECT_TRUE(combine(universe, deep) == evaluated("b & a"));
-  EXPECT_GT(print_expression(deep, labels()).size(), 8 * many);
+  EXPECT_TRUE(combine(universe_of_32, deep) == evaluated("b & a"));
+  EXPECT_GT(print_expression(deep, labels()).size(), 8 * many_terms);
 }
 
 TEST(Expression, OfMoreOperandsThanAWalkMeetsIsRefusedWithTheirNumber) {
   Expression doubled = names().object("a");
   for (int i = 0; i < 60; ++i) doubled = doubled | doubled;
   try {
-    combine(universe, doubled);
+    combine(universe_of_32, doubled);
     FAIL() << "walked 2^60 operands";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Input);

@@ -17,7 +17,7 @@ namespace {
 
 using tests::Dense;
 
-const Resampling half{Resampling::Voxels::Half, Interpolation::Linear};
+const Resampling half_voxels{Resampling::Voxels::Half, Interpolation::Linear};
 
 glm::dmat4 turn(double degrees, const glm::dvec3& axis, const glm::dvec3& about_mm) {
   Motion motion;
@@ -49,7 +49,7 @@ TEST(Resampling, HalfTakesTheVoxelsOfWhichHalfThePointsAreInside) {
     const Octree still = tests::octree_of(universe, tests::random_dense(32, seed + 40));
     const glm::dmat4 matrix = turn(11.0 + 23.0 * static_cast<double>(seed), {1, -0.4, 0.7}, {15, 16.3, 14});
     const glm::dmat4 back = glm::inverse(matrix);
-    const Octree moved_half = combine(universe, moved(still, matrix), half);
+    const Octree moved_half = combine(universe, moved(still, matrix), half_voxels);
     const Octree moved_centre = combine(universe, moved(still, matrix));
     for (int z = 0; z < 32; ++z)
       for (int y = 0; y < 32; ++y)
@@ -77,8 +77,8 @@ TEST(Resampling, AFlatFaceTakesTheVoxelOnceItFillsHalfOfIt) {
   third.translate_mm = {0.3, 0, 0};
   Motion most;
   most.translate_mm = {0.7, 0, 0};
-  EXPECT_EQ(combine(universe, moved(slab, moved_from_still(most)), half).contains({10, 5, 5}), true);
-  EXPECT_EQ(combine(universe, moved(slab, moved_from_still(third)), half).contains({10, 5, 5}), false);
+  EXPECT_EQ(combine(universe, moved(slab, moved_from_still(most)), half_voxels).contains({10, 5, 5}), true);
+  EXPECT_EQ(combine(universe, moved(slab, moved_from_still(third)), half_voxels).contains({10, 5, 5}), false);
 }
 
 TEST(Interpolate, ReproducesWhatItsOrderPromises) {
@@ -191,7 +191,7 @@ TEST(Resampling, AFullCircleOfSmallRotationsLosesNothingWhileItIsSymbolic) {
   EXPECT_TRUE(composed == ball);
 
   // Evaluated at every step it drifts: that is what composing is for. By how much octotomy-bench tells.
-  for (const Resampling& resampling : {Resampling{}, half}) {
+  for (const Resampling& resampling : {Resampling{}, half_voxels}) {
     Octree stepped = ball;
     circle([&](const glm::dmat4& ten) { stepped = combine(universe, moved(stepped, ten), resampling); });
     const auto changed = combine(universe, Expression(stepped) ^ ball).voxel_count();

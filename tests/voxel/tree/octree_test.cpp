@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/dense.h"
 #include "voxel/tree/build.h"
 
@@ -10,17 +11,14 @@ namespace octotomy::voxel {
 namespace {
 
 using tests::Dense;
-
-Universe universe_of(int depth) {
-  return {depth, glm::dmat4(1.0)};
-}
+using tests::unit_universe;
 
 TEST(Octree, HoldsExactlyTheVoxelsItWasBuiltFromAtEveryDepth) {
   for (int depth = 2; depth <= 6; ++depth)
     for (std::uint64_t seed = 0; seed < 24; ++seed) {
       SCOPED_TRACE("depth " + std::to_string(depth) + ", seed " + std::to_string(seed));
       const Dense dense = tests::random_dense(1 << depth, seed);
-      const Octree octree = tests::octree_of(universe_of(depth), dense);
+      const Octree octree = tests::octree_of(unit_universe(depth), dense);
       ASSERT_EQ(tests::dense_of(octree).voxels, dense.voxels);
       std::uint64_t count = 0;
       for (const std::uint8_t voxel : dense.voxels) count += voxel;
@@ -29,7 +27,7 @@ TEST(Octree, HoldsExactlyTheVoxelsItWasBuiltFromAtEveryDepth) {
 }
 
 TEST(Octree, EqualVoxelsAreEqualTreesAndOneVoxelMakesThemDiffer) {
-  const Universe universe = universe_of(5);
+  const Universe universe = unit_universe(5);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Dense dense = tests::random_dense(32, seed);
@@ -43,7 +41,7 @@ TEST(Octree, EqualVoxelsAreEqualTreesAndOneVoxelMakesThemDiffer) {
 
 TEST(Octree, AFullUniverseIsOneNodeWhateverTheDepth) {
   for (int depth = 2; depth <= 12; ++depth) {
-    const Octree full = Octree::full(universe_of(depth));
+    const Octree full = Octree::full(unit_universe(depth));
     EXPECT_EQ(full.voxel_count(), std::uint64_t{1} << (3 * depth));
     const int side = 1 << depth;
     EXPECT_TRUE(full.contains({0, 0, 0}));
@@ -78,7 +76,7 @@ TEST(LevelCounts, AreThoseOfThePlainOctreeThoughTwoLevelsShareANode) {
       const Dense dense = tests::random_dense(1 << depth, seed + 100);
       std::vector<LevelCount> expected(static_cast<std::size_t>(depth));
       count(dense, glm::ivec3(0), 1 << depth, 0, expected);
-      const std::vector<LevelCount> levels = level_counts(tests::octree_of(universe_of(depth), dense));
+      const std::vector<LevelCount> levels = level_counts(tests::octree_of(unit_universe(depth), dense));
       ASSERT_EQ(levels.size(), expected.size());
       for (std::size_t i = 0; i < levels.size(); ++i) {
         EXPECT_EQ(levels[i].partial, expected[i].partial) << "level " << i + 1;
@@ -89,7 +87,7 @@ TEST(LevelCounts, AreThoseOfThePlainOctreeThoughTwoLevelsShareANode) {
 }
 
 TEST(OctreeOfWindow, TakesBothEndsAndKeepsScansThatAreNoMultipleOfABlock) {
-  const Universe universe = universe_of(6);
+  const Universe universe = unit_universe(6);
   Scene scene;
   scene.lattice = {{37, 18, 50}, universe.lps_from_voxel};
   voxel::Int16Samples shorts;

@@ -11,11 +11,11 @@ namespace {
 using tests::refusal;
 using tests::universe_of;
 
-const std::string figure = "P(EP(EEEEEEEF)FP(EEEEFEEE)EEP(EFFEEFEE)E)";
+const std::string treecode_of_figure = "P(EP(EEEEEEEF)FP(EEEEFEEE)EEP(EFFEEFEE)E)";
 
 TEST(Treecode, OfFigure31IsTheThesiss) {
-  EXPECT_EQ(treecode(tests::figure_3_1()), figure);
-  EXPECT_TRUE(octree_of_treecode(universe_of(2), figure) == tests::figure_3_1());
+  EXPECT_EQ(treecode(tests::figure_3_1()), treecode_of_figure);
+  EXPECT_TRUE(octree_of_treecode(universe_of(2), treecode_of_figure) == tests::figure_3_1());
 }
 
 TEST(Treecode, ReadBackIsTheSameTree) {
@@ -58,12 +58,12 @@ TEST(Treecode, ThatIsWrongIsRefusedWithTheCharacter) {
   const std::string deep = "P(EP(EP(EEEEEEEF)EEEEEE)EEEEEE)";
   EXPECT_NE(of(deep, 2).find("character 7: a node of level 2 is a voxel"), std::string::npos);
   EXPECT_EQ(of(deep, 3), "");
-  EXPECT_NE(of(figure, 13).find("depth"), std::string::npos);
+  EXPECT_NE(of(treecode_of_figure, 13).find("depth"), std::string::npos);
 }
 
 TEST(Treecode, MutatedIsRefusedOrAnotherTree) {
   tests::fuzz_text(
-      figure, "treecode", "EFP()",
+      treecode_of_figure, "treecode", "EFP()",
       [](const std::string& text) { return octree_of_treecode(universe_of(2), text); }, treecode);
 }
 

@@ -4,6 +4,8 @@
 #include <random>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/spaced_universe.h"
+#include "tests/voxel/view/axis_views.h"
 #include "voxel/solid/combine.h"
 #include "voxel/view/back_to_front.h"
 #include "voxel/view/counted_trace.h"
@@ -14,14 +16,8 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr std::array<const char*, 6> axis_views{"anterior", "posterior", "left",
-                                                "right",    "superior",  "inferior"};
-
-Universe universe_of(int depth, const glm::dvec3& spacing_mm) {
-  return {
-      depth,
-      axis_aligned_lattice(glm::ivec3(1 << depth), spacing_mm, glm::dvec3(-7.5, 3.0, 11.0)).lps_from_voxel};
-}
+using tests::axis_views;
+using tests::spaced_universe;
 
 /// A random expression of voxels, a ball, a half-space and a moved box.
 Octree random_object(const Universe& universe, std::uint64_t seed) {
@@ -55,7 +51,7 @@ Octree random_object(const Universe& universe, std::uint64_t seed) {
 }
 
 std::vector<DrawnObject> random_scene(std::uint64_t seed) {
-  const Universe universe = universe_of(3 + static_cast<int>(seed % 3), {1.0, 1.5, 0.75});
+  const Universe universe = spaced_universe(3 + static_cast<int>(seed % 3), {1.0, 1.5, 0.75});
   std::vector<DrawnObject> objects;
   for (std::uint64_t i = 0; i < 1 + seed % 2; ++i)
     objects.push_back({"object", random_object(universe, 3 * seed + i)});
@@ -164,7 +160,7 @@ Visits visits_of(const std::vector<DrawnObject>& objects, const AxisView& axes,
 TEST(Visits, OfFigure48AreThoseWorkedOutInTheThesis) {
   // Universe of 4 voxels, seen from the front: the quadtree node at (0, 0) of level 2 steps over two Empty
   // voxels and the Empty octant behind them: three direct visits, and one indirect for a pivot at the root.
-  const Universe universe = universe_of(2, glm::dvec3(1.0));
+  const Universe universe = spaced_universe(2);
   tests::Dense dense(4);
   dense.at({1, 1, 1}) = 1;  // the front octant is Partial, the one behind it Empty
   const std::vector<DrawnObject> objects{{"voxel", tests::octree_of(universe, dense)}};
@@ -183,7 +179,7 @@ TEST(Visits, OfFigure48AreThoseWorkedOutInTheThesis) {
 }
 
 TEST(Visits, EveryNodeOnceBackToFrontFewerFrontToBackFewestByNodeTracing) {
-  const Universe universe = universe_of(7, glm::dvec3(1.0));
+  const Universe universe = spaced_universe(7);
   const Box box = bounds(universe.lattice());
   const glm::dvec3 middle = 0.5 * (box.low_mm + box.high_mm);
   // A shell with a window cut into it.

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "tests/voxel/spaced_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/view/annotation.h"
 #include "voxel/view/mark.h"
@@ -17,17 +18,15 @@
 namespace octotomy::voxel {
 namespace {
 
-Universe universe() {
-  return {
-      7,
-      axis_aligned_lattice(glm::ivec3(128), glm::dvec3(0.5), glm::dvec3(-20.0, -35.0, 10.0)).lps_from_voxel};
+Universe universe_of_64_mm() {
+  return tests::spaced_universe(7, glm::dvec3(0.5), {-20.0, -35.0, 10.0});
 }
 glm::dvec3 middle_mm() {
-  const Box box = bounds(universe().lattice());
+  const Box box = bounds(universe_of_64_mm().lattice());
   return 0.5 * (box.low_mm + box.high_mm);
 }
-DrawnObject ball(const glm::dvec3& centre_mm, double radius_mm) {
-  return {"ball", combine(universe(), Sphere{centre_mm, radius_mm})};
+DrawnObject drawn_ball(const glm::dvec3& centre_mm, double radius_mm) {
+  return {"ball", combine(universe_of_64_mm(), Sphere{centre_mm, radius_mm})};
 }
 
 RenderOptions options_of(const char* view, double eye_mm) {
@@ -43,15 +42,15 @@ RenderOptions options_of(const char* view, double eye_mm) {
 TEST(Camera, RaysOfAnEyePassThePointsThatTheirPixelsShow) {
   for (const char* view : {"anterior", "35,15", "-120,-40"}) {
     const View axes = parse_view(view);
-    const ImagePlane plane = seen_from(
-        image_plane(universe(), axes, {200, 150}, {axes.project(middle_mm()) + glm::dvec2(3, -2), 90.0}),
-        150.0);
-    const VoxelRays rays = voxel_rays(universe(), plane);
+    const ImagePlane plane = seen_from(image_plane(universe_of_64_mm(), axes, {200, 150},
+                                                   {axes.project(middle_mm()) + glm::dvec2(3, -2), 90.0}),
+                                       150.0);
+    const VoxelRays rays = voxel_rays(universe_of_64_mm(), plane);
     for (const glm::dvec2& p_px : {glm::dvec2(0.0), glm::dvec2(13.5, 140.5), glm::dvec2(200.0, 75.0)})
       for (const double depth_mm : {0.0, 17.0, 80.0}) {
         const glm::dvec3 p_mm = plane.lps_mm(p_px, depth_mm);
         const glm::dvec3 p_voxel = rays.start(p_px) + depth_mm * rays.direction(p_px);
-        EXPECT_LT(glm::distance(universe().lattice().lps_mm(p_voxel), p_mm), 1e-9) << view;
+        EXPECT_LT(glm::distance(universe_of_64_mm().lattice().lps_mm(p_voxel), p_mm), 1e-9) << view;
         EXPECT_LT(glm::distance(pixel_position(plane, p_mm), p_px), 1e-9) << view;
         // All meet in the eye.
         const glm::dvec3 eye_mm = plane.lps_mm({0, 0}, plane.eye->depth_mm());
@@ -64,7 +63,7 @@ TEST(Camera, ABallIsAsLargeAsItsConeOfSightWhereverTheEyeIs) {
   const double radius_mm = 18.0;
   for (const char* view : {"anterior", "35,15"})
     for (const double eye_mm : {60.0, 200.0, 5000.0}) {
-      const Picture picture = render({ball(middle_mm(), radius_mm)}, options_of(view, eye_mm));
+      const Picture picture = render({drawn_ball(middle_mm(), radius_mm)}, options_of(view, eye_mm));
       // Its outline is where lines of sight touch it, at an angle whose sine is radius / distance.
       const double outline_mm = eye_mm * std::tan(std::asin(radius_mm / eye_mm));
       const double expected_px =
@@ -86,8 +85,8 @@ TEST(Camera, ABallIsAsLargeAsItsConeOfSightWhereverTheEyeIs) {
 
 TEST(Camera, OfTwoEqualBallsTheNearerIsLargerAndNothingBehindTheEyeIsSeen) {
   const View view = parse_view("anterior");
-  const DrawnObject near = ball(middle_mm() - 20.0 * view.look - 15.0 * view.right, 6.0);
-  const DrawnObject far = ball(middle_mm() + 20.0 * view.look + 15.0 * view.right, 6.0);
+  const DrawnObject near = drawn_ball(middle_mm() - 20.0 * view.look - 15.0 * view.right, 6.0);
+  const DrawnObject far = drawn_ball(middle_mm() + 20.0 * view.look + 15.0 * view.right, 6.0);
   const auto pixels_of = [&](double eye_mm) {
     const Picture picture = render({near, far}, options_of("anterior", eye_mm));
     return std::array<std::ptrdiff_t, 2>{std::count(picture.object.begin(), picture.object.end(), 0),
@@ -102,27 +101,27 @@ TEST(Camera, OfTwoEqualBallsTheNearerIsLargerAndNothingBehindTheEyeIsSeen) {
 TEST(Camera, NodeTracingRefusesAnEye) {
   RenderOptions options = options_of("anterior", 100.0);
   options.algorithm = Algorithm::NodeTrace;
-  EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
+  EXPECT_THROW(render({drawn_ball(middle_mm(), 9.0)}, options), std::invalid_argument);
   options.algorithm.reset();
   options.eye_mm = -1.0;
-  EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
+  EXPECT_THROW(render({drawn_ball(middle_mm(), 9.0)}, options), std::invalid_argument);
 }
 
 TEST(Camera, ViewsThatAreNoFrameAreRefused) {
   RenderOptions options = options_of("20,10", 100.0);
   EXPECT_TRUE(is_frame(options.view));
   options.view.right = -options.view.right;
-  EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
+  EXPECT_THROW(render({drawn_ball(middle_mm(), 9.0)}, options), std::invalid_argument);
   options.view = parse_view("anterior");
   options.view.right.x = std::nan("");
   EXPECT_FALSE(is_frame(options.view));
-  EXPECT_THROW(render({ball(middle_mm(), 9.0)}, options), std::invalid_argument);
+  EXPECT_THROW(render({drawn_ball(middle_mm(), 9.0)}, options), std::invalid_argument);
 }
 
 TEST(Camera, PicturesInPerspectiveBearNoScale) {
   RenderOptions options = options_of("anterior", 100.0);
   const auto changed_by_annotation = [&] {
-    Picture picture = render({ball(middle_mm(), 9.0)}, options);
+    Picture picture = render({drawn_ball(middle_mm(), 9.0)}, options);
     const std::vector<std::uint8_t> before = picture.rgb;
     Annotation scale_only;
     scale_only.sides = false;

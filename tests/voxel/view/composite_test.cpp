@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/dense.h"
 #include "tests/voxel/field_scene.h"
 #include "voxel/tree/interpolate.h"
@@ -16,13 +17,11 @@
 namespace octotomy::voxel {
 namespace {
 
-Universe universe_about_origin() {
-  return universe_around({glm::dvec3(-16.0), glm::dvec3(16.0)}, 1.0);
-}
+using tests::universe_about_origin;
 
 GreyOctree grey_of(const std::function<double(const glm::dvec3& p_mm)>& sample, std::int16_t background = 0) {
-  return grey_octree_of(universe_about_origin(),
-                        tests::field_scene<std::int16_t>(universe_about_origin().lattice(), sample),
+  return grey_octree_of(universe_about_origin(5),
+                        tests::field_scene<std::int16_t>(universe_about_origin(5).lattice(), sample),
                         background);
 }
 
@@ -201,10 +200,10 @@ TEST(Composite, ACutTakesAwayJustWhatItSays) {
 
 TEST(Composite, ShowsNothingBeyondTheScanEvenWhereItsBackgroundWouldShow) {
   // The scan fills the half of the universe to the patient's right.
-  Lattice half = universe_about_origin().lattice();
+  Lattice half = universe_about_origin(5).lattice();
   half.dims.x = 16;
   const GreyOctree grey =
-      grey_octree_of(universe_about_origin(),
+      grey_octree_of(universe_about_origin(5),
                      tests::field_scene<std::int16_t>(half, [](const glm::dvec3&) { return 500.0; }), 500);
   const ImagePlane plane = plane_of(grey, "anterior");
   const Composite image = composite(grey, plane, {even(0.05), {}, {}});

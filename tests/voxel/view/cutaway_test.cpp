@@ -4,19 +4,19 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/dense.h"
+#include "tests/voxel/view/ball.h"
 #include "voxel/solid/combine.h"
 #include "voxel/view/render.h"
 
 namespace octotomy::voxel {
 namespace {
 
-Universe universe_about_origin() {
-  return universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
-}
+using tests::universe_about_origin;
 
-Octree ball() {
-  return combine(universe_about_origin(), Expression(Sphere{glm::dvec3(0.0), 24.0}));
+Octree whole_ball() {
+  return tests::ball(glm::dvec3(0.0), 24.0);
 }
 
 RenderOptions options_for(const std::string& view, Algorithm algorithm) {
@@ -45,9 +45,9 @@ TEST_P(Cuts, AnObliqueFaceIsFlatToTheLastPlaceWhereItsVoxelsAreSteps) {
   const HalfSpace kept{glm::normalize(glm::dvec3(0.4, -1.0, 0.3)), 5.0};
   RenderOptions options = options_for("anterior", GetParam());
   options.cuts = {kept};
-  const Picture flat = render({{"ball", ball()}}, options);
+  const Picture flat = render({{"ball", whole_ball()}}, options);
   options.cuts.clear();
-  const Octree stepped_ball = combine(universe_about_origin(), Expression(ball()) & Expression(kept));
+  const Octree stepped_ball = combine(universe_about_origin(6), Expression(whole_ball()) & Expression(kept));
   const Picture stepped = render({{"ball", stepped_ball}}, options);
   EXPECT_EQ(flat.object, stepped.object);
   int faces = 0;
@@ -75,11 +75,11 @@ INSTANTIATE_TEST_SUITE_P(All, Cuts,
 
 TEST(Cutaway, APlaneTakesAwayTheNormalsSideAndABoxWhatIsInIt) {
   const Octree left_half =
-      combine(universe_about_origin(), without(Expression(ball()), {HalfSpace{{-1, 0, 0}, 0.0}}));
+      combine(universe_about_origin(6), without(Expression(whole_ball()), {HalfSpace{{-1, 0, 0}, 0.0}}));
   EXPECT_TRUE(left_half.contains({40, 32, 32}));
   EXPECT_FALSE(left_half.contains({20, 32, 32}));
   const Octree hollow =
-      combine(universe_about_origin(), without(Expression(ball()), {Box{{0, -40, 0}, {40, 0, 40}}}));
+      combine(universe_about_origin(6), without(Expression(whole_ball()), {Box{{0, -40, 0}, {40, 0, 40}}}));
   EXPECT_FALSE(hollow.contains({40, 24, 40}));
   EXPECT_TRUE(hollow.contains({40, 40, 40}));
   EXPECT_TRUE(hollow.contains({24, 24, 40}));
@@ -89,7 +89,7 @@ TEST(Cutaway, ABoxesFarFacesAreWhereTheBoxEndsWhereverThatIsInAVoxel) {
   // The box ends 0.3 mm off the middle of a voxel; the voxels' face lies 0.2 mm from there.
   RenderOptions options = options_for("anterior", Algorithm::NodeTrace);
   options.cuts = {Box{{-10, -40, -10}, {10, 3.2, 10}}};
-  const Picture picture = render({{"ball", ball()}}, options);
+  const Picture picture = render({{"ball", whole_ball()}}, options);
   const auto point = picture.point_mm({48, 48});
   ASSERT_TRUE(point.has_value());
   EXPECT_NEAR(point->y, 3.2, 1e-4);
@@ -102,15 +102,15 @@ TEST(Cutaway, ABoxesFarFacesAreWhereTheBoxEndsWhereverThatIsInAVoxel) {
 TEST(Cutaway, FacesFacingAwayAreLeftAsTheyAre) {
   // What is kept ends behind: seen from before, no pixel shows the plane.
   RenderOptions options = options_for("anterior", Algorithm::NodeTrace);
-  const Picture whole = render({{"ball", ball()}}, options);
+  const Picture whole = render({{"ball", whole_ball()}}, options);
   options.cuts = {HalfSpace{{0, 1, 0}, 0.0}};
-  const Picture half = render({{"ball", ball()}}, options);
+  const Picture half = render({{"ball", whole_ball()}}, options);
   EXPECT_EQ(half.depth_mm, whole.depth_mm);
   EXPECT_EQ(half.object, whole.object);
 }
 
 TEST(Cutaway, GreyFacesShowTheSamplesThatAreThereAndNothingElseIsPainted) {
-  const Universe universe = universe_about_origin();
+  const Universe universe = universe_about_origin(6);
   // Samples grow by 10 a millimetre towards the patient's left.
   Scene scene;
   scene.lattice = universe.lattice();
@@ -122,7 +122,7 @@ TEST(Cutaway, GreyFacesShowTheSamplesThatAreThereAndNothingElseIsPainted) {
   options.antialias = false;
   options.cuts = {HalfSpace{glm::normalize(glm::dvec3(0, -1.0, 0.2)), 3.0}};
   options.cut_tones = CutTones{grey_octree_of(universe, scene), -320.0, 320.0};
-  const DrawnObject red{"ball", ball(), {0.9f, 0.1f, 0.1f}};
+  const DrawnObject red{"ball", whole_ball(), {0.9f, 0.1f, 0.1f}};
   const Picture picture = render({red}, options);
   int painted = 0;
   for (int y = 0; y < 96; ++y)
@@ -145,12 +145,12 @@ TEST(Cutaway, GreyFacesShowTheSamplesThatAreThereAndNothingElseIsPainted) {
 }
 
 TEST(Cutaway, RefusesNormalsThatAreNoneAndSamplesOfAnotherUniverse) {
-  EXPECT_THROW(without(Expression(ball()), {HalfSpace{{0, 0, 2}, 0.0}}), std::invalid_argument);
+  EXPECT_THROW(without(Expression(whole_ball()), {HalfSpace{{0, 0, 2}, 0.0}}), std::invalid_argument);
   RenderOptions options = options_for("anterior", Algorithm::NodeTrace);
   options.cuts = {HalfSpace{}};
   const Universe other{3, glm::dmat4(1.0)};
   options.cut_tones = CutTones{grey_octree_of_bricks(other, 0, {}, {}), 0.0, 1.0};
-  EXPECT_THROW(render({{"ball", ball()}}, options), std::invalid_argument);
+  EXPECT_THROW(render({{"ball", whole_ball()}}, options), std::invalid_argument);
 }
 
 }  // namespace

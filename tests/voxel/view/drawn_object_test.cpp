@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/voxel/field_scene.h"
+#include "tests/voxel/spaced_universe.h"
 #include "voxel/solid/combine.h"
 #include "voxel/view/column_map.h"
 #include "voxel/view/front_to_back.h"
@@ -16,27 +17,26 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr double radius_mm = 24.0;
+using tests::spaced_universe;
 
-Universe universe() {
-  return {6,
-          axis_aligned_lattice(glm::ivec3(64), glm::dvec3(1.0), glm::dvec3(-7.5, 3.0, 11.0)).lps_from_voxel};
-}
+constexpr double ball_radius_mm = 24.0;
+
 glm::dvec3 still_centre_mm() {
-  return universe().lattice().lps_mm(glm::dvec3(29.3, 32.1, 30.6));
+  return spaced_universe(6).lattice().lps_mm(glm::dvec3(29.3, 32.1, 30.6));
 }
 glm::dmat4 motion() {
   return moved_from_still(
-      {{2.3, -1.6, 3.1}, 17.0, {1, 2, -1}, universe().lattice().lps_mm(glm::dvec3(31.5))});
+      {{2.3, -1.6, 3.1}, 17.0, {1, 2, -1}, spaced_universe(6).lattice().lps_mm(glm::dvec3(31.5))});
 }
 
 /// A ball whose samples fall from its surface outwards, moved.
 DrawnObject moved_ball() {
-  const Scene scene = tests::field_scene<std::int16_t>(universe().lattice(), [](const glm::dvec3& p_mm) {
-    return 200.0 * (radius_mm - glm::length(p_mm - still_centre_mm()));
-  });
-  const GreyOctree grey = grey_octree_of(universe(), scene, -9999);
-  DrawnObject ball{"ball", combine(universe(), moved(Window{grey, 0.0, 32767.0}, motion()))};
+  const Scene scene =
+      tests::field_scene<std::int16_t>(spaced_universe(6).lattice(), [](const glm::dvec3& p_mm) {
+        return 200.0 * (ball_radius_mm - glm::length(p_mm - still_centre_mm()));
+      });
+  const GreyOctree grey = grey_octree_of(spaced_universe(6), scene, -9999);
+  DrawnObject ball{"ball", combine(spaced_universe(6), moved(Window{grey, 0.0, 32767.0}, motion()))};
   ball.grey = grey;
   ball.moved_from_still = motion();
   return ball;
@@ -50,9 +50,9 @@ struct Comparison {
   void add(const Seen& seen, const ImagePlane& plane, const glm::dvec2& p_px) {
     const glm::dvec3 centre_mm(motion() * glm::dvec4(still_centre_mm(), 1.0));
     const double off_mm = glm::length(plane.view_mm(p_px) - plane.view.project(centre_mm));
-    if (off_mm > 0.8 * radius_mm) return;
+    if (off_mm > 0.8 * ball_radius_mm) return;
     const double truth_mm = glm::dot(centre_mm, plane.view.look) - plane.nearest_mm -
-                            std::sqrt(radius_mm * radius_mm - off_mm * off_mm);
+                            std::sqrt(ball_radius_mm * ball_radius_mm - off_mm * off_mm);
     ++pixels;
     stepped += !seen.lit() || seen.stepped;
     worst_mm = std::max(worst_mm, std::abs(seen.depth_mm - truth_mm));
@@ -60,12 +60,12 @@ struct Comparison {
 };
 /// Trilinear interpolation bends inwards by 3 / (8 radius) of a voxel, samples are whole numbers, and the
 /// surface slants by up to sqrt(1 - 0.8^2).
-constexpr double interpolation_mm = (3.0 / (8.0 * radius_mm) + 1.0 / 200.0) / 0.6;
+constexpr double interpolation_mm = (3.0 / (8.0 * ball_radius_mm) + 1.0 / 200.0) / 0.6;
 
 ImagePlane plane_of(const char* view) {
   const View axes = parse_view(view);
   const glm::dvec3 centre_mm(motion() * glm::dvec4(still_centre_mm(), 1.0));
-  return image_plane(universe(), axes, {90, 90}, {axes.project(centre_mm), 60.0});
+  return image_plane(spaced_universe(6), axes, {90, 90}, {axes.project(centre_mm), 60.0});
 }
 
 Comparison rays_of(const DrawnObject& ball, const char* view) {
@@ -79,8 +79,8 @@ Comparison rays_of(const DrawnObject& ball, const char* view) {
 
 Comparison columns_of(const ColumnMap& map, const char* view) {
   const ImagePlane plane = plane_of(view);
-  const AxisView axes = axis_view(universe(), plane.view).value();
-  const VoxelRays rays = voxel_rays(universe(), plane);
+  const AxisView axes = axis_view(spaced_universe(6), plane.view).value();
+  const VoxelRays rays = voxel_rays(spaced_universe(6), plane);
   const glm::dmat3 px_from_voxel = glm::inverse(glm::dmat3(rays.per_px_x, rays.per_px_y, rays.per_mm));
   Comparison comparison;
   for (int j = 0; j < map.side; ++j)
@@ -112,12 +112,12 @@ TEST(DrawnObject, ColumnsFoundTogetherAreThoseFoundAloneOnCutsAndOutsideTheSurfa
   for (int slab = -2; slab <= 2; ++slab)
     solid = solid - Box{centre_mm + glm::dvec3(8.0 * slab, -30, -30),
                         centre_mm + glm::dvec3(8.0 * slab + 3.0, 30, 30)};
-  const Expression shell = Expression(Sphere{centre_mm, radius_mm + 4.0}) &
+  const Expression shell = Expression(Sphere{centre_mm, ball_radius_mm + 4.0}) &
                            Box{centre_mm - glm::dvec3(40, 40, 40), centre_mm + glm::dvec3(40, 40, 0)};
-  ball.octree = combine(universe(), solid | shell);
+  ball.octree = combine(spaced_universe(6), solid | shell);
   int stepped = 0, smooth = 0;
   for (const char* view : {"anterior", "posterior", "left", "right", "superior", "inferior"}) {
-    const AxisView axes = axis_view(universe(), parse_view(view)).value();
+    const AxisView axes = axis_view(spaced_universe(6), parse_view(view)).value();
     const ColumnMap together = node_trace({ball}, axes), alone = front_to_back({ball}, axes);
     for (std::size_t i = 0; i < together.columns.size(); ++i) {
       ASSERT_EQ(together.columns[i].depth_mm, alone.columns[i].depth_mm) << view << ", column " << i;
@@ -132,7 +132,7 @@ TEST(DrawnObject, ColumnsFoundTogetherAreThoseFoundAloneOnCutsAndOutsideTheSurfa
 TEST(DrawnObject, ColumnsOfAMovedBallAreInterpolatedToo) {
   const DrawnObject ball = moved_ball();
   for (const char* view : {"anterior", "right", "superior"}) {
-    const AxisView axes = axis_view(universe(), parse_view(view)).value();
+    const AxisView axes = axis_view(spaced_universe(6), parse_view(view)).value();
     const ColumnMap traced = node_trace({ball}, axes);
     const Comparison comparison = columns_of(traced, view);
     EXPECT_GT(comparison.pixels, 1000) << view;

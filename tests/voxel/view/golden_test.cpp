@@ -21,7 +21,7 @@
 namespace octotomy::voxel {
 namespace {
 
-constexpr int size_px = 120;
+constexpr int side_px = 120;
 using Pixels = std::vector<std::uint8_t>;
 
 /// A simple head with the symmetry of heads only: a shell with two orbits, a jaw, and a mark at the
@@ -66,7 +66,7 @@ struct Subjects {
 RenderOptions options_for(const std::string& view) {
   RenderOptions options;
   options.view = parse_view(view);
-  options.size_px = glm::ivec2(size_px);
+  options.size_px = glm::ivec2(side_px);
   options.centre_mm = glm::dvec2(0.0);
   options.width_mm = 76.0;
   return options;
@@ -141,8 +141,8 @@ Pixels read_golden(const std::string& name) {
   const std::filesystem::path path = golden_folder() / (name + ".png");
   const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path.string());
   if (!in) throw std::runtime_error(path.string() + ": " + OIIO::geterror());
-  Pixels pixels(3 * size_px * size_px);
-  if (in->spec().width != size_px || in->spec().height != size_px || in->spec().nchannels != 3 ||
+  Pixels pixels(3 * side_px * side_px);
+  if (in->spec().width != side_px || in->spec().height != side_px || in->spec().nchannels != 3 ||
       !in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, pixels.data()))
     throw std::runtime_error(path.string() + ": is no picture of these tests");
   return pixels;
@@ -155,14 +155,14 @@ struct Difference {
   double worst_tile = 0.0;  ///< mean over 12 by 12 pixels
 };
 Difference difference(const Pixels& a, const Pixels& b) {
-  constexpr int cells = size_px / 2, tile = 6;
+  constexpr int cells = side_px / 2, tile = 6;
   const auto lab = [](const Pixels& pixels, int i, int j) {
     glm::vec3 sum(0.0f);
     for (int y = 2 * j; y < 2 * j + 2; ++y)
       for (int x = 2 * i; x < 2 * i + 2; ++x)
         for (int channel = 0; channel < 3; ++channel)
           sum[channel] +=
-              static_cast<float>(pixels[static_cast<std::size_t>(3 * (y * size_px + x) + channel)]);
+              static_cast<float>(pixels[static_cast<std::size_t>(3 * (y * side_px + x) + channel)]);
     return lab_from_srgb(sum / (4.0f * 255.0f));
   };
   Difference found;
@@ -188,12 +188,12 @@ TEST_P(Golden, LooksAsItDid) {
   const Pixels drawn = draw(GetParam());
   const std::string file = GetParam().name + ".png";
   if (const char* out = std::getenv("OCTOTOMY_GOLDEN_OUT"))
-    write_image(std::filesystem::path(out) / file, glm::ivec2(size_px), drawn);
+    write_image(std::filesystem::path(out) / file, glm::ivec2(side_px), drawn);
   const Difference found = difference(drawn, read_golden(GetParam().name));
   if (looks_the_same(found)) return;
   const std::filesystem::path actual =
       std::filesystem::path(testing::TempDir()) / ("octotomy_golden_" + file);
-  write_image(actual, glm::ivec2(size_px), drawn);
+  write_image(actual, glm::ivec2(side_px), drawn);
   ADD_FAILURE() << file << " differs by " << found.mean << " in the mean, " << found.worst_tile
                 << " in the worst tile; it is now " << actual;
 }
@@ -210,12 +210,12 @@ TEST(GoldenPictures, AreAllOfThoseInTheFolder) {
 
 TEST(GoldenPictures, SpoiledOnesAreToldFromTheirs) {
   const Pixels golden = read_golden("ray_cast");
-  const auto at = [](int x, int y) { return static_cast<std::size_t>(3 * (y * size_px + x)); };
+  const auto at = [](int x, int y) { return static_cast<std::size_t>(3 * (y * side_px + x)); };
   Pixels mirrored = golden, shifted = golden, holed = golden, tinted = golden;
-  for (int y = 0; y < size_px; ++y)
-    for (int x = 0; x < size_px; ++x)
+  for (int y = 0; y < side_px; ++y)
+    for (int x = 0; x < side_px; ++x)
       for (std::size_t channel = 0; channel < 3; ++channel) {
-        mirrored[at(x, y) + channel] = golden[at(size_px - 1 - x, y) + channel];
+        mirrored[at(x, y) + channel] = golden[at(side_px - 1 - x, y) + channel];
         shifted[at(x, y) + channel] = golden[at(std::max(0, x - 2), y) + channel];
         if (x >= 60 && x < 66 && y >= 50 && y < 56) holed[at(x, y) + channel] = 255;
       }

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/voxel/dense.h"
+#include "tests/voxel/spaced_universe.h"
 #include "voxel/solid/expression.h"
 #include "voxel/view/ray_cast.h"
 
@@ -15,11 +16,7 @@ namespace octotomy::voxel {
 namespace {
 
 using tests::Dense;
-
-Universe universe_of(int depth) {
-  return {depth,
-          axis_aligned_lattice(glm::ivec3(1 << depth), {1.0, 1.5, 0.75}, {-7.5, 3.0, 11.0}).lps_from_voxel};
-}
+using tests::spaced_universe;
 
 /// Blobs among single voxels: Full blocks of all sizes, and rays that go far between them.
 Dense blobs(int side, std::mt19937& random) {
@@ -60,7 +57,7 @@ struct Subject {
 };
 Subject subject_of(std::uint64_t seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
-  const Universe universe = universe_of(3 + static_cast<int>(seed % 4));
+  const Universe universe = spaced_universe(3 + static_cast<int>(seed % 4), {1.0, 1.5, 0.75});
   Subject subject;
   for (std::uint64_t i = 0; i < 1 + seed % 2; ++i) {
     const Dense dense = blobs(universe.side(), random);
@@ -123,7 +120,7 @@ TEST(ParallelRays, SeeBitForBitWhatEachRaySeesByItself) {
 
 TEST(ParallelRays, OfferEveryVoxelOfARayInOrderUntilOneIsTaken) {
   std::mt19937 random(7);
-  const Universe universe = universe_of(5);
+  const Universe universe = spaced_universe(5, {1.0, 1.5, 0.75});
   const Dense dense = blobs(universe.side(), random);
   const Octree octree = tests::octree_of(universe, dense);
   const View view = parse_view("33,-21");

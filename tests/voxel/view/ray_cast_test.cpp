@@ -7,18 +7,14 @@
 
 #include "tests/voxel/dense.h"
 #include "tests/voxel/field_scene.h"
+#include "tests/voxel/spaced_universe.h"
 #include "voxel/view/node_trace.h"
 
 namespace octotomy::voxel {
 namespace {
 
 using tests::Dense;
-
-Universe universe_of(int depth, const glm::dvec3& spacing_mm = glm::dvec3(1.0)) {
-  return {
-      depth,
-      axis_aligned_lattice(glm::ivec3(1 << depth), spacing_mm, glm::dvec3(-7.5, 3.0, 11.0)).lps_from_voxel};
-}
+using tests::spaced_universe;
 
 /// A plane that shows the whole universe from any side.
 ImagePlane plane_about(const Universe& universe, const View& view, int size_px) {
@@ -78,7 +74,7 @@ TEST(RayCast, SeesWhatIntersectingWithEveryVoxelFindsFromAnyDirection) {
     const auto degrees = [&](int range) {
       return static_cast<int>(random() % static_cast<unsigned>(2 * range + 1)) - range;
     };
-    const Universe universe = universe_of(2 + static_cast<int>(seed % 4), {1.0, 1.5, 0.75});
+    const Universe universe = spaced_universe(2 + static_cast<int>(seed % 4), {1.0, 1.5, 0.75});
     std::vector<Dense> dense;
     std::vector<DrawnObject> objects;
     for (std::uint64_t i = 0; i < 1 + seed % 2; ++i) {
@@ -106,7 +102,7 @@ TEST(RayCast, SeesWhatIntersectingWithEveryVoxelFindsFromAnyDirection) {
 }
 
 TEST(RayCast, IntersectionTestFailsOnADepthOneVoxelOff) {
-  const Universe universe = universe_of(3);
+  const Universe universe = spaced_universe(3);
   Dense dense(8);
   dense.at({3, 4, 5}) = 1;
   const ImagePlane plane = plane_about(universe, parse_view("20,30"), 64);
@@ -129,7 +125,7 @@ TEST(RayCast, IntersectionTestFailsOnADepthOneVoxelOff) {
 TEST(RayCast, AlongAnAxisItSeesTheSameVoxelAsNodeTracingDoes) {
   int lit = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const Universe universe = universe_of(5 + static_cast<int>(seed % 2), {1.0, 2.0, 0.5});
+    const Universe universe = spaced_universe(5 + static_cast<int>(seed % 2), {1.0, 2.0, 0.5});
     const std::vector<DrawnObject> objects{
         {"one", tests::octree_of(universe, tests::random_dense(universe.side(), 1000 + seed))},
         {"two", tests::octree_of(universe, tests::random_dense(universe.side(), 2000 + seed))}};
@@ -171,7 +167,7 @@ Scene soft_ball(const Universe& universe, const glm::dvec3& centre_mm, double ra
 }
 
 TEST(RayCast, PartialVolumeDepthOfABallIsTheBallsFromAnyDirection) {
-  const Universe universe = universe_of(6);
+  const Universe universe = spaced_universe(6);
   const glm::dvec3 centre_mm = universe.lattice().lps_mm(glm::dvec3(31.3, 32.1, 30.6));
   const double radius_mm = 24.0;
   const Scene scene = soft_ball(universe, centre_mm, radius_mm, 200.0);
@@ -206,7 +202,7 @@ TEST(RayCast, PartialVolumeDepthOfABallIsTheBallsFromAnyDirection) {
 }
 
 TEST(RayCast, WhereABallWasCutItsFlatFaceIsSeen) {
-  const Universe universe = universe_of(6);
+  const Universe universe = spaced_universe(6);
   const glm::dvec3 centre_mm = universe.lattice().lps_mm(glm::dvec3(32.0));
   const Scene scene = soft_ball(universe, centre_mm, 24.0, 200.0);
   Dense half(64);
@@ -232,7 +228,7 @@ TEST(RayCast, WhereABallWasCutItsFlatFaceIsSeen) {
 }
 
 TEST(RayCast, TheFirstObjectListedIsSeenWhereTwoHoldTheSameVoxels) {
-  const Universe universe = universe_of(4);
+  const Universe universe = spaced_universe(4);
   Dense dense(16);
   dense.for_each([&](const glm::ivec3& v) { dense.at(v) = v.x > 3 && v.y > 5 && v.z < 9; });
   const Octree octree = tests::octree_of(universe, dense);

@@ -5,24 +5,22 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "tests/unit_universe.h"
 #include "tests/voxel/field_scene.h"
+#include "tests/voxel/view/ball.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::voxel {
 namespace {
 
-Universe universe_about_origin() {
-  return universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
-}
-Octree ball(const glm::dvec3& centre_mm, double radius_mm) {
-  return combine(universe_about_origin(), Expression(Sphere{centre_mm, radius_mm}));
-}
+using tests::ball;
+using tests::universe_about_origin;
 
 /// Samples that fall with the distance from the middle: 0 at 18 mm.
 GreyOctree grey_ball() {
   return grey_octree_of(
-      universe_about_origin(),
-      tests::field_scene<std::int16_t>(universe_about_origin().lattice(), [](const glm::dvec3& p_mm) {
+      universe_about_origin(6),
+      tests::field_scene<std::int16_t>(universe_about_origin(6).lattice(), [](const glm::dvec3& p_mm) {
         return 50.0 * (18.0 - glm::length(p_mm));
       }));
 }

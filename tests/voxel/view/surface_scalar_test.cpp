@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit_universe.h"
+#include "tests/voxel/view/ball.h"
 #include "voxel/solid/combine.h"
 #include "voxel/view/lab.h"
 #include "voxel/view/render.h"
@@ -11,12 +13,8 @@
 namespace octotomy::voxel {
 namespace {
 
-Universe universe_about_origin() {
-  return universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
-}
-Octree ball(const glm::dvec3& centre_mm, double radius_mm) {
-  return combine(universe_about_origin(), Expression(Sphere{centre_mm, radius_mm}));
-}
+using tests::ball;
+using tests::universe_about_origin;
 
 /// How a reader without a kind of cone sees a colour (Vienot, Brettel, Mollon 1999), linear light.
 glm::vec3 without_green_cones(const glm::vec3& srgb) {
@@ -63,7 +61,8 @@ TEST(SurfaceScalar, DistancesToABallAreThoseOfItsRadiusAndNegativeInside) {
       if (r < 6.0 || r > 20.0) continue;
       ++asked;
       // Centres of voxels on either side of the surface are up to half a diagonal off it.
-      EXPECT_NEAR(scalar.at(universe_about_origin().lattice().voxel(p_mm)), r - 12.0, 0.87) << x << ", " << y;
+      EXPECT_NEAR(scalar.at(universe_about_origin(6).lattice().voxel(p_mm)), r - 12.0, 0.87)
+          << x << ", " << y;
     }
   EXPECT_GT(asked, 50);
 }
@@ -99,7 +98,7 @@ TEST(SurfaceScalar, ABallMovedToTheLeftIsOrangeAtItsLeftAndBlueAtItsRight) {
 TEST(SurfaceScalar, RefusesEmptyObjectsOtherUniversesAndRangesOfNothing) {
   const Octree some = ball(glm::dvec3(0.0), 9.0);
   EXPECT_THROW(distance_to(some, some, 0.0), std::invalid_argument);
-  EXPECT_THROW(distance_to(Octree::empty(universe_about_origin()), some, 1.0), std::invalid_argument);
+  EXPECT_THROW(distance_to(Octree::empty(universe_about_origin(6)), some, 1.0), std::invalid_argument);
   EXPECT_THROW(distance_to(Octree::full(Universe()), some, 1.0), std::invalid_argument);
 }
 

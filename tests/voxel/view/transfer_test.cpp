@@ -7,10 +7,10 @@
 namespace octotomy::voxel {
 namespace {
 
-const TransferFunction ramp{{{-10.0, glm::vec3(0.0f), 0.0}, {10.0, glm::vec3(1.0f), 2.0}}, 50.0};
+const TransferFunction transfer_ramp{{{-10.0, glm::vec3(0.0f), 0.0}, {10.0, glm::vec3(1.0f), 2.0}}, 50.0};
 
 TEST(Transfer, IsLinearBetweenPointsAndConstantBeyondThem) {
-  const TransferTable table(ramp, {-30, 30});
+  const TransferTable table(transfer_ramp, {-30, 30});
   EXPECT_FLOAT_EQ(table.at(0.0).per_mm, 1.0f);
   EXPECT_FLOAT_EQ(table.at(2.5).per_mm, 1.25f);
   EXPECT_FLOAT_EQ(table.at(2.5).light.x, 0.625f);
@@ -31,11 +31,11 @@ TEST(Transfer, ARangeIsVisibleWhereAnyValueBetweenItsEndsIs) {
   EXPECT_FALSE(table.visible({10, 90}));
   EXPECT_FALSE(table.visible({100, 100}));
   // The twin at the table's end.
-  EXPECT_TRUE(TransferTable(ramp, {-30, 30}).visible({30, 30}));
+  EXPECT_TRUE(TransferTable(transfer_ramp, {-30, 30}).visible({30, 30}));
 }
 
 TEST(Transfer, VisibleFromWhereExtinctionBeginsToRise) {
-  EXPECT_EQ(visible_from(ramp), -10.0);
+  EXPECT_EQ(visible_from(transfer_ramp), -10.0);
   EXPECT_EQ(visible_from({{{3.0, {}, 1.0}, {4.0, {}, 0.0}}, 50.0}), 3.0);
 }
 
@@ -70,7 +70,7 @@ TEST(Transfer, ChecksRefuseWhatIsNoFunctionAndNameThePoint) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(refused({{{nan, {}, 1.0}, {1.0, {}, 0.0}}, 50.0}, "sample"));
   EXPECT_TRUE(refused({{{0.0, {}, nan}, {1.0, {}, 0.0}}, 50.0}, "per_mm"));
-  EXPECT_NO_THROW(check(ramp));
+  EXPECT_NO_THROW(check(transfer_ramp));
   // Double precision holds these numbers; single precision, in which pictures are made, turns them into NaN.
   EXPECT_TRUE(refused({{{-1e308, {}, 0.0}, {1e308, {}, 1.0}}, 50.0}, "point 1"));
   EXPECT_TRUE(refused({{{0.0, {}, 0.0}, {1.0, {}, 1e308}}, 50.0}, "per_mm"));
