@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Elements of the page, made in one expression, and a host that is filled anew without losing the field that
-// is typed in.
+// Elements of the page, made in one expression, and a host that is filled anew without losing the control
+// that has the focus.
 
 export type Child = Node|string|number|null|undefined|false|Child[];
 type Attribute = string|number|boolean|null|undefined|((event: never) => void);
@@ -54,27 +54,42 @@ addEventListener("pointerdown", (event) => {
 for (const end of ["pointerup", "pointercancel", "change"])
   addEventListener(end, () => window.setTimeout(release), true);
 
-/// Fills a host anew; a host in which something is pressed, as soon as that is let go. The field with the
-/// focus keeps it, with its text and caret, if its `data-key` comes again.
+// What a control is found again by when its host is filled anew: its `data-key`, else its words.
+const mark_of = (control: HTMLElement): string => control.dataset.key ??
+    [control.textContent, control.ariaLabel, control.dataset.tip].join(" ").trim();
+const alike = (host: Element, {tagName, mark}: {tagName: string; mark: string}): HTMLElement[] =>
+    [...host.querySelectorAll<HTMLElement>(tagName)].filter((control) => mark_of(control) === mark);
+
+// The control in a host that is seen to have the focus, and has a mark.
+function focused_in(host: Element):
+    {tagName: string; mark: string; place: number; typed: string|null}|null {
+  const active = document.activeElement;
+  if (!(active instanceof HTMLElement) || active === host || !host.contains(active)) return null;
+  const known = {tagName: active.tagName, mark: mark_of(active)};
+  const {key} = active.dataset;
+  if (!key && !(known.mark && active.matches(":focus-visible"))) return null;
+  const is_typed =
+      key && active instanceof HTMLInputElement && active.type !== "checkbox" && active.type !== "range";
+  return {...known, place: alike(host, known).indexOf(active), typed: is_typed ? active.value : null};
+}
+
+/// Fills a host anew; a host in which something is pressed, as soon as that is let go. A control that is seen
+/// to have the focus keeps it if one of the same `data-key`, or else of the same words, comes again; a field
+/// keeps its text, too.
 export function fill(host: Element, ...children: Child[]): void {
   if (pressed && host.contains(pressed)) {
     put_off.set(host, children);
     return;
   }
   put_off.delete(host);
-  const active = document.activeElement;
-  const key = active instanceof HTMLElement && host.contains(active) ? active.dataset.key : undefined;
-  const typed = active instanceof HTMLInputElement && active.type !== "checkbox" && active.type !== "range" ?
-      active.value :
-      null;
+  const focused = focused_in(host);
   const top = host.scrollTop;
   host.replaceChildren();
   put(host, children);
   host.scrollTop = top;
-  if (!key) return;
-  const again = host.querySelector<HTMLElement>(`[data-key="${CSS.escape(key)}"]`);
+  const again = focused && alike(host, focused)[focused.place];
   if (!again) return;
-  if (typed !== null && again instanceof HTMLInputElement) again.value = typed;
+  if (focused.typed !== null && again instanceof HTMLInputElement) again.value = focused.typed;
   again.focus({preventScroll: true});
 }
 

@@ -37,7 +37,7 @@ test('the guided tour goes to its last step, and ends with a report', async () =
   await one.click('Guided tour');
   const card = one.page.locator('.tour-card');
   for (let stop = 1; stop <= 7; ++stop) {
-    await card.getByText(`${stop} of 7`).waitFor({ timeout: 60000 });
+    await card.getByText(`${stop} of 7`).waitFor();
     await one.click(card.getByRole('button', { name: 'Do it for me' }));
   }
   await card.getByRole('button', { name: 'Write the report' }).waitFor({ timeout: 400000 });
@@ -160,7 +160,7 @@ test('Ctrl K opens the palette at any instant, and a dialog keeps its keys to it
   const field = one.page.locator('.palette-field');
   const opens = async (when) => {
     await one.page.keyboard.press('Control+k');
-    await field.waitFor({ timeout: 10000 }).catch(() => assert.fail(`no palette ${when}`));
+    await field.waitFor().catch(() => assert.fail(`no palette ${when}`));
     await one.page.keyboard.press('Escape');
     await field.waitFor({ state: 'detached' });
   };
@@ -196,12 +196,8 @@ test('Ctrl K opens the palette at any instant, and a dialog keeps its keys to it
 });
 
 test('what is pressed stays, though the plan changes meanwhile', async () => {
-  const middle = async (what) => {
-    const box = await what.boundingBox();
-    return [box.x + box.width / 2, box.y + box.height / 2];
-  };
   const tab = one.page.getByRole('tab', { name: 'Movement' });
-  await one.page.mouse.move(...(await middle(tab)));
+  await one.page.mouse.move(...(await one.middle(tab)));
   await one.page.mouse.down();
   await one.page.keyboard.press('Control+z');
   await one.at_rest();
@@ -249,10 +245,10 @@ test('a network that is cut in mid-drag is noticed, and nothing is lost', async 
     proxy.cut();
     await far.page.mouse.move(to.x, to.y, { steps: 4 });
     await far.page.mouse.up();
-    await far.page.locator('div.lost').waitFor({ state: 'visible', timeout: 20000 });
+    await far.page.locator('div.lost').waitFor({ state: 'visible' });
     assert.equal(step('piece_moved').by.forward_mm, forward_mm);
     proxy.mend();
-    await far.page.locator('div.lost').waitFor({ state: 'hidden', timeout: 30000 });
+    await far.page.locator('div.lost').waitFor({ state: 'hidden' });
     await far.until(() => Math.abs(step('piece_moved').by.forward_mm - forward_mm - 4) < 0.5, 'the motion of the drag');
     await far.at_rest();
     assert.deepEqual(far.problems.filter((problem) => !/WebSocket|ERR_/.test(problem)), []);
