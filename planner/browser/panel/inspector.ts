@@ -60,7 +60,7 @@ function inspector(): Child {
            button(
                "Add step", "Adds the step to the plan",
                () => void add_step(draft, draft.do.replace(/_/g, " ")).then((ok) => {
-                 if (ok) set({draft_step: null});
+                 if (ok && state.draft_step === draft) set({draft_step: null});
                }),
                {class: "primary"}),
            button("Cancel", "Adds nothing", () => set({draft_step: null}))));

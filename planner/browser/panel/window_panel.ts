@@ -52,8 +52,10 @@ async function apply(): Promise<void> {
       Step;
   const what = `window from ${draft.low}${draft.high === undefined ? "" : ` to ${draft.high}`}`;
   await (step ? replace_step(step.id, next, what) : add_step(next, what));
-  set({draft_window: null});
-  take_tool("navigate");
+  if (state.draft_window === draft)
+    take_tool("navigate");
+  else if (state.draft_window)  // it was set further meanwhile
+    set({draft_window: {...state.draft_window, replaces: next.id}});
 }
 
 function panel(): Child {

@@ -46,7 +46,9 @@ function finish(): void {
   const move: Motion = {points: pairs};
   pairs = [];
   open = null;
-  void commit_motion(move).then(() => take_tool("navigate"));
+  void commit_motion(move).then(() => {
+    if (state.tool === "marks") take_tool("navigate");
+  });
 }
 
 export const marks_tool: Tool = {

@@ -162,9 +162,11 @@ function show_guess(): void {
 }
 
 async function place(name: string, point: Vec3, snap: boolean): Promise<void> {
+  const asked = landmark_name;
   const at = await put_landmark(name, point, snap);
   if (!at) return;
   set({cross_mm: hundredths(at)});
+  if (landmark_name !== asked) return;  // the next one's name was typed meanwhile
   if (procedure_wants.length)
     next_wanted(name);
   else if (open_guesses().length)

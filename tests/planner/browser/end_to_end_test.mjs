@@ -101,11 +101,19 @@ test('it is turned by typing; undo, redo and a branch go through the history', a
 test('two landmarks and a distance that the command line finds, too', async () => {
   await one.press('Escape');
   await one.press('l');
+  await one.page.locator('[data-key="landmark-name"]').fill('glabella');
+  // The second name is typed while the first landmark is on its way.
+  await one.page.evaluate(() => addEventListener('pointerup', () => {
+    const field = document.querySelector('[data-key="landmark-name"]');
+    field.focus();
+    field.value = 'menton';
+    field.dispatchEvent(new Event('input'));
+  }, { once: true }));
   for (const [name, at] of [['glabella', [0, 30]], ['menton', [0, -95]]]) {
-    await one.page.locator('[data-key="landmark-name"]').fill(name);
     await one.click_at(0, at);
-    await one.page.locator('.lists .words', { hasText: 'landmarks' }).waitFor();
     await one.until(() => one.plan(plan_path).steps.some((each) => each.do === 'landmarks' && each.points.some((point) => point.name === name)), name);
+    await one.page.locator('.lists .words', { hasText: 'landmarks' }).waitFor();
+    await one.at_rest();
   }
   await one.press('Escape');
   await one.press('d');
@@ -124,7 +132,7 @@ test('two landmarks and a distance that the command line finds, too', async () =
 test('every object is certified', async () => {
   await one.press('Escape');
   await one.press('Control+Enter');
-  await one.until(async () => (await one.page.locator('.numbers .badge.pass').count()) >= 3, 'green badges', 120000);
+  await one.until(async () => (await one.page.locator('.numbers .badge.pass').count()) >= 3, 'green badges');
   assert.equal(await one.page.locator('.numbers .badge.fail').count(), 0);
 });
 
@@ -133,7 +141,7 @@ test('STL and a deck are exported', async () => {
     await one.press('Control+e');
     await one.page.locator('select[name="object"]').selectOption('piece_moved');
     await one.click(one.page.locator(`[data-kind="${kind}"]`));
-    const download = one.page.waitForEvent('download', { timeout: 120000 });
+    const download = one.page.waitForEvent('download');
     await one.click('Write the file', { exact: false });
     const file = await (await download).path();
     assert.ok(fs.statSync(file).size > least, kind);
@@ -143,7 +151,7 @@ test('STL and a deck are exported', async () => {
 
 test('the report is written', async () => {
   await one.click(one.page.locator('.bar').getByRole('button', { name: 'Report' }));
-  await one.page.locator('dialog.report iframe').waitFor({ timeout: 120000 });
+  await one.page.locator('dialog.report iframe').waitFor();
   await one.press('Escape');
 });
 
@@ -242,6 +250,6 @@ test('the server is killed: the page says so, and goes on with everything when i
   const token = path.join(folder, 'token');
   fs.writeFileSync(token, url.searchParams.get('token'), { mode: 0o600 });
   server = await start_server(folder, ['--port', url.port, '--token-file', token, plan_path]);
-  await one.page.locator('div.lost').waitFor({ state: 'hidden', timeout: 20000 });
+  await one.page.locator('div.lost').waitFor({ state: 'hidden' });
   await one.until(async () => JSON.stringify(await one.page.locator('.lists .name').allInnerTexts()) === JSON.stringify(listed), 'the same steps');
 });

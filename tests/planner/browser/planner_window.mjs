@@ -83,12 +83,17 @@ const axes = {
   coronal: [[1, 0, 0], [0, 0, 1]], sagittal: [[0, 1, 0], [0, 0, 1]], axial: [[1, 0, 0], [0, -1, 0]],
 };
 const axial_pane = 2; // of the layout "Views and slices"
+/// What is waited for comes late on a machine with other work, and is never timed by a wait.
+const patience_ms = 120000;
+/// What the page asks to change its plan.
+const changes = new Set(['edit', 'open', 'undo', 'redo', 'branch', 'go_to', 'name_version', 'landmark', 'procedure']);
 /// A hand turns the wheel by so many notches at once.
 const notches_of_a_turn = 20;
 
 export class PlannerWindow {
   actions = 0;
   problems = [];
+  asked = new Set(); // ids of changes of the plan that have no answer yet
   frames = []; // headers and pictures that came over the wire, the newest last
 
   /// Opens the page. `size` is the window's; `theme` light or dark; `proxy` the URL of one between.
@@ -99,9 +104,15 @@ export class PlannerWindow {
     });
     one.context = await one.browser.newContext({ viewport: size, colorScheme: theme, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'] });
     one.page = await one.context.newPage();
+    one.page.setDefaultTimeout(patience_ms);
     one.page.on('console', (message) => { if (message.type() === 'error') one.problems.push(message.text()); });
     one.page.on('pageerror', (error) => one.problems.push(String(error)));
-    one.page.on('websocket', (socket) => socket.on('framereceived', ({ payload }) => one.take_frame(payload)));
+    one.page.on('websocket', (socket) => {
+      one.asked.clear();
+      socket.on('framesent', ({ payload }) => one.take_request(JSON.parse(payload)));
+      socket.on('framereceived', ({ payload }) => (typeof payload === 'string' ? one.take_answer(JSON.parse(payload)) : one.take_picture(payload)));
+      socket.on('close', () => one.asked.clear());
+    });
     // Before any script of the page: every context that a canvas is asked for is counted by its kind.
     await one.page.addInitScript(() => {
       window.asked_contexts = {};
@@ -117,8 +128,13 @@ export class PlannerWindow {
     return one;
   }
 
-  take_frame(payload) {
-    if (typeof payload === 'string') return;
+  take_request(message) {
+    if (changes.has(message.do)) this.asked.add(message.id);
+  }
+  take_answer(message) {
+    this.asked.delete(message.id);
+  }
+  take_picture(payload) {
     const length = payload.readUInt32LE(0);
     const header = JSON.parse(payload.subarray(4, 4 + length).toString());
     if (header.quality !== 'rest') return;
@@ -161,6 +177,11 @@ export class PlannerWindow {
   async setting(pane) {
     return (await this.look()).panes[pane];
   }
+  /// The middle of what is shown, once it is.
+  async middle(what) {
+    const box = await this.until(() => what.boundingBox(), `${what} in sight`);
+    return [box.x + box.width / 2, box.y + box.height / 2];
+  }
   /// Clicks a point in the axial slice, after the wheel has brought its height.
   async click_in_axial(point, spacing_mm) {
     const { cross_mm } = await this.look();
@@ -195,7 +216,7 @@ export class PlannerWindow {
       const shown = [...document.querySelectorAll('.pane')].filter((pane) => !pane.hidden).map((pane) => pane.dataset.pane);
       if (document.querySelector('.pane:not([hidden]) canvas[aria-busy="true"]')) return false;
       return shown.every((pane) => window.pictures.filter((one) => one.pane === pane).pop()?.quality === 'rest');
-    }, undefined, { timeout: 120000 });
+    });
   }
   /// Waits until a pane at rest shows an object.
   async shows(pane, object) {
@@ -218,11 +239,16 @@ export class PlannerWindow {
   plan(path) {
     return JSON.parse(fs.readFileSync(path, 'utf8'));
   }
-  async until(test, what, within_ms = 20000) {
+  /// Waits until a test holds, and the page has the answers to what it asked: the plan's file changes before
+  /// the page hears of it.
+  async until(test, what, within_ms = patience_ms) {
     const end = Date.now() + within_ms;
     for (;;) {
       const found = await test();
-      if (found) return found;
+      if (found && !this.asked.size) {
+        await this.page.evaluate(() => new Promise((done) => setTimeout(done)));
+        return found;
+      }
       if (Date.now() > end) throw new Error(`${what}: not within ${within_ms / 1000} s`);
       await this.page.waitForTimeout(60);
     }
