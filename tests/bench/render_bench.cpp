@@ -52,8 +52,8 @@ voxel::DrawnObject drawn_skull(int side) {
   return {"skull", voxel::combine(universe(side), voxel::Window{grey, bone_hu, 32767.0}), {}, grey, bone_hu};
 }
 
-/// The skull with its upper jaw cut off by a mask of two regions and moved: made anew for every picture, as
-/// when a piece is under the hand.
+/// The skull with its upper jaw cut off by a mask of two regions and moved, as when a piece is under the
+/// hand: no octree is made of either.
 std::vector<voxel::DrawnObject> planned_skull(const voxel::DrawnObject& skull) {
   static const voxel::Expression cut(
       voxel::RegionMask{{{voxel::parse_view("anterior"), {{{{-40, -60}, {40, -60}, {40, -25}, {-40, -25}}}}},
@@ -62,10 +62,12 @@ std::vector<voxel::DrawnObject> planned_skull(const voxel::DrawnObject& skull) {
   const voxel::Universe& universe = skull.octree.universe();
   const voxel::Expression bone(skull.octree);
   voxel::DrawnObject rest = skull;
-  rest.octree = voxel::combine(universe, bone - cut);
+  rest.octree = voxel::Octree::empty(universe);
+  rest.unbuilt = bone - cut;
   voxel::DrawnObject jaw = skull;
   jaw.name = "jaw";
-  jaw.octree = voxel::combine(universe, voxel::moved(bone & cut, advance));
+  jaw.octree = voxel::Octree::empty(universe);
+  jaw.unbuilt = voxel::moved(bone & cut, advance);
   jaw.moved_from_still = advance;
   return {rest, jaw};
 }

@@ -7,7 +7,6 @@
 #include <optional>
 #include <tbb/parallel_for.h>
 
-#include "voxel/solid/combine.h"
 #include "voxel/view/pixel_index.h"
 #include "voxel/view/surface_break.h"
 
@@ -98,7 +97,8 @@ std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const 
   std::vector<DrawnObject> left = objects;
   if (cuts.empty()) return left;
   for (DrawnObject& object : left) {
-    object.octree = combine(object.octree.universe(), without(Expression(object.octree), cuts));
+    object.unbuilt = without(object.unbuilt ? *object.unbuilt : Expression(object.octree), cuts);
+    object.octree = Octree::empty(object.octree.universe());
     object.counted_in_grey = false;
     object.inside.reset();
   }

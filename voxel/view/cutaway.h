@@ -28,8 +28,8 @@ std::optional<TakenSpan> taken_span(const Cutaway& cut, const glm::dvec3& start_
 /// have unit length.
 Expression without(const Expression& object, const std::vector<Cutaway>& cuts);
 
-/// The objects without the parts that the cuts remove. They keep their samples; visits to them are counted in
-/// binary octrees. Cost: combine() for every object.
+/// The objects without the parts that the cuts remove, unbuilt. They keep their samples; visits to them are
+/// counted in binary octrees.
 std::vector<DrawnObject> without(const std::vector<DrawnObject>& objects, const std::vector<Cutaway>& cuts);
 
 /// Moves pixels on the voxel faces that a cut made onto the cut itself, so that a cut face is flat instead of

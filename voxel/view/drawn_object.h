@@ -5,7 +5,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "voxel/solid/expression.h"
 #include "voxel/tree/grey_octree.h"
 #include "voxel/tree/octree.h"
 #include "voxel/view/surface_scalar.h"
@@ -33,6 +35,9 @@ struct DrawnObject {
   std::optional<Octree> inside{};
   /// Colours the surface instead of `colour`, in shadings with paint (shade.h).
   std::shared_ptr<const SurfaceScalar> scalar{};
+  /// Draws the voxels of this expression, of which no octree is made: node tracing evaluates it where it is
+  /// seen. `octree` is then empty, and of the universe to draw in.
+  std::optional<Expression> unbuilt{};
 
   /// Maps the octree's voxel indices to those of the object's samples; none if both are the same.
   /// Precondition: `grey` is set.
@@ -42,5 +47,8 @@ struct DrawnObject {
            octree.universe().lps_from_voxel;
   }
 };
+
+/// The objects with octrees of those that were unbuilt. Cost: combine() for each of them.
+std::vector<DrawnObject> built(std::vector<DrawnObject> objects);
 
 }  // namespace octotomy::voxel

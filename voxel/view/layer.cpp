@@ -175,7 +175,19 @@ Paint paint_of(const DepthImage& image, const std::vector<DrawnObject>& objects,
   return paint;
 }
 
+/// Whether the shading reads voxels around those that are seen.
+bool reads_voxels(Shading shading) {
+  return shading == Shading::Context || shading == Shading::GreyGradient;
+}
+
 }  // namespace
+
+std::vector<DrawnObject> to_trace(const std::vector<DrawnObject>& objects, const RenderOptions& options,
+                                  Algorithm algorithm) {
+  std::vector<DrawnObject> left = without(objects, options.cuts);
+  if (algorithm == Algorithm::NodeTrace && !options.count && !reads_voxels(options.shading)) return left;
+  return built(std::move(left));
+}
 
 Layer draw_layer(const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                  const std::vector<Cutaway>& cuts, Algorithm algorithm, Visits* visits) {
@@ -190,9 +202,9 @@ std::vector<std::uint8_t> shade_layer(const Layer& layer, const std::vector<Draw
   Scenery scenery = scenery_of(objects, plane, options);
   scenery.paint = paint_of(layer.image, objects, plane, options, scenery, layer.cut_normals);
   std::vector<glm::vec3> normals;
-  if (options.shading == Shading::Context || options.shading == Shading::GreyGradient)
+  if (reads_voxels(options.shading))
     normals =
-        object_normals(layer.image, objects, plane,
+        object_normals(layer.image, built(objects), plane,
                        options.shading == Shading::Context ? ObjectNormals::Context : ObjectNormals::Grey);
   if (!normals.empty())
     for (std::size_t i = 0; i < layer.cut_normals.size(); ++i)

@@ -50,8 +50,13 @@ struct Layer {
   SeenAt seen_at;                      ///< owns its data; any number of threads may call it
 };
 
-/// Traces a layer. Preconditions: at least one object, all of the plane's universe and without the parts that
-/// the cuts remove; node tracing only for views along the universe's axes. Counts visits if given.
+/// The objects without the parts that the options' cuts remove, built unless node tracing alone looks at
+/// them.
+std::vector<DrawnObject> to_trace(const std::vector<DrawnObject>& objects, const RenderOptions& options,
+                                  Algorithm algorithm);
+
+/// Traces a layer. Preconditions: at least one object, all of the plane's universe and from to_trace(); node
+/// tracing only for views along the universe's axes. Counts visits if given.
 Layer draw_layer(const std::vector<DrawnObject>& objects, const ImagePlane& plane,
                  const std::vector<Cutaway>& cuts, Algorithm algorithm, Visits* visits = nullptr);
 

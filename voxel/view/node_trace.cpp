@@ -10,6 +10,7 @@
 #include <optional>
 #include <tbb/parallel_for.h>
 
+#include "voxel/solid/top_blocks.h"
 #include "voxel/tree/octant_order.h"
 #include "voxel/tree/octree_node.h"
 #include "voxel/view/leaf_surface.h"
@@ -22,6 +23,9 @@
 // number p + 4q + 16r makes every layer of children across the look axis 16 adjacent bits of a mask.
 // Exchanging digits of bit numbers transforms words into it. A reversed look only reverses the order of
 // layers.
+//
+// Of an object that is not built, blocks are evaluated where the descent goes into them: those taller than a
+// tile once for all tiles, the others by the one tile that sees them.
 //
 // Passes, for each tile of 64 x 64 columns: 1 descend front to back, paint open columns and skip quadtree
 // nodes whose columns are all closed; 2 turn the voxel found in each column into a depth.
@@ -80,28 +84,54 @@ struct TracedFrame {
   std::size_t p_stride = 1, q_stride = 1;
 };
 
+using EnteredBlock = ExpressionBlocks::EnteredBlock;
+using TopBlock = TopBlocks::TopBlock;
+
+/// By object; null if it is built.
+using UnbuiltObjects = std::vector<std::unique_ptr<const TopBlocks>>;
+
+UnbuiltObjects unbuilt_of(const std::vector<DrawnObject>& objects) {
+  UnbuiltObjects unbuilt(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    if (objects[i].unbuilt)
+      unbuilt[i] = std::make_unique<const TopBlocks>(objects[i].octree.universe(), *objects[i].unbuilt,
+                                                     tile_height + 1);
+  return unbuilt;
+}
+
 /// An object's part of the current block. A block of height 1 is a leaf's word.
 struct Part {
-  BlockRef block;
+  BlockRef block;             ///< unless it is entered
   std::uint64_t full = 0;     ///< in the traced frame; of a leaf, its voxels
   std::uint64_t partial = 0;  ///< in the traced frame
   std::int16_t object = 0;
+  EnteredBlock* entered = nullptr;  ///< of an object that is not built
+  const TopBlock* top = nullptr;    ///< the same, shared by all tiles
 };
 
 /// Pass 1 for one tile. Depths are in voxels behind the universe's front face.
 class TileTrace {
  public:
-  TileTrace(const std::vector<DrawnObject>& objects, const TracedFrame& frame, int tile_p, int tile_q,
-            std::vector<Seen>& columns)
-      : frame_(frame), tile_p_(tile_p), tile_q_(tile_q), columns_(columns) {
+  TileTrace(const std::vector<DrawnObject>& objects, const UnbuiltObjects& unbuilt, const TracedFrame& frame,
+            int tile_p, int tile_q, std::vector<Seen>& columns)
+      : unbuilt_(unbuilt),
+        frame_(frame),
+        tile_p_(tile_p),
+        tile_q_(tile_q),
+        columns_(columns),
+        entered_(objects.size()) {
     open_.fill(0xFFFF);
     const int height = objects.front().octree.root_height();
     // The root block may reach beyond the universe; along a reversed axis that part comes first.
     const int before = frame.reversed ? frame.side - (1 << (2 * height)) : 0;
     auto& parts = parts_[static_cast<std::size_t>(height)];
     for (std::size_t i = 0; i < objects.size(); ++i) {
+      const auto object = static_cast<std::int16_t>(i);
       const BlockRef root = objects[i].octree.root();
-      if (!root.is_empty()) parts.push_back(part(root, static_cast<std::int16_t>(i)));
+      if (unbuilt[i] != nullptr)
+        parts.push_back(unbuilt_root(object));
+      else if (!root.is_empty())
+        parts.push_back(part(root, object));
     }
     height_ = parts.empty() ? 0 : height;
     front_ = before;
@@ -116,6 +146,61 @@ class TileTrace {
     const Node* node = block.node();
     if (node == nullptr) return {block, all_children, 0, object};
     return {block, traced(node->full, frame_.look), traced(node->partial, frame_.look), object};
+  }
+  Part part(const EnteredBlock& block, std::int16_t object) const {
+    return {BlockRef(), traced(block.cover.full, frame_.look), traced(block.cover.undecided(), frame_.look),
+            object};
+  }
+  Part part(EnteredBlock* block, std::int16_t object) const {
+    Part made = part(*block, object);
+    made.entered = block;
+    return made;
+  }
+  Part part(const TopBlock* block, std::int16_t object) const {
+    Part made = part(block->entered, object);
+    made.top = block;
+    return made;
+  }
+
+  Part unbuilt_root(std::int16_t object) {
+    const auto i = static_cast<std::size_t>(object);
+    entered_[i] = std::make_unique<EnteredBlocks>();
+    const TopBlock& root = unbuilt_[i]->root();
+    const int height = root.entered.height;
+    if (height > tile_height) return part(&root, object);
+    EnteredBlock& own = (*entered_[i])[static_cast<std::size_t>(height)];
+    own = root.entered;
+    return part(&own, object);
+  }
+
+  /// The child of a part that is not built. Precondition: its bit is set in the part's masks.
+  Part unbuilt_child(const Part& outer, int height, int child, int number) {
+    if (((outer.full >> child) & 1) != 0) return part(BlockRef::full(), outer.object);
+    const auto slot = static_cast<std::size_t>(number);
+    if (outer.top != nullptr) {
+      if (const auto& top = outer.top->children[slot]) return part(top.get(), outer.object);
+      if (const Node* node = outer.top->nodes[slot]) return part(BlockRef::of(node), outer.object);
+    }
+    const auto object = static_cast<std::size_t>(outer.object);
+    EnteredBlock& inner = (*entered_[object])[static_cast<std::size_t>(height - 1)];
+    const EnteredBlock& block = outer.top != nullptr ? outer.top->entered : *outer.entered;
+    const Node* node = unbuilt_[object]->blocks().enter(block, number, inner);
+    return node != nullptr ? part(BlockRef::of(node), outer.object) : part(&inner, outer.object);
+  }
+
+  /// Words of leaves in the traced frame, of all parts of height 2 that are not built.
+  void ask_words(std::uint64_t leaves) {
+    const std::uint64_t wanted = traced(leaves, frame_.look);
+    for (const Part& part : parts_[2])
+      if (part.entered != nullptr)
+        unbuilt_[static_cast<std::size_t>(part.object)]->blocks().ask_words(*part.entered, wanted);
+  }
+  static std::uint64_t word(const Part& part, int number) {
+    if (part.entered == nullptr) return part.block.word(number);
+    const Cover& cover = part.entered->cover;
+    if (((cover.undecided() >> number) & 1) != 0)
+      return part.entered->words[static_cast<std::size_t>(number)];
+    return ((cover.full >> number) & 1) != 0 ? all_children : 0;
   }
 
   /// Columns, or footprints of children, still open within the block's footprint.
@@ -182,9 +267,11 @@ class TileTrace {
     for (const Part& outer : parts_[static_cast<std::size_t>(height)]) {
       if ((((outer.full | outer.partial) >> child) & 1) == 0) continue;
       if (height == 2) {
-        inner.push_back({BlockRef(), traced(outer.block.word(number), frame_.look), 0, outer.object});
-      } else {
+        inner.push_back({BlockRef(), traced(word(outer, number), frame_.look), 0, outer.object});
+      } else if (outer.entered == nullptr && outer.top == nullptr) {
         inner.push_back(part(outer.block.child(number), outer.object));
+      } else {
+        inner.push_back(unbuilt_child(outer, height, child, number));
       }
     }
   }
@@ -197,6 +284,7 @@ class TileTrace {
     std::uint16_t& columns = open(height, p, q);
     for (int layer = 0; layer < 4; ++layer) {
       const int shift = 16 * (frame_.reversed ? 3 - layer : layer);
+      if (height == 2) ask_words(std::uint64_t{columns} << shift);
       std::uint64_t present = 0;
       for (const Part& part : parts) present |= (part.full | part.partial) >> shift;
       for (unsigned rest = static_cast<unsigned>(present & columns); rest != 0; rest &= rest - 1) {
@@ -226,6 +314,10 @@ class TileTrace {
     }
   }
 
+  /// Blocks of an object up to a tile's height, by height.
+  using EnteredBlocks = std::array<EnteredBlock, tile_height + 1>;
+
+  const UnbuiltObjects& unbuilt_;
   const TracedFrame& frame_;
   int tile_p_, tile_q_;
   int height_ = 0;  ///< of the root block, 0 if there is nothing to trace
@@ -234,6 +326,7 @@ class TileTrace {
   /// Masks of the tile's quadtree: 16 x 16 of height 1, 4 x 4 of height 2, one of height 3, then those above.
   std::array<std::uint16_t, 273 + max_height - tile_height> open_;
   std::array<std::vector<Part>, max_height + 1> parts_;
+  std::vector<std::unique_ptr<EnteredBlocks>> entered_;  ///< of each object that is not built
 };
 
 /// Reads samples of a grey octree column by column along the look axis. Keeps the last brick.
@@ -375,12 +468,13 @@ ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& ax
   const auto side = static_cast<std::size_t>(frame.side);
   ColumnMap map{frame.side, {spacing_mm[axes.axis[0]], spacing_mm[axes.axis[1]]}, {}};
   map.columns.assign(side * side, Seen{});
+  const UnbuiltObjects unbuilt = unbuilt_of(objects);
   const int tiles = (frame.side + tile_side - 1) / tile_side;
   tbb::parallel_for(0, tiles * tiles, [&](int tile) {
     const int tile_p = tile % tiles * tile_side;
     const int tile_q = tile / tiles * tile_side;
     // 1. Find the first voxel of every column.
-    TileTrace(objects, frame, tile_p, tile_q, map.columns).run();
+    TileTrace(objects, unbuilt, frame, tile_p, tile_q, map.columns).run();
     // 2. Turn it into a depth, leaf by leaf so that a leaf's samples stay in the cache.
     Depths depths(objects, frame, spacing_mm[frame.look]);
     const int last_p = std::min(tile_p + tile_side, frame.side);

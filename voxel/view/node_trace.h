@@ -11,8 +11,9 @@ namespace octotomy::voxel {
 /// that share it the first. With DrawnObject::grey the depth is the crossing of the threshold between the
 /// centres of the last voxel outside and the first inside (thesis 5.2.2.2); samples that do not cross it mean
 /// a cut, and the depth is the voxel's face. Precondition: all objects are of one universe, for which
-/// axis_view() gave the axes. Parallel over tiles of 64 x 64 columns; same bits on any thread count. Cost:
-/// the visible boundary.
+/// axis_view() gave the axes. Objects that are unbuilt are evaluated where they are seen: the same
+/// voxels as built, and no octree is made (thesis chapter 7). Parallel over tiles of 64 x 64 columns; same
+/// bits on any thread count. Cost: the visible boundary.
 ColumnMap node_trace(const std::vector<DrawnObject>& objects, const AxisView& axes);
 
 }  // namespace octotomy::voxel

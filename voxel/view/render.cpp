@@ -124,7 +124,8 @@ Picture blank_picture(const std::vector<DrawnObject>& objects, const RenderOptio
   check(objects, options);
   const Universe& universe = objects.front().octree.universe();
   Frame frame;
-  if (!options.centre_mm || !options.width_mm) frame = frame_about(objects, options.view, options.size_px);
+  if (!options.centre_mm || !options.width_mm)
+    frame = frame_about(built(objects), options.view, options.size_px);
   if (options.centre_mm) frame.centre_mm = *options.centre_mm;
   if (options.width_mm) frame.width_mm = *options.width_mm;
   ImagePlane plane = image_plane(universe, options.view, options.size_px, frame);
@@ -163,7 +164,7 @@ Picture render(const std::vector<DrawnObject>& scene, const RenderOptions& optio
   Picture picture = blank_picture(scene, options);
   const ImagePlane plane = plane_of(scene, picture);
   Visits* visits = picture.visits ? &*picture.visits : nullptr;
-  const std::vector<DrawnObject> objects = without(scene, options.cuts);
+  const std::vector<DrawnObject> objects = to_trace(scene, options, picture.algorithm);
   std::vector<DrawnObject> opaque;
   std::vector<std::int16_t> numbers;
   std::vector<Translucent> translucent;

@@ -18,12 +18,16 @@ bool same_samples(const std::optional<GreyOctree>& a, const std::optional<GreyOc
 
 // Comparisons name every field, so that a new field does not compile until it is compared here.
 
+bool same_expression(const std::optional<Expression>& a, const std::optional<Expression>& b) {
+  return a.has_value() == b.has_value() && (!a || &a->term() == &b->term());
+}
+
 /// Whether two objects have the same surface, in any colour.
 bool same_shape(const DrawnObject& a, const DrawnObject& b) {
   const auto& [name, octree, colour, grey, threshold, moved_from_still, opacity, counted_in_grey, inside,
-               scalar] = a;
-  return octree == b.octree && same_samples(grey, b.grey) && threshold == b.threshold &&
-         moved_from_still == b.moved_from_still;
+               scalar, unbuilt] = a;
+  return octree == b.octree && same_expression(unbuilt, b.unbuilt) && same_samples(grey, b.grey) &&
+         threshold == b.threshold && moved_from_still == b.moved_from_still;
 }
 
 /// Whether two objects of one shape look the same.
@@ -177,7 +181,7 @@ class Renderer::Stages {
     }
     Kept kept{object, object, nullptr};
     if (object.opacity <= 0.0f) return kept;
-    kept.left = without({object}, options.cuts).front();
+    kept.left = to_trace({object}, options, algorithm).front();
     kept.layer = std::make_shared<const Layer>(draw_layer({kept.left}, plane, options.cuts, algorithm));
     ++tally.layers_drawn;
     return kept;

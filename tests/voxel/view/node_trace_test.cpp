@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/view/node_trace.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
 #include "tests/voxel/dense.h"
 #include "tests/voxel/field_scene.h"
+#include "tests/voxel/spaced_universe.h"
+#include "tests/voxel/view/axis_views.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::voxel {
 namespace {
 
+using tests::axis_views;
 using tests::Dense;
-
-const std::array<const char*, 6> axis_views{"anterior", "posterior", "left", "right", "superior", "inferior"};
-
-Universe universe_of(int depth, const glm::dvec3& spacing_mm = glm::dvec3(1.0)) {
-  return {
-      depth,
-      axis_aligned_lattice(glm::ivec3(1 << depth), spacing_mm, glm::dvec3(-7.5, 3.0, 11.0)).lps_from_voxel};
-}
+using tests::spaced_universe;
 
 /// The first voxel of each column found by looking at every voxel: number of voxels before it and its object.
 struct Found {
@@ -63,7 +61,7 @@ TEST(NodeTrace, SeesInEveryColumnWhatLookingAtEveryVoxelFindsFromAllSixSidesWith
   int lit = 0, unlit = 0, later_objects = 0;
   for (std::uint64_t seed = 0; seed < 48; ++seed) {
     const int depth = 2 + static_cast<int>(seed % 6);
-    const Universe universe = universe_of(depth, {1.0, 2.0, 0.5});
+    const Universe universe = spaced_universe(depth, {1.0, 2.0, 0.5});
     std::vector<Dense> dense;
     std::vector<DrawnObject> objects;
     for (std::uint64_t i = 0; i < 1 + seed % 3; ++i) {
@@ -90,7 +88,7 @@ TEST(NodeTrace, SeesInEveryColumnWhatLookingAtEveryVoxelFindsFromAllSixSidesWith
 }
 
 TEST(NodeTrace, ComparisonWithVoxelsFailsWhereOneVisibleVoxelIsMissing) {
-  const Universe universe = universe_of(6);
+  const Universe universe = spaced_universe(6);
   Dense dense(64);
   dense.for_each([&](const glm::ivec3& v) { dense.at(v) = glm::length(glm::dvec3(v) - 31.5) < 20.0; });
   const AxisView axes = axis_view(universe, parse_view("left")).value();
@@ -107,6 +105,102 @@ TEST(NodeTrace, ComparisonWithVoxelsFailsWhereOneVisibleVoxelIsMissing) {
       << "the missing voxel is hidden from the other side; " << difference;
 }
 
+/// Random expressions within a universe: octrees of it, a window of its samples, primitives and a mask, at
+/// rest and moved.
+class RandomExpressions {
+ public:
+  RandomExpressions(const Universe& universe, std::uint64_t seed) : random_(seed) {
+    const Box box = bounds(universe.lattice());
+    centre_mm_ = 0.5 * (box.low_mm + box.high_mm);
+    half_mm_ = 0.5 * (box.high_mm - box.low_mm);
+    leaves_.emplace_back(combine(universe, Expression(sphere()) - Expression(sphere())));
+    leaves_.emplace_back(combine(universe, Expression(sphere()) | Expression(sphere())));
+    leaves_.emplace_back(sphere());
+    leaves_.emplace_back(Box{point(), centre_mm_ + half_mm_});
+    leaves_.emplace_back(HalfSpace{glm::normalize(point() - centre_mm_ + glm::dvec3(0.1)), 0.0});
+    const View view = parse_view("left");
+    const glm::dvec2 middle = view.project(centre_mm_), low = middle - 0.4 * half_mm_.y,
+                     high = middle + half_mm_.y;
+    leaves_.emplace_back(RegionMask{{{view, {{low, {high.x, low.y}, high, {low.x, middle.y}}}}}});
+    if (universe.depth <= 6) {
+      const glm::dvec3 end_mm = point();
+      const Scene scene = tests::field_scene<std::int16_t>(
+          universe.lattice(), [&](const glm::dvec3& p_mm) { return 30.0 * glm::distance(p_mm, end_mm); });
+      leaves_.emplace_back(Window{grey_octree_of(universe, scene), 200.0, 600.0});
+    }
+  }
+  Expression next(int depth) {
+    const auto choice = random_() % (depth == 0 ? 1 : 8);
+    switch (choice) {
+      case 0:
+        return leaves_[random_() % leaves_.size()];
+      case 1:
+        return ~next(depth - 1);
+      case 2:
+        return moved(next(depth - 1), moved_from_still({0.3 * (point() - centre_mm_), 40.0 * share() - 20.0,
+                                                        point() + 0.01, centre_mm_}));
+      case 3:
+        return next(depth - 1) | next(depth - 1);
+      case 4:
+        return next(depth - 1) ^ next(depth - 1);
+      case 5:
+        return next(depth - 1) - next(depth - 1);
+      default:
+        return next(depth - 1) & next(depth - 1);
+    }
+  }
+
+ private:
+  double share() { return static_cast<double>(random_() % 1000) / 1000.0; }
+  glm::dvec3 point() {
+    const double x = share(), y = share(), z = share();
+    return centre_mm_ + half_mm_ * (2.0 * glm::dvec3(x, y, z) - 1.0);
+  }
+  Sphere sphere() {
+    const glm::dvec3 at_mm = point();
+    return {at_mm, (0.2 + share()) * half_mm_.y};
+  }
+
+  std::mt19937_64 random_;
+  glm::dvec3 centre_mm_{0.0}, half_mm_{0.0};
+  std::vector<Expression> leaves_;
+};
+
+TEST(NodeTrace, SeesOfAnExpressionThatIsNotBuiltWhatItSeesOfItsOctree) {
+  int lit = 0, unlit = 0, later_objects = 0;
+  for (std::uint64_t seed = 0; seed < 64; ++seed) {
+    // Up to 512 voxels a side: blocks shared by tiles, of two heights.
+    const int depth = 2 + static_cast<int>(seed % 8);
+    const Universe universe = spaced_universe(depth, {1.0, 2.0, 0.5});
+    RandomExpressions random(universe, seed);
+    const Expression first = random.next(2), second = random.next(4), third = random.next(4);
+    const Octree empty = Octree::empty(universe);
+    std::vector<DrawnObject> unbuilt{
+        {"first", combine(universe, first)}, {"second", empty}, {"third", empty}};
+    unbuilt[1].unbuilt = second;
+    unbuilt[2].unbuilt = third;
+    std::rotate(unbuilt.begin(), unbuilt.begin() + static_cast<std::ptrdiff_t>(seed % 3), unbuilt.end());
+    const std::vector<DrawnObject> octrees = built(unbuilt);
+    for (const char* name : axis_views) {
+      const AxisView axes = axis_view(universe, parse_view(name)).value();
+      const ColumnMap seen = node_trace(unbuilt, axes), wanted = node_trace(octrees, axes);
+      ASSERT_EQ(seen.columns.size(), wanted.columns.size());
+      for (std::size_t i = 0; i < wanted.columns.size(); ++i) {
+        ASSERT_TRUE(seen.columns[i].object == wanted.columns[i].object &&
+                    seen.columns[i].depth_mm == wanted.columns[i].depth_mm)
+            << name << ", seed " << seed << ", column " << i << ": object " << seen.columns[i].object
+            << " at " << seen.columns[i].depth_mm << " mm, built object " << wanted.columns[i].object
+            << " at " << wanted.columns[i].depth_mm << " mm";
+        (wanted.columns[i].lit() ? lit : unlit)++;
+        later_objects += wanted.columns[i].object > 0;
+      }
+    }
+  }
+  EXPECT_GT(lit, 1000000);
+  EXPECT_GT(unlit, 300000);
+  EXPECT_GT(later_objects, 300000);
+}
+
 /// Samples rising linearly into the half-space behind a plane, `per_mm` per millimetre.
 Scene ramp(const Universe& universe, const glm::dvec3& into, double offset_mm, double per_mm) {
   return tests::field_scene<std::int16_t>(universe.lattice(), [&](const glm::dvec3& p_mm) {
@@ -115,7 +209,7 @@ Scene ramp(const Universe& universe, const glm::dvec3& into, double offset_mm, d
 }
 
 TEST(NodeTrace, PartialVolumeDepthOfASlantingPlaneIsThePlaneItselfNotItsSteps) {
-  const Universe universe = universe_of(5);
+  const Universe universe = spaced_universe(5);
   const glm::dvec3 into = glm::normalize(glm::dvec3(0.3, 1.0, -0.2));
   const glm::dvec3 centre_mm = universe.lattice().lps_mm(glm::dvec3(15.5));
   const double offset_mm = glm::dot(centre_mm, into);
@@ -142,7 +236,7 @@ TEST(NodeTrace, PartialVolumeDepthOfASlantingPlaneIsThePlaneItselfNotItsSteps) {
 }
 
 TEST(NodeTrace, WhereAnObjectWasCutInsideItsTissueTheVoxelsFaceStays) {
-  const Universe universe = universe_of(5);
+  const Universe universe = spaced_universe(5);
   const Scene scene = ramp(universe, {0, 1, 0}, bounds(universe.lattice()).low_mm.y + 8.0, 100.0);
   Dense cut(32);
   cut.for_each([&](const glm::ivec3& v) { cut.at(v) = v.y >= (v.x < 16 ? 8 : 20); });

@@ -7,6 +7,7 @@
 
 #include "tests/voxel/dense.h"
 #include "tests/voxel/field_scene.h"
+#include "voxel/solid/combine.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using tests::Dense;
 
 /// 64 voxels of 2 mm about the origin, so that the sides of the patient are the signs of LPS.
-Universe universe_about_origin() {
+Universe universe_of_128_mm() {
   return universe_around({glm::dvec3(-64.0), glm::dvec3(64.0)}, 2.0);
 }
 
@@ -26,7 +27,7 @@ Octree block_at(const glm::ivec3& corner) {
     dense.at(v) =
         glm::all(glm::greaterThanEqual(from, glm::ivec3(0))) && glm::all(glm::lessThan(from, glm::ivec3(4)));
   });
-  return tests::octree_of(universe_about_origin(), dense);
+  return tests::octree_of(universe_of_128_mm(), dense);
 }
 
 RenderOptions whole_universe(const std::string& view, int size_px = 64) {
@@ -133,7 +134,7 @@ TEST(Render, APixelLooksThroughItsCentreWhateverItsSize) {
 }
 
 TEST(Render, BothAlgorithmsAgreeOnPartialVolumePicturesOfABall) {
-  const Universe universe = universe_about_origin();
+  const Universe universe = universe_of_128_mm();
   const Scene scene = tests::field_scene<std::int16_t>(
       universe.lattice(), [](const glm::dvec3& p_mm) { return 100.0 * (45.0 - glm::length(p_mm)); });
   const DrawnObject ball{
@@ -170,8 +171,8 @@ TEST(Render, AntialiasingBlendsOnlyTheColoursOfEdges) {
 
 TEST(Render, PicturesAreTheSameOnOneThreadAndOnTwo) {
   const std::vector<DrawnObject> objects{
-      {"one", tests::octree_of(universe_about_origin(), tests::random_dense(64, 12))},
-      {"two", tests::octree_of(universe_about_origin(), tests::random_dense(64, 13)), {0.8f, 0.3f, 0.2f}}};
+      {"one", tests::octree_of(universe_of_128_mm(), tests::random_dense(64, 12))},
+      {"two", tests::octree_of(universe_of_128_mm(), tests::random_dense(64, 13)), {0.8f, 0.3f, 0.2f}}};
   for (const char* view : {"superior", "33,21"}) {
     std::vector<Picture> pictures;
     for (const std::size_t threads : {std::size_t{1}, std::size_t{2}}) {
@@ -189,9 +190,32 @@ TEST(Render, AnEmptyObjectGivesABackgroundPicture) {
   RenderOptions options;
   options.view = parse_view("15,15");
   options.size_px = {20, 10};
-  const Picture picture = render({{"nothing", Octree::empty(universe_about_origin())}}, options);
+  const Picture picture = render({{"nothing", Octree::empty(universe_of_128_mm())}}, options);
   EXPECT_EQ(picture.lit_pixels, 0u);
   EXPECT_EQ(picture.rgb, std::vector<std::uint8_t>(600, 255));
+}
+
+TEST(Render, DrawsAnExpressionThatIsNotBuiltAsItsOctreeHoweverItIsAsked) {
+  const Universe universe = universe_of_128_mm();
+  const Expression ball(combine(universe, Expression(Sphere{{0, 0, 0}, 40.0})));
+  DrawnObject cut{"cut", Octree::empty(universe)};
+  cut.unbuilt = moved(ball - Expression(Box{{-10, -64, -10}, {30, 0, 64}}),
+                      moved_from_still({{4, 0, 0}, 8.0, {0, 0, 1}, {0, 0, 0}}));
+  const DrawnObject octree = built({cut}).front();
+  ASSERT_FALSE(octree.octree.is_empty());
+  std::vector<RenderOptions> asked(6, whole_universe("anterior"));
+  asked[0].centre_mm.reset();
+  asked[1].algorithm = Algorithm::RayCast;
+  asked[2].algorithm = Algorithm::FrontToBack;
+  asked[3].shading = Shading::Context;
+  asked[4].count = true;
+  asked[5].cuts = {HalfSpace{glm::normalize(glm::dvec3(1.0, 0.5, 0.0)), 12.0}};
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const Picture seen = render({cut}, asked[i]), wanted = render({octree}, asked[i]);
+    EXPECT_GT(wanted.lit_pixels, 500u) << i;
+    EXPECT_EQ(seen.rgb, wanted.rgb) << i;
+    EXPECT_EQ(seen.depth_mm, wanted.depth_mm) << i;
+  }
 }
 
 TEST(Render, RefusesWhatItCannotDraw) {
