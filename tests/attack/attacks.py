@@ -221,6 +221,20 @@ def messages_are_one_bounded_line_without_controls(subject):
     return found
 
 
+def faults_at_the_ends_of_numbers(subject, *commands):
+    """What goes wrong where the N of commands is a number at the end of what numbers can be."""
+    found = []
+    for arguments in commands:
+        for number in ("1e308", "-1e308", "1e-308", "nan", "inf", "9223372036854775808", "-0", "1e400", "2147483648"):
+            ended = subject.run(*(word.replace("N", number) for word in arguments), "--json", "--time-limit",
+                                "3", most_s=30)
+            if ended.status not in (0, 2, 3):
+                found.append(f"{' '.join(arguments)} with {number}: {ended}")
+            if ended.status == 0 and any(word in ended.out for word in ("nan", "inf,", "NaN", "Infinity")):
+                found.append(f"{' '.join(arguments)} with {number}: says a number that is not finite")
+    return found
+
+
 @case
 def numbers_at_their_ends_do_not_crash(subject):
     found = []
@@ -233,27 +247,24 @@ def numbers_at_their_ends_do_not_crash(subject):
                                 "--size", "32x32", "-o", "p.png")
             if ended.status not in (0, 2):
                 found.append(f"transfer {key} {value}: {ended}")
-    numbers = ("1e308", "-1e308", "1e-308", "nan", "inf", "9223372036854775808", "-0", "1e400", "2147483648")
-    for arguments in (("mesh", "head.nrrd", "--window", "N:", "-o", "m.stl"), ("offset", "ball.stl", "--by", "N", "-o", "m.stl"),
-                      ("shell", "ball.stl", "--thickness", "N", "-o", "m.stl"),
-                      ("voxelise", "ball.stl", "--voxel", "N", "-o", "m.octree"),
-                      ("decimate", "ball.stl", "--faces", "N", "-o", "m.stl"),
-                      ("phantom", "sphere", "--radius", "N", "-o", "m.octree"),
-                      ("phantom", "sphere", "--voxels", "N", "-o", "m.octree"),
-                      ("phantom", "head", "--voxel", "N", "-o", "m.nrrd"),
-                      ("render", "head.nrrd", "--window", "300:", "--view", "N,N", "--size", "32x32", "-o", "p.png"),
-                      ("measure", "ball.stl", "--section", "N,0,0", "0,0,N"),
-                      ("saw", "ball.stl", "--line", "N,0,0", "1,N,0", "--direction", "0,0,1", "--depth", "N", "-o", "m.stl"),
-                      ("tet", "ball.stl", "--max-edge", "N", "-o", "m.inp"),
-                      ("info", "head.nrrd", "--memory", "N")):
-        for number in numbers:
-            ended = subject.run(*(word.replace("N", number) for word in arguments), "--json", "--time-limit",
-                                "3", most_s=30)
-            if ended.status not in (0, 2, 3):
-                found.append(f"{' '.join(arguments)} with {number}: {ended}")
-            if ended.status == 0 and any(word in ended.out for word in ("nan", "inf,", "NaN", "Infinity")):
-                found.append(f"{' '.join(arguments)} with {number}: says a number that is not finite")
-    return found
+    return found + faults_at_the_ends_of_numbers(
+        subject, ("mesh", "head.nrrd", "--window", "N:", "-o", "m.stl"), ("offset", "ball.stl", "--by", "N", "-o", "m.stl"),
+        ("shell", "ball.stl", "--thickness", "N", "-o", "m.stl"),
+        ("voxelise", "ball.stl", "--voxel", "N", "-o", "m.octree"),
+        ("decimate", "ball.stl", "--faces", "N", "-o", "m.stl"),
+        ("phantom", "sphere", "--radius", "N", "-o", "m.octree"),
+        ("phantom", "sphere", "--voxels", "N", "-o", "m.octree"),
+        ("phantom", "head", "--voxel", "N", "-o", "m.nrrd"),
+        ("render", "head.nrrd", "--window", "300:", "--view", "N,N", "--size", "32x32", "-o", "p.png"),
+        ("measure", "ball.stl", "--section", "N,0,0", "0,0,N"),
+        ("saw", "ball.stl", "--line", "N,0,0", "1,N,0", "--direction", "0,0,1", "--depth", "N", "-o", "m.stl"),
+        ("tet", "ball.stl", "--max-edge", "N", "-o", "m.inp"))
+
+
+@case
+@limits_memory
+def limits_at_their_ends_do_not_crash(subject):
+    return faults_at_the_ends_of_numbers(subject, ("info", "head.nrrd", "--memory", "N"))
 
 
 @case
