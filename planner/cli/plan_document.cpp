@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "planner/cli/plan_document.h"
-
 #include <CLI/CLI.hpp>
 
+#include "planner/cli/verbs.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"
 #include "planner/plan/difference.h"

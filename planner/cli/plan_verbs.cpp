@@ -4,8 +4,6 @@
 #include <map>
 #include <utility>
 
-#include "planner/cli/plan_document.h"
-#include "planner/cli/procedure_verb.h"
 #include "planner/cli/verbs.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"

@@ -12,6 +12,8 @@ void add_phantom(Program& program);
 void add_prepare(Program& program);
 void add_segment(Program& program);
 void add_plan_verbs(Program& program);
+void add_plan_document(Program& program);  ///< plan diff, plan merge, plan history
+void add_procedure(Program& program);
 void add_look(Program& program);
 void add_mark(Program& program);
 void add_cohort(Program& program);
