@@ -21,7 +21,7 @@ import {Job, Json, Measurement, Notice, ObjectState, PlanState, ScanState} from 
 import {region_tool} from "./tool/region_tool";
 import {make_start} from "./dialog/start_page";
 import {notify, set, state, watch} from "./state";
-import {make_lists} from "./panel/step_lists";
+import {close_menu, make_lists} from "./panel/step_lists";
 import {follow_theme} from "./base/theme";
 import {register_tools, take_tool, Tool} from "./tool/tool";
 import {attach_tips} from "./base/tool_tip";
@@ -118,10 +118,7 @@ function follow_keys(): void {
     command.run();
   });
   addEventListener("pointerdown", (event) => {
-    if (!(event.target as Element).closest(".menu-host"))
-      document.querySelectorAll<HTMLElement>(".menu").forEach((menu) => {
-        menu.hidden = true;
-      });
+    if (!(event.target as Element).closest(".menu-host")) close_menu();
   });
 }
 

@@ -164,9 +164,19 @@ function step_rows(): Child {
   ];
 }
 
+// The step whose menu is open: it stays open where the list is filled anew.
+let step_of_menu = "";
+
+export function close_menu(): void {
+  step_of_menu = "";
+  document.querySelectorAll<HTMLElement>(".menu").forEach((menu) => {
+    menu.hidden = true;
+  });
+}
+
 function step_menu(step: Step): Child {
   const menu =
-      el("div", {class: "menu", role: "menu", hidden: true},
+      el("div", {class: "menu", role: "menu", hidden: step.id !== step_of_menu},
          button(
              "Copy as command", "A line for the terminal that does this step",
              () => void copy_command(step, "shell"), {role: "menuitem"}),
@@ -179,10 +189,10 @@ function step_menu(step: Step): Child {
   const open = button(icon("more", 16), `More for ${step.id}`, (event) => {
     event.stopPropagation();
     const was_hidden = menu.hidden;
-    document.querySelectorAll<HTMLElement>(".menu").forEach((other) => {
-      other.hidden = true;
-    });
-    menu.hidden = !was_hidden;
+    close_menu();
+    if (!was_hidden) return;
+    step_of_menu = step.id;
+    menu.hidden = false;
   }, {class: "ghost small", "aria-haspopup": "menu"});
   return el("span", {class: "menu-host"}, open, menu);
 }

@@ -218,6 +218,15 @@ test('what is pressed stays, though the plan changes meanwhile', async () => {
   const opacity = await one.until(async () => (await one.look()).looks.rest?.opacity, 'the opacity');
   assert.ok(Math.abs(opacity - 0.5) < 0.1, `${opacity}`);
   await one.tab('Steps');
+  // A menu stays open.
+  const row = one.page.locator('.lists .step', { hasText: 'piece moved' }).first();
+  await one.click(row.getByRole('button', { name: 'More for piece_moved' }));
+  for (const key of ['Control+z', 'Control+y']) {
+    const saved = JSON.stringify(plan());
+    await one.press(key);
+    await one.until(() => JSON.stringify(plan()) !== saved, key);
+    assert.ok(await row.getByRole('menuitem', { name: 'Copy as command' }).isVisible(), `no menu after ${key}`);
+  }
   await one.tab('Inspector');
   await one.at_rest();
 });
