@@ -2,35 +2,13 @@
 #pragma once
 
 #include <cmath>
-#include <filesystem>
 #include <glm/glm.hpp>
-#include <gtest/gtest.h>
-#include <string>
 
+#include "tests/voxel/scratch_folder.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/scene.h"
 
 namespace octotomy::tests {
-
-/// A folder of this test's own that goes with it.
-class TestFolder {
- public:
-  TestFolder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) /
-            ("octotomy_" + std::string(test->test_suite_name()) + "_" + test->name());
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A scan of a ball about (0, 0, 0): 1000 inside, -1000 outside, in between by the part of a voxel that a
 /// flat boundary fills, so that a window from 0 is the ball. Voxels of 1 mm, `side` a side.

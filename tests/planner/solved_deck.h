@@ -10,11 +10,12 @@
 #include "convert/deck/calculix_result.h"
 #include "planner/deck/region_deck.h"
 #include "tests/run_command.h"
+#include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::tests {
 
 /// CalculiX's displacements of a deck's nodes. Precondition: ccx is installed.
-inline std::vector<glm::dvec3> solved(const planner::RegionDeck& deck, const TestFolder& folder) {
+inline std::vector<glm::dvec3> solved(const planner::RegionDeck& deck, const ScratchFolder& folder) {
   convert::write_deck(deck.tetrahedra, folder / "deck.inp", deck.options);
   const CommandAnswer ccx = run_command("cd " + quoted(folder / "") + " && ccx -i deck", folder / "");
   EXPECT_EQ(ccx.status, 0) << ccx.out;

@@ -19,7 +19,7 @@ glm::dvec3 place(const std::vector<MovedLandmark>& landmarks, const std::string&
 }
 
 TEST(MovedLandmarks, GoWithThePieceWhoseBoneIsNearestAlsoWhereTeethNearlyTouch) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   verify::HeadOptions coarse;
   coarse.voxel_mm = 2.0;
   voxel::write_scene(verify::head_phantom(coarse), folder / "head.nrrd");

@@ -43,7 +43,7 @@ class CommandLine : public testing::Test {
     EXPECT_NE(answer.errors.find(word), std::string::npos) << answer.errors;
   }
 
-  TestFolder folder_;
+  ScratchFolder folder_;
 };
 
 }  // namespace octotomy::tests

@@ -80,7 +80,7 @@ class OtherReaders : public testing::TestWithParam<Subject> {
         folder_.path());
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 class PythonsReaders : public OtherReaders {};

@@ -38,7 +38,7 @@ class ScanOptions : public testing::Test {
   }
   std::string at(const std::string& name) const { return quoted(folder_ / name); }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   const std::string layout_ = " --raw 32x32x32 int16 --spacing 1,1,1";
 };
 

@@ -50,7 +50,7 @@ class WrittenDicom : public testing::Test {
     return folder_ / "source";
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(WrittenDicom, ASeriesMadeFromAnotherRefersToTheImagesBehindEachSlice) {

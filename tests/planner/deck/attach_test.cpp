@@ -61,7 +61,7 @@ class Attach : public testing::Test {
     return region_deck(evaluation.objects, evaluation.object("soft"), the.steps.back().action.get<Deck>());
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 using tests::set_of;

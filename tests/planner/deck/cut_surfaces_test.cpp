@@ -60,7 +60,7 @@ class CutSurfaces : public testing::Test {
     return convert::tetrahedralise(*evaluation_.object(id).mesh.within, options);
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   Evaluation evaluation_;
 };
 

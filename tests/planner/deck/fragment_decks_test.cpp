@@ -39,7 +39,7 @@ Exported deck_of(const Plan& plan, const Evaluation& evaluation, const std::file
 }
 
 TEST(FragmentDecks, RandomFragmentsOfTheHeadAllBecomeDecksWithoutAnInvertedElement) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   verify::HeadOptions head;
   head.voxel_mm = std::getenv("OCTOTOMY_FRAGMENTS") == nullptr ? 16.0 : 10.0;
   voxel::write_scene(verify::head_phantom(head), folder / "head.nrrd");
@@ -108,7 +108,7 @@ class BallFolder {
                       folder_.path());
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 TEST(FragmentDecks, AnObjectWithoutAMeshIsWrittenByTheFallbackOnlyWhereTheStepAllowsIt) {

@@ -24,7 +24,7 @@ class RefinementOfDecks : public testing::Test {
                           keys + " } ] }",
                       folder_.path());
   }
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(RefinementOfDecks, DecksOfOneObjectMayBeGradedEachInItsOwnWay) {

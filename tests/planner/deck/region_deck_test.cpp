@@ -52,7 +52,7 @@ class RegionDecks : public testing::Test {
     return region_deck(evaluation.objects, evaluation.object("upper"), the.steps.back().action.get<Deck>());
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(RegionDecks, WhatSlidesFollowsItsOwnBoneAndWhatSharesNodesIsSheared) {

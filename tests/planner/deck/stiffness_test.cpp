@@ -22,7 +22,7 @@ double softest_mpa(const std::filesystem::path& deck) {
 }
 
 TEST(Stiffness, ADeckOfAMovedObjectTakesTheSamplesOfItsOldPlace) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"(
       {"id": "moved", "do": "move", "object": "ball", "translate_mm": [6, 0, 0]},
       {"id": "here", "do": "deck", "object": "ball", "path": "here.inp",
@@ -43,7 +43,7 @@ TEST(Stiffness, ADeckOfAMovedObjectTakesTheSamplesOfItsOldPlace) {
 }
 
 TEST(Stiffness, RegionsHaveTheirOwnMaterials) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "d", "do": "deck", "object": "ball", "path": "a.inp",
       "fixed": ["ball"], "stiffness": {"scan": "ct"}})")
                 .find("stiffness"),

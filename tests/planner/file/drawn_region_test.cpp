@@ -59,7 +59,7 @@ class DrawnRegionFile : public testing::Test {
           << i << ": " << drawn.region.polygons_mm[0][i].x << ", " << drawn.region.polygons_mm[0][i].y;
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(DrawnRegionFile, PixelsOfAPictureAreMillimetresOfItsView) {

@@ -12,18 +12,18 @@ namespace octotomy::planner {
 namespace {
 
 using tests::CommandAnswer;
+using tests::ScratchFolder;
 using tests::SortedJson;
-using tests::TestFolder;
 
 using Names = std::map<int, std::string>;
 
-std::filesystem::path put(const TestFolder& folder, const std::string& name, const std::string& text) {
+std::filesystem::path put(const ScratchFolder& folder, const std::string& name, const std::string& text) {
   std::ofstream(folder / name, std::ios::binary) << text;
   return folder / name;
 }
 
 TEST(LabelTable, EachProgramsTableGivesTheSameNames) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Names expected{{2, "left kidney"}, {5, "liver"}};
   for (const auto& [name, text] : {
            std::pair<const char*, const char*>{"by_name.json",
@@ -47,7 +47,7 @@ TEST(LabelTable, EachProgramsTableGivesTheSameNames) {
 }
 
 TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto refusal = [&](const std::string& name, const std::string& text) {
     try {
       read_label_table(put(folder, name, text));
@@ -67,7 +67,7 @@ TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
 }
 
 TEST(LabelTable, OfALabelMapIsItsOwnOrTheOneBesideItAndOfADicomSegmentationItsSegments) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto slicer =
       put(folder, "a.seg.nrrd",
           "NRRD0004\ntype: short\nSegment0_ID:=S1\nSegment0_Name:=Mandible\nSegment0_LabelValue:=7\n"

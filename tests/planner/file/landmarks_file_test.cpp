@@ -25,7 +25,7 @@ class LandmarksFile : public testing::Test {
     return "";
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(LandmarksFile, OwnLandmarksKeepTheirOrderAndWeights) {

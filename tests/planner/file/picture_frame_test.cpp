@@ -24,7 +24,7 @@ TEST(PictureFrameTest, PixelsLieWhereThePlaneSays) {
 }
 
 TEST(PictureFrameTest, GoesWithTheFile) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const PictureFrame frame = frame_of(plane_of("35,15"));
   voxel::write_image(folder / "a.png", {20, 10}, std::vector<std::uint8_t>(600, 9), image_text(frame));
   const PictureFrame read = read_frame(folder / "a.png");
@@ -33,7 +33,7 @@ TEST(PictureFrameTest, GoesWithTheFile) {
 }
 
 TEST(PictureFrameTest, RefusesPicturesWithoutOneOrOfAnotherSize) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const auto refusal = [&](const char* name) -> std::string {
     try {
       read_frame(folder / name);

@@ -45,7 +45,7 @@ class SvgOutlinesFile : public testing::Test {
     return "";
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   std::optional<SvgPicture> picture_;
 };
 

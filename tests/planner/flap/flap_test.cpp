@@ -35,7 +35,7 @@ constexpr const char* flap_fields =
 constexpr const char* still_face = R"("face": [45, 12, 105])";
 
 /// A flap of two segments of the phantom's fibula; the second segment's face may be another one.
-Plan flap_plan(const tests::TestFolder& folder, const std::string& second_face = still_face) {
+Plan flap_plan(const tests::ScratchFolder& folder, const std::string& second_face = still_face) {
   voxel::write_scene(bar_scene(), folder / "bar.nrrd");
   voxel::write_scene(verify::leg_phantom(), folder / "leg.nrrd");
   const std::string same = std::string(flap_fields) + still_face;
@@ -79,7 +79,7 @@ Json flap_answer(const Plan& plan, const Evaluation& evaluation) {
 constexpr double half_turn = 0.4899573262537283;  // atan(16 / 30)
 
 TEST(FlapSteps, SegmentsAndContactsHaveTheClosedFormOfTheFibula) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const Plan plan = flap_plan(folder);
   const Evaluation evaluation = evaluate(plan);
   const double section = verify::LegFibula().section_mm2(), length = std::hypot(30.0, 16.0);
@@ -113,7 +113,7 @@ TEST(FlapSteps, SegmentsAndContactsHaveTheClosedFormOfTheFibula) {
 }
 
 TEST(FlapSteps, ASegmentThatIsTwistedMeetsLessBone) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const Plan plan = flap_plan(folder, R"("face": [30, 27, 105])");
   EvaluateOptions quick;
   quick.certify = false;
@@ -126,7 +126,7 @@ TEST(FlapSteps, ASegmentThatIsTwistedMeetsLessBone) {
 
 TEST(FlapSteps, RefusalsPointAtThePlace) {
   const auto refusal = [](const std::string& fields) {
-    const tests::TestFolder folder;
+    const tests::ScratchFolder folder;
     try {
       parse_plan(
           R"({"octotomy_plan": 1, "name": "f", "scans": {"ct": {"path": "a.nrrd"}}, "steps": [{"id": "a", )" +

@@ -10,7 +10,7 @@ namespace {
 using namespace tests;
 
 TEST(FindLandmarks, OfNothingAndOfWhatIsNoSkullTellsWhyAndThePlanGoesOn) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"({"id": "none", "do": "combine", "expression": "ball - ball"},
       {"id": "of_none", "do": "find_landmarks", "object": "none"},
       {"id": "of_ball", "do": "find_landmarks", "object": "ball"})");

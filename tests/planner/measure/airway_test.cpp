@@ -15,7 +15,7 @@ namespace {
 
 using namespace tests;
 /// Samples that are at least 0 inside; `depth_mm` is how deep a point is inside, negative outside.
-Json measured(const TestFolder& folder, const std::function<double(const glm::dvec3&)>& depth_mm,
+Json measured(const ScratchFolder& folder, const std::function<double(const glm::dvec3&)>& depth_mm,
               const std::string& airway, const std::string& more = "") {
   voxel::Scene scene = ball_scene(1.0, 72);
   auto& samples = std::get<voxel::Int16Samples>(scene.samples);
@@ -48,7 +48,7 @@ double waisted_depth_mm(const glm::dvec3& p_mm) {
 }
 
 TEST(AirwayStep, FindsAWaistOnAnObliqueAxisInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Json airway = measured(folder, waisted_depth_mm, R"("object": "air", "begin": [-7, 5, -23],
       "end": [7, -5, 23])");
   const Json& least = airway.at("narrowest");
@@ -80,7 +80,7 @@ TEST(AirwayStep, FindsAWaistOnAnObliqueAxisInBothKernels) {
 }
 
 TEST(AirwayStep, ABentTubeIsCutSquareToItsBend) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // Three quarters of a ring of radius 22 mm, 5 mm thick: a cut along an axis would be twice as large.
   const auto depth_mm = [](const glm::dvec3& p) {
     const double to_ring = 5.0 - glm::length(glm::dvec2(std::hypot(p.x, p.z) - 22.0, p.y));
@@ -94,7 +94,7 @@ TEST(AirwayStep, ABentTubeIsCutSquareToItsBend) {
 }
 
 TEST(AirwayStep, RefusesEndsBesideItAndPartsThatDoNotMeet) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto refusal = [&](const std::string& airway) -> std::string {
     try {
       measured(

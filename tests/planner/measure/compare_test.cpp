@@ -15,7 +15,7 @@ Json only_measurement(const Plan& plan) {
 }
 
 TEST(CompareStep, AMovedBallIsAsFarAwayAsItWasMoved) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Json apart = only_measurement(ball_plan(folder, R"(
       {"id": "moved", "do": "move", "object": "ball", "translate_mm": [2, 0, 0]},
       {"id": "apart", "do": "compare", "a": "ball", "b": "moved", "tolerances_mm": [1, 2.1]})"));
@@ -29,7 +29,7 @@ TEST(CompareStep, AMovedBallIsAsFarAwayAsItWasMoved) {
 }
 
 TEST(CompareStep, AnObjectWithoutAMeshGivesNullAndAFinding) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Json none = only_measurement(ball_plan(folder, R"(
       {"id": "opened", "do": "segment", "scan": "ct", "window": "0:", "open_mm": 2},
       {"id": "apart", "do": "compare", "a": "ball", "b": "opened"})"));

@@ -11,7 +11,7 @@ namespace octotomy::planner {
 namespace {
 
 using namespace tests;
-Json map_of(const TestFolder& folder, const std::string& steps, bool meshes = true) {
+Json map_of(const ScratchFolder& folder, const std::string& steps, bool meshes = true) {
   const Plan plan = ball_plan(folder, steps);
   EvaluateOptions options;
   options.meshes = meshes;
@@ -20,7 +20,7 @@ Json map_of(const TestFolder& folder, const std::string& steps, bool meshes = tr
 }
 
 TEST(ContactsStep, ABallOnABallHasOnePlaceAndTheCapsArea) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // Two balls of 20 mm whose surfaces are 0.25 mm apart, along an oblique line.
   const std::string steps = R"({"id": "other", "do": "move", "object": "ball",
       "translate_mm": [24.15, 32.2, 0]}, {"id": "map", "do": "contacts", "object": "ball", "against": "other",
@@ -44,7 +44,7 @@ TEST(ContactsStep, ABallOnABallHasOnePlaceAndTheCapsArea) {
 }
 
 TEST(ContactsStep, OverlapIsADepthAndPlacesApartAreTwo) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // A ball moved 38 mm: 2 mm deep. A board of two legs touches the ball at two places.
   const Json deep =
       map_of(folder, R"({"id": "other", "do": "move", "object": "ball", "translate_mm": [38, 0, 0]},
@@ -68,7 +68,7 @@ TEST(ContactsStep, OverlapIsADepthAndPlacesApartAreTwo) {
 }
 
 TEST(ContactsStep, TellsWhereNothingTouchesAndRefusesItself) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Json map =
       map_of(folder, R"({"id": "other", "do": "move", "object": "ball", "translate_mm": [45, 0, 0]},
       {"id": "map", "do": "contacts", "object": "ball", "against": "other"})");

@@ -17,7 +17,7 @@ namespace {
 using namespace tests;
 
 /// Two halves of a ball, labels 1 and 4, with a table of names beside them.
-void write_halves(const TestFolder& folder) {
+void write_halves(const ScratchFolder& folder) {
   voxel::Scene scene;
   scene.lattice = voxel::axis_aligned_lattice(glm::ivec3(24), glm::dvec3(2.0), glm::dvec3(-23.0));
   voxel::Int16Samples samples(scene.lattice.sample_count(), 0);
@@ -31,7 +31,7 @@ void write_halves(const TestFolder& folder) {
 }
 
 TEST(SurfacesStep, WritesAllLabelsAsOneFile) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   write_halves(folder);
   const Plan plan =
       parse_plan(R"({"octotomy_plan": 1, "name": "halves", "scans": {"labels": {"path": "halves.nrrd"}},
@@ -55,7 +55,7 @@ TEST(SurfacesStep, WritesAllLabelsAsOneFile) {
 }
 
 TEST(SurfacesVerb, WritesAFileALabelUnderItsName) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   write_halves(folder);
   const Operation& operation = *find_operation("surfaces");
   const auto run = [&](const std::string& out) {

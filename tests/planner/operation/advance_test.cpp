@@ -9,7 +9,7 @@ namespace {
 using namespace tests;
 
 TEST(AdvanceStep, GoesToContactAndStopsAGapBefore) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "met", "do": "advance", "object": "lower", "against": "upper", "towards": "up"},
       {"id": "near", "do": "advance", "object": "lower", "against": "upper", "direction": [0, 0, 7],
@@ -29,7 +29,7 @@ TEST(AdvanceStep, GoesToContactAndStopsAGapBefore) {
 }
 
 TEST(AdvanceStep, RefusalsPointAtThePlace) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto refusal = [&](const std::string& fields) {
     return ball_refusal(folder,
                         ball_caps(R"({"id": "a", "do": "advance", "object": "lower", )" + fields + "}"));

@@ -18,7 +18,7 @@ bool overlap(const Evaluation& evaluation, const std::string& a, const std::stri
 }
 
 TEST(AutorotateStep, TheLowerJawClosesToFirstContactAndNoFurther) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "closed", "do": "autorotate", "object": "lower", "against": "upper",
           "condyles": [[-20, 40, 0], [20, 40, 0]]},
@@ -36,7 +36,7 @@ TEST(AutorotateStep, TheLowerJawClosesToFirstContactAndNoFurther) {
 }
 
 TEST(AutorotateStep, AJawThatOverlapsOpens) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "deep", "do": "move", "object": "lower", "translate_mm": [0, 0, 12]},
       {"id": "freed", "do": "autorotate", "object": "deep", "against": "upper",
@@ -47,7 +47,7 @@ TEST(AutorotateStep, AJawThatOverlapsOpens) {
 }
 
 TEST(AutorotateStep, RefusalsPointAtThePlace) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(
       ball_refusal(folder, ball_caps(R"({"id": "c", "do": "autorotate", "object": "lower", "against": "lower",
       "condyles": [[-20, 40, 0], [20, 40, 0]]})"))

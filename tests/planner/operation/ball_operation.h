@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <gtest/gtest.h>
 #include <string>
 
 #include "planner/plan/evaluate.h"
@@ -12,7 +13,7 @@ namespace octotomy::tests {
 constexpr double ball_radius_mm = 20.0;
 
 /// A plan on a ball of 20 mm about the origin, in voxels of 1 mm: the object "ball", then the steps.
-inline planner::Plan ball_plan(const TestFolder& folder, const std::string& steps) {
+inline planner::Plan ball_plan(const ScratchFolder& folder, const std::string& steps) {
   voxel::write_scene(ball_scene(ball_radius_mm), folder / "ball.nrrd");
   return planner::parse_plan(R"({"octotomy_plan": 1, "name": "ball", "scans": {"ct": {"path": "ball.nrrd"}},
       "universe": {"voxel_mm": 1.0}, "steps": [{"id": "ball", "do": "window", "scan": "ct", "low": 0}, )" +
@@ -39,7 +40,7 @@ inline void expect_of_mesh(const planner::Object& object, double truth_mm3, doub
 }
 
 /// The refusal of a plan with these steps; empty where it is read.
-inline std::string ball_refusal(const TestFolder& folder, const std::string& steps) {
+inline std::string ball_refusal(const ScratchFolder& folder, const std::string& steps) {
   try {
     ball_plan(folder, steps);
   } catch (const std::runtime_error& error) {

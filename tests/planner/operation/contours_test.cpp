@@ -11,7 +11,7 @@ namespace {
 using namespace tests;
 
 TEST(ContoursStep, TheFileHoldsTheSlicesOfTheBallMovedOut) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"({"id": "lines", "do": "contours", "scan": "ct", "path": "lines.json",
       "window": "0:", "by_mm": 2})");
   const Evaluation evaluation = evaluate(plan);
@@ -29,7 +29,7 @@ TEST(ContoursStep, TheFileHoldsTheSlicesOfTheBallMovedOut) {
 }
 
 TEST(ContoursStep, AFileThatIsNoJsonAndAMissingWindowAreRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(
       ball_refusal(folder, R"({"id": "c", "do": "contours", "scan": "ct", "path": "a.stl", "window": "0:"})")
           .find(".json"),

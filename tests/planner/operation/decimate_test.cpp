@@ -9,7 +9,7 @@ namespace {
 using namespace tests;
 
 TEST(DecimateStep, TheBallHasFewerTrianglesAndNearlyItsVolume) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "light", "do": "decimate", "object": "ball", "max_error_mm": 0.2})"));
   const Object& light = evaluation.object("light");

@@ -9,7 +9,7 @@ namespace {
 using namespace tests;
 
 TEST(FillStep, AHollowBallIsFullAgainInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "hollow", "do": "shell", "object": "ball", "thickness_mm": 6},
       {"id": "full", "do": "fill", "object": "hollow"})"));

@@ -10,7 +10,7 @@ namespace {
 using namespace tests;
 
 glm::dmat3 held(const std::string& fields) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   return *ball_plan(folder, R"({"id": "held", "do": "head_position", )" + fields + "}").lps_from_head;
 }
 
@@ -48,7 +48,7 @@ TEST(HeadPositionStep, TypedAnglesSayHowTheHeadIsHeldInTheRoom) {
 }
 
 TEST(HeadPositionStep, RegionsAndWordsAreOfTheHeadAsItIsHeld) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // Held upside down, the upper half of the anterior view is the lower half of the scan.
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "held", "do": "head_position", "roll_deg": 180},
@@ -77,7 +77,7 @@ TEST(HeadPositionStep, RegionsAndWordsAreOfTheHeadAsItIsHeld) {
 }
 
 TEST(HeadPositionStep, RefusalsPointAtThePlace) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto says = [&](const std::string& fields, const std::string& part) {
     const std::string text = ball_refusal(folder, R"({"id": "h", "do": "head_position", )" + fields);
     EXPECT_NE(text.find(part), std::string::npos) << text;

@@ -12,7 +12,7 @@ namespace {
 using namespace tests;
 
 TEST(ImportStep, AMeshBesideThePlanCutsTheBallInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   brep::write_mesh(brep::mesh_of(brep::shapes::box({-30, -30, -5.0}, {30, 30, 30})), folder / "block.stl");
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "block", "do": "import", "path": "block.stl"},
@@ -22,7 +22,7 @@ TEST(ImportStep, AMeshBesideThePlanCutsTheBallInBothKernels) {
 }
 
 TEST(ImportStep, AFileThatIsNotThereIsNamed) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"({"id": "block", "do": "import", "path": "none.stl"})");
   try {
     evaluate(plan);

@@ -11,7 +11,7 @@ namespace {
 using namespace tests;
 
 TEST(LandmarksStep, PointsTypedAndOfSlicersFileAreNamesForLaterSteps) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "marks.mrk.json") << R"({"markups": [{"coordinateSystem": "RAS", "controlPoints": [
       {"label": "pns", "position": [-3, 0, 0], "positionStatus": "defined"}]}]})";
   const Plan plan = ball_plan(folder, R"({"id": "marks", "do": "landmarks", "file": "marks.mrk.json",
@@ -26,7 +26,7 @@ TEST(LandmarksStep, PointsTypedAndOfSlicersFileAreNamesForLaterSteps) {
 }
 
 TEST(LandmarksStep, RefusalsPointAtThePlace) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto says = [&](const std::string& step, const std::string& part) {
     const std::string text = ball_refusal(folder, step);
     EXPECT_NE(text.find(part), std::string::npos) << text;

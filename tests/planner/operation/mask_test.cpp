@@ -12,7 +12,7 @@ namespace {
 using namespace tests;
 
 TEST(MaskStep, RegionsOnSlicesCutTheVoxelsAndSayThatThereIsNoMesh) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "slices.json") << R"({"view": "inferior", "slices": [
       {"position_mm": -30, "polygons_mm": [[[0, -30], [30, -30], [30, 30], [0, 30]]]},
       {"position_mm": 30, "polygons_mm": [[[0, -30], [30, -30], [30, 30], [0, 30]]]}]})";
@@ -26,7 +26,7 @@ TEST(MaskStep, RegionsOnSlicesCutTheVoxelsAndSayThatThereIsNoMesh) {
 }
 
 TEST(MaskStep, AMaskOfNothingIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "mask"})").find("'regions' is missing"),
             std::string::npos);
 }
@@ -42,7 +42,7 @@ std::string ring_and_block() {
 }
 
 TEST(MaskStep, AStructureSetsRegionHasItsHoleItsGapAndItsOwnSlicesVolume) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "rs.dcm", std::ios::binary) << ring_and_block();
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "ring", "do": "mask", "slices": "rs.dcm", "structure": "Ring"},
@@ -60,7 +60,7 @@ TEST(MaskStep, AStructureSetsRegionHasItsHoleItsGapAndItsOwnSlicesVolume) {
 }
 
 TEST(MaskStep, AStructureThatIsNotThereIsRefusedWithTheOnesThatAre) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "rs.dcm", std::ios::binary) << ring_and_block();
   const auto refusal = [&](const std::string& structure) {
     try {
@@ -84,7 +84,7 @@ TEST(MaskStep, AStructureThatIsNotThereIsRefusedWithTheOnesThatAre) {
 }
 
 TEST(MaskStep, AStructureOnTiltedPlanesKeepsItsPlace) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // Planes of a tilted gantry, 20 degrees about x.
   const double c = std::cos(0.35), s = std::sin(0.35);
   std::vector<std::vector<glm::dvec3>> contours;

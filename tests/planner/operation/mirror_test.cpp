@@ -9,7 +9,7 @@ namespace {
 using namespace tests;
 
 TEST(MirrorStep, AnImageLiesBehindThePlaneAndItsImageIsTheObject) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
         "polygons_mm": [[[-30, 5], [30, 5], [30, 30], [-30, 30]]]}]},
@@ -27,14 +27,14 @@ TEST(MirrorStep, AnImageLiesBehindThePlaneAndItsImageIsTheObject) {
 }
 
 TEST(MirrorStep, ANormalWithoutLengthIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "m", "do": "mirror", "object": "ball", "normal": [0, 0, 0]})")
                 .find("no direction"),
             std::string::npos);
 }
 
 TEST(MirrorStep, ThePlaneThatFitsIsSettledForBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // A lens that leans: its mid-planes all hold the direction (1, 0, 1) or are square to it.
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "off", "do": "move", "object": "ball", "translate_mm": [12, 0, 12]},
@@ -50,7 +50,7 @@ TEST(MirrorStep, ThePlaneThatFitsIsSettledForBothKernels) {
 }
 
 TEST(MirrorStep, ThePlaneGoesThroughThreeLandmarks) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "marks", "do": "landmarks", "points": [{"name": "front", "point_mm": [3, -9, 0]}]},
       {"id": "off", "do": "move", "object": "ball", "translate_mm": [5, 0, 0]},

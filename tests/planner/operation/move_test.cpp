@@ -23,7 +23,7 @@ class MoveStep : public testing::Test {
   static glm::dvec3 comes(const Evaluation& evaluation, const glm::dvec3& p_mm) {
     return glm::dvec3(evaluation.objects.back().moved->motion * glm::dvec4(p_mm, 1.0));
   }
-  TestFolder folder_;
+  ScratchFolder folder_;
 };
 
 void expect_at(const glm::dvec3& p, const glm::dvec3& wanted) {

@@ -13,7 +13,7 @@ std::vector<double> distances_mm(const Evaluation& evaluation, const char* id) {
 }
 
 TEST(OccludeStep, ThreePlacesSeatATiltedCapFlat) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // The lower cap's flat top, tilted and lowered, comes back to lie under the upper cap's flat base.
   const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "away", "do": "move", "object": "lower", "translate_mm": [0, 0, -4],
@@ -29,7 +29,7 @@ TEST(OccludeStep, ThreePlacesSeatATiltedCapFlat) {
 }
 
 TEST(OccludeStep, OnePlaceSlidesAndStopsAGapBefore) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, ball_caps(R"(
       {"id": "near", "do": "occlude", "object": "lower", "against": "upper", "about_mm": 3, "gap_mm": 2,
        "places": [[0, 0, -5]]},
@@ -41,7 +41,7 @@ TEST(OccludeStep, OnePlaceSlidesAndStopsAGapBefore) {
 }
 
 TEST(OccludeStep, TellsWhatItCannotSeatAndRefusesPlacesOffTheObject) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto refusal = [&](const std::string& fields) -> std::string {
     try {
       evaluate(

@@ -9,7 +9,7 @@ namespace {
 using namespace tests;
 
 TEST(OffsetStep, ABallGrowsAndShrinksByTheDistance) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "larger", "do": "offset", "object": "ball", "by_mm": 4},
       {"id": "smaller", "do": "offset", "object": "ball", "by_mm": -4})"));

@@ -15,7 +15,7 @@ const std::string two_caps = R"(
     {"id": "caps", "do": "combine", "expression": "ball - cut"}, )";
 
 TEST(PartsStep, TheLargerOfTwoCapsIsKeptByBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, two_caps + R"(
       {"id": "one", "do": "parts", "object": "caps", "largest": 1},
       {"id": "both", "do": "parts", "object": "caps", "largest": 5},
@@ -31,7 +31,7 @@ TEST(PartsStep, TheLargerOfTwoCapsIsKeptByBothKernels) {
 }
 
 TEST(PartsStep, ThePartThatHoldsAPointIsKeptByBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, two_caps + R"(
       {"id": "low", "do": "parts", "object": "caps", "at_mm": [[0, 0, -15]]},
       {"id": "both", "do": "parts", "object": "caps", "at_mm": [[0, 0, -15], [3, 0, 12]]})"));
@@ -48,7 +48,7 @@ TEST(PartsStep, ThePartThatHoldsAPointIsKeptByBothKernels) {
 }
 
 TEST(PartsStep, NeitherOrBothWaysToChooseAreRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   for (const char* ways : {"", R"(, "largest": 1, "at_least_mm3": 3)"})
     EXPECT_NE(ball_refusal(folder, R"({"id": "p", "do": "parts", "object": "ball")" + std::string(ways) + "}")
                   .find("needs one of"),

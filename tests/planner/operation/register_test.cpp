@@ -20,7 +20,7 @@ constexpr const char* egg = R"(
       "rotate": {"degrees": 8, "axis": [0, 1, 1]}})";
 
 TEST(RegisterStep, AMovedObjectIsLaidBackOnItsOriginInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(
       folder, std::string(egg) +
                   R"(, {"id": "back", "do": "register", "object": "off", "onto": "egg", "overlap": 1})"));
@@ -36,7 +36,7 @@ TEST(RegisterStep, AMovedObjectIsLaidBackOnItsOriginInBothKernels) {
 }
 
 TEST(RegisterStep, LandmarksAloneGiveTheMotion) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder / "here.json") << R"({"landmarks": [{"name": "a", "point_mm": [0, 0, 0]},
       {"name": "b", "point_mm": [10, 0, 0]}, {"name": "c", "point_mm": [0, 10, 0]}]})";
   std::ofstream(folder / "there.json") << R"({"landmarks": [{"name": "a", "point_mm": [0, 0, 3]},
@@ -48,7 +48,7 @@ TEST(RegisterStep, LandmarksAloneGiveTheMotion) {
 }
 
 TEST(RegisterStep, AScaleIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "r", "do": "register", "object": "ball", "onto": "ball",
       "motion": "similarity"})")
                 .find("scales"),

@@ -12,7 +12,7 @@ namespace {
 using namespace tests;
 
 TEST(RepairStep, AMeshWithAHoleAndATurnedTriangleBecomesAnObject) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   brep::Triangles box = brep::shapes::box({-30, -30, -5.0}, {30, 30, 30});
   box.faces.pop_back();
   std::swap(box.faces[0][1], box.faces[0][2]);
@@ -26,7 +26,7 @@ TEST(RepairStep, AMeshWithAHoleAndATurnedTriangleBecomesAnObject) {
 }
 
 TEST(RepairStep, ARepairThatIsAskedForNothingOrLeavesAHoleIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "r", "do": "repair", "path": "open.off"})").find("'weld_mm'"),
             std::string::npos);
   brep::Triangles box = brep::shapes::box({-3, -3, -3}, {3, 3, 3});

@@ -14,7 +14,7 @@ double slice_mm3(double r, double a, double b) {
 }
 
 TEST(SawStep, AKerfTakesASliceOfTheBallInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"({"id": "sawn", "do": "saw", "object": "ball",
       "line_mm": [[-40, -40, 3], [40, -40, 3]], "direction": [0, 1, 0], "depth_mm": 80, "kerf_mm": 4})");
   const Evaluation evaluation = evaluate(plan);
@@ -26,7 +26,7 @@ TEST(SawStep, AKerfTakesASliceOfTheBallInBothKernels) {
 }
 
 TEST(SawStep, ABentLineIsMitredAlikeInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"({"id": "sawn", "do": "saw", "object": "ball",
       "line_mm": [[-40, -40, 0], [0, -40, 8], [40, -40, -5]], "direction": [0.1, 1, 0.2], "depth_mm": 45,
       "kerf_mm": 3})");
@@ -39,7 +39,7 @@ TEST(SawStep, ABentLineIsMitredAlikeInBothKernels) {
 }
 
 TEST(SawStep, ALineOfOnePointOrWithoutDirectionIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "saw", "object": "ball", "line_mm": [[0, 0, 0]],
       "direction": [0, 1, 0]})")
                 .find("at least 2"),

@@ -11,7 +11,7 @@ namespace {
 using namespace tests;
 
 /// A scan of two balls of 8 and 5 mm and a hollow one, and a plan on it.
-Plan two_balls(const TestFolder& folder, const std::string& steps) {
+Plan two_balls(const ScratchFolder& folder, const std::string& steps) {
   voxel::Scene scene = ball_scene(20.0);
   auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   std::size_t at = 0;
@@ -34,7 +34,7 @@ Plan two_balls(const TestFolder& folder, const std::string& steps) {
 }
 
 TEST(SegmentStep, ThePartsOfAWindowAreChosenAlikeInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(two_balls(folder, R"(
       {"id": "all", "do": "segment", "scan": "ct", "window": "0:"},
       {"id": "large", "do": "segment", "scan": "ct", "window": "0:", "largest": true},
@@ -50,7 +50,7 @@ TEST(SegmentStep, ThePartsOfAWindowAreChosenAlikeInBothKernels) {
 }
 
 TEST(SegmentStep, WhatOnlyVoxelsKnowHasNoMeshAndSaysWhy) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(two_balls(folder, R"(
       {"id": "grown", "do": "segment", "scan": "ct", "tolerance": 400, "seeds_mm": [[-14, 0, 0]]},
       {"id": "seeded", "do": "segment", "scan": "ct", "window": "0:", "seeds_mm": [[-14, 0, 0]]},
@@ -65,7 +65,7 @@ TEST(SegmentStep, WhatOnlyVoxelsKnowHasNoMeshAndSaysWhy) {
 }
 
 TEST(SegmentStep, OtsuSettlesTheWindowThatBothKernelsTake) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation =
       evaluate(two_balls(folder, R"({"id": "bright", "do": "segment", "scan": "ct", "otsu": 2})"));
   const Object& bright = evaluation.object("bright");
@@ -74,7 +74,7 @@ TEST(SegmentStep, OtsuSettlesTheWindowThatBothKernelsTake) {
 }
 
 TEST(SegmentStep, WhatCannotBeMeantIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto refusal = [&](const std::string& rest) {
     return ball_refusal(folder, R"({"id": "s", "do": "segment", "scan": "ct")" + rest + "}");
   };

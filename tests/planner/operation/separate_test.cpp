@@ -24,7 +24,7 @@ brep::Triangles hollow_and_small() {
 }
 
 TEST(SeparateStep, TheSecondPieceIsTheSmallerBlockAndTheFirstKeepsItsCavity) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   brep::write_mesh(hollow_and_small(), folder / "two.off");
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "two", "do": "import", "path": "two.off"},
@@ -36,7 +36,7 @@ TEST(SeparateStep, TheSecondPieceIsTheSmallerBlockAndTheFirstKeepsItsCavity) {
 }
 
 TEST(SeparateStep, APieceThatIsNotThereOrNotSaidIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "separate", "object": "ball"})").find("is missing"),
             std::string::npos);
   try {

@@ -9,14 +9,14 @@ namespace {
 using namespace tests;
 
 TEST(ShellStep, TheOuterLayerOfABallIsTheBallLessASmallerOne) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation =
       evaluate(ball_plan(folder, R"({"id": "crust", "do": "shell", "object": "ball", "thickness_mm": 8})"));
   expect_of_mesh(evaluation.object("crust"), ball_mm3(ball_radius_mm) - ball_mm3(ball_radius_mm - 8.0), 0.03);
 }
 
 TEST(ShellStep, AThicknessOfNothingIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(ball_refusal(folder, R"({"id": "s", "do": "shell", "object": "ball", "thickness_mm": 0})")
                 .find("above zero"),
             std::string::npos);

@@ -9,7 +9,7 @@ namespace {
 using namespace tests;
 
 TEST(SmoothStep, TheVolumeStaysAndOneKernelAloneHasNoCertificate) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation =
       evaluate(ball_plan(folder, R"({"id": "even", "do": "smooth", "object": "ball", "rounds": 5})"));
   const Object& even = evaluation.object("even");
@@ -21,7 +21,7 @@ TEST(SmoothStep, TheVolumeStaysAndOneKernelAloneHasNoCertificate) {
 }
 
 TEST(SmoothStep, AChangeOfVolumeBeyondItsShareLeavesNoObject) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"({"id": "even", "do": "smooth", "object": "ball", "rounds": 1000,
       "max_volume_share": 1e-9})");
   EXPECT_THROW(evaluate(plan), std::runtime_error);

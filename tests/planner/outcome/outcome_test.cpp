@@ -86,7 +86,7 @@ double of(const Displacement& a, int axis) {
 
 /// OCTOTOMY_RUNS=100 makes as many.
 TEST(Outcome, AKnownMotionLiesWithinItsInterval) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   verify::HeadOptions coarse;
   coarse.voxel_mm = 2.0;
   const voxel::Scene before = verify::head_phantom(coarse);
@@ -146,7 +146,7 @@ TEST(Outcome, AKnownMotionLiesWithinItsInterval) {
 }
 
 TEST(Outcome, RefusesAPlanThatMovesNothingAndAScanWithoutBone) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   verify::HeadOptions coarse;
   coarse.voxel_mm = 4.0;
   voxel::Scene before = verify::head_phantom(coarse);

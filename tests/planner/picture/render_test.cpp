@@ -11,7 +11,7 @@ namespace {
 using namespace tests;
 
 TEST(RenderStep, AMovedObjectIsDrawnInItsColourAndColouredByDistance) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"(
       {"id": "moved", "do": "move", "object": "ball", "translate_mm": [2, 0, 0]},
       {"id": "both", "do": "render", "objects": ["ball", "moved"], "path": "both.png", "size": "200x200",
@@ -34,7 +34,7 @@ TEST(RenderStep, AMovedObjectIsDrawnInItsColourAndColouredByDistance) {
 }
 
 TEST(RenderStep, WhatCannotBeDrawnIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto refusal = [&](const std::string& rest) {
     return ball_refusal(folder,
                         R"({"id": "r", "do": "render", "path": "a.png", "objects": ["ball"])" + rest + "}");

@@ -11,7 +11,7 @@ namespace {
 using namespace tests;
 
 TEST(SliceStep, ThePictureIsInTrueScaleAndTellsTheOutlinesArea) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan =
       ball_plan(folder, R"({"id": "axial", "do": "slice", "scan": "ct", "path": "pictures/axial.png",
       "axial": "12", "objects": ["ball"], "level": [0, 2000]})");
@@ -27,7 +27,7 @@ TEST(SliceStep, ThePictureIsInTrueScaleAndTellsTheOutlinesArea) {
 }
 
 TEST(SliceStep, WhatCannotBeDrawnIsRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto refusal = [&](const std::string& rest) {
     return ball_refusal(folder, R"({"id": "s", "do": "slice", "scan": "ct")" + rest + "}");
   };

@@ -26,7 +26,7 @@ std::string steps(const std::string& up_mm, const std::string& front_mm = "[0, -
 }
 
 std::map<std::string, std::string> keys(const std::string& text) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   return step_keys(ball_plan(folder, text), "common",
                    [](const std::string& scan) { return "key of " + scan; });
 }
@@ -42,7 +42,7 @@ std::set<std::string> changed(const std::map<std::string, std::string>& a,
 using Ids = std::set<std::string>;
 
 TEST(Dependence, AStepNeedsWhatItIsMadeOfAndNothingElse) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, steps("2"));
   EXPECT_EQ(needed_for(plan, {"moved"}), (Ids{"ball", "cut", "cap", "moved"}));
   EXPECT_EQ(needed_for(plan, {"cut"}), Ids{"cut"});
@@ -62,7 +62,7 @@ TEST(Dependence, OnlyStepsThatHangOnAChangeGetAnotherKey) {
 }
 
 TEST(Dependence, AFileThatAStepReadsCountsByItsContent) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const auto key = [&](const char* point) {
     std::ofstream(folder / "a.json") << R"({"landmarks": [{"name": "a", "point_mm": )" << point << "}]}";
     const Plan plan = ball_plan(folder, R"({"id": "marks", "do": "landmarks", "file": "a.json"})");
@@ -74,7 +74,7 @@ TEST(Dependence, AFileThatAStepReadsCountsByItsContent) {
 }
 
 TEST(Dependence, MeshesAreNeededByWhatIsFittedOnThem) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, steps("2") + R"(,
       {"id": "twin", "do": "mirror", "object": "cap", "fit": true}, {"id": "all", "do": "combine",
           "expression": "twin | cup"})");

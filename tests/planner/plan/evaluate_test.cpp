@@ -44,7 +44,7 @@ class Evaluate : public testing::Test {
     }
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   SortedJson plan_;
 };
 

@@ -43,7 +43,7 @@ std::map<std::string, double> truths_mm3() {
 }
 
 TEST(ExamplePlan, EachFragmentIsWithinOnePerCentOfItsTruthInBothKernels) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const voxel::Scene head = verify::head_phantom();
   voxel::write_scene(head, folder / "head.nrrd");
   Plan plan = read_plan(std::string(OCTOTOMY_SOURCE_DIR) + "/planner/le_fort_i.plan.json");

@@ -33,7 +33,7 @@ class History : public testing::Test {
   void write(const std::string& text) const { std::ofstream(plan_) << text; }
   std::string file() const { return tests::bytes_of(plan_); }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   fs::path plan_ = folder_ / "my.plan.json";
 };
 

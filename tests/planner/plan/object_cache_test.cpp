@@ -38,7 +38,7 @@ std::string text_of(const Evaluation& evaluation) {
 }
 
 TEST(ObjectCache, AReplayTakesEveryAnswerAndTellsTheSame) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   ObjectCache cache;
   EvaluateOptions options;
   options.cache = &cache;
@@ -51,7 +51,7 @@ TEST(ObjectCache, AReplayTakesEveryAnswerAndTellsTheSame) {
 }
 
 TEST(ObjectCache, AChangedLastStepIsTheOnlyOneThatIsMade) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   ObjectCache cache;
   EvaluateOptions options;
   options.cache = &cache;
@@ -66,7 +66,7 @@ TEST(ObjectCache, OfAPlanOfThirtyStepsTheLastMotionAloneIsMade) {
   // OCTOTOMY_SIDE=512 tells the time at that size.
   const char* asked = std::getenv("OCTOTOMY_SIDE");
   const int side = asked != nullptr ? std::atoi(asked) : 64;
-  const TestFolder folder;
+  const ScratchFolder folder;
   voxel::write_scene(ball_scene(ball_radius_mm), folder / "ball.nrrd");
   const auto plan = [&](double up_mm) {
     nlohmann::json steps =
@@ -112,7 +112,7 @@ TEST(ObjectCache, OfAPlanOfThirtyStepsTheLastMotionAloneIsMade) {
 }
 
 TEST(ObjectCache, AnotherScanInItsPlaceIsReadAnew) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   ObjectCache cache;
   EvaluateOptions options;
   options.cache = &cache;
@@ -126,7 +126,7 @@ TEST(ObjectCache, AnotherScanInItsPlaceIsReadAnew) {
 }
 
 TEST(ObjectCache, AnAnswerWithoutMeshesIsNoneWithThem) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   ObjectCache cache;
   EvaluateOptions options;
   options.cache = &cache;
@@ -152,7 +152,7 @@ TEST(ObjectCache, TheOneUsedLongestAgoGoesFirst) {
 }
 
 TEST(ObjectCache, AnswersOfManyBytesMakeRoomForEachOther) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, steps(5.0)));
   const Object& object = evaluation.object("ball");
   const std::uint64_t bytes = ObjectCache::bytes_of(object);

@@ -20,7 +20,7 @@ std::string errors_json(const std::string& named) {
 }
 
 /// Two caps 10 mm apart, the lower one 4 mm upwards, and a distance and an angle of landmarks.
-Json trials_of(const TestFolder& folder, const std::string& errors, const std::string& move) {
+Json trials_of(const ScratchFolder& folder, const std::string& errors, const std::string& move) {
   const Plan plan = ball_plan(folder, ball_caps(R"({"id": "marks", "do": "landmarks", "points": [
       {"name": "a", "point_mm": [0, 0, -12]}, {"name": "b", "point_mm": [0, 0, -8]},
       {"name": "c", "point_mm": [12, 0, -8]}]},
@@ -51,7 +51,7 @@ constexpr double normal_99 = 2.5758;
 const std::string typed = R"("translate_mm": [0, 0, 4])";
 
 TEST(TrialsStep, SeatingReachesDisplacementsAndGapsAsTheNormalLawSays) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Json trials = trials_of(folder, R"("seating_mm": 0.5)", typed);
   for (const char* word : {"forward", "left", "up"})
     EXPECT_NEAR(width_of(trials, word, "up, its centroid"), 0.5 * normal_99, 0.05) << word;
@@ -65,14 +65,14 @@ TEST(TrialsStep, SeatingReachesDisplacementsAndGapsAsTheNormalLawSays) {
 }
 
 TEST(TrialsStep, SegmentationClosesAGapFromBothSides) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Json trials = trials_of(folder, R"("segmentation_mm": 0.2)", typed);
   EXPECT_NEAR(width_of(trials, "gap", "upper and up"), 2.0 * 0.2 * normal_99, 0.04);
   EXPECT_EQ(width_of(trials, "up", "up, its centroid"), 0.0);
 }
 
 TEST(TrialsStep, LandmarksReachThroughTheMotionsMadeOfThem) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const std::string by_marks = R"("from": "a", "to": "b")";
   const Json trials = trials_of(folder, R"("landmark_mm": 1)", by_marks);
   // The difference of two landmarks.
@@ -87,7 +87,7 @@ TEST(TrialsStep, LandmarksReachThroughTheMotionsMadeOfThem) {
 }
 
 TEST(TrialsStep, OverlapGrowsWithDepthTimesArea) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // The caps' faces overlap by 2 mm over the disc of radius sqrt(375).
   const Json trials = trials_of(folder, R"("seating_mm": 0.2)", R"("translate_mm": [0, 0, 12])");
   const double disc_mm2 = M_PI * 375.0;
@@ -97,7 +97,7 @@ TEST(TrialsStep, OverlapGrowsWithDepthTimesArea) {
 }
 
 TEST(TrialsStep, ASawsWidthWidensTheGapItMade) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, R"({"id": "cut", "do": "saw", "object": "ball",
       "line_mm": [[-30, -30, 0], [30, -30, 0]], "direction": [0, 1, 0], "depth_mm": 60, "kerf_mm": 2},
       {"id": "high", "do": "mask", "regions": [{"view": "anterior",
@@ -113,7 +113,7 @@ TEST(TrialsStep, ASawsWidthWidensTheGapItMade) {
 }
 
 TEST(TrialsStep, SameSeedSameBits) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const std::string errors =
       R"("seating_mm": 0.5, "seating_deg": 1, "landmark_mm": 1, "trials": 500, "seed": )";
   const std::string move = R"("from": "a", "to": "b")";

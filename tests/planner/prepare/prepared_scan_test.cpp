@@ -9,7 +9,7 @@ namespace {
 using namespace tests;
 
 TEST(PreparedScan, AScanThatStepsMakeIsSegmentedInBothKernels) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Evaluation evaluation = evaluate(ball_plan(folder, R"(
       {"id": "face", "do": "crop", "scan": "ct", "low_mm": [-25, -25, -25], "high_mm": [25, 25, 25]},
       {"id": "even", "do": "slices", "scan": "face", "spacing_mm": 0.7, "kernel": "cubic"},
@@ -26,7 +26,7 @@ TEST(PreparedScan, AScanThatStepsMakeIsSegmentedInBothKernels) {
 }
 
 TEST(PreparedScan, AHeadrestIsTakenOutAndThePlansScanStays) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   voxel::Scene scene = ball_scene(12.0);
   auto& samples = std::get<voxel::Int16Samples>(scene.samples);
   for (std::size_t at = 0; at < samples.size(); ++at)
@@ -44,7 +44,7 @@ TEST(PreparedScan, AHeadrestIsTakenOutAndThePlansScanStays) {
 }
 
 TEST(PreparedScan, WarnsOfASupportThatHangsOnTheHeadAndTheAdviceTakesItOut) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   // A ball of 20 mm, a board of 4 mm behind it, and a bridge of 2 mm between them.
   const auto field = [](bool has_board, bool has_bridge) {
     voxel::Scene scene;
@@ -90,7 +90,7 @@ TEST(PreparedScan, WarnsOfASupportThatHangsOnTheHeadAndTheAdviceTakesItOut) {
 }
 
 TEST(PreparedScan, NamesABoardThatIsFlushWithTheHeadAndTheAdviceTakesItOut) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   voxel::Scene scene;
   scene.lattice = voxel::axis_aligned_lattice({80, 80, 40}, {1, 1, 1}, {-39.5, -39.5, -19.5});
   scene.meaning = voxel::Meaning::Hounsfield;
@@ -122,7 +122,7 @@ TEST(PreparedScan, NamesABoardThatIsFlushWithTheHeadAndTheAdviceTakesItOut) {
 }
 
 TEST(PreparedScan, NamesAndValuesThatCannotBeAreRefused) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   EXPECT_NE(
       ball_refusal(folder, R"({"id": "ct", "do": "gaussian", "scan": "ct", "sigma_mm": 1})").find("taken"),
       std::string::npos);

@@ -142,7 +142,7 @@ bool has(const Evaluation& evaluation, const char* piece, const std::string& nam
 }
 
 TEST(Procedure, OnTheHeadPhantomEachTakesItsOwnPieceAndLeavesTheOthers) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   verify::HeadOptions coarse;
   coarse.voxel_mm = 2.0;
   voxel::write_scene(verify::head_phantom(coarse), folder / "head.nrrd");
@@ -233,7 +233,7 @@ glm::dvec3 way_mm(const Evaluation& evaluation, const char* moved, const std::st
 }
 
 TEST(Procedure, TheThesissThreeOperationsComeOutOfAFewTypedValues) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   verify::HeadOptions coarse;
   coarse.voxel_mm = 2.0;
   voxel::write_scene(verify::head_phantom(coarse), folder / "head.nrrd");
@@ -334,7 +334,7 @@ TEST(Procedure, ZygomasOfBothSidesAreMirrorImages) {
 }
 
 TEST(Procedure, AMirroredReconstructionFillsAHoleUpToItsGap) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   verify::HeadOptions coarse;
   coarse.voxel_mm = 2.0;
   voxel::Scene head = verify::head_phantom(coarse);

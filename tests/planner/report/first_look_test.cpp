@@ -47,7 +47,7 @@ TEST(FirstLook, AScanOfOneValueIsRefused) {
 }
 
 TEST(FirstLook, ARawScanIsLookedAtWithAWarning) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   voxel::write_scene(raw_head(), folder / "head.nrrd");
   const Result result = first_look(folder / "head.nrrd");
   ASSERT_FALSE(result.findings.empty());
@@ -63,7 +63,7 @@ TEST(FirstLook, ARawScanIsLookedAtWithAWarning) {
 }
 
 TEST(FirstLook, ItsPlanCanBeReplayed) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   voxel::write_scene(raw_head(), folder / "head.nrrd");
   const Result result = first_look(folder / "head.nrrd", {1500.0, 500.0, {}});
   EXPECT_TRUE(result.findings.empty());

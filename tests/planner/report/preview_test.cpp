@@ -10,7 +10,7 @@ namespace {
 
 using namespace tests;
 
-Plan plan_in(const TestFolder& folder) {
+Plan plan_in(const ScratchFolder& folder) {
   return ball_plan(folder, R"(
       {"id": "marks", "do": "landmarks", "points": [{"name": "front", "point_mm": [0, -20, 0]}]},
       {"id": "cut", "do": "mask", "regions": [{"view": "anterior",
@@ -26,7 +26,7 @@ std::uint64_t voxels(const Preview& made, std::size_t object) {
 }
 
 TEST(Preview, AMaskShowsWhatItHoldsOfTheBoneThatItCuts) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = plan_in(folder);
   const Preview made = preview(plan, "cut");
   const Evaluation whole = evaluate(plan);
@@ -38,7 +38,7 @@ TEST(Preview, AMaskShowsWhatItHoldsOfTheBoneThatItCuts) {
 }
 
 TEST(Preview, AMoveShowsTheMovedPieceAndWhatStaysAndEvaluatesNoMoreThanThat) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Preview made = preview(plan_in(folder), "moved");
   ASSERT_EQ(made.objects.size(), 2u);
   EXPECT_EQ(made.objects[1].name, "moved");
@@ -51,7 +51,7 @@ TEST(Preview, AMoveShowsTheMovedPieceAndWhatStaysAndEvaluatesNoMoreThanThat) {
 }
 
 TEST(Preview, LandmarksAreBallsOnTheFirstPiece) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Preview made = preview(plan_in(folder), "marks");
   ASSERT_EQ(made.objects.size(), 2u);
   EXPECT_EQ(made.objects[1].name, "front");
@@ -59,7 +59,7 @@ TEST(Preview, LandmarksAreBallsOnTheFirstPiece) {
 }
 
 TEST(Preview, AStepThatIsNotThereIsRefusedWithTheNearest) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   try {
     preview(plan_in(folder), "mooved");
     FAIL();

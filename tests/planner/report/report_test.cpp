@@ -46,7 +46,7 @@ class Report : public testing::Test {
     json_ = write_result(result_, folder_ / "out");
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   Result result_;
   nlohmann::ordered_json json_;
 };

@@ -25,7 +25,7 @@ int entries(const fs::path& folder) {
 }
 
 TEST(ResultFolder, IsNotThereBeforeItIsWhole) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   {
     ResultFolder result(folder / "out");
     write_text(result.path() / "result.json", "{}");
@@ -37,7 +37,7 @@ TEST(ResultFolder, IsNotThereBeforeItIsWhole) {
 }
 
 TEST(ResultFolder, LeavesNothingWhereItIsNotFinished) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   {
     const ResultFolder result(folder / "out");
     write_text(result.path() / "result.json", "{}");
@@ -69,7 +69,7 @@ std::string refusal(const fs::path& folder, const std::vector<fs::path>& names =
 }
 
 TEST(ResultFolder, ReplacesAnEarlierResultWholly) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   publish(folder / "out", {"result.json", "left_over.stl", "views/left.png"}, "old");
   {
     ResultFolder result((folder / "out").string() + "/");
@@ -83,7 +83,7 @@ TEST(ResultFolder, ReplacesAnEarlierResultWholly) {
 }
 
 TEST(ResultFolder, FilesOfSomebodyElseStayWhereTheyAre) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   publish(folder / "out", {"face.inp", "views/left.png"}, "old");
   write_text(folder / "out/face.frd", "solved");
   write_text(folder / "out/views/mine.png", "mine");
@@ -108,7 +108,7 @@ TEST(ResultFolder, FilesOfSomebodyElseStayWhereTheyAre) {
 }
 
 TEST(ResultFolder, AChangedFileIsRefusedByItsName) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   publish(folder / "out", {"report.html", "views/left.png"}, "old");
   EXPECT_EQ(refusal(folder / "out"), "");
   write_text(folder / "out/views/left.png", "odl");
@@ -120,7 +120,7 @@ TEST(ResultFolder, AChangedFileIsRefusedByItsName) {
 }
 
 TEST(ResultFolder, AFileInTheWayIsRefusedBeforeTheWork) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   publish(folder / "out", {"report.html"}, "old");
   write_text(folder / "out/face.inp", "mine");
   write_text(folder / "out/views", "mine");
@@ -132,7 +132,7 @@ TEST(ResultFolder, AFileInTheWayIsRefusedBeforeTheWork) {
 
 TEST(ResultFolder, AFileThatChangesDuringTheWorkIsKeptAndSoIsTheResult) {
   for (const char* touched : {"report.html", "face.inp", "face.inp/mine"}) {
-    const tests::TestFolder folder;
+    const tests::ScratchFolder folder;
     publish(folder / "out", {"report.html"}, "old");
     ResultFolder result(folder / "out");
     write_text(result.path() / "report.html", "new");
@@ -152,7 +152,7 @@ TEST(ResultFolder, AFileThatChangesDuringTheWorkIsKeptAndSoIsTheResult) {
 }
 
 TEST(ResultFolder, RefusesAFolderOfSomethingElseAndAFile) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   fs::create_directories(folder / "thesis");
   write_text(folder / "thesis/chapter_1.tex", "dear");
   write_text(folder / "thesis/result.json", "{}");
@@ -167,7 +167,7 @@ TEST(ResultFolder, RefusesAFolderOfSomethingElseAndAFile) {
 }
 
 TEST(ResultFolder, TheWorkingFolderIsNotReplacedUnderItsShell) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const fs::path before = fs::current_path();
   fs::create_directories(folder / "out/below");
   fs::current_path(folder / "out/below");
@@ -179,7 +179,7 @@ TEST(ResultFolder, TheWorkingFolderIsNotReplacedUnderItsShell) {
 }
 
 TEST(ResultFolder, ALinkIsFollowedAndPermissionsStay) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   fs::create_directories(folder / "disk");
   fs::create_directory_symlink("disk/out", folder / "link");
   publish(folder / "link", {"report.html"}, "old");
@@ -217,7 +217,7 @@ bool killed_after(std::chrono::microseconds while_us, const Work& work) {
 }
 
 TEST(ResultFolder, AKillAtAnyInstantLeavesAWholeResultAndEveryFileOfSomebodyElse) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const fs::path out = folder / "out";
   const std::vector<fs::path> names{"report.html", "result.json", "views/a.png", "views/b.png"};
   publish(out, names, "0");

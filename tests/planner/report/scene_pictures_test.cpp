@@ -25,7 +25,7 @@ std::string names(const std::vector<voxel::DrawnObject>& objects) {
 }
 
 FinalScene scene_of(const std::string& steps) {
-  const TestFolder folder;
+  const ScratchFolder folder;
   const Plan plan = ball_plan(folder, steps);
   EvaluateOptions quick;
   quick.meshes = false;

@@ -40,7 +40,7 @@ class VerificationPage : public testing::Test {
     verification_.not_covered = {"cut: a mask is certified with what it cuts"};
   }
 
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   Verification verification_;
 };
 

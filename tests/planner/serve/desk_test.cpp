@@ -20,7 +20,7 @@ class DeskTest : public testing::Test {
     desk_->with_document([&](Document& document) { document.edit({{"add", {{"step", step}}}}); });
   }
 
-  tests::TestFolder kept_;
+  tests::ScratchFolder kept_;
   fs::path folder_ = fs::canonical(kept_.path());
   std::unique_ptr<Desk> desk_ = std::make_unique<Desk>(folder_);
 };

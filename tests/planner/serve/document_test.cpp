@@ -28,7 +28,7 @@ class DocumentTest : public testing::Test {
   }
 
   const Json skin_{{"id", "skin"}, {"do", "window"}, {"scan", "ct"}, {"low", -300}};
-  tests::TestFolder folder_;
+  tests::ScratchFolder folder_;
   Folders folders_;
   std::unique_ptr<Document> document_;
 };

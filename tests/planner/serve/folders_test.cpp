@@ -24,7 +24,7 @@ class FoldersTest : public testing::Test {
     folders_.open(root_ / "open");
   }
 
-  tests::TestFolder kept_;
+  tests::ScratchFolder kept_;
   fs::path root_ = fs::canonical(kept_.path());
   Folders folders_;
 };

@@ -43,7 +43,7 @@ TEST(Gate, TokensAreLongAndDiffer) {
 }
 
 TEST(Gate, ATokenFileIsItsOwnersAlone) {
-  const tests::TestFolder folder;
+  const tests::ScratchFolder folder;
   const fs::path path = folder / "token";
   const std::string token = token_in(path);
   EXPECT_EQ(token_in(path), token);
