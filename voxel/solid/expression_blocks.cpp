@@ -5,6 +5,13 @@
 #include <cassert>
 #include <memory>
 
+// At a block:
+//   1 every operand says which of the 64 children are Full, and which are not Empty;
+//   2 the expression is run over these covers in three-valued logic, 64 children at a time: most are decided;
+//   3 operands that are Full or Empty in an undecided child drop out of the expression there. If one octree
+//     alone is left, its node is the answer;
+//   4 otherwise the walk goes into the child, or, at the leaves, runs the expression over words of 64 voxels.
+
 namespace octotomy::voxel {
 namespace {
 
@@ -123,7 +130,6 @@ const Node* ExpressionBlocks::enter(const EnteredBlock& outer, int child, Entere
 
 void ExpressionBlocks::cover_children(EnteredBlock& block) const {
   const TargetBlock target{block.origin, 1 << (2 * block.height - 2), margin_};
-  block.asked = 0;
   block.covers.resize(operands_.size());
   if (block.height == 2) block.operand_words.resize(operands_.size());
   for (std::size_t i = 0; i < operands_.size(); ++i) {
@@ -143,8 +149,7 @@ void ExpressionBlocks::cover_children(EnteredBlock& block) const {
 
 void ExpressionBlocks::ask_words(EnteredBlock& block, std::uint64_t wanted) const {
   assert(block.height == 2);
-  std::uint64_t open = wanted & ~block.asked & block.cover.undecided();
-  block.asked |= wanted;
+  std::uint64_t open = wanted & block.cover.undecided();
   for (std::size_t i = 0; i < operands_.size() && open != 0; ++i) {
     fetch_words(i, open, block);
     // A node's words are neither empty nor full.

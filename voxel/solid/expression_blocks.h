@@ -12,14 +12,7 @@ namespace octotomy::voxel {
 
 /// An expression over a universe, one block at a time: for walks that build all of it, and for those that
 /// look at a few blocks only. Nothing is kept between questions: what a walk knows of a block is in its
-/// EnteredBlock, so threads may ask at once. At a block (thesis 7.2 for three operands, here for any number):
-///   1 every operand says which of the 64 children are Full, and which are not Empty;
-///   2 the expression is run over these covers in three-valued logic, 64 children at a time: most are
-///   decided; 3 operands that are Full or Empty in an undecided child drop out of the expression there. If
-///   one octree alone is
-///     left, its node is the answer;
-///   4 otherwise the walk goes into the child, or, at the leaves, runs the expression over words of 64
-///   voxels.
+/// EnteredBlock, so threads may ask at once. Thesis 7.2 does so for three operands, this for any number.
 class ExpressionBlocks {
  public:
   /// The expression must outlive it. `margin` as TargetBlock's.
@@ -38,7 +31,6 @@ class ExpressionBlocks {
     glm::ivec3 origin{0};  ///< its first voxel
     Cover cover;           ///< of its children; at height 2 words narrow it
     // At height 2 only:
-    std::uint64_t asked = 0;              ///< leaves whose words were asked for
     std::array<std::uint64_t, 64> words;  ///< of the leaves asked for that `cover` leaves undecided
     // Of the operands:
     std::vector<Operation> operations;
@@ -46,12 +38,13 @@ class ExpressionBlocks {
     std::vector<std::array<std::uint64_t, 64>> operand_words;
   };
 
+  /// Goes into the block that holds the whole universe.
   void enter_root(EnteredBlock& root) const;
   /// Goes into a child that the outer block's cover leaves undecided. If one octree alone decides there,
   /// returns its node and enters nothing. Precondition: the outer block's height is 3 or more.
   const Node* enter(const EnteredBlock& outer, int child, EnteredBlock& inner) const;
-  /// Asks for the words of the leaves of a mask, those that are undecided and were not asked for before.
-  /// Precondition: the block's height is 2.
+  /// Asks for the words of the leaves of a mask that are undecided. A leaf that the first operands decide
+  /// has no word afterwards: `cover` tells it. Precondition: the block's height is 2.
   void ask_words(EnteredBlock& block, std::uint64_t wanted) const;
 
  private:
