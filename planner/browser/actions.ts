@@ -13,10 +13,12 @@ export function use_wire(one: Wire): void {
 export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
     wire.ask<Answer>(word, fields);
 
-/// Asks, and shows a refusal to the person; null then. Where the line broke, what `lost` answers.
+/// Asks, and shows a refusal to the person; null then. Where the line is not there, or breaks before the
+/// answer, what `lost` answers: unless told otherwise, the same is asked again once the line is there.
 export async function try_to<Answer>(
     word: string, fields: object = {},
-    lost: () => Promise<Answer|null> = async () => null): Promise<Answer|null> {
+    lost: () => Promise<Answer|null> = () =>
+        next_greeting().then(() => try_to<Answer>(word, fields))): Promise<Answer|null> {
   try {
     return await wire.ask<Answer>(word, fields);
   } catch (error) {
@@ -26,6 +28,12 @@ export async function try_to<Answer>(
     return null;
   }
 }
+
+let waiting_for_greeting: (() => void)[] = [];
+/// Done when the line is there again and the plan is as the server has it.
+const next_greeting = (): Promise<void> => new Promise((resolve) => waiting_for_greeting.push(resolve));
+/// Done once the server has said its first word to this page.
+export const first_greeting = (): Promise<void> => state.hello ? Promise.resolve() : next_greeting();
 
 /// Takes a plan's state; the first of a plan also takes how this browser last looked at it, or fits the
 /// panes.
@@ -90,17 +98,16 @@ export function fitted(plan: PlanState, name?: string): Pick<State, "panes"|"cro
   return {panes, cross_mm: middle, grey: scan?.window_suggestion ?? [500, 2000]};
 }
 
-let waiting_for_greeting: (() => void)[] = [];
-/// Done when the line is there again and the plan is as the server has it.
-const next_greeting = (): Promise<void> => new Promise((resolve) => waiting_for_greeting.push(resolve));
+const let_go = async(): Promise<null> => null;
 
 export async function greet(): Promise<void> {
-  const hello = await try_to<Hello>("hello");
+  const hello = await try_to<Hello>("hello", {}, let_go);
   if (!hello) return;
   set({hello, link: "open"});
   // The program was started anew without the plan that this window shows: its file and history are on the
   // disk.
-  const plan = hello.plan_state ?? (state.plan && await try_to<PlanState>("open", {path: state.plan.path}));
+  const plan =
+      hello.plan_state ?? (state.plan && await try_to<PlanState>("open", {path: state.plan.path}, let_go));
   if (plan) take_plan(plan);
   const waiting = waiting_for_greeting;
   waiting_for_greeting = [];
@@ -116,14 +123,21 @@ export async function open_plan(what: {path?: string; phantom?: string}): Promis
   if (plan && state.plan === null) take_plan(plan);
 }
 
-/// One change of the plan, said in words for its history. Where the line breaks, it waits for the next.
-export async function edit(change: object, what: string, select?: string|null): Promise<boolean> {
-  const before = state.plan?.edit;
-  const plan = await try_to<PlanState>("edit", {...change, what}, async () => {
+// A change of the plan. Where the line breaks, it is asked again once the line is there, unless it is done:
+// only the answer was lost then.
+async function change(word: string, fields: object, is_done: () => boolean): Promise<PlanState|null> {
+  return try_to<PlanState>(word, fields, async () => {
     await next_greeting();
+    return is_done() ? state.plan : change(word, fields, is_done);
+  });
+}
+
+/// One change of the plan, said in words for its history.
+export async function edit(changed: object, what: string, select?: string|null): Promise<boolean> {
+  const before = state.plan?.edit;
+  const plan = await change("edit", {...changed, what}, () => {
     const last = state.plan?.history.find((one) => one.id === state.plan?.edit);
-    const is_done = state.plan?.edit !== before && last?.what === what;  // only its answer was lost
-    return is_done ? state.plan : try_to<PlanState>("edit", {...change, what});
+    return state.plan?.edit !== before && last?.what === what;
   });
   if (!plan) return false;
   take_plan(plan);
@@ -139,12 +153,17 @@ export const replace_step = (id: string, step: Step, what: string): Promise<bool
 export const add_steps = (more: Step[], what: string): Promise<boolean> =>
     edit({steps: [...steps(), ...more]}, what, more[more.length - 1]?.id ?? null);
 
+/// A change of the plan that its word tells; null if it was refused.
+export async function change_plan(word: string, fields: object = {}): Promise<PlanState|null> {
+  const {branch, edit: before} = state.plan ?? {};
+  const plan = await change(word, fields, () => state.plan?.edit !== before || state.plan?.branch !== branch);
+  if (plan) take_plan(plan);
+  return plan;
+}
+
 export async function change_history(
     word: "undo"|"redo"|"branch"|"go_to"|"name_version", fields: object = {}): Promise<void> {
-  const plan = await try_to<PlanState>(word, fields);
-  if (!plan) return;
-  take_plan(plan);
-  void evaluate();
+  if (await change_plan(word, fields)) void evaluate();
 }
 
 /// Evaluates what is drawn and measured. Answers come as the event `objects`.

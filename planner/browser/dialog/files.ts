@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Scans and plans from the opened folders, and files that are dropped on the page.
-import {open_plan, token, try_to} from "../actions";
+import {first_greeting, open_plan, token, try_to} from "../actions";
 import {open_dialog} from "../base/dialog";
 import {button, Child, el} from "../base/html";
 import {icon} from "../base/icons";
@@ -17,12 +17,12 @@ interface Entry {
 export function open_picker(
     title = "Open a scan or plan", take: (path: string) => void = (path) => void open_plan({path})): void {
   const dialog = open_dialog(title, "picker");
-  const folders = state.hello?.folders ?? [];
   const choose = (path: string): void => {
     dialog.close();
     take(path);
   };
   const show = async(folder: string): Promise<void> => {
+    const folders = state.hello?.folders ?? [];
     const answer = await try_to<{entries: Entry[]}>("list", {folder});
     const entries = (answer?.entries ?? [])
                         .filter((entry) => entry.kind !== "other")
@@ -48,7 +48,7 @@ export function open_picker(
                    entry.kind === "folder" ? () => choose(join(entry.name)) : undefined)),
            entries.length ? null : el("p", {class: "says"}, "No scan or plan lies here.")));
   };
-  void show(folders[0] ?? ".");
+  void first_greeting().then(() => show(state.hello?.folders[0] ?? "."));
 }
 
 function row(kind: string, name: string, size: string, open: () => void, as_scan?: () => void): Child {

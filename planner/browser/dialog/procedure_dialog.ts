@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Procedures: chosen by name, given the scans that they take, placed by landmarks, and planned with a few
 // values.
-import {edit, evaluate, take_plan, try_to} from "../actions";
+import {change_plan, edit, evaluate} from "../actions";
 import {Dialog, open_dialog} from "../base/dialog";
 import {objects_of_plan} from "../drawn_objects";
 import {open_picker} from "./files";
 import {button, Child, el} from "../base/html";
 import {ask_for_landmarks} from "../tool/point_tools";
-import {PlanState, ProcedureSays} from "../protocol";
+import {ProcedureSays} from "../protocol";
 import {set, state} from "../state";
 import {Vec3} from "../base/vector";
 
@@ -46,11 +46,9 @@ function procedure_form(dialog: Dialog, chosen: ProcedureSays): Child {
         chosen.values.map((one) => [one.name, values[`${chosen.name}.${one.name}`] ?? one.default]));
     const before = objects_of_plan().flatMap((object) => (object.id ? [object.id] : []));
     dialog.close();
-    const plan = await try_to<PlanState>("procedure", {name: chosen.name, landmarks, values: set_values});
-    if (!plan) return;
+    if (!await change_plan("procedure", {name: chosen.name, landmarks, values: set_values})) return;
     // The pieces take the place of what was shown before.
     const hidden = before.map((id) => [id, {...state.looks[id], visible: false}] as const);
-    take_plan(plan);
     set({looks: {...state.looks, ...Object.fromEntries(hidden)}});
     void evaluate();
   };

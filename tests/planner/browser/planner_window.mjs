@@ -38,8 +38,9 @@ export function start_server(folder, more = []) {
   });
 }
 
-/// A proxy between window and server that can be cut: bytes of both directions are dropped then, and nobody is told.
-export function start_proxy() {
+/// A proxy between window and server that can be cut: bytes of both directions are dropped then, and nobody is told. A
+/// WebSocket through it opens so late.
+export function start_proxy({ late_ms = 0 } = {}) {
   let is_cut = false;
   const sockets = new Set();
   const proxy = http.createServer((request, response) => {
@@ -55,7 +56,7 @@ export function start_proxy() {
     if (is_cut) return;
     const [host, port] = request.url.split(':');
     let is_dead = false;
-    const far = net.connect(Number(port), host, () => near.write('HTTP/1.1 200 Connection established\r\n\r\n'));
+    const far = net.connect(Number(port), host, () => setTimeout(() => near.write('HTTP/1.1 200 Connection established\r\n\r\n'), late_ms));
     for (const [from, to] of [[near, far], [far, near]]) {
       sockets.add(from);
       from.on('data', (bytes) => {

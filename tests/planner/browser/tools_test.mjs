@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // On the head phantom: the guided tour to its last step, a step as a command that makes it again, an oblique slice that is
-// tilted, a piece moved by marks in two views, the contacts of two objects, a later scan, and a network that is cut.
+// tilted, a piece moved by marks in two views, the contacts of two objects, a later scan, and networks that are cut or slow.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
@@ -260,12 +260,37 @@ test('a network that is cut in mid-drag is noticed, and nothing is lost', async 
     await far.page.locator('div.lost').waitFor({ state: 'hidden' });
     await far.until(() => Math.abs(step('piece_moved').by.forward_mm - forward_mm - 4) < 0.5, 'the motion of the drag');
     await far.at_rest();
+    proxy.cut();
+    await far.press('Control+z');
+    await far.page.locator('div.lost').waitFor({ state: 'visible' });
+    proxy.mend();
+    await far.until(() => step('piece_moved').by.forward_mm === forward_mm, 'the drag undone, once');
+    await far.at_rest();
+    assert.equal(step('piece_moved').by.forward_mm, forward_mm);
     assert.deepEqual(far.problems.filter((problem) => !/WebSocket|ERR_/.test(problem)), []);
   } finally {
     await far.close();
     proxy.stop();
   }
 });
+
+for (const names of [['Head phantom A CT'], ['Scan or plan', 'head_phantom.nrrd']])
+  test(`${names[0]}, asked for before the page has its connection, comes once it has`, async () => {
+    const bare = fs.mkdtempSync(path.join(os.tmpdir(), 'octotomy-late-'));
+    lay_phantom(bare);
+    const late = await start_server(bare), proxy = await start_proxy({ late_ms: 3000 });
+    const early = await PlannerWindow.open(late.url, { proxy: proxy.url });
+    try {
+      for (const name of names) await early.click(name);
+      await early.page.getByRole('heading', { name: 'The scan is in order' }).waitFor();
+      assert.deepEqual(early.problems, []);
+    } finally {
+      await early.close();
+      proxy.stop();
+      late.stop();
+      fs.rmSync(bare, { recursive: true, force: true });
+    }
+  });
 
 test('no console error, no WebGL context', async () => {
   assert.deepEqual(one.problems, []);
