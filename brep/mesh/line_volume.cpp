@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 turn both surfaces about x and deal their triangles out to slabs of rows; 2 for each row that a triangle
-// passes, list the lines between its two sides there with the place where they cross it; 3 follow each line
-// and sum the lengths inside. Where a row meets a side is computed from the side's lower end whichever
-// triangle asks, and the sign of a crossing follows from the direction of that side, so that lines through a
-// closed surface always leave it as often as they enter.
+// passes, list the lines between its two sides there with the place where they cross it; 3 deal the crossings
+// of a row out to its lines; 4 follow each line and sum the lengths inside. Where a row meets a side is
+// computed from the side's lower end whichever triangle asks, and the sign of a crossing follows from the
+// direction of that side, so that lines through a closed surface always leave it as often as they enter.
 #include "brep/mesh/line_volume.h"
 
 #include <algorithm>
@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <tbb/parallel_for.h>
 #include <tuple>
 #include <vector>
@@ -20,11 +22,12 @@ namespace {
 
 constexpr std::int64_t rows_a_slab = 8;
 
+/// Where a line of a row crosses a triangle.
 struct Hit {
-  std::int64_t line;  // row * columns + column
   double x;
-  int enters;  // 1 or -1
-  int surface;
+  std::uint32_t column;
+  std::int8_t enters;  // 1 or -1
+  std::uint8_t surface;
 };
 
 struct Lines {
@@ -72,6 +75,7 @@ Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
   lines.low_z = low.z + 0.5182818284 * lines.spacing;
   lines.columns = static_cast<std::int64_t>(extent.y / lines.spacing) + 1;
   lines.rows = static_cast<std::int64_t>(extent.z / lines.spacing) + 1;
+  assert(lines.columns <= std::numeric_limits<std::uint32_t>::max());
   return lines;
 }
 
@@ -90,9 +94,8 @@ bool meets(const glm::dvec3& from, const glm::dvec3& to, double z, Meeting& meet
   return true;
 }
 
-void add_hits(const std::array<glm::dvec3, 3>& t, int surface, const Lines& lines, std::int64_t row,
+void add_hits(const std::array<glm::dvec3, 3>& t, std::uint8_t surface, const Lines& lines, double z,
               std::vector<Hit>& hits) {
-  const double z = lines.z(row);
   std::array<Meeting, 3> met;
   std::size_t count = 0;
   for (std::size_t k = 0; k < 3; ++k)
@@ -102,13 +105,42 @@ void add_hits(const std::array<glm::dvec3, 3>& t, int surface, const Lines& line
   if (met[1].y < met[0].y) std::swap(met[0], met[1]);
   const std::int64_t begin = Lines::first(met[0].y, lines.low_y, lines.spacing, lines.columns);
   const std::int64_t end = Lines::first(met[1].y, lines.low_y, lines.spacing, lines.columns);
+  // Counter-clockwise in the plane of y and z, whose left side runs down, faces +x: there the line leaves.
+  const std::int8_t enters = met[0].upward ? 1 : -1;
   for (std::int64_t column = begin; column < end; ++column) {
     const double share = (lines.y(column) - met[0].y) / (met[1].y - met[0].y);
-    // Counter-clockwise in the plane of y and z, whose left side runs down, faces +x: there the line leaves.
-    hits.push_back({row * lines.columns + column, met[0].x + share * (met[1].x - met[0].x),
-                    met[0].upward ? 1 : -1, surface});
+    hits.push_back(
+        {met[0].x + share * (met[1].x - met[0].x), static_cast<std::uint32_t>(column), enters, surface});
   }
 }
+
+/// The hits of one row by their lines, and those of a line by rising x.
+class RowOfHits {
+ public:
+  explicit RowOfHits(const Lines& lines) : ends_(static_cast<std::size_t>(lines.columns)) {}
+
+  void sort(const std::vector<Hit>& hits) {
+    std::fill(ends_.begin(), ends_.end(), 0);
+    for (const Hit& hit : hits) ++ends_[hit.column];
+    std::exclusive_scan(ends_.begin(), ends_.end(), ends_.begin(), std::size_t{0});
+    sorted_.resize(hits.size());
+    for (const Hit& hit : hits) sorted_[ends_[hit.column]++] = hit;
+    for (std::size_t column = 0; column < ends_.size(); ++column) {
+      const std::span<Hit> line = of(column);
+      std::sort(line.begin(), line.end(), [](const Hit& p, const Hit& q) {
+        return std::tie(p.x, p.surface, p.enters) < std::tie(q.x, q.surface, q.enters);
+      });
+    }
+  }
+  std::span<Hit> of(std::size_t column) {
+    const std::size_t begin = column == 0 ? 0 : ends_[column - 1];
+    return std::span(sorted_).subspan(begin, ends_[column] - begin);
+  }
+
+ private:
+  std::vector<std::size_t> ends_;  // of each line's hits
+  std::vector<Hit> sorted_;
+};
 
 struct Sums {
   std::array<LineVolume, 2> halves;  // lengths
@@ -116,21 +148,18 @@ struct Sums {
 };
 
 /// The lengths along one line, from its hits by rising x.
-void follow(const Hit* begin, const Hit* end, const Lines& lines, Sums& sums) {
+void follow(std::span<const Hit> line, std::int64_t row, Sums& sums) {
   ++sums.lines;
   std::array<int, 2> winding{};
-  for (const Hit* hit = begin; hit != end; ++hit)
-    winding[static_cast<std::size_t>(hit->surface)] += hit->enters;
+  for (const Hit& hit : line) winding[hit.surface] += hit.enters;
   if (winding[0] != 0 || winding[1] != 0) {
     ++sums.open_lines;
     return;
   }
-  const std::int64_t row = begin->line / lines.columns, column = begin->line % lines.columns;
-  LineVolume& own = sums.halves[static_cast<std::size_t>((row + column) & 1)];
-  for (const Hit* hit = begin; hit != end; ++hit) {
-    winding[static_cast<std::size_t>(hit->surface)] += hit->enters;
-    if (hit + 1 == end) break;
-    const double length = hit[1].x - hit->x;
+  LineVolume& own = sums.halves[static_cast<std::size_t>((row + line[0].column) & 1)];
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    winding[line[i].surface] += line[i].enters;
+    const double length = line[i + 1].x - line[i].x;
     if (winding[0] != 0) own.a_mm3 += length;
     if (winding[1] != 0) own.b_mm3 += length;
     if (winding[0] != 0 && winding[1] != 0) own.common_mm3 += length;
@@ -164,8 +193,8 @@ LineVolumes line_volumes(const Triangles& first, const Triangles& second, std::s
   const std::vector<std::vector<std::uint32_t>> slabs = deal(a, b, lines);
   std::vector<Sums> sums(slabs.size());
   tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t s) {
-    std::vector<Hit> hits;
-    const auto slab = static_cast<std::int64_t>(s);
+    const std::int64_t first_row = static_cast<std::int64_t>(s) * rows_a_slab;
+    std::array<std::vector<Hit>, rows_a_slab> rows;
     for (const std::uint32_t number : slabs[s]) {
       const bool of_b = number >= a.faces.size();
       const Triangles& surface = of_b ? b : a;
@@ -174,17 +203,18 @@ LineVolumes line_volumes(const Triangles& first, const Triangles& second, std::s
                                            surface.points_mm[face[2]]};
       const double low = std::min({t[0].z, t[1].z, t[2].z}), high = std::max({t[0].z, t[1].z, t[2].z});
       const std::int64_t begin =
-          std::max(slab * rows_a_slab, Lines::first(low, lines.low_z, lines.spacing, lines.rows));
+          std::max(first_row, Lines::first(low, lines.low_z, lines.spacing, lines.rows));
       const std::int64_t end =
-          std::min((slab + 1) * rows_a_slab, Lines::first(high, lines.low_z, lines.spacing, lines.rows));
-      for (std::int64_t row = begin; row < end; ++row) add_hits(t, of_b ? 1 : 0, lines, row, hits);
+          std::min(first_row + rows_a_slab, Lines::first(high, lines.low_z, lines.spacing, lines.rows));
+      for (std::int64_t row = begin; row < end; ++row)
+        add_hits(t, of_b ? 1 : 0, lines, lines.z(row), rows[static_cast<std::size_t>(row - first_row)]);
     }
-    std::sort(hits.begin(), hits.end(), [](const Hit& p, const Hit& q) {
-      return std::tie(p.line, p.x, p.surface, p.enters) < std::tie(q.line, q.x, q.surface, q.enters);
-    });
-    for (std::size_t i = 0, j; i < hits.size(); i = j) {
-      for (j = i; j < hits.size() && hits[j].line == hits[i].line;) ++j;
-      follow(hits.data() + i, hits.data() + j, lines, sums[s]);
+    RowOfHits by_line(lines);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      by_line.sort(rows[r]);
+      for (std::size_t column = 0; column < static_cast<std::size_t>(lines.columns); ++column)
+        if (const std::span<const Hit> line = by_line.of(column); !line.empty())
+          follow(line, first_row + static_cast<std::int64_t>(r), sums[s]);
     }
   });
   LineVolumes volumes;
