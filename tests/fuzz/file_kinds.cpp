@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <utility>
 
 #include "tests/file_bytes.h"
@@ -97,6 +98,14 @@ class SoundFiles {
       make({"render", at("head.nrrd"), "--shading", "mip", "--view", view, "--size", "48x48", "-o",
             at(std::string("slice_") + view + ".png")});
     make({"run", at("small.plan.json"), "--certify", "never", "-o", at("result")});
+    write("signed.plan.json", plan);
+    make({"plan", "sign", at("signed.plan.json"), "--by", "A. Reader"});
+    write("told.plan.json", plan);
+    make({"plan", "history", at("told.plan.json"), "--name", "first"});
+    write("told.plan.json", std::regex_replace(plan, std::regex("300"), "400"));
+    make({"plan", "history", at("told.plan.json"), "--branch", "harder"});
+    write("told.plan.json", std::regex_replace(plan, std::regex("300"), "500"));
+    make({"plan", "history", at("told.plan.json")});
   }
 
  private:
@@ -124,7 +133,7 @@ class Kinds {
 
   FileKind& add(const std::string& name, const std::string& file, std::string sound,
                 Command command = {"info", "MUTANT"}) {
-    all_.push_back({name, file, std::move(sound), {}, {}, false, std::move(command), {}});
+    all_.push_back({name, file, std::move(sound), {}, {}, false, false, std::move(command), {}});
     return all_.back();
   }
 
@@ -144,7 +153,10 @@ class Kinds {
                   {"prepare", "MUTANT", "--step", "median=1", "-o", "OUT.nrrd"},
                   {"prepare", "MUTANT", "--step", "average_down=2", "-o", "OUT.nrrd"},
                   {"convert", "MUTANT", "-o", "OUT.nii.gz"},
-                  {"convert", "MUTANT", "-o", "OUT_dicom", "--dicom"}};
+                  {"convert", "MUTANT", "-o", "OUT_dicom", "--dicom"},
+                  {"look", "MUTANT", "-o", "OUT_look"},
+                  {"find_landmarks", "MUTANT", "-o", "OUT.json"},
+                  {"outcome", at("small.plan.json"), "MUTANT"}};
     kind.command.insert(kind.command.end(), options.begin(), options.end());
     for (Command& verb : kind.verbs) verb.insert(verb.end(), options.begin(), options.end());
     return kind;
@@ -268,7 +280,14 @@ class Kinds {
           {"parts", "MUTANT", "--largest", "1", "-o", "OUT.off"},
           {"separate", "MUTANT", "-o", "OUT.stl"},
           {"compare", "MUTANT", at("box.stl"), "--spacing", "10"},
-          {"slice", at("head.nrrd"), "--octree", "MUTANT", "--size", "16x16", "-o", "OUT.png"}};
+          {"slice", at("head.nrrd"), "--octree", "MUTANT", "--size", "16x16", "-o", "OUT.png"},
+          {"mirror", "MUTANT", "-o", "OUT.stl"},
+          {"mirror", "MUTANT", "--plane", "1,2,3", "1,1,0", "--exactly", "-o", "OUT.ply"},
+          {"offset", "MUTANT", "--by", "2", "--mend", "-o", "OUT.stl"},
+          {"offset", "MUTANT", "--by", "-1", "--voxel", "2", "-o", "OUT.octree"},
+          {"shell", "MUTANT", "--thickness", "3", "--voxel", "2", "--certify", "-o", "OUT.stl"},
+          {"boolean", "MUTANT", "difference", at("box.stl"), "--voxel", "2", "--certify", "-o", "OUT.stl"},
+          {"tet", "MUTANT", "--mend", "-o", "OUT.vtu"}};
     };
     for (const char* kind : {"stl", "ply", "obj", "off", "vtp"})
       mesh(kind, std::string("ball.") + kind, sound_.bytes(std::string("ball.") + kind));
@@ -316,6 +335,17 @@ class Kinds {
                    {"plan", "merge", whole, "MUTANT", whole, "-o", "OUT.plan.json"},
                    {"preview", "MUTANT", "u", "-o", "OUT.png"},
                    {"run", "MUTANT", "--certify", "never", "-o", "OUT_result"}};
+    add("signatures", "signed.plan.json", sound_.bytes("signed.plan.json"), {"plan", "sign", "MUTANT"})
+        .beside = {at("head.nrrd")};
+    FileKind& history = add("history", "told.plan.json.history", sound_.bytes("told.plan.json.history"));
+    history.beside = {at("told.plan.json")};
+    history.is_folder = history.is_changed = true;
+    history.command = {"plan", "history", "MUTANT/told.plan.json"};
+    for (const Command& more :
+         {Command{"--undo"}, {"--go-to", "first"}, {"--branch", "softer"}, {"--name", "last"}}) {
+      history.verbs.push_back(history.command);
+      history.verbs.back().insert(history.verbs.back().end(), more.begin(), more.end());
+    }
     add("question", "question.json",
         R"({"name": "both", "operands": ["box.stl", "box.stl"], "operation": "union", "result": "box.stl"})",
         {"verify", "MUTANT"})

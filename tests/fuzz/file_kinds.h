@@ -18,6 +18,7 @@ struct FileKind {
   std::function<std::string(std::string)> finish;
   std::vector<std::filesystem::path> beside;  ///< files that lie in the mutant's folder
   bool is_folder = false;                     ///< the program is given that folder
+  bool is_changed = false;                    ///< by its commands: its folder is laid anew for each
   std::vector<std::string> command;           ///< reads a mutant
   /// Of these one, chosen by the seed, computes with a mutant that was read. Most take the sound file.
   std::vector<std::vector<std::string>> verbs;

@@ -78,15 +78,16 @@ bool can_read(int file, double seconds) {
   return false;
 }
 
-/// What was said, but for the times that it took.
-std::string without_timings(std::string out) {
-  for (std::size_t at = 0; (at = out.find("\"timings_ms\"", at)) != std::string::npos;)
-    out.erase(at, std::min(out.find('}', at), out.size()) - at);
+/// What was said, but for the times that it took and those at which it was done.
+std::string without_times(std::string out) {
+  for (const auto& [name, end] : {std::pair{"\"timings_ms\"", '}'}, {"\"made_at\"", '\n'}})
+    for (std::size_t at = 0; (at = out.find(name, at)) != std::string::npos;)
+      out.erase(at, std::min(out.find(end, at), out.size()) - at);
   return out;
 }
 
 bool are_alike(const Outcome& a, const Outcome& b) {
-  return a.status == b.status && a.errors == b.errors && without_timings(a.out) == without_timings(b.out);
+  return a.status == b.status && a.errors == b.errors && without_times(a.out) == without_times(b.out);
 }
 
 /// Never of a sanitized program, whose shadow memory is no measure.

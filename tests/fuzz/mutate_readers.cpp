@@ -74,6 +74,7 @@ struct Worker {
   /// Lays a file of a kind where the program will find it; returns what stands for MUTANT.
   fs::path lay(const FileKind& kind, const std::string& bytes) const {
     const fs::path place = folder / kind.name;
+    if (kind.is_changed) fs::remove_all(place);
     if (!fs::exists(place)) {
       fs::create_directories(place);
       for (const fs::path& other : kind.beside) fs::copy_file(other, place / other.filename());
@@ -82,9 +83,10 @@ struct Worker {
     return kind.is_folder ? place : place / kind.file;
   }
 
-  LoadedProgram::Judged judge(const std::vector<std::string>& command, const fs::path& mutant, bool check,
-                              bool may_lack) {
-    return program.judge(with_names(command, mutant, folder), check, may_lack, [this] {
+  LoadedProgram::Judged judge(const FileKind& kind, const std::string& bytes,
+                              const std::vector<std::string>& command, bool check, bool may_lack) {
+    return program.judge(with_names(command, lay(kind, bytes), folder), check, may_lack, [&] {
+      if (kind.is_changed) lay(kind, bytes);
       fs::remove_all(folder / "out");
       fs::create_directories(folder / "out");
     });
@@ -108,9 +110,9 @@ class KindRun {
   /// The sound file is read, alone and in a batch, and most verbs take it, where they are new: a harness that
   /// only ever sees refusals tests nothing.
   void need_sound(Worker& worker, bool has_new_verbs) const {
-    const fs::path file = worker.lay(kind_, kind_.finish ? kind_.finish(kind_.sound) : kind_.sound);
+    const std::string sound = kind_.finish ? kind_.finish(kind_.sound) : kind_.sound;
     const auto taken = [&](const std::vector<std::string>& command, bool computes) {
-      const auto judged = worker.judge(command, file, !computes, computes);
+      const auto judged = worker.judge(kind_, sound, command, !computes, computes);
       if (!judged.fault.empty() || (!computes && judged.outcome.status != 0))
         throw std::runtime_error(kind_.name + ": '" + command.front() +
                                  "' does not take the sound file: " + judged.fault + judged.outcome.errors);
@@ -157,11 +159,10 @@ class KindRun {
     std::string mutant = mutated(kind_.sound, mutation, seed / mutation_count);
     // Of a kind that is packed or sealed, every other round of kinds; unpacked it would not be of the kind.
     if (kind_.finish && ((seed / mutation_count) % 2 == 0)) mutant = kind_.finish(mutant);
-    const fs::path file = worker.lay(kind_, mutant);
     const bool is_checked = scattered(seed + 1) % options_.check_every == 0;
     const auto pass = [&](const std::vector<std::string>& command, bool computes) {
       const Clock::time_point begin = Clock::now();
-      const auto judged = worker.judge(command, file, is_checked, computes);
+      const auto judged = worker.judge(kind_, mutant, command, is_checked, computes);
       count(judged, seconds_since(begin), is_checked, computes);
       if (!judged.fault.empty()) tell(mutant, seed, command.front(), judged.fault);
       return judged.fault.empty() && judged.outcome.status == 0;
