@@ -184,7 +184,9 @@ void add_sign(Program& program) {
 }  // namespace
 
 void add_plan_document(Program& program) {
-  program.app.add_subcommand("plan", "Compares, merges and remembers plans")->require_subcommand(1);
+  program.app.add_subcommand("plan", "Compares, merges and remembers plans")
+      ->require_subcommand(1)
+      ->footer("Example:\n  octotomy plan diff before.plan.json after.plan.json");
   const auto paths = std::make_shared<Paths>();
   CLI::App& compared =
       program.verb("plan diff", "What differs between two plans, step by step and field by field",
