@@ -35,6 +35,11 @@ std::string three_figures(double value) {
 }
 
 std::string plain(double value) {
+  if (std::abs(value) >= 1e15) {
+    char digits[40];
+    std::snprintf(digits, sizeof digits, "%g", value);
+    return digits;
+  }
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();

@@ -14,7 +14,7 @@ std::string grouped(double value, int decimals);
 /// As many decimals as three significant figures take, at the least none: 1 234, 56.7, 0.0123.
 std::string three_figures(double value);
 
-/// A number as short as six decimals allow, in plain ASCII: 0.5, 300.
+/// A number as short as six decimals allow, in plain ASCII: 0.5, 300; from 1e+15 on with its power of ten.
 std::string plain(double value);
 /// A box by its axes: "x -10..20, y 0..5.5, z 1..2 mm".
 std::string plain(const voxel::Box& box);

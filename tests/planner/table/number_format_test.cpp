@@ -31,5 +31,12 @@ TEST(Figures, KeepsThreeSignificantFigures) {
   EXPECT_EQ(three_figures(0.0), "0");
 }
 
+TEST(Figures, ArePlainUntilTheyGrowTooLongToRead) {
+  EXPECT_EQ(plain(-0.5), "-0.5");
+  EXPECT_EQ(plain(300.0), "300");
+  EXPECT_EQ(plain(123456789012345.0), "123456789012345");
+  EXPECT_EQ(plain(-1e300), "-1e+300");
+}
+
 }  // namespace
 }  // namespace octotomy::planner
