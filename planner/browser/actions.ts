@@ -13,12 +13,15 @@ export function use_wire(one: Wire): void {
 export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
     wire.ask<Answer>(word, fields);
 
-/// Asks, and shows a refusal to the person; null then. Where the line is not there, or breaks before the
-/// answer, what `lost` answers: unless told otherwise, the same is asked again once the line is there.
+const let_go = async(): Promise<null> => null;
+
+/// Asks as soon as the line is there, and shows a refusal to the person; null then. Where the line breaks
+/// before the answer, what `lost` answers: unless told otherwise, that of the same, asked once more.
 export async function try_to<Answer>(
     word: string, fields: object = {},
     lost: () => Promise<Answer|null> = () =>
-        next_greeting().then(() => try_to<Answer>(word, fields))): Promise<Answer|null> {
+        next_greeting().then(() => try_to<Answer>(word, fields, let_go))): Promise<Answer|null> {
+  if (!wire.is_open) await next_greeting();
   try {
     return await wire.ask<Answer>(word, fields);
   } catch (error) {
@@ -98,8 +101,6 @@ export function fitted(plan: PlanState, name?: string): Pick<State, "panes"|"cro
   return {panes, cross_mm: middle, grey: scan?.window_suggestion ?? [500, 2000]};
 }
 
-const let_go = async(): Promise<null> => null;
-
 export async function greet(): Promise<void> {
   const hello = await try_to<Hello>("hello", {}, let_go);
   if (!hello) return;
@@ -123,12 +124,12 @@ export async function open_plan(what: {path?: string; phantom?: string}): Promis
   if (plan && state.plan === null) take_plan(plan);
 }
 
-// A change of the plan. Where the line breaks, it is asked again once the line is there, unless it is done:
-// only the answer was lost then.
+// A change of the plan. Where the line breaks, it is asked once more, unless it is done: only the answer was
+// lost then.
 async function change(word: string, fields: object, is_done: () => boolean): Promise<PlanState|null> {
   return try_to<PlanState>(word, fields, async () => {
     await next_greeting();
-    return is_done() ? state.plan : change(word, fields, is_done);
+    return is_done() ? state.plan : try_to<PlanState>(word, fields, let_go);
   });
 }
 

@@ -67,6 +67,10 @@ export class Wire {
     }, ask_alive_ms);
   }
 
+  get is_open(): boolean {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
   private ask_alive(socket: WebSocket): void {
     const now = performance.now();
     // A tab that slept asks first, and waits for the answer.
@@ -87,18 +91,18 @@ export class Wire {
     const id = this.next_id++;
     on_id?.(id);
     return new Promise<Answer>((resolve, reject) => {
-      if (this.socket?.readyState !== WebSocket.OPEN) {
+      if (!this.is_open) {
         reject(new Refusal("The connection to the planner's program is lost.", "lost"));
         return;
       }
       this.waiting.set(id, {resolve: (value) => resolve(value as Answer), reject});
-      this.socket.send(JSON.stringify({id, do: word, ...fields}));
+      this.socket!.send(JSON.stringify({id, do: word, ...fields}));
     });
   }
 
   /// Says something that has no answer.
   say(word: string, fields: object): void {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({do: word, ...fields}));
+    if (this.is_open) this.socket!.send(JSON.stringify({do: word, ...fields}));
   }
 
   private hear(text: string): void {
