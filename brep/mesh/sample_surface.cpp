@@ -8,7 +8,12 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "brep/mesh/error.h"
+#include "brep/mesh/short_text.h"
+
 namespace octotomy::brep {
+
+constexpr double most_samples = 1 << 26;
 
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm) {
   return sample_surface(triangles_of(mesh), spacing_mm);
@@ -29,17 +34,24 @@ SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm) {
                      ac = triangles.points_mm[face[2]] - a;
     const double longest_mm = std::max({glm::length(ab), glm::length(ac), glm::length(ac - ab)});
     const double parts = std::max(1.0, std::ceil(longest_mm / spacing_mm));
-    assert(parts >= 1.0 && parts < 1e6);
     return Split{a, ab, ac, longest_mm, parts, glm::cross(ab, ac)};
   };
   SurfaceSamples samples;
   std::vector<std::size_t> first(triangles.faces.size() + 1, 0);
+  double count = 0.0;
   for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
     const Split split = split_of(f);
     // A centre lies two thirds of a median from the furthest corner, and no median is longer than a side.
     samples.reach_mm = std::max(samples.reach_mm, 2.0 / 3.0 * split.longest_mm / split.parts);
-    const auto n = static_cast<std::size_t>(split.parts);
-    first[f + 1] = first[f] + (glm::length(split.normal) == 0.0 ? 0 : n * n);
+    const double own = glm::length(split.normal) == 0.0 ? 0.0 : split.parts * split.parts;
+    count += own;
+    if (!(count <= most_samples))
+      throw Error(ErrorCode::Resource,
+                  "samples " + short_text(spacing_mm) + " mm apart are too many: the triangle at (" +
+                      short_text(split.a.x) + ", " + short_text(split.a.y) + ", " + short_text(split.a.z) +
+                      ") mm, which is " + short_text(split.longest_mm) +
+                      " mm long, brings them over 2^26; take them further apart or mend the triangle");
+    first[f + 1] = first[f] + static_cast<std::size_t>(own);
   }
   samples.points_mm.resize(first.back());
   samples.normals.resize(first.back());

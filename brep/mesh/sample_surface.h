@@ -18,8 +18,9 @@ struct SurfaceSamples {
 };
 
 /// Splits each triangle into n * n equal ones with sides of at most `spacing_mm` and takes their centres, by
-/// triangle. Triangles without area get none. Throws std::invalid_argument where the spacing is not positive.
-/// Cost: linear in the samples, 56 bytes each; at least one a triangle.
+/// triangle. Triangles without area get none. Throws std::invalid_argument where the spacing is not positive;
+/// Error, Resource, where that makes more than 2^26 samples, as of a long sliver. Cost: linear in the samples,
+/// 56 bytes each; at least one a triangle.
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
 SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm);
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "brep/mesh/distance.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "tests/brep/shapes.h"
 
@@ -40,6 +41,20 @@ TEST(SampleSurface, NormalsLookOutward) {
 
 TEST(SampleSurface, RefusesNoSpacing) {
   EXPECT_THROW(sample_surface(mesh_of(shapes::box({0, 0, 0}, {1, 1, 1})), 0.0), std::invalid_argument);
+}
+
+TEST(SampleSurface, RefusesMoreSamplesThanCanBeHeldAndTellsThePlace) {
+  Triangles slivers{{{0, 0, 0}, {1, 0, 0}, {5, 1, 0}, {0, 0, 4.3e10}}, {{0, 1, 2}, {2, 1, 3}}};
+  try {
+    sample_surface(slivers, 10.0);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Resource);
+    EXPECT_NE(std::string(error.what()).find("(5, 1, 0) mm, which is 4.3e+10 mm long"), std::string::npos)
+        << error.what();
+  }
+  slivers.points_mm[3].z = 4.3e4;
+  EXPECT_GT(sample_surface(slivers, 10.0).points_mm.size(), 4300u * 4300u);
 }
 
 }  // namespace
