@@ -14,7 +14,6 @@
 #include <tbb/parallel_sort.h>
 #include <utility>
 
-#include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
 #include "brep/mesh/oriented_surface.h"
 #include "brep/mesh/sample_surface.h"
@@ -95,15 +94,12 @@ Distances distances_to(const Triangles& from, const OrientedSurface& to, double 
   for (std::size_t v = 0; v < corners.size(); ++v)
     if (split.corner_mm2[v] > 0.0) add(corners[v], split.corner_mm2[v]);
   found.reach_mm = split.reach_mm;
-  if (!split.large.faces.empty()) {
-    split.large.points_mm = from.points_mm;
-    const SurfaceSamples samples = sample_surface(split.large, spacing);
-    const std::vector<OrientedSurface::Distance> distances = to.distances(samples.points_mm);
-    for (std::size_t i = 0; i < distances.size(); ++i) add(distances[i], samples.areas_mm2[i]);
-    found.reach_mm = std::max(found.reach_mm, samples.reach_mm);
-  }
-  if (found.sample_mm.empty())
-    throw Error(ErrorCode::Geometry, "difference: a surface's triangles are too thin to have an area");
+  if (split.large.faces.empty()) return found;
+  split.large.points_mm = from.points_mm;
+  const SurfaceSamples samples = sample_surface(split.large, spacing);
+  const std::vector<OrientedSurface::Distance> distances = to.distances(samples.points_mm);
+  for (std::size_t i = 0; i < distances.size(); ++i) add(distances[i], samples.areas_mm2[i]);
+  found.reach_mm = std::max(found.reach_mm, samples.reach_mm);
   return found;
 }
 

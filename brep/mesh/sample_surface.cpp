@@ -12,8 +12,11 @@
 #include "brep/mesh/short_text.h"
 
 namespace octotomy::brep {
+namespace {
 
 constexpr double most_samples = 1 << 26;
+
+}  // namespace
 
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm) {
   return sample_surface(triangles_of(mesh), spacing_mm);
