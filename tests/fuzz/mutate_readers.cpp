@@ -71,8 +71,8 @@ std::vector<std::string> with_names(std::vector<std::string> command, const fs::
 struct Worker {
   Worker(const Subject& subject, const fs::path& in) : folder(in), program(subject, in) {}
 
-  /// Lays a file of a kind where the program will find it; returns what stands for MUTANT.
-  fs::path lay(const FileKind& kind, const std::string& bytes) const {
+  /// Lays a file of a kind where the program will find it.
+  void lay(const FileKind& kind, const std::string& bytes) const {
     const fs::path place = folder / kind.name;
     if (kind.is_changed) fs::remove_all(place);
     if (!fs::exists(place)) {
@@ -80,13 +80,13 @@ struct Worker {
       for (const fs::path& other : kind.beside) fs::copy_file(other, place / other.filename());
     }
     write_bytes(place / kind.file, bytes);
-    return kind.is_folder ? place : place / kind.file;
   }
 
   LoadedProgram::Judged judge(const FileKind& kind, const std::string& bytes,
                               const std::vector<std::string>& command, bool check, bool may_lack) {
-    return program.judge(with_names(command, lay(kind, bytes), folder), check, may_lack, [&] {
-      if (kind.is_changed) lay(kind, bytes);
+    const fs::path mutant = kind.is_folder ? folder / kind.name : folder / kind.name / kind.file;
+    return program.judge(with_names(command, mutant, folder), check, may_lack, [&] {
+      lay(kind, bytes);
       fs::remove_all(folder / "out");
       fs::create_directories(folder / "out");
     });
