@@ -13,6 +13,7 @@ export function use_wire(one: Wire): void {
 export const ask = <Answer>(word: string, fields: object = {}): Promise<Answer> =>
     wire.ask<Answer>(word, fields);
 
+// For what is not asked again.
 const let_go = async(): Promise<null> => null;
 
 /// Asks as soon as the line is there, and shows a refusal to the person; null then. Where the line breaks
@@ -154,7 +155,7 @@ export const replace_step = (id: string, step: Step, what: string): Promise<bool
 export const add_steps = (more: Step[], what: string): Promise<boolean> =>
     edit({steps: [...steps(), ...more]}, what, more[more.length - 1]?.id ?? null);
 
-/// A change of the plan that its word tells; null if it was refused.
+/// Asks for a change of the plan and shows the plan as it is then; null if it was refused.
 export async function change_plan(word: string, fields: object = {}): Promise<PlanState|null> {
   const {branch, edit: before} = state.plan ?? {};
   const plan = await change(word, fields, () => state.plan?.edit !== before || state.plan?.branch !== branch);

@@ -39,7 +39,7 @@ export function start_server(folder, more = []) {
 }
 
 /// A proxy between window and server that can be cut: bytes of both directions are dropped then, and nobody is told. A
-/// WebSocket through it opens so late.
+/// WebSocket through it opens `late_ms` after it was asked for.
 export function start_proxy({ late_ms = 0 } = {}) {
   let is_cut = false;
   const sockets = new Set();
