@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/png_chunk.h"
 
+#include <cassert>
+#include <stdexcept>
 #include <zlib.h>
 
 namespace octotomy::voxel {
+namespace {
+
+/// Length, letters and CRC, the bytes of a chunk beside its data.
+constexpr std::size_t around_data = 4 + 4 + 4;
+
+}  // namespace
 
 std::string png_number(std::uint32_t number) {
   std::string bytes;
@@ -17,6 +25,30 @@ std::string png_chunk(const std::string& letters, std::string_view data) {
   const auto crc = static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size())));
   return png_number(static_cast<std::uint32_t>(data.size())) + checked + png_number(crc);
+}
+
+std::uint32_t png_number_at(std::string_view bytes, std::size_t at) {
+  assert(at + 4 <= bytes.size());
+  std::uint32_t number = 0;
+  for (const char byte : bytes.substr(at, 4)) number = number << 8 | static_cast<std::uint8_t>(byte);
+  return number;
+}
+
+std::vector<PngChunk> png_chunks(std::string_view bytes) {
+  if (!bytes.starts_with(png_signature)) throw std::invalid_argument("is no PNG picture");
+  std::vector<PngChunk> chunks;
+  for (std::size_t at = png_signature.size(); at < bytes.size();) {
+    const std::size_t left = bytes.size() - at;
+    if (left < around_data || left - around_data < png_number_at(bytes, at))
+      throw std::invalid_argument("is a PNG picture that ends within a chunk");
+    const std::size_t length = png_number_at(bytes, at);
+    chunks.push_back({bytes.substr(at + 4, 4), bytes.substr(at + 8, length)});
+    if (chunks.back().letters == "IEND") break;
+    at += around_data + length;
+  }
+  if (chunks.empty() || chunks.front().letters != "IHDR" || chunks.front().data.size() != 13)
+    throw std::invalid_argument("is a PNG picture that does not begin with its size");
+  return chunks;
 }
 
 }  // namespace octotomy::voxel

@@ -34,6 +34,12 @@ TEST(PngText, LeavesAPictureThatOthersRead) {
   EXPECT_EQ(png_text(tests::bytes_of(folder / "a.png"), "key").text, "text");
 }
 
+TEST(PngText, PassesOverWhatFollowsThePicture) {
+  std::vector<std::uint8_t> png = with_png_text(picture(), "key", "text");
+  png.insert(png.end(), {'e', 'n', 'd'});
+  EXPECT_EQ(png_text(text_of(png), "key").text, "text");
+}
+
 TEST(PngText, RefusesWhatIsNoPngOrEndsEarly) {
   EXPECT_THROW(png_text("GIF89a", "key"), std::invalid_argument);
   EXPECT_THROW(with_png_text({1, 2, 3}, "key", "text"), std::invalid_argument);
