@@ -4,9 +4,11 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <string_view>
 
 extern "C" bool octotomy_encode_image(const char* format, int width, int height, const std::uint8_t* rgb,
                                       std::vector<std::uint8_t>* encoded, std::string* error) {
@@ -35,6 +37,9 @@ extern "C" bool octotomy_encode_image(const char* format, int width, int height,
 namespace {
 
 using octotomy::voxel::StoredImage;
+
+/// What coding a grey picture as brightness and two colours leaves between its channels, of 255.
+constexpr int lossy_shades_apart = 1;
 
 /// The type to read samples as: their own if it is one of the four, else the next that holds every value.
 StoredImage::Type type_of(OIIO::TypeDesc type) {
@@ -65,14 +70,17 @@ OIIO::TypeDesc described(StoredImage::Type type) {
   return OIIO::TypeDesc::FLOAT;
 }
 
-/// Whether the first three channels are the same at every pixel.
-bool is_grey(const std::vector<char>& pixels, std::size_t channels, std::size_t width) {
+/// Whether the first three channels are the same at every pixel; of single bytes, up to `most_apart`.
+bool is_grey(const std::vector<char>& pixels, std::size_t channels, std::size_t width, int most_apart) {
   const std::size_t step = channels * width;
+  const auto differ = [&](std::size_t a, std::size_t b) {
+    return width == 1 ? std::abs(static_cast<std::uint8_t>(pixels[a]) -
+                                 static_cast<std::uint8_t>(pixels[b])) > most_apart
+                      : pixels[a] != pixels[b];
+  };
   for (std::size_t at = 0; at + step <= pixels.size(); at += step)
     for (std::size_t byte = 0; byte < width; ++byte)
-      if (pixels[at + byte] != pixels[at + width + byte] ||
-          pixels[at + byte] != pixels[at + 2 * width + byte])
-        return false;
+      if (differ(at + byte, at + width + byte) || differ(at + byte, at + 2 * width + byte)) return false;
   return true;
 }
 
@@ -90,7 +98,10 @@ std::string read_page(OIIO::ImageInput& in, int page, std::size_t most_bytes, St
   if (bytes > static_cast<double>(most_bytes)) return "a page that claims more pixels than the file can hold";
   std::vector<char> pixels(static_cast<std::size_t>(bytes));
   if (!in.read_image(page, 0, 0, spec.nchannels, type, pixels.data())) return in.geterror();
-  if (channels >= 3 && !is_grey(pixels, channels, type.size())) return "a colour image; a scan is grey";
+  const std::string_view format = in.format_name();
+  const int most_apart = format == "webp" || format == "jpeg" ? lossy_shades_apart : 0;
+  if (channels >= 3 && !is_grey(pixels, channels, type.size(), most_apart))
+    return "a colour image; a scan is grey";
   image.bytes.resize(pixels.size() / channels);
   for (std::size_t i = 0; i < image.bytes.size() / type.size(); ++i)
     std::memcpy(&image.bytes[i * type.size()], &pixels[i * channels * type.size()], type.size());

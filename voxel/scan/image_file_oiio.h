@@ -23,7 +23,7 @@ struct StoredImage {
 }  // namespace octotomy::voxel
 
 /// Exported by octotomy_image_io.so. Fills `images` with the pages of a file, or fills `error` with the
-/// reason and returns false. Refuses colour unless the channels are equal. Allocates at most `most_bytes` in
-/// all.
+/// reason and returns false. Refuses colour: channels that differ, in JPEG and WebP by more than a shade.
+/// Allocates at most `most_bytes` in all.
 extern "C" bool octotomy_read_images(const char* path, std::size_t most_bytes,
                                      std::vector<octotomy::voxel::StoredImage>* images, std::string* error);

@@ -8,6 +8,7 @@
 
 #include "tests/file_bytes.h"
 #include "tests/voxel/scratch_folder.h"
+#include "voxel/space/error.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -64,6 +65,40 @@ TEST(EncodeImage, GivesTheBytesThatWriteImageWrites) {
     write_image(folder / ("ramp." + format), ramp_px, ramp());
     EXPECT_EQ(std::string(encoded.begin(), encoded.end()), tests::bytes_of(folder / ("ramp." + format)))
         << format;
+  }
+}
+
+TEST(ReadImages, TakesGreyOfEveryFormatAndNoColour) {
+  const ScratchFolder folder;
+  std::vector<std::uint8_t> grey;
+  for (int i = 0; i < ramp_px.x * ramp_px.y; ++i)
+    grey.insert(grey.end(), 3, static_cast<std::uint8_t>(40 + 5 * (i % ramp_px.x) / 2));
+  for (const char* name : {"slice.png", "slice.jpg", "slice.webp"}) {
+    write_image(folder / name, ramp_px, grey);
+    const std::vector<StoredImage> pages = read_images(folder / name);
+    ASSERT_EQ(pages.size(), 1u) << name;
+    ASSERT_EQ(pages[0].bytes.size() * 3, grey.size()) << name;
+    for (std::size_t i = 0; i < pages[0].bytes.size(); ++i)
+      ASSERT_NEAR(static_cast<std::uint8_t>(pages[0].bytes[i]), grey[3 * i], 8) << name << " at " << i;
+    write_image(folder / name, ramp_px, ramp());
+    EXPECT_THROW(read_images(folder / name), Error) << name;
+  }
+}
+
+TEST(ReadImages, RefusesAChunkLongerThanItsFile) {
+  const ScratchFolder folder;
+  const std::vector<std::uint8_t> grey(std::size_t{3} * ramp_px.x * ramp_px.y, 90);
+  write_image(folder / "slice.png", ramp_px, grey, ImageText{"key", "text"});
+  ASSERT_EQ(read_images(folder / "slice.png").size(), 1u);
+  std::string bytes = tests::bytes_of(folder / "slice.png");
+  bytes[bytes.find("tEXt") - 4] = '\x10';  // the length's highest byte: 256 MiB, which libpng would take
+  tests::write_bytes(folder / "slice.png", bytes);
+  try {
+    read_images(folder / "slice.png");
+    FAIL() << "was read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Input);
+    EXPECT_NE(std::string(error.what()).find("ends within a chunk"), std::string::npos) << error.what();
   }
 }
 
