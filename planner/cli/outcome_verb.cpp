@@ -12,6 +12,7 @@ namespace {
 
 struct OutcomeText : PlanIn {
   std::filesystem::path after;
+  ScanIn after_in;
   std::string unmoved;
   std::optional<double> low;
 };
@@ -56,7 +57,7 @@ int judge(Program& program, const OutcomeText& text) {
   evaluation.certify = false;
   const Evaluation before = evaluated(program, plan, evaluation);
   Timings timings = before.timings;
-  const voxel::Scene after = read_scan(program, text.after, {}, timings);
+  const voxel::Scene after = read_scan(program, text.after, text.after_in, timings);
   program.note_scan(text.after, after);
   OutcomeOptions options;
   options.unmoved = text.unmoved;
@@ -87,12 +88,13 @@ void add_outcome(Program& program) {
   verb.add_option("after", text->after, "The scan after the operation, in any place of its scanner")
       ->required()
       ->check(scan_path());
-  add_plan_options(verb, *text);
+  add_scan_paths(verb, *text);
   verb.add_option("--unmoved", text->unmoved,
                   "The object that stayed, by which both scans are laid on each other; default: the largest "
                   "that shares no bone with a piece");
   verb.add_option("--low", text->low,
                   "The lowest sample of the later scan that is bone; default: the plan's");
+  add_scan_options(verb, text->after_in);
 }
 
 }  // namespace octotomy::planner::cli

@@ -10,9 +10,13 @@
 
 namespace octotomy::planner::cli {
 
-void add_plan_options(CLI::App& verb, PlanIn& text) {
+void add_scan_paths(CLI::App& verb, PlanIn& text) {
   verb.add_option("--scan", text.scans, "NAME=PATH: reads the plan's scan NAME from PATH")
       ->type_name("NAME=PATH");
+}
+
+void add_plan_options(CLI::App& verb, PlanIn& text) {
+  add_scan_paths(verb, text);
   add_scan_options(verb, text.in);
 }
 
@@ -36,8 +40,7 @@ Plan plan_of(const Program& program, const PlanIn& text) {
     if (plan.scans.size() != 1)
       throw std::runtime_error(
           "--series, --slices, --spacing and --raw are of one scan, the plan has several: say series, "
-          "slices, "
-          "spacing_mm or raw beside their paths in the plan");
+          "slices, spacing_mm or raw beside their paths in the plan");
     plan.scans.begin()->second.read = read;
   }
   return plan;

@@ -18,7 +18,9 @@ struct PlanIn {
   std::vector<std::string> scans;  ///< NAME=PATH each
   ScanIn in;
 };
-/// Adds --scan and the options that say how a scan is read; the plan itself is the verb's own to name.
+/// Adds --scan; the plan itself is the verb's own to name.
+void add_scan_paths(CLI::App& verb, PlanIn& text);
+/// Adds --scan and the options that say how the plan's scan is read.
 void add_plan_options(CLI::App& verb, PlanIn& text);
 
 /// Reads the plan and puts NAME=PATH in the place of its scans' paths; those are relative to where we are.

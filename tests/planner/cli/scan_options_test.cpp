@@ -7,6 +7,7 @@
 #include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
 #include "tests/run_command.h"
+#include "voxel/scan/read_scene.h"
 
 namespace octotomy::planner {
 namespace {
@@ -18,14 +19,17 @@ class ScanOptions : public testing::Test {
   ScanOptions() {
     const voxel::Scene ball = tests::ball_scene(12.0, 32);
     voxel::write_scene(ball, folder_ / "ball.nrrd");
-    const auto& samples = std::get<voxel::Int16Samples>(ball.samples);
-    std::ofstream(folder_ / "ball.raw", std::ios::binary)
-        .write(reinterpret_cast<const char*>(samples.data()),
-               static_cast<std::streamsize>(samples.size() * sizeof samples[0]));
+    write_raw(ball, "ball.raw");
     std::ofstream(folder_ / "ball.plan.json") << R"({ "octotomy_plan": 1, "name": "ball",
       "scans": { "ct": { "path": "ball.nrrd" } },
       "steps": [ { "id": "ball", "do": "window", "scan": "ct", "low": 0 },
                  { "id": "size", "do": "measure", "object": "ball" } ] })";
+  }
+  void write_raw(const voxel::Scene& scene, const std::string& name) const {
+    const auto& samples = std::get<voxel::Int16Samples>(scene.samples);
+    std::ofstream(folder_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(samples.data()),
+               static_cast<std::streamsize>(samples.size() * sizeof samples[0]));
   }
   tests::CommandAnswer run(const std::string& arguments) const {
     return tests::run_command(std::string(OCTOTOMY_BINARY_DIR) + "/octotomy " + arguments, folder_.path());
@@ -65,6 +69,23 @@ TEST_F(ScanOptions, LookAtARawFileLeavesAPlanThatRunReplays) {
   const SortedJson replayed = json("run " + at("look.plan.json") + " -o " + at("again"));
   EXPECT_EQ(replayed["objects"][0]["voxel"], look["objects"][0]["voxel"]);
   EXPECT_FALSE(look["objects"].empty());
+}
+
+TEST_F(ScanOptions, OutcomeTakesThemForTheLaterScan) {
+  json("phantom head --voxel 12 -o " + at("head.nrrd"));
+  write_raw(voxel::read_scene(folder_ / "head.nrrd"), "head.raw");
+  std::ofstream(folder_ / "head.plan.json") << R"({ "octotomy_plan": 1, "name": "head",
+    "scans": { "ct": { "path": "head.nrrd" } }, "universe": { "voxel_mm": 12 },
+    "steps": [ { "id": "skull", "do": "window", "scan": "ct", "low": 300 },
+               { "id": "moved", "do": "move", "object": "skull", "translate_mm": [0, -6, 2] },
+               { "id": "both", "do": "combine", "expression": "skull | moved" } ] })";
+  const SortedJson nrrd = json("outcome " + at("head.plan.json") + " " + at("head.nrrd"));
+  const SortedJson raw = json("outcome " + at("head.plan.json") + " " + at("head.raw") +
+                              " --raw 17x21x21 int16 --spacing 12,12,12");
+  ASSERT_EQ(nrrd["pieces"].size(), 1u);
+  ASSERT_EQ(raw["pieces"].size(), 1u);
+  EXPECT_EQ(raw["pieces"][0]["object"], nrrd["pieces"][0]["object"]);
+  EXPECT_LT(raw["rms_mm"], 0.1);  // a raw file has no frame: it is laid on the planned scan
 }
 
 TEST_F(ScanOptions, LookTakesAPatternOfImagesAndRunReplaysItsPlan) {
