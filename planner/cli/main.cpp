@@ -26,7 +26,6 @@
 #include <unistd.h>
 
 #include "brep/mesh/error.h"
-#include "planner/cli/operation_verb.h"
 #include "planner/cli/verbs.h"
 #include "planner/suite/suite.h"
 #include "planner/verb/manual.h"

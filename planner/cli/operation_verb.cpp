@@ -5,24 +5,22 @@
 //   2 The files that it names become objects: meshes proven solid, or octrees.
 //   3 The kernel that the output's kind asks for answers; with --certify both do, and are compared.
 //   4 The answer is written, measured and told.
-#include "planner/cli/operation_verb.h"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "brep/mesh/health.h"
 #include "convert/voxel/voxelise.h"
+#include "planner/cli/verbs.h"
 #include "planner/file/mesh_file.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/certify.h"
 #include "planner/operation/trace.h"
-#include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
+#include "planner/verb/field_options.h"
 #include "planner/verb/numbers.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
@@ -40,43 +38,6 @@ struct OperationText {
   bool certify = false, mend = false;
   ScanIn scan;
 };
-
-/// A field's option: its name without the unit, words joined by hyphens.
-std::string option_of(const Field& field) {
-  if (field.name == "out") return "-o,--out";
-  std::string name = field.option.empty() ? field.name : field.option;
-  for (const char* ending : {"_mm", "_mm2", "_mm3", "_deg"})
-    if (field.option.empty() && name.ends_with(ending)) name.resize(name.size() - std::string(ending).size());
-  std::replace(name.begin(), name.end(), '_', '-');
-  return "--" + name;
-}
-
-/// The sentence of a field with its unit and default.
-std::string help_of(const Field& field, void* fresh) {
-  std::string text = field.says;
-  if (const std::string unit = field.unit(); !unit.empty()) text += " In " + unit + ".";
-  if (field.is_required || is_flag(field, fresh)) return text;
-  const auto printed = print_fields({field}, fresh);
-  return printed.empty() ? text : text + " Default: " + printed.begin()->dump() + ".";
-}
-
-/// A refusal that names fields, with the options in their place.
-std::string in_options(std::string text, const std::string& operation, const std::vector<Field>& fields) {
-  for (const Field& field : fields)
-    for (const std::string& said : {operation + ", " + field.name + ":", "'" + field.name + "'"})
-      for (std::size_t at = 0; (at = text.find(said, at)) != std::string::npos; ++at)
-        text.replace(at, said.size(), option_of(field) + (said.ends_with(':') ? ":" : ""));
-  return text;
-}
-
-/// A refusal of an option's words, which it shows.
-std::string with_words(std::string text, const Field& field, const std::vector<std::string>& words) {
-  if (text.starts_with(field.name + ": ")) text.erase(0, field.name.size() + 2);
-  if (text.find(words.back()) != std::string::npos) return text;
-  std::string shown;
-  for (const std::string& word : words) shown += (shown.empty() ? "'" : " ") + word;
-  return shown + "' " + text;
-}
 
 /// The fields that the command line has: positionals and options.
 std::vector<Field> fields_of(const Operation& operation) {
@@ -98,7 +59,7 @@ class OperationRun {
     if (!wants_octree) need_mesh_extension(text_.out);
     need_folder_of(text_.out);
     read_objects();
-    const bool with_voxels = wants_octree || text_.certify;
+    const bool with_voxels = operation_.voxel && (wants_octree || text_.certify);
     if (with_voxels) choose_universe();
     for (Object& object : inputs_) {
       if (with_voxels) add_voxels(object);
@@ -106,14 +67,10 @@ class OperationRun {
     }
     Object made("answer", operation_.name, universe_);
     made.definition = operation_.definition(action_.value(), objects_);
-    if (with_voxels) {
-      if (!operation_.voxel)
-        throw std::runtime_error(
-            operation_.name + " is done by the mesh kernel alone: " +
-            (text_.certify ? "there is no certificate, leave --certify out" : "write a mesh, .stl"));
+    if (with_voxels)
       operation_.voxel(action_.value(), {universe_, objects_, no_scan_, timings_, progress()}, made.voxel);
-    }
-    if (!wants_octree || text_.certify) answer_by_mesh(made);
+    if (!wants_octree || !with_voxels || text_.certify) answer_by_mesh(made);
+    if (wants_octree && !with_voxels) voxelise_answer(made);
     if (text_.certify) certify_answer(made);
     made.findings.insert(made.findings.begin(), mended_.begin(), mended_.end());
     return wants_octree ? write_voxels(made) : write_mesh(made);
@@ -156,8 +113,7 @@ class OperationRun {
     }
   }
 
-  /// Without an octree among the operands: voxels of --voxel, or a 128th of the meshes' extent, around them
-  /// and as much room again as margins may need.
+  /// Without an octree among the operands: around all of them.
   void choose_universe() {
     if (has_octree_) return;
     voxel::Box box{glm::dvec3(1e300), glm::dvec3(-1e300)};
@@ -165,11 +121,16 @@ class OperationRun {
       const brep::Size& size = object.mesh.whole->size();
       box = {glm::min(box.low_mm, size.low_mm), glm::max(box.high_mm, size.high_mm)};
     }
+    universe_ = universe_about(box);
+  }
+
+  /// Voxels of --voxel, or a 128th of the box, around it and as much room again as margins may need.
+  voxel::Universe universe_about(const voxel::Box& box) const {
     const glm::dvec3 extent = box.high_mm - box.low_mm;
     const double longest_mm = std::max({extent.x, extent.y, extent.z});
     const double voxel_mm = text_.voxel_mm.value_or(longest_mm / 128.0);
-    universe_ =
-        voxel::universe_around({box.low_mm - 0.25 * longest_mm, box.high_mm + 0.25 * longest_mm}, voxel_mm);
+    return voxel::universe_around({box.low_mm - 0.25 * longest_mm, box.high_mm + 0.25 * longest_mm},
+                                  voxel_mm);
   }
 
   void add_voxels(Object& object) {
@@ -183,8 +144,9 @@ class OperationRun {
   void answer_by_mesh(Object& made) {
     for (const Object& object : objects_)
       if (!object.mesh.whole)
-        throw std::runtime_error(object.id +
-                                 ": is an octree: write an .octree, or make its mesh first by octotomy mesh");
+        throw std::runtime_error(
+            object.id + ": is an octree: " + (operation_.voxel ? "write an .octree, or make" : "make") +
+            " its mesh first by octotomy mesh");
     const voxel::Box box = voxel::bounds(universe_.lattice());
     verify::MeshExpressions expressions({});
     operation_.mesh(action_.value(),
@@ -193,6 +155,13 @@ class OperationRun {
     made.findings = made.mesh.findings;
     if (made.mesh.whole->empty())
       throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
+  }
+
+  /// What the mesh kernel alone makes, as a plan's later steps get it.
+  void voxelise_answer(Object& made) {
+    const Stopwatch watch(timings_, "voxelise");
+    const brep::Solid& solid = *made.mesh.whole;
+    made.voxel.octree = convert::voxelise(universe_about({solid.size().low_mm, solid.size().high_mm}), solid);
   }
 
   void certify_answer(Object& made) {
@@ -270,17 +239,19 @@ int answer_from_files(const Program& program, const Action& action, const Operat
   return say(program, action.operation().on_files(action.value(), bench), timings);
 }
 
-void add_object_options(CLI::App& verb, OperationText& text) {
+void add_object_options(CLI::App& verb, const Operation& operation, OperationText& text) {
+  const bool by_both = static_cast<bool>(operation.voxel);
   verb.add_option(
           "-o,--out", text.out,
-          "The answer: a .stl, .ply, .obj, .off, .vtp or .glb file by the mesh kernel, or an .octree by "
-          "the voxel kernel")
+          std::string("The answer: a .stl, .ply, .obj, .off, .vtp or .glb file by the mesh kernel, or ") +
+              (by_both ? "an .octree by the voxel kernel" : "an .octree of the voxels inside of that"))
       ->required();
   verb.add_option("--voxel", text.voxel_mm,
-                  "Edge of a voxel, mm, for the voxel kernel; default: a 128th of the objects' extent")
+                  std::string("Edge of an octree's voxels, mm; default: a 128th of the ") +
+                      (by_both ? "objects' extent" : "answer's extent"))
       ->check(above_zero());
   verb.add_flag("--mend", text.mend, "Meshes that are no solids are mended first, as repair --solid does");
-  verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
+  if (by_both) verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
 }
 
 void add_verb(Program& program, const Operation& operation) {
@@ -295,65 +266,11 @@ void add_verb(Program& program, const Operation& operation) {
   if (!program.is_asked(operation.name)) return;
   const std::vector<Field> fields = fields_of(operation);
   add_field_options(verb, operation, fields, text->words);
-  if (!operation.on_files) add_object_options(verb, *text);
+  if (!operation.on_files) add_object_options(verb, operation, *text);
   if (operation.reads_scans) add_scan_options(verb, text->scan);
 }
 
 }  // namespace
-
-void add_field_options(CLI::App& verb, const Operation& operation, const std::vector<Field>& fields,
-                       FieldWords& words) {
-  const std::shared_ptr<void> fresh = operation.fresh();
-  for (const Field& field : fields) {
-    std::vector<std::string>& given = words[field.name];
-    if (is_flag(field, fresh.get())) {
-      verb.add_flag_callback(
-          option_of(field), [&given] { given = {"true"}; }, field.says);
-      continue;
-    }
-    CLI::Option* option =
-        verb.add_option(field.argument.value_or(option_of(field)), given, help_of(field, fresh.get()));
-    option->type_name(word_form(field, fresh.get()));
-    if (field.has_commas)
-      option->delimiter(',')->expected(1, -1)->allow_extra_args(false);
-    else if (field.is_repeated)
-      option->expected(1)->take_all()->allow_extra_args(false);
-    else if (takes_several(field, fresh.get()))
-      option->expected(static_cast<int>(field.least.value_or(1.0)),
-                       field.most ? static_cast<int>(*field.most) : -1);
-    else
-      option->expected(1)->allow_extra_args(false);
-    option->required(field.is_required);
-    const bool is_named = names_scan(field, fresh.get()) || names_objects(field, fresh.get());
-    if (field.is_input || is_named)
-      option->check(is_named && operation.reads_scans ? scan_path() : CLI::Validator(CLI::ExistingFile));
-  }
-}
-
-Action read_action(const Operation& operation, const FieldWords& words) {
-  Action action(operation);
-  nlohmann::json step = nlohmann::json::object();
-  std::vector<Field> fields = operation.fields;
-  fields.insert(fields.end(), operation.verb_fields.begin(), operation.verb_fields.end());
-  for (const Field& field : fields) {
-    const auto given = words.find(field.name);
-    if (given == words.end() || given->second.empty()) continue;
-    try {
-      step[field.name] = json_of_words(field, action.value(), given->second);
-      read_fields({field}, {{field.name, step[field.name]}}, Action(operation).value(), {});
-    } catch (const std::runtime_error& error) {
-      throw CLI::ValidationError(field.argument.value_or(option_of(field)),
-                                 with_words(error.what(), field, given->second));
-    }
-  }
-  try {
-    read_fields(fields, step, action.value(), {operation.name});
-    if (operation.check) operation.check(action.value(), {operation.name});
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(in_options(error.what(), operation.name, fields));
-  }
-  return action;
-}
 
 void add_operation_verbs(Program& program) {
   for (const Operation& operation : operations())

@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include "planner/cli/operation_verb.h"
 #include "planner/cli/verbs.h"
 #include "planner/file/slice_contours.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/operation/trace.h"
 #include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
+#include "planner/verb/field_options.h"
 #include "planner/verb/numbers.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"

@@ -3,9 +3,12 @@
 
 #include "planner/verb/verb.h"
 
-// The verbs that do not derive from the table of operations: each of these adds those of its file.
+// Each of these adds the verbs of its file.
 namespace octotomy::planner::cli {
 
+/// A verb for every operation of the table that works on files: a plan of one step. Its options, their
+/// checks and its help come from the operation's fields.
+void add_operation_verbs(Program& program);
 void add_info(Program& program);
 void add_convert(Program& program);
 void add_phantom(Program& program);

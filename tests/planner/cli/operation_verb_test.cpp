@@ -15,6 +15,12 @@ class OperationVerbs : public tests::CommandLine {
     EXPECT_EQ(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("ball.off")).status, 0);
     EXPECT_EQ(run("octree " + at("ball.nrrd") + " --window 0: -o " + at("ball.octree")).status, 0);
   }
+
+  double volume_mm3(const std::string& command) {
+    const CommandAnswer answer = run(command + " --json");
+    EXPECT_EQ(answer.status, 0) << command << answer.errors;
+    return SortedJson::parse(answer.out).at("volume_mm3");
+  }
 };
 
 TEST_F(OperationVerbs, EveryKernelAnswersOnFilesAndNoCertificateFails) {
@@ -40,9 +46,18 @@ TEST_F(OperationVerbs, EveryKernelAnswersOnFilesAndNoCertificateFails) {
   }
 }
 
+TEST_F(OperationVerbs, WhatTheMeshKernelAloneMakesIsVoxelised) {
+  const double ball = volume_mm3("measure " + at("ball.off"));
+  const double margin = volume_mm3("offset " + at("ball.off") + " --by 3 -o " + at("margin.ply"));
+  ASSERT_GT(margin, 1.2 * ball);
+  EXPECT_NEAR(volume_mm3("offset " + at("ball.off") + " --by 3 --voxel 0.5 -o " + at("margin.octree")),
+              margin, 0.01 * margin);
+  expect_refused(run("offset " + at("ball.octree") + " --by 3 -o " + at("x.octree")), "octotomy mesh");
+}
+
 TEST_F(OperationVerbs, WhatOneKernelAloneDoesIsSaid) {
   for (const std::string verb : {"smooth", "decimate", "offset --by=1", "shell --thickness=2"})
-    expect_refused(run(verb + " " + at("ball.off") + " --certify -o " + at("x.ply")), "mesh kernel alone");
+    expect_refused(run(verb + " " + at("ball.off") + " --certify -o " + at("x.ply")), "--certify");
   expect_refused(run("fill " + at("ball.octree") + " -o " + at("x.ply")), "octotomy mesh");
   EXPECT_EQ(run("fill " + at("ball.octree") + " -o " + at("full.octree")).status, 0);
 }
