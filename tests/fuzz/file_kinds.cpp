@@ -62,6 +62,12 @@ constexpr const char* chin =
     R"( {"name": "border_right", "point_mm": [-30, -50, -75]}, {"name": "pogonion", "point_mm": [0, -85, -70]},)"
     R"( {"name": "menton", "point_mm": [0, -80, -80]}]})";
 
+/// The JPEG 2000 picture within a DICOM file: from its first marker to its last.
+std::string codestream(const std::string& dicom) {
+  const std::size_t begin = dicom.find("\xff\x4f\xff\x51");
+  return dicom.substr(begin, dicom.rfind("\xff\xd9") + 2 - begin);
+}
+
 /// What the sound files are made with, and lie in.
 class SoundFiles {
  public:
@@ -94,9 +100,12 @@ class SoundFiles {
     make({"phantom", "sphere", "--voxel", "10", "--voxels", "8", "--radius", "1.6", "-o", at("ball.octree")});
     for (const char* name : {"ball.stl", "ball.ply", "ball.obj", "ball.off", "ball.vtp"})
       make({"mesh", at("ball.octree"), "-o", at(name)});
-    for (const char* view : {"anterior", "left"})
-      make({"render", at("head.nrrd"), "--shading", "mip", "--view", view, "--size", "48x48", "-o",
-            at(std::string("slice_") + view + ".png")});
+    const auto picture = [&](const char* view, const char* name) {
+      make(
+          {"render", at("head.nrrd"), "--shading", "mip", "--view", view, "--size", "48x48", "-o", at(name)});
+    };
+    picture("anterior", "front.png");
+    for (const char* name : {"left.png", "left.jpg", "left.webp"}) picture("left", name);
     make({"run", at("small.plan.json"), "--certify", "never", "-o", at("result")});
     write("signed.plan.json", plan);
     make({"plan", "sign", at("signed.plan.json"), "--by", "A. Reader"});
@@ -119,6 +128,7 @@ class Kinds {
 
   std::vector<FileKind> all() {
     add_scans();
+    add_pictures();
     add_dicom();
     add_labels();
     add_octrees();
@@ -133,22 +143,22 @@ class Kinds {
 
   FileKind& add(const std::string& name, const std::string& file, std::string sound,
                 Command command = {"info", "MUTANT"}) {
-    all_.push_back({name, file, std::move(sound), {}, {}, false, false, std::move(command), {}});
+    all_.push_back({name, file, std::move(sound), {}, {}, false, false, std::move(command), {}, 0});
     return all_.back();
   }
 
-  /// A scan, with the options that every verb needs to read it.
+  /// A scan, with the options that every verb needs to read it, and a window of samples that it has.
   FileKind& scan(const std::string& name, const std::string& file, std::string sound,
-                 const Command& options = {}) {
+                 const Command& options = {}, const std::string& window = "300:") {
     FileKind& kind = add(name, file, std::move(sound));
-    kind.verbs = {{"octree", "MUTANT", "--window", "300:", "-o", "OUT.octree"},
+    kind.verbs = {{"octree", "MUTANT", "--window", window, "-o", "OUT.octree"},
                   {"octree", "MUTANT", "--grey", "-o", "OUT.octree"},
-                  {"render", "MUTANT", "--window", "300:", "--size", "16x16", "-o", "OUT.png"},
+                  {"render", "MUTANT", "--window", window, "--size", "16x16", "-o", "OUT.png"},
                   {"slice", "MUTANT", "--size", "16x16", "-o", "OUT.png"},
-                  {"mesh", "MUTANT", "--window", "300:", "-o", "OUT.stl"},
-                  {"measure", "MUTANT", "--window", "300:"},
-                  {"contours", "MUTANT", "--window", "300:", "-o", "OUT.json"},
-                  {"segment", "MUTANT", "--window", "300:", "--largest", "-o", "OUT.octree"},
+                  {"mesh", "MUTANT", "--window", window, "-o", "OUT.stl"},
+                  {"measure", "MUTANT", "--window", window},
+                  {"contours", "MUTANT", "--window", window, "-o", "OUT.json"},
+                  {"segment", "MUTANT", "--window", window, "--largest", "-o", "OUT.octree"},
                   {"segment", "MUTANT", "--otsu", "2", "-o", "OUT.nrrd"},
                   {"prepare", "MUTANT", "--step", "median=1", "-o", "OUT.nrrd"},
                   {"prepare", "MUTANT", "--step", "average_down=2", "-o", "OUT.nrrd"},
@@ -157,13 +167,13 @@ class Kinds {
                   {"look", "MUTANT", "-o", "OUT_look"},
                   {"find_landmarks", "MUTANT", "-o", "OUT.json"},
                   {"outcome", at("small.plan.json"), "MUTANT"}};
+    kind.declining = 2;
     kind.command.insert(kind.command.end(), options.begin(), options.end());
     for (Command& verb : kind.verbs) verb.insert(verb.end(), options.begin(), options.end());
     return kind;
   }
 
   void add_scans() {
-    const Command spacing{"--spacing", "1,1,1"};
     scan("nifti", "head.nii", sound_.bytes("head.nii"));
     scan("nifti_gz", "head.nii.gz", sound_.bytes("head.nii")).finish = packed;
     scan("nifti_bomb", "head.nii.gz", sound_.bytes("head.nii")).finish =
@@ -173,13 +183,31 @@ class Kinds {
     scan("nrrd_header", "head.nhdr", sound_.bytes("head.nhdr")).beside = {at("head.raw.gz")};
     scan("metaimage", "head.mha", sound_.bytes("head.mha"));
     scan("metaimage_header", "head.mhd", sound_.bytes("head.mhd")).beside = {at("head.zraw")};
-    FileKind& stack = scan("png_stack", "slice_2.png", sound_.bytes("slice_left.png"), spacing);
-    stack.beside = {at("slice_anterior.png")};
-    stack.is_folder = true;
-    scan("tiff_stack", "slice.tif", tiff(), spacing);
     std::string ramp;
     for (std::uint32_t i = 0; i < 20 * 20 * 20; ++i) ramp += DicomBytes::number(i % 1000, 2);
     scan("raw", "head.raw", ramp, {"--raw", "20x20x20", "int16", "--spacing", "1,1,1"});
+  }
+
+  /// A scan of two slices in a folder, of which one is the mutant.
+  FileKind& stack(const std::string& name, const std::string& extension, std::string sound,
+                  const std::string& window = "100:") {
+    const std::string other = name + "_1." + extension;
+    sound_.write(other, sound);
+    FileKind& kind = scan(name, name + "_2." + extension, std::move(sound), {"--spacing", "1,1,1"}, window);
+    kind.beside = {at(other)};
+    kind.is_folder = true;
+    return kind;
+  }
+
+  void add_pictures() {
+    stack("png_stack", "png", sound_.bytes("left.png"));
+    stack("png_sealed", "png", sound_.bytes("left.png")).finish = resealed_png;
+    stack("jpeg_stack", "jpg", sound_.bytes("left.jpg"));
+    stack("webp_stack", "webp", sound_.bytes("left.webp"));
+    stack("tiff_stack", "tif", tiff(), "300:");
+    stack("bmp_stack", "bmp", bmp());
+    stack("pgm_stack", "pgm", pgm());
+    stack("exr_stack", "exr", exr());
   }
 
   void add_dicom() {
@@ -203,6 +231,8 @@ class Kinds {
       else
         std::printf("%-18s left out: '%s' is not installed\n", name, command);
     }
+    if (fs::exists(at("dicom_jpeg_2000.dcm")))
+      stack("jpeg_2000_stack", "jp2", codestream(sound_.bytes("dicom_jpeg_2000.dcm")));
     add("structure_set", "rs.dcm",
         structure_set({{1, "Mandible", {rectangle({-30, -20}, {30, 40}, -12), rectangle({0, 0}, {9, 9}, 0)}},
                        {3, "Isocentre", {{{1, 2, 3}}}, "POINT"}}),
@@ -274,7 +304,7 @@ class Kinds {
           {"boolean", at("box.stl"), "intersection", "MUTANT", "--mend", "-o", "OUT.stl"},
           {"repair", "MUTANT", "--orient", "--flat", "--duplicates", "--weld", "0.001", "-o", "OUT.stl"},
           {"repair", "MUTANT", "--solid", "--cell", "8", "-o", "OUT.ply"},
-          {"smooth", "MUTANT", "--rounds", "1", "-o", "OUT.ply"},
+          {"smooth", "MUTANT", "--rounds", "1", "--max-volume-share", "0.2", "-o", "OUT.ply"},
           {"decimate", "MUTANT", "--faces", "100", "-o", "OUT.obj"},
           {"saw", "MUTANT", "--line", "-60,-120,-20", "60,-120,-20", "--direction", "0,1,0", "-o", "OUT.stl"},
           {"parts", "MUTANT", "--largest", "1", "-o", "OUT.off"},
@@ -283,10 +313,11 @@ class Kinds {
           {"slice", at("head.nrrd"), "--octree", "MUTANT", "--size", "16x16", "-o", "OUT.png"},
           {"mirror", "MUTANT", "-o", "OUT.stl"},
           {"mirror", "MUTANT", "--plane", "1,2,3", "1,1,0", "--exactly", "-o", "OUT.ply"},
-          {"offset", "MUTANT", "--by", "2", "--mend", "-o", "OUT.stl"},
-          {"offset", "MUTANT", "--by", "-1", "--voxel", "2", "-o", "OUT.octree"},
-          {"shell", "MUTANT", "--thickness", "3", "--voxel", "2", "--certify", "-o", "OUT.stl"},
-          {"boolean", "MUTANT", "difference", at("box.stl"), "--voxel", "2", "--certify", "-o", "OUT.stl"},
+          {"offset", "MUTANT", "--by", "20", "--mend", "-o", "OUT.stl"},
+          {"shell", "MUTANT", "--thickness", "8", "--voxel", "2", "-o", "OUT.octree"},
+          {"fill", "MUTANT", "--certify", "-o", "OUT.stl"},
+          {"saw", "MUTANT", "--line", "-60,-120,-20", "60,-120,-20", "--direction", "0,1,0", "--certify",
+           "-o", "OUT.stl"},
           {"tet", "MUTANT", "--mend", "-o", "OUT.vtu"}};
     };
     for (const char* kind : {"stl", "ply", "obj", "off", "vtp"})
@@ -310,7 +341,7 @@ class Kinds {
     mask("region", "region.json", region, {"--region", "anterior:MUTANT"});
     mask("region_svg", "region.svg", drawing, {"--region", "anterior:MUTANT"});
     mask("region_curves", "region.mrk.json", curves, {"--region", "anterior:MUTANT"});
-    mask("region_picture", "front.png", sound_.bytes("slice_anterior.png"),
+    mask("region_picture", "front.png", sound_.bytes("front.png"),
          {"--region-pixels", "MUTANT:10,10 40,10 40,40"});
     mask("slices", "slices.json", sound_.bytes("bone.json"), {"--slices", "MUTANT"});
     add("contours", "slices.json", sound_.bytes("bone.json"),

@@ -80,6 +80,10 @@ void put_number(std::string& bytes, std::size_t at, std::uint32_t number) {
   for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(number >> (8 * i));
 }
 
+std::uint32_t swapped(std::uint32_t number) {
+  return number >> 24 | (number >> 8 & 0xff00) | (number << 8 & 0xff0000) | number << 24;
+}
+
 std::uint32_t checksum(const std::string& bytes) {
   return static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
@@ -135,6 +139,16 @@ std::string resealed_octree(std::string bytes) {
     at += section_head + stored;
   }
   put_number(bytes, 28, checksum(bytes.substr(0, 28)));
+  return bytes;
+}
+
+std::string resealed_png(std::string bytes) {
+  for (std::size_t at = 8; at < bytes.size() && bytes.size() - at >= 12;) {
+    const std::size_t length = swapped(number_at(bytes, at));
+    if (length > bytes.size() - at - 12) break;
+    put_number(bytes, at + 8 + length, swapped(checksum(bytes.substr(at + 4, 4 + length))));
+    at += 12 + length;
+  }
   return bytes;
 }
 

@@ -23,6 +23,9 @@ std::string mutated(const std::string& sound, Mutation mutation, std::uint64_t s
 /// apart; without it damage never gets past them.
 std::string resealed_octree(std::string bytes);
 
+/// A PNG picture with the checksums of what its chunks hold now, as far as they can be told apart.
+std::string resealed_png(std::string bytes);
+
 /// As a gzip stream.
 std::string packed(const std::string& bytes);
 
