@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <limits>
 
 #include "voxel/scan/dicom_series.h"
@@ -41,11 +40,6 @@ std::string file_uid(const std::string& instance_uid) {
   return instance_uid.substr(0, instance_uid.find('#'));
 }
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
@@ -61,7 +55,7 @@ DicomSource dicom_source(const fs::path& path, const ReadOptions& options) {
         {slice.class_uid, file_uid(slice.instance_uid), glm::dot(slice.first_mm, stack.normal)});
   if (const SlicePlan plan = slice_plan(stack, path, ignored); plan.is_copy())
     source.lattice = lattice_of(stack, plan);
-  const std::string bytes = bytes_of(stack.first().path);
+  const std::string bytes = file_bytes(stack.first().path);
   const auto take = [&](const DicomFile& file) {
     for (const auto& [tag, vr] : shared_attributes)
       if (std::string value = file.text(tag); !value.empty())

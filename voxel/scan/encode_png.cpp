@@ -113,7 +113,7 @@ std::vector<std::uint8_t> encode_png(const glm::ivec2& size_px, const std::vecto
                                          std::to_string(size_px.y) + " pixels is too large; draw it smaller");
   std::vector<Byte> rows = filtered_rows(size_px, rgb);
   const std::vector<Byte> stream = deflated(rows);
-  const auto four_bytes = [](int number) { return png_number(static_cast<std::uint32_t>(number)); };
+  const auto four_bytes = [](int number) { return big_endian(static_cast<std::uint32_t>(number)); };
   std::string png(png_signature);
   // Eight bits a sample, colours; deflated, filtered by row, not interlaced.
   png += png_chunk("IHDR", four_bytes(size_px.x) + four_bytes(size_px.y) + std::string("\x08\x02\0\0\0", 5));

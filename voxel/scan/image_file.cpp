@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <dlfcn.h>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 #include "voxel/scan/encode_png.h"
 #include "voxel/scan/image_file_oiio.h"
+#include "voxel/scan/picture_header.h"
 #include "voxel/scan/png_chunk.h"
-#include "voxel/scan/png_text.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/helper_file.h"
 #include "voxel/space/quiet_errors.h"
@@ -35,19 +34,6 @@ void* symbol_of_library(const char* name) {
   if (symbol == nullptr)
     throw Error(ErrorCode::Resource, path.string() + ": is not this program's library; install both again");
   return symbol;
-}
-
-/// Refuses a PNG with a chunk longer than its file, for which libpng takes memory before it reads.
-void need_whole_chunks(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes(png_signature.size(), '\0');
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())) || bytes != png_signature) return;
-  bytes.append(std::istreambuf_iterator<char>(in), {});
-  try {
-    png_chunks(bytes);
-  } catch (const std::invalid_argument& error) {
-    refuse(path, error.what());
-  }
 }
 
 }  // namespace
@@ -76,11 +62,15 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
 }
 
 std::vector<StoredImage> read_images(const fs::path& path) {
-  need_whole_chunks(path);
   static const Read read = reinterpret_cast<Read>(symbol_of_library("octotomy_read_images"));
   // Blank pixels compress to almost nothing: any file may hold 4096 x 4096 pixels of four bytes.
   const std::size_t most_bytes =
       std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
+  try {
+    check_picture_header(file_bytes(path), most_bytes);
+  } catch (const std::invalid_argument& error) {
+    refuse(path, std::string("cannot be read as images: ") + error.what());
+  }
   std::vector<StoredImage> images;
   std::string error;
   bool is_read = false;

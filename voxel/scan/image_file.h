@@ -18,7 +18,7 @@ struct ImageText {
 };
 
 /// Encodes 8-bit sRGB pixels, row by row from the top left, as `format` ("png", "jpeg", "webp"). JPEG and
-/// WebP are lossy, at quality 92 of 100. A PNG also takes a text (png_text.h). OpenImageIO is in
+/// WebP are lossy, at quality 92 of 100. A PNG also takes a text (png_chunk.h). OpenImageIO is in
 /// octotomy_image_io.so, loaded on first use: linked in, it would add 0.2 s to every start of the program.
 /// Throws std::invalid_argument if the size is not positive or not that of the pixels; Error, Input, if the
 /// format is another; Error, Resource, if the library cannot be loaded. Safe from several threads.

@@ -14,8 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::map<int, std::string> of_dicom(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string bytes = file_bytes(path);
   std::map<int, std::string> names;
   try {
     const DicomFile file(bytes, bytes.size());

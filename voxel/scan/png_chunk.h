@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +13,9 @@ namespace octotomy::voxel {
 
 inline constexpr std::string_view png_signature("\x89PNG\r\n\x1a\n", 8);
 
-/// Four bytes, and what four bytes tell; they must be there.
-std::string png_number(std::uint32_t number);
-std::uint32_t png_number_at(std::string_view bytes, std::size_t at);
+/// A number as four bytes, highest first, and the number of four bytes that are there.
+std::string big_endian(std::uint32_t number);
+std::uint32_t big_endian_at(std::string_view bytes, std::size_t at);
 std::string png_chunk(const std::string& letters, std::string_view data);
 
 /// A chunk of a picture whose bytes are kept elsewhere.
@@ -23,5 +25,19 @@ struct PngChunk {
 /// All chunks, from IHDR, of 13 bytes, to IEND or the end; what follows IEND is none of the picture's. CRCs
 /// are not looked at. Throws std::invalid_argument if the bytes are no PNG, or end within a chunk.
 std::vector<PngChunk> png_chunks(std::string_view bytes);
+
+/// A PNG's bytes with a text chunk (tEXt) behind its header. Throws std::invalid_argument if the bytes are no
+/// PNG. Precondition: keyword and text are ASCII, the keyword 1 to 79 characters.
+std::vector<std::uint8_t> with_png_text(const std::vector<std::uint8_t>& png, const std::string& keyword,
+                                        const std::string& text);
+
+/// What a PNG says of itself.
+struct PngText {
+  glm::ivec2 size_px{0};
+  std::optional<std::string> text;  ///< none: it has no such chunk
+};
+/// The size and the text of that keyword. Throws std::invalid_argument if the bytes are no PNG, or end
+/// within a chunk.
+PngText png_text(std::string_view bytes, const std::string& keyword);
 
 }  // namespace octotomy::voxel

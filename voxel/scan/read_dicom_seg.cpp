@@ -24,11 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* segmentation_storage = "1.2.840.10008.5.1.4.1.1.66.4";
 
-std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 struct Frame {
   int segment = 0;
   double height_mm = 0.0;
@@ -221,7 +216,7 @@ bool is_dicom_seg(const fs::path& path) {
 }
 
 Scene read_dicom_seg(const fs::path& path) {
-  const std::string bytes = bytes_of(path);
+  const std::string bytes = file_bytes(path);
   try {
     const DicomFile file(bytes, bytes.size());
     return SegReader(path, file, bytes).run();

@@ -50,8 +50,7 @@ bool is_rtstruct(const fs::path& path) {
 }
 
 std::vector<Structure> read_rtstruct(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const std::string bytes = file_bytes(path);
   try {
     const DicomFile file(bytes, bytes.size());
     std::vector<Structure> structures;

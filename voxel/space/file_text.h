@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "voxel/space/error.h"
@@ -15,6 +17,12 @@ namespace octotomy::voxel {
 [[noreturn]] inline void refuse(const std::filesystem::path& path, const std::string& reason,
                                 ErrorCode code = ErrorCode::Input) {
   throw Error(code, path.string() + ": " + reason);
+}
+
+/// All bytes of a file; none if it cannot be read.
+inline std::string file_bytes(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// ASCII letters alone change.
