@@ -83,11 +83,20 @@ class Improving {
           options.surface_play_mm.empty() ? 0.0 : options.surface_play_mm[i];
   }
 
-  void run() {
+  /// The rounds left where it ended early, else 0.
+  int run() {
+    double last = 0.0;
     for (int round = 0; round < options_.rounds; ++round) {
       options_.progress.at(static_cast<double>(round) / options_.rounds);
-      if (!mend_all()) return;
+      const std::vector<std::uint32_t> flat = flat_elements();
+      const auto count = static_cast<double>(flat.size());
+      const int left = options_.rounds - round;
+      if (options_.all_or_nothing && round > 0 && count * std::pow(std::min(0.5, count / last), left) >= 1.0)
+        return left;
+      last = count;
+      if (!mend(flat)) return 0;
     }
+    return 0;
   }
 
  private:
@@ -97,30 +106,44 @@ class Improving {
     return p;
   }
 
-  /// Whether anything has moved.
-  bool mend_all() {
+  /// Those below the goal, the flattest first.
+  std::vector<std::uint32_t> flat_elements() const {
     std::vector<std::pair<double, std::uint32_t>> flat;
     for (std::uint32_t t = 0; t < t_.tets.size(); ++t)
       if (const double f = flatness(corners_of(t)); f > goal_) flat.emplace_back(-f, t);
     std::sort(flat.begin(), flat.end());
+    std::vector<std::uint32_t> elements;
+    elements.reserve(flat.size());
+    for (const auto& [unused, tet] : flat) elements.push_back(tet);
+    return elements;
+  }
+
+  /// Whether anything has moved.
+  bool mend(const std::vector<std::uint32_t>& flat) {
     bool moved = false;
-    for (const auto& [before, tet] : flat)
+    for (const std::uint32_t tet : flat)
       for (const std::uint32_t v : t_.tets[tet]) {
         if (flatness(corners_of(tet)) <= goal_) break;
-        moved = mend(v) || moved;
+        moved = move(v) || moved;
       }
     return moved;
   }
 
-  /// The flattest of a node's elements were the node there.
-  double flattest(std::uint32_t v, const glm::dvec3& p_mm) const {
-    double largest = -1.0;
-    for (const std::uint32_t* t = stars_.begin(v); t != stars_.end(v); ++t) {
-      Corners p = corners_of(*t);
+  /// The flattest of a node's elements were the node there, or any that is at least `enough` flat. `worst` is
+  /// the element to try first and becomes the flattest: what is flat here is flat close by.
+  double flattest(std::uint32_t v, const glm::dvec3& p_mm, double enough, std::uint32_t& worst) const {
+    const auto flatness_of = [&](std::uint32_t tet) {
+      Corners p = corners_of(tet);
       for (std::size_t i = 0; i < 4; ++i)
-        if (t_.tets[*t].at(i) == v) p.at(i) = p_mm;
-      largest = std::max(largest, flatness(p));
-    }
+        if (t_.tets[tet].at(i) == v) p.at(i) = p_mm;
+      return flatness(p);
+    };
+    double largest = flatness_of(worst);
+    for (const std::uint32_t* t = stars_.begin(v); t != stars_.end(v) && largest < enough; ++t)
+      if (const double f = flatness_of(*t); f > largest) {
+        largest = f;
+        worst = *t;
+      }
     return largest;
   }
 
@@ -132,10 +155,12 @@ class Improving {
     return shortest;
   }
 
-  bool mend(std::uint32_t v) {
+  /// Moves a node to a place where its flattest element is less flat; whether there is one.
+  bool move(std::uint32_t v) {
     if (play_mm_[v] <= 0.0) return false;
     glm::dvec3 best_mm = t_.nodes_mm[v];
-    double best = flattest(v, best_mm);
+    std::uint32_t worst = *stars_.begin(v);
+    double best = flattest(v, best_mm, std::numeric_limits<double>::infinity(), worst);
     const double before = best;
     const double length = shortest_edge(v);
     double step = std::min(0.5 * length, play_mm_[v]);
@@ -144,7 +169,7 @@ class Improving {
       for (const glm::dvec3& direction : directions()) {
         const glm::dvec3 p_mm = best_mm + step * direction;
         if (glm::distance(p_mm, given_mm_[v]) > play_mm_[v]) continue;
-        if (const double f = flattest(v, p_mm); f < best) {
+        if (const double f = flattest(v, p_mm, best, worst); f < best) {
           best = f;
           found_mm = p_mm;
         }
@@ -169,7 +194,7 @@ class Improving {
 
 }  // namespace
 
-void improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
+int improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
   if (!(options.min_dihedral_deg >= 0.0 && options.min_dihedral_deg <= 60.0))
     throw std::invalid_argument("improve: the dihedral angle to reach must be 0 to 60 degrees");
   if (!options.surface_play_mm.empty() && options.surface_play_mm.size() != tetrahedra.boundary_nodes.size())
@@ -179,7 +204,7 @@ void improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
                   [](double play_mm) { return !(play_mm >= 0.0); }) ||
       options.rounds < 1)
     throw std::invalid_argument("improve: the surface's play must not be negative, rounds at least 1");
-  Improving(tetrahedra, options).run();
+  return Improving(tetrahedra, options).run();
 }
 
 }  // namespace octotomy::convert

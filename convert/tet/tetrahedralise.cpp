@@ -255,7 +255,15 @@ double checked_volume_mm3(const MesherInput& surface, const std::vector<Part>& p
 struct Attempts {
   std::vector<std::string> findings;
   voxel::ErrorCode code = voxel::ErrorCode::Geometry;  ///< of the last
+  int rounds_left = 0;                                 ///< of improving what TetGen made
 };
+
+ImproveOptions improve_options(const TetOptions& options) {
+  ImproveOptions improving;
+  improving.min_dihedral_deg = options.min_dihedral_deg;
+  improving.progress.stop = options.progress.stop;
+  return improving;
+}
 
 std::optional<Tetrahedra> by_tetgen(const MesherInput& surface, double surface_mm3, const TetOptions& options,
                                     Attempts& attempts) {
@@ -270,10 +278,9 @@ std::optional<Tetrahedra> by_tetgen(const MesherInput& surface, double surface_m
       const std::optional<std::string> fault = fault_in_filling(made, surface_mm3, volume_tolerance());
       if (!fault) {
         made.boundary_nodes = boundary_nodes(made.tets);
-        ImproveOptions improving;
-        improving.min_dihedral_deg = options.min_dihedral_deg;
-        improving.progress.stop = options.progress.stop;
-        improve(made, improving);
+        ImproveOptions improving = improve_options(options);
+        improving.all_or_nothing = options.mesher == Mesher::Best;
+        attempts.rounds_left = improve(made, improving);
         return made;
       }
       outcome.failure = made.method + "Q " + *fault;
@@ -434,15 +441,22 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
     best = by_stuffing(surface, surface_mm3, options, attempts);
   }
   const bool any = options.mesher == Mesher::Best && !best;
-  const auto reaches = [&](double deg) { return best && quality(*best).min_dihedral_deg >= deg; };
+  const auto reaches = [](const std::optional<Tetrahedra>& made, double deg) {
+    return made && quality(*made).min_dihedral_deg >= deg;
+  };
   if (any || options.mesher == Mesher::TetGen) best = by_tetgen(surface, surface_mm3, options, attempts);
-  if (options.mesher == Mesher::Mesh3 || (any && !reaches(options.min_dihedral_deg))) {
+  if (options.mesher == Mesher::Mesh3 || (any && !reaches(best, options.min_dihedral_deg))) {
     Mesh3Filling filling = fill_by_mesh3(starting(surface, parts), limits, surface_mm3, options);
     attempts.findings.insert(attempts.findings.end(), filling.findings.begin(), filling.findings.end());
     attempts.code = filling.code;
+    if (attempts.rounds_left > 0 && !reaches(filling.tetrahedra, options.min_dihedral_deg)) {
+      ImproveOptions improving = improve_options(options);
+      improving.rounds = attempts.rounds_left;
+      improve(*best, improving);
+    }
     take_better(best, std::move(filling.tetrahedra), "Mesh_3", attempts);
   }
-  if (options.mesher == Mesher::Stuffing || (any && !reaches(fit_dihedral_deg())))
+  if (options.mesher == Mesher::Stuffing || (any && !reaches(best, fit_dihedral_deg())))
     take_better(best, by_stuffing(surface, surface_mm3, options, attempts), "isosurface stuffing", attempts);
   if (best) {
     best->findings.insert(best->findings.begin(), attempts.findings.begin(), attempts.findings.end());

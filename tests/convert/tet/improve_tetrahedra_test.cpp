@@ -87,6 +87,23 @@ TEST(ImproveTetrahedra, AnElementInsideOutIsTurnedRightWhereItsNodesAllowIt) {
   EXPECT_GT(quality(t).min_volume_mm3, 0.0);
 }
 
+TEST(ImproveTetrahedra, WhatHasNoHopeEndsEarlyAndMayBeGoneOnWith) {
+  Tetrahedra pressed = spoiled(good_ball());
+  for (glm::dvec3& node_mm : pressed.nodes_mm) node_mm.z *= 0.05;
+  constexpr int rounds = 4;
+  Tetrahedra whole = pressed, parted = pressed;
+  EXPECT_EQ(improve(whole, {.rounds = rounds}), 0);
+  const int left = improve(parted, {.rounds = rounds, .all_or_nothing = true});
+  ASSERT_EQ(left, rounds - 1);
+  EXPECT_TRUE(parted.nodes_mm != whole.nodes_mm);
+  improve(parted, {.rounds = left});
+  EXPECT_TRUE(parted.nodes_mm == whole.nodes_mm);
+
+  Tetrahedra mended = spoiled(good_ball());
+  EXPECT_EQ(improve(mended, {.min_dihedral_deg = 20.0, .rounds = 20, .all_or_nothing = true}), 0);
+  EXPECT_GE(quality(mended).min_dihedral_deg, 20.0);
+}
+
 TEST(ImproveTetrahedra, RefusesOptionsOutOfRange) {
   Tetrahedra t = good_ball();
   EXPECT_THROW(improve(t, {.min_dihedral_deg = 61.0}), std::invalid_argument);
