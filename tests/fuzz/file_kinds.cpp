@@ -304,7 +304,7 @@ class Kinds {
           {"boolean", at("box.stl"), "intersection", "MUTANT", "--mend", "-o", "OUT.stl"},
           {"repair", "MUTANT", "--orient", "--flat", "--duplicates", "--weld", "0.001", "-o", "OUT.stl"},
           {"repair", "MUTANT", "--solid", "--cell", "8", "-o", "OUT.ply"},
-          {"smooth", "MUTANT", "--rounds", "1", "--max-volume-share", "0.2", "-o", "OUT.ply"},
+          {"smooth", "MUTANT", "--rounds", "1", "--max-volume-share", "0.9", "-o", "OUT.ply"},
           {"decimate", "MUTANT", "--faces", "100", "-o", "OUT.obj"},
           {"saw", "MUTANT", "--line", "-60,-120,-20", "60,-120,-20", "--direction", "0,1,0", "-o", "OUT.stl"},
           {"parts", "MUTANT", "--largest", "1", "-o", "OUT.off"},
