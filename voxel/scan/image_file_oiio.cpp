@@ -97,7 +97,10 @@ std::string read_page(OIIO::ImageInput& in, int page, std::size_t most_bytes, St
       static_cast<double>(spec.width) * spec.height * static_cast<double>(channels * type.size());
   if (bytes > static_cast<double>(most_bytes)) return "a page that claims more pixels than the file can hold";
   std::vector<char> pixels(static_cast<std::size_t>(bytes));
-  if (!in.read_image(page, 0, 0, spec.nchannels, type, pixels.data())) return in.geterror();
+  if (!in.read_image(page, 0, 0, spec.nchannels, type, pixels.data())) {
+    const std::string error = in.geterror();
+    return error.empty() ? "its pixels end early or are damaged" : error;  // some readers say nothing
+  }
   const std::string_view format = in.format_name();
   const int most_apart = format == "webp" || format == "jpeg" ? lossy_shades_apart : 0;
   if (channels >= 3 && !is_grey(pixels, channels, type.size(), most_apart))

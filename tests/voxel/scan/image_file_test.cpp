@@ -102,6 +102,17 @@ TEST(ReadImages, RefusesAChunkLongerThanItsFile) {
   }
 }
 
+TEST(ReadImages, RefusesAPictureThatEndsEarly) {
+  const ScratchFolder folder;
+  const std::string pgm = "P5\n16 12\n255\n" + std::string(16 * 12, 'g');
+  tests::write_bytes(folder / "whole.pgm", pgm);
+  EXPECT_EQ(read_images(folder / "whole.pgm").front().bytes.size(), std::size_t{16} * 12);
+  for (const std::size_t kept : {pgm.size() - 1, pgm.size() / 2, std::size_t{14}}) {
+    tests::write_bytes(folder / "cut.pgm", pgm.substr(0, kept));
+    EXPECT_THROW(read_images(folder / "cut.pgm"), Error) << kept;
+  }
+}
+
 TEST(EncodeImage, RefusesUnknownFormatsAndWrongSizes) {
   EXPECT_THROW(encode_image("dicom", ramp_px, ramp()), std::runtime_error);
   EXPECT_THROW(encode_image("png", {47, 32}, ramp()), std::invalid_argument);
