@@ -1,5 +1,6 @@
 # A mark in the program and in each part that it starts or loads: the digest of all sources at the time of configuring.
-file(GLOB_RECURSE sources RELATIVE ${CMAKE_SOURCE_DIR} CMakeLists.txt voxel/* brep/* convert/* verify/* planner/*)
+file(GLOB_RECURSE sources RELATIVE ${CMAKE_SOURCE_DIR} voxel/* brep/* convert/* verify/* planner/*)
+list(PREPEND sources CMakeLists.txt)
 set(digests "${PROJECT_VERSION} ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")
 foreach(source ${sources})
   file(SHA256 ${CMAKE_SOURCE_DIR}/${source} digest)
