@@ -67,9 +67,9 @@ std::vector<StoredImage> read_images(const fs::path& path) {
   const std::size_t most_bytes =
       std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
   try {
-    check_picture_header(file_bytes(path), most_bytes);
+    check_picture_header(picture_header(path), most_bytes);
   } catch (const std::invalid_argument& error) {
-    refuse(path, std::string("cannot be read as images: ") + error.what());
+    refuse(path, error.what());
   }
   std::vector<StoredImage> images;
   std::string error;
