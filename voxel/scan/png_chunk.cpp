@@ -19,19 +19,19 @@ std::string big_endian(std::uint32_t number) {
   return bytes;
 }
 
+std::uint32_t big_endian_at(std::string_view bytes, std::size_t at) {
+  assert(at + 4 <= bytes.size());
+  std::uint32_t number = 0;
+  for (const char byte : bytes.substr(at, 4)) number = number << 8 | static_cast<std::uint8_t>(byte);
+  return number;
+}
+
 std::string png_chunk(const std::string& letters, std::string_view data) {
   std::string checked = letters;
   checked += data;
   const auto crc = static_cast<std::uint32_t>(
       crc32(0, reinterpret_cast<const Bytef*>(checked.data()), static_cast<uInt>(checked.size())));
   return big_endian(static_cast<std::uint32_t>(data.size())) + checked + big_endian(crc);
-}
-
-std::uint32_t big_endian_at(std::string_view bytes, std::size_t at) {
-  assert(at + 4 <= bytes.size());
-  std::uint32_t number = 0;
-  for (const char byte : bytes.substr(at, 4)) number = number << 8 | static_cast<std::uint8_t>(byte);
-  return number;
 }
 
 std::vector<PngChunk> png_chunks(std::string_view bytes) {

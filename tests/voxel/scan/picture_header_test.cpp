@@ -2,7 +2,6 @@
 #include "voxel/scan/picture_header.h"
 
 #include <gtest/gtest.h>
-#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -34,7 +33,7 @@ TEST(PictureHeader, Jpeg2000MayClaimWhatMayBeDecoded) {
   EXPECT_EQ(reason(codestream(512, 512, 512, 1)), "");
   EXPECT_EQ(reason(codestream(2048, 2048, 256, 3)), "");
   EXPECT_EQ(reason(std::string("\0\0\0\x0cjP  \r\n\x87\n", 12) + codestream(512, 512, 512, 1)), "");
-  for (const std::string& bytes : {codestream(1u << 20, 21, 1u << 20, 1), codestream(16, 16, 16, 16384) + "",
+  for (const std::string& bytes : {codestream(1u << 20, 21, 1u << 20, 1), codestream(16, 16, 16, 16384),
                                    codestream(4096, 4096, 16, 1), codestream(~0u, ~0u, 1, 1)})
     EXPECT_NE(reason(bytes).find("more than the file can hold"), std::string::npos) << reason(bytes);
   EXPECT_NE(reason(codestream(0, 5, 5, 1)).find("without pixels"), std::string::npos);
