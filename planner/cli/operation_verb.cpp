@@ -58,6 +58,10 @@ class OperationRun {
     const bool wants_octree = is_octree(text_.out);
     if (!wants_octree) need_mesh_extension(text_.out);
     need_folder_of(text_.out);
+    if (text_.certify && !operation_.voxel)
+      throw std::runtime_error(
+          operation_.name +
+          " is done by the mesh kernel alone: there is no certificate, leave --certify out");
     read_objects();
     const bool with_voxels = operation_.voxel && (wants_octree || text_.certify);
     if (with_voxels) choose_universe();
@@ -251,7 +255,9 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
                       (by_both ? "objects' extent" : "answer's extent"))
       ->check(above_zero());
   verb.add_flag("--mend", text.mend, "Meshes that are no solids are mended first, as repair --solid does");
-  if (by_both) verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
+  CLI::Option* certify =
+      verb.add_flag("--certify", text.certify, "Let both kernels answer and tell their certificate");
+  if (!by_both) certify->group("");  // hidden: it is refused with the reason
 }
 
 void add_verb(Program& program, const Operation& operation) {
