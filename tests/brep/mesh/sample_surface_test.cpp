@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/mesh/sample_surface.h"
 
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 #include <numeric>
+#include <random>
 
 #include "brep/mesh/distance.h"
 #include "brep/mesh/error.h"
@@ -53,8 +55,46 @@ TEST(SampleSurface, RefusesMoreSamplesThanCanBeHeldAndTellsThePlace) {
     EXPECT_NE(std::string(error.what()).find("(5, 1, 0) mm, which is 4.3e+10 mm long"), std::string::npos)
         << error.what();
   }
-  slivers.points_mm[3].z = 4.3e4;
-  EXPECT_GT(sample_surface(slivers, 10.0).points_mm.size(), 4300u * 4300u);
+  const Triangles square{{{0, 0, 0}, {8.2e4, 0, 0}, {0, 8.2e4, 0}}, {{0, 1, 2}}};
+  EXPECT_THROW(sample_surface(square, 10.0), Error);
+}
+
+TEST(SampleSurface, SliversTakeSamplesByTheirAreaAndTheirLengthNotByTheSquareOfIt) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  const auto sliver = [&](double length_mm, double height_mm, double foot) {
+    const glm::dmat3 turn =
+        glm::mat3_cast(glm::normalize(glm::dquat(any(random), any(random), any(random), any(random) - 0.5)));
+    return Triangles{{turn * glm::dvec3(3, 1, 2), turn * glm::dvec3(3 + length_mm, 1, 2),
+                      turn * glm::dvec3(3 + foot * length_mm, 1 + height_mm, 2)},
+                     {{0, 1, 2}}};
+  };
+  for (const double height_mm : {1e-9, 0.01, 0.4, 3.0, 20.0})
+    for (const double foot : {0.0, 1e-6, 0.02, 0.5, 0.9, 1.0}) {
+      SCOPED_TRACE(std::to_string(height_mm) + " mm, foot at " + std::to_string(foot));
+      const double length_mm = 500.0;
+      const Triangles triangles = sliver(length_mm, height_mm, foot);
+      const auto& p = triangles.points_mm;
+      const double area_mm2 = 0.5 * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+      const SurfaceSamples samples = sample_surface(triangles, 1.0);
+      EXPECT_LE(static_cast<double>(samples.points_mm.size()), 4.0 * area_mm2 + 4.0 * length_mm);
+      EXPECT_LE(samples.reach_mm, 2.0 / 3.0);
+      EXPECT_NEAR(std::accumulate(samples.areas_mm2.begin(), samples.areas_mm2.end(), 0.0), area_mm2,
+                  1e-12 * area_mm2);
+      glm::dvec3 moment(0.0);
+      for (std::size_t i = 0; i < samples.points_mm.size(); ++i)
+        moment += samples.areas_mm2[i] / area_mm2 * samples.points_mm[i];
+      EXPECT_LT(glm::distance(moment, (p[0] + p[1] + p[2]) / 3.0), 1e-9 * length_mm);
+      for (int trial = 0; trial < 300; ++trial) {
+        double u = any(random), v = any(random);
+        if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+        const glm::dvec3 place = p[0] + u * (p[1] - p[0]) + v * (p[2] - p[0]);
+        double nearest = INFINITY;
+        for (const glm::dvec3& sample : samples.points_mm)
+          nearest = std::min(nearest, glm::distance(place, sample));
+        ASSERT_LE(nearest, samples.reach_mm + 1e-9) << u << ", " << v;
+      }
+    }
 }
 
 }  // namespace
