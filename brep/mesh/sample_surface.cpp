@@ -113,7 +113,8 @@ struct Split {
 Split split_of(const std::array<glm::dvec3, 3>& corners, double spacing_mm) {
   const auto& [a, b, c] = corners;
   const glm::dvec3 ab = b - a, ac = c - a;
-  Split split{.normal = glm::cross(ab, ac)};
+  Split split;
+  split.normal = glm::cross(ab, ac);
   split.longest_mm = std::max({glm::length(ab), glm::length(ac), glm::length(ac - ab)});
   split.grid = {a, ab, ac, 0.5 * glm::length(split.normal),
                 std::max(1.0, std::ceil(split.longest_mm / spacing_mm))};
