@@ -12,6 +12,7 @@
 #include "tests/fuzz/mutation.h"
 #include "tests/fuzz/sound_bytes.h"
 #include "tests/voxel/scan/dicom_frames.h"
+#include "tests/voxel/scan/picture_bytes.h"
 #include "tests/voxel/scan/structure_set.h"
 
 namespace octotomy::tests {
@@ -205,7 +206,9 @@ class Kinds {
     stack("jpeg_stack", "jpg", sound_.bytes("left.jpg"));
     stack("webp_stack", "webp", sound_.bytes("left.webp"));
     stack("tiff_stack", "tif", tiff(), "300:");
+    stack("tiff_tiles_stack", "tif", tiff_of_tiles(16));
     stack("bmp_stack", "bmp", bmp());
+    stack("bmp_runs_stack", "bmp", bmp_of_runs());
     stack("pgm_stack", "pgm", pgm());
     stack("exr_stack", "exr", exr());
   }
@@ -231,8 +234,11 @@ class Kinds {
       else
         std::printf("%-18s left out: '%s' is not installed\n", name, command);
     }
-    if (fs::exists(at("dicom_jpeg_2000.dcm")))
-      stack("jpeg_2000_stack", "jp2", codestream(sound_.bytes("dicom_jpeg_2000.dcm")));
+    if (fs::exists(at("dicom_jpeg_2000.dcm"))) {
+      const std::string picture = codestream(sound_.bytes("dicom_jpeg_2000.dcm"));
+      stack("jpeg_2000_stack", "jp2", picture);
+      stack("jp2_stack", "jp2", jp2(picture));
+    }
     add("structure_set", "rs.dcm",
         structure_set({{1, "Mandible", {rectangle({-30, -20}, {30, 40}, -12), rectangle({0, 0}, {9, 9}, 0)}},
                        {3, "Isocentre", {{{1, 2, 3}}}, "POINT"}}),

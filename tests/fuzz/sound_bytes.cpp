@@ -7,7 +7,6 @@
 #include <cstdint>
 
 #include "tests/fuzz/mutation.h"
-#include "tests/voxel/scan/dicom_bytes.h"
 
 namespace octotomy::tests {
 namespace {
@@ -17,13 +16,6 @@ template <typename Number>
 void put(std::string& bytes, std::size_t at, Number number) {
   std::copy_n(reinterpret_cast<const char*>(&number), sizeof number,
               bytes.begin() + static_cast<std::ptrdiff_t>(at));
-}
-
-constexpr std::uint32_t width = 16, height = 12;  // of pictures
-
-/// The shade of a pixel, 0 to 255.
-std::uint32_t shade(std::uint32_t pixel) {
-  return (37 * pixel) % 256;
 }
 
 }  // namespace
@@ -41,77 +33,6 @@ std::string nifti2() {
   put(bytes, 176, 1.0);
   put(bytes, 344, std::int32_t{1});
   for (std::size_t i = 0; i < 6 * 5 * 4; ++i) put(bytes, 544 + 2 * i, static_cast<std::int16_t>(10 * i));
-  return bytes;
-}
-
-std::string tiff() {
-  std::string bytes = std::string("II*\0", 4) + DicomBytes::number(8, 4);
-  const std::array<std::array<std::uint32_t, 3>, 9> entries{{{256, 3, 16},
-                                                             {257, 3, 12},
-                                                             {258, 3, 16},
-                                                             {259, 3, 1},
-                                                             {262, 3, 1},
-                                                             {273, 4, 8 + 2 + 9 * 12 + 4},
-                                                             {277, 3, 1},
-                                                             {278, 3, 12},
-                                                             {279, 4, 16 * 12 * 2}}};
-  bytes += DicomBytes::number(static_cast<std::uint32_t>(entries.size()), 2);
-  for (const auto& [tag, type, value] : entries)
-    bytes += DicomBytes::number(tag, 2) + DicomBytes::number(type, 2) + DicomBytes::number(1, 4) +
-             DicomBytes::number(value, 4);
-  bytes += DicomBytes::number(0, 4);
-  for (std::uint32_t i = 0; i < 16 * 12; ++i) bytes += DicomBytes::number(1000 + 37 * i % 5000, 2);
-  return bytes;
-}
-
-std::string bmp() {
-  std::string bytes = "BM";
-  for (const std::uint32_t number : {54 + 3 * width * height, 0u, 54u, 40u, width, height})
-    bytes += DicomBytes::number(number, 4);
-  bytes += DicomBytes::number(1, 2) + DicomBytes::number(24, 2);
-  for (const std::uint32_t number : {0u, 3 * width * height, 2835u, 2835u, 0u, 0u})
-    bytes += DicomBytes::number(number, 4);
-  for (std::uint32_t i = 0; i < width * height; ++i) bytes += std::string(3, static_cast<char>(shade(i)));
-  return bytes;
-}
-
-std::string pgm() {
-  std::string bytes = "P5\n16 12\n255\n";
-  for (std::uint32_t i = 0; i < width * height; ++i) bytes += static_cast<char>(shade(i));
-  return bytes;
-}
-
-std::string exr() {
-  std::string bytes = DicomBytes::number(20000630, 4) + DicomBytes::number(2, 4);
-  const auto attribute = [&](const std::string& name, const std::string& type, const std::string& value) {
-    bytes +=
-        name + '\0' + type + '\0' + DicomBytes::number(static_cast<std::uint32_t>(value.size()), 4) + value;
-  };
-  const auto numbers = [](std::initializer_list<std::uint32_t> all) {
-    std::string text;
-    for (const std::uint32_t number : all) text += DicomBytes::number(number, 4);
-    return text;
-  };
-  const auto floating = [](float number) {
-    return DicomBytes::number(std::bit_cast<std::uint32_t>(number), 4);
-  };
-  const std::string window = numbers({0, 0, width - 1, height - 1});
-  attribute("channels", "chlist", std::string("Y\0", 2) + numbers({2, 0, 1, 1}) + '\0');  // 2: floats
-  attribute("compression", "compression", std::string(1, '\0'));
-  attribute("dataWindow", "box2i", window);
-  attribute("displayWindow", "box2i", window);
-  attribute("lineOrder", "lineOrder", std::string(1, '\0'));
-  attribute("pixelAspectRatio", "float", floating(1));
-  attribute("screenWindowCenter", "v2f", floating(0) + floating(0));
-  attribute("screenWindowWidth", "float", floating(1));
-  bytes += '\0';
-  const std::size_t rows = bytes.size() + std::size_t{8} * height;
-  for (std::uint32_t y = 0; y < height; ++y)
-    bytes += numbers({static_cast<std::uint32_t>(rows) + y * (8 + 4 * width), 0});
-  for (std::uint32_t y = 0; y < height; ++y) {
-    bytes += numbers({y, 4 * width});
-    for (std::uint32_t x = 0; x < width; ++x) bytes += floating(static_cast<float>(shade(y * width + x)));
-  }
   return bytes;
 }
 

@@ -7,8 +7,6 @@
 namespace octotomy::tests {
 
 std::string nifti2();                ///< 6 x 5 x 4 samples of int16
-std::string tiff();                  ///< one grey page of 16 x 12 pixels, uncompressed
-std::string bmp(), pgm(), exr();     ///< the same picture, in shades of 8 bits or floats
 std::string vtk(), vtk_binary();     ///< a tetrahedron
 std::string vtp_text(), stl_text();  ///< the same
 std::string ply_text();              ///< the same

@@ -32,9 +32,10 @@ std::vector<std::uint8_t> encode_image(const std::string& format, const glm::ive
 void write_image(const std::filesystem::path& path, const glm::ivec2& size_px,
                  const std::vector<std::uint8_t>& rgb, const std::optional<ImageText>& text = std::nullopt);
 
-/// Reads the pages of a file, as grey images, in any format that OpenImageIO reads. Throws Error with path
-/// and reason: Input, or Resource if the library cannot be loaded. Memory: at most 64 MiB or 1100 times the
-/// file.
+/// Reads the pages of a file, as grey images. The first bytes tell the format: PNG, TIFF, JPEG, WebP, BMP,
+/// PNM, EXR or JPEG 2000. Throws Error with path and reason: Input, or Resource if the library cannot be
+/// loaded. Memory: pages of at most 64 MiB, or of 1100 times the file if that is more, and what the format's
+/// reader takes beside them, two or three times as much.
 std::vector<StoredImage> read_images(const std::filesystem::path& path);
 
 }  // namespace octotomy::voxel

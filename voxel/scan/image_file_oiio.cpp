@@ -38,7 +38,8 @@ namespace {
 
 using octotomy::voxel::StoredImage;
 
-/// What coding a grey picture as brightness and two colours leaves between its channels, of 255.
+/// Between the channels of a grey picture that was coded as brightness and two colours, of 255: each channel
+/// is rounded by itself when it is decoded.
 constexpr int lossy_shades_apart = 1;
 
 /// The type to read samples as: their own if it is one of the four, else the next that holds every value.
@@ -93,9 +94,12 @@ std::string read_page(OIIO::ImageInput& in, int page, std::size_t most_bytes, St
   const OIIO::TypeDesc type = described(image.type);
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || channels < 1) return "a page that is no image";
-  const double bytes =
-      static_cast<double>(spec.width) * spec.height * static_cast<double>(channels * type.size());
-  if (bytes > static_cast<double>(most_bytes)) return "a page that claims more pixels than the file can hold";
+  const auto bytes_of = [&](int width, int height) {
+    return static_cast<double>(width) * height * static_cast<double>(channels * type.size());
+  };
+  const double bytes = bytes_of(spec.width, spec.height);
+  if (std::max(bytes, bytes_of(spec.tile_width, spec.tile_height)) > static_cast<double>(most_bytes))
+    return "a page that claims more pixels than the file can hold";
   std::vector<char> pixels(static_cast<std::size_t>(bytes));
   if (!in.read_image(page, 0, 0, spec.nchannels, type, pixels.data())) {
     const std::string error = in.geterror();
@@ -113,12 +117,14 @@ std::string read_page(OIIO::ImageInput& in, int page, std::size_t most_bytes, St
 
 }  // namespace
 
-extern "C" bool octotomy_read_images(const char* path, std::size_t most_bytes,
+extern "C" bool octotomy_read_images(const char* path, const char* format, std::size_t most_bytes,
                                      std::vector<StoredImage>* images, std::string* error) {
   try {
-    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::open(path);
-    if (!in) {
-      *error = OIIO::geterror();
+    // open() would try every reader that OpenImageIO has.
+    const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec first;
+    if (!in || !in->open(path, first)) {
+      *error = in ? in->geterror() : OIIO::geterror();
       return false;
     }
     for (int page = 0; in->seek_subimage(page, 0); ++page) {

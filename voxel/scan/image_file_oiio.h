@@ -22,8 +22,8 @@ struct StoredImage {
 };
 }  // namespace octotomy::voxel
 
-/// Exported by octotomy_image_io.so. Fills `images` with the pages of a file, or fills `error` with the
-/// reason and returns false. Refuses colour: channels that differ, in JPEG and WebP by more than a shade.
-/// Allocates at most `most_bytes` in all.
-extern "C" bool octotomy_read_images(const char* path, std::size_t most_bytes,
+/// Exported by octotomy_image_io.so. Fills `images` with the pages of a file of a format, or fills `error`
+/// with the reason and returns false. Refuses colour: channels that differ, in JPEG and WebP by more than a
+/// shade. The pages take at most `most_bytes` in all, and a tile of one takes no more.
+extern "C" bool octotomy_read_images(const char* path, const char* format, std::size_t most_bytes,
                                      std::vector<octotomy::voxel::StoredImage>* images, std::string* error);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tests/file_bytes.h"
+#include "tests/voxel/scan/picture_bytes.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/space/error.h"
 
@@ -99,6 +100,43 @@ TEST(ReadImages, RefusesAChunkLongerThanItsFile) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::Input);
     EXPECT_NE(std::string(error.what()).find("ends within a chunk"), std::string::npos) << error.what();
+  }
+}
+
+TEST(ReadImages, TakesPicturesPutTogetherByHand) {
+  const ScratchFolder folder;
+  const auto shades_of = [&](const std::string& bytes) {
+    tests::write_bytes(folder / "slice.tif", bytes);  // whatever the name says
+    const std::vector<StoredImage> pages = read_images(folder / "slice.tif");
+    EXPECT_EQ(pages.size(), 1u);
+    EXPECT_EQ(pages.at(0).width, 16);
+    EXPECT_EQ(pages.at(0).height, 12);
+    return pages.at(0).bytes;
+  };
+  std::vector<char> shades;
+  for (std::uint32_t i = 0; i < 16 * 12; ++i) shades.push_back(static_cast<char>(tests::picture_shade(i)));
+  for (const std::string& bytes :
+       {tests::pgm(), tests::bmp(), tests::bmp_of_runs(), tests::tiff_of_tiles(16)})
+    EXPECT_EQ(shades_of(bytes), shades);
+  EXPECT_EQ(shades_of(tests::tiff()).size(), 2u * 16 * 12);
+  EXPECT_EQ(shades_of(tests::exr()).size(), sizeof(float) * 16 * 12);
+  const std::string blank = tests::blank_codestream(16, 12);
+  for (const std::string& bytes : {blank, tests::jp2(blank), tests::jp2(blank, "more")})
+    EXPECT_EQ(shades_of(bytes), std::vector<char>(16 * 12, '\x80'));
+}
+
+TEST(ReadImages, RefusesWhatItsReaderWouldTakeMemoryFor) {
+  const ScratchFolder folder;
+  const std::string blank = tests::blank_codestream(1u << 14, 1u << 13);
+  for (const std::string& bytes : {tests::bmp_of_runs(20000, 20000), tests::tiff_of_tiles(1u << 14), blank,
+                                   tests::jp2(blank, tests::blank_codestream(16, 12))}) {
+    tests::write_bytes(folder / "slice.png", bytes);
+    try {
+      read_images(folder / "slice.png");
+      ADD_FAILURE() << "was read";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("than the file can hold"), std::string::npos) << error.what();
+    }
   }
 }
 
