@@ -3,7 +3,9 @@
 // A verb made from an operation:
 //   1 The words of its options become the JSON of a step, read as a plan's step is.
 //   2 The files that it names become objects: meshes proven solid, or octrees.
-//   3 The kernel that the output's kind asks for answers; with --certify both do, and are compared.
+//   3 The kernel that the output's kind asks for answers; with --certify both do, and are compared. Where
+//   only the
+//     mesh kernel answers, an octree is its answer's voxels.
 //   4 The answer is written, measured and told.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -125,22 +127,24 @@ class OperationRun {
       const brep::Size& size = object.mesh.whole->size();
       box = {glm::min(box.low_mm, size.low_mm), glm::max(box.high_mm, size.high_mm)};
     }
-    universe_ = universe_about(box);
+    const double room_mm = 0.25 * longest_side_mm(box);  // as margins may need
+    universe_ = universe_around({box.low_mm - room_mm, box.high_mm + room_mm}, longest_side_mm(box));
   }
 
-  /// Voxels of --voxel, or a 128th of the box, around it and as much room again as margins may need.
-  voxel::Universe universe_about(const voxel::Box& box) const {
+  static double longest_side_mm(const voxel::Box& box) {
     const glm::dvec3 extent = box.high_mm - box.low_mm;
-    const double longest_mm = std::max({extent.x, extent.y, extent.z});
-    const double voxel_mm = text_.voxel_mm.value_or(longest_mm / 128.0);
-    return voxel::universe_around({box.low_mm - 0.25 * longest_mm, box.high_mm + 0.25 * longest_mm},
-                                  voxel_mm);
+    return std::max({extent.x, extent.y, extent.z});
+  }
+
+  /// Voxels of --voxel, or a 128th of what they show.
+  voxel::Universe universe_around(const voxel::Box& box, double shown_mm) const {
+    return voxel::universe_around(box, text_.voxel_mm.value_or(shown_mm / 128.0));
   }
 
   void add_voxels(Object& object) {
     if (object.voxel.symbol) return;
     const Stopwatch watch(timings_, "voxelise");
-    object.voxel.octree = convert::voxelise(universe_, *object.mesh.whole);
+    object.voxel.octree = convert::voxelise(universe_, *object.mesh.whole, progress());
     object.voxel.symbol = voxel::Expression(object.voxel.octree);
     object.voxel.lineage = "voxel centres inside of " + object.definition;
   }
@@ -161,11 +165,13 @@ class OperationRun {
       throw std::runtime_error("nothing is left of " + made.definition + ": there is no surface to write");
   }
 
-  /// What the mesh kernel alone makes, as a plan's later steps get it.
+  /// What the mesh kernel alone makes.
   void voxelise_answer(Object& made) {
     const Stopwatch watch(timings_, "voxelise");
     const brep::Solid& solid = *made.mesh.whole;
-    made.voxel.octree = convert::voxelise(universe_about({solid.size().low_mm, solid.size().high_mm}), solid);
+    const voxel::Box box{solid.size().low_mm, solid.size().high_mm};
+    made.voxel.octree = convert::voxelise(universe_around(box, longest_side_mm(box)), solid, progress());
+    made.findings.emplace_back(mesh_alone);
   }
 
   void certify_answer(Object& made) {
@@ -248,7 +254,7 @@ void add_object_options(CLI::App& verb, const Operation& operation, OperationTex
   verb.add_option(
           "-o,--out", text.out,
           std::string("The answer: a .stl, .ply, .obj, .off, .vtp or .glb file by the mesh kernel, or ") +
-              (by_both ? "an .octree by the voxel kernel" : "an .octree of the voxels inside of that"))
+              (by_both ? "an .octree by the voxel kernel" : "an .octree of the voxels inside that surface"))
       ->required();
   verb.add_option("--voxel", text.voxel_mm,
                   std::string("Edge of an octree's voxels, mm; default: a 128th of the ") +

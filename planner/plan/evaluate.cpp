@@ -433,8 +433,7 @@ class Evaluator {
     object.voxel.symbol = voxel::Expression(object.voxel.octree);
     object.voxel.lineage = "the mesh kernel's answer, voxelised";
     object.witness = verify::witness_of_surface(*object.mesh.whole);
-    object.findings.emplace_back(
-        "no certificate: only the mesh kernel does this, and its voxels are its mesh's");
+    object.findings.emplace_back(mesh_alone);
   }
 
   /// The mesh kernel's answer; a finding where it has none.

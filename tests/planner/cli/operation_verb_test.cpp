@@ -52,6 +52,11 @@ TEST_F(OperationVerbs, WhatTheMeshKernelAloneMakesIsVoxelised) {
   ASSERT_GT(margin, 1.2 * ball);
   EXPECT_NEAR(volume_mm3("offset " + at("ball.off") + " --by 3 --voxel 0.5 -o " + at("margin.octree")),
               margin, 0.01 * margin);
+  const CommandAnswer told =
+      run("offset " + at("ball.off") + " --by 3 -o " + at("margin.octree") + " --json");
+  EXPECT_NE(SortedJson::parse(told.out).at("findings").dump().find("only the mesh kernel does this"),
+            std::string::npos)
+      << told.out;
   expect_refused(run("offset " + at("ball.octree") + " --by 3 -o " + at("x.octree")), "octotomy mesh");
 }
 
