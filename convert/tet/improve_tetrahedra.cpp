@@ -129,8 +129,9 @@ class Improving {
     return moved;
   }
 
-  /// The flattest of a node's elements were the node there, or any that is at least `enough` flat. `worst` is
-  /// the element to try first and becomes the flattest: what is flat here is flat close by.
+  /// The largest flatness about a node if it stood at `p_mm`, or the first found that is `enough` or more.
+  /// Begins with the element `worst`, since what is flat at one place is flat close by, and leaves the
+  /// flattest in it.
   double flattest(std::uint32_t v, const glm::dvec3& p_mm, double enough, std::uint32_t& worst) const {
     const auto flatness_of = [&](std::uint32_t tet) {
       Corners p = corners_of(tet);
@@ -204,6 +205,8 @@ int improve(Tetrahedra& tetrahedra, const ImproveOptions& options) {
                   [](double play_mm) { return !(play_mm >= 0.0); }) ||
       options.rounds < 1)
     throw std::invalid_argument("improve: the surface's play must not be negative, rounds at least 1");
+  if (options.all_or_nothing && !options.surface_play_mm.empty())
+    throw std::invalid_argument("improve: where the surface has play, rounds cannot be gone on with");
   return Improving(tetrahedra, options).run();
 }
 

@@ -14,8 +14,9 @@ struct ImproveOptions {
   /// bit.
   std::vector<double> surface_play_mm{};
   int rounds = 10;  ///< over all elements below the goal, at least 1
-  /// Ends early where so many elements are below the goal after a round that the rest cannot mend all: none
-  /// is taken to mend more than half, or than the last one did.
+  /// Stops after a round if the remaining ones cannot mend every element, assuming that each mends at most
+  /// half of what is left, or the last round's share if that is larger. Not with `surface_play_mm`, which
+  /// counts from where the nodes lie when a call begins.
   bool all_or_nothing = false;
   voxel::Progress progress{};  ///< of the rounds
 };
@@ -23,7 +24,7 @@ struct ImproveOptions {
 /// Moves nodes so that the smallest dihedral angles of the flattest elements grow. A move never lowers the
 /// smallest angle about its node, and makes no volume zero or negative. Elements, their order and their
 /// nodes' numbers stay. Elements that no move of a single node can improve stay too: see quality(). Returns
-/// the rounds left where it ended early, for a call that goes on with them, else 0. Throws
+/// the rounds left where it stopped early, for a call that goes on with them, else 0. Throws
 /// std::invalid_argument if an option is out of range; voxel::Stopped. Deterministic. Cost: linear, and about
 /// 40 us a flat element and round.
 /// Source: after Freitag and Ollivier-Gooch, "Tetrahedral mesh improvement using swapping and smoothing",

@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "brep/mesh/disjoint_sets.h"
 #include "brep/mesh/distance.h"
@@ -384,10 +385,11 @@ void take_better(std::optional<Tetrahedra>& best, std::optional<Tetrahedra> othe
   if (best) {
     const double kept_deg = quality(*best).min_dihedral_deg;
     const bool is_better = kept_deg < quality(*other).min_dihedral_deg;
-    attempts.findings.push_back(best->method.substr(0, best->method.find(' ')) + " reached only " +
-                                rounded(kept_deg) + " degrees" +
-                                (best->method == "Mesh_3" ? "" : " with the surface kept") + ", so " + who +
-                                " remeshed it" + (is_better ? "" : "; its angles were no better"));
+    attempts.findings.push_back(
+        best->method.substr(0, best->method.find(' ')) + " reached only " + rounded(kept_deg) + " degrees" +
+        (best->method == "Mesh_3" ? "" : " with the surface kept") +
+        (attempts.rounds_left > 0 ? " when smoothing was stopped as hopeless" : "") + ", so " + who +
+        " remeshed it" + (is_better ? "" : "; its angles were no better"));
     if (!is_better) return;
   }
   best = std::move(other);
@@ -451,7 +453,7 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
     attempts.code = filling.code;
     if (attempts.rounds_left > 0 && !reaches(filling.tetrahedra, options.min_dihedral_deg)) {
       ImproveOptions improving = improve_options(options);
-      improving.rounds = attempts.rounds_left;
+      improving.rounds = std::exchange(attempts.rounds_left, 0);
       improve(*best, improving);
     }
     take_better(best, std::move(filling.tetrahedra), "Mesh_3", attempts);

@@ -111,6 +111,9 @@ TEST(ImproveTetrahedra, RefusesOptionsOutOfRange) {
                std::invalid_argument);
   EXPECT_THROW(improve(t, {.surface_play_mm = {1.0}}), std::invalid_argument);
   EXPECT_THROW(improve(t, {.rounds = 0}), std::invalid_argument);
+  EXPECT_THROW(improve(t, {.surface_play_mm = std::vector<double>(t.boundary_nodes.size(), 1.0),
+                           .all_or_nothing = true}),
+               std::invalid_argument);
 }
 
 }  // namespace
