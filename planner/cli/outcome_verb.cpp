@@ -94,7 +94,7 @@ void add_outcome(Program& program) {
                   "that shares no bone with a piece");
   verb.add_option("--low", text->low,
                   "The lowest sample of the later scan that is bone; default: the plan's");
-  add_scan_options(verb, text->after_in);
+  add_scan_options(verb, text->after_in, "scan after the operation");
 }
 
 }  // namespace octotomy::planner::cli

@@ -47,23 +47,22 @@ voxel::RawLayout layout_of(const ScanIn& in) {
 
 }  // namespace
 
-void add_scan_options(CLI::App& verb, ScanIn& in) {
-  const std::string group = "scan";
+void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
   verb.add_option("--series", in.series,
                   "Of a folder with several DICOM series: its number as octotomy info lists it (2, or 2.1 of "
                   "several stacks in one series), its UID, or a part of its description or kernel")
-      ->group(group);
+      ->group(heading);
   verb.add_option("--slices", in.slices,
                   "FROM:TO of the DICOM series' images to keep, 1 the lowest along their normal, for example "
                   "1:40 or 1:40,45:60")
-      ->group(group);
+      ->group(heading);
   verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, of images and raw files, which do not say it")
-      ->group(group);
+      ->group(heading);
   verb.add_option("--raw", in.raw, "XxYxZ TYPE: the file is raw samples, for example 512x512x300 int16")
       ->expected(2)
-      ->group(group);
-  verb.add_flag("--big-endian", in.big_endian, "Raw samples have their high bytes first")->group(group);
-  verb.add_option("--offset", in.offset, "Bytes before the first raw sample")->group(group);
+      ->group(heading);
+  verb.add_flag("--big-endian", in.big_endian, "Raw samples have their high bytes first")->group(heading);
+  verb.add_option("--offset", in.offset, "Bytes before the first raw sample")->group(heading);
 }
 
 CLI::Validator scan_path() {

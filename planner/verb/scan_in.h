@@ -19,8 +19,9 @@ struct ScanIn {
   std::uint64_t offset = 0;
 };
 
-/// Adds --series, --slices, --spacing, --raw, --big-endian and --offset to a verb's help.
-void add_scan_options(CLI::App& verb, ScanIn& in);
+/// Adds --series, --slices, --spacing, --raw, --big-endian and --offset to a verb's help, under a heading
+/// that says whose they are.
+void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading = "scan");
 
 /// A path that is there, or a pattern of image files.
 CLI::Validator scan_path();
