@@ -17,7 +17,7 @@ namespace {
 
 constexpr double most_samples = 1 << 26;
 
-/// A triangle in parts^2 equal ones, each stood for by its centre.
+/// A triangle split into parts^2 equal ones, each sampled at its centre.
 struct Grid {
   glm::dvec3 a, ab, ac;
   double area_mm2, parts;
@@ -40,7 +40,7 @@ struct Grid {
 };
 
 /// A triangle with a short side from `foot`, cut by parallels to that side and by rays from `tip`. The sides
-/// of a cell are at most half the spacing long, so no two of its points are further apart than the spacing.
+/// of a cell are at most half the spacing long, so its diameter is at most the spacing.
 struct Wedge {
   glm::dvec3 tip, foot, across;    ///< across: the short side, from the foot
   double area_mm2, strips, cells;  ///< cells: of the strip at the short side, the furthest from the tip
@@ -96,7 +96,7 @@ struct Split {
   bool sliver = false;  ///< by its wedges, not by its grid
 
   /// No point of the triangle lies further than this from a sample: of a convex piece none lies further from
-  /// the centre of gravity than two thirds of the piece's width.
+  /// the centre of gravity than two thirds of the piece's diameter.
   double reach_mm(double spacing_mm) const {
     return 2.0 / 3.0 * (sliver ? spacing_mm : longest_mm / grid.parts);
   }
@@ -109,7 +109,7 @@ struct Split {
 };
 
 /// A grid's parts grow as the square of the longest side, a wedge's cells as the area: slivers, for which
-/// wedges need less than a quarter, are split so.
+/// wedges need less than a quarter, are split into wedges.
 Split split_of(const std::array<glm::dvec3, 3>& corners, double spacing_mm) {
   const auto& [a, b, c] = corners;
   const glm::dvec3 ab = b - a, ac = c - a;

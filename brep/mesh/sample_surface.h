@@ -17,11 +17,11 @@ struct SurfaceSamples {
   double reach_mm = 0.0;  ///< no point of the surface lies further than this from a sample
 };
 
-/// Splits each triangle into n * n equal ones with sides of at most `spacing_mm`, a sliver into cells no
-/// wider than that, and takes their centres of gravity, by triangle. Triangles without area get none. Throws
-/// std::invalid_argument where the spacing is not positive; Error, Resource, where that makes more than 2^26
-/// samples. Cost: linear in the samples, 56 bytes each; at least one a triangle, and a few for each square of
-/// the spacing and each stretch of it along a sliver.
+/// Splits each triangle into n * n equal ones with sides of at most `spacing_mm`, a sliver into cells of
+/// at most that diameter, and takes their centres of gravity, by triangle. Triangles without area get none.
+/// Throws std::invalid_argument where the spacing is not positive; Error, Resource, where that makes more
+/// than 2^26 samples. Cost: linear in the samples, 56 bytes each; at least one a triangle, and a few for each
+/// square of the spacing and each stretch of it along a sliver.
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
 SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm);
 

@@ -23,7 +23,7 @@ struct FileKind {
   /// Of these one, chosen by the seed, computes with a mutant that was read. All take the sound file, but
   /// for the last few, which may find too little in it.
   std::vector<std::vector<std::string>> verbs;
-  std::size_t declining = 0;  ///< how many that are
+  std::size_t declining = 0;  ///< how many verbs at the end may refuse the sound file
 };
 
 /// Every kind. `make` runs the program with arguments and throws where it fails: it makes the sound files, in

@@ -113,7 +113,7 @@ class KindRun {
     const std::string sound = kind_.finish ? kind_.finish(kind_.sound) : kind_.sound;
     const auto need_taken = [&](const std::vector<std::string>& command, bool computes) {
       const auto judged = worker.judge(kind_, sound, command, !computes, computes);
-      if (!judged.fault.empty() || judged.outcome.status >= 2)
+      if (!judged.fault.empty() || judged.outcome.status >= (computes ? 2 : 1))
         throw std::runtime_error(kind_.name + ": '" + command.front() +
                                  "' does not take the sound file: " + judged.fault + judged.outcome.errors);
     };
