@@ -110,8 +110,8 @@ void check_bitmap(std::string_view bytes, std::size_t most_bytes) {
     const double number = static_cast<std::int32_t>(little_endian_at(bytes, at));
     return std::abs(number);  // negative: from the top
   };
-  const double pixel_bytes = std::max(1.0, (little_endian_at(bytes, pixel_bits_at) & 0xffff) / 8.0);
-  if (pixels(width_at) * pixels(height_at) * pixel_bytes > static_cast<double>(most_bytes)) refuse_claim();
+  const double bytes_a_pixel = std::max(1.0, (little_endian_at(bytes, pixel_bits_at) & 0xffff) / 8.0);
+  if (pixels(width_at) * pixels(height_at) * bytes_a_pixel > static_cast<double>(most_bytes)) refuse_claim();
 }
 
 }  // namespace
