@@ -208,8 +208,8 @@ class Kinds {
     stack("tiff_stack", "tif", tiff(), "300:");
     stack("tiff_tiles_stack", "tif", tiff_of_tiles(16));
     stack("bmp_stack", "bmp", bmp());
-    stack("bmp_runs_stack", "bmp", bmp_of_runs());
     stack("pgm_stack", "pgm", pgm());
+    stack("pgm_deep_stack", "pgm", pgm(4095));
     stack("exr_stack", "exr", exr());
   }
 

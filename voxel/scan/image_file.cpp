@@ -66,9 +66,9 @@ std::vector<StoredImage> read_images(const fs::path& path) {
   // Blank pixels compress to almost nothing: any file may hold 4096 x 4096 pixels of four bytes.
   const std::size_t most_bytes =
       std::max(std::size_t{4096} * 4096 * 4, 1100 * static_cast<std::size_t>(fs::file_size(path)));
-  std::string format;
+  PictureHeader header;
   try {
-    format = check_picture_header(picture_header(path), most_bytes);
+    header = read_picture_header(picture_header_bytes(path), most_bytes);
   } catch (const std::invalid_argument& error) {
     refuse(path, error.what());
   }
@@ -77,7 +77,7 @@ std::vector<StoredImage> read_images(const fs::path& path) {
   bool is_read = false;
   {
     const QuietErrors quiet;  // libpng prints its reasons as well
-    is_read = read(path.c_str(), format.c_str(), most_bytes, &images, &error);
+    is_read = read(path.c_str(), header.format.c_str(), header.largest_sample, most_bytes, &images, &error);
   }
   if (!is_read) {
     std::replace(error.begin(), error.end(), '\n', ' ');

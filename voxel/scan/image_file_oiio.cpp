@@ -4,11 +4,14 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <string_view>
+#include <type_traits>
 
 extern "C" bool octotomy_encode_image(const char* format, int width, int height, const std::uint8_t* rgb,
                                       std::vector<std::uint8_t>* encoded, std::string* error) {
@@ -42,33 +45,70 @@ using octotomy::voxel::StoredImage;
 /// is rounded by itself when it is decoded.
 constexpr int lossy_shades_apart = 1;
 
-/// The type to read samples as: their own if it is one of the four, else the next that holds every value.
-StoredImage::Type type_of(OIIO::TypeDesc type) {
+/// A stretched sample's own value. Stretching multiplies by the type's largest over the picture's and rounds
+/// down, or repeats the highest bits below the lowest.
+template <typename Sample>
+Sample unstretched(Sample sample, std::uint32_t largest) {
+  constexpr std::uint64_t whole = std::numeric_limits<Sample>::max();
+  if (std::has_single_bit(largest + 1))
+    return static_cast<Sample>(sample >> (std::bit_width(whole) - std::bit_width(largest)));
+  return static_cast<Sample>((std::uint64_t{sample} * largest + whole - 1) / whole);
+}
+
+/// The first of each pixel's channels as another type that holds its values.
+template <typename Read, typename Stored>
+std::vector<char> first_channel(const std::vector<char>& pixels, std::size_t channels,
+                                std::uint32_t largest) {
+  std::vector<char> bytes(pixels.size() / (channels * sizeof(Read)) * sizeof(Stored));
+  for (std::size_t i = 0; i < bytes.size() / sizeof(Stored); ++i) {
+    Read sample;
+    std::memcpy(&sample, &pixels[i * channels * sizeof(Read)], sizeof sample);
+    if constexpr (std::is_unsigned_v<Read>)
+      if (largest > 0 && largest < std::numeric_limits<Read>::max()) sample = unstretched(sample, largest);
+    const auto stored = static_cast<Stored>(sample);
+    std::memcpy(&bytes[i * sizeof(Stored)], &stored, sizeof stored);
+  }
+  return bytes;
+}
+
+/// How samples are read and stored. OpenImageIO would stretch whole numbers if it were asked for another
+/// type.
+struct Reading {
+  OIIO::TypeDesc read_as;
+  StoredImage::Type stored_as;
+  std::vector<char> (*take)(const std::vector<char>&, std::size_t, std::uint32_t);
+};
+
+Reading reading_of(OIIO::TypeDesc type) {
+  using Type = StoredImage::Type;
   switch (type.basetype) {
     case OIIO::TypeDesc::UINT8:
-      return StoredImage::Type::UInt8;
+      return {type, Type::UInt8, first_channel<std::uint8_t, std::uint8_t>};
     case OIIO::TypeDesc::INT8:
-    case OIIO::TypeDesc::INT16:
-      return StoredImage::Type::Int16;
+      return {type, Type::Int16, first_channel<std::int8_t, std::int16_t>};
     case OIIO::TypeDesc::UINT16:
-      return StoredImage::Type::UInt16;
+      return {type, Type::UInt16, first_channel<std::uint16_t, std::uint16_t>};
+    case OIIO::TypeDesc::INT16:
+      return {type, Type::Int16, first_channel<std::int16_t, std::int16_t>};
+    case OIIO::TypeDesc::UINT32:
+      return {type, Type::Float, first_channel<std::uint32_t, float>};
+    case OIIO::TypeDesc::INT32:
+      return {type, Type::Float, first_channel<std::int32_t, float>};
+    case OIIO::TypeDesc::UINT64:
+      return {type, Type::Float, first_channel<std::uint64_t, float>};
+    case OIIO::TypeDesc::INT64:
+      return {type, Type::Float, first_channel<std::int64_t, float>};
     default:
-      return StoredImage::Type::Float;
+      return {OIIO::TypeDesc::FLOAT, Type::Float, first_channel<float, float>};
   }
 }
 
-OIIO::TypeDesc described(StoredImage::Type type) {
-  switch (type) {
-    case StoredImage::Type::UInt8:
-      return OIIO::TypeDesc::UINT8;
-    case StoredImage::Type::UInt16:
-      return OIIO::TypeDesc::UINT16;
-    case StoredImage::Type::Int16:
-      return OIIO::TypeDesc::INT16;
-    case StoredImage::Type::Float:
-      break;
-  }
-  return OIIO::TypeDesc::FLOAT;
+/// The largest sample that a page's reader tells by its bits, as TIFF's does; else 0. Pixels that a palette
+/// has coloured have no such bits any more.
+std::uint32_t largest_sample_of(const OIIO::ImageSpec& spec) {
+  const int bits = spec.get_int_attribute("oiio:BitsPerSample", 0);
+  const bool may_be_coloured = spec.nchannels >= 3 && spec.format == OIIO::TypeDesc::UINT8;
+  return bits > 0 && bits < 32 && !may_be_coloured ? (1u << bits) - 1 : 0;
 }
 
 /// Whether the first three channels are the same at every pixel; of single bytes, up to `most_apart`.
@@ -86,12 +126,14 @@ bool is_grey(const std::vector<char>& pixels, std::size_t channels, std::size_t 
 }
 
 /// Reads the current page. Returns the reason if it cannot be a slice, else an empty text.
-std::string read_page(OIIO::ImageInput& in, int page, std::size_t most_bytes, StoredImage& image) {
+std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_sample, std::size_t most_bytes,
+                      StoredImage& image) {
   const OIIO::ImageSpec spec = in.spec();
   image.width = spec.width;
   image.height = spec.height;
-  image.type = type_of(spec.format);
-  const OIIO::TypeDesc type = described(image.type);
+  const Reading reading = reading_of(spec.format);
+  image.type = reading.stored_as;
+  const OIIO::TypeDesc type = reading.read_as;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || channels < 1) return "a page that is no image";
   const auto bytes_of = [&](int width, int height) {
@@ -109,27 +151,27 @@ std::string read_page(OIIO::ImageInput& in, int page, std::size_t most_bytes, St
   const int most_apart = format == "webp" || format == "jpeg" ? lossy_shades_apart : 0;
   if (channels >= 3 && !is_grey(pixels, channels, type.size(), most_apart))
     return "a colour image; a scan is grey";
-  image.bytes.resize(pixels.size() / channels);
-  for (std::size_t i = 0; i < image.bytes.size() / type.size(); ++i)
-    std::memcpy(&image.bytes[i * type.size()], &pixels[i * channels * type.size()], type.size());
+  image.bytes = reading.take(pixels, channels, largest_sample > 0 ? largest_sample : largest_sample_of(spec));
   return {};
 }
 
 }  // namespace
 
-extern "C" bool octotomy_read_images(const char* path, const char* format, std::size_t most_bytes,
-                                     std::vector<StoredImage>* images, std::string* error) {
+extern "C" bool octotomy_read_images(const char* path, const char* format, std::uint32_t largest_sample,
+                                     std::size_t most_bytes, std::vector<StoredImage>* images,
+                                     std::string* error) {
   try {
     // open() would try every reader that OpenImageIO has.
     const std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(format);
-    OIIO::ImageSpec first;
-    if (!in || !in->open(path, first)) {
+    OIIO::ImageSpec first, wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1);  // else samples are multiplied by what covers them
+    if (!in || !in->open(path, first, wishes)) {
       *error = in ? in->geterror() : OIIO::geterror();
       return false;
     }
     for (int page = 0; in->seek_subimage(page, 0); ++page) {
       images->emplace_back();
-      *error = read_page(*in, page, most_bytes, images->back());
+      *error = read_page(*in, page, largest_sample, most_bytes, images->back());
       if (!error->empty()) return false;
       most_bytes -= std::min(most_bytes, images->back().bytes.size());
     }

@@ -23,7 +23,10 @@ struct StoredImage {
 }  // namespace octotomy::voxel
 
 /// Exported by octotomy_image_io.so. Fills `images` with the pages of a file of a format, or fills `error`
-/// with the reason and returns false. Refuses colour: channels that differ, in JPEG and WebP by more than a
-/// shade. The pages take at most `most_bytes` in all, and a tile of one takes no more.
-extern "C" bool octotomy_read_images(const char* path, const char* format, std::size_t most_bytes,
+/// with the reason and returns false. Samples have the values of the file: where the reader stretches them
+/// over all values of their type, `largest_sample` is the largest that one may have (PictureHeader). Refuses
+/// colour: channels that differ, in JPEG and WebP by more than a shade. The pages take at most `most_bytes`
+/// in all, and a tile of one takes no more.
+extern "C" bool octotomy_read_images(const char* path, const char* format, std::uint32_t largest_sample,
+                                     std::size_t most_bytes,
                                      std::vector<octotomy::voxel::StoredImage>* images, std::string* error);

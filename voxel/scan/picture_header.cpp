@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 
 #include "voxel/scan/png_chunk.h"
 
@@ -19,7 +21,8 @@ using namespace std::string_view_literals;
 constexpr std::string_view jpeg_begin = "\xff\xd8"sv;
 constexpr std::string_view codestream_begin = "\xff\x4f\xff\x51"sv;  // start, image and tile size
 constexpr std::string_view jp2_begin = "\0\0\0\x0cjP  "sv;
-constexpr std::size_t longest_header = 42;  // of those that lie at the beginning: a codestream's
+/// Of those that lie at the beginning; PNM takes comments.
+constexpr std::size_t longest_header = 1 << 16;
 
 [[noreturn]] void refuse_claim() {
   throw std::invalid_argument("is a picture that claims more than the file can hold");
@@ -35,9 +38,9 @@ std::uint32_t little_endian_at(std::string_view bytes, std::size_t at) {
   return number;
 }
 
-/// A codestream's header of image and tile size, from its start.
-void check_codestream(std::string_view bytes, std::size_t most_bytes) {
-  constexpr std::size_t header_bytes = 42;
+/// A codestream's header of image and tile size, from its start. Returns the largest sample.
+std::uint32_t read_codestream(std::string_view bytes, std::size_t most_bytes) {
+  constexpr std::size_t header_bytes = 43, depth_at = 42;  // with the first channel's depth
   if (!bytes.starts_with(codestream_begin))
     throw std::invalid_argument("is a JPEG 2000 picture that does not begin with its size");
   if (bytes.size() < header_bytes)
@@ -57,6 +60,12 @@ void check_codestream(std::string_view bytes, std::size_t most_bytes) {
   }
   const auto most = static_cast<double>(most_bytes);
   if (4 * samples > most || tiles * (tile_bytes + tile_channel_bytes * channels) > most) refuse_claim();
+  const auto depth = static_cast<std::uint8_t>(bytes[depth_at]);
+  if ((depth & 0x80) != 0)
+    throw std::invalid_argument(
+        "is a JPEG 2000 picture of signed samples, which would be read as unsigned: write "
+        "it as TIFF");
+  return depth < 16 ? (2u << depth) - 1 : 0;
 }
 
 /// The codestream in a JP2's boxes: length, four letters, data; a length of 1 stands for eight bytes behind
@@ -98,57 +107,72 @@ void check_jpeg(std::string_view bytes, std::size_t most_bytes) {
   }
 }
 
-void check_bitmap(std::string_view bytes, std::size_t most_bytes) {
-  constexpr std::size_t size_at = 14, width_at = 18, height_at = 22, pixel_bits_at = 28;
+void check_bitmap(std::string_view bytes) {
+  constexpr std::size_t size_at = 14, packing_at = 30;
   constexpr std::array<std::uint32_t, 6> known{12, 40, 52, 56, 108, 124};
   const std::uint32_t size = bytes.size() >= size_at + 4 ? little_endian_at(bytes, size_at) : 0;
   if (std::find(known.begin(), known.end(), size) == known.end())
     throw std::invalid_argument("is a BMP picture with a header of an unknown size");
-  // One of 12 bytes has no room for a large picture.
-  if (size == known.front() || bytes.size() < pixel_bits_at + 4) return;
-  const auto pixels = [&](std::size_t at) {
-    const double number = static_cast<std::int32_t>(little_endian_at(bytes, at));
-    return std::abs(number);  // negative: from the top
-  };
-  const double bytes_a_pixel = std::max(1.0, (little_endian_at(bytes, pixel_bits_at) & 0xffff) / 8.0);
-  if (pixels(width_at) * pixels(height_at) * bytes_a_pixel > static_cast<double>(most_bytes)) refuse_claim();
+  const bool has_packing = size != known.front() && bytes.size() >= packing_at + 4;
+  const std::uint32_t packing = has_packing ? little_endian_at(bytes, packing_at) : 0;
+  if (packing == 1 || packing == 2)
+    throw std::invalid_argument(
+        "is a BMP picture packed as runs, which would be read wrongly: write it unpacked");
+}
+
+/// The largest sample of a PNM: the third number behind its two letters, which comments may interrupt.
+std::uint32_t read_pnm(std::string_view bytes) {
+  std::size_t at = 2;
+  std::uint32_t number = 0;
+  for (int count = 0; count < 3; ++count) {
+    while (at < bytes.size() &&
+           (std::isspace(static_cast<unsigned char>(bytes[at])) != 0 || bytes[at] == '#'))
+      at = bytes[at] == '#' ? std::min(bytes.find('\n', at), bytes.size()) : at + 1;
+    const auto [end, error] = std::from_chars(bytes.data() + at, bytes.data() + bytes.size(), number);
+    if (error != std::errc())
+      throw std::invalid_argument(
+          "is a PNM picture that does not begin with its size and its largest sample");
+    at = static_cast<std::size_t>(end - bytes.data());
+  }
+  if (number < 1 || number > 65535)
+    throw std::invalid_argument("is a PNM picture whose largest sample is none of 1 to 65535");
+  return number;
+}
+
+std::uint32_t read_png(std::string_view bytes) {
+  const std::string_view header = png_chunks(bytes).front().data;
+  constexpr std::size_t depth_at = 8, colours_at = 9;
+  constexpr char by_palette = 3;
+  const auto depth = static_cast<std::uint8_t>(header[depth_at]);
+  return depth < 8 && header[colours_at] != by_palette ? (1u << depth) - 1 : 0;
 }
 
 }  // namespace
 
-std::string check_picture_header(std::string_view bytes, std::size_t most_bytes) {
-  if (bytes.starts_with(png_signature)) {
-    png_chunks(bytes);
-    return "png";
-  }
-  if (bytes.starts_with(jpeg_begin)) {
+PictureHeader read_picture_header(std::string_view bytes, std::size_t most_bytes) {
+  const auto begins = [&](std::string_view letters) { return bytes.starts_with(letters); };
+  if (begins(png_signature)) return {"png", read_png(bytes)};
+  if (begins(jpeg_begin)) {
     check_jpeg(bytes, most_bytes);
-    return "jpeg";
+    return {"jpeg"};
   }
-  if (bytes.starts_with(jp2_begin)) {
-    check_codestream(codestream_of(bytes), most_bytes);
-    return "jpeg2000";
+  if (begins(jp2_begin)) return {"jpeg2000", read_codestream(codestream_of(bytes), most_bytes)};
+  if (begins(codestream_begin.substr(0, 2))) return {"jpeg2000", read_codestream(bytes, most_bytes)};
+  if (begins("BM")) {
+    check_bitmap(bytes);
+    return {"bmp"};
   }
-  if (bytes.starts_with(codestream_begin.substr(0, 2))) {
-    check_codestream(bytes, most_bytes);
-    return "jpeg2000";
-  }
-  if (bytes.starts_with("BM")) {
-    check_bitmap(bytes, most_bytes);
-    return "bmp";
-  }
-  if (bytes.starts_with("RIFF") && bytes.substr(std::min<std::size_t>(8, bytes.size())).starts_with("WEBP"))
-    return "webp";
-  for (const std::string_view begin : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv})
-    if (bytes.starts_with(begin)) return "tiff";
-  if (bytes.starts_with("\x76\x2f\x31\x01"sv)) return "openexr";
-  if (bytes.size() >= 2 && bytes[0] == 'P' && "123456Ff"sv.find(bytes[1]) != std::string_view::npos)
-    return "pnm";
+  if (begins("RIFF") && bytes.substr(std::min<std::size_t>(8, bytes.size())).starts_with("WEBP"))
+    return {"webp"};
+  if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return {"tiff"};
+  if (begins("\x76\x2f\x31\x01"sv)) return {"openexr"};
+  if (begins("P2") || begins("P3") || begins("P5") || begins("P6")) return {"pnm", read_pnm(bytes)};
+  if (begins("P1") || begins("P4") || begins("PF") || begins("Pf")) return {"pnm"};
   throw std::invalid_argument(
       "is no picture of a known format: give PNG, TIFF, JPEG, WebP, BMP, PGM, EXR or JPEG 2000");
 }
 
-std::string picture_header(const std::filesystem::path& path) {
+std::string picture_header_bytes(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes(longest_header, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -3,10 +3,12 @@
 
 #include <OpenImageIO/imageio.h>
 #include <cmath>
+#include <cstring>
 #include <gtest/gtest.h>
 #include <stdexcept>
 
 #include "tests/file_bytes.h"
+#include "tests/voxel/scan/dicom_bytes.h"
 #include "tests/voxel/scan/picture_bytes.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/space/error.h"
@@ -103,33 +105,92 @@ TEST(ReadImages, RefusesAChunkLongerThanItsFile) {
   }
 }
 
-TEST(ReadImages, TakesPicturesPutTogetherByHand) {
+/// A picture of 16 x 12 pixels put together by hand, its samples as numbers.
+std::vector<double> samples_of(const std::string& bytes) {
   const ScratchFolder folder;
-  const auto shades_of = [&](const std::string& bytes) {
-    tests::write_bytes(folder / "slice.tif", bytes);  // whatever the name says
-    const std::vector<StoredImage> pages = read_images(folder / "slice.tif");
-    EXPECT_EQ(pages.size(), 1u);
-    EXPECT_EQ(pages.at(0).width, 16);
-    EXPECT_EQ(pages.at(0).height, 12);
-    return pages.at(0).bytes;
+  tests::write_bytes(folder / "slice.tif", bytes);  // whatever the name says
+  const std::vector<StoredImage> pages = read_images(folder / "slice.tif");
+  EXPECT_EQ(pages.size(), 1u);
+  const StoredImage& page = pages.at(0);
+  EXPECT_EQ(page.width, 16);
+  EXPECT_EQ(page.height, 12);
+  std::vector<double> samples;
+  const auto take = [&](auto sample) {
+    for (std::size_t at = 0; at + sizeof sample <= page.bytes.size(); at += sizeof sample) {
+      std::memcpy(&sample, &page.bytes[at], sizeof sample);
+      samples.push_back(static_cast<double>(sample));
+    }
   };
-  std::vector<char> shades;
-  for (std::uint32_t i = 0; i < 16 * 12; ++i) shades.push_back(static_cast<char>(tests::picture_shade(i)));
-  for (const std::string& bytes :
-       {tests::pgm(), tests::bmp(), tests::bmp_of_runs(), tests::tiff_of_tiles(16)})
-    EXPECT_EQ(shades_of(bytes), shades);
-  EXPECT_EQ(shades_of(tests::tiff()).size(), 2u * 16 * 12);
-  EXPECT_EQ(shades_of(tests::exr()).size(), sizeof(float) * 16 * 12);
+  switch (page.type) {
+    case StoredImage::Type::UInt8:
+      take(std::uint8_t{});
+      break;
+    case StoredImage::Type::UInt16:
+      take(std::uint16_t{});
+      break;
+    case StoredImage::Type::Int16:
+      take(std::int16_t{});
+      break;
+    case StoredImage::Type::Float:
+      take(float{});
+      break;
+  }
+  return samples;
+}
+
+/// What a function of the pixel's number gives, of every pixel.
+template <typename Sample>
+std::vector<double> every(const Sample& sample) {
+  std::vector<double> samples;
+  for (std::uint32_t i = 0; i < 16 * 12; ++i) samples.push_back(static_cast<double>(sample(i)));
+  return samples;
+}
+
+TEST(ReadImages, TakesPicturesPutTogetherByHand) {
+  for (const std::string& bytes : {tests::pgm(), tests::bmp(), tests::tiff_of_tiles(16), tests::exr()})
+    EXPECT_EQ(samples_of(bytes), every(tests::picture_shade));
+  EXPECT_EQ(samples_of(tests::tiff()), every([](std::uint32_t i) { return 1000 + 37 * i % 5000; }));
   const std::string blank = tests::blank_codestream(16, 12);
   for (const std::string& bytes : {blank, tests::jp2(blank), tests::jp2(blank, "more")})
-    EXPECT_EQ(shades_of(bytes), std::vector<char>(16 * 12, '\x80'));
+    EXPECT_EQ(samples_of(bytes), std::vector<double>(16 * 12, 128.0));
+}
+
+TEST(ReadImages, SamplesOfAnyDepthKeepTheirValues) {
+  for (const std::uint32_t largest : {1u, 15u, 100u, 254u, 256u, 1000u, 4095u, 40000u, 65534u, 65535u})
+    EXPECT_EQ(samples_of(tests::pgm(largest)), every([=](std::uint32_t i) { return 37 * i % (largest + 1); }))
+        << largest;
+
+  std::string rows, covered;
+  for (std::uint32_t i = 0; i < 16 * 12; ++i) {
+    if (i % 16 == 0) rows += '\0', covered += '\0';  // the row's filter: none
+    if (i % 2 == 0) rows += static_cast<char>((i % 16) << 4 | (i + 1) % 16);
+    covered += {static_cast<char>(tests::picture_shade(i)), static_cast<char>(i)};
+  }
+  EXPECT_EQ(samples_of(tests::png(4, 0, rows)), every([](std::uint32_t i) { return i % 16; }));
+  EXPECT_EQ(samples_of(tests::png(8, 4, covered)), every(tests::picture_shade));
+
+  std::string bytes, words, whole, packed;
+  for (std::uint32_t i = 0; i < 16 * 12; ++i) {
+    bytes += static_cast<char>(i - 100);
+    words += tests::DicomBytes::number(i * 1000, 4);
+    whole += tests::DicomBytes::number(i * 1000 - 70000, 4);
+    const std::uint32_t a = 21 * i, b = 21 * (i + 1);
+    if (i % 2 == 0)
+      packed += {static_cast<char>(a >> 4), static_cast<char>(a << 4 | b >> 8), static_cast<char>(b)};
+  }
+  EXPECT_EQ(samples_of(tests::tiff_of(8, 2, bytes)), every([](std::uint32_t i) { return int(i) - 100; }));
+  EXPECT_EQ(samples_of(tests::tiff_of(32, 1, words)), every([](std::uint32_t i) { return i * 1000; }));
+  EXPECT_EQ(samples_of(tests::tiff_of(32, 2, whole)),
+            every([](std::uint32_t i) { return int(i) * 1000 - 70000; }));
+  EXPECT_EQ(samples_of(tests::tiff_of(12, 1, packed)), every([](std::uint32_t i) { return 21 * i; }));
+  EXPECT_EQ(samples_of(tests::blank_codestream(16, 12, 11)), std::vector<double>(16 * 12, 2048.0));
 }
 
 TEST(ReadImages, RefusesWhatItsReaderWouldTakeMemoryFor) {
   const ScratchFolder folder;
   const std::string blank = tests::blank_codestream(1u << 14, 1u << 13);
-  for (const std::string& bytes : {tests::bmp_of_runs(20000, 20000), tests::tiff_of_tiles(1u << 14), blank,
-                                   tests::jp2(blank, tests::blank_codestream(16, 12))}) {
+  for (const std::string& bytes :
+       {tests::tiff_of_tiles(1u << 14), blank, tests::jp2(blank, tests::blank_codestream(16, 12))}) {
     tests::write_bytes(folder / "slice.png", bytes);
     try {
       read_images(folder / "slice.png");

@@ -5,6 +5,7 @@
 #include <bit>
 #include <initializer_list>
 #include <vector>
+#include <zlib.h>
 
 #include "tests/voxel/scan/dicom_bytes.h"
 #include "voxel/scan/png_chunk.h"
@@ -28,7 +29,7 @@ std::string big_pair(std::uint32_t number) {
 using TiffEntry = std::array<std::uint32_t, 3>;
 
 /// A page of one strip or tile, whose offset is the last entry.
-std::string tiff_of(const std::vector<TiffEntry>& entries, const std::string& samples) {
+std::string tiff_page(const std::vector<TiffEntry>& entries, const std::string& samples) {
   std::string bytes = std::string("II*\0", 4) + DicomBytes::number(8, 4);
   bytes += DicomBytes::number(static_cast<std::uint32_t>(entries.size()), 2);
   for (const auto& [tag, type, value] : entries)
@@ -40,14 +41,6 @@ std::string tiff_of(const std::vector<TiffEntry>& entries, const std::string& sa
 /// Where samples begin behind so many entries.
 constexpr std::uint32_t behind(std::uint32_t entries) {
   return 8 + 2 + entries * 12 + 4;
-}
-
-std::string bmp_header(std::uint32_t width, std::uint32_t height, std::uint32_t pixel_bits,
-                       std::uint32_t compression, std::uint32_t colours, std::size_t data_bytes) {
-  const std::uint32_t begin = 54 + 4 * colours;
-  const auto data = static_cast<std::uint32_t>(data_bytes);
-  return "BM" + little({begin + data, 0, begin, 40, width, height}) + DicomBytes::number(1, 2) +
-         DicomBytes::number(pixel_bits, 2) + little({compression, data, 2835, 2835, colours, 0});
 }
 
 std::string box(const std::string& letters, const std::string& data) {
@@ -64,16 +57,21 @@ std::string tiff() {
   std::string samples;
   for (std::uint32_t i = 0; i < picture_width * picture_height; ++i)
     samples += DicomBytes::number(1000 + 37 * i % 5000, 2);
-  return tiff_of({{256, 3, picture_width},
-                  {257, 3, picture_height},
-                  {258, 3, 16},
-                  {259, 3, 1},
-                  {262, 3, 1},
-                  {273, 4, behind(9)},
-                  {277, 3, 1},
-                  {278, 3, picture_height},
-                  {279, 4, static_cast<std::uint32_t>(samples.size())}},
-                 samples);
+  return tiff_of(16, 1, samples);
+}
+
+std::string tiff_of(std::uint32_t bits, std::uint32_t kind, const std::string& samples) {
+  return tiff_page({{256, 3, picture_width},
+                    {257, 3, picture_height},
+                    {258, 3, bits},
+                    {259, 3, 1},
+                    {262, 3, 1},
+                    {273, 4, behind(10)},
+                    {277, 3, 1},
+                    {278, 3, picture_height},
+                    {279, 4, static_cast<std::uint32_t>(samples.size())},
+                    {339, 3, kind}},
+                   samples);
 }
 
 std::string tiff_of_tiles(std::uint32_t tile_side) {
@@ -81,42 +79,48 @@ std::string tiff_of_tiles(std::uint32_t tile_side) {
   for (std::uint32_t y = 0; y < 16; ++y)
     for (std::uint32_t x = 0; x < 16; ++x)
       samples += static_cast<char>(y < picture_height ? picture_shade(y * picture_width + x) : 0);
-  return tiff_of({{256, 3, picture_width},
-                  {257, 3, picture_height},
-                  {258, 3, 8},
-                  {259, 3, 1},
-                  {262, 3, 1},
-                  {277, 3, 1},
-                  {322, 4, tile_side},
-                  {323, 4, tile_side},
-                  {324, 4, behind(10)},
-                  {325, 4, static_cast<std::uint32_t>(samples.size())}},
-                 samples);
+  return tiff_page({{256, 3, picture_width},
+                    {257, 3, picture_height},
+                    {258, 3, 8},
+                    {259, 3, 1},
+                    {262, 3, 1},
+                    {277, 3, 1},
+                    {322, 4, tile_side},
+                    {323, 4, tile_side},
+                    {324, 4, behind(10)},
+                    {325, 4, static_cast<std::uint32_t>(samples.size())}},
+                   samples);
 }
 
 std::string bmp() {
   std::string pixels;
-  for (std::uint32_t i = 0; i < picture_width * picture_height; ++i)
-    pixels += std::string(3, static_cast<char>(picture_shade(i)));
-  return bmp_header(picture_width, picture_height, 24, 0, 0, pixels.size()) + pixels;
-}
-
-std::string bmp_of_runs(std::uint32_t width, std::uint32_t height) {
-  std::string colours, runs;
-  for (std::uint32_t i = 0; i < 256; ++i) colours += std::string(3, static_cast<char>(i)) + '\0';
-  for (std::uint32_t y = picture_height; y-- > 0;) {  // from the bottom
+  for (std::uint32_t y = picture_height; y-- > 0;)  // from the bottom
     for (std::uint32_t x = 0; x < picture_width; ++x)
-      runs += {'\1', static_cast<char>(picture_shade(y * picture_width + x))};
-    runs += std::string(2, '\0');
-  }
-  runs += std::string("\0\1", 2);
-  return bmp_header(width, height, 8, 1, 256, runs.size()) + colours + runs;
+      pixels += std::string(3, static_cast<char>(picture_shade(y * picture_width + x)));
+  const auto size = static_cast<std::uint32_t>(pixels.size());
+  return "BM" + little({54 + size, 0, 54, 40, picture_width, picture_height}) + DicomBytes::number(1, 2) +
+         DicomBytes::number(24, 2) + little({0, size, 2835, 2835, 0, 0}) + pixels;
 }
 
-std::string pgm() {
-  std::string bytes = "P5\n16 12\n255\n";
-  for (std::uint32_t i = 0; i < picture_width * picture_height; ++i)
-    bytes += static_cast<char>(picture_shade(i));
+std::string png(std::uint32_t bits, char colours, const std::string& rows) {
+  std::string packed(rows.size() + 64, '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(rows.data()),
+           rows.size());
+  packed.resize(size);
+  const std::string header = big_endian(picture_width) + big_endian(picture_height) +
+                             static_cast<char>(bits) + colours + std::string(3, '\0');
+  return std::string(voxel::png_signature) + voxel::png_chunk("IHDR", header) +
+         voxel::png_chunk("IDAT", packed) + voxel::png_chunk("IEND", "");
+}
+
+std::string pgm(std::uint32_t largest) {
+  std::string bytes = "P5\n# a comment of 16 12 255\n16 12\n" + std::to_string(largest) + "\n";
+  for (std::uint32_t i = 0; i < picture_width * picture_height; ++i) {
+    const std::uint32_t sample = largest == 255 ? picture_shade(i) : 37 * i % (largest + 1);
+    if (largest > 255) bytes += static_cast<char>(sample >> 8);
+    bytes += static_cast<char>(sample);
+  }
   return bytes;
 }
 
@@ -148,16 +152,17 @@ std::string exr() {
   return bytes;
 }
 
-std::string blank_codestream(std::uint32_t width, std::uint32_t height) {
+std::string blank_codestream(std::uint32_t width, std::uint32_t height, char depth) {
   std::string size = big_pair(0);
   for (const std::uint32_t number : {width, height, 0u, 0u, width, height, 0u, 0u})
     size += big_endian(number);
-  size += big_pair(1) + "\x07\x01\x01";  // one channel of 8 bits, of every pixel
+  size += big_pair(1) + depth + "\1\1";  // one channel, of every pixel
   const auto segment = [](const std::string& marker, const std::string& data) {
     return marker + big_pair(static_cast<std::uint32_t>(2 + data.size())) + data;
   };
   // One layer, no wavelet level, code blocks of 64 x 64; no quantisation.
-  const std::string coding("\0\0\0\1\0\0\4\4\0\1", 10), steps("\x40\x40", 2);
+  const std::string coding("\0\0\0\1\0\0\4\4\0\1", 10);
+  const std::string steps = {'\x40', static_cast<char>((depth + 1) << 3)};
   const std::string data = std::string("\xff\x93\0", 3);  // one empty packet
   const std::string tile =
       big_pair(0) + big_endian(static_cast<std::uint32_t>(12 + data.size())) + '\0' + '\1';

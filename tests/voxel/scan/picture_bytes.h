@@ -5,7 +5,7 @@
 #include <string>
 
 // Grey pictures put together by hand, of formats that the program reads and does not write: 16 x 12 pixels in
-// shades of 8 bits, unless a size is given, which their pixels then need not fill.
+// shades of 8 bits, unless a size or depth is given. A size need not be filled by pixels.
 namespace octotomy::tests {
 
 inline constexpr std::uint32_t picture_width = 16, picture_height = 12;
@@ -14,13 +14,17 @@ inline constexpr std::uint32_t picture_width = 16, picture_height = 12;
 std::uint32_t picture_shade(std::uint32_t pixel);
 
 std::string tiff();  ///< samples of 16 bits in one strip, uncompressed
+/// Samples of any bits, as they lie in the file; `kind` 1: unsigned, 2: signed, 3: floating.
+std::string tiff_of(std::uint32_t bits, std::uint32_t kind, const std::string& samples);
 std::string tiff_of_tiles(std::uint32_t tile_side);
 std::string bmp();
-std::string bmp_of_runs(std::uint32_t width = picture_width, std::uint32_t height = picture_height);
-std::string pgm();
-std::string exr();  ///< floats
-/// JPEG 2000's codestream of a picture without detail, all in one shade.
-std::string blank_codestream(std::uint32_t width, std::uint32_t height);
+/// Sealed by its checksums; `colours` 0: grey, 4: with what covers it.
+std::string png(std::uint32_t bits, char colours, const std::string& rows);
+std::string pgm(std::uint32_t largest = 255);  ///< its shades go up to the largest
+std::string exr();                             ///< floats
+/// JPEG 2000's codestream of a picture without detail, all in the middle shade. `depth`: one less than its
+/// bits, and 128 more if they are signed.
+std::string blank_codestream(std::uint32_t width, std::uint32_t height, char depth = 7);
 /// A codestream in the boxes of a .jp2, with another box before it.
 std::string jp2(const std::string& codestream, const std::string& other_box = "");
 

@@ -32,7 +32,7 @@ std::string jpeg(const std::string& marker, std::uint32_t width, std::uint32_t h
 /// What is told of a picture: its format, or why it is refused.
 std::string told(const std::string& bytes) {
   try {
-    return check_picture_header(bytes, most_bytes);
+    return read_picture_header(bytes, most_bytes).format;
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -47,8 +47,8 @@ TEST(PictureHeader, FormatsAreTheirFirstBytes) {
   for (const auto& [bytes, format] :
        {std::pair{"P5 3 3 255\n"s, "pnm"}, std::pair{tests::pgm(), "pnm"}, std::pair{tests::tiff(), "tiff"},
         std::pair{"MM\0*\0\0\0\10"s, "tiff"}, std::pair{tests::bmp(), "bmp"},
-        std::pair{tests::bmp_of_runs(), "bmp"}, std::pair{tests::exr(), "openexr"},
-        std::pair{"RIFF\0\0\0\0WEBPVP8 "s, "webp"}, std::pair{jpeg("\xff\xc0", 9, 9, 1), "jpeg"}})
+        std::pair{tests::exr(), "openexr"}, std::pair{"RIFF\0\0\0\0WEBPVP8 "s, "webp"},
+        std::pair{jpeg("\xff\xc0", 9, 9, 1), "jpeg"}})
     EXPECT_EQ(told(bytes), format);
   for (const std::string& bytes : {""s, "P"s, "P9 3 3"s, "RIFF"s, "GIF89a"s, "8BPS\0\1"s})
     EXPECT_NE(told(bytes).find("no picture of a known format"), std::string::npos) << bytes;
@@ -95,14 +95,35 @@ TEST(PictureHeader, AJpegsFrameIsFoundAmongItsSegments) {
   EXPECT_EQ(told(jpeg("\xff\xc2", 16000, 16000, 1).substr(0, 20)), "jpeg");
 }
 
-TEST(PictureHeader, OfABitmapIsOneOfThoseThatAreKnown) {
+TEST(PictureHeader, OfABitmapIsOneOfThoseThatAreReadRightly) {
   EXPECT_EQ(told("BM" + std::string(12, '\0') + std::string("\x28\0\0\0", 4)), "bmp");
   for (const std::string& size :
        {std::string("\x29\0\0\0", 4), std::string("\x28\0\0\1", 4), std::string("\x28", 1)})
     EXPECT_NE(told("BM" + std::string(12, '\0') + size).find("unknown size"), std::string::npos);
-  EXPECT_EQ(told(tests::bmp_of_runs(4096, 4096)), "bmp");
-  for (const std::uint32_t side : {20000u, ~0u - 20000u, 1u << 31})  // counted from the top if negative
-    EXPECT_TRUE(claims_too_much(tests::bmp_of_runs(20000, side)));
+  std::string runs = tests::bmp();
+  for (const char packing : {'\1', '\2'}) {
+    runs[30] = packing;
+    EXPECT_NE(told(runs).find("packed as runs"), std::string::npos) << told(runs);
+  }
+}
+
+TEST(PictureHeader, TellsTheLargestSampleWhereItsReaderDoesNot) {
+  const auto largest = [](const std::string& bytes) {
+    return read_picture_header(bytes, most_bytes).largest_sample;
+  };
+  EXPECT_EQ(largest(tests::pgm()), 255u);
+  EXPECT_EQ(largest(tests::pgm(1000)), 1000u);
+  EXPECT_EQ(largest("P6 # 1\n# 2\n\t3 4#5\n\r65535\n"), 65535u);
+  for (const char* bytes : {"P5", "P5 3 4", "P5 3 4 #255", "P5 3 -4 255", "P5 3 4 0", "P5 3 4 65536"})
+    EXPECT_NE(told(bytes).find("largest sample"), std::string::npos) << bytes;
+  EXPECT_EQ(largest("P4 3 3 abc"), 0u);
+  EXPECT_EQ(largest(tests::png(4, 0, "")), 15u);
+  EXPECT_EQ(largest(tests::png(1, 0, "")), 1u);
+  EXPECT_EQ(largest(tests::png(8, 0, "")), 0u);
+  EXPECT_EQ(largest(tests::png(4, 3, "")), 0u) << "by a palette";
+  EXPECT_EQ(largest(tests::blank_codestream(16, 12)), 255u);
+  EXPECT_EQ(largest(tests::jp2(tests::blank_codestream(16, 12, 11))), 4095u);
+  EXPECT_NE(told(tests::blank_codestream(16, 12, '\x8f')).find("signed"), std::string::npos);
 }
 
 }  // namespace
