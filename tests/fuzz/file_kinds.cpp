@@ -235,9 +235,11 @@ class Kinds {
         std::printf("%-18s left out: '%s' is not installed\n", name, command);
     }
     if (fs::exists(at("dicom_jpeg_2000.dcm"))) {
-      const std::string picture = codestream(sound_.bytes("dicom_jpeg_2000.dcm"));
-      stack("jpeg_2000_stack", "jp2", picture);
-      stack("jp2_stack", "jp2", jp2(picture));
+      std::string picture = codestream(sound_.bytes("dicom_jpeg_2000.dcm"));
+      picture[42] =
+          14;  // the samples' bits less one, without a sign: 2^14 is added to each when it is decoded
+      stack("jpeg_2000_stack", "jp2", picture, "16484:");
+      stack("jp2_stack", "jp2", jp2(picture), "16484:");
     }
     add("structure_set", "rs.dcm",
         structure_set({{1, "Mandible", {rectangle({-30, -20}, {30, 40}, -12), rectangle({0, 0}, {9, 9}, 0)}},

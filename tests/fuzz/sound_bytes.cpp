@@ -38,7 +38,7 @@ std::string nifti2() {
 
 std::string vtk() {
   return "# vtk DataFile Version 3.0\ntetrahedron\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n"
-         "0 0 0  10 0 0  0 10 0  0 0 10\nPOLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+         "0 0 0  30 0 0  0 30 0  0 0 30\nPOLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 }
 
 std::string vtk_binary() {
@@ -46,7 +46,7 @@ std::string vtk_binary() {
   const auto put_big = [&](std::uint32_t word) {
     for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(word >> shift & 0xff);
   };
-  for (const float coordinate : {0, 0, 0, 10, 0, 0, 0, 10, 0, 0, 0, 10})
+  for (const float coordinate : {0, 0, 0, 30, 0, 0, 0, 30, 0, 0, 0, 30})
     put_big(std::bit_cast<std::uint32_t>(coordinate));
   bytes += "\nPOLYGONS 4 16\n";
   for (const std::uint32_t word : {3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 3, 2}) put_big(word);
@@ -58,7 +58,7 @@ std::string vtp_text() {
          "byte_order=\"LittleEndian\">\n"
          "<PolyData><Piece NumberOfPoints=\"4\" NumberOfPolys=\"4\">\n"
          "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">"
-         "0 0 0 10 0 0 0 10 0 0 0 10</DataArray></Points>\n<Polys>"
+         "0 0 0 30 0 0 0 30 0 0 0 30</DataArray></Points>\n<Polys>"
          "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 2 1 0 1 3 1 2 3 0 3 "
          "2</DataArray>"
          "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3 6 9 12</DataArray>"
@@ -68,7 +68,7 @@ std::string vtp_text() {
 std::string stl_text() {
   std::string text = "solid tetrahedron\n";
   for (const char* facet :
-       {"0 0 0:0 10 0:10 0 0", "0 0 0:10 0 0:0 0 10", "10 0 0:0 10 0:0 0 10", "0 0 0:0 0 10:0 10 0"}) {
+       {"0 0 0:0 30 0:30 0 0", "0 0 0:30 0 0:0 0 30", "30 0 0:0 30 0:0 0 30", "0 0 0:0 0 30:0 30 0"}) {
     std::string vertices = facet;
     for (std::size_t at = 0; (at = vertices.find(':')) != std::string::npos;)
       vertices.replace(at, 1, "\n vertex ");
@@ -80,7 +80,7 @@ std::string stl_text() {
 std::string ply_text() {
   return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
          "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
-         "0 0 0\n10 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+         "0 0 0\n30 0 0\n0 30 0\n0 0 30\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 }
 
 std::string frd() {
