@@ -84,6 +84,9 @@ TEST(Mesh3Tetrahedra, BestTakesItWhereNeedlesOfTheKeptSurfaceSpoilTheAngles) {
   EXPECT_GT(quality(best).min_dihedral_deg, fit_dihedral_deg());
   EXPECT_FALSE(fault_in_shape(best));
   ASSERT_FALSE(best.findings.empty());
+  EXPECT_NE(best.findings.front().find("smoothing was stopped as hopeless, so Mesh_3 remeshed it"),
+            std::string::npos)
+      << best.findings.front();
   EXPECT_NE(best.findings.back().find("Mesh_3 made a surface of its own"), std::string::npos)
       << best.findings.back();
 }
