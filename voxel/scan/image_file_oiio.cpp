@@ -65,7 +65,7 @@ std::vector<char> first_channel(const std::vector<char>& pixels, std::size_t cha
     std::memcpy(&sample, &pixels[i * channels * sizeof(Read)], sizeof sample);
     if constexpr (std::is_unsigned_v<Read>)
       if (largest > 0 && largest < std::numeric_limits<Read>::max()) sample = unstretched(sample, largest);
-    const auto stored = static_cast<Stored>(sample);
+    const auto stored = static_cast<Stored>(sample);  // NOLINT(bugprone-signed-char-misuse): a number
     std::memcpy(&bytes[i * sizeof(Stored)], &stored, sizeof stored);
   }
   return bytes;
@@ -79,7 +79,7 @@ struct Reading {
   std::vector<char> (*take)(const std::vector<char>&, std::size_t, std::uint32_t);
 };
 
-Reading reading_of(OIIO::TypeDesc type) {
+Reading reading_of(const OIIO::TypeDesc& type) {
   using Type = StoredImage::Type;
   switch (type.basetype) {
     case OIIO::TypeDesc::UINT8:
