@@ -11,15 +11,16 @@
 #include "voxel/space/rounded.h"
 
 // 1 Mesh_3 refines a Delaunay triangulation until facets and cells have the sizes asked for, and exudes
-// slivers. 2 The nodes of its surface lie on the given one, so its facets are chords: it loses volume on
-// convex surface
-//   and gains some on hollow surface. Every node of the surface moves along its normal by the same share of
-//   the distance that a facet's middle may have there. A larger share would mean that something else was
-//   lost.
+//   slivers.
+// 2 The nodes of its surface lie on the given one, so its facets are chords: it loses volume where the
+// surface
+//   is convex and gains some where it is hollow. Every node of the surface moves along its normal by the same
+//   share of the distance that a facet's middle may have there. A larger share would mean that something else
+//   was lost.
 // 3 Nodes move to mend flat elements (improve_tetrahedra.h).
-// 4 The answer counts only if the volumes are positive, their sum is the surface's, and each point of the
-// given
-//   surface is near the new one: a thin spike that no cell met would otherwise be lost unseen.
+// 4 The answer counts only if the volumes are positive, their sum is the surface's, each point of the given
+//   surface is near the new one, and little of the volume lies outside: a thin spike or wall that no cell met
+//   would otherwise be lost unseen.
 
 namespace octotomy::convert {
 namespace {
@@ -115,6 +116,11 @@ std::vector<glm::dvec3> boundary_mm(const Tetrahedra& tetrahedra) {
 /// part of the bone.
 constexpr double lost_share() {
   return 1e-3;
+}
+
+/// The share of the volume that elements may hold outside of the given surface: chords across hollows do.
+constexpr double misplaced_share() {
+  return 0.1;
 }
 
 /// One try: its elements if there are any, how they are wrong, and the points of the given surface it lost.
@@ -230,6 +236,27 @@ std::optional<std::string> lost_details(Try& t, const Given& given, const std::v
          rounded(first_mm) + " mm";
 }
 
+/// Where a thin wall is lost between the given points, what is left has been thickened to the whole volume.
+/// Returns why that is too much, if it is: the volume outside of the given solid, by four points of each
+/// element.
+std::optional<std::string> misplaced(const Tetrahedra& made, const Given& given) {
+  // The points of Hammer's formula for quadratic functions: so much of one corner, and as much of the others.
+  constexpr double own = 0.5854101966249685, others = 0.1381966011250105;
+  std::vector<glm::dvec3> points_mm;
+  for (std::size_t t = 0; t < made.tets.size(); ++t) {
+    const TetCorners p_mm = corners_mm(made, t);
+    for (const glm::dvec3& corner_mm : p_mm)
+      points_mm.push_back(others * (p_mm[0] + p_mm[1] + p_mm[2] + p_mm[3]) + (own - others) * corner_mm);
+  }
+  const std::vector<std::uint8_t> inside = given.tree.inside(points_mm);
+  double outside_mm3 = 0.0;
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    if (inside[i] == 0) outside_mm3 += six_volumes(corners_mm(made, i / 4)) / 24.0;
+  if (outside_mm3 <= misplaced_share() * given.volume_mm3) return std::nullopt;
+  return "put " + rounded(100.0 * outside_mm3 / given.volume_mm3) +
+         " % of the volume outside of the given surface: walls are thinner than elements";
+}
+
 /// Passes 2 to 4 over the elements of Mesh_3.
 std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& options) {
   ImproveOptions improving;
@@ -257,6 +284,7 @@ std::optional<std::string> finish(Try& t, const Given& given, const TetOptions& 
                             " mm of the given one; 95 % of the given points are within " +
                             rounded(own.p95_mm) + " mm of it, all within " + rounded(own.max_mm) + " mm");
   if (std::optional<std::string> lost = lost_details(t, given, to_own_mm)) return lost;
+  if (std::optional<std::string> lost = misplaced(t.made, given)) return lost;
   return fault;
 }
 

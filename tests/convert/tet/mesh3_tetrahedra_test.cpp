@@ -91,6 +91,21 @@ TEST(Mesh3Tetrahedra, BestTakesItWhereNeedlesOfTheKeptSurfaceSpoilTheAngles) {
       << best.findings.back();
 }
 
+TEST(Mesh3Tetrahedra, NoMiddleOfAThinPlateIsLost) {
+  TetOptions options;
+  options.mesher = Mesher::Best;
+  // Of each, Mesh_3 gave the ends alone, thickened to the whole volume.
+  for (const glm::dvec3& size_mm :
+       {glm::dvec3(156, 6, 0.6), glm::dvec3(13, 13, 0.2341), glm::dvec3(1000, 1000, 0.001)}) {
+    const Tetrahedra t = tetrahedralise(brep::mesh_of(box({0, 0, 0}, size_mm)), options);
+    std::vector<glm::dvec3> points_mm;
+    for (int x = 0; x <= 20; ++x)
+      for (int y = 0; y <= 20; ++y) points_mm.push_back(size_mm * glm::dvec3(x / 20.0, y / 20.0, 1.0));
+    for (const double distance_mm : brep::SurfaceTree(surface_of(t)).distances_mm(points_mm))
+      ASSERT_LT(distance_mm, 0.1 * size_mm.x) << t.method << ", " << size_mm.x;
+  }
+}
+
 TEST(Mesh3Tetrahedra, BestKeepsTheSurfaceWhereItsAnglesAreGood) {
   TetOptions options;
   options.mesher = Mesher::Best;
