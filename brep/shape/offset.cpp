@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "brep/mesh/sample_surface.h"
 #include "brep/shape/kuhn_cells.h"
 
 namespace octotomy::brep {
@@ -219,6 +220,32 @@ Solid offset(const Solid& solid, const OffsetOptions& options) {
   surface.faces = numbered(triangles, edges);
   options.progress.at(1.0);
   return trusted_solid(std::move(surface), Proof::Construction);
+}
+
+MissedWalls missed_walls(const Solid& solid, const Solid& moved, const OffsetOptions& options) {
+  const bool inward = options.by_mm < 0.0;
+  if (moved.empty()) return {inward ? 0.0 : 1.0, solid.triangles().points_mm.front()};
+  constexpr double samples_wanted = 20000.0;
+  const SurfaceSamples samples = sample_surface(
+      solid.triangles(), std::max(options.cell_mm, std::sqrt(solid.measures().area_mm2 / samples_wanted)));
+  const std::vector<std::uint8_t> inside = moved.tree().inside(samples.points_mm);
+  std::vector<glm::dvec3> wrong_mm;
+  std::vector<double> areas_mm2;
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    if ((inside[i] != 0) == inward) {
+      wrong_mm.push_back(samples.points_mm[i]);
+      areas_mm2.push_back(samples.areas_mm2[i]);
+    }
+  const std::vector<double> distances_mm = moved.tree().distances_mm(wrong_mm);
+  MissedWalls missed;
+  double missed_mm2 = 0.0;
+  for (std::size_t i = wrong_mm.size(); i-- > 0;)
+    if (distances_mm[i] > options.cell_mm) {
+      missed_mm2 += areas_mm2[i];
+      missed.at_mm = wrong_mm[i];
+    }
+  missed.area_share = missed_mm2 / solid.measures().area_mm2;
+  return missed;
 }
 
 }  // namespace octotomy::brep

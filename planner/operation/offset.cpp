@@ -43,6 +43,22 @@ brep::Solid fewer(const brep::Solid& surface, double cell_mm, std::vector<std::s
   }
 }
 
+/// Tells of walls, or of inward clefts, that the lattice missed. Throws where they are more than a few
+/// needles.
+void tell_missed(const brep::Solid& solid, const brep::Solid& moved, const brep::OffsetOptions& options,
+                 std::vector<std::string>& findings) {
+  constexpr double most_share = 0.01;
+  const brep::MissedWalls missed = brep::missed_walls(solid, moved, options);
+  if (missed.area_share == 0.0) return;
+  const std::string told = three_figures(100.0 * missed.area_share) +
+                           " % of the surface bound walls or clefts thinner than a cell of " +
+                           plain(options.cell_mm) + " mm and were missed, the first at (" +
+                           plain(missed.at_mm.x) + ", " + plain(missed.at_mm.y) + ", " +
+                           plain(missed.at_mm.z) + ") mm: take smaller cells";
+  if (missed.area_share > most_share) throw brep::Error(brep::ErrorCode::Geometry, told);
+  findings.push_back(told);
+}
+
 std::string definition(const Offset& offset, const Objects&) {
   return offset.object.name + " offset by " + plain(offset.by_mm) + " mm";
 }
@@ -54,6 +70,7 @@ void triangles(const Offset& offset, const MeshBench& bench, MeshSide& made) {
                               .cell_mm = offset.cell_mm.value_or(cell_for(solid, offset.by_mm))};
   options.progress = {bench.progress.stop, bench.progress.report};
   const brep::Solid moved = fewer(brep::offset(solid, options), options.cell_mm, made.findings);
+  tell_missed(solid, moved, options, made.findings);
   made.details = {{"by_mm", offset.by_mm},
                   {"cell_mm", options.cell_mm},
                   {"volume_change_mm3", brep::volume_mm3(moved) - brep::volume_mm3(solid)}};

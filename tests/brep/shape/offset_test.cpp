@@ -37,6 +37,29 @@ double box_grown_mm3(double d) {
   return 480 + 376 * d + pi * (6 + 8 + 10) * d * d + 4.0 / 3.0 * pi * d * d * d;
 }
 
+TEST(Offset, WallsThinnerThanACellAreFoundMissing) {
+  const Solid crate =
+      solid_of(shapes::together(shapes::box({0, 0, 0}, {30, 30, 30}),
+                                shapes::inside_out(shapes::box({0.4, 0.4, 0.4}, {29.6, 29.6, 29.6}))));
+  const auto missed = [&](const Solid& solid, double by_mm, double cell_mm) {
+    const OffsetOptions options{.by_mm = by_mm, .cell_mm = cell_mm};
+    return missed_walls(solid, offset(solid, options), options);
+  };
+  EXPECT_EQ(missed(crate, 0.1, 0.2).area_share, 0.0);
+  EXPECT_GT(missed(crate, 0.02, 1.2).area_share, 0.1);
+  EXPECT_EQ(missed(turned_box(), 0.1, 0.5).area_share, 0.0);
+  EXPECT_EQ(missed(turned_box(), -0.5, 0.25).area_share, 0.0);
+  // A cleft of 0.3 mm within a box is a wall of what is not in it.
+  const Solid cleft = solid_of(shapes::together(
+      shapes::box({0, 0, 0}, {30, 30, 30}), shapes::inside_out(shapes::box({5, 5, 14.85}, {25, 25, 15.15}))));
+  EXPECT_EQ(missed(cleft, -0.1, 0.15).area_share, 0.0);
+  const MissedWalls closed = missed(cleft, -0.02, 1.9);
+  EXPECT_GT(closed.area_share, 0.05);
+  EXPECT_NEAR(closed.at_mm.z, 15.0, 0.2);
+  EXPECT_EQ(missed_walls(cleft, Solid(), {.by_mm = -20.0}).area_share, 0.0);
+  EXPECT_EQ(missed_walls(cleft, Solid(), {.by_mm = 1.0}).area_share, 1.0);
+}
+
 TEST(Offset, ABallGrowsAndShrinksToBallsAtSecondOrder) {
   for (const double by : {3.0, -3.0}) {
     double last = 0.0;
