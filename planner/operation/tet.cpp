@@ -7,6 +7,7 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/health.h"
 #include "brep/mesh/measure.h"
+#include "brep/mesh/split_fans.h"
 #include "convert/deck/deck.h"
 #include "convert/tet/octree_tetrahedra.h"
 #include "convert/tet/region_tetrahedra.h"
@@ -123,7 +124,7 @@ voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool
   const voxel::Universe universe =
       voxel::universe_around(box, asked.voxel_mm.value_or(fallback_voxel_mm(volume_mm3)));
   return solid ? convert::voxelise(universe, brep::mesh_of(triangles))
-               : convert::voxelise_by_winding_number(universe, triangles);
+               : convert::voxelise_by_winding_number(universe, brep::joined_surface(triangles).surface);
 }
 
 /// Elements as they are made, or why the fallback is to be taken. Without --fallback throws where none are

@@ -4,6 +4,7 @@
 
 #include "brep/io/read_mesh.h"
 #include "brep/mesh/health.h"
+#include "brep/mesh/split_fans.h"
 #include "convert/voxel/voxelise_partial.h"
 #include "convert/voxel/winding_number.h"
 #include "planner/file/file_kind.h"
@@ -40,7 +41,8 @@ Subject read_subject(const std::filesystem::path& path, const std::string& digit
   Subject subject{path, {}, {}};
   {
     const Stopwatch watch(timings, "read");
-    subject.triangles = brep::read_triangles(path);
+    // Welded, as each open edge is a rim that costs.
+    subject.triangles = brep::joined_surface(brep::read_triangles(path)).surface;
   }
   if (subject.triangles.faces.empty()) throw std::runtime_error(path.string() + ": holds no triangles");
   {

@@ -111,5 +111,14 @@ TEST_F(BadSurfaces, AreDrawnAloneAndOutlined) {
   EXPECT_EQ(run("slice " + soup + " -o " + at("own.png")).status, 0);
 }
 
+TEST_F(BadSurfaces, TrianglesThatShareNoPointAreWeldedForVoxels) {
+  using namespace brep::shapes;
+  const std::string soup = off("soup.off", unwelded(sphere({0, 0, 0}, 20, 2)));
+  const std::string whole = off("whole.off", sphere({0, 0, 0}, 20, 2));
+  const SortedJson made = json_of("voxelise " + soup + " --voxel 1 -o " + at("soup.octree"));
+  EXPECT_EQ(made["findings"].dump().find("winds"), std::string::npos) << made.dump();
+  EXPECT_EQ(made["levels"], json_of("voxelise " + whole + " --voxel 1 -o " + at("whole.octree"))["levels"]);
+}
+
 }  // namespace
 }  // namespace octotomy::planner
