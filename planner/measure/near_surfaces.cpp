@@ -110,7 +110,7 @@ Points mesh_points(const brep::Solid& one, const brep::Solid& other, double with
 }
 
 /// The place of each point that is within the distance, numbered from 0; -1 of all others.
-std::vector<int> places_of(const Points& points, const ContactOptions& options, int& count) {
+std::vector<int> places_of(const Points& points, double within_mm, double apart_mm, int& count) {
   std::map<std::array<int, 3>, std::vector<std::size_t>> cells;
   std::vector<std::size_t> near, root(points.p_mm.size());
   std::iota(root.begin(), root.end(), std::size_t{0});
@@ -119,11 +119,11 @@ std::vector<int> places_of(const Points& points, const ContactOptions& options, 
     return i;
   };
   const auto cell_of = [&](const glm::dvec3& p) {
-    const glm::dvec3 cell = glm::floor(p / options.apart_mm);
+    const glm::dvec3 cell = glm::floor(p / apart_mm);
     return std::array{static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)};
   };
   for (std::size_t i = 0; i < points.p_mm.size(); ++i)
-    if (points.distances_mm[i] <= options.within_mm) {
+    if (points.distances_mm[i] <= within_mm) {
       const auto cell = cell_of(points.p_mm[i]);
       for (int z = -1; z <= 1; ++z)
         for (int y = -1; y <= 1; ++y)
@@ -131,7 +131,7 @@ std::vector<int> places_of(const Points& points, const ContactOptions& options, 
             const auto found = cells.find({cell[0] + x, cell[1] + y, cell[2] + z});
             if (found == cells.end()) continue;
             for (const std::size_t k : found->second)
-              if (glm::distance(points.p_mm[i], points.p_mm[k]) <= options.apart_mm) root[find(k)] = find(i);
+              if (glm::distance(points.p_mm[i], points.p_mm[k]) <= apart_mm) root[find(k)] = find(i);
           }
       cells[cell].push_back(i);
       near.push_back(i);
@@ -256,13 +256,15 @@ Contacts contacts_between(const voxel::Octree& one, const voxel::Octree& other,
   made.by_mesh = solid_one && solid_other && !solid_one->empty() && !solid_other->empty();
   const Points voxels = voxel_points(one, other);
   const glm::dvec3 spacing_mm = one.universe().lattice().spacing_mm();
+  const double half_voxel_mm = 0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   const Points points =
-      made.by_mesh ? mesh_points(*solid_one, *solid_other, options.within_mm,
-                                 std::min(options.apart_mm,
-                                          0.5 * std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z})))
-                   : voxels;
+      made.by_mesh ? mesh_points(*solid_one, *solid_other, options.within_mm, half_voxel_mm) : voxels;
+  // Neighbouring points are one place, however near to each other places may be.
+  const double between_points_mm =
+      made.by_mesh ? half_voxel_mm : std::max({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   int count = 0;
-  const std::vector<int> places = places_of(points, options, count);
+  const std::vector<int> places =
+      places_of(points, options.within_mm, std::max(options.apart_mm, between_points_mm), count);
   made.contacts.resize(static_cast<std::size_t>(count));
   for (Contact& contact : made.contacts) {
     contact.nearest_mm = std::numeric_limits<double>::infinity();

@@ -37,6 +37,10 @@ TEST(ContactsStep, ABallOnABallHasOnePlaceAndTheCapsArea) {
   const double d = 40.25, height = 20.0 - (d * d + 20.0 * 20.0 - 21.0 * 21.0) / (2.0 * d);
   EXPECT_NEAR(contact.at("area_mm2").get<double>(), 2.0 * std::numbers::pi * 20.0 * height, 6.0);
   EXPECT_EQ(contact.at("depth_mm"), 0.0);
+  // Neighbouring points are one place, however near to each other places may be.
+  const Json fine = map_of(folder, steps.substr(0, steps.rfind('}')) + R"(, "apart_mm": 0.001})");
+  ASSERT_EQ(fine.at("contacts").size(), 1u);
+  EXPECT_EQ(fine.at("contacts")[0].at("area_mm2"), contact.at("area_mm2"));
   const Json of_voxels = map_of(folder, steps, false);
   ASSERT_EQ(of_voxels.at("contacts").size(), 1u);
   EXPECT_TRUE(of_voxels.at("contacts")[0].at("area_mm2").is_null());
