@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/contour/chain_code.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+
+#include "brep/mesh/error.h"
 
 namespace octotomy::brep {
 namespace {
@@ -70,6 +73,18 @@ void check(const glm::dvec2& spacing_mm) {
 ChainCode chain_code(const Contour& contour, const glm::dvec2& spacing_mm) {
   check(spacing_mm);
   if (contour.points_mm.empty()) throw std::invalid_argument("chain_code: the contour has no points");
+  constexpr double furthest = 1 << 30, most_steps = 1 << 24;
+  double steps = 0.0;
+  glm::dvec2 last = contour.points_mm.front() / spacing_mm;
+  for (const glm::dvec2& p_mm : contour.points_mm) {
+    const glm::dvec2 p = p_mm / spacing_mm;
+    steps += std::max(std::abs(p.x - last.x), std::abs(p.y - last.y));
+    last = p;
+    if (!(std::max(std::abs(p.x), std::abs(p.y)) <= furthest && steps <= most_steps))
+      throw Error(ErrorCode::Resource,
+                  "chain_code: the contour goes more than 2^24 steps, or lies more than 2^30 "
+                  "away; take larger steps");
+  }
   const auto sample = [&](const glm::dvec2& p) { return glm::ivec2(glm::round(p / spacing_mm)); };
   ChainCode code{sample(contour.points_mm.front()), {}, contour.closed};
   glm::ivec2 at = code.start;

@@ -20,8 +20,9 @@ struct ChainCode {
 /// The chain of the samples along a contour, points (i, j) * spacing_mm: its points rounded to samples and
 /// joined by straight digital lines, with corners cut that only rounding made. It passes every point within a
 /// sample along each axis. Throws std::invalid_argument where the spacing is not positive or the contour has
-/// no points. Cost: linear in the steps. Source: Freeman, "On the encoding of arbitrary geometric
-/// configurations", 1961; lines by Bresenham, 1965.
+/// no points; Error, Resource, where it takes more than 2^24 steps or lies more than 2^30 away. Cost: linear
+/// in the steps. Source: Freeman, "On the encoding of arbitrary geometric configurations", 1961; lines by
+/// Bresenham, 1965.
 ChainCode chain_code(const Contour& contour, const glm::dvec2& spacing_mm);
 
 /// The contour through a chain's samples. Throws std::invalid_argument where a step is above 7 or a closed

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -47,6 +49,14 @@ TEST(ChainCode, LengthsAreRightOnTheAverageOfDirections) {
   for (const std::uint8_t step : chain_code(circle(200, 4000), {1, 1}).steps)
     naive += step % 2 == 0 ? 1.0 : std::sqrt(2.0);
   EXPECT_GT(naive, 1.04 * 2 * pi * 200);
+}
+
+TEST(ChainCode, RefusesWhatTakesTooManyStepsOrLiesTooFarAway) {
+  const Contour far{{{3e6, 3e6}, {3e6 + 10, 3e6}, {3e6, 3e6 + 10}}, true};
+  EXPECT_EQ(chain_code(far, {1, 1}).start, glm::ivec2(3000000, 3000000));
+  EXPECT_THROW(chain_code(far, {0.001, 0.001}), Error);
+  const Contour large{{{0, 0}, {1e6, 0}, {0, 1e6}}, true};
+  EXPECT_THROW(chain_code(large, {0.01, 0.01}), Error);
 }
 
 TEST(ChainCode, OpenLinesStayOpenAndNonsenseIsRefused) {
