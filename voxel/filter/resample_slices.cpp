@@ -11,6 +11,7 @@
 
 #include "voxel/filter/slice_work.h"
 #include "voxel/measure/distance_map.h"
+#include "voxel/space/memory_need.h"
 #include "voxel/tree/interpolate.h"
 
 namespace octotomy::voxel {
@@ -132,6 +133,8 @@ Scene resample_slices(const Scene& scene, double spacing_mm, SliceKernel kernel,
   if (scene.meaning == Meaning::Label && kernel != SliceKernel::Nearest)
     throw std::invalid_argument("labels cannot be mixed: resample a label map by the nearest slice");
   Scene result = empty_scene_like(scene, with_slice_spacing(scene.lattice, spacing_mm));
+  need_memory(scene.source, result.lattice.sample_count(),
+              std::holds_alternative<FloatSamples>(scene.samples) ? sizeof(float) : sizeof(std::int16_t));
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);
   const int last = scene.lattice.dims.z - 1;
@@ -164,6 +167,7 @@ Scene interpolate_shape(const Scene& scene, const ShapeOptions& options) {
   check(scene);
   Scene result = empty_scene_like(scene, with_slice_spacing(scene.lattice, options.spacing_mm));
   result.meaning = Meaning::Label;
+  need_memory(scene.source, result.lattice.sample_count(), sizeof(std::int16_t));
   const double from_mm = scene.lattice.spacing_mm().z;
   const std::size_t size = slice_size(scene.lattice);
   const int last = scene.lattice.dims.z - 1;

@@ -54,6 +54,9 @@ class SeriesReader {
       std::vector<glm::dvec2> aside_px(stack.slices.size(), glm::dvec2(0.0));
       if (plan.leans)
         for (std::size_t i = 0; i < aside_px.size(); ++i) aside_px[i] = stack.aside_px(stack.slices[i]);
+      need_memory(
+          path_, std::uint64_t(plan.size_px.x) * std::uint64_t(plan.size_px.y) * plan.slice_count,
+          std::holds_alternative<FloatSamples>(scene_.samples) ? sizeof(float) : sizeof(std::int16_t));
       scene_.samples = upright_samples(plan, stack.first().size_px, aside_px, scene_.samples);
     }
     scene_.lattice = lattice_of(stack, plan);

@@ -287,6 +287,10 @@ class Layer {
     const double tilt_deg = std::atan2(lean_mm, total_mm()) * 180.0 / std::numbers::pi;
     const double tag_deg = std::abs(stack_.first().tilt_deg.value_or(0.0));
     const glm::dvec2 spread_px = high_px - low_px;
+    constexpr double widest_px = 1 << 15;
+    if (!(std::max(spread_px.x, spread_px.y) <= widest_px))
+      refuse(path_, print("its slices lean over %.4g pixels; check their positions and the pixels' spacing",
+                          std::max(spread_px.x, spread_px.y)));
     plan_.leans = std::max(spread_px.x, spread_px.y) > aside_tolerance_px();
     const glm::dvec2 lean_px = glm::abs(lean) * total_mm();
     const bool is_tilted = std::max(lean_px.x, lean_px.y) > aside_tolerance_px();

@@ -82,8 +82,8 @@ void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, 
   const std::uint64_t needed = sample_count * sample_bytes;
   if (needed <= free) return;
   refuse(path,
-         "reading it takes " + gigabytes(needed) + " of memory, " + gigabytes(free) +
-             " are free: crop or resample it elsewhere, or raise --memory",
+         "its samples take " + gigabytes(needed) + " of memory, " + gigabytes(free) +
+             " are free: crop it or take wider spacings, or raise --memory",
          ErrorCode::Resource);
 }
 

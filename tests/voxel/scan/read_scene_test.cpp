@@ -135,6 +135,19 @@ TEST(ReadDicom, StraightensATiltedGantryAndSaysTheAngle) {
   }
 }
 
+TEST(ReadDicom, RefusesALeanOfMorePixelsThanAnyScannerHas) {
+  const ScratchFolder folder;
+  Lattice lattice = leaning_lattice(0.5);
+  for (const int axis : {0, 1}) lattice.lps_from_voxel[axis] *= 1e-4;
+  write_dicom_series(linear_scene(lattice), folder / "series");
+  try {
+    read_scene(folder / "series");
+    FAIL() << "was read";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("lean over"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ReadDicom, LeavesAShiftBelowATenthOfAPixelAlone) {
   const ScratchFolder folder;
   write_dicom_series(linear_scene(leaning_lattice(0.002)), folder / "straight");  // 0.076 pixels in all
