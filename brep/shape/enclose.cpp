@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
@@ -111,24 +113,88 @@ struct Passage {
   }
 };
 
-/// Calls visit(cell) for each cell within the triangle's box and near its plane; lists too many rather than
-/// too few.
-template <typename Visit>
-void each_cell(const Triangles& surface, std::uint32_t f, const Lattice& lattice, const Visit& visit) {
-  const auto& face = surface.faces[f];
-  std::array<glm::dvec3, 3> p;
-  for (std::size_t k = 0; k < 3; ++k)
-    p[k] = (surface.points_mm[face[k]] - lattice.origin_mm) / lattice.cell_mm;
-  constexpr double slack = 1e-6;
-  const Place low(glm::floor(glm::min(p[0], glm::min(p[1], p[2])) - slack));
-  const Place high(glm::floor(glm::max(p[0], glm::max(p[1], p[2])) + slack));
-  const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
-  const double reach = 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z)) * (1.0 + slack);
-  for (int z = low.z; z <= high.z; ++z)
-    for (int y = low.y; y <= high.y; ++y)
-      for (int x = low.x; x <= high.x; ++x)
-        if (std::abs(glm::dot(normal, glm::dvec3(x, y, z) + 0.5 - p[0])) <= reach) visit(Place(x, y, z));
-}
+/// A triangle among the cells, in cells.
+class Crossed {
+ public:
+  Crossed(const Triangles& surface, std::uint32_t f, const Lattice& lattice) {
+    for (std::size_t k = 0; k < 3; ++k)
+      p_[k] = (surface.points_mm[surface.faces[f][k]] - lattice.origin_mm) / lattice.cell_mm;
+    low_ = Place(glm::floor(glm::min(p_[0], glm::min(p_[1], p_[2])) - slack));
+    high_ = Place(glm::floor(glm::max(p_[0], glm::max(p_[1], p_[2])) + slack));
+    normal_ = glm::cross(p_[1] - p_[0], p_[2] - p_[0]);
+    const glm::dvec3 size = glm::abs(normal_);
+    reach_ = 0.5 * (size.x + size.y + size.z) * (1.0 + slack);
+    steep_ = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+  }
+
+  /// Calls visit(cell) for each cell near the triangle; lists too many rather than too few. Cost: the area in
+  /// cells, and the length.
+  template <typename Visit>
+  void each_cell(const Visit& visit) const {
+    // Columns along the steepest axis, in rows across the next one, meet the triangle in a few cells each.
+    const int u = (steep_ + 1) % 3, v = (steep_ + 2) % 3;
+    Place cell{0};
+    for (cell[v] = low_[v]; cell[v] <= high_[v]; ++cell[v]) {
+      const auto [from, to] = row(u, v, cell[v]);
+      for (cell[u] = from; cell[u] <= to; ++cell[u]) {
+        const auto [first, last] = column(cell);
+        for (cell[steep_] = first; cell[steep_] <= last; ++cell[steep_])
+          if (std::abs(glm::dot(normal_, glm::dvec3(cell) + 0.5 - p_[0])) <= reach_) visit(cell);
+      }
+    }
+  }
+
+  /// No more columns than each_cell() goes through.
+  double least_cells() const { return 0.5 * std::abs(normal_[steep_]); }
+
+ private:
+  static constexpr double slack = 1e-6;
+
+  /// The cells along `u` between which the triangle's shadow meets the row v .. v + 1.
+  std::pair<int, int> row(int u, int v, int at) const {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    const double low = at - slack, high = at + 1 + slack;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 &a = p_[k], &b = p_[(k + 1) % 3];
+      // The part of the side within the row.
+      const double along = b[v] - a[v];
+      double begin = 0.0, end = 1.0;
+      if (along == 0.0) {
+        if (a[v] < low || a[v] > high) continue;
+      } else {
+        const auto [near, far] = std::minmax({(low - a[v]) / along, (high - a[v]) / along});
+        begin = std::max(begin, near);
+        end = std::min(end, far);
+        if (begin > end) continue;
+      }
+      for (const double share : {begin, end}) {
+        const double place = a[u] + share * (b[u] - a[u]);
+        least = std::min(least, place);
+        most = std::max(most, place);
+      }
+    }
+    if (least > most) return {0, -1};
+    const double rounding = slack * (1.0 + std::abs(least) + std::abs(most));
+    return {std::max(low_[u], static_cast<int>(std::floor(least - rounding))),
+            std::min(high_[u], static_cast<int>(std::floor(most + rounding)))};
+  }
+
+  /// The cells of a column between which the plane lies near, and one more at each end for rounding.
+  std::pair<int, int> column(Place cell) const {
+    if (normal_[steep_] == 0.0) return {low_[steep_], high_[steep_]};
+    cell[steep_] = 0;
+    const double middle = -glm::dot(normal_, glm::dvec3(cell) + 0.5 - p_[0]) / normal_[steep_];
+    const double half = reach_ / std::abs(normal_[steep_]) + 1.0;
+    return {static_cast<int>(std::max<double>(low_[steep_], std::ceil(middle - half))),
+            static_cast<int>(std::min<double>(high_[steep_], std::floor(middle + half)))};
+  }
+
+  std::array<glm::dvec3, 3> p_;
+  Place low_{0}, high_{0};
+  glm::dvec3 normal_{0.0};
+  double reach_ = 0.0;
+  int steep_ = 0;
+};
 
 std::vector<Passage> passages_of(const Triangles& surface, const Lattice& lattice) {
   const std::size_t count = surface.faces.size();
@@ -139,19 +205,27 @@ std::vector<Passage> passages_of(const Triangles& surface, const Lattice& lattic
                         for (std::uint32_t f = range.begin(); f != range.end(); ++f) visit(f);
                       });
   };
+  constexpr std::size_t most_passages = 8 * most_cells;
+  std::atomic<std::size_t> sum = 0;
   each_face([&](std::uint32_t f) {
+    const Crossed crossed(surface, f, lattice);
+    // Too many need not be counted to their end.
     std::size_t cells = 0;
-    each_cell(surface, f, lattice, [&](const Place&) { ++cells; });
+    if (sum > most_passages || crossed.least_cells() > static_cast<double>(most_passages))
+      cells = most_passages + 1;
+    else
+      crossed.each_cell([&](const Place&) { ++cells; });
     begin[f + 1] = cells;
+    sum += cells;
   });
-  for (std::size_t f = 0; f < count; ++f) begin[f + 1] += begin[f];
-  if (begin.back() > 8 * most_cells)
+  if (sum > most_passages)
     throw Error(ErrorCode::Geometry, "cells of " + short_text(lattice.cell_mm) +
                                          " mm are too many along the surface: take larger ones, --cell");
+  for (std::size_t f = 0; f < count; ++f) begin[f + 1] += begin[f];
   std::vector<Passage> passages(begin.back());
   each_face([&](std::uint32_t f) {
     std::size_t at = begin[f];
-    each_cell(surface, f, lattice, [&](const Place& cell) { passages[at++] = {key_of(cell), f}; });
+    Crossed(surface, f, lattice).each_cell([&](const Place& cell) { passages[at++] = {key_of(cell), f}; });
   });
   tbb::parallel_sort(passages.begin(), passages.end());
   return passages;
@@ -257,7 +331,7 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
   fresh = add_new(std::move(fresh), cells);
   while (!fresh.empty()) {
     progress.at(0.2);
-    field.learn(fresh);
+    if (cells.size() <= most_cells) field.learn(fresh);
     if (cells.size() > most_cells || field.size() > 2 * most_cells)
       throw Error(ErrorCode::Geometry, "the surface passes more than 2^24 cells of " +
                                            short_text(lattice.cell_mm) + " mm: take larger ones, --cell");

@@ -74,6 +74,25 @@ TEST(Enclose, RefusesWhatEnclosesNothingAndCellsThatAreNone) {
   EXPECT_THROW(enclose(sphere({0, 0, 0}, 5, 3), {.cell_mm = 1e-7}), Error);
 }
 
+TEST(Enclose, ALongSpikeCostsItsLengthNotItsBox) {
+  Triangles spiked = sphere({0, 0, 0}, 10, 2);
+  spiked.points_mm[0] = {65000, 40000, 30000};  // a box of 6 * 10^11 cells
+  const Enclosed made = enclose(spiked, {.cell_mm = 5.0});
+  EXPECT_TRUE(health(made.solid).solid());
+  // What is thinner than a cell is lost.
+  EXPECT_NEAR(made.solid.size().high_mm.x, 10.0, 0.5);
+}
+
+TEST(Enclose, TooManyCellsAreRefusedBeforeTheyAreCounted) {
+  try {
+    enclose(shapes::box({0, 0, 0}, {1000, 1000, 1000}), {.cell_mm = 0.002});
+    FAIL() << "10^12 cells were entered";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("too many along the surface"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Enclose, HasTheSameBitsOnOneThread) {
   Triangles open = torus(10, 3, 60, 30);
   open.faces.resize(open.faces.size() - 100);
