@@ -482,24 +482,51 @@ class MeetsElsewhere {
   const Triangles& triangles_;
 };
 
+/// Counts pairs of triangles and keeps the first of them, since there may be as many as the square of
+/// triangles.
+class FirstPairs {
+ public:
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+  void add(const Pair& pair) {
+    ++count_;
+    first_.push_back(pair);
+    if (first_.size() == 2 * crossing_limit) keep_first();
+  }
+  void add(const FirstPairs& other) {
+    count_ += other.count_;
+    first_.insert(first_.end(), other.first_.begin(), other.first_.end());
+    keep_first();
+  }
+  std::size_t count() const { return count_; }
+  const std::vector<Pair>& first() const { return first_; }  ///< ascending once others were added
+
+ private:
+  void keep_first() {
+    std::sort(first_.begin(), first_.end());
+    first_.resize(std::min(first_.size(), crossing_limit));
+  }
+
+  std::size_t count_ = 0;
+  std::vector<Pair> first_;
+};
+
 void test_intersections(const Triangles& triangles, const MortonTree& tree,
                         const std::vector<std::uint8_t>& degenerate, Health& health) {
-  using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  tbb::enumerable_thread_specific<std::vector<Pair>> found;
+  tbb::enumerable_thread_specific<FirstPairs> found;
   const MeetsElsewhere meets_elsewhere(triangles);
   tree.visit_own_pairs([&](std::uint32_t f, std::uint32_t g) {
     if (degenerate[f] != 0 || degenerate[g] != 0) return;
-    const Pair pair = std::minmax(f, g);
-    if (meets_elsewhere(pair.first, pair.second)) found.local().push_back(pair);
+    const FirstPairs::Pair pair = std::minmax(f, g);
+    if (meets_elsewhere(pair.first, pair.second)) found.local().add(pair);
   });
-  std::vector<Pair> meeting;
-  for (const std::vector<Pair>& part : found) meeting.insert(meeting.end(), part.begin(), part.end());
+  FirstPairs meeting;
+  for (const FirstPairs& part : found) meeting.add(part);
 
-  std::sort(meeting.begin(), meeting.end());
   health.intersections_tested = true;
-  health.self_intersections = meeting.size();
-  for (std::size_t i = 0; i < std::min(meeting.size(), crossing_limit); ++i)
-    health.crossing.emplace_back(static_cast<int>(meeting[i].first), static_cast<int>(meeting[i].second));
+  health.self_intersections = meeting.count();
+  for (const auto& [f, g] : meeting.first())
+    health.crossing.emplace_back(static_cast<int>(f), static_cast<int>(g));
 }
 
 /// " at (12.5, -80.25, 3) mm", where a triangle's middle is.
