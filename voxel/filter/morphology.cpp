@@ -11,6 +11,9 @@
 #include "voxel/filter/components.h"
 #include "voxel/measure/distance_map.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/error.h"
+#include "voxel/space/memory_need.h"
+#include "voxel/space/rounded.h"
 #include "voxel/tree/build.h"
 
 namespace octotomy::voxel {
@@ -70,8 +73,14 @@ Octree close(const Octree& octree, double radius_mm) {
   const double limit = limit_mm2(radius_mm);
   // The dilation may leave the universe, so its map covers the dilation and a shell around it. The shell's
   // voxels are the nearest of all voxels beyond.
-  DistanceMap map =
-      distance_map(octree, grown(range_of(octree), reach_voxels(octree.universe(), radius_mm) + 1));
+  const VoxelRange range = grown(range_of(octree), reach_voxels(octree.universe(), radius_mm) + 1);
+  const glm::dvec3 dims(range.dims());
+  const double bytes = dims.x * dims.y * dims.z * sizeof(float);
+  if (bytes > static_cast<double>(free_memory()))
+    throw Error(ErrorCode::Resource, "closing by " + rounded(radius_mm) + " mm takes " +
+                                         rounded(bytes / 1e9) +
+                                         " GB of memory: take a smaller radius or larger voxels");
+  DistanceMap map = distance_map(octree, range);
   for (float& square_mm2 : map.square_mm2)
     square_mm2 = static_cast<double>(square_mm2) > limit ? 0.0F : std::numeric_limits<float>::infinity();
   spread(map, octree.universe());
