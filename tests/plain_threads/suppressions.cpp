@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
-/// What the thread sanitizer passes over in every program: libraries as installed were built without it, and it
-/// sees races in all that their own threads do.
+/// What the thread sanitizer passes over in every program: libraries as installed were built without it, and
+/// it sees races in all that their own threads do.
 extern "C" const char* __tsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
 const char* __tsan_default_suppressions() {            // NOLINT(bugprone-reserved-identifier)
   return "race:libITKCommon\n"

@@ -243,6 +243,7 @@ class Layer {
     glm::dvec2 usual;
     for (int axis = 0; axis < 2; ++axis) {
       std::vector<double> values;
+      values.reserve(off_px.size());
       for (const glm::dvec2& off : off_px) values.push_back(off[axis]);
       usual[axis] = median_of(values);
     }
