@@ -331,8 +331,9 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
   fresh = add_new(std::move(fresh), cells);
   while (!fresh.empty()) {
     progress.at(0.2);
-    if (cells.size() <= most_cells) field.learn(fresh);
-    if (cells.size() > most_cells || field.size() > 2 * most_cells)
+    const bool may_learn = cells.size() <= most_cells;
+    if (may_learn) field.learn(fresh);
+    if (!may_learn || field.size() > 2 * most_cells)
       throw Error(ErrorCode::Geometry, "the surface passes more than 2^24 cells of " +
                                            short_text(lattice.cell_mm) + " mm: take larger ones, --cell");
     fresh = add_new(in_order<std::uint64_t>(fresh,

@@ -60,7 +60,7 @@ std::optional<std::string> fault_in_shape(const Tetrahedra& tetrahedra);
 /// Throws voxel::Error: Geometry if the mesh is open, inside out, flat or tiny, or the meshers fail on it;
 /// Resource if a limit of time or memory ends the last of them, or a mesher is not installed beside the
 /// running program. The message names the switches tried and what to try next. Throws std::invalid_argument
-/// if an option is out of range; voxel::Stopped.
+/// if an option is out of range, or the largest volume asks for over 2e7 elements; voxel::Stopped.
 /// Source: Si, "TetGen, a Delaunay-based quality tetrahedral mesh generator", ACM TOMS 41(2), 2015.
 Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options = {});
 

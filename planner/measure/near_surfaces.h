@@ -29,7 +29,7 @@ struct Contacts {
 
 struct ContactOptions {
   double within_mm = 0.5;  ///< what is nearer is a contact
-  double apart_mm = 2.0;   ///< places nearer to each other are one; at least half a voxel
+  double apart_mm = 2.0;   ///< places nearer are one; at least half a voxel, of voxels alone a whole one
 };
 
 /// Where one object comes near another one: by the triangles of both where both solids are given, else by

@@ -50,11 +50,10 @@ void tell_missed(const brep::Solid& solid, const brep::Solid& moved, const brep:
   constexpr double most_share = 0.01;
   const brep::MissedWalls missed = brep::missed_walls(solid, moved, options);
   if (missed.area_share == 0.0) return;
-  const std::string told = three_figures(100.0 * missed.area_share) +
-                           " % of the surface bound walls or clefts thinner than a cell of " +
-                           plain(options.cell_mm) + " mm and were missed, the first at (" +
-                           plain(missed.at_mm.x) + ", " + plain(missed.at_mm.y) + ", " +
-                           plain(missed.at_mm.z) + ") mm: take smaller cells";
+  const std::string told = "walls or clefts thinner than a cell of " + plain(options.cell_mm) +
+                           " mm were missed, " + three_figures(100.0 * missed.area_share) +
+                           " % of the surface, the first at (" + plain(missed.at_mm.x) + ", " +
+                           plain(missed.at_mm.y) + ", " + plain(missed.at_mm.z) + ") mm: take smaller cells";
   if (missed.area_share > most_share) throw brep::Error(brep::ErrorCode::Geometry, told);
   findings.push_back(told);
 }

@@ -236,8 +236,8 @@ class Kinds {
     }
     if (fs::exists(at("dicom_jpeg_2000.dcm"))) {
       std::string picture = codestream(sound_.bytes("dicom_jpeg_2000.dcm"));
-      picture[42] =
-          14;  // the samples' bits less one, without a sign: 2^14 is added to each when it is decoded
+      // The samples' bits less one, without a sign. Each sample gains 2^14 when it is decoded.
+      picture[42] = 14;
       stack("jpeg_2000_stack", "jp2", picture, "16484:");
       stack("jp2_stack", "jp2", jp2(picture), "16484:");
     }
