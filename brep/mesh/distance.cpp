@@ -52,11 +52,14 @@ TreeBox box_of(const Corners& t) {
 }
 
 /// What rounding may add to the distance of a box or take off that of a triangle. A float is good to 2^-24 of
-/// itself: along each axis the point is rounded, and its difference from the box, at most the sum of both.
-/// Doubles are better by far. 2^-20 of the largest coordinates is five times as much.
-double rounding_of_floats_mm(const glm::dvec3& p, const TreeBox& all) {
+/// itself: along each axis the point, from the middle of all boxes, is rounded, and its difference from the
+/// box, at most the sum of both. 2^-20 of the longest of these ways is five times as much. Triangles are
+/// measured in doubles, good to 2^-53, from the origin: 2^-44 of the largest coordinates leaves room for
+/// their products.
+double rounding_mm(const glm::dvec3& p, const TreeBox& all, const glm::dvec3& middle) {
+  const glm::dvec3 ways = glm::max(glm::abs(p - middle), all.high - middle);
   const glm::dvec3 most = glm::max(glm::abs(p), glm::max(glm::abs(all.low), glm::abs(all.high)));
-  return 0x1p-20 * (most.x + most.y + most.z);
+  return 0x1p-20 * (ways.x + ways.y + ways.z) + 0x1p-44 * (most.x + most.y + most.z);
 }
 
 /// A squared distance to a box, in floats, from which on no triangle in it is computed to be as near as
@@ -166,7 +169,7 @@ OCTOTOMY_FOR_VECTORS void squared_distances(const FourTriangles& four, double px
 /// From here on a child is a leaf.
 constexpr std::uint32_t first_leaf = std::uint32_t{1} << 31;
 
-/// A node of the tree: boxes, rounded outward, with what is in them.
+/// A node of the tree: boxes, from the middle of all and rounded outward, with what is in them.
 struct FourBoxes {
   ThreeLanes low{}, high{};
   std::array<std::uint32_t, 4> child{};
@@ -265,7 +268,8 @@ struct SurfaceTree::Tree {
   std::vector<std::uint32_t> faces;
   std::vector<Node> nodes;
   std::vector<FourBoxes> wide;  ///< two levels of nodes each; the first is the root
-  bool is_halved;               ///< nodes halve their triangles
+  glm::dvec3 middle{0.0};  ///< of all boxes: floats are taken from here, so that a far place costs no digits
+  bool is_halved;          ///< nodes halve their triangles
 
   Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build == SurfaceTree::Build::Searched) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());
@@ -322,7 +326,7 @@ struct SurfaceTree::Tree {
     assert(nearest_triangle < faces.size());
     const std::uint32_t start = nearest_triangle;
     double nearest = std::numeric_limits<double>::infinity();
-    const double rounding_mm = rounding_of_floats_mm(p, nodes[0].box);
+    const double rounding = rounding_mm(p, nodes[0].box, middle);
     float farther = std::numeric_limits<float>::infinity();
     const auto look_at = [&](std::uint32_t four, std::uint32_t begin, std::uint32_t end) {
       std::array<double, 4> squared;
@@ -332,11 +336,11 @@ struct SurfaceTree::Tree {
         if (!(own < nearest || (own == nearest && comes_before(p, i, nearest_triangle, start)))) continue;
         nearest = own;
         nearest_triangle = i;
-        farther = surely_farther(nearest, rounding_mm);
+        farther = surely_farther(nearest, rounding);
       }
     };
     look_at(start / 4, start, start + 1);
-    const ThreeLanes at = lanes_of(glm::vec3(p));
+    const ThreeLanes at = lanes_of(glm::vec3(p - middle));
     struct Waiting {
       float bound;
       std::uint32_t child;
@@ -385,7 +389,8 @@ struct SurfaceTree::Tree {
   template <typename Visit>
   void visit_crossings(const glm::dvec3& p, Visit visit) const {
     if (nodes.empty()) return;
-    const glm::vec3 low = rounded_down(p), high = rounded_up(p);
+    // Less the middle, what was not less is not less: doubles are rounded in order.
+    const glm::vec3 low = rounded_down(p - middle), high = rounded_up(p - middle);
     std::array<std::uint32_t, most_waiting> waiting;
     std::size_t top = 0;
     waiting[top++] = 0;
@@ -440,11 +445,13 @@ struct SurfaceTree::Tree {
       number[n] = static_cast<std::uint32_t>(own.size());
       own.push_back(n);
     }
+    middle = 0.5 * nodes[0].box.low + 0.5 * nodes[0].box.high;
     wide.resize(own.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own.size(), 1024), [&](const auto& range) {
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         const auto add = [&](std::uint32_t n) {
-          wide[i].add(nodes[n].box, nodes[n].count > 0 ? first_leaf + n : number[n]);
+          wide[i].add({nodes[n].box.low - middle, nodes[n].box.high - middle},
+                      nodes[n].count > 0 ? first_leaf + n : number[n]);
         };
         const auto add_children = [&](std::uint32_t n) {
           if (nodes[n].count > 0) return add(n);

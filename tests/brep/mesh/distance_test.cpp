@@ -74,20 +74,27 @@ TEST(SurfaceTree, CrossingsTellEnteringFromLeaving) {
   EXPECT_GE(from_inside[0].face, 10u);  // the last two triangles of a box face +x
 }
 
-TEST(SurfaceTree, ASphereOfManyTrianglesAgreesWithEveryTriangleAskedAlone) {
-  const Triangles sphere = shapes::sphere({0.1, 0.2, 0.3}, 1, 3);
-  const SurfaceTree tree(sphere);
-  const auto points = random_points(50, 2.0, 2);
-  const auto distances = tree.distances_mm(points);
-  std::vector<double> nearest(points.size(), INFINITY);
-  for (const auto& face : sphere.faces) {
-    Triangles one;
-    one.points_mm = sphere.points_mm;
-    one.faces = {face};
-    const auto alone = SurfaceTree(one).distances_mm(points);
-    for (std::size_t i = 0; i < points.size(); ++i) nearest[i] = std::min(nearest[i], alone[i]);
+TEST(SurfaceTree, ASphereOfManyTrianglesAgreesWithEveryTriangleAskedAloneHoweverFarAwayItIs) {
+  for (const glm::dvec3& centre : {glm::dvec3(0.1, 0.2, 0.3), glm::dvec3(1e6, -2e6, 3e5)}) {
+    const Triangles sphere = shapes::sphere(centre, 1, 3);
+    const SurfaceTree tree(sphere);
+    auto points = random_points(50, 2.0, 2);
+    for (glm::dvec3& p : points) p += centre;
+    points.emplace_back(0.0, 0.0, 0.0);
+    const auto distances = tree.distances_mm(points);
+    std::vector<double> nearest(points.size(), INFINITY);
+    for (const auto& face : sphere.faces) {
+      Triangles one;
+      one.points_mm = sphere.points_mm;
+      one.faces = {face};
+      const auto alone = SurfaceTree(one).distances_mm(points);
+      for (std::size_t i = 0; i < points.size(); ++i) nearest[i] = std::min(nearest[i], alone[i]);
+    }
+    EXPECT_EQ(distances, nearest);
+    const auto inside = tree.inside(points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_EQ(inside[i] != 0, is_inside(points[i], sphere)) << "point " << i;
   }
-  EXPECT_EQ(distances, nearest);
 }
 
 TEST(SurfaceTree, ThreadsDoNotChangeTheBits) {
