@@ -21,6 +21,8 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::int64_t rows_a_slab = 8;
+/// Ten times those of a million lines through two heads; surfaces of more layers are passed by fewer lines.
+constexpr double most_crossings = 0x1p27;
 
 /// Where a line of a row crosses a triangle.
 struct Hit {
@@ -59,17 +61,23 @@ Triangles turned(const Triangles& surface) {
 
 Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  double passed_mm2 = 0.0;  // by all lines together, an area as often as it has layers
   for (const Triangles* surface : {&a, &b})
-    for (const auto& face : surface->faces)
+    for (const auto& face : surface->faces) {
       for (const std::uint32_t v : face) {
         low = glm::min(low, surface->points_mm[v]);
         high = glm::max(high, surface->points_mm[v]);
       }
+      const glm::dvec3 p = surface->points_mm[face[0]], u = surface->points_mm[face[1]] - p,
+                       v = surface->points_mm[face[2]] - p;
+      passed_mm2 += 0.5 * std::abs(u.y * v.z - u.z * v.y);
+    }
   const glm::dvec3 extent = high - low;
   Lines lines;
   if (!(extent.y > 0.0 && extent.z > 0.0)) return lines;
   lines.spacing = std::sqrt(extent.y * extent.z / static_cast<double>(count));
   lines.spacing = std::max(lines.spacing, std::max(extent.y, extent.z) / static_cast<double>(count));
+  lines.spacing = std::max(lines.spacing, std::sqrt(passed_mm2 / most_crossings));
   // Anything but a simple fraction, so that planes of round coordinates are cut inside.
   lines.low_y = low.y + 0.4159265358 * lines.spacing;
   lines.low_z = low.z + 0.5182818284 * lines.spacing;

@@ -20,11 +20,12 @@ struct LineVolumes {
   std::size_t open_lines = 0;        ///< of them those left out, as they pass a hole or contrary triangles
 };
 
-/// Volumes by lines along x, about `lines` of them over both surfaces' box, exact along each: triangles may
-/// cross, lie on each other and face inward, whole shells at a time. The same surface twice has exactly its
-/// own volume in common. Precondition: triangles refer to finite points. The same bits on any number of
-/// threads. Error: about the 0.75th power of the number of lines, 1e-5 at a million on a head. Cost: grows as
-/// the number of crossings; 0.15 s for a million lines and two surfaces of 500k triangles on two cores.
+/// Volumes by lines along x, about `lines` of them over both surfaces' box, or fewer where they would cross
+/// the surfaces over 2^27 times; exact along each: triangles may cross, lie on each other and face inward,
+/// whole shells at a time. The same surface twice has exactly its own volume in common. Precondition:
+/// triangles refer to finite points. The same bits on any number of threads. Error: about the 0.75th power of
+/// the number of lines, 1e-5 at a million on a head. Cost: grows as the number of crossings; 0.15 s for a
+/// million lines and two surfaces of 500k triangles on two cores.
 LineVolumes line_volumes(const Triangles& a, const Triangles& b, std::size_t lines = 1u << 20);
 
 }  // namespace octotomy::brep

@@ -56,6 +56,15 @@ TEST(LineVolume, ShellsThatCrossCountOnceACavityNotAtAll) {
   EXPECT_NEAR(line_volumes(hollow, {}, 1u << 16).all.a_mm3, size_of(hollow).volume_mm3, 0.05);
 }
 
+TEST(LineVolume, SurfacesOfVeryManyLayersArePassedByFewerLines) {
+  Triangles shells;
+  for (int i = 0; i < 400; ++i) shells = together(shells, sphere({0, 0, 0}, 10.0 + 0.01 * i, 2));
+  const LineVolumes volumes = line_volumes(shells, {});
+  EXPECT_GT(volumes.lines, 100'000u);
+  EXPECT_LT(volumes.lines * 2 * 400, 140'000'000u);
+  EXPECT_NEAR(volumes.all.a_mm3 / size_of(sphere({0, 0, 0}, 13.99, 2)).volume_mm3, 1.0, 1e-4);
+}
+
 TEST(LineVolume, LinesThroughAHoleAreToldAndLeftOut) {
   const LineVolumes open =
       line_volumes(without(box({0, 0, 0}, {10, 10, 10}), {8, 9}), {}, 1u << 12);  // x = 0
