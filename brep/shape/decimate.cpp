@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ class CollapsedMesh : public Mesh {
   bool is_collapse_ok(OpenMesh::HalfedgeHandle edge) {
     const OpenMesh::HalfedgeHandle back = opposite_halfedge_handle(edge);
     const OpenMesh::VertexHandle from = to_vertex_handle(back), to = to_vertex_handle(edge);
+    if (edge == halfedge_handle(from)) least_error = std::numeric_limits<float>::infinity();
     if (status(edge_handle(edge)).deleted() || status(from).deleted() || status(to).deleted()) return false;
     assert(!is_boundary(edge) && !is_boundary(back));
     const OpenMesh::VertexHandle left = to_vertex_handle(next_halfedge_handle(edge));
@@ -43,6 +45,9 @@ class CollapsedMesh : public Mesh {
     return is_ok;
   }
 
+  /// Of the collapses of a vertex that were looked at since its first edge.
+  float least_error = std::numeric_limits<float>::infinity();
+
  private:
   template <class Visit>
   void for_neighbours(OpenMesh::VertexHandle vertex, const Visit& visit) const {
@@ -56,6 +61,41 @@ class CollapsedMesh : public Mesh {
 };
 
 using Decimater = OpenMesh::Decimater::DecimaterT<CollapsedMesh>;
+
+/// A collapse's error, or that it may not be. The library asks each of its modules before the one for errors,
+/// which is a tenth of the work of the others and refuses most; and of a vertex' collapses it takes the one
+/// of the least error, so that the others' shapes need not be looked at.
+class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
+ public:
+  using Handle = OpenMesh::Decimater::ModHandleT<ErrorThenShape>;
+  using Error = OpenMesh::Decimater::ModQuadricT<CollapsedMesh>;
+
+  explicit ErrorThenShape(CollapsedMesh& mesh) : Error(mesh), normals_(mesh), aspect_(mesh) {}
+
+  void limit(const DecimateOptions& options) {
+    set_max_err(options.max_error_mm * options.max_error_mm, false);
+    normals_.set_max_normal_deviation(options.max_normal_deviation_deg);
+    aspect_.set_aspect_ratio(options.max_aspect);
+  }
+  void initialize() override {
+    Error::initialize();
+    aspect_.initialize();
+  }
+  void preprocess_collapse(const CollapseInfo& collapse) override { aspect_.preprocess_collapse(collapse); }
+  float collapse_priority(const CollapseInfo& collapse) override {
+    const float error = Error::collapse_priority(collapse);
+    float& least = mesh().least_error;
+    if (error < 0.0F || !(error < least) || normals_.collapse_priority(collapse) < 0.0F ||
+        aspect_.collapse_priority(collapse) < 0.0F)
+      return ILLEGAL_COLLAPSE;
+    least = error;
+    return error;
+  }
+
+ private:
+  OpenMesh::Decimater::ModNormalFlippingT<CollapsedMesh> normals_;
+  OpenMesh::Decimater::ModAspectRatioT<CollapsedMesh> aspect_;
+};
 
 /// How far about a triangle that intersects another its vertices' forebears are locked, by the triangle's own
 /// reach: the triangles that stood in its place lay within that reach, those that touched them within half
@@ -87,15 +127,9 @@ Mesh round_of_collapses(const Mesh& mesh, const DecimateOptions& options, const 
     coarse.status(vertex).set_locked(locked[static_cast<std::size_t>(vertex.idx())]);
 
   Decimater decimater(coarse);
-  OpenMesh::Decimater::ModQuadricT<CollapsedMesh>::Handle quadric;
-  decimater.add(quadric);
-  decimater.module(quadric).set_max_err(options.max_error_mm * options.max_error_mm, false);
-  OpenMesh::Decimater::ModNormalFlippingT<CollapsedMesh>::Handle normals;
-  decimater.add(normals);
-  decimater.module(normals).set_max_normal_deviation(options.max_normal_deviation_deg);
-  OpenMesh::Decimater::ModAspectRatioT<CollapsedMesh>::Handle aspect;
-  decimater.add(aspect);
-  decimater.module(aspect).set_aspect_ratio(options.max_aspect);
+  ErrorThenShape::Handle collapses;
+  decimater.add(collapses);
+  decimater.module(collapses).limit(options);
   decimater.initialize();
   decimater.decimate_to_faces(0, options.faces.value_or(0));
 

@@ -13,7 +13,7 @@ struct DecimateOptions {
   /// spacing of a scan's samples takes two triangles of three from an isosurface.
   double max_error_mm = 0.1;
   std::optional<std::size_t> faces;      ///< ends there where the other bounds have not ended it before
-  double max_normal_deviation_deg = 45;  ///< of a triangle from its own first normal, 0..90
+  double max_normal_deviation_deg = 45;  ///< of a triangle at one collapse, 0..90
   double max_aspect = 10;  ///< longest side by height, above which a triangle may not come to be
   int max_rounds = 8;      ///< see below; at least 1
 };

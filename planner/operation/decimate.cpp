@@ -50,7 +50,7 @@ Operation decimate_operation() {
                  .greater_than(0.0))
       .takes(field("faces", &Decimate::faces, "Ends at so many triangles.").from(4).to(100000000))
       .takes(field("max_normal_deviation_deg", &Decimate::max_normal_deviation_deg,
-                   "Largest turn of a triangle from its first normal.")
+                   "Largest turn of a triangle at one collapse.")
                  .greater_than(0.0)
                  .to(90.0))
       .example(R"({"id": "light", "do": "decimate", "object": "skull", "max_error_mm": 0.2})")
