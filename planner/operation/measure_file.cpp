@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/measure_file.h"
 
+#include <cmath>
 #include <tbb/parallel_invoke.h>
 
 #include "brep/io/read_mesh.h"
@@ -56,6 +57,9 @@ FileAnswer said(Json json) {
   }
   const std::vector<std::pair<std::string, std::string>> asked = surface_rows(json);
   rows.insert(rows.end(), asked.begin(), asked.end());
+  for (const Json& finding : json["findings"])
+    if (const auto text = finding.get<std::string>(); text.starts_with("volume_mm3: "))
+      rows.emplace_back("finding", text);
   return {std::move(json), std::move(rows)};
 }
 
@@ -219,6 +223,19 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
   return said(std::move(whole));
 }
 
+/// Voxels can be so much coarser than the scan's samples that they pass over an object: where the count is
+/// far from what the samples' own surface encloses, the difference is its half-width and a finding says so.
+void tell_missed(double isosurface_mm3, const voxel::Universe& universe, Json& json) {
+  const double counted_mm3 = json["volume_mm3"], missed_mm3 = std::abs(isosurface_mm3 - counted_mm3);
+  if (missed_mm3 <= 3.0 * json["volume_half_width_mm3"].get<double>()) return;
+  json["volume_half_width_mm3"] = missed_mm3;
+  json["volume_half_width_terms"].push_back(
+      {{"name", "missed"}, {"formula", "|V - the isosurface's|"}, {"half_width", missed_mm3}});
+  json["findings"].push_back("volume_mm3: voxels of " + plain(universe.lattice().spacing_mm().x) +
+                             " mm miss much of the object: the isosurface of the samples encloses " +
+                             grouped(isosurface_mm3, 1) + " mm3: take smaller ones, --voxel");
+}
+
 /// A scan, and its octree, which is built while the scan is read.
 struct ScanAndOctree {
   voxel::Scene scene;
@@ -288,6 +305,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;
   json["volume_isosurface_mm3"] = surface.volume_mm3;
+  tell_missed(surface.volume_mm3, grey.universe(), json);
   json["euler"] = brep::euler_number(isosurface.triangles());
   json["euler_of"] = "the isosurface: V - E + F";
   Json whole{{"kind", "scan"}};

@@ -109,6 +109,20 @@ TEST_F(ScanVerbs, ATissueIsAWindowOfHounsfieldUnitsEverywhere) {
     expect_refused(run(std::string(verb) + " " + at("raw.nrrd") + " --window bone"), "Hounsfield");
 }
 
+TEST_F(ScanVerbs, VoxelsThatPassOverAThinObjectSayHowMuchTheyMiss) {
+  voxel::Scene thin = tests::ball_scene(12.0, 32);
+  thin.lattice = voxel::axis_aligned_lattice({32, 32, 32}, {0.001, 10, 10}, {0, 0, 0});
+  voxel::write_scene(thin, folder_ / "thin.nrrd");
+  const SortedJson found = json("measure " + at("thin.nrrd") + " --window 0:");
+  EXPECT_GT(found["volume_isosurface_mm3"], 500.0);
+  EXPECT_EQ(found["volume_half_width_mm3"].get<double>(),
+            std::abs(found["volume_isosurface_mm3"].get<double>() - found["volume_mm3"].get<double>()));
+  EXPECT_EQ(found["volume_half_width_terms"].back()["name"], "missed");
+  EXPECT_NE(run("measure " + at("thin.nrrd") + " --window 0:").out.find("take smaller ones"),
+            std::string::npos);
+  EXPECT_EQ(json("measure " + at("ball.nrrd") + " --window 0:")["findings"], SortedJson::array());
+}
+
 // Two balls of 900 and a cube of 300 in air, on voxels of 1 x 1 x 2 mm.
 class Segments : public ScanVerbs {
  protected:
