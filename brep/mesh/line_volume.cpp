@@ -21,8 +21,8 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::int64_t rows_a_slab = 8;
-/// Ten times those of a million lines through two heads; surfaces of more layers are passed by fewer lines.
-constexpr double most_crossings = 0x1p27;
+/// Four times those of a million lines through two heads; surfaces of more layers are passed by fewer lines.
+constexpr double most_crossings = 0x1p26;
 
 /// Where a line of a row crosses a triangle.
 struct Hit {

@@ -21,7 +21,7 @@ struct LineVolumes {
 };
 
 /// Volumes by lines along x, about `lines` of them over both surfaces' box, or fewer where they would cross
-/// the surfaces over 2^27 times; exact along each: triangles may cross, lie on each other and face inward,
+/// the surfaces over 2^26 times; exact along each: triangles may cross, lie on each other and face inward,
 /// whole shells at a time. The same surface twice has exactly its own volume in common. Precondition:
 /// triangles refer to finite points. The same bits on any number of threads. Error: about the 0.75th power of
 /// the number of lines, 1e-5 at a million on a head. Cost: grows as the number of crossings; 0.15 s for a
