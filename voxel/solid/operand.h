@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "voxel/solid/edge_tree.h"
 #include "voxel/solid/operand_primitive.h"
 #include "voxel/solid/postfix_expression.h"
 #include "voxel/solid/resampling.h"
@@ -67,7 +68,7 @@ class MaskOperand {
 
  private:
   struct Projected {
-    const Region* region = nullptr;
+    EdgeTree edges;
     Linear u, v;  ///< the view's millimetres
     LocalFrame frame() const;
   };

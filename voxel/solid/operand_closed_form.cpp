@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "voxel/solid/operand.h"
@@ -202,6 +203,20 @@ bool runs_through(const glm::dvec2& a, const glm::dvec2& b, const Polygon& hull)
     if (enter >= leave) return false;
   }
   return true;
+}
+
+// Visits the edges that may run through the outline, and some more. runs_through() is wrong by a few
+// roundings of the largest coordinate, so the outline's box is widened by far more than that.
+template <typename Visit>
+void visit_about(const EdgeTree& edges, const Polygon& outline, const Visit& visit) {
+  glm::dvec2 low = outline[0], high = low;
+  for (int i = 1; i < outline.count; ++i) {
+    low = glm::min(low, outline[i]);
+    high = glm::max(high, outline[i]);
+  }
+  const glm::dvec2 farthest = glm::max(glm::abs(low), glm::abs(high));
+  const double slack = vanishing * std::max({farthest.x, farthest.y, edges.farthest_mm()});
+  edges.visit(low - slack, high + slack, visit);
 }
 
 bool strictly_within(const glm::dvec2& p, const Polygon& hull) {
@@ -459,12 +474,12 @@ Meets MaskOperand::meets(const Cube& cube) const {
   for (const Projected& projected : regions_) {
     const Polygon outline = swept_cube(projected.frame(), {}, cube).outline;
     bool cut = false;
-    for_each_edge(projected.region->polygons_mm, [&](const glm::dvec2& a, const glm::dvec2& b) {
+    visit_about(projected.edges, outline, [&](const glm::dvec2& a, const glm::dvec2& b, std::uint32_t) {
       cut = cut || runs_through(a, b, outline);
     });
     if (cut)
       all = all & Meets::exactly(true, true);
-    else if (!voxel::contains(*projected.region, middle(outline)))
+    else if (!projected.edges.contains(middle(outline)))
       return Meets::exactly(false, true);
   }
   return all;
@@ -472,7 +487,7 @@ Meets MaskOperand::meets(const Cube& cube) const {
 
 bool MaskOperand::contains(const glm::dvec3& p_voxel) const {
   return std::all_of(regions_.begin(), regions_.end(), [&](const Projected& projected) {
-    return voxel::contains(*projected.region, {projected.u(p_voxel), projected.v(p_voxel)});
+    return projected.edges.contains({projected.u(p_voxel), projected.v(p_voxel)});
   });
 }
 
@@ -481,18 +496,23 @@ Sheets MaskOperand::sheets(const Cube& cube) const {
   for (const Projected& projected : regions_) {
     const LocalFrame local = projected.frame();
     const Polygon outline = swept_cube(local, {}, cube).outline;
-    for_each_edge(projected.region->polygons_mm, [&](const glm::dvec2& a, const glm::dvec2& b) {
-      if (!runs_through(a, b, outline)) return;
-      // An edge that ends within is a corner of the region, and so is its neighbour.
-      sheets.count += 1 + strictly_within(a, outline) + strictly_within(b, outline);
-      const glm::dvec2 way = glm::normalize(glm::dvec2(b.y - a.y, a.x - b.x));
-      // Whether the outline's middle is inside tells which side of the edge is.
-      const glm::dvec2 probe = middle(outline);
-      const double at_probe = glm::dot(way, probe - a);
-      const double sign = (at_probe <= 0.0) == voxel::contains(*projected.region, probe) ? 1.0 : -1.0;
-      sheets.first = {sign * (glm::transpose(local.map) * glm::dvec3(way, 0.0)),
-                      sign * glm::dot(way, glm::dvec2(local(cube.centre)) - a)};
-    });
+    std::optional<std::uint32_t> taken;
+    visit_about(projected.edges, outline,
+                [&](const glm::dvec2& a, const glm::dvec2& b, std::uint32_t number) {
+                  if (!runs_through(a, b, outline)) return;
+                  // An edge that ends within is a corner of the region, and so is its neighbour.
+                  sheets.count += 1 + strictly_within(a, outline) + strictly_within(b, outline);
+                  // The last in the polygons' order stands for all.
+                  if (taken && *taken > number) return;
+                  taken = number;
+                  const glm::dvec2 way = glm::normalize(glm::dvec2(b.y - a.y, a.x - b.x));
+                  // Whether the outline's middle is inside tells which side of the edge is.
+                  const glm::dvec2 probe = middle(outline);
+                  const double at_probe = glm::dot(way, probe - a);
+                  const double sign = (at_probe <= 0.0) == projected.edges.contains(probe) ? 1.0 : -1.0;
+                  sheets.first = {sign * (glm::transpose(local.map) * glm::dvec3(way, 0.0)),
+                                  sign * glm::dot(way, glm::dvec2(local(cube.centre)) - a)};
+                });
   }
   return sheets;
 }

@@ -24,8 +24,6 @@ bool meets_rectangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2&
   return across <= half.x * std::abs(arm.y) + half.y * std::abs(arm.x);
 }
 
-using Edge = std::array<glm::dvec2, 2>;
-
 /// A rectangle of a view's millimetres that holds the voxels of a block.
 struct Patch {
   glm::dvec2 centre, half;
@@ -42,13 +40,13 @@ bool within_reach(const Edge& edge, const Patch& patch) {
          std::max(a.x, b.x) >= patch.centre.x - patch.half.x;
 }
 
-/// The edges of a region that decide about a patch: those within reach, of which a part of the patch needs no
-/// others, and those that are level and meet it, which no ray crosses.
-std::vector<Edge> edges_about(const Region& region, const Patch& patch) {
-  std::vector<Edge> edges;
-  for_each_edge(region.polygons_mm, [&](const glm::dvec2& a, const glm::dvec2& b) {
-    if (within_reach({a, b}, patch) || (a.y == b.y && meets_rectangle(a, b, patch.centre, patch.half)))
-      edges.push_back({a, b});
+/// The edges that decide about a patch: those within reach, of which a part of the patch needs no others, and
+/// those that are level and meet it, which no ray crosses.
+std::vector<Edge> edges_about(const EdgeTree& tree, const Patch& patch) {
+  std::vector<Edge> edges = tree.edges_about(patch.centre - patch.half, patch.centre + patch.half);
+  std::erase_if(edges, [&](const Edge& edge) {
+    const auto& [a, b] = edge;
+    return a.y == b.y ? !meets_rectangle(a, b, patch.centre, patch.half) : !within_reach(edge, patch);
   });
   return edges;
 }
@@ -137,7 +135,7 @@ Cover cover_of_patches(const std::vector<Edge>& edges, const glm::dvec2& half, c
 
 MaskOperand::MaskOperand(const RegionMask& mask, const glm::dmat4& still_from_target) {
   for (const Region& region : mask.regions)
-    regions_.push_back({&region, along(still_from_target, region.view.right, 0.0),
+    regions_.push_back({EdgeTree(region.polygons_mm), along(still_from_target, region.view.right, 0.0),
                         along(still_from_target, region.view.up, 0.0)});
 }
 
@@ -145,7 +143,7 @@ Cover MaskOperand::cover(const TargetBlock& block) const {
   Cover cover{all_children, all_children};
   for (const Projected& projected : regions_) {
     const Patch whole = patch_of(projected.u, projected.v, block.whole());
-    const std::vector<Edge> edges = edges_about(*projected.region, whole);
+    const std::vector<Edge> edges = edges_about(projected.edges, whole);
     const Status status = status_of(edges, whole);
     if (status == Status::Empty) return {};
     if (status == Status::Full) continue;
@@ -164,7 +162,7 @@ void MaskOperand::words(const WantedLeaves& leaves) const {
   const TargetBlock block{leaves.origin, 4};
   for (const Projected& projected : regions_) {
     const std::vector<Edge> edges =
-        edges_about(*projected.region, patch_of(projected.u, projected.v, block.whole()));
+        edges_about(projected.edges, patch_of(projected.u, projected.v, block.whole()));
     const glm::dvec2 half = patch_of(projected.u, projected.v, block.child(0)).half;
     for (std::uint64_t rest = leaves.wanted; rest != 0; rest &= rest - 1) {
       const int child = std::countr_zero(rest);

@@ -7,7 +7,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "voxel/solid/polygon.h"
 #include "voxel/solid/region_mask.h"
 
 namespace octotomy::voxel {
@@ -39,24 +38,23 @@ void check(const SliceMask& mask) {
   if (!drawn) throw std::invalid_argument("no slice of the mask has a polygon");
 }
 
-double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) const {
-  const std::vector<std::vector<glm::dvec2>>& polygons = mask_->slices[slice].polygons_mm;
-  double square = outside_mm;
-  for_each_edge(polygons, [&](const glm::dvec2& a, const glm::dvec2& b) {
-    square = std::min(square, square_to_segment(p_mm, a, b));
-  });
-  const double distance = std::sqrt(square);
-  return contains(polygons, p_mm) ? -distance : distance;
+SliceDistance::SliceDistance(const SliceMask& mask) : mask_(&mask) {
+  edges_.reserve(mask.slices.size());
+  for (const SliceMask::Slice& slice : mask.slices) edges_.emplace_back(slice.polygons_mm);
 }
 
-// Over a stretch of the gap after slice `below`, at one point of the plane.
-SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, const glm::dvec2& p_mm, double from_mm,
-                                            double to_mm) const {
+double SliceDistance::distance_mm(std::size_t slice, const glm::dvec2& p_mm) const {
+  const double distance = std::sqrt(edges_[slice].square_to(p_mm));
+  return edges_[slice].contains(p_mm) ? -distance : distance;
+}
+
+// Over a stretch of the gap after slice `below`, at one point of the plane, from the distances there.
+SliceDistance::Bounds SliceDistance::in_gap(std::size_t below, double at_a, double at_b,
+                                            const Stretch& stretch) const {
+  const auto [from_mm, to_mm] = stretch;
   assert(from_mm <= to_mm);
   const SliceMask::Slice& a = mask_->slices[below];
   const SliceMask::Slice& b = mask_->slices[below + 1];
-  const double at_a = distance_mm(below, p_mm);
-  const double at_b = distance_mm(below + 1, p_mm);
   const bool blend =
       mask_->between == SliceMask::Between::ShapeBased && !a.polygons_mm.empty() && !b.polygons_mm.empty();
   if (blend) {
@@ -96,17 +94,22 @@ SliceDistance::Bounds SliceDistance::operator()(const glm::dvec2& p_mm, double p
   const auto take = [&](const Bounds& part) {
     bounds = {std::min(bounds.low, part.low), std::max(bounds.high, part.high)};
   };
-  const auto take_slice = [&](std::size_t slice) {
-    const double distance = distance_mm(slice, p_mm);
-    take({distance, distance});
-  };
-  if (from_mm < first_mm) take_slice(0);
-  for (std::size_t below = 0; below < last; ++below) {
-    const double low_mm = std::max(from_mm, slices[below].position_mm);
-    const double high_mm = std::min(to_mm, slices[below + 1].position_mm);
-    if (low_mm <= high_mm) take(in_gap(below, p_mm, low_mm, high_mm));
+  // The slices from the last before the stretch to the first behind it, or as far as there are any.
+  std::size_t below = static_cast<std::size_t>(
+      std::lower_bound(slices.begin(), slices.end(), from_mm,
+                       [](const SliceMask::Slice& slice, double mm) { return slice.position_mm < mm; }) -
+      slices.begin());
+  if (below > 0) --below;
+  double at_below = distance_mm(below, p_mm);
+  if (from_mm < first_mm) take({at_below, at_below});
+  for (; below < last && slices[below].position_mm <= to_mm; ++below) {
+    const double at_above = distance_mm(below + 1, p_mm);
+    take(in_gap(
+        below, at_below, at_above,
+        {std::max(from_mm, slices[below].position_mm), std::min(to_mm, slices[below + 1].position_mm)}));
+    at_below = at_above;
   }
-  if (to_mm > last_mm) take_slice(last);
+  if (to_mm > last_mm) take({at_below, at_below});
   // A distance changes no faster than the point it is measured from.
   bounds.low -= in_plane_mm;
   bounds.high += in_plane_mm;

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "voxel/solid/edge_tree.h"
 #include "voxel/space/view.h"
 
 namespace octotomy::voxel {
@@ -32,24 +33,28 @@ struct SliceMask {
 void check(const SliceMask& mask);
 
 /// The mask ready to be asked about points: distances to polygons are exact. Precondition: the mask passes
-/// check() and outlives this.
+/// check() and outlives this. Building: n log n in the edges, of which it keeps a copy.
 class SliceDistance {
  public:
-  explicit SliceDistance(const SliceMask& mask) : mask_(&mask) {}
+  explicit SliceDistance(const SliceMask& mask);
 
   struct Bounds {
     double low, high;
   };
   /// Bounds of a function that is at most zero inside the mask and positive outside, over the points whose
   /// distance from (p_mm, position_mm) is at most `in_plane_mm` within the slices' plane and `across_mm`
-  /// across it. Exact, low and high the same, if both are zero.
+  /// across it. Exact, low and high the same, if both are zero. Cost: that of the slices within reach.
   Bounds operator()(const glm::dvec2& p_mm, double position_mm, double in_plane_mm, double across_mm) const;
 
  private:
-  Bounds in_gap(std::size_t below, const glm::dvec2& p_mm, double from_mm, double to_mm) const;
+  struct Stretch {
+    double from_mm, to_mm;
+  };
+  Bounds in_gap(std::size_t below, double at_below, double at_above, const Stretch& stretch) const;
   double distance_mm(std::size_t slice, const glm::dvec2& p_mm) const;
 
   const SliceMask* mask_;
+  std::vector<EdgeTree> edges_;  ///< of each slice
 };
 
 }  // namespace octotomy::voxel

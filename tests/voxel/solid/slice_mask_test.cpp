@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/solid/slice_mask.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numbers>
+#include <random>
 
 #include "voxel/solid/combine.h"
+#include "voxel/solid/polygon.h"
+#include "voxel/solid/region_mask.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -76,6 +81,81 @@ TEST(SliceMask, EndsHalfWayToAnEmptySliceAndKeepsHoles) {
   const double truth = std::numbers::pi * (64 - 9) * 8;
   EXPECT_NEAR(static_cast<double>(octree.voxel_count()) * 0.125 / truth, 1.0, 0.02);
   EXPECT_FALSE(octree.contains(glm::ivec3(glm::round(universe.lattice().voxel({1.25, 0.25, 0.25})))));
+}
+
+/// The bounds as their definition has them: over all edges of all slices and all gaps.
+SliceDistance::Bounds plain_bounds(const SliceMask& mask, const glm::dvec2& p_mm, double position_mm,
+                                   double in_plane_mm, double across_mm) {
+  constexpr double outside = std::numeric_limits<double>::infinity();
+  const auto& slices = mask.slices;
+  const std::size_t last = slices.size() - 1;
+  const auto distance = [&](std::size_t k) {
+    double square = outside;
+    for_each_edge(slices[k].polygons_mm, [&](const glm::dvec2& a, const glm::dvec2& b) {
+      square = std::min(square, square_to_segment(p_mm, a, b));
+    });
+    return contains(slices[k].polygons_mm, p_mm) ? -std::sqrt(square) : std::sqrt(square);
+  };
+  const double lowest = slices[0].position_mm - 0.5 * (slices[1].position_mm - slices[0].position_mm);
+  const double highest =
+      slices[last].position_mm + 0.5 * (slices[last].position_mm - slices[last - 1].position_mm);
+  const double from = position_mm - across_mm, to = position_mm + across_mm;
+  if (to < lowest || from > highest) return {outside, outside};
+  SliceDistance::Bounds bounds{outside, -outside};
+  const auto take = [&](double value) {
+    bounds = {std::min(bounds.low, value), std::max(bounds.high, value)};
+  };
+  if (from < slices[0].position_mm) take(distance(0));
+  if (to > slices[last].position_mm) take(distance(last));
+  for (std::size_t k = 0; k < last; ++k) {
+    const SliceMask::Slice &a = slices[k], &b = slices[k + 1];
+    const double low = std::max(from, a.position_mm), high = std::min(to, b.position_mm);
+    if (low > high) continue;
+    const double middle = 0.5 * (a.position_mm + b.position_mm);
+    if (mask.between == SliceMask::Between::ShapeBased && !a.polygons_mm.empty() && !b.polygons_mm.empty()) {
+      for (const double at : {low, high})
+        take(distance(k) +
+             (at - a.position_mm) / (b.position_mm - a.position_mm) * (distance(k + 1) - distance(k)));
+    } else {
+      if (low <= middle) take(distance(k));
+      if (high > middle) take(distance(k + 1));
+    }
+  }
+  bounds.low -= in_plane_mm;
+  bounds.high += in_plane_mm;
+  if (from < lowest || to > highest) bounds.high = outside;
+  return bounds;
+}
+
+TEST(SliceMask, BoundsAreThoseOverAllEdgesToTheBit) {
+  std::size_t undecided = 0, on_slices = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    const auto any = [&](double most) { return most * static_cast<double>(random()) / 0x1p32; };
+    SliceMask mask = along_z({});
+    double position = -any(10);
+    for (std::size_t k = 0, count = 2 + random() % 8; k < count; ++k, position += 0.25 + any(3)) {
+      mask.slices.push_back({position, {}});
+      for (unsigned drawn = random() % 3; drawn > 0; --drawn)
+        mask.slices.back().polygons_mm.push_back(circle({any(8) - 4, any(8) - 4}, 1 + any(6)));
+    }
+    if (seed % 3 == 0) mask.between = SliceMask::Between::Nearest;
+    const SliceDistance distance(mask);
+    for (int asked = 0; asked < 200; ++asked) {
+      const glm::dvec2 p(any(24) - 12, any(24) - 12);
+      const bool on_slice = random() % 4 == 0;
+      const double at = on_slice ? mask.slices[random() % mask.slices.size()].position_mm : any(30) - 15;
+      const double in_plane = random() % 2 == 0 ? 0.0 : any(3), across = random() % 2 == 0 ? 0.0 : any(6);
+      const SliceDistance::Bounds found = distance(p, at, in_plane, across);
+      const SliceDistance::Bounds truth = plain_bounds(mask, p, at, in_plane, across);
+      ASSERT_EQ(found.low, truth.low) << "seed " << seed << ", question " << asked;
+      ASSERT_EQ(found.high, truth.high) << "seed " << seed << ", question " << asked;
+      undecided += found.low <= 0.0 && found.high > 0.0;
+      on_slices += on_slice;
+    }
+  }
+  EXPECT_GT(undecided, 1000U);
+  EXPECT_GT(on_slices, 1000U);
 }
 
 TEST(SliceMask, CombinesMovesAndIsEditedRegionByRegion) {
