@@ -15,6 +15,9 @@
 #include <string>
 #include <utility>
 
+#include "brep/contour/run_tree.h"
+#include "brep/mesh/morton_tree.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -142,24 +145,43 @@ class Follower {
   std::vector<std::uint8_t> led_to_;
 };
 
-/// Parity of a ray towards +x; a vertex at the ray's height counts as above it.
-bool encloses(const Contour& contour, const glm::dvec2& p) {
-  bool inside = false;
-  const auto& q = contour.points_mm;
-  for (std::size_t a = q.size() - 1, b = 0; b < q.size(); a = b++) {
-    if ((q[a].y > p.y) == (q[b].y > p.y)) continue;
-    const bool rising = q[b].y > q[a].y;
-    if ((cross(q[b] - q[a], p - q[a]) > 0.0) == rising) inside = !inside;
-  }
-  return inside;
-}
+/// Asks whether a contour encloses points, by the parity of a ray towards +x; a vertex at the ray's height
+/// counts as above it. Runs of pieces beyond the point are crossed oddly if their ends are on two sides.
+class Enclosure {
+ public:
+  explicit Enclosure(const Contour& contour) : points_(contour.points_mm), pieces_(contour) {}
 
-double distance_to_piece(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 along = b - a;
-  const double length2 = glm::dot(along, along);
-  const double t = length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
-  return glm::distance(p, a + t * along);
-}
+  bool holds(const glm::dvec2& p) const {
+    const std::size_t count = points_.size();
+    const auto is_above = [&](std::size_t k) { return points_[k % count].y > p.y; };
+    bool inside = false;
+    pieces_.walk([&](const PlaneBox& box, std::size_t begin, std::size_t end) {
+      if (!(box.low.y <= p.y && p.y < box.high.y)) return false;
+      const double clear = rounding_of_sides(box, p);
+      if (p.x > box.high.x + clear) return false;
+      if (p.x < box.low.x - clear) {
+        inside ^= is_above(begin) != is_above(end);
+        return false;
+      }
+      if (end - begin == 1 && is_above(begin) != is_above(end)) {
+        const glm::dvec2 &a = points_[begin], &b = points_[end % count];
+        inside ^= (cross(b - a, p - a) > 0.0) == (b.y > a.y);
+      }
+      return true;
+    });
+    return inside;
+  }
+
+ private:
+  /// How near to a piece's box its sides may be taken for each other: cross() rounds a few times, products of
+  /// the box's sides with those of the way to the point, so 2^-40 of all that is far more.
+  static double rounding_of_sides(const PlaneBox& box, const glm::dvec2& p) {
+    return 0x1p-40 * (std::abs(p.x) + std::abs(box.low.x) + std::abs(box.high.x));
+  }
+
+  const std::vector<glm::dvec2>& points_;
+  RunTree pieces_;
+};
 
 void require_closed(const Contour& contour, const std::string& who) {
   if (!contour.closed)
@@ -208,65 +230,55 @@ double perimeter_mm(const Contour& contour) {
 }
 
 std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contours) {
-  struct Extent {
-    glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-    double area = 0.0;
-  };
-  std::vector<Extent> extents(contours.size());
-  for (std::size_t c = 0; c < contours.size(); ++c) {
-    extents[c].area = std::abs(signed_area_mm2(contours[c]));
-    for (const glm::dvec2& p : contours[c].points_mm) {
-      extents[c].low = glm::min(extents[c].low, p);
-      extents[c].high = glm::max(extents[c].high, p);
-    }
+  std::vector<double> areas;
+  std::vector<PlaneBox> boxes;
+  std::vector<Enclosure> enclosures;
+  std::vector<glm::dvec3> middles;
+  for (const Contour& contour : contours) {
+    areas.push_back(std::abs(signed_area_mm2(contour)));
+    PlaneBox box;
+    for (const glm::dvec2& p : contour.points_mm) box.add(p);
+    boxes.push_back(box);
+    enclosures.emplace_back(contour);
+    middles.emplace_back(contour.points_mm.empty() ? glm::dvec2(0.0) : 0.5 * box.low + 0.5 * box.high, 0.0);
   }
+  // Along a curve that fills the plane, neighbours lie near each other.
+  const std::vector<std::uint32_t> order = morton_order(middles).numbers;
+  std::vector<PlaneBox> ordered;
+  for (const std::uint32_t c : order) ordered.push_back(boxes[c]);
+  const RunTree tree(ordered);
+
   std::vector<std::optional<std::size_t>> around(contours.size());
   for (std::size_t c = 0; c < contours.size(); ++c) {
     if (contours[c].points_mm.empty()) continue;
     const glm::dvec2 p = point_within(contours[c]);
-    for (std::size_t o = 0; o < contours.size(); ++o) {
-      if (o == c || !(extents[o].area > extents[c].area) || glm::any(glm::lessThan(p, extents[o].low)) ||
-          glm::any(glm::greaterThan(p, extents[o].high)))
-        continue;
-      if (around[c] && extents[o].area >= extents[*around[c]].area) continue;
-      if (encloses(contours[o], p)) around[c] = o;
-    }
+    std::optional<std::size_t>& least = around[c];
+    tree.walk([&](const PlaneBox& box, std::size_t begin, std::size_t end) {
+      if (!box.holds(p)) return false;
+      const std::size_t o = order[begin];
+      if (end - begin > 1 || o == c || !(areas[o] > areas[c])) return true;
+      // Of equal ones the first.
+      if (least && (areas[o] > areas[*least] || (areas[o] == areas[*least] && o > *least))) return true;
+      if (enclosures[o].holds(p)) least = o;
+      return true;
+    });
   }
   return around;
 }
 
 std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& around) {
-  std::vector<std::size_t> depths(around.size(), 0);
-  for (std::size_t c = 0; c < around.size(); ++c)
-    for (auto outer = around[c]; outer; outer = around[*outer]) {
-      assert(depths[c] < around.size());
-      ++depths[c];
+  constexpr std::size_t unknown = none;
+  std::vector<std::size_t> depths(around.size(), unknown), way;
+  for (std::size_t c = 0; c < around.size(); ++c) {
+    std::optional<std::size_t> at = c;
+    for (; at && depths[*at] == unknown; at = around[*at]) {
+      assert(way.size() < around.size());
+      way.push_back(*at);
     }
-  return depths;
-}
-
-Contour thin(const Contour& contour, double max_distance_mm) {
-  if (!(max_distance_mm >= 0.0) || !std::isfinite(max_distance_mm))
-    throw std::invalid_argument("thin: the distance must be 0 or more");
-  const auto& p = contour.points_mm;
-  const std::size_t least = contour.closed ? 3 : 2;
-  if (p.size() <= least) return contour;
-  const std::size_t end = contour.closed ? p.size() : p.size() - 1;
-  Contour kept;
-  kept.closed = contour.closed;
-  for (std::size_t anchor = 0; anchor < end;) {
-    kept.points_mm.push_back(p[anchor]);
-    std::size_t reached = anchor + 1;
-    const auto fits = [&](std::size_t candidate) {
-      for (std::size_t k = anchor + 1; k < candidate; ++k)
-        if (distance_to_piece(p[k], p[anchor], p[candidate % p.size()]) > max_distance_mm) return false;
-      return true;
-    };
-    while (reached < end && fits(reached + 1)) ++reached;
-    anchor = reached;
+    std::size_t depth = at ? depths[*at] + 1 : 0;
+    for (; !way.empty(); way.pop_back()) depths[way.back()] = depth++;
   }
-  if (!contour.closed) kept.points_mm.push_back(p.back());
-  return kept.points_mm.size() < least ? contour : kept;
+  return depths;
 }
 
 Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {

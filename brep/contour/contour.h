@@ -50,19 +50,13 @@ double signed_area_mm2(const Contour& contour);
 double perimeter_mm(const Contour& contour);
 
 /// For each contour the smallest one around it, by index, or none. Precondition: closed, simple, and not
-/// crossing each other; they may touch. Throws std::invalid_argument where one is open. Cost: contours
-/// times points in the worst case; bounding boxes spare most.
+/// crossing each other; they may touch. Throws std::invalid_argument where one is open. Cost: n log n in the
+/// points, and for each contour the larger ones whose bounding boxes are about it.
 std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contours);
 
 /// How many contours are around each, from what nest() returned: outer boundaries are at an even depth, holes
-/// at an odd one. Cost: the depths' sum.
+/// at an odd one. Cost: linear.
 std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& around);
-
-/// The contour without points that are collinear within max_distance_mm: every point left out lies no further
-/// than that from the piece that stands for it. The first point stays; at least three points of a closed
-/// contour do, two of an open one. At distances above zero a thinned contour may cross itself or another.
-/// Throws std::invalid_argument where the distance is negative or not finite. Cost: n times the longest run.
-Contour thin(const Contour& contour, double max_distance_mm);
 
 struct FourierOptions {
   std::size_t harmonics = 16;  ///< kept either way round, at least 1: one gives an ellipse

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/contour/run_tree.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -117,18 +119,23 @@ std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour&
     return Kernel::Point_2(p.x, p.y);
   };
   const auto piece = [&](std::size_t i) { return Kernel::Segment_2(point(i), point(i + 1)); };
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = i + 1; j < count; ++j) {
-      const bool follows = j == i + 1, closes = contour.closed && i == 0 && j + 1 == count;
-      if (!follows && !closes) {
-        if (CGAL::do_intersect(piece(i), piece(j))) return std::pair(i, j);
-        continue;
-      }
-      // Neighbours have a corner in common; more only where one runs back over the other.
-      if ((follows && piece(j).has_on(point(i))) || (follows && piece(i).has_on(point(j + 1))) ||
-          (closes && piece(j).has_on(point(1))) || (closes && piece(0).has_on(point(j))))
-        return std::pair(i, j);
-    }
+  const auto meet = [&](std::size_t i, std::size_t j) {
+    const bool follows = j == i + 1, closes = contour.closed && i == 0 && j + 1 == count;
+    if (!follows && !closes) return CGAL::do_intersect(piece(i), piece(j));
+    // Neighbours have a corner in common; more only where one runs back over the other.
+    return (follows && (piece(j).has_on(point(i)) || piece(i).has_on(point(j + 1)))) ||
+           (closes && (piece(j).has_on(point(1)) || piece(0).has_on(point(j))));
+  };
+  const RunTree pieces(contour);
+  for (std::size_t i = 0; i < count; ++i) {
+    PlaneBox own;
+    own.add(contour.points_mm[i]);
+    own.add(contour.points_mm[(i + 1) % points]);
+    const auto j = pieces.first(
+        i + 1, count, [&](const PlaneBox& box) { return box.overlaps(own); },
+        [&](std::size_t other) { return meet(i, other); });
+    if (j) return std::pair(i, *j);
+  }
   return std::nullopt;
 }
 

@@ -35,7 +35,7 @@ Contour joined(const Contour& a, const Contour& b);
 Contour closed(const Contour& contour);
 
 /// Two pieces, by number and ascending, that have a point in common beyond the corner that neighbours share;
-/// of several the first. Exact. Cost: pieces squared.
+/// of several the first. Exact. Cost: n log n, and the pairs of pieces whose boxes overlap.
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour& contour);
 
 }  // namespace octotomy::brep

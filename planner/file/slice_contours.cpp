@@ -9,6 +9,7 @@
 #include "brep/contour/chain_code.h"
 #include "brep/contour/contour_edit.h"
 #include "brep/contour/offset_contours.h"
+#include "brep/contour/thin.h"
 #include "convert/surface/trace_contours.h"
 #include "planner/file/picture_frame.h"
 #include "planner/table/json.h"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/contour/contour_edit.h"
 
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
 
 namespace octotomy::brep {
 namespace {
@@ -59,6 +61,59 @@ TEST(ContourEdit, CrossingsAreFoundExactlyAndCornersAreNone) {
   const Contour touching{{{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}, true};
   EXPECT_TRUE(first_crossing(touching));
   EXPECT_FALSE(first_crossing(point_moved(touching, 3, {2, std::numeric_limits<double>::denorm_min()})));
+}
+
+/// By its definition over all pairs, for points on whole numbers.
+std::optional<std::pair<std::size_t, std::size_t>> plainly_first_crossing(const Contour& contour) {
+  const auto& p = contour.points_mm;
+  const std::size_t count = contour.closed || p.empty() ? p.size() : p.size() - 1;
+  const auto at = [&](std::size_t k) { return glm::i64vec2(p[k % p.size()]); };
+  const auto side = [](const glm::i64vec2& a, const glm::i64vec2& b, const glm::i64vec2& c) {
+    const std::int64_t twice = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    return (twice > 0) - (twice < 0);
+  };
+  const auto is_on = [&](const glm::i64vec2& c, const glm::i64vec2& a, const glm::i64vec2& b) {
+    return side(a, b, c) == 0 && glm::all(glm::lessThanEqual(glm::min(a, b), c)) &&
+           glm::all(glm::lessThanEqual(c, glm::max(a, b)));
+  };
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const auto a = at(i), b = at(i + 1), c = at(j), d = at(j + 1);
+      const bool follows = j == i + 1, closes = contour.closed && i == 0 && j + 1 == count;
+      bool meet = false;
+      if (follows) meet = is_on(a, c, d) || is_on(d, a, b);
+      if (closes) meet = meet || is_on(b, c, d) || is_on(c, a, b);
+      if (!follows && !closes)
+        meet = is_on(a, c, d) || is_on(b, c, d) || is_on(c, a, b) || is_on(d, a, b) ||
+               (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0);
+      if (meet) return std::pair(i, j);
+    }
+  return std::nullopt;
+}
+
+TEST(ContourEdit, TheFirstCrossingIsThatOfALookAtAllPairs) {
+  std::size_t crossed = 0, uncrossed = 0, late = 0;
+  for (unsigned seed = 0; seed < 3000; ++seed) {
+    std::mt19937 random(seed);
+    Contour contour;
+    contour.closed = random() % 2 == 0;
+    // Steps at random, mostly ahead, so that crossings come late or never.
+    glm::dvec2 at(0);
+    const int size = seed % 2 == 0 ? 3 : 40;
+    for (std::size_t k = random() % 40; k > 0; --k) {
+      contour.points_mm.push_back(at);
+      at += glm::dvec2(static_cast<int>(random() % 5) - 1, static_cast<int>(random() % 5) - 2) *
+            static_cast<double>(1 + static_cast<int>(random()) % size);
+    }
+    const auto found = first_crossing(contour), truth = plainly_first_crossing(contour);
+    ASSERT_EQ(found, truth) << "seed " << seed;
+    crossed += found.has_value();
+    uncrossed += !found.has_value();
+    late += found && found->first > 5;
+  }
+  EXPECT_GT(crossed, 1000U);
+  EXPECT_GT(uncrossed, 300U);
+  EXPECT_GT(late, 100U);
 }
 
 TEST(ContourEdit, ALineIsClosedAndWhatWouldBeTooFewPointsIsRefused) {

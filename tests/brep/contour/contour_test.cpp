@@ -159,25 +159,6 @@ TEST(Contour, WhatIsNoSliceIsRefused) {
   EXPECT_THROW(follow(picture.slice, {}), std::invalid_argument);
 }
 
-TEST(Contour, ThinningLeavesNothingFurtherAwayThanItWasAllowed) {
-  const Picture picture(41, 41, {1.0, 1.0}, disc(15.0));
-  const Contour full = follow(picture.slice, {}).at(0);
-  const Contour few = thin(full, 0.2);
-  EXPECT_LT(few.points_mm.size(), full.points_mm.size() / 3);
-  EXPECT_LT(std::abs(signed_area_mm2(few) - signed_area_mm2(full)), 0.2 * perimeter_mm(full));
-  for (const glm::dvec2& p : full.points_mm) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < few.points_mm.size(); ++k) {
-      const glm::dvec2 a = few.points_mm[k], d = few.points_mm[(k + 1) % few.points_mm.size()] - a;
-      const double t = std::clamp(glm::dot(p - a, d) / glm::dot(d, d), 0.0, 1.0);
-      nearest = std::min(nearest, glm::distance(p, a + t * d));
-    }
-    EXPECT_LE(nearest, 0.2 * (1.0 + 1e-12));
-  }
-  const Contour square{{{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}, true};
-  EXPECT_EQ(thin(square, 0.0).points_mm, (std::vector<glm::dvec2>{{0, 0}, {2, 0}, {2, 2}, {0, 2}}));
-}
-
 TEST(Contour, FourierSmoothingTakesARippleOffACircleAndLeavesTheCircle) {
   Contour rippled;
   for (int k = 0; k < 720; ++k) {
@@ -196,6 +177,47 @@ TEST(Contour, FourierSmoothingTakesARippleOffACircleAndLeavesTheCircle) {
   EXPECT_GT(roughness(fourier_smooth(rippled, {60, 720})), 0.04) << "harmonics kept keep the ripple";
   EXPECT_GT(signed_area_mm2(smooth), 0.0) << "direction is kept";
   EXPECT_THROW(fourier_smooth(rippled, {4, 8}), std::invalid_argument);
+}
+
+/// By its definition for contours that do not touch: the smallest larger one that a ray from a point of the
+/// contour leaves, over all pieces of all contours.
+std::vector<std::optional<std::size_t>> plainly_nested(const std::vector<Contour>& contours) {
+  std::vector<std::optional<std::size_t>> around(contours.size());
+  const auto area = [&](std::size_t c) { return std::abs(signed_area_mm2(contours[c])); };
+  for (std::size_t c = 0; c < contours.size(); ++c)
+    for (std::size_t o = 0; o < contours.size(); ++o) {
+      const glm::dvec2 p = contours[c].points_mm[0];
+      const auto& q = contours[o].points_mm;
+      bool inside = false;
+      for (std::size_t a = q.size() - 1, b = 0; b < q.size(); a = b++)
+        if ((q[a].y > p.y) != (q[b].y > p.y))
+          inside ^= p.x < q[a].x + (p.y - q[a].y) / (q[b].y - q[a].y) * (q[b].x - q[a].x);
+      if (o != c && inside && area(o) > area(c) && (!around[c] || area(o) < area(*around[c]))) around[c] = o;
+    }
+  return around;
+}
+
+TEST(Nest, ManyContoursOfNoiseAreNestedAsALookAtAllPiecesNestsThem) {
+  std::size_t nested = 0, deepest = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const Picture noise(60, 50, {1.0, 0.7},
+                        [&](glm::dvec2) { return static_cast<double>(random() % 5) - 2.0; });
+    const auto found = follow(noise.slice, {});
+    const auto around = nest(found);
+    ASSERT_EQ(around, plainly_nested(found)) << "seed " << seed;
+    const std::vector<std::size_t> depth = depths(around);
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      std::size_t count = 0;
+      for (auto outer = around[c]; outer; outer = around[*outer]) ++count;
+      ASSERT_EQ(depth[c], count) << "seed " << seed << ", contour " << c;
+      nested += around[c].has_value();
+      deepest = std::max(deepest, count);
+    }
+  }
+  EXPECT_GT(nested, 1000U);
+  EXPECT_GT(deepest, 2U);
+  EXPECT_TRUE(nest({}).empty());
 }
 
 TEST(Nest, ContoursThatTouchAreNestedByWhatTheyEnclose) {

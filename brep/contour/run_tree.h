@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "brep/contour/contour.h"
+
+namespace octotomy::brep {
+
+/// An axis-aligned box in a plane, empty to begin with.
+struct PlaneBox {
+  glm::dvec2 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void add(const glm::dvec2& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  void add(const PlaneBox& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  bool holds(const glm::dvec2& p) const { return overlaps({p, p}); }
+  /// Or touches.
+  bool overlaps(const PlaneBox& other) const {
+    return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y;
+  }
+  /// Of the box's points the one farthest from p.
+  double farthest(const glm::dvec2& p) const {
+    const glm::dvec2 away = glm::max(high - p, p - low);
+    return glm::length(away);
+  }
+};
+
+/// Boxes over the runs that halving a sequence again and again gives. A question is quick if neighbours in
+/// the sequence lie near each other, as a contour's pieces do. Building: linear, 64 bytes an item.
+class RunTree {
+ public:
+  /// Of items in their order.
+  explicit RunTree(const std::vector<PlaneBox>& items);
+  /// Of a contour's pieces, numbered by their first points.
+  explicit RunTree(const Contour& contour);
+
+  /// Calls enter(box, begin, end) for the run of all items, and for the halves of each run of two and more
+  /// that it returns true for, in order.
+  template <typename Enter>
+  void walk(const Enter& enter) const {
+    if (count_ > 0) walk_run(0, 0, count_, enter);
+  }
+  /// The first item in from..until - 1 whose box and whose runs' boxes pass `reaches` and that is `hit`.
+  template <typename Reaches, typename Hit>
+  std::optional<std::size_t> first(std::size_t from, std::size_t until, const Reaches& reaches,
+                                   const Hit& hit) const {
+    std::optional<std::size_t> found;
+    walk([&](const PlaneBox& box, std::size_t begin, std::size_t end) {
+      if (found || end <= from || begin >= until || !reaches(box)) return false;
+      if (end - begin == 1 && hit(begin)) found = begin;
+      return true;
+    });
+    return found;
+  }
+
+ private:
+  void append(const std::vector<PlaneBox>& items, std::size_t begin, std::size_t end);
+
+  // A run of n items has 2 n - 1 nodes: its own, those of its first half, those of its second.
+  template <typename Enter>
+  void walk_run(std::size_t node, std::size_t begin, std::size_t end, const Enter& enter) const {
+    assert(begin < end && node < boxes_.size());
+    if (!enter(boxes_[node], begin, end) || end - begin == 1) return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    walk_run(node + 1, begin, middle, enter);
+    walk_run(node + 2 * (middle - begin), middle, end, enter);
+  }
+
+  std::size_t count_ = 0;
+  std::vector<PlaneBox> boxes_;  ///< of runs
+};
+
+}  // namespace octotomy::brep
