@@ -8,9 +8,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -279,48 +277,6 @@ std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& a
     for (; !way.empty(); way.pop_back()) depths[way.back()] = depth++;
   }
   return depths;
-}
-
-Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
-  using Complex = std::complex<double>;
-  require_closed(contour, "fourier_smooth");
-  if (options.harmonics < 1) throw std::invalid_argument("fourier_smooth: keep at least one harmonic");
-  if (options.points <= 2 * options.harmonics)
-    throw std::invalid_argument("fourier_smooth: " + std::to_string(options.points) +
-                                " points cannot carry " + std::to_string(options.harmonics) + " harmonics");
-  const double length = perimeter_mm(contour);
-  if (!(length > 0.0)) throw std::invalid_argument("fourier_smooth: the contour has no length");
-  const auto& p = contour.points_mm;
-
-  const auto wave = [&](double turns) { return std::polar(1.0, 2.0 * std::numbers::pi * turns); };
-  const auto kept = static_cast<std::ptrdiff_t>(options.harmonics);
-  std::vector<Complex> coefficients(2 * options.harmonics + 1);
-  for (std::ptrdiff_t k = -kept; k <= kept; ++k) {
-    Complex sum = 0.0;
-    double along = 0.0;
-    const auto turns = static_cast<double>(k) / length;
-    for (std::size_t a = 0; a < p.size(); ++a) {
-      const glm::dvec2 from = p[a], to = p[(a + 1) % p.size()];
-      const double step = glm::distance(from, to);
-      if (step == 0.0) continue;
-      const Complex middle(0.5 * (from.x + to.x), 0.5 * (from.y + to.y));
-      const Complex slope = Complex(to.x - from.x, to.y - from.y) / step;
-      sum += k == 0 ? middle * step : slope * (wave(-turns * (along + step)) - wave(-turns * along));
-      along += step;
-    }
-    const double angular = 2.0 * std::numbers::pi * static_cast<double>(k);
-    coefficients[static_cast<std::size_t>(k + kept)] =
-        k == 0 ? sum / length : sum * (length / (angular * angular));
-  }
-  Contour smooth;
-  for (std::size_t n = 0; n < options.points; ++n) {
-    Complex z = 0.0;
-    for (std::ptrdiff_t k = -kept; k <= kept; ++k)
-      z += coefficients[static_cast<std::size_t>(k + kept)] *
-           wave(static_cast<double>(k) * static_cast<double>(n) / static_cast<double>(options.points));
-    smooth.points_mm.emplace_back(z.real(), z.imag());
-  }
-  return smooth;
 }
 
 }  // namespace octotomy::brep

@@ -58,15 +58,4 @@ std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contour
 /// at an odd one. Cost: linear.
 std::vector<std::size_t> depths(const std::vector<std::optional<std::size_t>>& around);
 
-struct FourierOptions {
-  std::size_t harmonics = 16;  ///< kept either way round, at least 1: one gives an ellipse
-  std::size_t points = 128;    ///< of the result, evenly in arc length of the original; above 2 * harmonics
-};
-
-/// A closed contour from its lowest Fourier harmonics in arc length, their coefficients integrated exactly
-/// over the polygon. Throws std::invalid_argument where open, of no length, or an option is out of its range.
-/// Cost: harmonics times points. Source: Kuhl and Giardina, "Elliptic Fourier features of a closed contour",
-/// CGIP 18, 1982, in complex numbers.
-Contour fourier_smooth(const Contour& contour, const FourierOptions& options = {});
-
 }  // namespace octotomy::brep

@@ -8,6 +8,7 @@
 
 #include "brep/contour/chain_code.h"
 #include "brep/contour/contour_edit.h"
+#include "brep/contour/fourier_smooth.h"
 #include "brep/contour/offset_contours.h"
 #include "brep/contour/thin.h"
 #include "convert/surface/trace_contours.h"

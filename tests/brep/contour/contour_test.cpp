@@ -159,26 +159,6 @@ TEST(Contour, WhatIsNoSliceIsRefused) {
   EXPECT_THROW(follow(picture.slice, {}), std::invalid_argument);
 }
 
-TEST(Contour, FourierSmoothingTakesARippleOffACircleAndLeavesTheCircle) {
-  Contour rippled;
-  for (int k = 0; k < 720; ++k) {
-    const double a = 2.0 * pi * k / 720.0, r = 10.0 + 0.05 * std::cos(40.0 * a);
-    rippled.points_mm.emplace_back(5.0 + r * std::cos(a), -3.0 + r * std::sin(a));
-  }
-  const auto roughness = [](const Contour& c) {
-    double worst = 0.0;
-    for (const glm::dvec2& p : c.points_mm)
-      worst = std::max(worst, std::abs(glm::distance(p, glm::dvec2(5.0, -3.0)) - 10.0));
-    return worst;
-  };
-  EXPECT_GT(roughness(rippled), 0.049);
-  const Contour smooth = fourier_smooth(rippled, {4, 200});
-  EXPECT_LT(roughness(smooth), 0.03) << "arc length follows the ripple, and shrinks the circle by its share";
-  EXPECT_GT(roughness(fourier_smooth(rippled, {60, 720})), 0.04) << "harmonics kept keep the ripple";
-  EXPECT_GT(signed_area_mm2(smooth), 0.0) << "direction is kept";
-  EXPECT_THROW(fourier_smooth(rippled, {4, 8}), std::invalid_argument);
-}
-
 /// By its definition for contours that do not touch: the smallest larger one that a ray from a point of the
 /// contour leaves, over all pieces of all contours.
 std::vector<std::optional<std::size_t>> plainly_nested(const std::vector<Contour>& contours) {

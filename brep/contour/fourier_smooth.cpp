@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The k-th coefficient of a polygon of length L is the sum over its corners of the change of direction there
+// times e^(-2 pi i k s), s the corner's place along the contour in turns, times L / (2 pi k)^2. 1 Spread the
+// changes of direction over an even grid by a Gaussian; 2 transform; 3 divide by the Gaussian's transform:
+// the sums for all k at once; 4 the same the other way gives the smooth contour's points. Source of 1-4:
+// Greengard and Lee, "Accelerating the nonuniform fast Fourier transform", SIAM Review 46, 2004.
+#include "brep/contour/fourier_smooth.h"
+
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace octotomy::brep {
+namespace {
+
+using Complex = std::complex<double>;
+using std::numbers::pi;
+
+/// Sums of z_m e^(sign 2 pi i k m / n) over m, for all k, in place. Precondition: n is a power of two.
+/// Source: Cooley and Tukey, Math. of Computation 19, 1965.
+void transform(std::vector<Complex>& z, double sign) {
+  const std::size_t n = z.size();
+  assert(std::has_single_bit(n));
+  std::vector<Complex> roots(n / 2);
+  for (std::size_t k = 0; k < roots.size(); ++k)
+    roots[k] = std::polar(1.0, sign * 2.0 * pi * static_cast<double>(k) / static_cast<double>(n));
+  for (std::size_t i = 1, reversed = 0; i < n; ++i) {
+    std::size_t bit = n / 2;
+    for (; reversed & bit; bit /= 2) reversed ^= bit;
+    reversed ^= bit;
+    if (i < reversed) std::swap(z[i], z[reversed]);
+  }
+  for (std::size_t half = 1; half < n; half *= 2)
+    for (std::size_t start = 0; start < n; start += 2 * half)
+      for (std::size_t k = 0; k < half; ++k) {
+        const Complex &root = roots[k * (n / (2 * half))], odd = z[start + k + half];
+        const Complex turned(odd.real() * root.real() - odd.imag() * root.imag(),
+                             odd.real() * root.imag() + odd.imag() * root.real());
+        z[start + k + half] = z[start + k] - turned;
+        z[start + k] += turned;
+      }
+}
+
+/// An even grid round a circle, on which sums of waves up to a number of harmonics are taken at places that
+/// are not on it. With four grid points a wave or more and a Gaussian cut off 14 of them away, what the cut
+/// and the waves beyond leave is e^-37 of the largest, below rounding.
+class Circle {
+ public:
+  explicit Circle(std::size_t harmonics) : count_(std::bit_ceil(8 * harmonics)), grid_(count_) {
+    const double grids_per_wave = static_cast<double>(count_) / (2.0 * static_cast<double>(harmonics));
+    assert(grids_per_wave >= 4.0);
+    sharpness_ = pi * (1.0 - 0.5 / grids_per_wave) / reach;
+  }
+
+  /// Sums of value e^(-2 pi i k turn): spread all, to_waves(), then wave(k) undone().
+  void spread(double turn, const Complex& value) {
+    near(turn, [&](Complex& at, double weight) { at += weight * value; });
+  }
+  void to_waves() { transform(grid_, -1.0); }
+
+  /// Sums of wave(k) e^(2 pi i k turn): set all waves, undone(), then from_waves(), then gather.
+  void from_waves() { transform(grid_, 1.0); }
+  Complex gather(double turn) {
+    Complex sum = 0.0;
+    near(turn, [&](const Complex& at, double weight) { sum += weight * at; });
+    return sum;
+  }
+
+  Complex& wave(std::ptrdiff_t k) { return grid_[static_cast<std::size_t>(k) & (count_ - 1)]; }
+  /// By what the Gaussian's transform at k must be undone.
+  double undone(std::ptrdiff_t k) const {
+    const double angle = 2.0 * pi * static_cast<double>(k) / static_cast<double>(count_);
+    return std::sqrt(sharpness_ / pi) * std::exp(angle * angle / (4.0 * sharpness_));
+  }
+
+ private:
+  static constexpr int reach = 14;
+
+  /// Calls use(grid point, weight) for the grid points near a place.
+  template <typename Use>
+  void near(double turn, const Use& use) {
+    const double place = turn * static_cast<double>(count_), middle = std::round(place);
+    for (int k = -reach; k <= reach; ++k) {
+      const double away = middle + k - place;
+      use(wave(static_cast<std::ptrdiff_t>(middle) + k), std::exp(-sharpness_ * away * away));
+    }
+  }
+
+  std::size_t count_;
+  double sharpness_;
+  std::vector<Complex> grid_;
+};
+
+}  // namespace
+
+Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
+  if (!contour.closed)
+    throw std::invalid_argument("fourier_smooth: the contour is open: follow it with its border closed");
+  if (options.harmonics < 1) throw std::invalid_argument("fourier_smooth: keep at least one harmonic");
+  if (options.points <= 2 * options.harmonics)
+    throw std::invalid_argument("fourier_smooth: " + std::to_string(options.points) +
+                                " points cannot carry " + std::to_string(options.harmonics) + " harmonics");
+  const double length = perimeter_mm(contour);
+  if (!(length > 0.0)) throw std::invalid_argument("fourier_smooth: the contour has no length");
+  const auto& p = contour.points_mm;
+
+  struct Piece {
+    double turn;  ///< where it begins
+    Complex direction;
+  };
+  std::vector<Piece> pieces;
+  Complex mean = 0.0;
+  double along = 0.0;
+  for (std::size_t a = 0; a < p.size(); ++a) {
+    const glm::dvec2 from = p[a], to = p[(a + 1) % p.size()];
+    const double step = glm::distance(from, to);
+    if (step == 0.0) continue;
+    pieces.push_back({along / length, Complex(to.x - from.x, to.y - from.y) / step});
+    mean += Complex(0.5 * (from.x + to.x), 0.5 * (from.y + to.y)) * step;
+    along += step;
+  }
+  Circle corners(options.harmonics);
+  for (std::size_t a = pieces.size() - 1, b = 0; b < pieces.size(); a = b++)
+    corners.spread(pieces[b].turn, pieces[a].direction - pieces[b].direction);
+  corners.to_waves();
+  mean /= length;
+
+  Circle smoothed(options.harmonics);
+  const auto kept = static_cast<std::ptrdiff_t>(options.harmonics);
+  for (std::ptrdiff_t k = -kept; k <= kept; ++k) {
+    if (k == 0) continue;
+    const double angular = 2.0 * pi * static_cast<double>(k), undone = corners.undone(k);
+    smoothed.wave(k) = corners.wave(k) * undone * undone * (length / (angular * angular));
+  }
+  smoothed.from_waves();
+  Contour smooth;
+  for (std::size_t n = 0; n < options.points; ++n) {
+    const Complex z = mean + smoothed.gather(static_cast<double>(n) / static_cast<double>(options.points));
+    smooth.points_mm.emplace_back(z.real(), z.imag());
+  }
+  return smooth;
+}
+
+}  // namespace octotomy::brep
