@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <tbb/global_control.h>
 
 #include "tests/unit_universe.h"
@@ -110,6 +111,25 @@ TEST(Combine, AMaskIsTheIntersectionOfItsRegionsBackProjectionsHolesIncluded) {
   // Drawn in the anterior view, u is the patient's left: mirrored, the mask is another one.
   for (glm::dvec2& point : mask.regions.front().polygons_mm.front()) point.x = -point.x;
   EXPECT_FALSE(combine(universe, mask) == octree);
+}
+
+TEST(Combine, ADrawingOfManyPointsHoldsTheVoxelsThatAllItsEdgesEnclose) {
+  const Universe universe = universe_around({{-32, -32, -32}, {32, 32, 32}}, 1.0);
+  const Lattice lattice = universe.lattice();
+  Region ragged{parse_view("20,-10"), {{}}};
+  for (int k = 0; k < 1500; ++k) {
+    const double turn = 2.0 * std::numbers::pi * k / 1500, radius = 20 + 6 * std::cos(9 * turn) + k % 7;
+    ragged.polygons_mm[0].push_back(radius * glm::dvec2(std::cos(turn), std::sin(turn)));
+  }
+  // On whole millimetres, so that edges run along rows of voxels; a hole and many islands.
+  Region square{parse_view("anterior"),
+                {{{-20, -20}, {20, -20}, {20, 20}, {-20, 20}}, {{-8, -8}, {8, -8}, {8, 8}}}};
+  for (double x = -31; x < 31; x += 2) square.polygons_mm.push_back({{x, 22}, {x + 1, 22}, {x + 1, 30}});
+  for (const RegionMask& mask : {RegionMask{{ragged}}, RegionMask{{square}}, RegionMask{{ragged, square}}}) {
+    const Octree octree = combine(universe, mask);
+    expect_voxels(octree, [&](const glm::ivec3& v) { return contains(mask, lattice.lps_mm(glm::dvec3(v))); });
+    EXPECT_GT(octree.voxel_count(), 1000U);
+  }
 }
 
 TEST(Combine, AMovedObjectIsTheStillOneSampledAtTheCentreMovedBack) {
