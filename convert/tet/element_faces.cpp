@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -16,20 +17,56 @@ struct Sided {
   ElementFace face;
 };
 
-/// All elements' faces; those of the same corners stand together, in the elements' order.
-std::vector<Sided> sided_faces(const Tetrahedra& tetrahedra) {
-  std::vector<Sided> all;
-  all.reserve(4 * tetrahedra.tets.size());
-  for (std::uint32_t t = 0; t < tetrahedra.tets.size(); ++t)
-    for (std::uint8_t i = 0; i < 4; ++i) {
-      std::array<std::uint32_t, 3> corners = corners_of(tetrahedra, {t, i});
-      std::sort(corners.begin(), corners.end());
-      all.push_back({corners, {t, i}});
+/// Calls `visit(begin, end)` for the faces of each three corners, in the elements' order; corners ascend from
+/// call to call. Faces are gathered by their smallest corner, and of a range of those at once: all together
+/// take five times what the elements do.
+template <typename Visit>
+void for_each_corners(const Tetrahedra& tetrahedra, const Visit& visit) {
+  constexpr std::size_t faces_at_once = std::size_t{1} << 22;
+  // Three faces of an element have its smallest corner, and one the next.
+  const auto two_smallest = [](std::array<std::uint32_t, 4> tet) {
+    std::partial_sort(tet.begin(), tet.begin() + 2, tet.end());
+    return std::pair(tet[0], tet[1]);
+  };
+  std::vector<std::uint32_t> face_count;
+  for (const auto& tet : tetrahedra.tets) {
+    const auto [smallest, next] = two_smallest(tet);
+    if (next >= face_count.size()) face_count.resize(std::size_t{next} + 1, 0);
+    face_count[smallest] += 3;
+    ++face_count[next];
+  }
+  std::vector<Sided> faces;
+  std::vector<std::size_t> ends;  // of the faces of each smallest corner of the range
+  for (std::size_t first = 0, last = 0; first < face_count.size(); first = last) {
+    ends.clear();
+    std::size_t count = 0;
+    for (; last < face_count.size() && (last == first || count + face_count[last] <= faces_at_once); ++last) {
+      ends.push_back(count);
+      count += face_count[last];
     }
-  std::sort(all.begin(), all.end(), [](const Sided& a, const Sided& b) {
-    return std::tie(a.corners, a.face.tet) < std::tie(b.corners, b.face.tet);
-  });
-  return all;
+    faces.resize(count);
+    const auto in_range = [&](std::uint32_t corner) { return corner >= first && corner < last; };
+    for (std::uint32_t t = 0; t < tetrahedra.tets.size(); ++t) {
+      const auto [smallest, next] = two_smallest(tetrahedra.tets[t]);
+      if (!in_range(smallest) && !in_range(next)) continue;
+      for (std::uint8_t i = 0; i < 4; ++i) {
+        std::array<std::uint32_t, 3> corners = corners_of(tetrahedra, {t, i});
+        std::sort(corners.begin(), corners.end());
+        if (in_range(corners[0])) faces[ends[corners[0] - first]++] = {corners, {t, i}};
+      }
+    }
+    for (std::size_t n = 0, begin = 0; n < ends.size(); begin = ends[n++]) {
+      const auto from = faces.begin() + static_cast<std::ptrdiff_t>(begin);
+      const auto to = faces.begin() + static_cast<std::ptrdiff_t>(ends[n]);
+      std::sort(from, to, [](const Sided& a, const Sided& b) {
+        return std::tie(a.corners, a.face.tet) < std::tie(b.corners, b.face.tet);
+      });
+      for (auto same = from, end = from; same != to; same = end) {
+        end = std::find_if(same, to, [same](const Sided& f) { return f.corners != same->corners; });
+        visit(same, end);
+      }
+    }
+  }
 }
 
 bool in_order(const ElementFace& a, const ElementFace& b) {
@@ -69,14 +106,10 @@ std::array<std::uint32_t, 3> middles_of(const Tetrahedra& tetrahedra, const Elem
 }
 
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra) {
-  const std::vector<Sided> all = sided_faces(tetrahedra);
   std::vector<ElementFace> faces;
-  for (std::size_t i = 0; i < all.size();) {
-    std::size_t end = i + 1;
-    while (end < all.size() && all[end].corners == all[i].corners) ++end;
-    if (end == i + 1) faces.push_back(all[i].face);
-    i = end;
-  }
+  for_each_corners(tetrahedra, [&](auto begin, auto end) {
+    if (end - begin == 1) faces.push_back(begin->face);
+  });
   std::sort(faces.begin(), faces.end(), in_order);
   return faces;
 }
@@ -89,16 +122,19 @@ brep::Triangles surface_of(const Tetrahedra& tetrahedra) {
 }
 
 std::vector<Interface> interfaces(const Tetrahedra& tetrahedra) {
-  const std::vector<Sided> all = sided_faces(tetrahedra);
+  const auto& regions_of = tetrahedra.region_of_tet;
+  if (std::adjacent_find(regions_of.begin(), regions_of.end(), std::not_equal_to<>()) == regions_of.end())
+    return {};
   using Sides = std::pair<ElementFace, ElementFace>;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Sides>> found;
-  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-    if (all[i].corners != all[i + 1].corners) continue;
-    const std::uint32_t one = region_of(tetrahedra, all[i].face.tet);
-    const std::uint32_t other = region_of(tetrahedra, all[i + 1].face.tet);
-    if (one < other) found[{one, other}].emplace_back(all[i].face, all[i + 1].face);
-    if (other < one) found[{other, one}].emplace_back(all[i + 1].face, all[i].face);
-  }
+  for_each_corners(tetrahedra, [&](auto begin, auto end) {
+    for (auto face = begin; face + 1 != end; ++face) {
+      const std::uint32_t one = region_of(tetrahedra, face->face.tet);
+      const std::uint32_t other = region_of(tetrahedra, (face + 1)->face.tet);
+      if (one < other) found[{one, other}].emplace_back(face->face, (face + 1)->face);
+      if (other < one) found[{other, one}].emplace_back((face + 1)->face, face->face);
+    }
+  });
   std::vector<Interface> result;
   for (auto& [regions, sides] : found) {
     std::sort(sides.begin(), sides.end(),

@@ -16,7 +16,8 @@ struct ElementFace {
   std::uint8_t opposite = 0;  ///< 0..3
 };
 
-/// The faces of one element only, in the elements' order.
+/// The faces of one element only, in the elements' order. Cost: linear; memory 80 MB beside the result and 4
+/// bytes a node.
 std::vector<ElementFace> surface_faces(const Tetrahedra& tetrahedra);
 /// The surface faces as triangles, outward. Points are all nodes, inner ones included.
 brep::Triangles surface_of(const Tetrahedra& tetrahedra);
@@ -27,7 +28,8 @@ struct Interface {
   std::vector<ElementFace> faces;
   std::vector<ElementFace> opposite;  ///< the same as faces of the second's elements, in the same order
 };
-/// All interfaces, in the order of their regions; faces in the elements' order. Cost: n log n.
+/// All interfaces, in the order of their regions; faces in the elements' order. Cost: that of
+/// surface_faces(); none if there is one region.
 std::vector<Interface> interfaces(const Tetrahedra& tetrahedra);
 /// Corners of a face, counter-clockwise seen from outside its element.
 std::array<std::uint32_t, 3> corners_of(const Tetrahedra& tetrahedra, const ElementFace& face);
