@@ -3,264 +3,248 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
-#include <optional>
 #include <stdexcept>
-#include <unordered_map>
-#include <unordered_set>
+#include <string>
 
+#include "convert/tet/octree_cells.h"
+#include "voxel/solid/combine.h"
 #include "voxel/space/error.h"
-#include "voxel/tree/slice_bits.h"
-#include "voxel/tree/slice_build.h"
+#include "voxel/space/memory_need.h"
+#include "voxel/space/rounded.h"
 
-// 1 Voxels become cells. Eight cells of one parent and one region merge into one, level by level.
-// 2 A cell is divided if a neighbour across a face, edge or corner has less than half its side, from the
-//   smallest cells upward.
+// 1 A region's Full nodes become cells; where cells at the boundary are voxels, its inner voxels' nodes do,
+//   and each other voxel.
+// 2 A cell is divided if a neighbour across a face, edge or corner has less than half its side.
 // 3 A cell's faces become triangles. If smaller cells lie on a face or touch its edges, a fan about its
-// middle
-//   with their corners on the edges; else two, along the diagonal that ends in the middle of the face of
-//   twice the side. So both sides of a face see the same triangles: two of the fan's are those of a smaller
-//   cell's face. Each triangle and the cell's middle form an element.
+//   middle with their corners on the edges; else two, along the diagonal that ends in the middle of the face
+//   of twice the side. So both sides of a face see the same triangles: two of the fan's are those of a
+//   smaller cell's face. Each triangle and the cell's middle form an element.
+// 4 All cells are cut twice: to mark the lattice's corners that are nodes and to count elements; then, as the
+//   memory is known and there, to number nodes in the order of their first mention.
 //
-// Places are integers in half voxel edges: corners of voxels are even.
+// A cell's nodes are named by their places in it: 0, 1 or 2 along each axis, in half sides, x + 3y + 9z.
 
 namespace octotomy::convert {
 namespace {
 
-using Place = glm::ivec3;
+constexpr int place_count = 27;
+constexpr int middle_place = 13;
 
-std::uint64_t key_of(const Place& p) {
-  return (static_cast<std::uint64_t>(p.z) << 42) | (static_cast<std::uint64_t>(p.y) << 21) |
-         static_cast<std::uint64_t>(p.x);
+constexpr int step_of(int axis) {
+  return axis == 0 ? 1 : axis == 1 ? 3 : 9;
+}
+constexpr int along(int place, int axis) {
+  return place / step_of(axis) % 3;
 }
 
-/// A cube of voxels of one region, by its first voxel.
-struct Cell {
-  Place first{0};
-  std::uint32_t region = 0;
-};
+/// The bits of OctreeCells::halves_about() of the eight cubes that meet at a place of the cell.
+constexpr std::array<std::uint64_t, place_count> halves_at = [] {
+  std::array<std::uint64_t, place_count> at{};
+  for (int place = 0; place < place_count; ++place)
+    for (int k = 0; k < 8; ++k)
+      at[static_cast<std::size_t>(place)] |=
+          std::uint64_t{1} << voxel::child_index(along(place, 0) + (k & 1), along(place, 1) + ((k >> 1) & 1),
+                                                 along(place, 2) + (k >> 2));
+  return at;
+}();
 
-/// Cells by side and first voxel.
-class Cells {
- public:
-  Cells(const std::vector<voxel::Octree>& regions, BoundaryCells boundary)
-      : of_side_log2_(static_cast<std::size_t>(regions.front().universe().depth) + 1) {
-    for (std::uint32_t region = 0; region < regions.size(); ++region)
-      voxel::for_each_slice(regions[region], [&](int z, const voxel::SliceBits& slice) {
-        for (int y = 0; y < slice.side; ++y)
-          for (int x = 0, last = -1; voxel::next_run(slice, y, last + 1, x, last);)
-            for (int v = x; v <= last; ++v)
-              of_side_log2_[0].try_emplace(key_of({v, y, z}), Cell{{v, y, z}, region});
-      });
-    if (boundary == BoundaryCells::Voxels) find_boundary();
-    for (std::size_t level = 0; level + 1 < of_side_log2_.size() && !of_side_log2_[level].empty(); ++level)
-      merge(level);
-    at_boundary_.clear();
-  }
-
-  /// The side of the cell that holds a voxel, as a power of two; none if there is no cell.
-  std::optional<int> side_log2_at(const Place& voxel) const {
-    if (voxel.x < 0 || voxel.y < 0 || voxel.z < 0) return std::nullopt;
-    for (std::size_t level = 0; level < of_side_log2_.size(); ++level)
-      if (of_side_log2_[level].contains(key_of(first_of(voxel, static_cast<int>(level)))))
-        return static_cast<int>(level);
-    return std::nullopt;
-  }
-
-  /// Pass 2.
-  void balance() {
-    for (std::size_t level = 0; level + 2 < of_side_log2_.size(); ++level) {
-      std::vector<Cell> open = sorted(level);
-      while (!open.empty()) {
-        const Place cell = open.back().first;
-        open.pop_back();
-        const int side = 1 << level;
-        for (int n = 0; n < 27; ++n) {
-          const Place beside = cell + side * (Place(n % 3, (n / 3) % 3, n / 9) - 1);
-          for (std::optional<int> found = side_log2_at(beside); found && *found > static_cast<int>(level) + 1;
-               found = side_log2_at(beside))
-            divide(first_of(beside, *found), static_cast<std::size_t>(*found));
-        }
-      }
+/// Pass 3. Calls node(place) for every mention of a node, and triangle(face, a, b, c) with places; faces are
+/// numbered 2 axis + upper.
+template <typename Node, typename Triangle>
+void cut(const OctreeCell& cell, std::uint64_t halves, const Node& node, const Triangle& triangle) {
+  const auto is_divided_at = [&](int place) {
+    return (halves & halves_at[static_cast<std::size_t>(place)]) != 0;
+  };
+  node(middle_place);
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const int first = face % 2 * 2 * step_of(axis);
+    const std::array<int, 5> corners{first, first + 2 * step_of(u), first + 2 * step_of(u) + 2 * step_of(v),
+                                     first + 2 * step_of(v), first};
+    std::array<int, 8> round{};
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      node(round[count++] = corners[i]);
+      const int edge_middle = (corners[i] + corners[i + 1]) / 2;
+      if (is_divided_at(edge_middle)) node(round[count++] = edge_middle);
     }
+    const int centre = (corners[0] + corners[2]) / 2;
+    if (count == 4 && !is_divided_at(centre)) {
+      const glm::ivec3 of_side = cell.first >> cell.side_log2;
+      const auto turn = static_cast<std::size_t>(of_side[u] + of_side[v]) & 1;
+      triangle(face, round[turn], round[turn + 1], round[turn + 2]);
+      triangle(face, round[turn], round[turn + 2], round[(turn + 3) % 4]);
+      continue;
+    }
+    node(centre);
+    for (std::size_t i = 0; i < count; ++i) triangle(face, centre, round[i], round[(i + 1) % count]);
   }
+}
 
-  std::vector<Cell> sorted(std::size_t level) const {
-    std::vector<Cell> cells;
-    for (const auto& [key, cell] : of_side_log2_[level]) cells.push_back(cell);
-    std::sort(cells.begin(), cells.end(),
-              [](const Cell& a, const Cell& b) { return key_of(a.first) < key_of(b.first); });
-    return cells;
+/// Numbers of those corners of the lattice that are nodes: 5 bytes or so each, by the rank of their bits.
+class CornerNumbers {
+ public:
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  explicit CornerNumbers(int side) : corners_(side / 4 + 1) {}
+
+  void mark(const glm::ivec3& corner) {
+    corners_.at(corner >> 2).marked |= std::uint64_t{1} << bit_of(corner);
   }
-  std::size_t levels() const { return of_side_log2_.size(); }
-  std::size_t count() const {
-    std::size_t cells = 0;
-    for (const auto& of_side : of_side_log2_) cells += of_side.size();
-    return cells;
+  std::uint64_t count_marked() const {
+    std::uint64_t count = 0;
+    for (const auto& page : corners_.pages())
+      for (const Word& word : page) count += static_cast<std::uint64_t>(std::popcount(word.marked));
+    return count;
+  }
+  /// Gives every corner marked the number `none`. Precondition: 32 bits hold their count.
+  void start_numbering() {
+    std::uint32_t before = 0;
+    for (auto& page : corners_.pages())
+      for (Word& word : page) {
+        word.before = before;
+        before += static_cast<std::uint32_t>(std::popcount(word.marked));
+      }
+    numbers_.assign(before, none);
+  }
+  std::uint32_t& of(const glm::ivec3& corner) {
+    const Word word = corners_.get(corner >> 2);
+    const std::uint64_t below = (std::uint64_t{1} << bit_of(corner)) - 1;
+    return numbers_[word.before + static_cast<std::size_t>(std::popcount(word.marked & below))];
   }
 
  private:
-  static Place first_of(const Place& voxel, int level) { return (voxel >> level) << level; }
-  static Place child(const Place& first, int number, int side) {
-    return first + side * Place(number & 1, (number >> 1) & 1, number >> 2);
+  struct Word {
+    std::uint64_t marked = 0;  ///< of 4 x 4 x 4 corners
+    std::uint32_t before = 0;  ///< marked in the words before
+  };
+  static int bit_of(const glm::ivec3& corner) {
+    return voxel::child_index(corner.x & 3, corner.y & 3, corner.z & 3);
   }
 
-  /// Finds voxels with a neighbour across a face, edge or corner that is not in their region.
-  void find_boundary() {
-    const auto& voxels = of_side_log2_[0];
-    for (const auto& [key, voxel] : voxels)
-      for (int n = 0; n < 27; ++n) {
-        const Place beside = voxel.first + Place(n % 3, (n / 3) % 3, n / 9) - 1;
-        if (glm::all(glm::greaterThanEqual(beside, Place(0))))
-          if (const auto found = voxels.find(key_of(beside));
-              found != voxels.end() && found->second.region == voxel.region)
-            continue;
-        at_boundary_.insert(key);
-        break;
-      }
-  }
-
-  void merge(std::size_t level) {
-    auto& cells = of_side_log2_[level];
-    const int side = 1 << level;
-    for (const Cell& cell : sorted(level)) {
-      const Place parent = first_of(cell.first, static_cast<int>(level) + 1);
-      if (parent != cell.first) continue;
-      bool all = true;
-      for (int k = 0; k < 8 && all; ++k) {
-        const std::uint64_t key = key_of(child(parent, k, side));
-        const auto found = cells.find(key);
-        all = found != cells.end() && found->second.region == cell.region &&
-              (level > 0 || !at_boundary_.contains(key));
-      }
-      if (!all) continue;
-      for (int k = 0; k < 8; ++k) cells.erase(key_of(child(parent, k, side)));
-      of_side_log2_[level + 1].emplace(key_of(parent), Cell{parent, cell.region});
-    }
-  }
-
-  void divide(const Place& first, std::size_t level) {
-    const auto whole = of_side_log2_[level].find(key_of(first));
-    const std::uint32_t region = whole->second.region;
-    of_side_log2_[level].erase(whole);
-    for (int k = 0; k < 8; ++k) {
-      const Place cell = child(first, k, 1 << (level - 1));
-      of_side_log2_[level - 1].emplace(key_of(cell), Cell{cell, region});
-    }
-  }
-
-  std::vector<std::unordered_map<std::uint64_t, Cell>> of_side_log2_;
-  std::unordered_set<std::uint64_t> at_boundary_;  ///< voxels that are not merged
+  SparseGrid<Word> corners_;
+  std::vector<std::uint32_t> numbers_;
 };
 
-/// A square of the lattice: its first voxel corner, normal axis, and side as a power of two.
-struct Square {
-  Place first{0};
-  int axis = 0;
-  int side_log2 = 0;
-};
+constexpr std::size_t cells_between_looks = 4096;  // some milliseconds
 
+/// Throws if so many elements and nodes take more memory than there is.
+void need_room(std::uint64_t elements, std::uint64_t nodes) {
+  constexpr double bytes_an_element = sizeof(std::array<std::uint32_t, 4>) + sizeof(std::uint32_t);
+  constexpr double bytes_a_node = sizeof(glm::dvec3) + 2 * sizeof(std::uint32_t);
+  const auto count = static_cast<double>(elements);
+  const double bytes = bytes_an_element * count + bytes_a_node * static_cast<double>(nodes);
+  if (const auto free = static_cast<double>(voxel::free_memory()); bytes > free)
+    throw voxel::Error(voxel::ErrorCode::Resource,
+                       "tetrahedra_of: " + voxel::rounded(count / 1e6) + " million elements take " +
+                           voxel::rounded(bytes / 1e9) + " GB of memory, " + voxel::rounded(free / 1e9) +
+                           " are free: take larger voxels, or raise --memory");
+}
+
+/// Pass 4.
 class Filling {
  public:
-  Filling(const voxel::Universe& universe, const Cells& cells)
-      : lattice_(universe.lattice()), cells_(cells) {}
+  Filling(const voxel::Universe& universe, const OctreeCells& cells)
+      : lattice_(universe.lattice()), cells_(cells), numbers_(universe.side()), cell_count_(cells.count()) {}
 
-  Tetrahedra run(const voxel::Progress& progress) {
-    constexpr std::size_t cells_between_looks = 4096;  // some milliseconds
+  /// Regions share no voxel. Without `tells_regions` all elements are one.
+  Tetrahedra run(const std::vector<voxel::Octree>& regions, bool tells_regions,
+                 const voxel::Progress& progress) {
+    mark_nodes(progress);
     std::size_t done = 0;
-    for (std::size_t level = 0; level < cells_.levels(); ++level)
-      for (const Cell& cell : cells_.sorted(level)) {
-        if (done++ % cells_between_looks == 0)
-          progress.at(static_cast<double>(done) / static_cast<double>(cells_.count()));
-        add_cell(cell.first, static_cast<int>(level));
-        result_.region_of_tet.resize(result_.tets.size(), cell.region);
-      }
-    result_.boundary_nodes = boundary_nodes(result_.tets);
+    std::size_t region = 0;
+    cells_.for_each([&](const OctreeCell& cell) {
+      if (done++ % cells_between_looks == 0)
+        progress.at(static_cast<double>(done) / static_cast<double>(cell_count_));
+      add(cell);
+      if (!tells_regions) return;
+      // Neighbours are mostly of one region.
+      if (!regions[region].contains(cell.first))
+        for (region = 0; !regions[region].contains(cell.first);) ++region;
+      result_.region_of_tet.resize(result_.tets.size(), static_cast<std::uint32_t>(region));
+    });
+    for (std::uint32_t node = 0; node < is_boundary_.size(); ++node)
+      if (is_boundary_[node]) result_.boundary_nodes.push_back(node);
     result_.method = "octree";
     return std::move(result_);
   }
 
  private:
-  void add_cell(const Place& cell, int level) {
-    const std::uint32_t middle = node(2 * cell + (1 << level));
-    for (int axis = 0; axis < 3; ++axis)
-      for (int upper = 0; upper < 2; ++upper) {
-        Square square{cell, axis, level};
-        square.first[axis] += upper << level;
-        add_face(square, middle);
-      }
+  void mark_nodes(const voxel::Progress& progress) {
+    std::size_t done = 0;
+    std::uint64_t elements = 0;
+    cells_.for_each([&](const OctreeCell& cell) {
+      if (done++ % cells_between_looks == 0) progress.at(0.0);
+      std::uint32_t mentioned = 0;
+      cut(
+          cell, cells_.halves_about(cell), [&](int place) { mentioned |= std::uint32_t{1} << place; },
+          [&](int, int, int, int) { ++elements; });
+      mentioned &= ~(std::uint32_t{1} << middle_place);
+      for (; mentioned != 0; mentioned &= mentioned - 1)
+        numbers_.mark(corner_at(cell, std::countr_zero(mentioned)));
+    });
+    const std::uint64_t nodes = cell_count_ + numbers_.count_marked();
+    if (nodes > std::numeric_limits<std::uint32_t>::max())
+      throw voxel::Error(voxel::ErrorCode::Resource,
+                         "tetrahedra_of: more nodes than 32-bit numbers can name: take larger voxels");
+    need_room(elements, nodes);
+    numbers_.start_numbering();
+    result_.nodes_mm.reserve(nodes);
+    result_.tets.reserve(elements);
+    is_boundary_.resize(nodes, false);
   }
 
-  void add_face(const Square& square, std::uint32_t middle) {
-    const int side = 1 << square.side_log2;
-    std::array<Place, 4> corners;
-    for (int i = 0; i < 4; ++i) {
-      corners[static_cast<std::size_t>(i)] = square.first;
-      corners[static_cast<std::size_t>(i)][(square.axis + 1) % 3] += i == 1 || i == 2 ? side : 0;
-      corners[static_cast<std::size_t>(i)][(square.axis + 2) % 3] += i >= 2 ? side : 0;
-    }
-    std::vector<std::uint32_t> round;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Place& from = corners[i];
-      const Place& to = corners[(i + 1) % 4];
-      round.push_back(node(2 * from));
-      if (is_edge_divided(glm::min(from, to),
-                          from[(square.axis + 1) % 3] != to[(square.axis + 1) % 3] ? (square.axis + 1) % 3
-                                                                                   : (square.axis + 2) % 3,
-                          square.side_log2))
-        round.push_back(node(from + to));
-    }
-    if (round.size() == 4 && !is_divided(square)) {
-      const Place of_side = square.first >> square.side_log2;
-      const std::size_t turn =
-          static_cast<std::size_t>(of_side[(square.axis + 1) % 3] + of_side[(square.axis + 2) % 3]) & 1;
-      add(round[turn], round[turn + 1], round[turn + 2], middle);
-      add(round[turn], round[turn + 2], round[(turn + 3) % 4], middle);
-      return;
-    }
-    const std::uint32_t centre = node(corners[0] + corners[2]);
-    for (std::size_t i = 0; i < round.size(); ++i)
-      add(centre, round[i], round[(i + 1) % round.size()], middle);
+  void add(const OctreeCell& cell) {
+    const std::uint64_t halves = cells_.halves_about(cell);
+    std::array<std::uint32_t, place_count> nodes;
+    nodes.fill(CornerNumbers::none);
+    int covered_face = -1;
+    bool is_covered = false;
+    cut(
+        cell, halves, [&](int place) { nodes[static_cast<std::size_t>(place)] = node(cell, place, nodes); },
+        [&](int face, int a, int b, int c) {
+          const std::array<std::uint32_t, 3> corners{nodes[static_cast<std::size_t>(a)],
+                                                     nodes[static_cast<std::size_t>(b)],
+                                                     nodes[static_cast<std::size_t>(c)]};
+          add(corners[0], corners[1], corners[2], nodes[middle_place]);
+          if (face != covered_face) is_covered = cells_.has_equal_or_twice(cell, face / 2, face % 2 != 0);
+          covered_face = face;
+          if (!is_covered && (halves & half_beyond(face, b, c)) == 0)
+            for (const std::uint32_t corner : corners) is_boundary_[corner] = true;
+        });
   }
 
-  /// Whether smaller cells lie on the square, on either side.
-  bool is_divided(const Square& square) const {
-    if (square.side_log2 == 0) return false;
-    const int half = 1 << (square.side_log2 - 1);
-    for (int k = 0; k < 8; ++k) {
-      Place voxel = square.first;
-      voxel[(square.axis + 1) % 3] += (k & 1) * half;
-      voxel[(square.axis + 2) % 3] += ((k >> 1) & 1) * half;
-      voxel[square.axis] -= k >> 2;
-      if (const std::optional<int> side = cells_.side_log2_at(voxel); side && *side < square.side_log2)
-        return true;
-    }
-    return false;
+  /// The bit of the half cube across a fan's triangle, by its two places on the round. An undivided edge is
+  /// of two quarters of which neither has a cell beyond.
+  static std::uint64_t half_beyond(int face, int b, int c) {
+    glm::ivec3 half(0);
+    for (int axis = 0; axis < 3; ++axis) half[axis] = along(b, axis) + along(c, axis) > 2 ? 2 : 1;
+    half[face / 2] = face % 2 == 0 ? 0 : 3;
+    return std::uint64_t{1} << voxel::child_index(half.x, half.y, half.z);
   }
 
-  /// Whether smaller cells touch an edge of the lattice with half of theirs.
-  bool is_edge_divided(const Place& first, int axis, int side_log2) const {
-    if (side_log2 == 0) return false;
-    for (int k = 0; k < 8; ++k) {
-      Place voxel = first;
-      voxel[axis] += (k & 1) << (side_log2 - 1);
-      voxel[(axis + 1) % 3] -= (k >> 1) & 1;
-      voxel[(axis + 2) % 3] -= k >> 2;
-      if (const std::optional<int> side = cells_.side_log2_at(voxel); side && *side < side_log2) return true;
-    }
-    return false;
+  static glm::ivec3 corner_at(const OctreeCell& cell, int place) {
+    return cell.first +
+           ((glm::ivec3(along(place, 0), along(place, 1), along(place, 2)) << cell.side_log2) >> 1);
   }
 
-  std::uint32_t node(const Place& half) {
-    const auto [at, is_new] =
-        nodes_.try_emplace(key_of(half), static_cast<std::uint32_t>(result_.nodes_mm.size()));
-    if (is_new) {
-      if (result_.nodes_mm.size() == std::numeric_limits<std::uint32_t>::max())
-        throw voxel::Error(voxel::ErrorCode::Resource,
-                           "tetrahedra_of: more nodes than 32-bit numbers can name: take larger voxels");
-      result_.nodes_mm.push_back(lattice_.lps_mm(0.5 * glm::dvec3(half) - 0.5));
+  /// The node's number, which is new with its first mention.
+  std::uint32_t node(const OctreeCell& cell, int place, const std::array<std::uint32_t, place_count>& known) {
+    if (const std::uint32_t number = known[static_cast<std::size_t>(place)]; number != CornerNumbers::none)
+      return number;
+    const auto next = static_cast<std::uint32_t>(result_.nodes_mm.size());
+    if (place != middle_place) {
+      std::uint32_t& number = numbers_.of(corner_at(cell, place));
+      if (number != CornerNumbers::none) return number;
+      number = next;
     }
-    return at->second;
+    const glm::ivec3 half_edges =
+        2 * cell.first + (glm::ivec3(along(place, 0), along(place, 1), along(place, 2)) << cell.side_log2);
+    result_.nodes_mm.push_back(lattice_.lps_mm(0.5 * glm::dvec3(half_edges) - 0.5));
+    return next;
   }
 
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
@@ -270,18 +254,60 @@ class Filling {
   }
 
   voxel::Lattice lattice_;
-  const Cells& cells_;
-  std::unordered_map<std::uint64_t, std::uint32_t> nodes_;
+  const OctreeCells& cells_;
+  CornerNumbers numbers_;
+  std::uint64_t cell_count_;
+  std::vector<bool> is_boundary_;  ///< by node
   Tetrahedra result_;
 };
+
+/// The voxels all of whose 26 neighbours the octree holds.
+voxel::Octree inner_voxels(const voxel::Octree& octree) {
+  // Of a lattice in which steps of a voxel are exact.
+  const voxel::Universe unit{octree.universe().depth, glm::dmat4(1.0)};
+  voxel::Octree inner(unit, voxel::Block::share(octree.root()));
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 step(0.0);
+    step[axis] = 1.0;
+    const voxel::Expression all = inner;
+    inner = voxel::combine(unit, all & moved(all, glm::translate(glm::dmat4(1.0), step)) &
+                                     moved(all, glm::translate(glm::dmat4(1.0), -step)));
+  }
+  return {octree.universe(), voxel::Block::share(inner.root())};
+}
+
+Tetrahedra filled(const std::vector<voxel::Octree>& regions, bool tells_regions, BoundaryCells boundary,
+                  const voxel::Progress& progress) {
+  // Twelve elements and a node in the middle, at the least, of a node of an octree.
+  std::uint64_t least_cells = 0;
+  for (const voxel::Octree& region : regions)
+    for (const voxel::LevelCount& level : voxel::level_counts(region)) least_cells += level.full;
+  need_room(12 * least_cells, least_cells);
+
+  const voxel::Universe& universe = regions.front().universe();
+  OctreeCells cells(universe);
+  for (const voxel::Octree& region : regions) {
+    progress.at(0.0);
+    if (boundary == BoundaryCells::Nodes) {
+      cells.add_nodes(region);
+    } else {
+      const voxel::Octree inner = inner_voxels(region);
+      cells.add_nodes(inner);
+      cells.add_voxels(voxel::combine(universe, voxel::Expression(region) - inner));
+    }
+  }
+  cells.balance();
+  return Filling(universe, cells).run(regions, tells_regions, progress);
+}
 
 }  // namespace
 
 Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary,
                          const voxel::Progress& progress) {
-  Tetrahedra all = tetrahedra_of(std::vector{octree}, boundary, progress);
-  all.region_of_tet.clear();
-  return all;
+  if (octree.is_empty())
+    throw std::invalid_argument("tetrahedra_of: the octree is empty: there is nothing to fill");
+  progress.at(0.0);
+  return filled({octree}, false, boundary, progress);
 }
 
 Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCells boundary,
@@ -294,9 +320,15 @@ Tetrahedra tetrahedra_of(const std::vector<voxel::Octree>& regions, BoundaryCell
       throw std::invalid_argument("tetrahedra_of: regions are of different universes: evaluate them in one");
   }
   progress.at(0.0);
-  Cells cells(regions, boundary);
-  cells.balance();
-  return Filling(regions.front().universe(), cells).run(progress);
+  // A voxel in several regions is the first's.
+  const voxel::Universe& universe = regions.front().universe();
+  std::vector<voxel::Octree> apart{regions.front()};
+  voxel::Octree taken = regions.front();
+  for (std::size_t i = 1; i < regions.size(); ++i) {
+    apart.push_back(voxel::combine(universe, voxel::Expression(regions[i]) - taken));
+    taken = voxel::combine(universe, voxel::Expression(taken) | regions[i]);
+  }
+  return filled(apart, true, boundary, progress);
 }
 
 }  // namespace octotomy::convert

@@ -18,8 +18,9 @@ enum class BoundaryCells { Nodes, Voxels };
 /// inside and voxel-sized at the boundary, which keeps the voxels' steps: displacements and stiffness are
 /// useful, stresses at the surface are not. Conforming: elements share whole faces; parts that touch share
 /// nodes. With cubic voxels every dihedral angle is at least 30 degrees. `method` is "octree". Throws
-/// std::invalid_argument if the octree is empty; voxel::Error (Resource) if 32 bits do not number the nodes;
-/// voxel::Stopped. Deterministic. Cost a voxel at the boundary: about 12 elements of 300 bytes each.
+/// std::invalid_argument if the octree is empty; voxel::Error (Resource) if 32 bits do not number the nodes
+/// or the elements do not fit into voxel::free_memory(), with both figures; voxel::Stopped. Deterministic.
+/// Cost a voxel at the boundary: about 12 elements, 300 bytes of the result; about 10 bytes beside that.
 Tetrahedra tetrahedra_of(const voxel::Octree& octree, BoundaryCells boundary = BoundaryCells::Nodes,
                          const voxel::Progress& progress = {});
 

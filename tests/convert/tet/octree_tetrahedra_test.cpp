@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <random>
+#include <unistd.h>
 
 #include "convert/deck/deck.h"
 #include "tests/unit_universe.h"
 #include "voxel/codes/cuberille_faces.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/memory_need.h"
 #include "voxel/tree/build.h"
 
 namespace octotomy::convert {
@@ -162,6 +164,59 @@ TEST(OctreeTetrahedra, WhatIsInTwoRegionsIsTheFirsts) {
     if (t.region_of_tet[i] == 0) first += six_volumes(corners_mm(t, i)) / 6.0;
   EXPECT_NEAR(first, 64.0, 1e-9);
   EXPECT_NEAR(quality(t).volume_mm3, 96.0, 1e-9);
+}
+
+/// Of nodes, elements, boundary and regions, their order included.
+std::uint64_t sum_of(const Tetrahedra& t) {
+  std::uint64_t sum = 14695981039346656037U;  // FNV-1a
+  const auto add = [&sum](const void* data, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i)
+      sum = (sum ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211U;
+  };
+  add(t.nodes_mm.data(), t.nodes_mm.size() * sizeof t.nodes_mm[0]);
+  add(t.tets.data(), t.tets.size() * sizeof t.tets[0]);
+  add(t.boundary_nodes.data(), t.boundary_nodes.size() * sizeof t.boundary_nodes[0]);
+  add(t.region_of_tet.data(), t.region_of_tet.size() * sizeof t.region_of_tet[0]);
+  return sum;
+}
+
+TEST(OctreeTetrahedra, NodesAndElementsStandInTheOrderInWhichDecksNumberThem) {
+  // Sums of what a map of all voxels, merged level by level, gave.
+  const voxel::Universe universe = unit_universe(5);
+  const voxel::Octree ball = voxel::combine(universe, voxel::Sphere{{15.3, 16.1, 14.2}, 12.7});
+  const voxel::Octree slab = voxel::combine(universe, voxel::Box{{-0.5, -0.5, 3.5}, {31.5, 20.5, 19.5}});
+  EXPECT_EQ(sum_of(tetrahedra_of(ball)), 0x3cd099787fc59046U);
+  EXPECT_EQ(sum_of(tetrahedra_of(ball, BoundaryCells::Voxels)), 0x617f26deec817024U);
+  EXPECT_EQ(sum_of(tetrahedra_of({slab, ball})), 0xc66ee927486e3fc1U);
+  EXPECT_EQ(sum_of(tetrahedra_of({slab, ball}, BoundaryCells::Voxels)), 0x4b8efbf8cbe85c29U);
+}
+
+TEST(OctreeTetrahedra, BoundaryNodesAreThoseOfFacesOfOneElement) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const voxel::Octree a = random_cubes(4, seed), b = random_cubes(4, seed + 1000);
+    if (a.is_empty() || b.is_empty()) continue;
+    for (const BoundaryCells cells : {BoundaryCells::Nodes, BoundaryCells::Voxels}) {
+      const Tetrahedra t = tetrahedra_of({a, b}, cells);
+      EXPECT_EQ(t.boundary_nodes, boundary_nodes(t.tets)) << "seed " << seed;
+    }
+  }
+}
+
+TEST(OctreeTetrahedra, WhatTakesMoreMemoryThanThereIsIsRefusedBefore) {
+  // In a process of its own, as the limit is the process's.
+  const voxel::Octree ball = voxel::combine(unit_universe(7), voxel::Sphere{{63, 63, 63}, 60.0});
+  EXPECT_EXIT(
+      {
+        voxel::limit_memory(1);
+        try {
+          tetrahedra_of(ball);
+        } catch (const voxel::Error& error) {
+          const bool says = std::string(error.what()).find("million elements take") != std::string::npos;
+          ::_exit(error.code() == voxel::ErrorCode::Resource && says ? 3 : 2);
+        }
+        ::_exit(1);
+      },
+      testing::ExitedWithCode(3), "");
 }
 
 TEST(OctreeTetrahedra, NothingIsRefused) {
