@@ -2,28 +2,29 @@
 #include "convert/voxel/winding_number.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <numbers>
+#include <array>
+#include <cstdint>
 #include <numeric>
 #include <tbb/parallel_for.h>
 #include <utility>
+#include <vector>
 
-#include "brep/mesh/disjoint_sets.h"
 #include "convert/voxel/slab_triangles.h"
+#include "convert/voxel/winding_threshold.h"
 #include "voxel/space/shared_progress.h"
 
 // The winding number of an open surface S is that of a closed one less that of what closes it. The passes:
 //
 // 1 The rim of S: its edges with more triangles one way than the other, each as often as the excess. For any
-// S,
-//   as many rim edges enter a vertex as leave it, so that the cone C from any apex over them closes S.
+//   S, as many rim edges enter a vertex as leave it, so that the cone C from any apex over them closes S.
 // 2 Along each row of voxels, crossings of S + C by signs give the whole number n about each centre.
 // 3 A voxel is inside where n - w > 1/2, w the winding number of C. Away from C, w changes no faster than the
-//   law of Biot and Savart lets a current along the rim: |grad w| <= sum over edges of length / (4 pi d^2).
+//   law of Biot and Savart lets a current along the rim: |grad w| <= integral along it of 1 / (4 pi r^2).
 //   So a cube of voxels without a triangle of C where w(centre) keeps away from ... -1/2, 1/2, 3/2 ... by
-//   more than that over the cube has one whole number for n to be compared with; others are divided, down to
-//   single voxels.
+//   more than that over the cube has one whole number for n to be compared with; others are divided, from the
+//   whole universe down to single voxels.
+// 4 Between crossings of its 256 rows, a row of blocks of 16^3 voxels has stretches of one n, and blocks that
+//   are made. The octree is put together from above: a cube of one n and one number is Full or Empty.
 //
 // Departure from the source, which sums over all triangles by a tree: here only rims cost, a closed surface
 // has none, and the decision for a cube is proven for each of its voxels.
@@ -31,209 +32,214 @@
 namespace octotomy::convert {
 namespace {
 
-using Triangle = std::array<glm::dvec3, 3>;
+constexpr int row_count = slab_layers * slab_layers;  // of a row of blocks
 
-/// Share of the sphere about p that a triangle covers, positive seen from behind. Source: Van Oosterom,
-/// Strackee, "The solid angle of a plane triangle", IEEE TBME 30(2), 1983.
-double covered_share(const Triangle& triangle, const glm::dvec3& p) {
-  const glm::dvec3 a = triangle[0] - p;
-  const glm::dvec3 b = triangle[1] - p;
-  const glm::dvec3 c = triangle[2] - p;
-  const double la = glm::length(a);
-  const double lb = glm::length(b);
-  const double lc = glm::length(c);
-  const double below = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  return std::atan2(glm::dot(a, glm::cross(b, c)), below) / (2.0 * std::numbers::pi);
-}
-
-struct RimEdge {
-  std::uint32_t from = 0, to = 0;
-  int excess = 1;  ///< triangles along it from -> to, less those to -> from
+/// A row enters or leaves the closed surface before voxel x.
+struct Crossing {
+  std::int32_t x = 0;
+  std::uint8_t row = 0;  ///< y + 16 z, of the row of blocks
+  std::int8_t change = 0;
 };
 
-/// Pass 1, in ascending order.
-std::vector<RimEdge> rim_of(const brep::Triangles& surface) {
-  std::vector<std::pair<std::uint64_t, int>> ways;
-  ways.reserve(3 * surface.faces.size());
-  for (const auto& face : surface.faces)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = face[i];
-      const std::uint32_t to = face[(i + 1) % 3];
-      if (from != to)
-        ways.emplace_back((std::uint64_t{std::min(from, to)} << 32) | std::max(from, to), from < to ? 1 : -1);
-    }
-  std::sort(ways.begin(), ways.end());
-  std::vector<RimEdge> rim;
-  for (std::size_t i = 0; i < ways.size();) {
-    int excess = 0;
-    std::size_t end = i;
-    for (; end < ways.size() && ways[end].first == ways[i].first; ++end) excess += ways[end].second;
-    if (excess != 0)
-      rim.push_back({static_cast<std::uint32_t>(ways[i].first >> 32),
-                     static_cast<std::uint32_t>(ways[i].first), excess});
-    i = end;
-  }
-  return rim;
-}
+/// The numbers of a block's voxels, x fastest.
+using BlockWinds = std::array<std::int32_t, std::size_t{row_count} * slab_layers>;
 
-/// The cones that close a surface, and its rim, in LPS millimetres.
-struct Cap {
-  std::vector<Triangle> triangles;
-  std::vector<std::array<glm::dvec3, 2>> edges;
+/// Blocks of a row of blocks, from where the one before ends.
+struct Stretch {
+  int end = 0;  ///< in blocks
+  std::optional<std::int32_t> winds;
+  voxel::Block block;  ///< without one number for all: each block
 };
+/// Empty: the surface winds about none of its voxels.
+using BlockRow = std::vector<Stretch>;
 
-/// How far an apex is put out of its rim's middle, in voxel edges: anything but a simple fraction, so that
-/// the cap of a flat hole does not lie in a plane of voxel centres.
-constexpr glm::dvec3 apex_offset_voxels{0.2718281828, 0.3141592653, 0.1414213562};
-
-/// One cone a connected part of the rim, from the middle of its edges.
-Cap cap_of(const voxel::Universe& universe, const brep::Triangles& surface) {
-  const std::vector<RimEdge> rim = rim_of(surface);
-  brep::DisjointSets rims(surface.points_mm.size());
-  for (const RimEdge& edge : rim) rims.join(edge.from, edge.to);
-  std::map<std::uint32_t, std::pair<glm::dvec3, double>> sums;
-  for (const RimEdge& edge : rim) {
-    auto& [sum, count] = sums[rims.set_of(edge.from)];
-    sum += surface.points_mm[edge.from] + surface.points_mm[edge.to];
-    count += 2.0;
-  }
-  Cap cap;
-  for (const RimEdge& edge : rim) {
-    const auto& [sum, count] = sums[rims.set_of(edge.from)];
-    const glm::dvec3 apex = sum / count + glm::dmat3(universe.lps_from_voxel) * apex_offset_voxels;
-    const glm::dvec3& from = surface.points_mm[edge.from];
-    const glm::dvec3& to = surface.points_mm[edge.to];
-    for (int i = 0; i < std::abs(edge.excess); ++i) {
-      cap.triangles.push_back(edge.excess > 0 ? Triangle{to, from, apex} : Triangle{from, to, apex});
-      cap.edges.push_back({from, to});
-    }
-  }
-  return cap;
-}
-
-double distance_to_edge(const glm::dvec3& p, const std::array<glm::dvec3, 2>& edge) {
-  const glm::dvec3 along = edge[1] - edge[0];
-  const double t = glm::dot(p - edge[0], along) / glm::dot(along, along);
-  return glm::length(p - edge[0] - std::clamp(t, 0.0, 1.0) * along);
-}
-
-/// Voxels whose centres are origin .. origin + side - 1 along each axis.
-struct Cube {
-  glm::ivec3 origin{0};
-  int side = slab_layers;
-};
-
-/// Pass 3: the whole number that n must reach.
-class Threshold {
- public:
-  Threshold(const voxel::Universe& universe, const Cap& cap)
-      : lattice_(universe.lattice()), cap_(cap), bounds_(cap.triangles.size()) {
-    for (std::size_t t = 0; t < bounds_.size(); ++t) {
-      auto& [low, high] = bounds_[t];
-      low = high = lattice_.voxel(cap.triangles[t][0]);
-      for (const glm::dvec3& corner : cap.triangles[t]) {
-        low = glm::min(low, lattice_.voxel(corner));
-        high = glm::max(high, lattice_.voxel(corner));
+/// Pass 2 for sixteen layers: by row of blocks, ascending x.
+std::vector<std::vector<Crossing>> crossings_of(const std::vector<Corners>& surface, const SlabLists& lists,
+                                                int slab, int side, int sign) {
+  std::vector<std::vector<Crossing>> rows(static_cast<std::size_t>(std::max(side / slab_layers, 1)));
+  const int first_z = slab * slab_layers;
+  const int end_z = std::min(first_z + slab_layers, side);
+  const auto list = static_cast<std::size_t>(slab);
+  for (std::size_t i = lists.first[list]; i < lists.first[list + 1]; ++i) {
+    const Corners& corners = surface[lists.triangles[i]];
+    const auto [first, end] = layers_cut(corners, side);
+    for (int z = std::max(first, first_z); z < std::min(end, end_z); ++z) {
+      const LayerCut cut = cut_by_layer(corners, z);
+      const int end_y = first_not_below(cut.to.y, 0, side);
+      for (int y = first_not_below(cut.from.y, 0, side); y < end_y; ++y) {
+        const double t = (y - cut.from.y) / (cut.to.y - cut.from.y);
+        const int x = first_not_below(cut.from.x + t * (cut.to.x - cut.from.x), 0, side);
+        if (x < side)
+          rows[static_cast<std::size_t>(y / slab_layers)].push_back(
+              {x, static_cast<std::uint8_t>(y % slab_layers + slab_layers * (z % slab_layers)),
+               static_cast<std::int8_t>(cut.entering ? sign : -sign)});
       }
     }
   }
+  for (std::vector<Crossing>& row : rows)
+    std::sort(row.begin(), row.end(), [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+  return rows;
+}
 
-  /// Calls decided(cube, number) for cubes that together are the given one.
-  template <typename Decided>
-  void divide(const Cube& cube, const Decided& decided) const {
-    const glm::dvec3 middle = glm::dvec3(cube.origin) + 0.5 * (cube.side - 1);
-    const glm::dvec3 p_mm = lattice_.lps_mm(middle);
-    double share = 0.0;
-    for (const Triangle& triangle : cap_.triangles) share += covered_share(triangle, p_mm);
-    if (cube.side == 1 || is_one_number(cube, p_mm, share)) {
-      decided(cube, static_cast<int>(std::floor(share + 0.5)) + 1);
-      return;
+/// Pass 4.
+class WoundOctree {
+ public:
+  WoundOctree(const voxel::Universe& universe, const WindingThreshold& threshold, const std::stop_token& stop)
+      : universe_(universe),
+        threshold_(threshold),
+        stop_(stop),
+        top_(threshold_tree(universe, threshold, stop)),
+        blocks_along_(std::max(universe.side() / slab_layers, 1)),
+        rows_(static_cast<std::size_t>(blocks_along_) * static_cast<std::size_t>(blocks_along_)) {}
+
+  int slab_count() const { return blocks_along_; }
+
+  /// Makes a row of blocks of its crossings. Different rows may be made on different threads.
+  void make_row(int block_y, int block_z, const std::vector<Crossing>& crossings) {
+    if (crossings.empty()) return;
+    BlockRow& row = rows_[row_number(block_y, block_z)];
+    std::array<std::int32_t, row_count> winds{};
+    auto crossing = crossings.begin();
+    for (int x = 0; x < blocks_along_;) {
+      const int next = crossing == crossings.end() ? blocks_along_ : crossing->x / slab_layers;
+      if (x < next) {
+        add_stretch(row, {x, block_y, block_z}, next, winds);
+        x = next;
+        continue;
+      }
+      BlockWinds block{};
+      for (; crossing != crossings.end() && crossing->x / slab_layers == x; ++crossing)
+        block[static_cast<std::size_t>(crossing->row * slab_layers + crossing->x % slab_layers)] +=
+            crossing->change;
+      for (std::size_t r = 0; r < row_count; ++r) {
+        const auto first = block.begin() + static_cast<std::ptrdiff_t>(r) * slab_layers;
+        *first += winds[r];
+        std::partial_sum(first, first + slab_layers, first);
+        winds[r] = *(first + slab_layers - 1);
+      }
+      row.push_back({x + 1, std::nullopt, made({x, block_y, block_z}, block)});
+      ++x;
     }
-    const int side = cube.side / 4;
-    for (int child = 0; child < 64; ++child)
-      divide({cube.origin + side * glm::ivec3(child & 3, (child >> 2) & 3, child >> 4), side}, decided);
+  }
+
+  voxel::Octree take(const voxel::Progress& progress) const {
+    voxel::SharedProgress parts(progress, 64);
+    return {universe_, put_together(voxel::root_height(universe_.depth), glm::ivec3(0), top_, &parts)};
   }
 
  private:
-  bool is_one_number(const Cube& cube, const glm::dvec3& middle_mm, double share) const {
-    const glm::dvec3 low(cube.origin);
-    const glm::dvec3 high = low + static_cast<double>(cube.side - 1);
-    for (const auto& [cap_low, cap_high] : bounds_)
-      if (glm::all(glm::lessThanEqual(cap_low, high)) && glm::all(glm::lessThanEqual(low, cap_high)))
-        return false;
-    const glm::dvec3 spacing = lattice_.spacing_mm();
-    // Edges of a lattice may be oblique: no diagonal is longer than the three edges together.
-    const double reach = 0.5 * (cube.side - 1) * (spacing.x + spacing.y + spacing.z);
-    const double room = std::abs(share + 0.5 - std::round(share + 0.5));
-    double change = 0.0;
-    for (const std::array<glm::dvec3, 2>& edge : cap_.edges) {
-      const double distance = distance_to_edge(middle_mm, edge) - reach;
-      if (!(distance > 0.0)) return false;
-      change += glm::length(edge[1] - edge[0]) * reach / (4.0 * std::numbers::pi * distance * distance);
-      if (change >= room) return false;
+  void add_stretch(BlockRow& row, glm::ivec3 block, int end,
+                   const std::array<std::int32_t, row_count>& winds) {
+    if (std::equal(winds.begin() + 1, winds.end(), winds.begin())) {
+      row.push_back({end, winds[0], {}});
+      return;
     }
-    return true;
-  }
-
-  voxel::Lattice lattice_;
-  const Cap& cap_;
-  std::vector<std::pair<glm::dvec3, glm::dvec3>> bounds_;  ///< of the cap's triangles, voxel numbers
-};
-
-/// Pass 2 for sixteen layers: how often the closed surface winds about each centre.
-class WoundSlab {
- public:
-  WoundSlab(int side, int first_z)
-      : side_(side),
-        first_z_(first_z),
-        end_z_(std::min(first_z + slab_layers, side)),
-        winds_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side) * slab_layers, 0) {}
-
-  void add_crossings_of(const Corners& corners, int sign) {
-    const auto [first, end] = layers_cut(corners, side_);
-    for (int z = std::max(first, first_z_); z < std::min(end, end_z_); ++z) {
-      const LayerCut cut = cut_by_layer(corners, z);
-      const int end_y = first_not_below(cut.to.y, 0, side_);
-      for (int y = first_not_below(cut.from.y, 0, side_); y < end_y; ++y) {
-        const double t = (y - cut.from.y) / (cut.to.y - cut.from.y);
-        const int x = first_not_below(cut.from.x + t * (cut.to.x - cut.from.x), 0, side_);
-        if (x < side_) winds_[index({x, y, z})] += cut.entering ? sign : -sign;
-      }
+    BlockWinds all;
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = winds[i / slab_layers];
+    std::optional<int> number;
+    for (; block.x < end; ++block.x) {
+      const std::optional<int> before = std::exchange(number, node_at(block).number);
+      voxel::Block same = number && number == before ? row.back().block : made(block, all);
+      row.push_back({block.x + 1, std::nullopt, std::move(same)});
     }
   }
 
-  void sum_rows() {
-    const auto side = static_cast<std::size_t>(side_);
-    for (std::size_t row = 0; row < winds_.size(); row += side)
-      std::partial_sum(winds_.begin() + static_cast<std::ptrdiff_t>(row),
-                       winds_.begin() + static_cast<std::ptrdiff_t>(row + side),
-                       winds_.begin() + static_cast<std::ptrdiff_t>(row));
-  }
-
-  /// The block's voxels with at least the number that `threshold` asks for.
-  voxel::Block block(const glm::ivec3& block, const Threshold& threshold) const {
-    std::array<std::uint16_t, 256> rows{};
-    threshold.divide({block * slab_layers, slab_layers}, [&](const Cube& cube, int least) {
-      const glm::ivec3 end = glm::min(cube.origin + cube.side, glm::ivec3(side_));
+  /// The block's voxels with at least the number that is asked for there.
+  voxel::Block made(const glm::ivec3& block, const BlockWinds& winds) const {
+    std::array<std::uint16_t, row_count> rows{};
+    const auto decided = [&](const Cube& cube, int least) {
+      const glm::ivec3 end = glm::min(cube.origin + cube.side, glm::ivec3(universe_.side()));
       for (int z = cube.origin.z; z < end.z; ++z)
         for (int y = cube.origin.y; y < end.y; ++y)
-          for (int x = cube.origin.x; x < end.x; ++x)
-            if (winds_[index({x, y, z})] >= least)
-              rows[static_cast<std::size_t>(y % slab_layers + slab_layers * (z % slab_layers))] |=
-                  static_cast<std::uint16_t>(1 << (x % slab_layers));
-    });
+          for (int x = cube.origin.x; x < end.x; ++x) {
+            const auto r = static_cast<std::size_t>(y % slab_layers + slab_layers * (z % slab_layers));
+            if (winds[r * slab_layers + static_cast<std::size_t>(x % slab_layers)] >= least)
+              rows[r] |= static_cast<std::uint16_t>(1 << (x % slab_layers));
+          }
+    };
+    const Cube cube{block * slab_layers, slab_layers};
+    if (const std::optional<int> number = node_at(block).number)
+      decided(cube, *number);
+    else
+      threshold_.divide(cube, decided);
     return leaf_block_of_rows(rows);
   }
 
- private:
-  std::size_t index(const glm::ivec3& v) const {
-    const auto side = static_cast<std::size_t>(side_);
-    return (static_cast<std::size_t>(v.z - first_z_) * side + static_cast<std::size_t>(v.y)) * side +
-           static_cast<std::size_t>(v.x);
+  /// The threshold's node that holds a block.
+  const ThresholdNode& node_at(const glm::ivec3& block) const {
+    const ThresholdNode* node = &top_;
+    for (int height = voxel::root_height(universe_.depth) - 1; node->children != nullptr; --height) {
+      const glm::ivec3 child = (block >> (2 * (height - 2))) & 3;
+      node = &(*node->children)[static_cast<std::size_t>(voxel::child_index(child.x, child.y, child.z))];
+    }
+    return *node;
   }
 
-  int side_, first_z_, end_z_;
-  std::vector<std::int32_t> winds_;
+  std::size_t row_number(int block_y, int block_z) const {
+    return static_cast<std::size_t>(block_z) * static_cast<std::size_t>(blocks_along_) +
+           static_cast<std::size_t>(block_y);
+  }
+
+  /// The stretch that holds a block. Precondition: its row has any.
+  static const Stretch& stretch_at(const BlockRow& row, int block_x) {
+    return *std::partition_point(row.begin(), row.end(),
+                                 [block_x](const Stretch& stretch) { return stretch.end <= block_x; });
+  }
+
+  /// The number of all of a cube's voxels. Precondition: within the universe, and made of whole blocks.
+  std::optional<std::int32_t> winds_in(const Cube& cube) const {
+    const glm::ivec3 first = cube.origin / slab_layers, end = first + cube.side / slab_layers;
+    std::optional<std::int32_t> all;
+    for (int z = first.z; z < end.z; ++z)
+      for (int y = first.y; y < end.y; ++y) {
+        std::int32_t winds = 0;
+        if (const BlockRow& row = rows_[row_number(y, z)]; !row.empty()) {
+          const Stretch& stretch = stretch_at(row, first.x);
+          if (!stretch.winds || stretch.end < end.x) return std::nullopt;
+          winds = *stretch.winds;
+        }
+        if (all.value_or(winds) != winds) return std::nullopt;
+        all = winds;
+      }
+    return all;
+  }
+
+  voxel::Block leaf(const glm::ivec3& block) const {
+    const BlockRow& row = rows_[row_number(block.y, block.z)];
+    const Stretch* stretch = row.empty() ? nullptr : &stretch_at(row, block.x);
+    if (stretch != nullptr && !stretch->winds) return stretch->block;
+    BlockWinds winds;
+    winds.fill(stretch == nullptr ? 0 : *stretch->winds);
+    return made(block, winds);
+  }
+
+  voxel::Block put_together(int height, const glm::ivec3& origin, const ThresholdNode& node,
+                            voxel::SharedProgress* parts) const {
+    const Cube cube{origin, 1 << (2 * height)};
+    if (glm::any(glm::greaterThanEqual(origin, glm::ivec3(universe_.side())))) return {};
+    voxel::Progress{stop_, {}}.at(0.0);
+    if (node.number && glm::all(glm::lessThanEqual(origin + cube.side, glm::ivec3(universe_.side()))))
+      if (const std::optional<std::int32_t> winds = winds_in(cube))
+        return *winds >= *node.number ? voxel::Block::adopt(voxel::BlockRef::full()) : voxel::Block();
+    if (height == 2) return leaf(origin / slab_layers);
+    std::array<voxel::Block, 64> children;
+    tbb::parallel_for(0, 64, [&](int child) {
+      const auto i = static_cast<std::size_t>(child);
+      children[i] = put_together(height - 1, origin + cube.side / 4 * voxel::child_place(child),
+                                 node.children == nullptr ? node : (*node.children)[i], nullptr);
+      if (parts != nullptr) parts->one_more();
+    });
+    std::array<voxel::BlockRef, 64> refs;
+    for (std::size_t i = 0; i < 64; ++i) refs[i] = children[i].detach();
+    return voxel::make_block(height, 0, voxel::all_children, refs);
+  }
+
+  const voxel::Universe& universe_;
+  const WindingThreshold& threshold_;
+  std::stop_token stop_;
+  ThresholdNode top_;
+  int blocks_along_;
+  std::vector<BlockRow> rows_;  ///< y fastest
 };
 
 }  // namespace
@@ -251,27 +257,23 @@ voxel::Octree voxelise_by_winding_number(const voxel::Universe& universe, const 
   std::vector<Corners> surface = triangles_in_index_space(universe, triangles);
   const Cap cap = cap_of(universe, triangles);
   const voxel::Lattice lattice = universe.lattice();
-  for (const Triangle& t : cap.triangles)
+  for (const auto& t : cap.triangles)
     surface.push_back({lattice.voxel(t[0]), lattice.voxel(t[1]), lattice.voxel(t[2])});
   const int side = universe.side();
   const SlabLists lists =
       sort_into_slabs(surface, side, [side](const Corners& corners) { return layers_cut(corners, side); });
-  const Threshold threshold(universe, cap);
+  const WindingThreshold threshold(universe, cap);
   const int sign = lattice.right_handed() ? 1 : -1;
 
-  BlockGrid grid(universe);
-  voxel::SharedProgress slabs_done(progress, static_cast<std::size_t>(grid.side()));
-  tbb::parallel_for(0, grid.side(), [&](int z) {
+  WoundOctree wound(universe, threshold, progress.stop);
+  const voxel::Progress of_slabs = voxel::part_of(progress, 0.0, 0.5);
+  voxel::SharedProgress slabs_done(of_slabs, static_cast<std::size_t>(wound.slab_count()));
+  tbb::parallel_for(0, wound.slab_count(), [&](int slab) {
     slabs_done.one_more();
-    WoundSlab slab(side, z * slab_layers);
-    const auto slab_number = static_cast<std::size_t>(z);
-    for (std::size_t i = lists.first[slab_number]; i < lists.first[slab_number + 1]; ++i)
-      slab.add_crossings_of(surface[lists.triangles[i]], sign);
-    slab.sum_rows();
-    for (int y = 0; y < grid.side(); ++y)
-      for (int x = 0; x < grid.side(); ++x) grid.at({x, y, z}) = slab.block({x, y, z}, threshold);
+    const auto rows = crossings_of(surface, lists, slab, side, sign);
+    for (std::size_t y = 0; y < rows.size(); ++y) wound.make_row(static_cast<int>(y), slab, rows[y]);
   });
-  return grid.take_octree();
+  return wound.take(voxel::part_of(progress, 0.5, 1.0));
 }
 
 }  // namespace octotomy::convert

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "convert/voxel/winding_number.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -104,6 +105,68 @@ TEST(WindingNumber, ASurfaceWithHolesAgreesWithTheSumOfSolidAnglesInEveryVoxel) 
         << "seed " << seed;
   }
   EXPECT_GT(undecided, 100U);
+}
+
+/// A box without a side, which is inside out, or has corners moved.
+brep::Triangles damaged_box(double side, std::mt19937& random) {
+  const auto within = [&](double low, double high) {
+    return (low + (high - low) * static_cast<double>(random() % 1000) / 1000.0) * side;
+  };
+  brep::Triangles open = box({within(0.0, 0.3), within(0.0, 0.3), within(0.0, 0.3)},
+                             {within(0.6, 1.1), within(0.6, 1.1), within(0.6, 1.1)});
+  if (random() % 3 == 0) open = inside_out(open);
+  if (random() % 2 == 0)
+    open.points_mm[random() % 8] += glm::dvec3(within(-1, 3), within(-1, 3), within(-1, 3));
+  const std::size_t lost = 2 * (random() % 6);
+  open.faces.erase(open.faces.begin() + static_cast<std::ptrdiff_t>(lost),
+                   open.faces.begin() + static_cast<std::ptrdiff_t>(lost + 1 + random() % 2));
+  return open;
+}
+
+TEST(WindingNumber, UniversesOfEveryDepthAgreeWithTheSumOfSolidAngles) {
+  std::uint64_t inside = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    std::mt19937 random(seed);
+    const voxel::Universe universe = unit_universe(2 + static_cast<int>(seed % 5));
+    const brep::Triangles open = damaged_box(universe.side(), random);
+    const voxel::Octree wound = voxelise_by_winding_number(universe, open);
+    EXPECT_EQ(first_difference(wound, open), "") << "seed " << seed;
+    inside += wound.voxel_count();
+  }
+  EXPECT_GT(inside, 100000U);
+}
+
+TEST(WindingNumber, AFarVertexAndTheLargestUniverseLeaveTheVoxelsOfASmallOne) {
+  for (const glm::dvec3& far : {glm::dvec3(3990, 0, 0), glm::dvec3(2900, 2300, 1800)}) {
+    brep::Triangles open = ball({40.3, 41.2, 39.4}, 30.7, 4);
+    const auto moved = std::max_element(
+        open.points_mm.begin(), open.points_mm.end(),
+        [&far](const glm::dvec3& a, const glm::dvec3& b) { return glm::dot(a, far) < glm::dot(b, far); });
+    *moved += far;
+    const auto vertex = static_cast<std::uint32_t>(moved - open.points_mm.begin());
+    open.faces.erase(std::find_if(open.faces.begin(), open.faces.end(), [vertex](const auto& face) {
+      return std::find(face.begin(), face.end(), vertex) != face.end();
+    }));
+    const voxel::Octree large = voxelise_by_winding_number(unit_universe(voxel::Universe::max_depth), open);
+    const voxel::Octree small = voxelise_by_winding_number(unit_universe(7), open);
+    EXPECT_GT(small.voxel_count(), 100000U);
+    EXPECT_GT(large.voxel_count(), small.voxel_count());
+    std::uint64_t different = 0;
+    for (int z = 0; z < 128; ++z)
+      for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 128; ++x) different += large.contains({x, y, z}) != small.contains({x, y, z});
+    EXPECT_EQ(different, 0U);
+  }
+}
+
+TEST(WindingNumber, ReportsWhatIsDoneUpToAll) {
+  std::vector<double> reported;
+  voxelise_by_winding_number(unit_universe(6), ball({31.2, 30.7, 33.1}, 25.0, 2),
+                             {{}, [&](double fraction) { reported.push_back(fraction); }});
+  ASSERT_GT(reported.size(), 2U);
+  EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+  EXPECT_GT(reported.back(), 0.5);
+  EXPECT_LE(reported.back(), 1.0);
 }
 
 TEST(WindingNumber, TheComparisonSeesTrianglesLost) {
