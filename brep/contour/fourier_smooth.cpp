@@ -13,38 +13,15 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <unsupported/Eigen/FFT>
 #include <utility>
+#include <vector>
 
 namespace octotomy::brep {
 namespace {
 
 using Complex = std::complex<double>;
 using std::numbers::pi;
-
-/// Sums of z_m e^(sign 2 pi i k m / n) over m, for all k, in place. Precondition: n is a power of two.
-/// Source: Cooley and Tukey, Math. of Computation 19, 1965.
-void transform(std::vector<Complex>& z, double sign) {
-  const std::size_t n = z.size();
-  assert(std::has_single_bit(n));
-  std::vector<Complex> roots(n / 2);
-  for (std::size_t k = 0; k < roots.size(); ++k)
-    roots[k] = std::polar(1.0, sign * 2.0 * pi * static_cast<double>(k) / static_cast<double>(n));
-  for (std::size_t i = 1, reversed = 0; i < n; ++i) {
-    std::size_t bit = n / 2;
-    for (; reversed & bit; bit /= 2) reversed ^= bit;
-    reversed ^= bit;
-    if (i < reversed) std::swap(z[i], z[reversed]);
-  }
-  for (std::size_t half = 1; half < n; half *= 2)
-    for (std::size_t start = 0; start < n; start += 2 * half)
-      for (std::size_t k = 0; k < half; ++k) {
-        const Complex &root = roots[k * (n / (2 * half))], odd = z[start + k + half];
-        const Complex turned(odd.real() * root.real() - odd.imag() * root.imag(),
-                             odd.real() * root.imag() + odd.imag() * root.real());
-        z[start + k + half] = z[start + k] - turned;
-        z[start + k] += turned;
-      }
-}
 
 /// An even grid round a circle, on which sums of waves up to a number of harmonics are taken at places that
 /// are not on it. With four grid points a wave or more and a Gaussian cut off 14 of them away, what the cut
@@ -61,10 +38,18 @@ class Circle {
   void spread(double turn, const Complex& value) {
     near(turn, [&](Complex& at, double weight) { at += weight * value; });
   }
-  void to_waves() { transform(grid_, -1.0); }
+  void to_waves() {
+    std::vector<Complex> waves;
+    transform().fwd(waves, grid_);
+    grid_ = std::move(waves);
+  }
 
   /// Sums of wave(k) e^(2 pi i k turn): set all waves, undone(), then from_waves(), then gather.
-  void from_waves() { transform(grid_, 1.0); }
+  void from_waves() {
+    std::vector<Complex> sums;
+    transform().inv(sums, grid_);
+    grid_ = std::move(sums);
+  }
   Complex gather(double turn) {
     Complex sum = 0.0;
     near(turn, [&](const Complex& at, double weight) { sum += weight * at; });
@@ -80,6 +65,8 @@ class Circle {
 
  private:
   static constexpr int reach = 14;
+
+  static Eigen::FFT<double> transform() { return Eigen::FFT<double>({}, Eigen::FFT<double>::Unscaled); }
 
   /// Calls use(grid point, weight) for the grid points near a place.
   template <typename Use>
