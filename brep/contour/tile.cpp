@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "brep/mesh/error.h"
+
 namespace octotomy::brep {
 namespace {
 
@@ -243,6 +245,14 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
       throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
                                   " points, three are needed");
   if (!(lower.z_mm < upper.z_mm)) throw std::invalid_argument("tile: the lower ring must lie lower");
+  constexpr double most_pairs = 0x1p27;  // 16 bytes each
+  const auto pairs =
+      static_cast<double>(lower.points_mm.size()) * static_cast<double>(upper.points_mm.size());
+  if (cost != TileCost::shortest_span && pairs > most_pairs)
+    throw Error(ErrorCode::Resource,
+                "tile: rings of " + std::to_string(lower.points_mm.size()) + " and " +
+                    std::to_string(upper.points_mm.size()) +
+                    " points are too long for this cost: thin them, or take the shortest span");
   std::array<std::size_t, 2> start{};
   std::vector<Step> steps;
   if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "brep/mesh/error.h"
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
@@ -168,6 +169,8 @@ TEST(Tile, RefusesWhatIsNoRing) {
   const Ring ring = ellipse(1, 1, 8, 0.0);
   EXPECT_THROW(tile(ring, {{{0, 0}, {1, 1}}, 1.0}, TileCost::least_area), std::invalid_argument);
   EXPECT_THROW(tile(ring, ellipse(1, 1, 8, 0.0), TileCost::least_area), std::invalid_argument);
+  for (const TileCost cost : {TileCost::least_area, TileCost::greatest_volume, TileCost::least_angle})
+    EXPECT_THROW(tile(ellipse(1, 1, 20000, 0.0), ellipse(1, 1, 20000, 1.0), cost), Error);
 }
 
 }  // namespace
