@@ -181,11 +181,6 @@ class Enclosure {
   RunTree pieces_;
 };
 
-void require_closed(const Contour& contour, const std::string& who) {
-  if (!contour.closed)
-    throw std::invalid_argument(who + ": the contour is open: follow it with its border closed");
-}
-
 /// A point that a closed contour encloses, however others touch it: half way along the lowest line that runs
 /// between two heights of its points. The first point where rounding leaves no such line.
 glm::dvec2 point_within(const Contour& contour) {
@@ -212,7 +207,8 @@ std::vector<Contour> follow(const Slice& slice, const FollowOptions& options) {
 }
 
 double signed_area_mm2(const Contour& contour) {
-  require_closed(contour, "area");
+  if (!contour.closed)
+    throw std::invalid_argument("area: the contour is open: follow it with its border closed");
   double twice = 0.0;
   const auto& p = contour.points_mm;
   for (std::size_t k = 2; k < p.size(); ++k) twice += cross(p[k - 1] - p[0], p[k] - p[0]);

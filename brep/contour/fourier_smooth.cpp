@@ -93,7 +93,8 @@ Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
     throw std::invalid_argument("fourier_smooth: " + std::to_string(options.points) +
                                 " points cannot carry " + std::to_string(options.harmonics) + " harmonics");
   const double length = perimeter_mm(contour);
-  if (!(length > 0.0)) throw std::invalid_argument("fourier_smooth: the contour has no length");
+  if (!(length > 0.0) || !std::isfinite(length))
+    throw std::invalid_argument("fourier_smooth: the contour's length is not above 0 and finite");
   const auto& p = contour.points_mm;
 
   struct Piece {

@@ -245,14 +245,15 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
       throw std::invalid_argument("tile: a ring has " + std::to_string(ring->points_mm.size()) +
                                   " points, three are needed");
   if (!(lower.z_mm < upper.z_mm)) throw std::invalid_argument("tile: the lower ring must lie lower");
-  constexpr double most_pairs = 0x1p27;  // 16 bytes each
+  // About 1 GB: 17 bytes a pair of points, and 2 for the least angle.
+  const double most_pairs = cost == TileCost::least_angle ? 0x1p29 : 0x1p26;
   const auto pairs =
       static_cast<double>(lower.points_mm.size()) * static_cast<double>(upper.points_mm.size());
   if (cost != TileCost::shortest_span && pairs > most_pairs)
     throw Error(ErrorCode::Resource,
                 "tile: rings of " + std::to_string(lower.points_mm.size()) + " and " +
-                    std::to_string(upper.points_mm.size()) +
-                    " points are too long for this cost: thin them, or take the shortest span");
+                    std::to_string(upper.points_mm.size()) + " points, at " + std::to_string(lower.z_mm) +
+                    " mm, are too long for this cost: thin them, or take the shortest span");
   std::array<std::size_t, 2> start{};
   std::vector<Step> steps;
   if (cost == TileCost::least_area || cost == TileCost::greatest_volume) {

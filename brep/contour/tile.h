@@ -27,8 +27,8 @@ struct Ring {
 /// start at the span that is shortest once both rings' boxes are laid over each other, so that shifted shapes
 /// are matched by shape; least angle is so among the strips through it. A strip may cross itself where the
 /// rings differ much. Throws std::invalid_argument where a ring has fewer than three points or the lower one
-/// is not lower, Error (Resource) where m n is above 2^27, but for the shortest span. Cost: m n time for the
-/// start alone, m n log n and 16 m n bytes among all strips.
+/// is not lower, Error (Resource) where tables would take more than a gigabyte. Cost: m n time for the start
+/// alone, m n log n and 17 m n bytes among all strips, 2 m n bytes for the least angle.
 /// Source: the papers named above.
 std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& upper, TileCost cost);
 

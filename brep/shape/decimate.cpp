@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -20,17 +21,30 @@ namespace octotomy::brep {
 namespace {
 
 /// A closed mesh that edges of are collapsed. The library's own test allocates for each edge and is half of
-/// the time; this one gives the same answers on meshes without a boundary.
+/// the time; this one gives the same answers on meshes without a boundary. The library looks at all edges
+/// from a vertex in turn and takes the collapse of the least error: one whose error is too large, or no less
+/// than that of one before it, is refused without a test.
 class CollapsedMesh : public Mesh {
  public:
   explicit CollapsedMesh(const Mesh& mesh) : Mesh(mesh) {}
+
+  /// Gives a collapse's error, below 0 where it is too large.
+  std::function<float(OpenMesh::HalfedgeHandle)> error_of;
+
+  /// Is told the error of a collapse that may be.
+  void found(float error) { least_error_ = error; }
 
   /// Whether the mesh stays a manifold without that edge (the link condition): its ends have no neighbours in
   /// common but the tips of its two triangles. The library's decimater calls it by this name.
   bool is_collapse_ok(OpenMesh::HalfedgeHandle edge) {
     const OpenMesh::HalfedgeHandle back = opposite_halfedge_handle(edge);
     const OpenMesh::VertexHandle from = to_vertex_handle(back), to = to_vertex_handle(edge);
-    if (edge == halfedge_handle(from)) least_error = std::numeric_limits<float>::infinity();
+    if (edge == halfedge_handle(from)) least_error_ = std::numeric_limits<float>::infinity();
+    const bool is_in_turn = edge == next_in_turn_;
+    next_in_turn_ = cw_rotated_halfedge_handle(edge);
+    if (next_in_turn_ == halfedge_handle(from)) next_in_turn_.invalidate();
+    if (is_in_turn)
+      if (const float error = error_of(edge); error < 0.0F || error >= least_error_) return false;
     if (status(edge_handle(edge)).deleted() || status(from).deleted() || status(to).deleted()) return false;
     assert(!is_boundary(edge) && !is_boundary(back));
     const OpenMesh::VertexHandle left = to_vertex_handle(next_halfedge_handle(edge));
@@ -45,9 +59,6 @@ class CollapsedMesh : public Mesh {
     return is_ok;
   }
 
-  /// Of the collapses of a vertex that were looked at since its first edge.
-  float least_error = std::numeric_limits<float>::infinity();
-
  private:
   template <class Visit>
   void for_neighbours(OpenMesh::VertexHandle vertex, const Visit& visit) const {
@@ -58,19 +69,25 @@ class CollapsedMesh : public Mesh {
       spoke = next_halfedge_handle(opposite_halfedge_handle(spoke));
     } while (spoke != first);
   }
+
+  OpenMesh::HalfedgeHandle next_in_turn_;  // none after a vertex' last edge
+  float least_error_ = std::numeric_limits<float>::infinity();
 };
 
 using Decimater = OpenMesh::Decimater::DecimaterT<CollapsedMesh>;
 
 /// A collapse's error, or that it may not be. The library asks each of its modules before the one for errors,
-/// which is a tenth of the work of the others and refuses most; and of a vertex' collapses it takes the one
-/// of the least error, so that the others' shapes need not be looked at.
+/// which is a tenth of the work of the others and refuses most.
 class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
  public:
   using Handle = OpenMesh::Decimater::ModHandleT<ErrorThenShape>;
   using Error = OpenMesh::Decimater::ModQuadricT<CollapsedMesh>;
 
-  explicit ErrorThenShape(CollapsedMesh& mesh) : Error(mesh), normals_(mesh), aspect_(mesh) {}
+  explicit ErrorThenShape(CollapsedMesh& mesh) : Error(mesh), normals_(mesh), aspect_(mesh) {
+    mesh.error_of = [this, &mesh](OpenMesh::HalfedgeHandle edge) {
+      return Error::collapse_priority(CollapseInfo(mesh, edge));
+    };
+  }
 
   void limit(const DecimateOptions& options) {
     set_max_err(options.max_error_mm * options.max_error_mm, false);
@@ -84,11 +101,10 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
   void preprocess_collapse(const CollapseInfo& collapse) override { aspect_.preprocess_collapse(collapse); }
   float collapse_priority(const CollapseInfo& collapse) override {
     const float error = Error::collapse_priority(collapse);
-    float& least = mesh().least_error;
-    if (error < 0.0F || !(error < least) || normals_.collapse_priority(collapse) < 0.0F ||
+    if (error < 0.0F || normals_.collapse_priority(collapse) < 0.0F ||
         aspect_.collapse_priority(collapse) < 0.0F)
       return ILLEGAL_COLLAPSE;
-    least = error;
+    mesh().found(error);
     return error;
   }
 

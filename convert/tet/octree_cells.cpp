@@ -90,7 +90,7 @@ void OctreeCells::add_voxels_of(voxel::BlockRef block, int height, const glm::iv
 // A word of cells of side s lies in a cube of side 4 s. Of such cubes around it, those that a cell of the
 // word touches may not lie in a cell of side 4 s or more. From the smallest cells upward, as dividing makes
 // none smaller than those looked at.
-void OctreeCells::balance() {
+void OctreeCells::balance(const voxel::Progress& progress) {
   std::array<std::uint64_t, 27> touching_beside{};
   for (int n = 0; n < 27; ++n)
     touching_beside[static_cast<std::size_t>(n)] = touching(glm::ivec3(n % 3, (n / 3) % 3, n / 9) - 1);
@@ -100,6 +100,7 @@ void OctreeCells::balance() {
     for (int number = 0; number < along * along * along; ++number) {
       const glm::ivec3 page_place(number % along, (number / along) % along, number / (along * along));
       const Words::Page* page = words.page(page_place);
+      if (page != nullptr) progress.at(0.0);
       for (int i = 0; page != nullptr && i < 64; ++i) {
         const std::uint64_t word = (*page)[static_cast<std::size_t>(i)];
         for (int n = 0; word != 0 && n < 27; ++n)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "convert/tet/sparse_grid.h"
+#include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
 
 namespace octotomy::convert {
@@ -30,8 +31,8 @@ class OctreeCells {
   void add_voxels(const voxel::Octree& octree);
 
   /// Divides cells, no more than needed, until none has a neighbour across a face, edge or corner of less
-  /// than half its side.
-  void balance();
+  /// than half its side. Throws voxel::Stopped.
+  void balance(const voxel::Progress& progress = {});
 
   std::uint64_t count() const;
 

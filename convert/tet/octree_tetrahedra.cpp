@@ -14,6 +14,7 @@
 #include "voxel/space/error.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/rounded.h"
+#include "voxel/space/shared_progress.h"
 
 // 1 A region's Full nodes become cells; where cells at the boundary are voxels, its inner voxels' nodes do,
 //   and each other voxel.
@@ -131,15 +132,16 @@ class CornerNumbers {
 
 constexpr std::size_t cells_between_looks = 4096;  // some milliseconds
 
-/// Throws if so many elements and nodes take more memory than there is.
-void need_room(std::uint64_t elements, std::uint64_t nodes) {
+/// Throws if so many elements and nodes take more memory than there is. `bound` says so where they are the
+/// least.
+void need_room(std::uint64_t elements, std::uint64_t nodes, const std::string& bound = "") {
   constexpr double bytes_an_element = sizeof(std::array<std::uint32_t, 4>) + sizeof(std::uint32_t);
   constexpr double bytes_a_node = sizeof(glm::dvec3) + 2 * sizeof(std::uint32_t);
   const auto count = static_cast<double>(elements);
   const double bytes = bytes_an_element * count + bytes_a_node * static_cast<double>(nodes);
   if (const auto free = static_cast<double>(voxel::free_memory()); bytes > free)
     throw voxel::Error(voxel::ErrorCode::Resource,
-                       "tetrahedra_of: " + voxel::rounded(count / 1e6) + " million elements take " +
+                       "tetrahedra_of: " + bound + voxel::rounded(count / 1e6) + " million elements take " +
                            voxel::rounded(bytes / 1e9) + " GB of memory, " + voxel::rounded(free / 1e9) +
                            " are free: take larger voxels, or raise --memory");
 }
@@ -153,12 +155,14 @@ class Filling {
   /// Regions share no voxel. Without `tells_regions` all elements are one.
   Tetrahedra run(const std::vector<voxel::Octree>& regions, bool tells_regions,
                  const voxel::Progress& progress) {
-    mark_nodes(progress);
+    mark_nodes(voxel::part_of(progress, 0.0, 0.5));
+    if (tells_regions) result_.region_of_tet.reserve(result_.tets.capacity());
+    const voxel::Progress of_elements = voxel::part_of(progress, 0.5, 1.0);
     std::size_t done = 0;
     std::size_t region = 0;
     cells_.for_each([&](const OctreeCell& cell) {
       if (done++ % cells_between_looks == 0)
-        progress.at(static_cast<double>(done) / static_cast<double>(cell_count_));
+        of_elements.at(static_cast<double>(done) / static_cast<double>(cell_count_));
       add(cell);
       if (!tells_regions) return;
       // Neighbours are mostly of one region.
@@ -177,7 +181,8 @@ class Filling {
     std::size_t done = 0;
     std::uint64_t elements = 0;
     cells_.for_each([&](const OctreeCell& cell) {
-      if (done++ % cells_between_looks == 0) progress.at(0.0);
+      if (done++ % cells_between_looks == 0)
+        progress.at(static_cast<double>(done) / static_cast<double>(cell_count_));
       std::uint32_t mentioned = 0;
       cut(
           cell, cells_.halves_about(cell), [&](int place) { mentioned |= std::uint32_t{1} << place; },
@@ -282,7 +287,7 @@ Tetrahedra filled(const std::vector<voxel::Octree>& regions, bool tells_regions,
   std::uint64_t least_cells = 0;
   for (const voxel::Octree& region : regions)
     for (const voxel::LevelCount& level : voxel::level_counts(region)) least_cells += level.full;
-  need_room(12 * least_cells, least_cells);
+  need_room(12 * least_cells, least_cells, "at least ");
 
   const voxel::Universe& universe = regions.front().universe();
   OctreeCells cells(universe);
@@ -296,7 +301,7 @@ Tetrahedra filled(const std::vector<voxel::Octree>& regions, bool tells_regions,
       cells.add_voxels(voxel::combine(universe, voxel::Expression(region) - inner));
     }
   }
-  cells.balance();
+  cells.balance(progress);
   return Filling(universe, cells).run(regions, tells_regions, progress);
 }
 

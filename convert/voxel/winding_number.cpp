@@ -124,7 +124,10 @@ class WoundOctree {
 
   voxel::Octree take(const voxel::Progress& progress) const {
     voxel::SharedProgress parts(progress, 64);
-    return {universe_, put_together(voxel::root_height(universe_.depth), glm::ivec3(0), top_, &parts)};
+    voxel::Octree octree{universe_,
+                         put_together(voxel::root_height(universe_.depth), glm::ivec3(0), top_, &parts)};
+    progress.at(1.0);
+    return octree;
   }
 
  private:

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "brep/mesh/disjoint_sets.h"
+#include "voxel/space/error.h"
 
 // Passes 1 and 3 of winding_number.cpp.
 
@@ -53,7 +54,8 @@ constexpr glm::dvec3 apex_offset_voxels{0.2718281828, 0.3141592653, 0.1414213562
 
 double distance_to_edge(const glm::dvec3& p, const std::array<glm::dvec3, 2>& edge) {
   const glm::dvec3 along = edge[1] - edge[0];
-  const double t = glm::dot(p - edge[0], along) / glm::dot(along, along);
+  const double length2 = glm::dot(along, along);  // 0 too where squares are too small for a number
+  const double t = length2 > 0.0 ? glm::dot(p - edge[0], along) / length2 : 0.0;
   return glm::length(p - edge[0] - std::clamp(t, 0.0, 1.0) * along);
 }
 
@@ -159,6 +161,9 @@ std::optional<int> WindingThreshold::in_cube(const Cube& cube) const {
   const glm::dvec3 middle_mm = lattice_.lps_mm(glm::dvec3(cube.origin) + 0.5 * (cube.side - 1));
   double share = 0.0;
   for (const Triangle& triangle : cap_.triangles) share += covered_share(triangle, middle_mm);
+  if (!std::isfinite(share))
+    throw voxel::Error(voxel::ErrorCode::Geometry,
+                       "a hole's rim lies too far away for it to be closed: remove points beyond 1e100 mm");
   if (cube.side > 1 && may_change(cube, middle_mm, share)) return std::nullopt;
   return static_cast<int>(std::floor(share + 0.5)) + 1;
 }

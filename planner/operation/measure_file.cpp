@@ -224,15 +224,17 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
 }
 
 /// Voxels can be so much coarser than the scan's samples that they pass over an object: where the count is
-/// far from what the samples' own surface encloses, the difference is its half-width and a finding says so.
-void tell_missed(double isosurface_mm3, const voxel::Universe& universe, Json& json) {
-  const double counted_mm3 = json["volume_mm3"], missed_mm3 = std::abs(isosurface_mm3 - counted_mm3);
-  if (missed_mm3 <= 3.0 * json["volume_half_width_mm3"].get<double>()) return;
-  json["volume_half_width_mm3"] = missed_mm3;
+/// further from what the samples' own surface encloses than chance makes it, the difference is its half-width
+/// and a finding says so.
+void tell_coarse_voxels(double isosurface_mm3, const voxel::Universe& universe, Json& json) {
+  constexpr double no_chance = 3.0;  // half-widths, each of three standard deviations
+  const double counted_mm3 = json["volume_mm3"], off_mm3 = std::abs(isosurface_mm3 - counted_mm3);
+  if (off_mm3 <= no_chance * json["volume_half_width_mm3"].get<double>()) return;
+  json["volume_half_width_mm3"] = off_mm3;
   json["volume_half_width_terms"].push_back(
-      {{"name", "missed"}, {"formula", "|V - the isosurface's|"}, {"half_width", missed_mm3}});
+      {{"name", "isosurface"}, {"formula", "|V - the isosurface's|"}, {"half_width", off_mm3}});
   json["findings"].push_back("volume_mm3: voxels of " + plain(universe.lattice().spacing_mm().x) +
-                             " mm miss much of the object: the isosurface of the samples encloses " +
+                             " mm are too coarse for the object: the isosurface of the samples encloses " +
                              grouped(isosurface_mm3, 1) + " mm3: take smaller ones, --voxel");
 }
 
@@ -305,7 +307,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;
   json["volume_isosurface_mm3"] = surface.volume_mm3;
-  tell_missed(surface.volume_mm3, grey.universe(), json);
+  tell_coarse_voxels(surface.volume_mm3, grey.universe(), json);
   json["euler"] = brep::euler_number(isosurface.triangles());
   json["euler_of"] = "the isosurface: V - E + F";
   Json whole{{"kind", "scan"}};

@@ -11,7 +11,7 @@ namespace octotomy::voxel {
 using Edge = std::array<glm::dvec2, 2>;
 
 /// Boxes over the edges of closed polygons in a plane, so that a question about a place does not go over all
-/// edges. Answers are those of the definitions over all edges, to the bit. Building: n log n, about 35 bytes
+/// edges. Answers are those of the definitions over all edges, to the bit. Building: n log n, about 50 bytes
 /// an edge. A question costs log n about contours; edges whose boxes overlap at the place are asked one by
 /// one.
 class EdgeTree {

@@ -181,7 +181,7 @@ std::uint64_t sum_of(const Tetrahedra& t) {
 }
 
 TEST(OctreeTetrahedra, NodesAndElementsStandInTheOrderInWhichDecksNumberThem) {
-  // Sums of what a map of all voxels, merged level by level, gave.
+  // Frozen: decks on disk name nodes and elements by these numbers.
   const voxel::Universe universe = unit_universe(5);
   const voxel::Octree ball = voxel::combine(universe, voxel::Sphere{{15.3, 16.1, 14.2}, 12.7});
   const voxel::Octree slab = voxel::combine(universe, voxel::Box{{-0.5, -0.5, 3.5}, {31.5, 20.5, 19.5}});

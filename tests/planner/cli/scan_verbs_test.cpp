@@ -117,7 +117,7 @@ TEST_F(ScanVerbs, VoxelsThatPassOverAThinObjectSayHowMuchTheyMiss) {
   EXPECT_GT(found["volume_isosurface_mm3"], 500.0);
   EXPECT_EQ(found["volume_half_width_mm3"].get<double>(),
             std::abs(found["volume_isosurface_mm3"].get<double>() - found["volume_mm3"].get<double>()));
-  EXPECT_EQ(found["volume_half_width_terms"].back()["name"], "missed");
+  EXPECT_EQ(found["volume_half_width_terms"].back()["name"], "isosurface");
   EXPECT_NE(run("measure " + at("thin.nrrd") + " --window 0:").out.find("take smaller ones"),
             std::string::npos);
   EXPECT_EQ(json("measure " + at("ball.nrrd") + " --window 0:")["findings"], SortedJson::array());
