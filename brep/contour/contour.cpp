@@ -239,6 +239,7 @@ std::vector<std::optional<std::size_t>> nest(const std::vector<Contour>& contour
   // Along a curve that fills the plane, neighbours lie near each other.
   const std::vector<std::uint32_t> order = morton_order(middles).numbers;
   std::vector<PlaneBox> ordered;
+  ordered.reserve(order.size());
   for (const std::uint32_t c : order) ordered.push_back(boxes[c]);
   const RunTree tree(ordered);
 
