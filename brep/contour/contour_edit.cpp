@@ -15,11 +15,6 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-std::size_t piece_count(const Contour& contour) {
-  const std::size_t points = contour.points_mm.size();
-  return contour.closed || points == 0 ? points : points - 1;
-}
-
 void need_number(std::size_t number, std::size_t count, const char* what) {
   if (number >= count)
     throw std::invalid_argument("contour: there is no " + std::string(what) + " " + std::to_string(number) +
@@ -128,9 +123,7 @@ std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour&
   };
   const RunTree pieces(contour);
   for (std::size_t i = 0; i < count; ++i) {
-    PlaneBox own;
-    own.add(contour.points_mm[i]);
-    own.add(contour.points_mm[(i + 1) % points]);
+    const PlaneBox own = box_of_piece(contour, i);
     const auto j = pieces.first(
         i + 1, count, [&](const PlaneBox& box) { return box.overlaps(own); },
         [&](std::size_t other) { return meet(i, other); });

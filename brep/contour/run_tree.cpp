@@ -5,16 +5,25 @@ namespace octotomy::brep {
 namespace {
 
 std::vector<PlaneBox> boxes_of_pieces(const Contour& contour) {
-  const auto& points = contour.points_mm;
-  std::vector<PlaneBox> boxes(contour.closed || points.empty() ? points.size() : points.size() - 1);
-  for (std::size_t k = 0; k < boxes.size(); ++k) {
-    boxes[k].add(points[k]);
-    boxes[k].add(points[(k + 1) % points.size()]);
-  }
+  std::vector<PlaneBox> boxes(piece_count(contour));
+  for (std::size_t k = 0; k < boxes.size(); ++k) boxes[k] = box_of_piece(contour, k);
   return boxes;
 }
 
 }  // namespace
+
+std::size_t piece_count(const Contour& contour) {
+  const std::size_t points = contour.points_mm.size();
+  return contour.closed || points == 0 ? points : points - 1;
+}
+
+PlaneBox box_of_piece(const Contour& contour, std::size_t piece) {
+  const auto& points = contour.points_mm;
+  PlaneBox box;
+  box.add(points[piece]);
+  box.add(points[(piece + 1) % points.size()]);
+  return box;
+}
 
 RunTree::RunTree(const std::vector<PlaneBox>& items) : count_(items.size()) {
   boxes_.reserve(2 * count_);

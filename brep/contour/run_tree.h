@@ -37,6 +37,12 @@ struct PlaneBox {
   }
 };
 
+/// An open contour has one piece fewer than points.
+std::size_t piece_count(const Contour& contour);
+
+/// The box of a contour's piece, by its first point.
+PlaneBox box_of_piece(const Contour& contour, std::size_t piece);
+
 /// Boxes over the runs that halving a sequence again and again gives. A question is quick if neighbours in
 /// the sequence lie near each other, as a contour's pieces do. Building: linear, 64 bytes an item.
 class RunTree {

@@ -10,7 +10,7 @@ namespace {
 
 /// (x, y, z) of an octant's number x + 2y + 4z.
 glm::ivec3 octant_place(int number) {
-  return {number & 1, (number >> 1) & 1, number >> 2};
+  return voxel::child_place(voxel::octant_child(number));
 }
 
 /// The places of a word that touch the word beside it, at -1, 0 or 1 along each axis.

@@ -30,6 +30,12 @@ struct Picture {
   Slice slice;
 };
 
+/// Whole numbers from -2 to 2 at random, so that many samples are exactly at the threshold.
+Picture noise_of(unsigned seed, std::uint32_t w, std::uint32_t h) {
+  std::mt19937 random(seed);
+  return {w, h, {1.0, 0.7}, [&](glm::dvec2) { return static_cast<double>(random() % 5) - 2.0; }};
+}
+
 /// Signed distance to a circle about (20, 20), positive inside.
 auto disc(double radius) {
   return [radius](glm::dvec2 p) { return radius - glm::distance(p, glm::dvec2(20.3, 19.8)); };
@@ -129,9 +135,7 @@ TEST(Contour, DiagonalCornersJoinAsTheBilinearInterpolantDoes) {
 TEST(Contour, NoiseWithSamplesExactlyAtTheThresholdGivesContoursThatNeverMeet) {
   std::size_t at_threshold = 0, contours = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {
-    std::mt19937 random(seed);
-    const Picture noise(9, 8, {1.0, 0.7},
-                        [&](glm::dvec2) { return static_cast<double>(random() % 5) - 2.0; });
+    const Picture noise = noise_of(seed, 9, 8);
     for (const float s : noise.samples) at_threshold += s == 0.0F ? 1 : 0;
     const auto found = follow(noise.slice, {});
     contours += found.size();
@@ -180,9 +184,7 @@ std::vector<std::optional<std::size_t>> plainly_nested(const std::vector<Contour
 TEST(Nest, ManyContoursOfNoiseAreNestedAsALookAtAllPiecesNestsThem) {
   std::size_t nested = 0, deepest = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
-    std::mt19937 random(seed);
-    const Picture noise(60, 50, {1.0, 0.7},
-                        [&](glm::dvec2) { return static_cast<double>(random() % 5) - 2.0; });
+    const Picture noise = noise_of(seed, 60, 50);
     const auto found = follow(noise.slice, {});
     const auto around = nest(found);
     ASSERT_EQ(around, plainly_nested(found)) << "seed " << seed;
