@@ -15,6 +15,7 @@
 #include <string>
 
 #include "brep/mesh/error.h"
+#include "brep/mesh/short_text.h"
 
 namespace octotomy::brep {
 namespace {
@@ -252,7 +253,7 @@ std::vector<std::array<std::uint32_t, 3>> tile(const Ring& lower, const Ring& up
   if (cost != TileCost::shortest_span && pairs > most_pairs)
     throw Error(ErrorCode::Resource,
                 "tile: rings of " + std::to_string(lower.points_mm.size()) + " and " +
-                    std::to_string(upper.points_mm.size()) + " points, at " + std::to_string(lower.z_mm) +
+                    std::to_string(upper.points_mm.size()) + " points, at " + short_text(lower.z_mm) +
                     " mm, are too long for this cost: thin them, or take the shortest span");
   std::array<std::size_t, 2> start{};
   std::vector<Step> steps;

@@ -21,7 +21,7 @@ namespace octotomy::brep {
 namespace {
 
 constexpr std::int64_t rows_a_slab = 8;
-/// Four times those of a million lines through two heads; surfaces of more layers are passed by fewer lines.
+/// A million lines cross up to 64 layers so often; surfaces of more are passed by fewer lines.
 constexpr double most_crossings = 0x1p26;
 
 /// Where a line of a row crosses a triangle.

@@ -76,8 +76,8 @@ class CollapsedMesh : public Mesh {
 
 using Decimater = OpenMesh::Decimater::DecimaterT<CollapsedMesh>;
 
-/// A collapse's error, or that it may not be. The library asks each of its modules before the one for errors,
-/// which is a tenth of the work of the others and refuses most.
+/// A collapse's error, or that it may not be. The library asks each of its modules before the one for errors;
+/// here errors come first, which cost least.
 class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
  public:
   using Handle = OpenMesh::Decimater::ModHandleT<ErrorThenShape>;
