@@ -56,7 +56,7 @@ export function start_proxy({ late_ms = 0 } = {}) {
     if (is_cut) return;
     const [host, port] = request.url.split(':');
     let is_dead = false;
-    const far = net.connect(Number(port), host, () => setTimeout(() => near.write('HTTP/1.1 200 Connection established\r\n\r\n'), late_ms));
+    const far = net.connect(Number(port), host, () => setTimeout(() => near.write('HTTP/1.1 200 Connection established\r\n\r\n'), late_ms).unref());
     for (const [from, to] of [[near, far], [far, near]]) {
       sockets.add(from);
       from.on('data', (bytes) => {
@@ -93,6 +93,7 @@ const notches_of_a_turn = 20;
 
 export class PlannerWindow {
   actions = 0;
+  answers = 0; // that came over the wire
   problems = [];
   asked = new Set(); // ids of changes of the plan that have no answer yet
   frames = []; // headers and pictures that came over the wire, the newest last
@@ -133,6 +134,7 @@ export class PlannerWindow {
     if (changes.has(message.do)) this.asked.add(message.id);
   }
   take_answer(message) {
+    this.answers++;
     this.asked.delete(message.id);
   }
   take_picture(payload) {
@@ -144,6 +146,11 @@ export class PlannerWindow {
   }
 
   close = () => this.browser.close();
+
+  /// Milliseconds from the page's navigation to its first paint with content; null before.
+  first_paint_ms() {
+    return this.page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? null);
+  }
 
   async click(what, options = {}) {
     this.actions++;
