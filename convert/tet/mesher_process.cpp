@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <fcntl.h>
 #include <filesystem>
 #include <spawn.h>
@@ -124,24 +125,32 @@ struct Ending {
   int status = 0;
 };
 
+/// What the processors have done for a child; none once it has ended.
+std::chrono::nanoseconds processor_time(pid_t child) {
+  clockid_t clock{};
+  timespec used{};
+  if (clock_getcpuclockid(child, &clock) != 0 || clock_gettime(clock, &used) != 0) return {};
+  return std::chrono::seconds(used.tv_sec) + std::chrono::nanoseconds(used.tv_nsec);
+}
+
 /// Waits for the child and kills it when a limit is passed. The child is gone on return.
 Ending wait_within(pid_t child, const MesherLimits& limits) {
   const Clock::time_point started = Clock::now();
-  const Clock::time_point deadline = started + limits.time;
+  const Clock::time_point deadline = started + most_clock_times() * limits.time;
   Clock::time_point next_report = started + report_every;
   Ending ending;
   for (;;) {
     if (limits.progress.report && Clock::now() >= next_report) {
       next_report += report_every;
       limits.progress.report(
-          std::min(1.0, std::chrono::duration<double>(Clock::now() - started) / limits.time));
+          std::min(1.0, std::chrono::duration<double>(processor_time(child)) / limits.time));
     }
     const pid_t gone = waitpid(child, &ending.status, ending.how == Ended::ByItself ? WNOHANG : 0);
     if (gone == child) return ending;
     if (gone < 0 && errno != EINTR) fail("the mesher's process is lost", errno);
     if (ending.how != Ended::ByItself) continue;
     const bool stopped = limits.progress.stop.stop_requested();
-    if (stopped || Clock::now() >= deadline) {
+    if (stopped || processor_time(child) >= limits.time || Clock::now() >= deadline) {
       ending.how = stopped ? Ended::Stopped : Ended::OutOfTime;
       kill(child, SIGKILL);
       continue;
@@ -248,7 +257,7 @@ void write_request(const MemoryFile& file, Sent& sent, const std::string& switch
   std::copy(switches.begin(), switches.end(), request.switches.begin());
   request.memory_limit_bytes = limits.memory_bytes;
   request.parent = ::getpid();
-  // The wall clock decides. The limit of processor time ends the child if this process is gone by then.
+  // wait_within() decides; this limit ends the child if this process is gone by then.
   request.cpu_limit_seconds =
       static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(limits.time).count() + 2);
   file.write_all(&request, sizeof request);
@@ -298,7 +307,7 @@ MesherOutcome run(const Mesher& mesher, Sent sent, const std::string& switches, 
   if (ending.how == Ended::OutOfTime) {
     outcome.code = voxel::ErrorCode::Resource;
     why = "did not end within the time limit of " + std::to_string(limits.time.count()) +
-          " ms: raise it, ease the radius-edge bound or coarsen the surface";
+          " ms of a processor: raise it, ease the radius-edge bound or coarsen the surface";
     outcome.worth_another_try = true;
   } else if (ending.status != 0) {
     const Reason reason = reason_of_status(ending.status, limits);

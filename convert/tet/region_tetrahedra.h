@@ -15,7 +15,7 @@ struct RegionMeshOptions {
   double size_mm = 2.0;                          ///< target size of elements; under two voxels, steps show
   std::vector<Refinement> finer{};               ///< places of smaller elements
   double min_dihedral_deg = 8.0;                 ///< goal, 0..30
-  std::chrono::milliseconds time_limit{300000};  ///< wall-clock time
+  std::chrono::milliseconds time_limit{300000};  ///< of a processor
   std::uint64_t memory_limit_bytes = 4ull << 30;
   voxel::Progress progress{};  ///< reports the share of the time limit that is gone
 };

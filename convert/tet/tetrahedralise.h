@@ -30,7 +30,7 @@ struct TetOptions {
   std::optional<double> max_volume_mm3{};
   bool keep_boundary = true;                    ///< TetGen's -Y: no new points on the surface
   std::vector<Refinement> finer{};              ///< divides the surface first; elements follow its triangles
-  std::chrono::milliseconds time_limit{60000};  ///< wall-clock time of each run
+  std::chrono::milliseconds time_limit{60000};  ///< of a processor, of each run
   std::uint64_t memory_limit_bytes = 4ull << 30;  ///< of each run
   voxel::Progress progress{};                     ///< reports the share of a run's time limit that is gone
 };

@@ -383,8 +383,9 @@ Operation tet_operation() {
                  .a_file())
       .takes(field("refine_boundary", &Tet::refine_boundary,
                    "Lets TetGen add points on the surface; by default it is kept as it is."))
-      .takes(
-          field("seconds", &Tet::seconds, "Time that each run of a mesher may take.").from(1.0).to(86400.0))
+      .takes(field("seconds", &Tet::seconds, "Processor time that each run of a mesher may take.")
+                 .from(1.0)
+                 .to(86400.0))
       .takes(field("mend", &Tet::mend, "A mesh that is no solid is mended first, as repair --solid does."))
       .takes(
           field("fallback", &Tet::fallback,

@@ -13,9 +13,9 @@
 namespace octotomy::convert {
 namespace {
 
-/// Enough triangles to keep a mesher busy for a second.
-MesherInput long_work() {
-  const brep::Triangles surface = tests::ball({0, 0, 0}, 30.0, 6);
+/// Enough triangles to keep a mesher busy for a second or more; with a depth of 5 a fifth of that.
+MesherInput long_work(int depth = 6) {
+  const brep::Triangles surface = tests::ball({0, 0, 0}, 30.0, depth);
   return {surface.points_mm, surface.faces, {}};
 }
 
@@ -53,12 +53,33 @@ TEST(MesherProcess, ACrashIsNamedByItsSignalAndOtherSwitchesAreWorthATry) {
   EXPECT_TRUE(outcome.tetrahedra.empty());
 }
 
-TEST(MesherProcess, AHangEndsAtTheTimeLimitAndLeavesNoProcess) {
-  const MesherOutcome outcome = struck_by(SIGSTOP, std::chrono::milliseconds(700));
+TEST(MesherProcess, AHangEndsByTheClockAndLeavesNoProcess) {
+  const MesherOutcome outcome = struck_by(SIGSTOP, std::chrono::milliseconds(400));
   ASSERT_TRUE(outcome.failure);
-  EXPECT_NE(outcome.failure->find("did not end within the time limit of 700 ms"), std::string::npos)
+  EXPECT_NE(outcome.failure->find("did not end within the time limit of 400 ms"), std::string::npos)
       << *outcome.failure;
   EXPECT_EQ(child_named("octotomy-tetgen"), -1);
+}
+
+TEST(MesherProcess, TimeInWhichItHasNoProcessorIsNotCounted) {
+  const MesherOutcome alone = run_tetgen(long_work(5), "pYq1.4Q", {});
+  ASSERT_FALSE(alone.failure);
+  constexpr std::chrono::seconds time{6};
+  bool was_held = false;
+  const auto hold = [&](double share) {
+    const pid_t child = child_named("octotomy-tetgen");
+    if (was_held || child <= 0) return;
+    was_held = true;
+    kill(child, SIGSTOP);
+    std::this_thread::sleep_for(time + std::chrono::seconds(1));
+    kill(child, SIGCONT);
+    EXPECT_LT(share, 0.5);
+  };
+  const MesherOutcome held = run_tetgen(long_work(5), "pYq1.4Q", {time, 4ULL << 30, {{}, hold}});
+  EXPECT_TRUE(was_held);
+  ASSERT_FALSE(held.failure) << *held.failure;
+  EXPECT_EQ(held.points_mm, alone.points_mm);
+  EXPECT_EQ(held.tetrahedra, alone.tetrahedra);
 }
 
 TEST(MesherProcess, OneEndedFromOutsideIsToldAsThat) {
