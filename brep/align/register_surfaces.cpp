@@ -389,7 +389,10 @@ Cloud cloud_of(const Mesh& mesh, std::size_t count, const std::string& which) {
   double area = 0.0;
   for (const auto f : mesh.faces()) area += mesh.calc_face_area(f);
   if (!(area > 0.0)) throw std::invalid_argument("register: the " + which + " surface has no area");
-  const SurfaceSamples samples = sample_surface(mesh, std::sqrt(2.0 * area / static_cast<double>(count)));
+  const Triangles triangles = triangles_of(mesh);
+  const auto wanted = static_cast<double>(count);
+  const SurfaceSamples samples =
+      sample_surface(triangles, widened_spacing_mm(triangles, std::sqrt(2.0 * area / wanted), 64.0 * wanted));
   Cloud cloud;
   const double whole = std::accumulate(samples.areas_mm2.begin(), samples.areas_mm2.end(), 0.0);
   const double each = whole / static_cast<double>(count);

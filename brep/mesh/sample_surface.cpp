@@ -179,4 +179,16 @@ SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm) {
   return samples;
 }
 
+double widened_spacing_mm(const Triangles& triangles, double spacing_mm, double most_samples) {
+  double long_mm = 0.0;
+  for (const auto& face : triangles.faces) {
+    const glm::dvec3 &a = triangles.points_mm[face[0]], &b = triangles.points_mm[face[1]],
+                     &c = triangles.points_mm[face[2]];
+    const double longest_mm = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    if (longest_mm > spacing_mm) long_mm += longest_mm;
+  }
+  // Wedges have two strips for each spacing of the two halves.
+  return std::max(spacing_mm, 4.0 * long_mm / most_samples);
+}
+
 }  // namespace octotomy::brep

@@ -25,4 +25,9 @@ struct SurfaceSamples {
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
 SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm);
 
+/// The spacing itself, or a larger one at which the triangles with sides longer than it, which may be
+/// slivers, take at most about so many samples for their length. Of well-shaped triangles the area decides:
+/// give several times what that takes.
+double widened_spacing_mm(const Triangles& triangles, double spacing_mm, double most_samples);
+
 }  // namespace octotomy::brep

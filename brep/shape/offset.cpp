@@ -252,8 +252,9 @@ MissedWalls missed_walls(const Solid& solid, const Solid& moved, const OffsetOpt
   const bool inward = options.by_mm < 0.0;
   if (moved.empty()) return {inward ? 0.0 : 1.0, solid.triangles().points_mm.front()};
   constexpr double samples_wanted = 20000.0;
+  const double spacing_mm = std::max(options.cell_mm, std::sqrt(solid.measures().area_mm2 / samples_wanted));
   const SurfaceSamples samples = sample_surface(
-      solid.triangles(), std::max(options.cell_mm, std::sqrt(solid.measures().area_mm2 / samples_wanted)));
+      solid.triangles(), widened_spacing_mm(solid.triangles(), spacing_mm, 64.0 * samples_wanted));
   const std::vector<std::uint8_t> inside = moved.tree().inside(samples.points_mm);
   std::vector<glm::dvec3> wrong_mm;
   std::vector<double> areas_mm2;

@@ -97,5 +97,22 @@ TEST(SampleSurface, SliversTakeSamplesByTheirAreaAndTheirLengthNotByTheSquareOfI
     }
 }
 
+TEST(SampleSurface, AWidenedSpacingTakesNoMoreOfSliversAndLeavesOtherSurfacesAlone) {
+  const Triangles ball = triangles_of(mesh_of(shapes::sphere({0, 0, 0}, 10, 4)));
+  EXPECT_EQ(widened_spacing_mm(ball, 0.5, 64.0 * 8.0 * 1256.0), 0.5);
+  for (const double length_mm : {1e3, 1e6, 3e11}) {
+    Triangles needle = ball;
+    needle.points_mm.front().z = length_mm;
+    const double wanted = 20000.0;
+    const double spacing_mm = std::sqrt(2.0 * size_of(needle).area_mm2 / wanted);
+    const SurfaceSamples samples =
+        sample_surface(needle, widened_spacing_mm(needle, spacing_mm, 64.0 * wanted));
+    EXPECT_GT(samples.points_mm.size(), 1000u) << length_mm;
+    EXPECT_LT(samples.points_mm.size(), 80.0 * wanted) << length_mm;
+    EXPECT_NEAR(std::accumulate(samples.areas_mm2.begin(), samples.areas_mm2.end(), 0.0),
+                size_of(needle).area_mm2, 1e-9 * size_of(needle).area_mm2);
+  }
+}
+
 }  // namespace
 }  // namespace octotomy::brep
