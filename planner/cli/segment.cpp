@@ -66,7 +66,8 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
       const Stopwatch watch(timings, "octree");
       // Beyond the scan is what no window means: less than any of its samples.
       const double low = std::max(-32768.0, std::floor(std::min(voxel::range(scene).low - 1.0, -1024.0)));
-      return kept.emplace(voxel::grey_octree_of(where, scene, static_cast<std::int16_t>(low)));
+      return kept.emplace(voxel::grey_octree_of(where, scene, static_cast<std::int16_t>(low),
+                                                {program.stop.get_token(), program.progress("octree")}));
     };
   };
   std::optional<voxel::GreyOctree> grey, own_grey;

@@ -251,7 +251,7 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   bool has_failed = false;
   voxel::Scene scene = bench.read_scan(file, [&](const voxel::Scene& read, int count) {
     if (count == 0) return build.reset();
-    if (has_failed) return;
+    if (has_failed || asked.voxel_mm) return;  // finer voxels take long, which is told below
     try {
       if (!build) build.emplace(universe_of(read.lattice, asked.voxel_mm), read);
       build->add(count);
@@ -264,7 +264,9 @@ ScanAndOctree read_to_octree(const std::filesystem::path& file, const Measure& a
   });
   if (asked.window) need_hounsfield(*asked.window, scene);
   const Stopwatch watch(bench.timings, "octree");
-  if (!grey) grey = voxel::grey_octree_of(universe_of(scene.lattice, asked.voxel_mm), scene);
+  if (!grey)
+    grey = voxel::grey_octree_of(universe_of(scene.lattice, asked.voxel_mm), scene, voxel::beyond_scan,
+                                 bench.progress("octree"));
   return {std::move(scene), std::move(*grey)};
 }
 

@@ -54,10 +54,9 @@ voxel::DrawnObject drawn_of_file(const std::filesystem::path& path, const Render
     const voxel::Scene scene = bench.read_scan(path);
     need_hounsfield(render.window, scene);
     const Stopwatch watch(timings, "octree");
-    set_window(
-        object,
-        voxel::grey_octree_of(universe ? *universe : universe_of(scene.lattice, render.voxel_mm), scene),
-        render.window);
+    const voxel::Universe where = universe ? *universe : universe_of(scene.lattice, render.voxel_mm);
+    set_window(object, voxel::grey_octree_of(where, scene, voxel::beyond_scan, bench.progress("octree")),
+               render.window);
     if (object.octree.is_empty()) {
       const voxel::Range range = voxel::range(scene);
       throw std::runtime_error(path.string() + ": no voxel is in the window " + to_string(render.window) +

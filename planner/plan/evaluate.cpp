@@ -268,7 +268,9 @@ class Evaluator {
 
   void load(const std::string& name, voxel::Scene scene) {
     const Stopwatch watch(result_.timings, "octree");
-    voxel::GreyOctree grey = voxel::grey_octree_of(result_.universe, scene, background_of(scene));
+    voxel::GreyOctree grey = voxel::grey_octree_of(
+        result_.universe, scene, background_of(scene),
+        {options_.stop, [&](double fraction) { report("octree of " + name, fraction); }});
     loaded_.insert_or_assign(
         name, LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
   }

@@ -9,7 +9,9 @@ namespace octotomy::planner {
 
 /// The universe a plan is evaluated in: around the scan's bounds, voxels of the asked edge; by default the
 /// scan's smallest spacing, or what makes the bounds 512 voxels a side where that is larger. A voxel's centre
-/// lies on the scan's first sample, so that samples as far apart as voxels are taken over as they are.
+/// lies on the scan's first sample, so that samples as far apart as voxels are taken over as they are. Throws
+/// voxel::Error (Resource) with the figures where voxels finer than the samples may take more memory than is
+/// free.
 voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> voxel_mm);
 
 }  // namespace octotomy::planner

@@ -75,15 +75,16 @@ std::uint64_t free_memory() {
   return std::min(available_bytes(), limit - std::min(limit, held));
 }
 
-void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, std::uint64_t sample_bytes) {
+void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, std::uint64_t sample_bytes,
+                 const std::string& what) {
   const std::uint64_t free = free_memory();
   if (sample_count > 0 && sample_bytes > std::numeric_limits<std::uint64_t>::max() / sample_count)
     refuse(path, "states more samples than any memory holds");
   const std::uint64_t needed = sample_count * sample_bytes;
   if (needed <= free) return;
   refuse(path,
-         "its samples take " + gigabytes(needed) + " of memory, " + gigabytes(free) +
-             " are free: crop it or take wider spacings, or raise --memory",
+         what + " take " + gigabytes(needed) + " of memory, " + gigabytes(free) +
+             " are free: crop it or take wider spacings or larger voxels, or raise --memory",
          ErrorCode::Resource);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace octotomy::voxel {
 
@@ -21,7 +22,9 @@ bool is_memory_over() noexcept;
 std::uint64_t free_memory();
 
 /// Throws Error (Resource) with both figures where `path`, of `sample_count` samples that take
-/// `sample_bytes` each while they are read, does not fit into free_memory().
-void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, std::uint64_t sample_bytes);
+/// `sample_bytes` each while they are read, does not fit into free_memory(). `what` names other things that
+/// are made of it.
+void need_memory(const std::filesystem::path& path, std::uint64_t sample_count, std::uint64_t sample_bytes,
+                 const std::string& what = "its samples");
 
 }  // namespace octotomy::voxel

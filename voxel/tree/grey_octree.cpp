@@ -78,10 +78,16 @@ std::uint64_t GreyOctree::bytes_memory() const {
   return bytes + octotomy::voxel::bytes_memory(scan());
 }
 
-GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background) {
+GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background,
+                          const Progress& progress) {
   check(scene);
   GreyOctreeBuild build(universe, scene, background);
-  build.add(scene.lattice.dims.z);
+  // Threads wait for each other at each report, so they are no more than a percentage shows.
+  const int slices = scene.lattice.dims.z, reports = progress.report ? std::min(slices, 50) : 1;
+  for (int i = 1; i <= reports; ++i) {
+    build.add(slices * i / reports);
+    progress.at(i < reports ? build.built() : 1.0);
+  }
   return build.finished();
 }
 

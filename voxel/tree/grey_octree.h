@@ -13,6 +13,7 @@
 
 #include "voxel/space/large_allocator.h"
 #include "voxel/space/lattice.h"
+#include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
 #include "voxel/tree/octree.h"
 
@@ -119,13 +120,18 @@ class GreyOctree {
   std::shared_ptr<const Storage> storage_;
 };
 
+/// What voxels outside of a scan hold by default: below any CT sample.
+inline constexpr std::int16_t beyond_scan = -1024;
+
 /// Samples the scene at the universe's voxel centres: exactly if the lattices coincide, otherwise by
 /// trilinear interpolation rounded to the nearest integer, halves upward. Voxels whose centre lies outside
 /// the scene's bounds become `background`. Throws std::invalid_argument if float samples leave the int16
-/// range. Parallel; same bits on any thread count. GreyOctreeBuild (grey_octree_build.h) makes it while the
-/// scan is read. Memory: the samples within the scan's bounds and three per cent, without blocks of 16 x 16 x
-/// 16 voxels that have one value, as air beside a head has.
-GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
+/// range; Stopped. Parallel; same bits on any thread count.
+/// GreyOctreeBuild (grey_octree_build.h) makes it while the scan is read. Memory: the samples within the
+/// scan's bounds and three per cent, without blocks of 16 x 16 x 16 voxels that have one value, as air beside
+/// a head has.
+GreyOctree grey_octree_of(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan,
+                          const Progress& progress = {});
 
 /// The grey octree whose blocks of height 2 numbered `blocks` have samples and whose others are background.
 /// `fill` sets the samples of brick `number`, that of blocks[number], and is called once each from several

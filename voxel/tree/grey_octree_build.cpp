@@ -143,6 +143,10 @@ class GreyOctreeBuild::Work {
   }
 
   void add(int count);
+  double built() {
+    tasks_.wait();
+    return 1.0 - static_cast<double>(layers_.size()) / static_cast<double>(shared_.size());
+  }
   GreyOctree finished() {
     tasks_.wait();
     storage_->brick_count = 1 + brick_count_;
@@ -315,6 +319,10 @@ GreyOctreeBuild::~GreyOctreeBuild() = default;
 
 void GreyOctreeBuild::add(int count) {
   work_->add(count);
+}
+
+double GreyOctreeBuild::built() {
+  return work_->built();
 }
 
 GreyOctree GreyOctreeBuild::finished() {

@@ -14,13 +14,15 @@ namespace octotomy::voxel {
 class GreyOctreeBuild {
  public:
   /// Preconditions: the scene passes check(); its samples need no values yet, but their place.
-  GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = -1024);
+  GreyOctreeBuild(const Universe& universe, const Scene& scene, std::int16_t background = beyond_scan);
   ~GreyOctreeBuild();
   GreyOctreeBuild(const GreyOctreeBuild&) = delete;
   GreyOctreeBuild& operator=(const GreyOctreeBuild&) = delete;
 
   /// The scene's first `count` slices are final. Does not wait.
   void add(int count);
+  /// Waits for the other threads and tells what share of the voxels in the scan's box they have built.
+  double built();
   /// Precondition: all slices were added. Throws as grey_octree_of(). To be called once.
   GreyOctree finished();
 

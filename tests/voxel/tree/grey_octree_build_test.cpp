@@ -117,5 +117,22 @@ TEST(GreyOctreeBuild, ThrowsWhatItsThreadsThrow) {
   EXPECT_THROW(build.finished(), std::invalid_argument);
 }
 
+TEST(GreyOctreeBuild, TellsItsProgressAndStopsInBetweenWithTheSameBits) {
+  const Universe universe{6, glm::dmat4(1.0)};
+  for (const Lattice& lattice : lattices()) {
+    const Scene scene = scene_of(lattice);
+    std::stop_source source;
+    std::vector<double> told;
+    const Progress progress{source.get_token(), [&](double fraction) { told.push_back(fraction); }};
+    const GreyOctree grey = grey_octree_of(universe, scene, beyond_scan, progress);
+    EXPECT_EQ(differences(grey, grey_octree_of(universe, scene)), 0U);
+    EXPECT_GE(told.size(), 10U);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1.0);
+    const Progress stopping{source.get_token(), [&](double) { source.request_stop(); }};
+    EXPECT_THROW(grey_octree_of(universe, scene, beyond_scan, stopping), Stopped);
+  }
+}
+
 }  // namespace
 }  // namespace octotomy::voxel
