@@ -8,9 +8,11 @@
 #include <stdexcept>
 #include <string>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <utility>
 
 #include "voxel/space/error.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::convert {
 namespace {
@@ -151,6 +153,43 @@ class Round {
   std::map<Side, std::uint32_t> middle_;  ///< of the sides to halve, and their new points
 };
 
+glm::dvec3 middle_mm(const Tetrahedra& tetrahedra, std::size_t tet) {
+  const TetCorners corners = corners_mm(tetrahedra, tet);
+  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
+
+double mean_side_mm(const Tetrahedra& tetrahedra, std::size_t tet) {
+  const TetCorners corners = corners_mm(tetrahedra, tet);
+  double sum_mm = 0.0;
+  for (const auto& [a, b] : sides_of_tet) sum_mm += glm::distance(corners.at(a), corners.at(b));
+  return sum_mm / static_cast<double>(sides_of_tet.size());
+}
+
+/// The element whose middle is nearest, of equals the first.
+std::size_t nearest_tet(const Tetrahedra& tetrahedra, const glm::dvec3& p_mm) {
+  using Nearest = std::pair<double, std::size_t>;
+  return tbb::parallel_reduce(
+             tbb::blocked_range<std::size_t>(0, tetrahedra.tets.size()),
+             Nearest{std::numeric_limits<double>::infinity(), 0},
+             [&](const tbb::blocked_range<std::size_t>& range, Nearest nearest) {
+               for (std::size_t t = range.begin(); t < range.end(); ++t)
+                 nearest = std::min(nearest, {glm::distance(middle_mm(tetrahedra, t), p_mm), t});
+               return nearest;
+             },
+             [](const Nearest& a, const Nearest& b) { return std::min(a, b); })
+      .second;
+}
+
+/// A refinement's points, and some of its surface's.
+std::vector<glm::dvec3> places_mm(const Refinement& refinement) {
+  constexpr std::size_t most = 100;
+  std::vector<glm::dvec3> places = refinement.points_mm;
+  const std::vector<glm::dvec3>& surface = refinement.surface.points_mm;
+  const std::size_t step = std::max<std::size_t>(1, surface.size() / most);
+  for (std::size_t i = 0; i < surface.size(); i += step) places.push_back(surface[i]);
+  return places;
+}
+
 }  // namespace
 
 SizingField::SizingField(const std::vector<Refinement>& finer) {
@@ -189,6 +228,33 @@ brep::Triangles refined_surface(const brep::Triangles& surface, const SizingFiel
       refuse_number();
   } while (Round(finer, sizes).split());
   return finer;
+}
+
+std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std::vector<Refinement>& finer) {
+  constexpr double far_larger = 3.0;
+  if (finer.empty() || tetrahedra.tets.empty()) return std::nullopt;
+  const SizingField sizes(finer);
+  double worst = far_larger, side_mm = 0.0, asked_mm = 0.0;
+  glm::dvec3 at_mm(0.0);
+  std::size_t count = 0;
+  for (const Refinement& refinement : finer)
+    for (const glm::dvec3& place_mm : places_mm(refinement)) {
+      const std::size_t tet = nearest_tet(tetrahedra, place_mm);
+      const double own_mm = mean_side_mm(tetrahedra, tet);
+      const double share = own_mm / sizes.at_mm({middle_mm(tetrahedra, tet)}).front();
+      if (share <= far_larger) continue;
+      ++count;
+      if (share <= worst) continue;
+      worst = share;
+      side_mm = own_mm;
+      asked_mm = refinement.size_mm;
+      at_mm = place_mm;
+    }
+  if (count == 0) return std::nullopt;
+  return "elements at " + voxel::rounded(at_mm) + " mm have sides of " + voxel::rounded(side_mm) +
+         " mm where " + voxel::rounded(asked_mm) + " mm were asked for" +
+         (count > 1 ? ", the worst of " + std::to_string(count) + " such places" : "") +
+         ": they grow inward from the surface: ask at the surface, or bound the volume of all";
 }
 
 }  // namespace octotomy::convert

@@ -4,10 +4,13 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "brep/mesh/distance.h"
 #include "brep/mesh/triangles.h"
+#include "convert/tet/tetrahedra.h"
 
 namespace octotomy::convert {
 
@@ -54,5 +57,11 @@ class SizingField {
 /// surface stays closed and keeps its volume. Throws voxel::Error (Resource) beyond four million triangles.
 /// Cost: n log n of the answer.
 brep::Triangles refined_surface(const brep::Triangles& surface, const SizingField& sizes);
+
+/// Where elements stayed over three times as large as a refinement allows at their middle, as those deep
+/// inside do that grow from a refined surface: the worst place, both sizes and the number of places. Looks at
+/// the element nearest to each point, and to a hundred of a surface's. None if no place is. Cost: places
+/// times elements, parallel.
+std::optional<std::string> coarse_place(const Tetrahedra& tetrahedra, const std::vector<Refinement>& finer);
 
 }  // namespace octotomy::convert

@@ -465,6 +465,9 @@ Tetrahedra tetrahedralise(const brep::Mesh& solid, const TetOptions& options) {
   if (options.mesher == Mesher::Stuffing || (any && !reaches(best, fit_dihedral_deg())))
     take_better(best, by_stuffing(surface, surface_mm3, options, attempts), "isosurface stuffing", attempts);
   if (best) {
+    if (best->method != "isosurface stuffing")
+      if (std::optional<std::string> coarse = coarse_place(*best, options.finer))
+        best->findings.push_back(*std::move(coarse));
     best->findings.insert(best->findings.begin(), attempts.findings.begin(), attempts.findings.end());
     return *std::move(best);
   }

@@ -363,8 +363,7 @@ Operation tet_operation() {
       .takes(field("max_volume_mm3", &Tet::max_volume_mm3, "Largest tetrahedron.").greater_than(0.0))
       .takes(field("finer", &Tet::finer,
                    "WHERE=MM: elements with sides of about so many mm at a point x,y,z, a landmark or along "
-                   "a mesh "
-                   "file's surface, growing from there; repeated.")
+                   "a mesh file's surface, growing from there; deep inside only with --size; repeated.")
                  .repeated())
       .takes(field("nodes", &Tet::nodes,
                    "NAME=WHERE: a set of surface nodes at a point x,y,z or a landmark, within a ball "

@@ -142,5 +142,20 @@ TEST(SizingField, ElementsOfRegionsAreGradedTowardsASurface) {
   EXPECT_GE(quality(graded).min_dihedral_deg, fit_dihedral_deg());
 }
 
+TEST(SizingField, APlaceTooDeepForItsSizeIsTold) {
+  const brep::Mesh solid = brep::mesh_of(ball({0, 0, 0}, 10.0, 3));
+  TetOptions options;
+  const auto findings = [&](const glm::dvec3& p_mm, double size_mm) {
+    options.finer = {{{p_mm}, {}, size_mm}};
+    return tetrahedralise(solid, options).findings;
+  };
+  const std::vector<std::string> deep = findings({0, 0, 0}, 0.1);
+  ASSERT_FALSE(deep.empty());
+  EXPECT_NE(deep.back().find("elements at (0, 0, 0) mm have sides of "), std::string::npos) << deep.back();
+  EXPECT_NE(deep.back().find(" mm where 0.1 mm were asked for"), std::string::npos) << deep.back();
+  EXPECT_TRUE(findings({9.5, 0, 0}, 0.3).empty());
+  EXPECT_TRUE(findings({0, 0, 0}, 4.0).empty());
+}
+
 }  // namespace
 }  // namespace octotomy::convert
