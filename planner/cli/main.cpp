@@ -29,6 +29,7 @@
 #include "planner/cli/verbs.h"
 #include "planner/suite/suite.h"
 #include "planner/verb/manual.h"
+#include "planner/verb/progress_line.h"
 #include "planner/verb/verb.h"
 #include "voxel/space/error.h"
 #include "voxel/space/memory_need.h"
@@ -45,7 +46,7 @@ std::atomic<int> interrupts{0};
 /// is removed, and the processes that they started end with this one.
 [[noreturn]] void end_now(const char* why) {
   octotomy::voxel::remove_unfinished();
-  if (::isatty(STDERR_FILENO) != 0) std::fputs("\r\x1b[2K", stderr);
+  cli::end_progress();
   cli::warn(why);
   std::_Exit(cli::out_of_resources);
 }
@@ -85,6 +86,7 @@ class Watch {
     std::condition_variable_any end;  // wakes at once, where a sleep would delay the program's end
     while (!end.wait_for(lock, over, look_every, [&over] { return over.stop_requested(); })) {
       if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
+      if (program.shows_progress()) cli::show_silent_work();
       const bool late = program.time_limit_s &&
                         std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s;
       if (interrupts > 1) end_now("interrupted twice: ended at once, what was unfinished is removed");

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace octotomy::planner {
@@ -11,22 +12,29 @@ namespace octotomy::planner {
 /// are made while further objects are.
 using Timings = std::map<std::string, double>;
 
+/// A stage that has not ended yet.
+struct RunningStage {
+  std::string name;
+  std::chrono::steady_clock::time_point start;
+};
+
 /// Adds the time from its making to its end to a stage.
 class Stopwatch {
  public:
-  Stopwatch(Timings& timings, std::string stage)
-      : timings_(timings), stage_(std::move(stage)), start_(std::chrono::steady_clock::now()) {}
+  Stopwatch(Timings& timings, std::string stage);
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
-  ~Stopwatch() {
-    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start_;
-    timings_[stage_] += spent.count();
-  }
+  ~Stopwatch();
 
  private:
+  friend std::optional<RunningStage> newest_stage();
+
   Timings& timings_;
   std::string stage_;
   std::chrono::steady_clock::time_point start_;
 };
+
+/// What this process does: of the stages that run the one begun last. None between stages.
+std::optional<RunningStage> newest_stage();
 
 }  // namespace octotomy::planner

@@ -14,6 +14,7 @@
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/verb/numbers.h"
+#include "planner/verb/progress_line.h"
 #include "voxel/filter/tissue.h"
 
 namespace octotomy::planner::cli {
@@ -30,6 +31,7 @@ bool is_control(char symbol) {
 void put(const std::string& text) {
   // The watch has said how the program ends, which it does at any moment.
   while (!has_last_word(Speaker::Verb)) std::this_thread::sleep_for(std::chrono::seconds(1));
+  end_progress();
   errno = 0;
   const bool written =
       std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
@@ -122,14 +124,13 @@ void Program::say(const Json& answer, const std::string& text) const {
   put(json_text(whole, 2) + "\n");
 }
 
+bool Program::shows_progress() const {
+  return !json && ::isatty(STDERR_FILENO) != 0;
+}
+
 std::function<void(const std::string&, double)> Program::progress() const {
-  if (json || ::isatty(STDERR_FILENO) == 0) return {};
-  return [](const std::string& doing, double fraction) {
-    // Erase the line, so that a shorter text leaves nothing of a longer one.
-    std::fprintf(stderr, "\r\x1b[2K%3d %%  %s", static_cast<int>(100.0 * fraction), line_of(doing).c_str());
-    if (fraction >= 1.0) std::fputs("\r\x1b[2K", stderr);
-    std::fflush(stderr);
-  };
+  if (!shows_progress()) return {};
+  return show_progress;
 }
 
 std::function<void(double)> Program::progress(const std::string& doing) const {
@@ -147,6 +148,7 @@ std::string unknown_verb(const CLI::App& app, const std::string& word) {
 }
 
 void warn(const std::string& line) {
+  erase_progress();
   std::fprintf(stderr, "octotomy: %s\n", line_of(line).c_str());
 }
 

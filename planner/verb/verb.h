@@ -52,7 +52,9 @@ struct Program {
   /// the noted scans' audits go to standard error, one line each, and their audits into the JSON as "scans"
   /// if the answer holds no audit yet; the noted tissues' bounds go the same ways, as "tissues".
   void say(const Json& answer, const std::string& text) const;
-  /// A progress line on standard error where that is a terminal and people read.
+  /// Whether people read on a terminal what is being done.
+  bool shows_progress() const;
+  /// A progress line on standard error where shows_progress(), else none.
   std::function<void(const std::string&, double)> progress() const;
   /// The same of one thing only, which the line calls `doing`.
   std::function<void(double)> progress(const std::string& doing) const;
