@@ -206,9 +206,14 @@ std::vector<Contour> follow(const Slice& slice, const FollowOptions& options) {
   return Follower(slice, options).run();
 }
 
-double signed_area_mm2(const Contour& contour) {
+void need_closed(const Contour& contour, const char* asking) {
   if (!contour.closed)
-    throw std::invalid_argument("area: the contour is open: follow it with its border closed");
+    throw std::invalid_argument(std::string(asking) +
+                                ": the contour is open: follow it with its border closed");
+}
+
+double signed_area_mm2(const Contour& contour) {
+  need_closed(contour, "area");
   double twice = 0.0;
   const auto& p = contour.points_mm;
   for (std::size_t k = 2; k < p.size(); ++k) twice += cross(p[k - 1] - p[0], p[k] - p[0]);

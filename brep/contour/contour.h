@@ -43,6 +43,9 @@ struct FollowOptions {
 /// and Hamann, "The asymptotic decider", Visualization 1991.
 std::vector<Contour> follow(const Slice& slice, const FollowOptions& options);
 
+/// Throws std::invalid_argument where a contour is open; its message begins with who asks.
+void need_closed(const Contour& contour, const char* asking);
+
 /// The area a closed contour encloses, positive counter-clockwise. Throws std::invalid_argument where open.
 double signed_area_mm2(const Contour& contour);
 

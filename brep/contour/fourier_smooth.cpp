@@ -86,8 +86,7 @@ class Circle {
 }  // namespace
 
 Contour fourier_smooth(const Contour& contour, const FourierOptions& options) {
-  if (!contour.closed)
-    throw std::invalid_argument("fourier_smooth: the contour is open: follow it with its border closed");
+  need_closed(contour, "fourier_smooth");
   if (options.harmonics < 1) throw std::invalid_argument("fourier_smooth: keep at least one harmonic");
   if (options.points <= 2 * options.harmonics)
     throw std::invalid_argument("fourier_smooth: " + std::to_string(options.points) +
