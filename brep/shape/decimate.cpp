@@ -31,8 +31,10 @@ class CollapsedMesh : public Mesh {
   /// Gives a collapse's error, below 0 where it is too large.
   std::function<float(OpenMesh::HalfedgeHandle)> error_of;
 
-  /// Is told the error of a collapse that may be.
-  void found(float error) { least_error_ = error; }
+  /// That of the collapse that was asked about last.
+  float error() const { return error_; }
+  /// Is told that it may be.
+  void found() { least_error_ = error_; }
 
   /// Whether the mesh stays a manifold without that edge (the link condition): its ends have no neighbours in
   /// common but the tips of its two triangles. The library's decimater calls it by this name.
@@ -43,8 +45,8 @@ class CollapsedMesh : public Mesh {
     const bool is_in_turn = edge == next_in_turn_;
     next_in_turn_ = cw_rotated_halfedge_handle(edge);
     if (next_in_turn_ == halfedge_handle(from)) next_in_turn_.invalidate();
-    if (is_in_turn)
-      if (const float error = error_of(edge); error < 0.0F || error >= least_error_) return false;
+    error_ = error_of(edge);
+    if (is_in_turn && (error_ < 0.0F || error_ >= least_error_)) return false;
     if (status(edge_handle(edge)).deleted() || status(from).deleted() || status(to).deleted()) return false;
     assert(!is_boundary(edge) && !is_boundary(back));
     const OpenMesh::VertexHandle left = to_vertex_handle(next_halfedge_handle(edge));
@@ -71,6 +73,7 @@ class CollapsedMesh : public Mesh {
   }
 
   OpenMesh::HalfedgeHandle next_in_turn_;  // none after a vertex' last edge
+  float error_ = 0.0F;
   float least_error_ = std::numeric_limits<float>::infinity();
 };
 
@@ -100,11 +103,13 @@ class ErrorThenShape : public OpenMesh::Decimater::ModQuadricT<CollapsedMesh> {
   }
   void preprocess_collapse(const CollapseInfo& collapse) override { aspect_.preprocess_collapse(collapse); }
   float collapse_priority(const CollapseInfo& collapse) override {
-    const float error = Error::collapse_priority(collapse);
+    // The library asks whether a collapse keeps the mesh a manifold just before.
+    const float error = mesh().error();
+    assert(error == Error::collapse_priority(collapse));
     if (error < 0.0F || normals_.collapse_priority(collapse) < 0.0F ||
         aspect_.collapse_priority(collapse) < 0.0F)
       return ILLEGAL_COLLAPSE;
-    mesh().found(error);
+    mesh().found();
     return error;
   }
 
