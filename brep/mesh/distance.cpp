@@ -208,11 +208,6 @@ double share_along(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b
   return length2 > 0.0 ? std::clamp(glm::dot(p - a, along) / length2, 0.0, 1.0) : 0.0;
 }
 
-double squared_distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 d = p - (a + share_along(p, a, b) * (b - a));
-  return glm::dot(d, d);
-}
-
 /// Barycentric coordinates of the triangle's nearest point, by the cases of squared_distances().
 glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
   const glm::dvec3 ab = t.b - t.a, ac = t.c - t.a, normal = glm::cross(ab, ac);
@@ -236,6 +231,11 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const Corners& t) {
 }
 
 }  // namespace
+
+double squared_distance_to_segment(const glm::dvec3& p_mm, const glm::dvec3& a_mm, const glm::dvec3& b_mm) {
+  const glm::dvec3 d = p_mm - (a_mm + share_along(p_mm, a_mm, b_mm) * (b_mm - a_mm));
+  return glm::dot(d, d);
+}
 
 glm::dvec3 nearest_of_triangle(const glm::dvec3& p_mm, const glm::dvec3& a_mm, const glm::dvec3& b_mm,
                                const glm::dvec3& c_mm) {

@@ -35,6 +35,10 @@ struct Foot {
 glm::dvec3 nearest_of_triangle(const glm::dvec3& p_mm, const glm::dvec3& a_mm, const glm::dvec3& b_mm,
                                const glm::dvec3& c_mm);
 
+/// The squared distance of a point to a segment, in square millimetres. One whose squared length is 0 counts
+/// as its first end.
+double squared_distance_to_segment(const glm::dvec3& p_mm, const glm::dvec3& a_mm, const glm::dvec3& b_mm);
+
 /// A tree of boxes over a surface's triangles, copied, that answers questions about points in LPS
 /// millimetres. Answers do not depend on the number of threads. Building: n log n, about 150 bytes a
 /// triangle.

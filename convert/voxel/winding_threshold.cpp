@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/distance.h"
 #include "voxel/space/error.h"
 
 // Passes 1 and 3 of winding_number.cpp.
@@ -51,13 +52,6 @@ std::vector<RimEdge> rim_of(const brep::Triangles& surface) {
 /// How far an apex is put out of its rim's middle, in voxel edges: anything but a simple fraction, so that
 /// the cap of a flat hole does not lie in a plane of voxel centres.
 constexpr glm::dvec3 apex_offset_voxels{0.2718281828, 0.3141592653, 0.1414213562};
-
-double distance_to_edge(const glm::dvec3& p, const std::array<glm::dvec3, 2>& edge) {
-  const glm::dvec3 along = edge[1] - edge[0];
-  const double length2 = glm::dot(along, along);  // 0 too where squares are too small for a number
-  const double t = length2 > 0.0 ? glm::dot(p - edge[0], along) / length2 : 0.0;
-  return glm::length(p - edge[0] - std::clamp(t, 0.0, 1.0) * along);
-}
 
 /// Whether a plane parts a triangle from a cube for certain. Source: Akenine-Moller, "Fast 3D triangle-box
 /// overlap testing", Journal of Graphics Tools 6(1), 2001. Departure: what rounding leaves unsure is not
@@ -190,7 +184,7 @@ bool WindingThreshold::may_change(const Cube& cube, const glm::dvec3& middle_mm,
   const double room = std::abs(share + 0.5 - std::round(share + 0.5));
   double change = 0.0;
   for (const std::array<glm::dvec3, 2>& edge : cap_.edges) {
-    const double distance = distance_to_edge(middle_mm, edge);
+    const double distance = std::sqrt(brep::squared_distance_to_segment(middle_mm, edge[0], edge[1]));
     if (!(distance > reach)) return true;
     const glm::dvec3 from = edge[0] - middle_mm, to = edge[1] - middle_mm;
     const double length = glm::length(to - from);

@@ -28,6 +28,15 @@ double distance_to_box(const glm::dvec3& p, const glm::dvec3& half) {
   return outside > 0.0 ? outside : std::abs(std::max({q.x, q.y, q.z}));
 }
 
+TEST(Segment, IsNearestAtAnEndOrBetweenAndOneWithoutLengthIsAPoint) {
+  const glm::dvec3 a(1, 0, 0), b(5, 0, 0);
+  EXPECT_EQ(squared_distance_to_segment({3, 3, 4}, a, b), 25.0);
+  EXPECT_EQ(squared_distance_to_segment({-2, 4, 0}, a, b), 25.0);
+  EXPECT_EQ(squared_distance_to_segment({8, 0, -4}, a, b), 25.0);
+  EXPECT_EQ(squared_distance_to_segment({1, 3, 4}, a, a), 25.0);
+  EXPECT_EQ(squared_distance_to_segment({0, 3, 4}, {0, 0, 0}, {1e-200, 0, 0}), 25.0);
+}
+
 TEST(SurfaceTree, ABoxsDistancesAndInsideHaveClosedForms) {
   const glm::dvec3 half(1, 2, 3);
   const SurfaceTree tree(mesh_of(shapes::box(-half, half)));
