@@ -4,6 +4,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Segment_2.h>
 #include <CGAL/intersections.h>
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -44,6 +46,33 @@ std::vector<glm::dvec2> run(const Contour& contour, std::size_t from, std::size_
   }
   return points;
 }
+
+/// A contour's pieces, for exact questions.
+class Pieces {
+ public:
+  explicit Pieces(const Contour& contour) : contour_(contour), count_(piece_count(contour)) {}
+
+  std::size_t count() const { return count_; }
+  /// Whether two have a point in common beyond the corner that neighbours share. Precondition: i < j.
+  bool meet(std::size_t i, std::size_t j) const {
+    assert(i < j && j < count_);
+    const bool follows = j == i + 1, closes = contour_.closed && i == 0 && j + 1 == count_;
+    if (!follows && !closes) return CGAL::do_intersect(piece(i), piece(j));
+    // Neighbours have a corner in common; more only where one runs back over the other.
+    return (follows && (piece(j).has_on(point(i)) || piece(i).has_on(point(j + 1)))) ||
+           (closes && (piece(j).has_on(point(1)) || piece(0).has_on(point(j))));
+  }
+
+ private:
+  Kernel::Point_2 point(std::size_t i) const {
+    const glm::dvec2& p = contour_.points_mm[i % contour_.points_mm.size()];
+    return {p.x, p.y};
+  }
+  Kernel::Segment_2 piece(std::size_t i) const { return {point(i), point(i + 1)}; }
+
+  const Contour& contour_;
+  std::size_t count_;
+};
 
 }  // namespace
 
@@ -108,28 +137,32 @@ Contour closed(const Contour& contour) {
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour& contour) {
-  const std::size_t count = piece_count(contour), points = contour.points_mm.size();
-  const auto point = [&](std::size_t i) {
-    const glm::dvec2& p = contour.points_mm[i % points];
-    return Kernel::Point_2(p.x, p.y);
-  };
-  const auto piece = [&](std::size_t i) { return Kernel::Segment_2(point(i), point(i + 1)); };
-  const auto meet = [&](std::size_t i, std::size_t j) {
-    const bool follows = j == i + 1, closes = contour.closed && i == 0 && j + 1 == count;
-    if (!follows && !closes) return CGAL::do_intersect(piece(i), piece(j));
-    // Neighbours have a corner in common; more only where one runs back over the other.
-    return (follows && (piece(j).has_on(point(i)) || piece(i).has_on(point(j + 1)))) ||
-           (closes && (piece(j).has_on(point(1)) || piece(0).has_on(point(j))));
-  };
-  const RunTree pieces(contour);
-  for (std::size_t i = 0; i < count; ++i) {
+  const Pieces pieces(contour);
+  const RunTree tree(contour);
+  for (std::size_t i = 0; i < pieces.count(); ++i) {
     const PlaneBox own = box_of_piece(contour, i);
-    const auto j = pieces.first(
-        i + 1, count, [&](const PlaneBox& box) { return box.overlaps(own); },
-        [&](std::size_t other) { return meet(i, other); });
+    const auto j = tree.first(
+        i + 1, pieces.count(), [&](const PlaneBox& box) { return box.overlaps(own); },
+        [&](std::size_t other) { return pieces.meet(i, other); });
     if (j) return std::pair(i, *j);
   }
   return std::nullopt;
+}
+
+std::optional<std::pair<std::size_t, std::size_t>> first_crossing_of(const Contour& contour,
+                                                                     std::span<const std::size_t> changed) {
+  const Pieces pieces(contour);
+  std::optional<std::pair<std::size_t, std::size_t>> first;
+  for (const std::size_t edited : changed) {
+    assert(edited < pieces.count());
+    const PlaneBox own = box_of_piece(contour, edited);
+    for (std::size_t other = 0; other < pieces.count(); ++other) {
+      if (other == edited || !box_of_piece(contour, other).overlaps(own)) continue;
+      const std::pair<std::size_t, std::size_t> both = std::minmax(edited, other);
+      if ((!first || both < *first) && pieces.meet(both.first, both.second)) first = both;
+    }
+  }
+  return first;
 }
 
 }  // namespace octotomy::brep

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -37,5 +38,10 @@ Contour closed(const Contour& contour);
 /// Two pieces, by number and ascending, that have a point in common beyond the corner that neighbours share;
 /// of several the first. Exact. Cost: n log n, and the pairs of pieces whose boxes overlap.
 std::optional<std::pair<std::size_t, std::size_t>> first_crossing(const Contour& contour);
+
+/// The same after an edit, which made or moved the pieces `changed`. Precondition: no two others have such a
+/// point in common, as before an edit of a contour that did not cross itself. Cost: linear for each of them.
+std::optional<std::pair<std::size_t, std::size_t>> first_crossing_of(const Contour& contour,
+                                                                     std::span<const std::size_t> changed);
 
 }  // namespace octotomy::brep

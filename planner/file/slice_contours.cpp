@@ -26,12 +26,12 @@ std::string place_of(const voxel::SliceMask::Slice& slice) {
   return "the slice at " + std::to_string(slice.position_mm) + " mm";
 }
 
-void check_crossing(const brep::Contour& contour, const std::string& where) {
-  const auto crossing = brep::first_crossing(contour);
-  if (!crossing) return;
-  const glm::dvec2 at = contour.points_mm[crossing->first];
+[[noreturn]] void refuse_crossing(const brep::Contour& contour,
+                                  const std::pair<std::size_t, std::size_t>& pieces,
+                                  const std::string& where) {
+  const glm::dvec2 at = contour.points_mm[pieces.first];
   throw std::runtime_error(where + ": a contour crosses itself between its pieces " +
-                           std::to_string(crossing->first) + " and " + std::to_string(crossing->second) +
+                           std::to_string(pieces.first) + " and " + std::to_string(pieces.second) +
                            ", near [" + std::to_string(at.x) + ", " + std::to_string(at.y) + "]");
 }
 
@@ -87,11 +87,19 @@ Polygon refined_at(const Polygon& polygon, const Refinement& refinement, const v
   return std::move(done.points_mm);
 }
 
+/// A contour while it is edited.
+struct EditedContour {
+  brep::Contour contour;
+  bool is_uncrossed = false;  ///< known not to cross itself: an edit was made to it before
+};
+/// Of each slice.
+using EditedSlices = std::vector<std::vector<EditedContour>>;
+
 /// One edit of a file: where it stands, and the contours of its slice.
 class Edit {
  public:
-  Edit(const nlohmann::json& json, std::string where, voxel::SliceMask& mask)
-      : json_(json), where_(std::move(where)), polygons_(slice_of(mask).polygons_mm) {}
+  Edit(const nlohmann::json& json, std::string where, EditedSlices& slices)
+      : json_(json), where_(std::move(where)), contours_(slices[index("slice", slices.size())]) {}
 
   void make() {
     const std::string what = word_of(need(json_, "do", where_), where_ + ".do");
@@ -101,31 +109,36 @@ class Edit {
       for (const nlohmann::json& point : need(json_, "points_mm", where_))
         added.points_mm.push_back(point_of(point, where_ + ".points_mm"));
       if (added.points_mm.size() < 3) refuse(where_ + ".points_mm", "must be three points or more");
-      polygons_.emplace_back();
-      return put(polygons_.size() - 1, added);
+      contours_.push_back({std::move(added)});
+      return check(contours_.size() - 1);
     }
-    const std::size_t number = index("contour", polygons_.size());
-    const brep::Contour contour{polygons_[number]};
+    const std::size_t number = index("contour", contours_.size());
+    const brep::Contour& contour = contours_[number].contour;
     if (what == "move") {
       known({"point", "to_mm"});
       put(number, brep::point_moved(contour, count("point"), point("to_mm")));
+      check_about(number, count("point"));
     } else if (what == "insert") {
       known({"piece", "at_mm"});
       put(number, brep::point_inserted(contour, count("piece"), point("at_mm")));
+      check_about(number, count("piece") + 1);
     } else if (what == "delete") {
       known({"point"});
       put(number, brep::point_deleted(contour, count("point")));
+      check_edit(number, {piece_before(number, count("point"))});
     } else if (what == "split") {
       known({"first", "second"});
-      const auto [first, second] = brep::split(contour, count("first"), count("second"));
-      put(number, first);
-      polygons_.emplace_back();
-      put(polygons_.size() - 1, second);
+      auto [first, second] = brep::split(contour, count("first"), count("second"));
+      put(number, std::move(first));
+      contours_.push_back({std::move(second), contours_[number].is_uncrossed});
+      // Both parts are closed by their last piece.
+      for (const std::size_t part : {number, contours_.size() - 1}) check_edit(part, {piece_before(part, 0)});
     } else if (what == "join") {
       known({"piece", "with", "its_piece"});
-      const std::size_t other = index("with", polygons_.size());
+      const std::size_t other = index("with", contours_.size());
       if (other == number) refuse(where_ + ".with", "is the contour itself");
-      put(number, brep::joined(contour, count("piece"), {polygons_[other]}, count("its_piece")));
+      put(number, brep::joined(contour, count("piece"), contours_[other].contour, count("its_piece")));
+      check(number);
       remove(other);
     } else if (what == "remove") {
       known({});
@@ -136,9 +149,6 @@ class Edit {
   }
 
  private:
-  voxel::SliceMask::Slice& slice_of(voxel::SliceMask& mask) const {
-    return mask.slices[index("slice", mask.slices.size())];
-  }
   std::size_t count(const std::string& key) const {
     return count_of(need(json_, key, where_), where_ + "." + key);
   }
@@ -155,17 +165,35 @@ class Edit {
     if (of_a_contour) keys.emplace_back("contour");
     check_keys(json_, where_, keys);
   }
-  void put(std::size_t number, const brep::Contour& contour) {
-    check_crossing(contour, where_);
-    polygons_[number] = contour.points_mm;
-  }
+  void put(std::size_t number, brep::Contour contour) { contours_[number].contour = std::move(contour); }
   void remove(std::size_t number) {
-    polygons_.erase(polygons_.begin() + static_cast<std::ptrdiff_t>(number));
+    contours_.erase(contours_.begin() + static_cast<std::ptrdiff_t>(number));
+  }
+  /// The piece that ends at a point, which may be one beyond the last.
+  std::size_t piece_before(std::size_t number, std::size_t point) const {
+    return point == 0 ? contours_[number].contour.points_mm.size() - 1 : point - 1;
+  }
+  /// Refuses a contour that crosses itself.
+  void check(std::size_t number) {
+    const brep::Contour& contour = contours_[number].contour;
+    if (const auto crossing = brep::first_crossing(contour)) refuse_crossing(contour, *crossing, where_);
+    contours_[number].is_uncrossed = true;
+  }
+  /// The same after an edit that changed these pieces.
+  void check_edit(std::size_t number, const std::vector<std::size_t>& changed) {
+    if (!contours_[number].is_uncrossed) return check(number);
+    const brep::Contour& contour = contours_[number].contour;
+    if (const auto crossing = brep::first_crossing_of(contour, changed))
+      refuse_crossing(contour, *crossing, where_);
+  }
+  /// The same after an edit that moved or made a point.
+  void check_about(std::size_t number, std::size_t point) {
+    check_edit(number, {piece_before(number, point), point});
   }
 
   const nlohmann::json& json_;
   std::string where_;
-  std::vector<Polygon>& polygons_;
+  std::vector<EditedContour>& contours_;
 };
 
 }  // namespace
@@ -230,15 +258,25 @@ voxel::SliceMask edited(const voxel::SliceMask& mask, const std::filesystem::pat
   check_keys(json, edits.string(), {"edits"});
   const nlohmann::json& list = need(json, "edits", edits.string());
   if (!list.is_array()) refuse(edits.string() + ": edits", "must be a list");
-  voxel::SliceMask result = mask;
+  EditedSlices slices;
+  for (const voxel::SliceMask::Slice& slice : mask.slices) {
+    slices.emplace_back();
+    for (const Polygon& polygon : slice.polygons_mm) slices.back().push_back({{polygon}});
+  }
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string where = edits.string() + ": edits[" + std::to_string(i) + "]";
     if (!list[i].is_object()) refuse(where, "must be an object");
     try {
-      Edit(list[i], where, result).make();
+      Edit(list[i], where, slices).make();
     } catch (const std::invalid_argument& error) {
       refuse(where, error.what());
     }
+  }
+  voxel::SliceMask result = mask;
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    result.slices[k].polygons_mm.clear();
+    for (EditedContour& edited : slices[k])
+      result.slices[k].polygons_mm.push_back(std::move(edited.contour.points_mm));
   }
   return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/contour/contour_edit.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <limits>
@@ -114,6 +115,57 @@ TEST(ContourEdit, TheFirstCrossingIsThatOfALookAtAllPairs) {
   EXPECT_GT(crossed, 1000U);
   EXPECT_GT(uncrossed, 300U);
   EXPECT_GT(late, 100U);
+}
+
+/// An edit of a contour, and the pieces that it changed.
+struct Edited {
+  Contour contour;
+  std::vector<std::size_t> changed;
+};
+
+/// A point moved, inserted or deleted, or a part split off, near where the contour is.
+Edited edited_at_random(const Contour& contour, std::mt19937& random) {
+  const std::size_t points = contour.points_mm.size(), at = random() % points,
+                    before = (at + points - 1) % points;
+  const glm::dvec2 p = contour.points_mm[at] +
+                       glm::dvec2(static_cast<int>(random() % 9) - 4, static_cast<int>(random() % 9) - 4);
+  switch (random() % 4) {
+    case 0:
+      return {point_moved(contour, at, p), {before, at}};
+    case 1:
+      return {point_inserted(contour, at, p), {at, at + 1}};
+    case 2:
+      if (points < 4) break;
+      return {point_deleted(contour, at), {at == 0 ? points - 2 : at - 1}};
+    default: {
+      const std::size_t to = (at + 2 + random() % points) % points;
+      if ((to + points - at) % points < 2 || (at + points - to) % points < 2) break;
+      Contour part = split(contour, at, to).first;
+      const std::size_t last = part.points_mm.size() - 1;
+      return {std::move(part), {last}};
+    }
+  }
+  return {contour, {}};
+}
+
+TEST(ContourEdit, AfterAnEditTheFirstCrossingOfWhatItChangedIsThatOfALookAtAllPairs) {
+  std::size_t crossed = 0, uncrossed = 0, largest = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    Contour contour{{{0, 0}, {9, 0}, {9, 9}, {0, 9}}};
+    for (int edit = 0; edit < 100; ++edit) {
+      Edited edited = edited_at_random(contour, random);
+      const auto found = first_crossing_of(edited.contour, edited.changed);
+      ASSERT_EQ(found, plainly_first_crossing(edited.contour)) << "seed " << seed << ", edit " << edit;
+      crossed += found.has_value();
+      uncrossed += !found && !edited.changed.empty();
+      largest = std::max(largest, edited.contour.points_mm.size());
+      if (!found) contour = std::move(edited.contour);
+    }
+  }
+  EXPECT_GT(crossed, 1000U);
+  EXPECT_GT(uncrossed, 1000U);
+  EXPECT_GT(largest, 12U);
 }
 
 TEST(ContourEdit, ALineIsClosedAndWhatWouldBeTooFewPointsIsRefused) {

@@ -128,8 +128,27 @@ TEST_F(CommandLine, ContoursAreEditedByHandAndRefusedWhereTheyCross) {
   EXPECT_EQ(areas(R"({"slice":0,"contour":0,"do":"remove"},{"slice":0,"contour":0,"do":"delete","point":0})"),
             Pair(50, 2));
 
+  // Each edit after another of the same contour.
+  const std::string moved = R"({"slice":0,"contour":0,"do":"move","point":2,"to_mm":[10,20]},)";
+  EXPECT_EQ(areas(moved + R"({"slice":0,"contour":0,"do":"insert","piece":3,"at_mm":[-4,5]})"), Pair(270, 3));
+  EXPECT_EQ(areas(moved + R"({"slice":0,"contour":0,"do":"delete","point":0})"), Pair(200, 3));
+  EXPECT_EQ(areas(moved + R"({"slice":0,"contour":0,"do":"split","first":0,"second":2},
+                             {"slice":0,"contour":2,"do":"move","point":1,"to_mm":[-10,10]})"),
+            Pair(350, 4));
+
+  write("c.json", R"({ "view": "inferior", "slices": [
+      { "position_mm": 0, "polygons_mm": [ [[0,0],[10,0],[10,10],[0,10]], [[20,0],[30,0],[30,10],[20,10]],
+                                           [[40,0],[50,0],[40,10],[50,10],[60,5]] ] },
+      { "position_mm": 2, "polygons_mm": [ [[0,0],[10,0],[10,10],[0,10]] ] } ] })");
   for (const auto& [edits, word] : std::vector<std::pair<std::string, std::string>>{
            {R"({"slice":0,"contour":0,"do":"move","point":2,"to_mm":[-5,5]})", "crosses itself"},
+           {moved + R"({"slice":0,"contour":0,"do":"move","point":2,"to_mm":[-5,5]})",
+            "edits[1]: a contour crosses itself between its pieces 1 and 3"},
+           {moved + R"({"slice":0,"contour":0,"do":"insert","piece":3,"at_mm":[14,5]})",
+            "edits[1]: a contour crosses itself between its pieces 1 and 3"},
+           // One that crosses itself from the first is refused with the first edit, wherever that is.
+           {moved + R"({"slice":0,"contour":2,"do":"move","point":4,"to_mm":[60,6]})",
+            "edits[1]: a contour crosses itself between its pieces 1 and 4"},
            {R"({"slice":7,"contour":0,"do":"remove"})", "edits[0].slice: there are 2"},
            {R"({"slice":0,"contour":0,"do":"move","point":9,"to_mm":[0,0]})", "no point 9"},
            {R"({"slice":0,"contour":0,"do":"turn"})", "not 'turn'"},
