@@ -35,7 +35,7 @@ Json measure(const Airway& asked, const AnswerBench& bench) {
   const Passage found = passage(object.voxel.octree, object.mesh.within, mark_mm(asked.begin, bench.objects),
                                 mark_mm(asked.end, bench.objects), asked.step_mm);
   const Digitised digitised = digitised_of(bench, object);
-  const HalfWidth of_volume = volume_half_width(object.voxel.measures, digitised);
+  const HalfWidth of_volume = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
   const PassageSection& least = found.sections[found.narrowest];
   Json airway{{"volume_mm3", object.voxel.measures.volume_mm3},
               {"volume_half_width_mm3", of_volume.value},
@@ -49,6 +49,7 @@ Json measure(const Airway& asked, const AnswerBench& bench) {
     airway["sections"].push_back(section_json(section, digitised));
   Json json{{"object", object.id}, {"airway", std::move(airway)}, {"findings", Json::array()}};
   if (!object.mesh.within) json["findings"].push_back("there is no mesh: voxels alone answer");
+  if (const auto finding = too_coarse_finding(object, of_volume)) json["findings"].push_back(*finding);
   const double differ = least.mesh_mm2 ? std::abs(*least.mesh_mm2 - least.voxel_mm2) : 0.0;
   if (differ > section_half_width(least, digitised).value)
     json["findings"].push_back(

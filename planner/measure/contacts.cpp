@@ -42,7 +42,7 @@ Json measure(const ContactMap& asked, const AnswerBench& bench) {
             {"nearest_mm", nullptr},     {"findings", Json::array()}};
   for (const Object* each : {&object, &other})
     if (each->voxel.octree.is_empty()) {
-      json["findings"].push_back("'" + each->id + "' is empty: nothing touches");
+      json["findings"].push_back(why_no_voxels(*each) + ": nothing touches");
       return json;
     }
   const Stopwatch watch(bench.timings, "contacts");

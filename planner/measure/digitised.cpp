@@ -4,9 +4,15 @@
 #include <algorithm>
 #include <set>
 
+#include "planner/table/number_format.h"
 #include "voxel/measure/flat_parts.h"
 
 namespace octotomy::planner {
+namespace {
+
+constexpr const char* smaller_voxels = "take smaller ones, 'voxel_mm' of the universe";
+
+}  // namespace
 
 Digitised digitised_of(const AnswerBench& bench) {
   Digitised digitised{bench.universe.lattice().spacing_mm()};
@@ -25,6 +31,29 @@ Digitised digitised_of(const AnswerBench& bench, const Object& object) {
     if (shift_mm) digitised.shift_mm = std::max(digitised.shift_mm.value_or(0.0), *shift_mm);
   }
   return digitised;
+}
+
+std::optional<SeenSize> seen_size_of(const Object& object) {
+  if (!object.mesh.within) return std::nullopt;
+  const brep::Size& size = object.mesh.within->size();
+  return SeenSize{"mesh", size.volume_mm3, size.area_mm2};
+}
+
+std::string why_no_voxels(const Object& object) {
+  if (!object.mesh.within || object.mesh.within->empty()) return "'" + object.id + "' is empty";
+  return "'" + object.id + "' has no voxels of " +
+         plain(object.voxel.octree.universe().lattice().spacing_mm().x) + " mm, but its mesh encloses " +
+         grouped(object.mesh.within->size().volume_mm3, 1) + " mm\u00b3 (" + smaller_voxels + ")";
+}
+
+std::optional<std::string> too_coarse_finding(const Object& object, const HalfWidth& width) {
+  if (!width.is_too_coarse) return std::nullopt;
+  const double seen_mm3 = object.mesh.within->size().volume_mm3;
+  if (object.certificate && object.certificate->verdict == verify::Verdict::Fail)
+    return "volume_mm3: the mesh encloses " + grouped(seen_mm3, 1) +
+           " mm\u00b3, more than three half-widths off: its certificate tells where the kernels disagree";
+  return too_coarse_finding(object.voxel.octree.universe().lattice().spacing_mm(), "the mesh encloses",
+                            seen_mm3, smaller_voxels);
 }
 
 }  // namespace octotomy::planner

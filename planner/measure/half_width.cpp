@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planner/table/number_format.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::planner {
@@ -45,7 +46,16 @@ double picked_variance(const glm::dvec3& along, const glm::dvec3& step_mm) {
 
 }  // namespace
 
-HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& digitised) {
+bool widen_to_seen(HalfWidth& width, const Doubt& off) {
+  constexpr double no_chance = 3.0;
+  if (off.half_width <= no_chance * width.value) return false;
+  width.value = off.half_width;
+  width.terms.push_back(off);
+  return true;
+}
+
+HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& digitised,
+                            const std::optional<SeenSize>& seen) {
   std::vector<Doubt> terms{{"voxels", "3 * 0.26 v sqrt(F)", count_mm3(measures, digitised.voxel_mm)}};
   if (digitised.sample_mm != glm::dvec3(0.0))
     terms.push_back(
@@ -57,7 +67,20 @@ HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& di
   if (digitised.shift_mm)
     terms.push_back(
         {"window", "area * shift for ten sample units", measures.area_crofton13_mm2 * *digitised.shift_mm});
-  return sum_of(std::move(terms));
+  HalfWidth width = sum_of(std::move(terms));
+  if (!seen) return width;
+  const glm::dvec3& voxel_mm = digitised.voxel_mm;
+  const double off_mm3 = std::abs(seen->volume_mm3 - measures.volume_mm3);
+  const bool is_wide = widen_to_seen(width, {seen->name, "|V - that of the " + seen->name + "|", off_mm3});
+  width.is_too_coarse = is_wide && off_mm3 > voxel_mm.x * voxel_mm.y * voxel_mm.z;
+  return width;
+}
+
+std::string too_coarse_finding(const glm::dvec3& voxel_mm, const std::string& seen, double seen_mm3,
+                               const std::string& advice) {
+  return "volume_mm3: voxels of " + plain(std::max({voxel_mm.x, voxel_mm.y, voxel_mm.z})) +
+         " mm are too coarse to count this object: " + seen + " " + grouped(seen_mm3, 1) +
+         " mm\u00b3: " + advice;
 }
 
 HalfWidth area_half_width(const SurfaceSize& surface, const Digitised& digitised) {

@@ -25,7 +25,20 @@ struct Doubt {
 struct HalfWidth {
   double value = 0.0;
   std::vector<Doubt> terms;
+  /// Voxels pass over parts of the object that are larger than one of them: the last term alone counts.
+  bool is_too_coarse = false;
 };
+
+/// An object's size by an estimator that sees what whole voxels pass over.
+struct SeenSize {
+  std::string name;  ///< of the estimator, as "isosurface"
+  double volume_mm3 = 0.0;
+  std::optional<double> area_mm2 = {};
+};
+/// Voxels pass over what is thinner than they are. Where their number is off what is seen by more than three
+/// half-widths, each of three standard deviations, it is no chance: that difference, `off`, is the half-width
+/// then, and its last term. Returns whether it is.
+bool widen_to_seen(HalfWidth& width, const Doubt& off);
 
 /// How a solid was digitised.
 struct Digitised {
@@ -39,8 +52,15 @@ struct Digitised {
 /// Half-width of a volume that was counted. 3 * 0.26 v sqrt(F), v a voxel's volume and F the boundary's area
 /// in voxel faces (Kendall 1948; verify/boundary_model.h), once for the voxels and once for the scan's
 /// samples, whose slices may be far apart; half a voxel's edge times the area of flat parts along the
-/// lattice, which are off all alike; and the boundary's area times its shift for ten sample units.
-HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& digitised);
+/// lattice, which are off all alike; and the boundary's area times its shift for ten sample units. Widened to
+/// what is seen.
+HalfWidth volume_half_width(const voxel::Measures& measures, const Digitised& digitised,
+                            const std::optional<SeenSize>& seen = {});
+
+/// What is told of a volume that is_too_coarse: "volume_mm3: voxels of 1 mm are too coarse to count this
+/// object: `seen` 320.0 mm3: `advice`".
+std::string too_coarse_finding(const glm::dvec3& voxel_mm, const std::string& seen, double seen_mm3,
+                               const std::string& advice);
 
 /// Half-width of the area of an isosurface, in square millimetres: what marching cubes' ripple and the
 /// crossings' places on voxels' edges were shown to add or lose (verify/certificate.cpp), and twice the

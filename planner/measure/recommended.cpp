@@ -26,6 +26,13 @@ std::function<double(const glm::dvec3&)> sampler_of(const voxel::GreyOctree& gre
   };
 }
 
+verify::Interval interval(double value, const HalfWidth& width) {
+  verify::Interval found{value, width.value, {}};
+  for (const Doubt& doubt : width.terms)
+    found.sources.push_back({doubt.name, doubt.formula, doubt.half_width});
+  return found;
+}
+
 }  // namespace
 
 Json to_json(const verify::Interval& interval, const std::string& unit) {
@@ -59,23 +66,22 @@ verify::SizeIntervals intervals_of_surface(const brep::Solid& solid, const Surfa
 }
 
 verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const Digitised& digitised,
-                                         const voxel::Lattice& lattice) {
-  verify::SizeIntervals found;
-  const HalfWidth volume = volume_half_width(measures, digitised);
-  found.volume_mm3 = {measures.volume_mm3, volume.value, {}};
-  for (const Doubt& doubt : volume.terms)
-    found.volume_mm3.sources.push_back({doubt.name, doubt.formula, doubt.half_width});
-  const glm::dvec3 seen = voxel::crofton13_of_flat(lattice);
+                                         const voxel::Lattice& lattice, const std::optional<SeenSize>& seen) {
+  const glm::dvec3 shares = voxel::crofton13_of_flat(lattice);
   const double flat_mm2 = digitised.flat_mm2.x + digitised.flat_mm2.y + digitised.flat_mm2.z;
-  const double area_mm2 = measures.area_crofton13_mm2 + glm::dot(digitised.flat_mm2, 1.0 - seen);
-  const double oblique_mm2 = (1.0 - std::min({seen.x, seen.y, seen.z})) * std::max(area_mm2 - flat_mm2, 0.0);
+  const double area_mm2 = measures.area_crofton13_mm2 + glm::dot(digitised.flat_mm2, 1.0 - shares);
+  const double oblique_mm2 =
+      (1.0 - std::min({shares.x, shares.y, shares.z})) * std::max(area_mm2 - flat_mm2, 0.0);
   // A flat part that is half an edge off takes that from the walls around it; parts count as two squares.
   const double rims_mm2 = 4.0 * glm::dot(glm::sqrt(0.5 * digitised.flat_mm2), digitised.voxel_mm);
-  found.area_mm2 = {area_mm2,
-                    std::hypot(oblique_mm2, rims_mm2),
-                    {{"directions", "(1 - least share of a plane seen) (S - flats)", oblique_mm2},
-                     {"flat", "h/2 * perimeter of flat parts", rims_mm2}}};
-  return found;
+  HalfWidth area{std::hypot(oblique_mm2, rims_mm2),
+                 {{"directions", "(1 - least share of a plane seen) (S - flats)", oblique_mm2},
+                  {"flat", "h/2 * perimeter of flat parts", rims_mm2}}};
+  if (seen && seen->area_mm2)
+    widen_to_seen(area,
+                  {seen->name, "|S - that of the " + seen->name + "|", std::abs(area_mm2 - *seen->area_mm2)});
+  return {interval(measures.volume_mm3, volume_half_width(measures, digitised, seen)),
+          interval(area_mm2, area)};
 }
 
 }  // namespace octotomy::planner

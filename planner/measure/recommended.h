@@ -29,8 +29,10 @@ struct SurfaceSamples {
 verify::SizeIntervals intervals_of_surface(const brep::Solid& solid, const SurfaceSamples& samples);
 
 /// By counting, where there are voxels alone: volume_half_width(); the area by Crofton's formula with flat
-/// parts along the lattice as they are, its half-width what the formula may lose of oblique planes.
+/// parts along the lattice as they are, its half-width what the formula may lose of oblique planes. Both are
+/// widened to what is seen.
 verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const Digitised& digitised,
-                                         const voxel::Lattice& lattice);
+                                         const voxel::Lattice& lattice,
+                                         const std::optional<SeenSize>& seen = {});
 
 }  // namespace octotomy::planner

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "planner/file/file_kind.h"
+#include "planner/measure/half_width.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
@@ -136,18 +137,21 @@ ShareResult combine_shares(const voxel::Expression& expression,
   // Three standard deviations of a count on curved or oblique boundary, 0.26 of a voxel's face by the square
   // root of the boundary's faces (Kendall 1948).
   const double voxel_mm3 = bracket.inside.universe().lattice().voxel_mm3();
-  const double count_mm3 =
-      3.0 * 0.26 * std::pow(voxel_mm3, 2.0 / 3.0) * std::sqrt(counted.area_crofton13_mm2);
+  HalfWidth count{3.0 * 0.26 * std::pow(voxel_mm3, 2.0 / 3.0) * std::sqrt(counted.area_crofton13_mm2), {}};
+  const bool is_off =
+      widen_to_seen(count, {"shares", "|V - the bracket's middle|",
+                            std::abs(counted.volume_mm3 - 0.5 * (volume.low_mm3 + volume.high_mm3))});
   result.said = {{"volume_bracket_mm3", {volume.low_mm3, volume.high_mm3}},
                  {"volume_half_width_mm3", volume.half_width_mm3()},
                  {"volume_counted_mm3", counted.volume_mm3},
-                 {"volume_counted_half_width_mm3", count_mm3},
+                 {"volume_counted_half_width_mm3", count.value},
                  {"volume_counted_half_width_of",
-                  "3 * 0.26 h^2 sqrt(S); cuts along the lattice add up to h/2 of their area"},
-                 {"tighter", volume.half_width_mm3() <= count_mm3 ? "shares" : "count"},
+                  is_off ? count.terms.back().formula
+                         : "3 * 0.26 h^2 sqrt(S); cuts along the lattice add up to h/2 of their area"},
+                 {"tighter", volume.half_width_mm3() <= count.value ? "shares" : "count"},
                  {"tighter_by", nullptr}};
-  const double least = std::min(volume.half_width_mm3(), count_mm3);
-  if (least > 0.0) result.said["tighter_by"] = std::max(volume.half_width_mm3(), count_mm3) / least;
+  const auto [least, most] = std::minmax({volume.half_width_mm3(), count.value});
+  if (least > 0.0) result.said["tighter_by"] = most / least;
   return result;
 }
 

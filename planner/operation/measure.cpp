@@ -41,7 +41,8 @@ void check(const Measure& measure, const Place& place) {
 verify::SizeIntervals intervals_of(const AnswerBench& bench, const Object& object,
                                    const Digitised& digitised) {
   if (!object.mesh.within || object.bound.spacing_mm == glm::dvec3(0.0))
-    return intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice());
+    return intervals_of_count(object.voxel.measures, digitised, bench.universe.lattice(),
+                              seen_size_of(object));
   SurfaceSamples samples;
   for (int axis = 0; axis < 3; ++axis) samples.scan_edges[axis] *= object.bound.spacing_mm[axis];
   samples.window_shift_mm = digitised.shift_mm;
@@ -85,8 +86,7 @@ Json gap_json(const Measure& asked, const AnswerBench& bench) {
       {"object", object.id},          {"to", other.id},        {"gap_mm", nullptr}, {"gap_mesh_mm", nullptr},
       {"gap_half_width_mm", nullptr}, {"overlap_mm3", nullptr}};
   if (object.voxel.octree.is_empty() || other.voxel.octree.is_empty()) {
-    json["finding"] =
-        "there is no gap: " + (object.voxel.octree.is_empty() ? object.id : other.id) + " is empty";
+    json["finding"] = "there is no gap: " + why_no_voxels(object.voxel.octree.is_empty() ? object : other);
     return json;
   }
   const Gap gap = gap_between(object.voxel.octree, other.voxel.octree, object.mesh.within, other.mesh.within);
@@ -120,17 +120,20 @@ Json size_json(const Measure& asked, const AnswerBench& bench) {
   const verify::SizeIntervals recommended = intervals_of(bench, object, digitised);
   json["volume"] = to_json(recommended.volume_mm3, "mm3");
   json["area"] = to_json(recommended.area_mm2, "mm2");
-  const HalfWidth width = volume_half_width(object.voxel.measures, digitised);
+  const HalfWidth width = volume_half_width(object.voxel.measures, digitised, seen_size_of(object));
   json["volume_half_width_mm3"] = width.value;
   json["volume_half_width_terms"] = to_json(width);
+  if (const auto finding = too_coarse_finding(object, width)) json["finding"] = *finding;
   json["area_half_width_mm2"] = nullptr;
   if (object.mesh.within) {
     const brep::Measures& measures = object.mesh.within->measures();
     const double mesh_mm3 = measures.volume_mm3;
     json["area_mm2"] = measures.area_mm2;
-    // The triangles lose what the recommended area gains, and have its doubt.
-    json["area_half_width_mm2"] =
-        recommended.area_mm2.half_width + std::abs(recommended.area_mm2.value - measures.area_mm2);
+    // The triangles lose what the recommended area gains, and have its doubt; which is that already where
+    // voxels are too coarse.
+    const double off_mm2 = std::abs(recommended.area_mm2.value - measures.area_mm2);
+    const double doubt_mm2 = recommended.area_mm2.half_width;
+    json["area_half_width_mm2"] = doubt_mm2 == off_mm2 ? off_mm2 : doubt_mm2 + off_mm2;
     json["mesh"] = to_json(measures);
     json["difference_mm3"] = voxels_mm3 - mesh_mm3;
     if (mesh_mm3 > 0.0) json["difference_percent"] = 100.0 * (voxels_mm3 - mesh_mm3) / mesh_mm3;

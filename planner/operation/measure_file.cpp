@@ -150,16 +150,33 @@ Json of_voxels(const voxel::Octree& octree, Timings& timings, voxel::Measures& m
   return json;
 }
 
-void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures, Digitised digitised,
-                    Json& json) {
-  digitised.flat_mm2 = voxel::flat_parts_mm2(octree);
-  const HalfWidth width = volume_half_width(measures, digitised);
+/// Another estimator of what voxels counted, and how it is told.
+struct Seen {
+  SeenSize size;
+  std::string says, advice;
+};
+
+/// Of voxels whose flat parts are known.
+void add_half_width(const voxel::Measures& measures, const Digitised& digitised,
+                    const voxel::Lattice& lattice, const std::optional<Seen>& seen, Json& json) {
+  const std::optional<SeenSize> size = seen ? std::optional(seen->size) : std::nullopt;
+  const HalfWidth width = volume_half_width(measures, digitised, size);
   json["volume_half_width_mm3"] = width.value;
   json["volume_half_width_terms"] = to_json(width);
-  const verify::SizeIntervals recommended =
-      intervals_of_count(measures, digitised, octree.universe().lattice());
+  if (width.is_too_coarse)
+    json["findings"].push_back(
+        too_coarse_finding(digitised.voxel_mm, seen->says, size->volume_mm3, seen->advice));
+  const verify::SizeIntervals recommended = intervals_of_count(measures, digitised, lattice, size);
   json["volume"] = to_json(recommended.volume_mm3, "mm3");
   json["area"] = to_json(recommended.area_mm2, "mm2");
+}
+
+/// Of voxels alone; what more is known of them, beside.
+void add_half_width(const voxel::Octree& octree, const voxel::Measures& measures,
+                    const std::optional<double>& shift_mm, const std::optional<Seen>& seen, Json& json) {
+  const voxel::Lattice lattice = octree.universe().lattice();
+  add_half_width(measures, {lattice.spacing_mm(), {}, shift_mm, voxel::flat_parts_mm2(octree)}, lattice, seen,
+                 json);
 }
 
 void add_partial_volume(const voxel::Window& window, Timings& timings, Json& json) {
@@ -181,6 +198,9 @@ voxel::Window window_of(const voxel::GreyOctree& grey, const std::filesystem::pa
   return window_on(grey, *asked.window);
 }
 
+/// What voxels that are too coarse for an object want.
+constexpr const char* remake = "make the octree with smaller ones, --voxel";
+
 FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
                           const FileBench& bench) {
   Timings& timings = bench.timings;
@@ -197,21 +217,25 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
     json = of_voxels(inside, timings, measures);
     add_partial_volume(window, timings, json);
     const Stopwatch watch(timings, "half_width");
-    add_half_width(inside, measures, {grey->universe().lattice().spacing_mm(), {}, window_shift_mm(window)},
-                   json);
+    std::optional<Seen> seen;
+    if (const Json& partial_mm3 = json["volume_partial_mm3"]; partial_mm3.is_number())
+      seen = {{"interpolant", partial_mm3}, "the interpolant of its samples encloses", remake};
+    add_half_width(inside, measures, window_shift_mm(window), seen, json);
   } else if (asked.window) {
     throw std::runtime_error(file_path.string() + ": holds no samples to take a --window of: leave it out");
   } else if (const auto* partial = std::get_if<voxel::PartialOctree>(&file.tree)) {
     const voxel::Octree half = voxel::at_least_half(*partial);
     json = of_voxels(half, timings, measures);
-    add_half_width(half, measures, {partial->inside.universe().lattice().spacing_mm()}, json);
+    const double shares_mm3 = voxel::volume_mm3(*partial);
+    add_half_width(half, measures, {}, Seen{{"shares", shares_mm3}, "the voxels' filled shares are", remake},
+                   json);
     json["volume_estimator"] = "voxels at least half filled, counted";
-    json["volume_partial_mm3"] = voxel::volume_mm3(*partial);
+    json["volume_partial_mm3"] = shares_mm3;
     json["volume_partial_estimator"] = "the voxels' filled shares";
   } else {
     const auto& octree = std::get<voxel::Octree>(file.tree);
     json = of_voxels(octree, timings, measures);
-    add_half_width(octree, measures, {octree.universe().lattice().spacing_mm()}, json);
+    add_half_width(octree, measures, {}, {}, json);
     json["volume_partial_mm3"] = nullptr;
     json["findings"].push_back(
         "volume_partial_mm3: voxels that are in or out say nothing of their parts: keep samples (--grey) or "
@@ -221,21 +245,6 @@ FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure&
   whole["source"] = file_path.string();
   whole.update(json);
   return said(std::move(whole));
-}
-
-/// Voxels can be so much coarser than the scan's samples that they pass over an object: where the count is
-/// further from what the samples' own surface encloses than chance makes it, the difference is its half-width
-/// and a finding says so.
-void tell_coarse_voxels(double isosurface_mm3, const voxel::Universe& universe, Json& json) {
-  constexpr double no_chance = 3.0;  // half-widths, each of three standard deviations
-  const double counted_mm3 = json["volume_mm3"], off_mm3 = std::abs(isosurface_mm3 - counted_mm3);
-  if (off_mm3 <= no_chance * json["volume_half_width_mm3"].get<double>()) return;
-  json["volume_half_width_mm3"] = off_mm3;
-  json["volume_half_width_terms"].push_back(
-      {{"name", "isosurface"}, {"formula", "|V - the isosurface's|"}, {"half_width", off_mm3}});
-  json["findings"].push_back("volume_mm3: voxels of " + plain(universe.lattice().spacing_mm().x) +
-                             " mm are too coarse for the object: the isosurface of the samples encloses " +
-                             grouped(isosurface_mm3, 1) + " mm3: take smaller ones, --voxel");
 }
 
 /// A scan, and its octree, which is built while the scan is read.
@@ -290,11 +299,16 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
         [&] {
           const Stopwatch own_watch(timings, "half_width");
           digitised.shift_mm = window_shift_mm(window);
-          add_half_width(inside, measures, digitised, json);
+          digitised.flat_mm2 = voxel::flat_parts_mm2(inside);
         });
   }
   const Stopwatch watch(timings, "intervals");
   const brep::Size& surface = isosurface.size();
+  add_half_width(measures, digitised, grey.universe().lattice(),
+                 Seen{{"isosurface", surface.volume_mm3, surface.area_mm2},
+                      "the isosurface of the samples encloses",
+                      "take smaller ones, --voxel"},
+                 json);
   const verify::SizeIntervals recommended =
       intervals_of_surface(isosurface, {glm::dmat3(scene.lattice.lps_from_voxel), glm::dmat4(1.0), grey,
                                         on_samples(scene.lattice, grey.universe().lattice()),
@@ -309,7 +323,6 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
   json["area_mm2"] = surface.area_mm2;
   json["area_estimator"] = mesh_area_estimator;
   json["volume_isosurface_mm3"] = surface.volume_mm3;
-  tell_coarse_voxels(surface.volume_mm3, grey.universe(), json);
   json["euler"] = brep::euler_number(isosurface.triangles());
   json["euler_of"] = "the isosurface: V - E + F";
   Json whole{{"kind", "scan"}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The samples of a scan from one value to another.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -29,6 +30,16 @@ std::string unit_of(const voxel::Scene& scene) {
   return voxel::unit(scene) == "1" ? "" : " " + voxel::unit(scene);
 }
 
+bool has_samples_in(const voxel::Scene& scene, const Window& window) {
+  const double high = window.high.value_or(std::numeric_limits<double>::infinity());
+  return std::visit(
+      [&](const auto& samples) {
+        return std::any_of(samples.begin(), samples.end(),
+                           [&](auto sample) { return sample >= window.low && sample <= high; });
+      },
+      scene.samples);
+}
+
 std::string definition(const Window& window, const Objects&) {
   return window.scan.name + " from " + plain(window.low) + (window.high ? " to " + plain(*window.high) : "");
 }
@@ -43,6 +54,11 @@ void voxels(const Window& window, const VoxelBench& bench, VoxelSide& made) {
   made.symbol = bench.within_universe(leaf);
   made.lineage = "window on a grey octree of the scan";
   if (!made.octree.is_empty()) return;
+  if (has_samples_in(scan.scene(), window))
+    throw std::runtime_error("no voxel of scan '" + window.scan.name +
+                             "' is in the window, but samples are: voxels of " +
+                             plain(bench.universe.lattice().spacing_mm().x) +
+                             " mm pass over them: take smaller ones, 'voxel_mm' of the universe");
   const voxel::Range range = voxel::range(scan.scene());
   throw std::runtime_error("no voxel of scan '" + window.scan.name +
                            "' is in the window; its samples are from " + plain(range.low) + " to " +

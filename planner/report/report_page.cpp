@@ -233,6 +233,8 @@ std::string sizes(const Json& measurements) {
             figure_cell(number_of(size.at("voxel"), "area_mm2", 0)) +
             figure_cell(mesh.is_null() ? "\u2013" : doubtful(size, "area_mm2", "area_half_width_mm2", 0)) +
             "</tr>";
+    if (size.contains("finding"))
+      rows += "<tr><td colspan=\"8\">" + escaped(size.at("finding").get<std::string>()) + "</td></tr>";
   }
   if (rows.empty()) return "";
   return element(

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/triangles.h"
+#include "tests/brep/shapes.h"
 #include "tests/planner/cli/command_line.h"
 
 namespace octotomy::planner {
@@ -356,6 +359,23 @@ std::string cube_off(int low, int high) {
   return text +
          "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 "
          "5\n3 3 7 5\n";
+}
+
+TEST_F(MeshVerbs, VoxelsHalfFilledNowhereSayWhatTheirSharesHold) {
+  brep::write_mesh(brep::mesh_of(brep::shapes::box({0, 0, 0.2}, {20, 20, 0.4})), folder_ / "plate.off");
+  ASSERT_EQ(run("voxelise " + at("plate.off") + " -o " + at("plate.octree") + " --digitise partial").status,
+            0);
+  const SortedJson found = SortedJson::parse(run("measure " + at("plate.octree") + " --json").out);
+  EXPECT_EQ(found["volume_mm3"], 0.0);
+  EXPECT_EQ(found["volume_half_width_mm3"], found["volume_partial_mm3"]);
+  EXPECT_EQ(found["volume"]["half_width"], found["volume_partial_mm3"]);
+  ASSERT_EQ(found["findings"].size(), 1U) << found["findings"];
+  EXPECT_NE(found["findings"][0].get<std::string>().find("filled shares are 80.0"), std::string::npos)
+      << found["findings"];
+  const SortedJson kept = SortedJson::parse(
+      run("eval a --let a=" + at("plate.octree") + " -o " + at("kept.octree") + " --json").out);
+  EXPECT_EQ(kept["volume_counted_mm3"], 0.0);
+  EXPECT_NEAR(kept["volume_counted_half_width_mm3"].get<double>(), 80.0, 0.1);
 }
 
 TEST_F(MeshVerbs, SeveralMeshesBecomeALabelMapAndTellWhereTheyOverlap) {

@@ -81,6 +81,31 @@ TEST(VolumeHalfWidth, CoarseSlicesWidenIt) {
   EXPECT_GT(coarse, 2.0 * fine);
 }
 
+TEST(VolumeHalfWidth, IsWhatVoxelsMissOfAnObjectThatTheyPassOver) {
+  const Digitised digitised{glm::dvec3(1.0)};
+  const voxel::Measures none = voxel::measure(voxel::Octree::empty(universe_about_origin(6)));
+  const HalfWidth missed = volume_half_width(none, digitised, SeenSize{"mesh", 320.0});
+  EXPECT_EQ(missed.value, 320.0);
+  EXPECT_EQ(missed.terms.back().name, "mesh");
+  EXPECT_TRUE(missed.is_too_coarse);
+  // Of less than a voxel nothing need be told, and two empty answers are sure.
+  const HalfWidth sliver = volume_half_width(none, digitised, SeenSize{"mesh", 0.25});
+  EXPECT_EQ(sliver.value, 0.25);
+  EXPECT_FALSE(sliver.is_too_coarse);
+  EXPECT_EQ(volume_half_width(none, digitised, SeenSize{"mesh", 0.0}).value, 0.0);
+
+  const voxel::Measures ball =
+      voxel::measure(voxel::combine(universe_about_origin(6), voxel::Sphere{glm::dvec3(0.2), 20.0}));
+  const double width = volume_half_width(ball, digitised).value;
+  const auto seen_off = [&](double widths) {
+    return volume_half_width(ball, digitised, SeenSize{"mesh", ball.volume_mm3 - widths * width});
+  };
+  EXPECT_EQ(seen_off(2.9).value, width);
+  EXPECT_FALSE(seen_off(2.9).is_too_coarse);
+  EXPECT_NEAR(seen_off(3.1).value, 3.1 * width, 1e-6);
+  EXPECT_TRUE(seen_off(3.1).is_too_coarse);
+}
+
 /// Points picked on samples of 0.7 x 0.7 x 3 mm, as far from the truth as chance has it.
 struct Picking {
   glm::dvec3 step_mm{0.7, 0.7, 3.0};

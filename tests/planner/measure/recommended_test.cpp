@@ -28,6 +28,17 @@ TEST(Recommended, OfABoxAlongTheLatticeHoldsItsVolumeAndIsNotSevenPerCentLowInAr
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(seen[axis], 0.92, 0.02);
 }
 
+TEST(Recommended, OfVoxelsThatPassOverAnObjectReachesWhatIsSeen) {
+  const voxel::Universe universe = voxel::universe_around({glm::dvec3(-32.0), glm::dvec3(32.0)}, 1.0);
+  const verify::SizeIntervals found =
+      intervals_of_count(voxel::measure(voxel::Octree::empty(universe)), {glm::dvec3(1.0)},
+                         universe.lattice(), SeenSize{"mesh", 320.0, 3232.0});
+  EXPECT_EQ(found.volume_mm3.half_width, 320.0);
+  EXPECT_EQ(found.volume_mm3.sources.back().name, "mesh");
+  EXPECT_EQ(found.area_mm2.half_width, 3232.0);
+  EXPECT_EQ(found.area_mm2.sources.back().name, "mesh");
+}
+
 TEST(Recommended, IsToldWithUnitHalfWidthCoverageAndSources) {
   const Json json = to_json(verify::Interval{12.0, 0.5, {{"window", "S d", 0.5}}}, "mm3");
   EXPECT_EQ(json["value"], 12.0);
