@@ -81,7 +81,8 @@ verify::SizeIntervals intervals_of_count(const voxel::Measures& measures, const 
     widen_to_seen(area,
                   {seen->name, "|S - that of the " + seen->name + "|", std::abs(area_mm2 - *seen->area_mm2)});
   return {interval(measures.volume_mm3, volume_half_width(measures, digitised, seen)),
-          interval(area_mm2, area)};
+          interval(area_mm2, area),
+          {}};
 }
 
 }  // namespace octotomy::planner

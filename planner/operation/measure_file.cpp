@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/operation/measure_file.h"
 
-#include <cmath>
 #include <tbb/parallel_invoke.h>
 
 #include "brep/io/read_mesh.h"
@@ -11,6 +10,7 @@
 #include "brep/mesh/measure.h"
 #include "convert/surface/isosurface.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/octree_in.h"
 #include "planner/measure/recommended.h"
 #include "planner/measure/result_json.h"
 #include "planner/measure/surface_questions.h"
@@ -204,11 +204,7 @@ constexpr const char* remake = "make the octree with smaller ones, --voxel";
 FileAnswer measure_octree(const std::filesystem::path& file_path, const Measure& asked,
                           const FileBench& bench) {
   Timings& timings = bench.timings;
-  voxel::OctreeFile file{voxel::Octree::empty({}), "", ""};
-  {
-    const Stopwatch watch(timings, "read");
-    file = voxel::read_octree(file_path);
-  }
+  const voxel::OctreeFile file = read_timed(file_path, timings);
   Json json;
   voxel::Measures measures;
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
