@@ -17,6 +17,7 @@
 #include <tuple>
 #include <vector>
 
+#include "brep/boolean/coincident_shells.h"
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/triangles.h"
@@ -206,6 +207,28 @@ std::vector<std::uint32_t> uncut_parts(const Mesh& mesh, const std::vector<bool>
   return uncut;
 }
 
+using PlainTriangles = PointTriangles<glm::dvec3>;
+
+PlainTriangles plain(const Mesh& mesh) {
+  Triangles triangles = triangles_of(mesh);
+  return {std::move(triangles.points_mm), std::move(triangles.faces)};
+}
+
+/// See correct_contrary_shells(). Results that it does not concern are left alone.
+void correct_results(const Mesh& a, const Mesh& b, std::array<Mesh, 4>& meshes,
+                     const std::array<bool, 4>& is_there) {
+  const auto less = [](const glm::dvec3& p, const glm::dvec3& q) {
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  };
+  std::array<std::optional<PlainTriangles>, 4> results;
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    if (is_there[i]) results[i] = plain(meshes[i]);
+  if (correct_contrary_shells(plain(a), plain(b), results, less) == 0) return;
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    if (results[i])
+      meshes[i] = mesh_of(Triangles{std::move(results[i]->points), std::move(results[i]->faces)});
+}
+
 /// A result in an order of its own, without triangles that rounding left without area: a further Boolean
 /// would break off at them.
 Triangles finished(const Mesh& mesh) {
@@ -248,17 +271,27 @@ Corefined attempt(Mesh a, Mesh b, const Wanted& wanted, bool refuse_self_interse
       CGAL::parameters::vertex_point_map(PointMap{&b}).edge_is_constrained_map(CutEdges{&cut_b}),
       std::make_tuple(to(0), to(1), to(2), to(3)));
 
+  std::array<bool, 4> is_there{};
   for (std::size_t i = 0; i < output.size(); ++i) {
-    if (!output[i] || !manifold[i]) continue;
+    is_there[i] = output[i] && manifold[i];
+    if (!is_there[i]) continue;
     meshes[i].garbage_collection();
     check_joins(triangles_of(meshes[i]));
+  }
+  corefined.uncut = {uncut_parts(a, cut_a, points[0]), uncut_parts(b, cut_b, points[1])};
+  // A shell that lies on another has no edge on the cut.
+  if (!corefined.uncut[0].empty() && !corefined.uncut[1].empty()) {
+    for (Mesh* operand : {&a, &b}) operand->garbage_collection();
+    correct_results(a, b, meshes, is_there);
+  }
+  for (std::size_t i = 0; i < output.size(); ++i) {
+    if (!is_there[i]) continue;
     const Films films = drop_films(meshes[i], thickness);
     if (films.dropped > 0) meshes[i].garbage_collection();
     corefined.films[i] = films.dropped;
     corefined.has_open_film = corefined.has_open_film || films.has_open;
     corefined.results[i] = finished(meshes[i]);
   }
-  corefined.uncut = {uncut_parts(a, cut_a, points[0]), uncut_parts(b, cut_b, points[1])};
   return corefined;
 }
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "brep/boolean/coincident_shells.h"
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/surface_mesh.h"
@@ -20,6 +21,7 @@ namespace {
 namespace pmp = CGAL::Polygon_mesh_processing;
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+using ExactTriangles = PointTriangles<Kernel::Point_3>;
 using Rational = Kernel::Exact_kernel::FT;
 
 Surface surface_of(const Solid& solid, const std::string& name) {
@@ -37,15 +39,33 @@ Rational sum_of(const std::vector<Rational>& terms, std::size_t begin, std::size
   return sum_of(terms, begin, middle) + sum_of(terms, middle, end);
 }
 
-/// Six times the volume.
-Rational six_volumes(const Surface& surface) {
-  std::vector<Rational> terms;
+ExactTriangles triangles_of(const Surface& surface) {
+  ExactTriangles triangles;
+  std::vector<std::uint32_t> number(surface.num_vertices() + surface.number_of_removed_vertices());
+  for (const auto v : surface.vertices()) {
+    number[v] = static_cast<std::uint32_t>(triangles.points.size());
+    triangles.points.push_back(surface.point(v));
+  }
   for (const auto f : surface.faces()) {
-    std::array<std::array<Rational, 3>, 3> p;
-    auto corner = p.begin();
+    std::array<std::uint32_t, 3> face{};
+    auto corner = face.begin();
     for (const auto v : surface.vertices_around_face(surface.halfedge(f))) {
-      const Kernel::Point_3& point = surface.point(v);
-      *corner++ = {CGAL::exact(point.x()), CGAL::exact(point.y()), CGAL::exact(point.z())};
+      assert(corner != face.end());
+      *corner++ = number[v];
+    }
+    triangles.faces.push_back(face);
+  }
+  return triangles;
+}
+
+/// Six times the volume.
+Rational six_volumes(const ExactTriangles& triangles) {
+  std::vector<Rational> terms;
+  for (const auto& face : triangles.faces) {
+    std::array<std::array<Rational, 3>, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Kernel::Point_3& point = triangles.points[face[k]];
+      p[k] = {CGAL::exact(point.x()), CGAL::exact(point.y()), CGAL::exact(point.z())};
     }
     terms.push_back(p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
                     p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
@@ -65,24 +85,12 @@ void prove(const Rational& whole, const Rational& parts, const std::string& iden
                                        " mm3; an operand meets itself: ask for its health");
 }
 
-Triangles rounded(const Surface& surface, std::size_t& moved) {
-  Triangles triangles;
-  std::vector<std::uint32_t> number(surface.num_vertices());
-  for (const auto v : surface.vertices()) {
-    const Kernel::Point_3& p = surface.point(v);
-    number[v] = static_cast<std::uint32_t>(triangles.points_mm.size());
+Triangles rounded(const ExactTriangles& exact, std::size_t& moved) {
+  Triangles triangles{{}, exact.faces};
+  for (const Kernel::Point_3& p : exact.points) {
     const glm::dvec3 near(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
     moved += p != Kernel::Point_3(near.x, near.y, near.z);
     triangles.points_mm.push_back(near);
-  }
-  for (const auto f : surface.faces()) {
-    std::array<std::uint32_t, 3> face{};
-    auto corner = face.begin();
-    for (const auto v : surface.vertices_around_face(surface.halfedge(f))) {
-      assert(corner != face.end());
-      *corner++ = number[v];
-    }
-    triangles.faces.push_back(face);
   }
   // CGAL's order hangs on addresses.
   return in_coordinate_order(mesh_of(triangles));
@@ -113,15 +121,16 @@ struct Watched : pmp::Corefinement::Default_visitor<Surface> {
 
 ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, const Progress& progress) {
   Surface exact_a = surface_of(a, "a"), exact_b = surface_of(b, "b");
-  const Rational of_a = six_volumes(exact_a), of_b = six_volumes(exact_b);
-  std::array<Surface, 4> results;
+  const Rational of_a = six_volumes(triangles_of(exact_a)), of_b = six_volumes(triangles_of(exact_b));
+  std::array<Surface, 4> surfaces;
   std::array<boost::optional<Surface*>, 4> output;
-  const std::size_t wanted = operation == Operation::Union          ? pmp::Corefinement::UNION
-                             : operation == Operation::Intersection ? pmp::Corefinement::INTERSECTION
-                                                                    : pmp::Corefinement::TM1_MINUS_TM2;
-  for (const std::size_t r :
-       {wanted, std::size_t{pmp::Corefinement::UNION}, std::size_t{pmp::Corefinement::INTERSECTION}})
-    output[r] = &results[r];
+  static_assert(int{pmp::Corefinement::UNION} == int{of_union} &&
+                int{pmp::Corefinement::INTERSECTION} == int{of_intersection} &&
+                int{pmp::Corefinement::TM1_MINUS_TM2} == int{of_a_minus_b});
+  const ResultPlace wanted = operation == Operation::Union          ? of_union
+                             : operation == Operation::Intersection ? of_intersection
+                                                                    : of_a_minus_b;
+  for (const ResultPlace r : {wanted, of_union, of_intersection}) output[r] = &surfaces[r];
   Watched watched;
   watched.progress = &progress;
   const std::array<bool, 4> manifold = pmp::corefine_and_compute_boolean_operations(
@@ -134,16 +143,20 @@ ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, 
           "one is moved by far less than matters");
 
   progress.at(0.9);
-  const Rational united = six_volumes(results[pmp::Corefinement::UNION]);
-  const Rational common = six_volumes(results[pmp::Corefinement::INTERSECTION]);
+  std::array<std::optional<ExactTriangles>, 4> results;
+  for (std::size_t r = 0; r < output.size(); ++r)
+    if (output[r]) results[r] = triangles_of(surfaces[r]);
+  correct_contrary_shells(triangles_of(exact_a), triangles_of(exact_b), results,
+                          Kernel().less_xyz_3_object());
+  const Rational united = six_volumes(*results[of_union]), common = six_volumes(*results[of_intersection]);
   prove(of_a + of_b, united + common, "|A| + |B| = |A u B| + |A n B|");
   const Rational result = operation == Operation::Union          ? united
                           : operation == Operation::Intersection ? common
-                                                                 : six_volumes(results[wanted]);
+                                                                 : six_volumes(*results[wanted]);
   if (operation == Operation::Difference) prove(of_a, result + common, "|A| = |A - B| + |A n B|");
 
   std::size_t moved = 0;
-  const Solid solid = trusted_solid(rounded(results[wanted], moved), Proof::Rounded);
+  const Solid solid = trusted_solid(rounded(*results[wanted], moved), Proof::Rounded);
   const double rounding = solid.empty() ? 0.0 : volume_mm3(solid) - mm3_of(result);
   return {solid, mm3_of(of_a), mm3_of(of_b), mm3_of(united), mm3_of(common), mm3_of(result), rounding, moved};
 }
