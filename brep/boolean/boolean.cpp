@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 refuse inside-out operands; 2 put the operands in an order of their own, so that neither the
 // caller's order nor its addresses show in the bits; 3 cut near the common lines only, or corefine the whole
-// where that will not do; 4 let the volumes vouch for each other; 5 where a wanted result is not manifold or
-// the volumes do not add up, try again with the second operand moved by far less than any bound, and tell.
+// where that will not do; 4 let the volumes vouch for each other, and lines through all shells for their
+// places; 5 where a wanted result is not manifold or these do not agree, try again with the second operand
+// moved by far less than any bound, and tell.
 #include "brep/boolean/boolean.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "brep/boolean/corefine.h"
+#include "brep/boolean/line_agreement.h"
 #include "brep/boolean/near_boolean.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/measure.h"
@@ -130,6 +132,7 @@ struct Attempt {
   Results results;
   Volumes volumes_mm3;
   std::optional<double> disagreement_mm3;
+  std::vector<Corners> widest;  ///< triangles for lines; none if each surface's are still to be found
   std::array<std::size_t, 4> films{};
   std::size_t flat = 0;
   double shift_mm = 0.0;
@@ -170,12 +173,13 @@ Attempt near_attempt(const Question& question, const Solid& b) {
   if (answer.meets_itself) attempt.failure = "an operand meets itself where the other cuts it";
   attempt.results = std::move(answer.results);
   attempt.volumes_mm3 = answer.volumes_mm3;
+  attempt.widest = std::move(answer.widest);
   attempt.flat = answer.flat;
   return attempt;
 }
 
-/// Adds what is missing and what does not add up to the failure.
-void judge(const Question& question, Attempt& attempt) {
+/// Adds to the failure what is missing, what does not add up and what lines through all shells find wrong.
+void judge(const Question& question, const Solid& b, Attempt& attempt) {
   const std::string missing = missing_of(attempt.results, question.wanted, question.names);
   if (!missing.empty()) {
     if (attempt.failure.empty())
@@ -185,22 +189,27 @@ void judge(const Question& question, Attempt& attempt) {
   attempt.failure.clear();
   attempt.disagreement_mm3 =
       disagreement_mm3(attempt.volumes_mm3, volume_mm3(question.a), volume_mm3(question.b));
-  if (!attempt.disagreement_mm3) {
-    attempt.findings.emplace_back("too few results are manifold for their volumes to be compared");
-    return;
-  }
   const double tolerance = volume_tolerance_mm3(question.a.size(), question.b.size());
-  if (*attempt.disagreement_mm3 > tolerance)
+  if (!attempt.disagreement_mm3)
+    attempt.findings.emplace_back("too few results are manifold for their volumes to be compared");
+  else if (*attempt.disagreement_mm3 > tolerance)
     attempt.failure = "the results' volumes are " + std::to_string(*attempt.disagreement_mm3) +
                       " mm3 from adding up, " + std::to_string(tolerance) + " is allowed";
+  if (!attempt.failure.empty()) return;
+  // Volumes cannot tell a shell that a result has too many from one that it shares with its witness.
+  const auto wrong =
+      attempt.widest.empty()
+          ? disagreement_along_lines(question.a, b, attempt.results, question.wanted)
+          : disagreement_along_lines(question.a, b, attempt.results, question.wanted, attempt.widest);
+  if (wrong) attempt.failure = question.names.of(wrong->result) + text_of(*wrong);
 }
 
 Attempt best_attempt(const Question& question, const Solid& b) {
   Attempt near = near_attempt(question, b);
-  if (near.failure.empty()) judge(question, near);
+  if (near.failure.empty()) judge(question, b, near);
   if (near.failure.empty()) return near;
   Attempt whole = whole_attempt(question, b);
-  judge(question, whole);
+  judge(question, b, whole);
   return whole;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "brep/boolean/coincident_shells.h"
+#include "brep/boolean/line_agreement.h"
 #include "brep/mesh/coordinate_order.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/surface_mesh.h"
@@ -157,6 +158,13 @@ ExactBoolean exact_boolean(const Solid& a, Operation operation, const Solid& b, 
 
   std::size_t moved = 0;
   const Solid solid = trusted_solid(rounded(*results[wanted], moved), Proof::Rounded);
+  Results answer;
+  Wanted checked{};
+  answer[wanted] = solid.triangles();
+  checked[wanted] = true;
+  if (const auto wrong = disagreement_along_lines(a, b, answer, checked))
+    throw Error(ErrorCode::Geometry, "no exact Boolean: the result" + text_of(*wrong) +
+                                         "; ask for the health of both operands and repair them");
   const double rounding = solid.empty() ? 0.0 : volume_mm3(solid) - mm3_of(result);
   return {solid, mm3_of(of_a), mm3_of(of_b), mm3_of(united), mm3_of(common), mm3_of(result), rounding, moved};
 }

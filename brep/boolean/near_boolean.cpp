@@ -69,6 +69,7 @@ struct Side {
   std::vector<std::uint32_t> first;        ///< a point of each part, off the other surface
   std::vector<std::uint8_t> touching;      ///< 1 for each far point that may lie on the other surface
   std::vector<double> volumes_mm3;         ///< of the cones over each part
+  std::vector<std::uint32_t> widest;       ///< face of each part as seen along x
   std::map<Edge, std::uint32_t> border;    ///< the part beyond each edge between near and far, by its points
   std::map<EdgePlace, Edge> border_edges;  ///< the same edges by where they lie, points in that order
   std::vector<std::uint8_t> inside;        ///< 1 for each part inside the other solid
@@ -168,7 +169,8 @@ void find_border(const Operand& operand, Side& side) {
 /// Compensated, as one part may be nearly all of an operand (Neumaier 1974).
 void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
   side.volumes_mm3.assign(side.first.size(), 0.0);
-  std::vector<double> lost(side.first.size(), 0.0);
+  std::vector<double> lost(side.first.size(), 0.0), widest_mm2(side.first.size(), -1.0);
+  side.widest.assign(side.first.size(), 0);
   for (std::size_t f = 0; f < side.near.size(); ++f) {
     if (side.near[f]) continue;
     const auto& face = operand.triangles.faces[f];
@@ -178,6 +180,11 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
     lost[part] += std::abs(side.volumes_mm3[part]) >= std::abs(term) ? (side.volumes_mm3[part] - sum) + term
                                                                      : (term - sum) + side.volumes_mm3[part];
     side.volumes_mm3[part] = sum;
+    const double mm2 = seen_along_x_mm2(corners(operand.triangles, f));
+    if (mm2 > widest_mm2[part]) {
+      widest_mm2[part] = mm2;
+      side.widest[part] = static_cast<std::uint32_t>(f);
+    }
   }
   for (std::size_t part = 0; part < lost.size(); ++part) side.volumes_mm3[part] += lost[part];
 }
@@ -419,6 +426,9 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
   const glm::dvec3 tip = a.triangles.points_mm.empty() ? glm::dvec3(0.0) : a.triangles.points_mm.front();
   measure_parts(a, tip, sides[0]);
   measure_parts(b, tip, sides[1]);
+  for (std::size_t s = 0; s < 2; ++s)
+    for (const std::uint32_t f : sides[s].widest)
+      answer.widest.push_back(corners(s == 0 ? a.triangles : b.triangles, f));
   for (std::size_t r = 0; r < seams.size(); ++r) {
     if (!seams[r] && wanted[r]) throw Obstacle("a result would not be manifold");
     if (!seams[r]) continue;
@@ -432,6 +442,8 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
     sewing.add_near(*corefined.results[r], *seams[r]);
     answer.results[r] = sewing.take();
     answer.volumes_mm3[r] = size_of(*answer.results[r]).volume_mm3;
+    const std::vector<Corners> of_near = widest_triangles(*corefined.results[r]);
+    answer.widest.insert(answer.widest.end(), of_near.begin(), of_near.end());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "brep/boolean/corefine.h"
+#include "brep/boolean/line_agreement.h"
 #include "brep/mesh/solid.h"
 
 namespace octotomy::brep {
@@ -12,6 +13,8 @@ struct NearBoolean {
   Results results;  ///< those wanted, closed; none of them where `obstacle` says why
   /// Of those, and for witness of all others that are manifold.
   std::array<std::optional<double>, 4> volumes_mm3;
+  /// Of each far part of the operands and each shell of the near results the triangle that is widest along x.
+  std::vector<Corners> widest;
   std::size_t flat = 0;       ///< see Corefined
   bool meets_itself = false;  ///< see Corefined
   std::string obstacle;

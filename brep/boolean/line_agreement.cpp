@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// 1 lay a line along x through each of the given triangles; 2 pass all triangles once and list where the
+// lines cross them; 3 follow each line: what is inside a result must be what the operation makes of the
+// insides of the operands; 4 lay lines that disagree anew through the same triangle, twice. Most triangles
+// lie between two lines: that is told by their points' stretches of y, two bytes each, which are computed in
+// order. Crossings are computed from the lower end of each side whichever triangle asks, so that a line
+// leaves a closed surface as often as it enters.
+#include "brep/boolean/line_agreement.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tbb/parallel_for.h>
+#include <tuple>
+#include <vector>
+
+#include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/short_text.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// The operands, and behind them the results; those that are not there are null.
+using Surfaces = std::array<const Triangles*, 6>;
+constexpr std::size_t operand_count = 2;
+
+/// Largest coordinate: what the last place of the points is relative to.
+double reach_mm(const Solid& a, const Solid& b) {
+  glm::dvec3 reach(0.0);
+  for (const Size* size : {&a.size(), &b.size()})
+    reach = glm::max(reach, glm::max(glm::abs(size->low_mm), glm::abs(size->high_mm)));
+  return std::max({reach.x, reach.y, reach.z});
+}
+
+/// The length on which a line may disagree: 2^20 units of the last place, 0.06 nm for a head. Points are
+/// rounded by less than one unit, which a side that lies along the line but for 2^-16 turns into 2^16.
+double tolerance_mm(double reach) {
+  return 0x1p20 * std::numeric_limits<double>::epsilon() * reach;
+}
+
+/// The least height of a triangle, as seen along x, for a line through it to stay clear of its sides.
+double clearance_mm(double reach) {
+  return 0x1p12 * std::numeric_limits<double>::epsilon() * reach;
+}
+
+struct Line {
+  glm::dvec3 at_mm;
+  Corners triangle;
+  double length_mm = 0.0;  ///< of disagreement
+  std::size_t result = operand_count;
+};
+
+/// Inside the triangle, another point in each round. No simple fractions, so that the sides of neighbours and
+/// of their counterparts on the other surface do not run there.
+glm::dvec3 point_in(const Corners& t, std::size_t round) {
+  constexpr std::array<glm::dvec2, 3> shares = {{{0.41592, 0.30901}, {0.23606, 0.44721}, {0.28171, 0.17157}}};
+  return t[0] + shares.at(round).x * (t[1] - t[0]) + shares.at(round).y * (t[2] - t[0]);
+}
+
+/// Through the triangles that are wide enough.
+std::vector<Line> lines_through(const std::vector<Corners>& triangles, double clearance) {
+  std::vector<Line> lines;
+  for (const Corners& t : triangles) {
+    double longest = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const glm::dvec3 side = t[(k + 1) % 3] - t[k];
+      longest = std::max(longest, std::hypot(side.y, side.z));
+    }
+    if (2.0 * seen_along_x_mm2(t) > clearance * longest) lines.push_back({point_in(t, 0), t});
+  }
+  return lines;
+}
+
+/// Where a line crosses a surface.
+struct Crossing {
+  std::uint32_t line;
+  std::uint8_t surface;
+  std::int8_t enters;  ///< 1 or -1
+  double x;
+};
+
+/// The lines by rising y, and stretches of y by which points are told apart.
+class LinesByY {
+ public:
+  explicit LinesByY(const std::vector<Line>& lines) : order_(lines.size()) {
+    assert(!lines.empty());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t p, std::uint32_t q) {
+      return std::tie(lines[p].at_mm.y, p) < std::tie(lines[q].at_mm.y, q);
+    });
+    for (const std::uint32_t i : order_) y_.push_back(lines[i].at_mm.y);
+    low_ = y_.front();
+    const double extent = y_.back() - low_;
+    scale_ = extent > 0.0 ? static_cast<double>(stretch_count - 3) / extent : 0.0;
+    before_.assign(stretch_count + 1, 0);
+    for (const double y : y_) ++before_[stretch(y) + 1u];
+    for (std::size_t s = 0; s < stretch_count; ++s) before_[s + 1] += before_[s];
+  }
+
+  /// Rises with y; the first and the last are beside all lines.
+  std::uint16_t stretch(double y) const {
+    constexpr auto last = static_cast<double>(stretch_count - 1);
+    return static_cast<std::uint16_t>(std::clamp(1.0 + (y - low_) * scale_, 0.0, last));
+  }
+
+  /// Calls visit(line) for the lines of the stretches from least to greatest.
+  template <typename Visit>
+  void visit(std::uint16_t least, std::uint16_t greatest, const Visit& visit) const {
+    const std::uint32_t end = before_[greatest + 1u];
+    for (std::uint32_t i = before_[least]; i < end; ++i) visit(order_[i]);
+  }
+
+ private:
+  static constexpr std::size_t stretch_count = 1 << 11;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> before_;  ///< of each stretch: the lines in those before
+  std::vector<double> y_;
+  double low_ = 0.0, scale_ = 0.0;
+};
+
+/// Where the row at z meets a side; false where it does not.
+struct Meeting {
+  double y = 0.0, x = 0.0;
+  bool upward = false;
+};
+bool meets(const glm::dvec3& from, const glm::dvec3& to, double z, Meeting& meeting) {
+  if ((from.z <= z) == (to.z <= z)) return false;
+  meeting.upward = from.z <= z;
+  const glm::dvec3 &low = meeting.upward ? from : to, &high = meeting.upward ? to : from;
+  const double share = (z - low.z) / (high.z - low.z);
+  meeting.y = low.y + share * (high.y - low.y);
+  meeting.x = low.x + share * (high.x - low.x);
+  return true;
+}
+
+std::optional<Crossing> crossing_of(const Corners& t, const glm::dvec3& at) {
+  std::array<Meeting, 3> met;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (meets(t[k], t[(k + 1) % 3], at.z, met[count])) ++count;
+  assert(count == 0 || count == 2);
+  if (count < 2) return std::nullopt;
+  if (met[1].y < met[0].y) std::swap(met[0], met[1]);
+  if (at.y < met[0].y || at.y >= met[1].y) return std::nullopt;
+  const double share = (at.y - met[0].y) / (met[1].y - met[0].y);
+  // Counter-clockwise in the plane of y and z, whose left side runs down, faces +x: there the line leaves.
+  const auto enters = static_cast<std::int8_t>(met[0].upward ? 1 : -1);
+  return Crossing{0, 0, enters, met[0].x + share * (met[1].x - met[0].x)};
+}
+
+std::vector<Crossing> crossings(const Triangles& surface, std::uint8_t number, const std::vector<Line>& lines,
+                                const LinesByY& by_y) {
+  std::vector<std::uint16_t> stretches(surface.points_mm.size());
+  for (std::size_t v = 0; v < stretches.size(); ++v) stretches[v] = by_y.stretch(surface.points_mm[v].y);
+  std::vector<Crossing> found;
+  for (const auto& face : surface.faces) {
+    const std::uint16_t p = stretches[face[0]], q = stretches[face[1]], r = stretches[face[2]];
+    by_y.visit(std::min(std::min(p, q), r), std::max(std::max(p, q), r), [&](std::uint32_t line) {
+      const Corners t{surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]};
+      std::optional<Crossing> crossing = crossing_of(t, lines[line].at_mm);
+      if (!crossing) return;
+      crossing->line = line;
+      crossing->surface = number;
+      found.push_back(*crossing);
+    });
+  }
+  return found;
+}
+
+bool is_in_result(std::size_t place, bool in_a, bool in_b) {
+  return place == of_union          ? in_a || in_b
+         : place == of_intersection ? in_a && in_b
+         : place == of_a_minus_b    ? in_a && !in_b
+                                    : in_b && !in_a;
+}
+
+/// Of the crossings begin..end - 1 of one line by rising x, the worst result's disagreement.
+void follow(const Surfaces& surfaces, const Crossing* begin, const Crossing* end, Line& line) {
+  std::array<int, 6> winding{};
+  std::array<double, 6> wrong_mm{};
+  for (const Crossing* at = begin; at + 1 < end; ++at) {
+    winding[at->surface] += at->enters;
+    for (std::size_t s = operand_count; s < surfaces.size(); ++s)
+      if (surfaces[s] && is_in_result(s - operand_count, winding[0] > 0, winding[1] > 0) != (winding[s] > 0))
+        wrong_mm[s] += (at + 1)->x - at->x;
+  }
+  line.result = static_cast<std::size_t>(std::max_element(wrong_mm.begin() + operand_count, wrong_mm.end()) -
+                                         wrong_mm.begin());
+  line.length_mm = wrong_mm[line.result];
+}
+
+void follow_all(const Surfaces& surfaces, std::vector<Line>& lines) {
+  if (lines.empty()) return;
+  const LinesByY by_y(lines);
+  std::array<std::vector<Crossing>, 6> found;
+  tbb::parallel_for(std::size_t{0}, surfaces.size(), [&](std::size_t s) {
+    if (surfaces[s]) found[s] = crossings(*surfaces[s], static_cast<std::uint8_t>(s), lines, by_y);
+  });
+  std::vector<Crossing> all;
+  for (const std::vector<Crossing>& of_surface : found)
+    all.insert(all.end(), of_surface.begin(), of_surface.end());
+  std::sort(all.begin(), all.end(), [](const Crossing& p, const Crossing& q) {
+    return std::tie(p.line, p.x, p.surface, p.enters) < std::tie(q.line, q.x, q.surface, q.enters);
+  });
+  for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+    while (end < all.size() && all[end].line == all[begin].line) ++end;
+    follow(surfaces, all.data() + begin, all.data() + end, lines[all[begin].line]);
+  }
+}
+
+}  // namespace
+
+double seen_along_x_mm2(const Corners& t) {
+  const glm::dvec3 u = t[1] - t[0], v = t[2] - t[0];
+  return 0.5 * std::abs(u.y * v.z - u.z * v.y);
+}
+
+Corners corners(const Triangles& surface, std::size_t f) {
+  const auto& face = surface.faces[f];
+  return {surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]};
+}
+
+std::vector<Corners> widest_triangles(const Triangles& surface) {
+  constexpr std::size_t spread_count = 16;
+  DisjointSets sets(surface.points_mm.size());
+  for (const auto& face : surface.faces) {
+    sets.join(face[0], face[1]);
+    sets.join(face[1], face[2]);
+  }
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  struct Widest {
+    double mm2 = -1.0;
+    std::uint32_t face = none;
+  };
+  std::vector<Widest> widest(surface.points_mm.size());
+  for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
+    Widest& of_shell = widest[sets.set_of(surface.faces[f][0])];
+    const double mm2 = seen_along_x_mm2(corners(surface, f));
+    if (mm2 > of_shell.mm2) of_shell = {mm2, f};
+  }
+  std::vector<Corners> through;
+  for (const Widest& shell : widest)
+    if (shell.face != none) through.push_back(corners(surface, shell.face));
+  for (std::size_t k = 0; k < std::min(spread_count, surface.faces.size()); ++k)
+    through.push_back(corners(surface, surface.faces.size() * k / spread_count));
+  return through;
+}
+
+std::optional<LineDisagreement> disagreement_along_lines(const Solid& a, const Solid& b,
+                                                         const Results& results, const Wanted& wanted,
+                                                         const std::vector<Corners>& through) {
+  Surfaces surfaces{&a.triangles(), &b.triangles()};
+  for (std::size_t r = 0; r < results.size(); ++r)
+    if (wanted[r] && results[r]) surfaces[operand_count + r] = &*results[r];
+  const double reach = reach_mm(a, b), tolerance = tolerance_mm(reach);
+  std::vector<Line> lines = lines_through(through, clearance_mm(reach));
+  constexpr std::size_t rounds = 3;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (Line& line : lines) line.at_mm = point_in(line.triangle, round);
+    follow_all(surfaces, lines);
+    std::erase_if(lines, [&](const Line& line) { return line.length_mm <= tolerance; });
+  }
+  if (lines.empty()) return std::nullopt;
+  const Line& worst = *std::max_element(
+      lines.begin(), lines.end(), [](const Line& p, const Line& q) { return p.length_mm < q.length_mm; });
+  return LineDisagreement{static_cast<ResultPlace>(worst.result - operand_count), worst.at_mm,
+                          worst.length_mm};
+}
+
+std::optional<LineDisagreement> disagreement_along_lines(const Solid& a, const Solid& b,
+                                                         const Results& results, const Wanted& wanted) {
+  std::vector<Corners> through = widest_triangles(a.triangles());
+  const auto add = [&](const std::vector<Corners>& more) {
+    through.insert(through.end(), more.begin(), more.end());
+  };
+  add(widest_triangles(b.triangles()));
+  for (std::size_t r = 0; r < results.size(); ++r)
+    if (wanted[r] && results[r]) add(widest_triangles(*results[r]));
+  return disagreement_along_lines(a, b, results, wanted, through);
+}
+
+std::string text_of(const LineDisagreement& wrong) {
+  return " would be wrong along " + short_text(wrong.length_mm) + " mm of the line along x through (" +
+         short_text(wrong.at_mm.x) + ", " + short_text(wrong.at_mm.y) + ", " + short_text(wrong.at_mm.z) +
+         ") mm";
+}
+
+}  // namespace octotomy::brep
