@@ -23,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr int picture_px = 240;
+constexpr const char* report_folder = "report";
 
 /// A subject in the hands of one process; free again where that process ends, however it ends.
 class Claim {
@@ -93,7 +94,9 @@ void answer(const Plan& plan, const Subject& subject, const ParticipantOptions& 
   Json json;
   if (options.reports) {
     result.pictures = plan_pictures(result.plan, result.evaluation);
-    json = write_result(result, folder / "report", {options.stop, options.progress});
+    // `folder` appears with all that is in it, and its list names the report's files, too.
+    voxel::create_folders_in(folder, report_folder);
+    json = write_result_files(result, folder / report_folder, {options.stop, options.progress});
   } else {
     result.measurements = measurements_json(result.plan, result.evaluation);
     json = result_json(result);
@@ -104,6 +107,14 @@ void answer(const Plan& plan, const Subject& subject, const ParticipantOptions& 
   write_text(folder / "result.json", json.dump() + "\n");
   if (const std::vector<std::uint8_t> png = picture_of(result.plan, result.evaluation); !png.empty())
     write_bytes(folder / "picture.png", png);
+}
+
+/// Paths in a subject's folder that its result needs.
+std::vector<fs::path> needed_names(const Plan& plan, const ParticipantOptions& options) {
+  std::vector<fs::path> names{"rows.csv", "result.json", "picture.png", "subject.json"};
+  if (options.reports)
+    for (const fs::path& name : result_names(plan)) names.push_back(report_folder / name);
+  return names;
 }
 
 /// Why a subject failed: what the evaluation says. Resource errors and stops are none of the subject's.
@@ -175,7 +186,7 @@ SubjectRecord run_participant(const Plan& plan, const Subject& subject, const fs
       return earlier;
     }
   }
-  ResultFolder folder(out / subject.folder());
+  ResultFolder folder(out / subject.folder(), needed_names(plan, options));
   if (record.reason.empty())
     record.reason = reason_of([&] { answer(plan, subject, options, folder.path()); });
   record.state = record.reason.empty() ? SubjectRecord::State::Done : SubjectRecord::State::Failed;

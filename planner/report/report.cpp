@@ -197,8 +197,7 @@ std::vector<std::filesystem::path> result_names(const Plan& plan) {
   return names;
 }
 
-Json write_result(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
-  ResultFolder output(folder, result_names(result.plan));
+Json write_result_files(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
   {
     const Stopwatch watch(result.evaluation.timings, "measure");
     result.measurements = measurements_json(result.plan, result.evaluation);
@@ -207,29 +206,33 @@ Json write_result(Result& result, const std::filesystem::path& folder, const Exp
     check_signatures(result);
     add_contact_pictures(result);
   }
-  const bool again = !result.exported.empty();
-  if (!again)
-    result.exported =
-        write_files(result.plan, result.evaluation, output.path(), result.evaluation.timings, options);
+  if (result.exported.empty())
+    result.exported = write_files(result.plan, result.evaluation, folder, result.evaluation.timings, options);
   {
     const Stopwatch watch(result.evaluation.timings, "write");
-    voxel::create_folders_in(output.path(), "views");
-    write_pictures(result, output.path() / "views");
+    voxel::create_folders_in(folder, "views");
+    write_pictures(result, folder / "views");
     if (!result.cephalogram.empty())
-      write_text(output.path() / "views/cephalogram.png",
-                 {result.cephalogram.begin(), result.cephalogram.end()});
-    write_text(output.path() / "report.html", report_html(result));
-    if (result.as_pdf) print_pdf(output.path() / "report.html", output.path() / "report.pdf", options.stop);
+      write_text(folder / "views/cephalogram.png", {result.cephalogram.begin(), result.cephalogram.end()});
+    write_text(folder / "report.html", report_html(result));
+    if (result.as_pdf) print_pdf(folder / "report.html", folder / "report.pdf", options.stop);
   }
   Json json = result_json(result);
   for (const auto& [name, text] : result_tables(json)) {
-    voxel::create_folders_in(output.path(), std::filesystem::path(name).parent_path());
-    write_text(output.path() / name, text);
+    voxel::create_folders_in(folder, std::filesystem::path(name).parent_path());
+    write_text(folder / name, text);
   }
   const Json credibility = credibility_json(json);
-  write_text(output.path() / "credibility.json", json_text(credibility, 2) + "\n");
-  write_text(output.path() / "credibility.html", credibility_html(credibility));
-  write_text(output.path() / "result.json", json_text(json, 2) + "\n");
+  write_text(folder / "credibility.json", json_text(credibility, 2) + "\n");
+  write_text(folder / "credibility.html", credibility_html(credibility));
+  write_text(folder / "result.json", json_text(json, 2) + "\n");
+  return json;
+}
+
+Json write_result(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
+  ResultFolder output(folder, result_names(result.plan));
+  const bool again = !result.exported.empty();
+  Json json = write_result_files(result, output.path(), options);
   if (again) output.copy_rest();
   output.publish();
   return json;

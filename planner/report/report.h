@@ -74,6 +74,12 @@ nlohmann::ordered_json result_json(const Result& result);
 /// Paths in the result's folder that need_result_folder() is asked about before a plan is evaluated.
 std::vector<std::filesystem::path> result_names(const Plan& plan);
 
+/// Writes what a result's folder holds into `folder`, which is there and is nobody's result yet: a part of a
+/// larger result, as ResultFolder::path(). Otherwise as write_result(). Throws as the writers do, and
+/// Stopped.
+nlohmann::ordered_json write_result_files(Result& result, const std::filesystem::path& folder,
+                                          const ExportOptions& options = {});
+
 /// Writes a result's folder whole or not at all: its exports, views/*.png, tables/*.csv, report.html,
 /// credibility.html and .json, and result.json.
 /// Fills `result.exported` and `result.measurements`; returns what result.json holds. A result that was

@@ -199,6 +199,31 @@ class Cohort(unittest.TestCase):
         self.assertEqual({row["subject"] for row in rows(group / "measurements.csv")}, {"0000", "0003"})
         self.assertIn("ball_1.nrrd", (group / "index.html").read_text())
 
+    def test_a_report_lies_in_the_subjects_folder(self):
+        table = self.cohort(2)
+        plan = json.loads(self.plan.read_text())
+        plan["steps"].append({"id": "surface", "do": "export", "object": "ball", "path": "pieces/ball.stl"})
+        self.plan.write_text(json.dumps(plan))
+        for more in ((), ("--again",)):
+            run = subprocess.run([PROGRAM, "cohort", table, self.folder / "out", "participant", "--plan", self.plan,
+                                  "--reports", *more], capture_output=True, text=True, check=False, timeout=120)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assert_no_leftovers("out")
+            for i in range(2):
+                subject = self.folder / f"out/sub-{i:04d}"
+                volume = next(row["value"] for row in rows(subject / "rows.csv") if row["quantity"] == "volume")
+                told = json.loads((subject / "report/result.json").read_text())
+                self.assertEqual(told, json.loads((subject / "result.json").read_text()))
+                self.assertEqual(float(volume), told["measurements"][0]["measured"]["volume"]["value"])
+                self.assertIn("<h1", (subject / "report/report.html").read_text())
+                self.assertEqual(next(each["path"] for each in told["exports"]), "pieces/ball.stl")
+                listed = {line[66:] for line in (subject / ".octotomy-result").read_text().splitlines()}
+                for name in ("report.html", "pieces/ball.stl", "views/after_anterior.png", "tables/measurements.csv"):
+                    self.assertTrue((subject / "report" / name).stat().st_size > 0, name)
+                    self.assertIn(f"report/{name}", listed)
+        self.participants(table, "out", "--again")
+        self.assertFalse((self.folder / "out/sub-0000/report").exists())
+
     def test_one_that_never_ran_is_listed(self):
         table = self.cohort(3)
         self.participants(table, "out", "--participant-label", "0000", "sub-0002")
