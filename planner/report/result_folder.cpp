@@ -341,6 +341,20 @@ void need_result_folder(const fs::path& folder, const std::vector<fs::path>& nam
   voxel::need_disk(folder, least_bytes);
 }
 
+bool may_hold_result(const fs::path& folder) {
+  const fs::path place = place_of(folder);
+  if (!is_there(place)) return true;
+  return fs::is_directory(place) && (fs::is_empty(place) || !read_list(place).empty());
+}
+
+bool is_of_result(const fs::path& file) {
+  const fs::path place = place_of(file);
+  for (fs::path above = place.parent_path();; above = above.parent_path()) {
+    if (read_list(above).contains(place.lexically_relative(above).generic_string())) return true;
+    if (!above.has_relative_path()) return false;
+  }
+}
+
 ResultFolder::ResultFolder(const fs::path& folder, const std::vector<fs::path>& names)
     : final_(place_of(folder)) {
   if (!fs::is_directory(final_.parent_path())) need_place(final_, folder, names);

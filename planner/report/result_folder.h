@@ -22,6 +22,14 @@ namespace octotomy::planner {
 void need_result_folder(const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& names = {});
 
+/// Whether a result may be put there by the look of it: nothing stands there, or a folder that is empty or
+/// has the list
+/// `.octotomy-result`. Reads no file but the list; need_result_folder() tells more.
+bool may_hold_result(const std::filesystem::path& folder);
+
+/// Whether the list of a result, in a folder above, names this file.
+bool is_of_result(const std::filesystem::path& file);
+
 /// A folder of results that appears whole or not at all. Files are written into a hidden folder beside the
 /// place; publish() exchanges the two in one step. The file `.octotomy-result` lists what was written with
 /// its SHA-256 (`sha256sum -c` reads it). The next result replaces the listed files; all others stay, as do

@@ -166,6 +166,23 @@ TEST(ResultFolder, RefusesAFolderOfSomethingElseAndAFile) {
   EXPECT_EQ(refusal(folder / "not/there/yet"), "");
 }
 
+TEST(ResultFolder, ItsListTellsWhichFilesAreAResultsAndWhereOneMayBePut) {
+  const tests::ScratchFolder folder;
+  publish(folder / "out", {"report.html", "views/left.png"}, "old");
+  write_text(folder / "out/views/mine.png", "mine");
+  write_text(folder / "mine.png", "mine");
+  fs::create_directory_symlink("out", folder / "link");
+  for (const char* name :
+       {"out/report.html", "out/views/left.png", "out/views/../report.html", "link/report.html"})
+    EXPECT_TRUE(is_of_result(folder / name)) << name;
+  for (const char* name : {"out", "out/views/mine.png", "mine.png", "out/not_there"})
+    EXPECT_FALSE(is_of_result(folder / name)) << name;
+  fs::create_directories(folder / "empty");
+  for (const char* name : {"out", "link", "empty", "not/there"})
+    EXPECT_TRUE(may_hold_result(folder / name)) << name;
+  for (const char* name : {"out/views", "mine.png"}) EXPECT_FALSE(may_hold_result(folder / name)) << name;
+}
+
 TEST(ResultFolder, TheWorkingFolderIsNotReplacedUnderItsShell) {
   const tests::ScratchFolder folder;
   const fs::path before = fs::current_path();
