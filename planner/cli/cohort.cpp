@@ -13,6 +13,7 @@
 #include "planner/cohort/statistics.h"
 #include "planner/cohort/subjects.h"
 #include "planner/report/result_folder.h"
+#include "planner/file/output_path.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/verb.h"
 #include "voxel/space/staged_files.h"
@@ -209,7 +210,16 @@ struct TableText {
   std::vector<fs::path> results;
   fs::path out;
   bool wide = false;
+/// Refuses an output that would replace a result or a part of one.
+void need_table_output(const TableText& text) {
+  need_output(text.out, "a table is", ".csv", text.results);
+  need_folder_of(text.out);
+  if (is_of_result(text.out))
+    throw std::runtime_error(text.out.string() + ": is a file of a result: choose another -o");
+}
+
 };
+  need_table_output(text);
 
 Json read_result(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -238,7 +248,7 @@ int table(Program& program, const TableText& text) {
     columns.add(static_cast<std::uint32_t>(labels.size()), rows);
     labels.push_back(name);
   }
-  write_text(text.out, text.wide ? wide_table(labels, columns) : written);
+  write_whole(text.out, text.wide ? wide_table(labels, columns) : written);
   Json json = answer({});
   json["path"] = text.out.string();
   json["results"] = labels.size();

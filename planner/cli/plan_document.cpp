@@ -35,6 +35,7 @@ int diff(const Program& program, const Paths& paths) {
 }
 
 int merge_plans(const Program& program, const Paths& paths) {
+  need_output(paths.out, "a plan is", ".json", {paths.base, paths.a, paths.b});
   need_folder_of(paths.out);
   const auto read = [folder = fs::absolute(paths.out).parent_path()](const fs::path& path) {
     return rebased(read_plan(path), folder);

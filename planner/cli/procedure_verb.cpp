@@ -68,6 +68,9 @@ ProcedureInput input_of(const ProcedureText& text) {
   if (text.scan.empty() || text.landmarks.empty() || text.out.empty())
     throw std::runtime_error(
         "to plan it, give --scan, --landmarks and -o; without all three it is explained");
+  std::vector<fs::path> inputs = text.landmarks;
+  inputs.push_back(text.name);
+  need_output(text.out, "a plan is", ".json", inputs);
   need_folder_of(text.out);
   ProcedureInput input;
   const auto entry = [](const fs::path& path) {

@@ -7,6 +7,7 @@
 
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/unfinished_folder.h"
 
@@ -39,6 +40,16 @@ std::filesystem::path output_path(const std::filesystem::path& path) {
 }
 
 void write_whole(const std::filesystem::path& path, const std::string& bytes) {
+void need_output(const std::filesystem::path& out, const std::string& what, const std::string& extension,
+                 const std::vector<std::filesystem::path>& inputs) {
+  if (voxel::extension_of(out) != extension)
+    throw std::runtime_error(out.string() + ": " + what + " written as " + extension);
+  std::error_code ignored;
+  for (const std::filesystem::path& input : inputs)
+    if (std::filesystem::equivalent(out, input, ignored))
+      throw std::runtime_error(out.string() + ": is one of the files that are read: choose another -o");
+}
+
   voxel::StagedFiles staged(std::filesystem::absolute(path).parent_path());
   errno = 0;
   std::ofstream file(staged.folder() / path.filename(), std::ios::binary);

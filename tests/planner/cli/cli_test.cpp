@@ -116,6 +116,21 @@ TEST_F(CommandLine, ARunKeepsWhatTheUserPutIntoItsFolderAndRefusesWhatTheUserCha
                    "working folder");
 }
 
+TEST_F(CommandLine, ATableReplacesNeitherAScanNorAFileOfAResult) {
+  ASSERT_EQ(run("run " + at("ball.plan.json") + " -o " + at("out")).status, 0);
+  const std::string table = "table " + at("out") + " -o ";
+  for (const char* taken : {"ball.nrrd", "out/result.json", "out/tables/measurements.csv"}) {
+    const std::string before = tests::bytes_of(folder_ / taken);
+    ASSERT_FALSE(before.empty()) << taken;
+    expect_refused(run(table + at(taken)), std::string(taken) + (std::string(taken).ends_with(".csv")
+                                                                     ? ": is a file of a result"
+                                                                     : ": a table is written as .csv"));
+    EXPECT_EQ(tests::bytes_of(folder_ / taken), before) << taken;
+  }
+  expect_refused(run(table + at("no/table.csv")), "no folder");
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(run(table + at("out/mine.csv")).status, 0) << i;
+}
+
 TEST_F(CommandLine, ARunThatIsKilledAtAnyInstantLeavesTheResultThatWasThere) {
   const std::string command = std::string(OCTOTOMY_BINARY_DIR) + "/octotomy run " + at("ball.plan.json") +
                               " -o " + at("out") + " >" + at("said") + " 2>&1";

@@ -53,6 +53,20 @@ TEST_F(PlanDocument, MergeWritesWhatAgreesAndNothingWhereItDoesNot) {
   EXPECT_EQ(tests::SortedJson::parse(told.out).at("conflicts")[0].at("field"), "low");
 }
 
+TEST_F(PlanDocument, MergeReplacesNeitherAScanNorAPlanThatItReads) {
+  write("base.plan.json", plan("0"));
+  write("a.plan.json", plan("10"));
+  std::filesystem::create_symlink("a.plan.json", folder_ / "link.plan.json");
+  const std::string scan = tests::bytes_of(folder_ / "ball.nrrd");
+  const std::string merge = "plan merge base.plan.json a.plan.json base.plan.json -o ";
+  expect_refused(run(merge + "ball.nrrd"), "ball.nrrd: a plan is written as .json");
+  expect_refused(run(merge + "./base.plan.json"), "base.plan.json: is one of the files that are read");
+  expect_refused(run(merge + "link.plan.json"), "link.plan.json: is one of the files that are read");
+  EXPECT_EQ(tests::bytes_of(folder_ / "ball.nrrd"), scan);
+  EXPECT_EQ(tests::bytes_of(folder_ / "base.plan.json"), plan("0"));
+  EXPECT_EQ(tests::bytes_of(folder_ / "a.plan.json"), plan("10"));
+}
+
 TEST_F(PlanDocument, PlansOfOtherFoldersMergeAndFindTheirScan) {
   std::filesystem::create_directories(folder_ / "mine");
   write("base.plan.json", plan("0"));
@@ -182,6 +196,10 @@ TEST_F(PlanDocument, AProcedureIsListedExplainedAndPlanned) {
   expect_refused(run("procedure le_fort_i --scan ball.nrrd --landmarks marks.json -o p.plan.json"),
                  "lacks landmarks");
   expect_refused(run("procedure le_fort_i --scan ball.nrrd"), "--landmarks");
+  expect_refused(run("procedure le_fort_i --scan ball.nrrd --landmarks marks.json -o ball.nrrd"),
+                 "ball.nrrd: a plan is written as .json");
+  expect_refused(run("procedure le_fort_i --scan ball.nrrd --landmarks marks.json -o marks.json"),
+                 "marks.json: is one of the files that are read");
   write("own.json", R"({"procedure": "own", "says": "Own.", "landmarks": [{"name": "ans", "says": "any."}],
       "values": [{"name": "up_mm", "says": "up", "preset": 1, "least": 0, "most": 5}], "steps": [
       {"id": "bone", "do": "window", "scan": "ct", "low": 0},
