@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <unistd.h>
 
 #include "brep/io/mesh_bytes.h"
@@ -137,11 +138,20 @@ void write_off(const Triangles& triangles, Sink& sink) {
   }
 }
 
-/// The code of a failed system call: Resource if the disk or memory gave out.
+/// The code of a failed system call: Resource if memory, the disk or a limit on it gave out.
 ErrorCode code_of(int number) {
-  return number == ENOSPC || number == EDQUOT || number == EIO || number == ENOMEM || number == EMFILE
+  return number == ENOSPC || number == EDQUOT || number == EFBIG || number == EIO || number == ENOMEM ||
+                 number == EMFILE
              ? ErrorCode::Resource
              : ErrorCode::Input;
+}
+
+/// Throws Error: the file, the reason by the error number of the failed call, and what to do.
+[[noreturn]] void refuse_unwritten(const std::filesystem::path& path, int number) {
+  throw Error(code_of(number),
+              path.string() + ": cannot be written: " + std::generic_category().message(number) +
+                  (number == EFBIG ? "; raise the limit on the size of files (ulimit -f)"
+                                   : "; check that its folder exists, may be written and has room"));
 }
 
 /// `write` fills the file.
@@ -158,10 +168,9 @@ void replace_file(const std::filesystem::path& path, const Write& write) {
     sink.flush();
     file.close();
     if (!file) {
-      const ErrorCode code = code_of(errno);
+      const int number = errno;
       std::filesystem::remove(beside, ignored);
-      throw Error(code, path.string() +
-                            ": cannot be written; check that its folder exists, may be written and has room");
+      refuse_unwritten(path, number);
     }
   }
   std::filesystem::rename(beside, path, error);

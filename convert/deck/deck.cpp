@@ -16,6 +16,7 @@
 #include "voxel/space/disk_need.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_failure.h"
 
 namespace octotomy::convert {
 namespace {
@@ -230,8 +231,8 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     WatchedFile file(written);
     const auto fail = [&](const char* what) {
       const int number = errno;
-      throw voxel::Error(voxel::code_of_errno(number),
-                         part.path.string() + ": " + what + ": " + std::strerror(number));
+      throw voxel::Error(voxel::code_of_errno(number), part.path.string() + ": " + what + ": " +
+                                                           std::strerror(number) + voxel::way_out_of(number));
     };
     errno = 0;
     if (file.open(staged_files.folder() / part.path.filename(), std::ios::out | std::ios::binary) == nullptr)
@@ -244,7 +245,7 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     } catch (const std::ios::failure&) {
       complete = false;
     }
-    if (file.close() == nullptr || !complete) fail("cannot be written to its end; is the disk full?");
+    if (file.close() == nullptr || !complete) fail("cannot be written to its end");
   }
   staged_files.commit();
 }

@@ -193,6 +193,9 @@ Reason reason_of_status(int status, const MesherLimits& limits) {
               true, voxel::ErrorCode::Resource};
     const char* name = sigabbrev_np(signal);
     return {"crashed with signal " + std::to_string(signal) + " (SIG" + (name == nullptr ? "?" : name) + ")"};
+    if (signal == SIGXFSZ)
+      return {"passed the limit on the size of files (ulimit -f) with its answer: raise it", false,
+              voxel::ErrorCode::Resource};
   }
   switch (WEXITSTATUS(status)) {
     case mesher_exit_memory:

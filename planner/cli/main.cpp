@@ -34,6 +34,7 @@
 #include "voxel/space/error.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/unfinished_folder.h"
+#include "voxel/space/write_failure.h"
 
 namespace {
 
@@ -139,7 +140,9 @@ int run_chosen(Program& program) {
   } catch (const std::bad_alloc&) {
     return refuse(out_of_memory, cli::out_of_resources);
   } catch (const std::system_error& error) {
-    return refuse(error.what(), status_of(octotomy::voxel::code_of_errno(error.code().value())));
+    const int number = error.code().value();
+    return refuse(error.what() + octotomy::voxel::way_out_of(number),
+                  status_of(octotomy::voxel::code_of_errno(number)));
   } catch (const std::exception& error) {
     return refuse(error.what(), cli::bad_input);
   }
@@ -201,7 +204,9 @@ int parse_and_run(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  std::signal(SIGPIPE, SIG_IGN);
+  // A reader that goes away and a limit on the size of files: the call that writes fails with EPIPE or EFBIG.
+  // Handled instead of ignored, as programs that are started inherit what is ignored.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, [](int) {});
   std::signal(SIGINT, [](int) { ++interrupts; });
   std::signal(SIGTERM, [](int) { ++interrupts; });
   std::set_terminate([] {

@@ -10,6 +10,7 @@
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/unfinished_folder.h"
+#include "voxel/space/write_failure.h"
 
 namespace octotomy::planner {
 
@@ -39,7 +40,6 @@ std::filesystem::path output_path(const std::filesystem::path& path) {
   return path.lexically_normal().generic_string();
 }
 
-void write_whole(const std::filesystem::path& path, const std::string& bytes) {
 void need_output(const std::filesystem::path& out, const std::string& what, const std::string& extension,
                  const std::vector<std::filesystem::path>& inputs) {
   if (voxel::extension_of(out) != extension)
@@ -50,12 +50,13 @@ void need_output(const std::filesystem::path& out, const std::string& what, cons
       throw std::runtime_error(out.string() + ": is one of the files that are read: choose another -o");
 }
 
+void write_whole(const std::filesystem::path& path, const std::string& bytes) {
   voxel::StagedFiles staged(std::filesystem::absolute(path).parent_path());
   errno = 0;
   std::ofstream file(staged.folder() / path.filename(), std::ios::binary);
   file << bytes;
   file.close();
-  if (!file) throw voxel::Error(voxel::code_of_errno(errno), path.string() + ": cannot be written");
+  if (!file) voxel::refuse_unwritten(path, errno);
   staged.commit();
 }
 

@@ -3,7 +3,6 @@
 // window.
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 
 #include "planner/file/file_kind.h"
@@ -17,6 +16,7 @@
 #include "voxel/solid/expression.h"
 #include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_failure.h"
 
 namespace octotomy::planner {
 namespace {
@@ -42,7 +42,7 @@ void write_content(const std::string& content, const fs::path& path) {
   bool written =
       stream != nullptr && std::fwrite(content.data(), 1, content.size(), stream) == content.size();
   if (stream != nullptr && std::fclose(stream) != 0) written = false;  // a full disk may show only here
-  if (!written) throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+  if (!written) voxel::refuse_unwritten(path, errno);
   staging.commit(path.filename());
 }
 

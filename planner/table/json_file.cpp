@@ -12,6 +12,7 @@
 #include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_failure.h"
 
 namespace octotomy::planner {
 
@@ -42,7 +43,7 @@ void write_json(const nlohmann::ordered_json& json, const std::filesystem::path&
   std::ofstream stream(staging.folder() / path.filename());
   stream << json_text(json) << '\n';
   stream.close();
-  if (!stream) throw voxel::Error(voxel::code_of_errno(errno), path.string() + ": cannot be written");
+  if (!stream) voxel::refuse_unwritten(path, errno);
   staging.commit(path.filename());
 }
 

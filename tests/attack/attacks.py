@@ -8,6 +8,7 @@ import argparse
 import gzip
 import json
 import os
+import resource
 import shutil
 import signal
 import stat
@@ -166,6 +167,36 @@ def a_full_standard_output_is_status_three(subject):
         if why := refused(ended, "standard output", status=3):
             found.append(f"{' '.join(arguments)}: {why}")
     return found
+
+
+@case
+def a_limit_on_the_size_of_files_is_a_full_disk(subject):
+    """Less is allowed than the answer takes: status 3, the older answer whole, nothing left over."""
+    found, limited = [], 0
+    verbs = [(list(words_of(writer, "head" if writer[1] == "IN.nrrd" else "ball", "limited")), None)
+             for writer in WRITERS]
+    verbs += [(["run", "plan.json", "-o", "result"], "result"), (["look", "head.nrrd", "-o", "looked"], "looked"),
+              (["convert", "head.nrrd", "-o", "series"], "series"), (["convert", "head.nrrd", "-o", "limited.nii"], None),
+              (["convert", "head.nrrd", "-o", "limited.mha"], None),
+              (["octree", "ball.octree", "--as", "linear", "-o", "limited.txt"], None)]
+    for arguments, folder in verbs:
+        for most in (0, 1000, 20000):
+            older = subject.folder / arguments[-1]
+            if not folder:
+                older.write_text("older")
+            ended = subject.run(*arguments, most_s=60,
+                                before=lambda most=most: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+            limited += ended.status == 3
+            why = refused(ended, "ulimit -f", status=3) if ended.status else ""
+            if not why and ended.status and (older.exists() if folder else older.read_text() != "older"):
+                why = "the older answer is not whole"
+            if hidden := subject.hidden_left():
+                why = why or f"left {hidden}"
+            if folder:
+                shutil.rmtree(older, ignore_errors=True)
+            if why:
+                found.append(f"{' '.join(arguments)} in {most} bytes: {why}")
+    return found or (["no limit was met"] if limited < len(verbs) else [])
 
 
 @case

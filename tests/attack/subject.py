@@ -69,14 +69,15 @@ class Subject:
         return name
 
     def run(self, *arguments, after=None, stop=signal.SIGKILL, out=subprocess.PIPE, most_s=120.0, cwd=None,
-            environment=None):
-        """Runs the program; sends `stop` `after` seconds. A process that ignores it is killed after most_s."""
+            environment=None, before=None):
+        """Runs the program, after the function `before` in its process; sends `stop` `after` seconds. A process that
+        ignores it is killed after most_s."""
         variables = dict(os.environ, TMPDIR=str(self.temporary), **(environment or {}))
         most_s *= Subject.patience
         start = time.monotonic()
         with subprocess.Popen([self.program, *arguments], stdin=subprocess.DEVNULL, stdout=out,
                               stderr=subprocess.PIPE, cwd=cwd or self.folder, env=variables,
-                              start_new_session=True) as process:
+                              start_new_session=True, preexec_fn=before) as process:
             signalled = None
             try:
                 said, errors = process.communicate(timeout=after if after is not None else most_s)

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cassert>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 
 #include "voxel/space/error.h"
+#include "voxel/space/write_failure.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -131,14 +133,14 @@ void write_dicom_file(const std::filesystem::path& path, const std::filesystem::
   meta.write(head);
   DicomAttributes length;
   length.put_longs(0x00020000, {static_cast<std::uint32_t>(head.str().size())});
+  errno = 0;
   std::ofstream out(path, std::ios::binary);
   out << std::string(128, '\0') << "DICM";
   length.write(out);
   out << head.str();
   attributes.write(out);
   out.close();
-  if (!out)
-    throw Error(ErrorCode::Resource, name.string() + ": cannot be written; check the space left on the disk");
+  if (!out) refuse_unwritten(name, errno);
 }
 
 }  // namespace octotomy::voxel

@@ -2,6 +2,7 @@
 #include "voxel/scan/image_file.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <dlfcn.h>
 #include <fstream>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 #include "voxel/space/helper_file.h"
 #include "voxel/space/quiet_errors.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_failure.h"
 
 namespace octotomy::voxel {
 
@@ -98,11 +100,11 @@ void write_image(const fs::path& path, const glm::ivec2& size_px, const std::vec
     throw Error(error.code(), path.string() + ": " + error.what());
   }
   StagedFiles staging(path.parent_path());
+  errno = 0;
   std::ofstream out(staging.folder() / path.filename(), std::ios::binary);
   out.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
   out.close();
-  if (!out)
-    throw Error(ErrorCode::Resource, path.string() + ": cannot be written; check the space left on the disk");
+  if (!out) refuse_unwritten(path, errno);
   staging.commit();
 }
 

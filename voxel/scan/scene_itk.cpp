@@ -28,6 +28,7 @@
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
 #include "voxel/space/quiet_errors.h"
+#include "voxel/space/write_failure.h"
 
 namespace octotomy::voxel {
 
@@ -76,10 +77,11 @@ void call_itk(const fs::path& path, VolumeFormat format, const char* what, const
     errno = 0;
     call();
   } catch (const itk::ExceptionObject& error) {
-    const ErrorCode code = code_of_errno(errno);
+    const int number = errno;
     refuse(path,
-           std::string(what) + " as " + name_of(format) + ": " + innermost_cause(error.GetDescription()),
-           code);
+           std::string(what) + " as " + name_of(format) + ": " + innermost_cause(error.GetDescription()) +
+               way_out_of(number),
+           code_of_errno(number));
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
@@ -315,6 +317,7 @@ void finish_nifti(const fs::path& from, const fs::path& to, const Scene& scene) 
   bool written = static_cast<bool>(in);
   part = nifti_beginning(std::move(part), scene);
   // "T": unpacked.
+  errno = 0;
   const gzFile out = gzopen(to.c_str(), extension_of(to) == ".gz" ? "wb1" : "wbT");
   written = written && out != nullptr;
   while (written && !part.empty()) {
@@ -324,7 +327,7 @@ void finish_nifti(const fs::path& from, const fs::path& to, const Scene& scene) 
     part.resize(static_cast<std::size_t>(in.gcount()));
   }
   if (out != nullptr) written = gzclose(out) == Z_OK && written;
-  if (!written) refuse(to, "cannot be written; check the space left on the disk", ErrorCode::Resource);
+  if (!written) refuse_unwritten(to, errno);
   fs::remove(from);
 }
 

@@ -31,9 +31,10 @@ struct Stopped : Error {
   explicit Stopped(const std::string& message) : Error(ErrorCode::Cancelled, message) {}
 };
 
-/// The code of a failed system call: Resource if the disk or memory gave out, else Input.
+/// The code of a failed system call: Resource if memory, the disk or a limit on it gave out, else Input.
 inline ErrorCode code_of_errno(int number) {
-  return number == ENOSPC || number == EDQUOT || number == EIO || number == ENOMEM || number == EMFILE
+  return number == ENOSPC || number == EDQUOT || number == EFBIG || number == EIO || number == ENOMEM ||
+                 number == EMFILE
              ? ErrorCode::Resource
              : ErrorCode::Input;
 }

@@ -24,6 +24,7 @@
 #include "voxel/space/error.h"
 #include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/space/write_failure.h"
 #include "voxel/tree/packed_treecode.h"
 
 namespace octotomy::voxel {
@@ -455,10 +456,6 @@ class Reader {
   std::int16_t background_ = 0;
 };
 
-[[noreturn]] void refuse_write(const std::filesystem::path& path) {
-  throw Error(code_of_errno(errno), path.string() + ": cannot be written: " + std::strerror(errno));
-}
-
 }  // namespace
 
 const Universe& universe(const OctreeFile& file) {
@@ -498,12 +495,12 @@ void write_octree(const OctreeFile& file, const std::filesystem::path& path) {
   StagedFiles staging(path.parent_path());
   const std::filesystem::path staged = staging.folder() / path.filename();
   std::FILE* const stream = std::fopen(staged.c_str(), "wb");
-  if (stream == nullptr) refuse_write(path);
+  if (stream == nullptr) refuse_unwritten(path, errno);
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
   const int reason = errno;
   const bool closed = std::fclose(stream) == 0;
   if (!written) errno = reason;
-  if (!written || !closed) refuse_write(path);
+  if (!written || !closed) refuse_unwritten(path, errno);
   staging.commit(path.filename());
 }
 

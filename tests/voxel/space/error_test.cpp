@@ -11,6 +11,7 @@ namespace {
 
 TEST(Error, OfASystemCallIsOfResourcesOnlyWhereDiskOrMemoryGaveOut) {
   EXPECT_EQ(code_of_errno(ENOSPC), ErrorCode::Resource);
+  EXPECT_EQ(code_of_errno(EFBIG), ErrorCode::Resource);
   EXPECT_EQ(code_of_errno(ENOMEM), ErrorCode::Resource);
   EXPECT_EQ(code_of_errno(ENOENT), ErrorCode::Input);
   EXPECT_EQ(code_of_errno(EACCES), ErrorCode::Input);

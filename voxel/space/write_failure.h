@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cerrno>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "voxel/space/error.h"
+
+namespace octotomy::voxel {
+
+/// What to do about the error number of a call that could not write, to end a message: empty if there is no
+/// room or limit to raise.
+inline std::string way_out_of(int number) {
+  if (number == EFBIG) return "; raise the limit on the size of files (ulimit -f)";
+  return number == ENOSPC || number == EDQUOT ? "; make room on the disk" : "";
+}
+
+/// Throws Error: the file, the reason by the error number of the failed call, and what to do. Input or
+/// Resource; a stream that fails for no known reason, 0, most likely met a full disk.
+[[noreturn]] inline void refuse_unwritten(const std::filesystem::path& path, int number) {
+  throw Error(number == 0 ? ErrorCode::Resource : code_of_errno(number),
+              path.string() + ": cannot be written" +
+                  (number == 0 ? "" : ": " + std::generic_category().message(number)) + way_out_of(number));
+}
+
+}  // namespace octotomy::voxel
