@@ -5,6 +5,7 @@
 #include <map>
 
 #include "planner/cli/verbs.h"
+#include "planner/cohort/cohort_folder.h"
 #include "planner/cohort/engine.h"
 #include "planner/cohort/forecast.h"
 #include "planner/cohort/group.h"
@@ -12,11 +13,10 @@
 #include "planner/cohort/result_rows.h"
 #include "planner/cohort/statistics.h"
 #include "planner/cohort/subjects.h"
-#include "planner/report/result_folder.h"
 #include "planner/file/output_path.h"
+#include "planner/report/result_folder.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/verb.h"
-#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -31,26 +31,22 @@ struct CohortText {
   bool again = false, reports = false, dry_run = false;
 };
 
-/// Where the plan of the participants stands, so that the group finds it.
-fs::path kept_plan(const fs::path& out) {
-  return out / "code/plan.plan.json";
-}
-
 Plan plan_of(const CohortText& text) {
-  const fs::path path = text.plan.empty() ? kept_plan(text.out) : text.plan;
+  const fs::path path = text.plan.empty() ? cohort_plan(text.out) : text.plan;
   if (text.plan.empty() && !fs::exists(path))
     throw std::runtime_error("--plan is missing: name the plan that every subject's scans go through");
   return read_plan(path);
 }
 
 std::vector<std::string> command(const Program& program, const CohortText& text, const std::string& level) {
-  std::vector<std::string> words{fs::read_symlink("/proc/self/exe").string(),
-                                 "cohort",
-                                 fs::absolute(text.in).string(),
-                                 fs::absolute(text.out).string(),
-                                 level,
-                                 "--plan",
-                                 fs::absolute(text.plan.empty() ? kept_plan(text.out) : text.plan).string()};
+  std::vector<std::string> words{
+      fs::read_symlink("/proc/self/exe").string(),
+      "cohort",
+      fs::absolute(text.in).string(),
+      fs::absolute(text.out).string(),
+      level,
+      "--plan",
+      fs::absolute(text.plan.empty() ? cohort_plan(text.out) : text.plan).string()};
   if (level == "participant") {
     if (text.again) words.emplace_back("--again");
     if (text.reports) words.emplace_back("--reports");
@@ -59,25 +55,16 @@ std::vector<std::string> command(const Program& program, const CohortText& text,
   return words;
 }
 
-/// Writes a file that is not there with this text yet, beside and renamed into place: others may do the same.
-void keep_text(const fs::path& path, const std::string& text) {
-  std::ifstream file(path, std::ios::binary);
-  if (file && std::string{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()} == text)
-    return;
-  const voxel::StagedFiles staged(path.parent_path());
-  write_text(staged.folder() / path.filename(), text);
-  fs::rename(staged.folder() / path.filename(), path);
-}
-
-/// The derivatives' folder: what BIDS asks of it, the plan, and where engines keep their scripts and logs.
-void prepare_out(const CohortText& text, const Plan& plan) {
-  fs::create_directories(text.out / "code");
-  const Json description{{"Name", "Octotomy"},
-                         {"BIDSVersion", "1.8.0"},
-                         {"DatasetType", "derivative"},
-                         {"GeneratedBy", {{{"Name", "octotomy"}, {"Version", OCTOTOMY_VERSION}}}}};
-  keep_text(text.out / "dataset_description.json", description.dump(2) + "\n");
-  if (!text.plan.empty()) keep_text(kept_plan(text.out), plan.text);
+/// What the command writes into the cohort's folder.
+CohortNeeds needs_of(const CohortText& text, const Plan& plan, const std::vector<Subject>& subjects) {
+  CohortNeeds needs;
+  if (!text.plan.empty()) needs.plan_text = plan.text;
+  if (text.level == "group" || text.engine == "slurm") needs.folders.emplace_back("group");
+  if (text.level == "group") return needs;
+  for (const Subject& subject : subjects) needs.folders.push_back(subject.folder());
+  if (text.engine == "parallel") needs.files = {cohort_labels, cohort_log};
+  if (text.engine == "slurm") needs.files = {cohort_labels, cohort_participant_script, cohort_group_script};
+  return needs;
 }
 
 Json json_of(const Subject& subject, const SubjectRecord& record) {
@@ -194,7 +181,9 @@ int cohort(Program& program, const CohortText& text) {
   const Plan plan = plan_of(text);
   const std::vector<Subject> subjects = chosen_subjects(find_subjects(text.in, plan), text.labels);
   if (text.dry_run) return dry_run(program, text, subjects);
-  prepare_out(text, plan);
+  const CohortNeeds needs = needs_of(text, plan, subjects);
+  need_cohort_folder(text.out, needs);
+  prepare_cohort_folder(text.out, needs.plan_text);
   if (text.level == "participant") return participants(program, text, plan, subjects);
   GroupOptions options{program.stop.get_token(), program.progress(), {}};
   if (!text.against.empty()) options.against = text.against;
@@ -210,16 +199,7 @@ struct TableText {
   std::vector<fs::path> results;
   fs::path out;
   bool wide = false;
-/// Refuses an output that would replace a result or a part of one.
-void need_table_output(const TableText& text) {
-  need_output(text.out, "a table is", ".csv", text.results);
-  need_folder_of(text.out);
-  if (is_of_result(text.out))
-    throw std::runtime_error(text.out.string() + ": is a file of a result: choose another -o");
-}
-
 };
-  need_table_output(text);
 
 Json read_result(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -230,7 +210,16 @@ Json read_result(const fs::path& path) {
   return json;
 }
 
+/// Refuses an output that would replace a result or a part of one.
+void need_table_output(const TableText& text) {
+  need_output(text.out, "a table is", ".csv", text.results);
+  need_folder_of(text.out);
+  if (is_of_result(text.out))
+    throw std::runtime_error(text.out.string() + ": is a file of a result: choose another -o");
+}
+
 int table(Program& program, const TableText& text) {
+  need_table_output(text);
   std::string written = long_header();
   CohortTable columns;
   std::vector<std::string> labels;

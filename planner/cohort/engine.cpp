@@ -13,7 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include "planner/report/result_folder.h"
+#include "planner/cohort/cohort_folder.h"
 #include "voxel/space/error.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration)
@@ -94,12 +94,15 @@ std::string shell_text(const Words& words) {
   return text;
 }
 
+fs::path code_path(const EngineRequest& request, const char* name) {
+  return request.out / "code" / name;
+}
+
 fs::path write_labels(const EngineRequest& request) {
-  const fs::path path = request.out / "code/subjects.txt";
   std::string text;
   for (const std::string& label : request.labels) text += label + "\n";
-  write_text(path, text);
-  return path;
+  write_cohort_file(request.out, cohort_labels, text);
+  return code_path(request, cohort_labels);
 }
 
 /// The number that `sbatch --parsable` prints, before a ";" and the cluster's name.
@@ -147,30 +150,32 @@ bool run_serial(const EngineRequest& request) {
 
 bool run_parallel(const EngineRequest& request) {
   Words words{"parallel",   "--will-cite",
-              "--joblog",   (request.out / "code/parallel.log").string(),
+              "--joblog",   code_path(request, cohort_log).string(),
               "--arg-file", write_labels(request).string()};
   if (request.jobs > 0) words.insert(words.end(), {"--jobs", std::to_string(request.jobs)});
   words.push_back(shell_text(request.program) + " --participant-label {} >/dev/null");
   run_child(words, request.stop);
-  return log_tells_end_of_resources(request.out / "code/parallel.log");
+  return log_tells_end_of_resources(code_path(request, cohort_log));
 }
 
 std::vector<std::string> submit_slurm(const EngineRequest& request) {
   constexpr std::size_t array_size = 1000;  // Slurm's default limit is 1,001
   const fs::path labels = write_labels(request);
-  const fs::path logs = request.out / "code/logs";
+  const fs::path logs = code_path(request, "logs");
   fs::create_directories(logs);
   const auto head = [&](const std::string& name) {
     return "#!/bin/bash\n#SBATCH --requeue\n#SBATCH --job-name=" + name +
            "\n#SBATCH --output=" + (logs / "%x_%A_%a.txt").string() + "\n";
   };
-  const fs::path participant = request.out / "code/participant.sbatch";
-  write_text(participant, head("octotomy") + "# $1 subjects lie before the array's first.\n" +
-                              "label=$(sed -n \"$((SLURM_ARRAY_TASK_ID + $1))p\" " +
-                              shell_text({labels.string()}) + ")\nexec " + shell_text(request.program) +
-                              " --participant-label \"$label\" >/dev/null\n");
-  const fs::path group = request.out / "code/group.sbatch";
-  write_text(group, head("octotomy-group") + "exec " + shell_text(request.group) + "\n");
+  const fs::path participant = code_path(request, cohort_participant_script);
+  write_cohort_file(request.out, cohort_participant_script,
+                    head("octotomy") + "# $1 subjects lie before the array's first.\n" +
+                        "label=$(sed -n \"$((SLURM_ARRAY_TASK_ID + $1))p\" " + shell_text({labels.string()}) +
+                        ")\nexec " + shell_text(request.program) +
+                        " --participant-label \"$label\" >/dev/null\n");
+  const fs::path group = code_path(request, cohort_group_script);
+  write_cohort_file(request.out, cohort_group_script,
+                    head("octotomy-group") + "exec " + shell_text(request.group) + "\n");
 
   std::vector<std::string> jobs;
   std::string after = "--dependency=afterany";

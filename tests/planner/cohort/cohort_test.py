@@ -224,6 +224,84 @@ class Cohort(unittest.TestCase):
         self.participants(table, "out", "--again")
         self.assertFalse((self.folder / "out/sub-0000/report").exists())
 
+    def assert_refused(self, run, *words):
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertEqual(run.stderr.count("\n"), 1, run.stderr)
+        for word in words:
+            self.assertIn(word, run.stderr)
+
+    def contents(self, folder):
+        return {path: path.read_bytes() for path in (self.folder / folder).rglob("*") if path.is_file()}
+
+    def test_a_folder_with_files_of_somebody_else_is_refused_before_anything_is_written(self):
+        table = self.cohort(2)
+        ours = json.dumps({"Name": "x", "GeneratedBy": [{"Name": "octotomy"}]})
+        for name, text, word in (("dataset_description.json", '{"Name": "my scans"}', "describes a dataset"),
+                                 ("dataset_description.json", "no JSON", "describes a dataset"),
+                                 ("dataset_description.json", '{"GeneratedBy": [7, {"Name": 7}, {}]}', "describes a"),
+                                 ("code/plan.plan.json", "mine", "is not Octotomy's"),
+                                 ("code/octotomy.sha256", "mine", "is not Octotomy's"),
+                                 ("sub-0001/anat/scan.txt", "mine", "is not a result"),
+                                 ("sub-0001", "mine", "is not a result")):
+            with self.subTest(name=name, text=text):
+                shutil.rmtree(self.folder / "out", ignore_errors=True)
+                path = self.folder / "out" / name
+                path.parent.mkdir(parents=True)
+                path.write_text(text)
+                before = self.contents("out")
+                self.assert_refused(self.participants(table, "out", check=False), word, "choose another OUT")
+                self.assertEqual(self.contents("out"), before)
+        for engine, name in (("parallel", "subjects.txt"), ("parallel", "parallel.log"), ("slurm", "subjects.txt"),
+                             ("slurm", "participant.sbatch"), ("slurm", "group.sbatch"), ("slurm", "../group/mine")):
+            with self.subTest(engine=engine, name=name):
+                shutil.rmtree(self.folder / "out", ignore_errors=True)
+                path = self.folder / "out/code" / name
+                path.parent.mkdir(parents=True)
+                (self.folder / "out/group").mkdir(exist_ok=True)
+                path.write_text("mine")
+                before = self.contents("out")
+                self.assert_refused(self.participants(table, "out", "--engine", engine, check=False), path.name[:4],
+                                    "choose another OUT")
+                self.assertEqual(self.contents("out"), before)
+        # One who describes the dataset further is left alone.
+        shutil.rmtree(self.folder / "out")
+        (self.folder / "out").mkdir()
+        (self.folder / "out/dataset_description.json").write_text(ours)
+        self.participants(table, "out")
+        self.assertEqual((self.folder / "out/dataset_description.json").read_text(), ours)
+
+    def test_a_plan_that_was_changed_in_the_folder_is_kept(self):
+        table = self.cohort(1)
+        self.participants(table, "out")
+        kept = self.folder / "out/code/plan.plan.json"
+        other = self.plan.read_text().replace('"low": 0', '"low": 100')
+        mine = self.plan.read_text().replace('"low": 0', '"low": 50')
+        kept.write_text(mine)
+        octotomy_program("cohort", table, self.folder / "out", "participant")
+        octotomy_program("cohort", table, self.folder / "out", "participant", "--plan", kept)
+        self.plan.write_text(other)
+        self.assert_refused(self.participants(table, "out", check=False), "plan.plan.json", "changed after it wrote")
+        self.assertEqual(kept.read_text(), mine)
+        kept.unlink()
+        self.participants(table, "out")
+        self.assertEqual(kept.read_text(), other)
+
+    def test_a_folder_that_was_made_without_a_list_goes_on(self):
+        table = self.cohort(2)
+        self.participants(table, "out")
+        description = self.folder / "out/dataset_description.json"
+        version = json.loads(description.read_text())["GeneratedBy"][0]["Version"]
+        for more in ((), ("--again",)):
+            (self.folder / "out/code/octotomy.sha256").unlink()
+            description.write_text(description.read_text().replace(version, "0.1"))
+            before = (self.folder / "out/sub-0000/rows.csv").read_bytes()
+            self.plan.write_text(self.plan.read_text().replace('"low": ', '"low": 1'))
+            self.participants(table, "out", *more)
+            self.assertNotEqual((self.folder / "out/sub-0000/rows.csv").read_bytes(), before)
+            self.assertEqual((self.folder / "out/code/plan.plan.json").read_text(), self.plan.read_text())
+            self.assertIn(version, description.read_text())
+        self.group(table, "out")
+
     def test_one_that_never_ran_is_listed(self):
         table = self.cohort(3)
         self.participants(table, "out", "--participant-label", "0000", "sub-0002")

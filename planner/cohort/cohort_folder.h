@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planner/plan/plan.h"
+
+namespace octotomy::planner {
+
+/// What a command will write into a cohort's folder.
+struct CohortNeeds {
+  std::string plan_text;             ///< kept as cohort_plan(); empty: the kept plan stays
+  std::vector<std::string> files;    ///< that engines write into code/: cohort_labels, ...
+  std::vector<std::string> folders;  ///< of results: "sub-01", "group"
+};
+
+/// Names in code/ that engines write.
+inline constexpr const char* cohort_labels = "subjects.txt";
+inline constexpr const char* cohort_participant_script = "participant.sbatch";
+inline constexpr const char* cohort_group_script = "group.sbatch";
+inline constexpr const char* cohort_log = "parallel.log";
+
+/// The plan that every subject went through last.
+std::filesystem::path cohort_plan(const std::filesystem::path& out);
+
+/// Refuses a cohort's folder before anything is written to it. Throws voxel::Error (Input) that names the
+/// file and the way out if
+/// - `dataset_description.json` does not name Octotomy in GeneratedBy;
+/// - the kept plan, unless it is the same, or a file of `needs` was not written by a cohort, or was changed
+/// since;
+/// - the list `code/octotomy.sha256` is another file;
+/// - a folder of `needs` holds files but no result (may_hold_result()).
+/// A folder that was made before there was a list counts as Octotomy's by its
+/// description. Cost: a look into each folder.
+void need_cohort_folder(const std::filesystem::path& out, const CohortNeeds& needs);
+
+/// Makes the folder, its description and the kept plan. Precondition: need_cohort_folder(). Throws as that
+/// does, and std::filesystem::filesystem_error or voxel::Error where the disk gives out.
+void prepare_cohort_folder(const std::filesystem::path& out, const std::string& plan_text);
+
+/// Writes a file `name` in code/, beside and renamed into place, unless it is there with this text. The list
+/// `code/octotomy.sha256` tells later commands that the text is Octotomy's. Several processes may do the same
+/// at once. Throws as prepare_cohort_folder().
+void write_cohort_file(const std::filesystem::path& out, const std::string& name, const std::string& text);
+
+}  // namespace octotomy::planner
