@@ -20,6 +20,12 @@ struct Offset {
   std::optional<double> cell_mm;
 };
 
+void check(const Offset& offset, const Place& place) {
+  if (offset.by_mm == 0.0)
+    place.at("by_mm").refuse(
+        "0 moves nothing: say how far outward, or inward as a number below 0, or use the object itself");
+}
+
 /// Fine enough for the offset's own roundness, and no finer than some 200 cells along the solid.
 double cell_for(const brep::Solid& solid, double by_mm) {
   const glm::dvec3 extent = solid.size().high_mm - solid.size().low_mm;
@@ -88,7 +94,8 @@ Operation offset_operation() {
   return Describe<Offset>("offset", "Moves an object's surface outward, or inward: margins and clearances.",
                           Makes::Object)
       .takes(field("object", &Offset::object, "The object.").required().positional("solid"))
-      .takes(field("by_mm", &Offset::by_mm, "The distance outward; below 0 it goes inward.").required())
+      .takes(
+          field("by_mm", &Offset::by_mm, "The distance outward; below 0 it goes inward. Not 0.").required())
       .takes(
           field("cell_mm", &Offset::cell_mm,
                 "About the edge of the mesh's triangles. Default: a quarter of the distance, or a 200th of "
@@ -98,6 +105,7 @@ Operation offset_operation() {
       .on_files(
           "octotomy offset tumour.stl --by 5 -o margin.stl\n"
           "  octotomy offset skull.stl --by -1 --cell 0.4 -o core.ply --json")
+      .check(check)
       .object(definition, nullptr, triangles, bound);
 }
 

@@ -54,6 +54,11 @@ TEST_F(MeshVerbs, AnOctreeBecomesAMeshByEverySurfaceAndComesBackFromItsCuberille
   expect_refused(run("mesh " + at("ball.octree") + " --window 1: -o " + at("p.ply")), "no samples");
 }
 
+TEST_F(MeshVerbs, AnOffsetByNothingIsRefusedBeforeTheMeshIsRead) {
+  write("no.stl", "broken");
+  expect_refused(run("offset " + at("no.stl") + " --by 0 -o " + at("o.stl")), "0 moves nothing: say how far");
+}
+
 TEST_F(MeshVerbs, AScansContoursAreTiledToASolidByAnyCost) {
   const SortedJson iso =
       SortedJson::parse(run("mesh " + at("ball.nrrd") + " --window 0: -o " + at("i.ply") + " --json").out);

@@ -17,5 +17,16 @@ TEST(OffsetStep, ABallGrowsAndShrinksByTheDistance) {
   expect_of_mesh(evaluation.object("smaller"), ball_mm3(ball_radius_mm - 4.0), 0.03);
 }
 
+TEST(OffsetStep, ByNothingIsRefused) {
+  const ScratchFolder folder;
+  for (const char* nothing : {"0", "-0.0"})
+    EXPECT_NE(ball_refusal(folder, R"({"id": "same", "do": "offset", "object": "ball", "by_mm": )" +
+                                       std::string(nothing) + "}")
+                  .find("step 'same', by_mm: 0 moves nothing"),
+              std::string::npos)
+        << nothing;
+  EXPECT_EQ(ball_refusal(folder, R"({"id": "more", "do": "offset", "object": "ball", "by_mm": 0.1})"), "");
+}
+
 }  // namespace
 }  // namespace octotomy::planner
