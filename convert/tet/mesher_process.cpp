@@ -104,6 +104,8 @@ pid_t start(const std::filesystem::path& executable, int in, int out, int log) {
   sigset_t all;
   sigemptyset(&none);
   sigfillset(&all);
+  // Under nohup both outlive the terminal.
+  sigdelset(&all, SIGHUP);
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &all);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
@@ -191,11 +193,11 @@ Reason reason_of_status(int status, const MesherLimits& limits) {
       return {"was ended by signal " + std::to_string(signal) + " (SIG" + sigabbrev_np(signal) +
                   "): out of processor time, or ended from outside",
               true, voxel::ErrorCode::Resource};
-    const char* name = sigabbrev_np(signal);
-    return {"crashed with signal " + std::to_string(signal) + " (SIG" + (name == nullptr ? "?" : name) + ")"};
     if (signal == SIGXFSZ)
       return {"passed the limit on the size of files (ulimit -f) with its answer: raise it", false,
               voxel::ErrorCode::Resource};
+    const char* name = sigabbrev_np(signal);
+    return {"crashed with signal " + std::to_string(signal) + " (SIG" + (name == nullptr ? "?" : name) + ")"};
   }
   switch (WEXITSTATUS(status)) {
     case mesher_exit_memory:

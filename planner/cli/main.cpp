@@ -42,6 +42,28 @@ using octotomy::planner::cli::Program;
 namespace cli = octotomy::planner::cli;
 
 std::atomic<int> interrupts{0};
+std::atomic<bool> is_processor_time_over{false};
+
+/// Handles a signal, unless whoever started the program had it ignored, as nohup does with SIGHUP.
+void heed(int signal, void (*handler)(int)) {
+  if (std::signal(signal, handler) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
+/// Which signals ask for an end, and which a failed call tells of anyway. A second SIGINT or SIGTERM ends the
+/// process at once; SIGHUP counts once, as a terminal that closes may send it twice. SIGXCPU, of a limit on
+/// processor time, is the same as --time-limit. SIGQUIT keeps its meaning, an end at once with a core: as
+/// after SIGKILL, the next run removes what is left.
+void heed_signals() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { ++interrupts; });
+  heed(SIGHUP, [](int) {
+    int none = 0;
+    interrupts.compare_exchange_strong(none, 1);
+  });
+  heed(SIGXCPU, [](int) { is_processor_time_over = true; });
+  // A reader that goes away and a limit on the size of files: the call that writes fails with EPIPE or EFBIG.
+  // Handled instead of ignored, as programs that are started inherit what is ignored.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) heed(signal, [](int) {});
+}
 
 /// Says why and ends the process without the verb, whose threads may still work: what they have not finished
 /// is removed, and the processes that they started end with this one.
@@ -88,8 +110,9 @@ class Watch {
     while (!end.wait_for(lock, over, look_every, [&over] { return over.stop_requested(); })) {
       if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
       if (program.shows_progress()) cli::show_silent_work();
-      const bool late = program.time_limit_s &&
-                        std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s;
+      const bool late = is_processor_time_over ||
+                        (program.time_limit_s &&
+                         std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s);
       if (interrupts > 1) end_now("interrupted twice: ended at once, what was unfinished is removed");
       if (!late && interrupts == 0) continue;
       program.stop.request_stop();
@@ -204,11 +227,7 @@ int parse_and_run(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  // A reader that goes away and a limit on the size of files: the call that writes fails with EPIPE or EFBIG.
-  // Handled instead of ignored, as programs that are started inherit what is ignored.
-  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, [](int) {});
-  std::signal(SIGINT, [](int) { ++interrupts; });
-  std::signal(SIGTERM, [](int) { ++interrupts; });
+  heed_signals();
   std::set_terminate([] {
     end_for_want(
         "out of memory or of threads: nothing was written; use larger voxels, fewer --threads, or raise "

@@ -200,6 +200,33 @@ def a_limit_on_the_size_of_files_is_a_full_disk(subject):
 
 
 @case
+def a_closed_terminal_ends_it_unless_that_is_ignored(subject):
+    """SIGHUP ends a run as SIGTERM does; under nohup the run goes on to its end, and so does its mesher."""
+    found = []
+    verb = ("run", "plan.json", "-o", "result")
+    seconds = subject.need(*verb).seconds
+    shutil.rmtree(subject.folder / "result")
+    statuses = []
+    for share in (0.3, 0.5, 0.7):
+        ended = subject.run(*verb, after=share * seconds, stop=signal.SIGHUP, most_s=60)
+        statuses.append(ended.status)
+        if ended.status and (why := refused(ended, status=3)):
+            found.append(why)
+        if subject.hidden_left() or subject.children_left():
+            found.append(f"left {subject.hidden_left()}, {subject.children_left()}")
+        shutil.rmtree(subject.folder / "result", ignore_errors=True)
+    if 3 not in statuses:
+        found.append(f"never ended by it: {statuses}")
+    for signal_number in (signal.SIGHUP, signal.SIGXCPU):
+        for share in (0.3, 0.7):
+            ended = subject.run(*verb, after=share * seconds, stop=signal_number, most_s=60,
+                                before=lambda number=signal_number: signal.signal(number, signal.SIG_IGN))
+            if why := done(ended):
+                found.append(f"{signal_number.name} ignored: {why}")
+    return found
+
+
+@case
 def names_that_are_not_utf8_work(subject):
     found = []
     name = b"caf\xe9 \x1b[31m\n"

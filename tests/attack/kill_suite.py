@@ -3,7 +3,7 @@
 """Ends verbs at random instants and looks at what is left.
 
 Each verb runs again and again over an older answer and is ended somewhere between its first and last moment: by
-SIGKILL, by SIGTERM or SIGINT, or by --time-limit. Afterwards the older answer or the newer one is
+SIGKILL, by SIGTERM, SIGINT, SIGHUP or SIGXCPU, or by --time-limit. Afterwards the older answer or the newer one is
 there, whole, with every file of somebody else; no process that it started lives on; except after SIGKILL nothing
 unfinished is left, and after SIGKILL the next run removes it.
 
@@ -17,7 +17,9 @@ from collections import Counter
 
 from subject import Subject, broken_list
 
-ENDINGS = ("kill", "term", "int", "limit")
+SIGNALS = {"kill": signal.SIGKILL, "term": signal.SIGTERM, "int": signal.SIGINT, "hup": signal.SIGHUP,
+           "xcpu": signal.SIGXCPU}
+ENDINGS = (*SIGNALS, "limit")
 
 
 class Verb:
@@ -73,8 +75,7 @@ def end_once(subject, verb, ending, delay_s):
     arguments = list(verb.arguments)
     if ending == "limit":
         return subject.run(*arguments, "--time-limit", f"{max(delay_s, 0.001):.4f}", most_s=60.0)
-    stop = {"kill": signal.SIGKILL, "int": signal.SIGINT}.get(ending, signal.SIGTERM)
-    return subject.run(*arguments, after=delay_s, stop=stop, most_s=60.0)
+    return subject.run(*arguments, after=delay_s, stop=SIGNALS[ending], most_s=60.0)
 
 
 def main():
@@ -83,7 +84,7 @@ def main():
     parser.add_argument("--count", type=int, default=1000, help="endings a verb and kind (default 1000)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--verbs", default=",".join(verb.name for verb in VERBS))
-    parser.add_argument("--endings", default="kill,term,limit", help=f"of {', '.join(ENDINGS)}")
+    parser.add_argument("--endings", default="kill,term,hup,limit", help=f"of {', '.join(ENDINGS)}")
     parser.add_argument("--within", type=float, default=2.0,
                         help="seconds from a signal to the end; the promise is 0.3 on a quiet machine")
     asked = parser.parse_args()
@@ -119,7 +120,7 @@ def judge(subject, verb, ending, asked):
             if hidden:
                 why = why or f"left {hidden}"
             # A signal within the first milliseconds, before main(), ends any process.
-            if ended.status not in (0, 3, -signal.SIGTERM, -signal.SIGINT):
+            if ended.status not in (0, 3, -SIGNALS.get(ending, signal.SIGTERM)):
                 why = why or str(ended)
             if (late or 0.0) > asked.within:
                 why = why or f"ended {late:.2f} s late"
