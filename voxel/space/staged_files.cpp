@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/space/staged_files.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <list>
 #include <string>
 #include <sys/stat.h>
 #include <system_error>
@@ -21,6 +23,11 @@ void check(const std::error_code& error, const fs::path& target) {
     throw Error(code_of_errno(error.value()), target.string() + ": cannot be written: " + error.message());
 }
 
+/// What is staged, and the place that it takes.
+struct Move {
+  fs::path staged, target;
+};
+
 /// Gives the staged file the permissions of the file that it replaces.
 void need_replaceable(const fs::path& target, const fs::path& staged) {
   struct stat of_old {};
@@ -30,6 +37,66 @@ void need_replaceable(const fs::path& target, const fs::path& staged) {
     throw Error(ErrorCode::Input, target.string() + ": is no " + (is_folder ? "folder" : "regular file") +
                                       " and is not replaced: choose another name");
   if (!is_folder) ::chmod(staged.c_str(), of_old.st_mode & 07777);
+}
+
+/// Brings what is staged beside a target that a link leads to, which may be on another disk.
+void bring(Move& move, std::list<StagedFiles>& folders) {
+  const StagedFiles& there = folders.emplace_back(move.target.parent_path());
+  const fs::path staged = there.folder() / move.target.filename();
+  std::error_code error;
+  fs::rename(move.staged, staged, error);
+  if (error == std::errc::cross_device_link)
+    fs::copy(move.staged, staged, fs::copy_options::recursive, error);
+  check(error, move.target);
+  move.staged = staged;
+}
+
+/// A second name of a file that is replaced, so that it can be put back. Where the disk knows no such names,
+/// or they are not allowed, it cannot.
+class OldFile {
+ public:
+  explicit OldFile(const Move& move) : target_(move.target), kept_(move.staged.string() + ".old") {
+    std::error_code error;
+    was_there_ = fs::exists(fs::symlink_status(target_, error));
+    if (was_there_) fs::create_hard_link(target_, kept_, error);
+  }
+  /// Puts it back, or removes what is new.
+  void restore() const {
+    std::error_code ignored;
+    was_there_ ? fs::rename(kept_, target_, ignored) : static_cast<void>(fs::remove_all(target_, ignored));
+  }
+
+ private:
+  fs::path target_, kept_;
+  bool was_there_ = false;
+};
+
+/// All take their places, or none.
+void rename_all(std::vector<Move>& moves) {
+  for (const Move& move : moves) need_replaceable(move.target, move.staged);
+  std::list<StagedFiles> elsewhere;
+  for (Move& move : moves)
+    if (move.staged.parent_path().parent_path() != move.target.parent_path()) bring(move, elsewhere);
+  std::vector<OldFile> old;
+  std::error_code error;
+  const NamesChange change;
+  for (const Move& move : moves) {
+    if (moves.size() > 1) old.emplace_back(move);
+    fs::rename(move.staged, move.target, error);
+    if (!error) continue;
+    if (!old.empty()) old.pop_back();
+    std::for_each(old.rbegin(), old.rend(), [](const OldFile& each) { each.restore(); });
+    check(error, move.target);
+  }
+}
+
+/// The names in a folder, `last` at the end.
+std::vector<fs::path> names_in(const fs::path& folder, const fs::path& last) {
+  std::vector<fs::path> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != last) names.push_back(entry.path().filename());
+  if (!last.empty()) names.push_back(last);
+  return names;
 }
 
 }  // namespace
@@ -43,35 +110,44 @@ fs::path behind_links(fs::path path) {
   return path;
 }
 
+bool are_one_file(const fs::path& a, const fs::path& b) {
+  std::error_code ignored;
+  if (fs::equivalent(a, b, ignored)) return true;
+  const auto whole = [](const fs::path& path) {
+    const fs::path file = behind_links(fs::absolute(path).lexically_normal());
+    return fs::weakly_canonical(file.parent_path()) / file.filename();
+  };
+  return whole(a) == whole(b);
+}
+
 StagedFiles::StagedFiles(const fs::path& destination)
     : destination_(destination.empty() ? "." : destination),
       unfinished_((remove_abandoned(destination_, prefix), destination_), prefix) {}
 
 void StagedFiles::commit(const fs::path& last) {
-  std::vector<fs::path> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder()))
-    if (entry.path().filename() != last) names.push_back(entry.path().filename());
-  if (!last.empty()) names.push_back(last);
-  std::vector<fs::path> targets;
-  for (const fs::path& name : names) {
-    targets.push_back(behind_links(destination_ / name));
-    need_replaceable(targets.back(), folder() / name);
-  }
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::error_code error;
-    {
-      const NamesChange change;
-      fs::rename(folder() / names[i], targets[i], error);
-    }
-    if (error == std::errc::cross_device_link) {
-      StagedFiles there(targets[i].parent_path());
-      fs::copy(folder() / names[i], there.folder() / targets[i].filename(), error);
-      check(error, targets[i]);
-      there.commit();
-    } else {
-      check(error, targets[i]);
-    }
-  }
+  std::vector<Move> moves;
+  for (const fs::path& name : names_in(folder(), last))
+    moves.push_back({folder() / name, behind_links(destination_ / name)});
+  rename_all(moves);
+}
+
+fs::path StagedOutputs::beside(const fs::path& place) {
+  const fs::path folder = fs::absolute(place).parent_path();
+  const StagedFiles& files = folders_.try_emplace(folder, folder).first->second;
+  places_.push_back(folder / place.filename());
+  return files.folder() / place.filename();
+}
+
+void StagedOutputs::commit() {
+  std::vector<Move> moves, last;
+  for (const fs::path& place : places_)
+    last.push_back({folders_.at(place.parent_path()).folder() / place.filename(), behind_links(place)});
+  for (const auto& [destination, files] : folders_)
+    for (const fs::path& name : names_in(files.folder(), {}))
+      if (std::find(places_.begin(), places_.end(), destination / name) == places_.end())
+        moves.push_back({files.folder() / name, behind_links(destination / name)});
+  moves.insert(moves.end(), last.begin(), last.end());
+  rename_all(moves);
 }
 
 }  // namespace octotomy::voxel

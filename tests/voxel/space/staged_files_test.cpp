@@ -97,6 +97,66 @@ TEST(StagedFiles, ReplaceNeitherPipesNorFolders) {
   EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
 }
 
+/// Writes "new" in place of each file, together.
+void publish_all(const std::vector<fs::path>& places) {
+  StagedOutputs outputs;
+  for (const fs::path& place : places) write(outputs.beside(place), "new");
+  outputs.commit();
+}
+
+TEST(StagedOutputs, OfSeveralFoldersReplaceAllFilesOrNone) {
+  const tests::ScratchFolder folder;
+  fs::create_directories(folder / "away/taken");
+  for (const char* name : {"a", "away/b"}) write(folder / name, "old");
+  EXPECT_THROW(publish_all({folder / "a", folder / "away/b", folder / "away/taken"}), Error);
+  for (const char* name : {"a", "away/b"}) EXPECT_EQ(tests::bytes_of(folder / name), "old") << name;
+  publish_all({folder / "a", folder / "away/b", folder / "away/c"});
+  for (const char* name : {"a", "away/b", "away/c"}) EXPECT_EQ(tests::bytes_of(folder / name), "new") << name;
+  EXPECT_EQ(entries(folder.path()), 2);
+  EXPECT_EQ(entries(folder / "away"), 3);
+}
+
+TEST(StagedOutputs, NamesThatWereGivenAreTakenBackWhereALaterOneFails) {
+  const tests::ScratchFolder folder;
+  write(folder / "a", "old");
+  StagedOutputs outputs;
+  write(outputs.beside(folder / "a"), "new");
+  write(outputs.beside(folder / "b"), "new");
+  // A folder that holds something is not replaced by another one, which the disk says when it is renamed.
+  fs::create_directory(outputs.beside(folder / "c"));
+  fs::create_directory(folder / "c");
+  write(folder / "c/mine", "old");
+  EXPECT_THROW(outputs.commit(), Error);
+  EXPECT_EQ(tests::bytes_of(folder / "a"), "old");
+  EXPECT_FALSE(fs::exists(folder / "b"));
+}
+
+TEST(StagedOutputs, WhatLiesNextToAHeaderIsRenamedToo) {
+  const tests::ScratchFolder folder;
+  {
+    StagedOutputs outputs;
+    const fs::path header = outputs.beside(folder / "a.nhdr");
+    write(header, "header");
+    write(header.parent_path() / "a.raw.gz", "samples");
+    outputs.commit();
+  }
+  EXPECT_EQ(tests::bytes_of(folder / "a.raw.gz"), "samples");
+  EXPECT_EQ(entries(folder.path()), 2);
+}
+
+TEST(StagedOutputs, OneFileIsKnownByEachOfItsNames) {
+  const tests::ScratchFolder folder;
+  write(folder / "a", "old");
+  fs::create_symlink("a", folder / "link");
+  fs::create_symlink("not_yet", folder / "open_link");
+  fs::create_directory_symlink(".", folder / "here");
+  fs::create_hard_link(folder / "a", folder / "hard");
+  for (const char* name : {"link", "hard", "./a", "here/a", "here/../a"})
+    EXPECT_TRUE(are_one_file(folder / "a", folder / name)) << name;
+  EXPECT_TRUE(are_one_file(folder / "open_link", folder / "here/not_yet"));
+  EXPECT_FALSE(are_one_file(folder / "a", folder / "b"));
+}
+
 /// Runs `work` in a process of its own that then waits for its end; returns when it has worked.
 template <typename Work>
 pid_t after_work(const Work& work) {
