@@ -15,9 +15,15 @@ namespace octotomy::voxel {
 /// their meaning and the modality survive a round trip. Geometry is kept in double precision; NIfTI files,
 /// single precision by themselves, keep it in an extension that other readers skip. Written beside and
 /// renamed into place, so that a failure leaves an older file intact. Throws Error, Input or Resource, with
-/// path and reason, before a byte is written where the disk cannot take it; std::invalid_argument for NIfTI
-/// and MetaImage, which cannot store them, if the lattice's axes are not perpendicular.
+/// path and reason, before a byte is written where the disk cannot take it; as need_own_data_file();
+/// std::invalid_argument for NIfTI and MetaImage, which cannot store them, if the lattice's axes are not
+/// perpendicular.
 void write_scene(const Scene& scene, const std::filesystem::path& path);
+
+/// Of .nhdr and .mhd, whose samples go into a data file beside them: throws Error (Input) where a file of
+/// that name is there and the header at `path` does not name it, or where `path` is a link. For refusals
+/// before the samples are made. Cost: reads a header.
+void need_own_data_file(const std::filesystem::path& path);
 
 /// Bytes that write_scene(), or for a path of another extension write_dicom_series(), takes of the disk at
 /// least while it writes samples of this size: what NIfTI has unpacked, and the rest as packed as it can be.
