@@ -213,6 +213,18 @@ bool is_deck(const std::filesystem::path& path) {
          extension == ".node" || extension == ".ele" || extension == ".face";
 }
 
+void need_own_deck_files(const std::filesystem::path& path) {
+  const auto is_there = [](const std::filesystem::path& file) {
+    return std::filesystem::exists(std::filesystem::symlink_status(file));
+  };
+  if (is_there(path)) return;
+  for (const Part& part : parts_of(path))
+    if (is_there(part.path))
+      throw voxel::Error(voxel::ErrorCode::Input,
+                         path.string() + ": the deck would replace " + part.path.string() +
+                             ", which is of no such deck: move that file away, or choose another name");
+}
+
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {
   const std::vector<Part> parts = parts_of(path);
   check_nodes(tetrahedra, path);
@@ -224,6 +236,7 @@ void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
     write_deck(made.tetrahedra, path, made.options);
     return;
   }
+  need_own_deck_files(path);
   voxel::need_disk(path, least_bytes(tetrahedra));
   voxel::StagedFiles staged_files(path.has_parent_path() ? path.parent_path() : ".");
   Written written(options.progress, bytes_about(tetrahedra, options));

@@ -79,12 +79,17 @@ struct DeckOptions {
 ///       surface marked by the point array `surface`, sets by arrays of their own; regions, materials and
 ///       fields by elements, surfaces by bits of elements, bit i for the face opposite corner i.
 /// .msh  Gmsh 4.1 or 2.2, text: a physical volume a region, a physical surface a surface.
-/// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only.
+/// .node TetGen's .node, .ele and .face, the last with the whole surface; linear elements only. Throws as
+///       need_own_deck_files().
 /// Throws std::invalid_argument for another extension, no tetrahedra, an element that names no node, sets and
 /// lists that do not fit, or options that a solver would refuse; voxel::Error (Input or Resource) with path
 /// and reason if a file cannot be written; voxel::Stopped. No file is left by a failure.
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                 const DeckOptions& options = {});
+
+/// Throws voxel::Error (Input) where the file that `path` names is not there and another of the deck's is,
+/// which nobody asked to replace. For refusals before the work.
+void need_own_deck_files(const std::filesystem::path& path);
 
 /// The extensions of write_deck() for messages: ".inp, .feb, .vtu, .msh or .node".
 const std::string& deck_extensions();

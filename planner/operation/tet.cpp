@@ -291,6 +291,7 @@ FileAnswer on_files(const Tet& asked, const FileBench& bench) {
   if (!convert::is_deck(asked.out))
     throw std::runtime_error(asked.out.string() + ": a deck is written as " + convert::deck_extensions());
   need_folder_of(asked.out);
+  convert::need_own_deck_files(asked.out);
   if (!of_voxels && (!asked.regions.empty() || asked.size_mm || asked.contact))
     throw std::runtime_error("--region, --size and --contact are of octrees: make one of " + asked.file.name +
                              " by octotomy voxelise");
