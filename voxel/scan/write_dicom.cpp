@@ -223,14 +223,32 @@ std::string slice_name(int k) {
   return name;
 }
 
+/// A folder that is removed again where no slice came into it.
+class MadeFolder {
+ public:
+  explicit MadeFolder(const fs::path& folder) : folder_(folder) {
+    std::error_code error;
+    is_new_ = fs::create_directories(folder, error);
+    if (error) refuse(folder, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
+  }
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+  ~MadeFolder() {
+    std::error_code holds_slices;
+    if (is_new_) fs::remove(folder_, holds_slices);
+  }
+
+ private:
+  fs::path folder_;
+  bool is_new_ = false;
+};
+
 }  // namespace
 
 void write_dicom_series(const Scene& scene, const fs::path& folder, const DicomOptions& options) {
   need_disk(folder, least_file_bytes(scene.lattice, sizeof(std::int16_t), folder));
   const SeriesWriter series(scene, options);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) refuse(folder, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
+  const MadeFolder made(folder);
   for (int k = 0; k < scene.lattice.dims.z; ++k)
     if (fs::exists(folder / slice_name(k)))
       refuse(folder / slice_name(k), "exists already; choose another folder or empty it");
