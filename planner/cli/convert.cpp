@@ -124,7 +124,7 @@ int convert(const Program& program, const ConvertText& text) {
   if (!folder && !is_volume(text.out))
     throw std::runtime_error(text.out.string() +
                              ": unknown kind of scan; use .nrrd, .nii.gz or .mha, or a folder for DICOM");
-  need_folder_of(text.out);
+  need_folder_of(text.out, folder ? Output::Folder : Output::File);
   Timings timings;
   const voxel::Scene scene = read_scan(program, text.in, text.scan, timings);
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");

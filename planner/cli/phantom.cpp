@@ -191,7 +191,8 @@ int phantom(const Program& program, const PhantomText& text) {
     if (is_idle && option->count() > 0)
       throw CLI::ValidationError(option->get_name(), "means nothing for " + text.kind + ": leave it out");
   }
-  need_folder_of(text.out);
+  const bool is_folder = is_scan && (text.dicom || !text.out.has_extension());
+  need_folder_of(text.out, is_folder ? Output::Folder : Output::File);
   return text.kind == "head" ? head(program, text) : is_scan ? leg(program, text) : solid(program, text);
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "planner/cli/verbs.h"
+#include "planner/file/outputs.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
@@ -66,22 +67,35 @@ Action step_of(const std::string& text, const PrepareText& given) {
   return action;
 }
 
-void write_removed(const PrepareText& text, const voxel::GreyOctree& removed, Timings& timings) {
+/// The file that a restore step reads; empty of other steps.
+fs::path read_by(const std::string& step) {
+  constexpr std::string_view restore = "restore=";
+  return step.starts_with(restore) ? step.substr(restore.size()) : "";
+}
+
+/// What cannot be written is refused before anything is read.
+void check_outputs(const PrepareText& text) {
+  if (!voxel::volume_format(text.out))
+    throw std::runtime_error(text.out.string() + ": unknown kind of scan; use .nrrd, .nii.gz or .mha");
+  if (!text.removed.empty()) need_octree_extension(text.removed);
+  std::vector<fs::path> read{text.in};
+  for (const std::string& step : text.steps) read.push_back(read_by(step));
+  need_outputs({text.out, text.removed}, read);
+}
+
+void write_removed(const PrepareText& text, const voxel::GreyOctree& removed, Outputs& outputs,
+                   Timings& timings) {
   const Stopwatch watch(timings, "write");
   const Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
                   {"scan", text.in.filename().string()},
                   {"holds", "samples taken out by remove_headrest; restore puts them back"}};
-  voxel::write_octree({removed, text.removed.stem().string(), json_text(made)}, text.removed);
+  outputs.write(text.removed, [&](const fs::path& file) {
+    voxel::write_octree({removed, text.removed.stem().string(), json_text(made)}, file);
+  });
 }
 
 int prepare(const Program& program, const PrepareText& text) {
-  if (!voxel::volume_format(text.out))
-    throw std::runtime_error(text.out.string() + ": unknown kind of scan; use .nrrd, .nii.gz or .mha");
-  need_folder_of(text.out);
-  if (!text.removed.empty()) {
-    need_octree_extension(text.removed);
-    need_folder_of(text.removed);
-  }
+  check_outputs(text);
   std::vector<Action> steps;
   for (const std::string& step : text.steps) steps.push_back(step_of(step, text));
   if (std::count_if(steps.begin(), steps.end(),
@@ -125,11 +139,13 @@ int prepare(const Program& program, const PrepareText& text) {
     did.push_back(std::move(said));
   }
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
+  Outputs outputs;
   {
     const Stopwatch watch(timings, "write");
-    voxel::write_scene(scene, text.out);
+    outputs.write(text.out, [&](const fs::path& file) { voxel::write_scene(scene, file); });
   }
-  if (removed) write_removed(text, *removed, timings);
+  if (removed) write_removed(text, *removed, outputs, timings);
+  outputs.commit();
   Json json = scan_answer(scene, timings);
   json["path"] = text.out.string();
   json["steps"] = std::move(did);

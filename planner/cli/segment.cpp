@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "planner/cli/verbs.h"
+#include "planner/file/outputs.h"
 #include "planner/file/slice_contours.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/operation/trace.h"
@@ -106,7 +107,7 @@ std::vector<Named> segments_of(const Program& program, const SegmentText& text, 
 
 /// The contours at a threshold, as mask --slices and segment --regions read them.
 Json write_contours(const Program& program, const SegmentText& text, const voxel::Scene& scene,
-                    double threshold, Timings& timings) {
+                    double threshold, Outputs& outputs, Timings& timings) {
   const Stopwatch watch(timings, "contours");
   const glm::dvec3 spacing_mm = scene.lattice.spacing_mm();
   voxel::ContourOptions options;
@@ -119,7 +120,7 @@ Json write_contours(const Program& program, const SegmentText& text, const voxel
     contours += slice.polygons_mm.size();
     for (const auto& polygon : slice.polygons_mm) points += polygon.size();
   }
-  write_json(to_json(mask), text.contours);
+  outputs.write(text.contours, [&](const fs::path& file) { write_json(to_json(mask), file); });
   return {{"path", text.contours.string()},
           {"threshold", threshold},
           {"slices", mask.slices.size()},
@@ -142,7 +143,7 @@ Json said_of(const Named& segment) {
 
 /// The objects as named segments on the scan's own slices.
 void write_seg(const Program& program, const SegmentText& text, const voxel::Scene& scene,
-               const std::vector<Named>& segments, Timings& timings, Json& json) {
+               const std::vector<Named>& segments, Outputs& outputs, Timings& timings, Json& json) {
   const Stopwatch watch(timings, "write");
   const voxel::Octree none = voxel::Octree::empty(voxel::universe_on(scene.lattice));
   std::vector<voxel::DicomSegment> written;
@@ -167,12 +168,12 @@ void write_seg(const Program& program, const SegmentText& text, const voxel::Sce
   options.progress.stop = program.stop.get_token();
   if (is_dicom(scene)) options.source = voxel::dicom_source(text.scan, read_options(program, text.in));
   json["source_images"] = options.source ? Json(options.source->images.size()) : Json(nullptr);
-  voxel::write_dicom_seg(written, text.out, options);
+  outputs.write(text.out, [&](const fs::path& file) { voxel::write_dicom_seg(written, file, options); });
 }
 
 /// Writes the objects: one as an octree, any number as a label map on the scan's own lattice.
 void write_segments(const Program& program, const SegmentText& text, const voxel::Scene& scene,
-                    const std::vector<Named>& segments, Timings& timings, Json& json) {
+                    const std::vector<Named>& segments, Outputs& outputs, Timings& timings, Json& json) {
   if (program.stop.stop_requested()) throw Stopped("stopped before " + text.out.string() + " was written");
   if (is_octree(text.out)) {
     const Json made{{"made_by", std::string("octotomy ") + OCTOTOMY_VERSION},
@@ -180,16 +181,18 @@ void write_segments(const Program& program, const SegmentText& text, const voxel
                     {"steps", segments.front().made.steps}};
     const voxel::OctreeFile file{segments.front().made.octree, segments.front().name, json_text(made)};
     const Stopwatch watch(timings, "write");
-    voxel::write_octree(file, text.out);
-    json.update(octree_answer(file, fs::file_size(text.out), timings));
+    outputs.write(text.out, [&](const fs::path& path) {
+      voxel::write_octree(file, path);
+      json.update(octree_answer(file, fs::file_size(path), timings));
+    });
   } else if (is_dicom_seg(text.out)) {
-    write_seg(program, text, scene, segments, timings, json);
+    write_seg(program, text, scene, segments, outputs, timings, json);
   } else {
     std::vector<voxel::Octree> octrees;
     for (const Named& segment : segments) octrees.push_back(segment.on_samples.value_or(segment.made.octree));
     const Stopwatch watch(timings, "write");
     const voxel::LabelMap map = voxel::label_map(scene.lattice, octrees, {program.stop.get_token(), {}});
-    voxel::write_scene(map.scene, text.out);
+    outputs.write(text.out, [&](const fs::path& file) { voxel::write_scene(map.scene, file); });
     json["kind"] = "label map";
     json["labels"] = Json::array();
     for (const voxel::Label& label : voxel::labels(map.scene))
@@ -223,8 +226,16 @@ void check_text(const SegmentText& text, const Segment& asked) {
     throw std::runtime_error(text.out.string() +
                              ": write an .octree, a label map as .nrrd, .nii.gz or .mha, or a DICOM "
                              "segmentation, .dcm");
-  if (!text.out.empty()) need_folder_of(text.out);
-  if (!text.contours.empty()) need_folder_of(text.contours);
+  if (!text.contours.empty()) {
+    need_extension(text.contours, {".json"}, "contours are");
+    if (text.windows.empty() && !asked.otsu)
+      throw CLI::ValidationError("--contours", "follow the lower bound of a --window: give it");
+  }
+  std::vector<fs::path> read{text.scan};
+  read.insert(read.end(), text.objects.begin(), text.objects.end());
+  for (const auto& [field, words] : text.words)
+    read.insert(read.end(), words.begin(), words.end());  // a word that is no file is none that is written
+  need_outputs({text.out, text.contours}, read);
 }
 
 int segment(const Program& program, const SegmentText& text) {
@@ -246,18 +257,19 @@ int segment(const Program& program, const SegmentText& text) {
     first = asked.window = otsu.window;
   }
   std::string written;
+  Outputs outputs;
   if (!text.out.empty()) {
     const std::vector<Named> segments = segments_of(program, text, asked, scene, timings);
-    write_segments(program, text, scene, segments, timings, json);
+    write_segments(program, text, scene, segments, outputs, timings, json);
     json["objects"] = Json::array();
     for (const Named& each : segments) json["objects"].push_back(said_of(each));
     written = text.out.string();
   }
   if (!text.contours.empty()) {
-    if (!first) throw CLI::ValidationError("--contours", "follow the lower bound of a --window: give it");
-    json["contours"] = write_contours(program, text, scene, first->low, timings);
+    json["contours"] = write_contours(program, text, scene, first->low, outputs, timings);
     written += (written.empty() ? "" : ", ") + text.contours.string();
   }
+  outputs.commit();
   Json whole = answer(timings);
   for (const auto& [key, value] : json.items())
     if (key != "octotomy" && key != "timings_ms") whole[key] = value;

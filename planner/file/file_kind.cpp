@@ -8,6 +8,7 @@
 #include <string>
 #include <sys/statvfs.h>
 
+#include "voxel/scan/write_scene.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 
@@ -34,17 +35,22 @@ bool is_octree(const fs::path& path) {
   return has_extension(path, {".octree"});
 }
 
-void need_folder_of(const fs::path& out) {
+void need_folder_of(const fs::path& out, Output kind) {
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(out.string() + ": " + why); };
   const fs::path file = voxel::behind_links(fs::absolute(out).lexically_normal());
   const fs::path folder = file.parent_path();
   if (!fs::is_directory(folder))
-    refuse("there is no folder " + folder.string() + ": make it, or choose another -o");
+    refuse("there is no folder " + folder.string() + ": make it, or choose another name");
   if (file.filename().native().size() > longest_name || file.native().size() + longest_name > PATH_MAX)
-    refuse("is too long a name: choose a shorter -o");
+    refuse("is too long a name: choose a shorter one");
   const fs::file_status status = fs::symlink_status(file);
-  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
-    refuse("is a pipe or device and is not replaced: choose another -o");
+  const bool is_folder = fs::is_directory(status);
+  if (fs::exists(status) && !is_folder && !fs::is_regular_file(status))
+    refuse("is a pipe or device and is not replaced: choose another name");
+  if (fs::exists(status) && is_folder != (kind == Output::Folder))
+    refuse(is_folder ? "is a folder and is not replaced: choose another name"
+                     : "is a file, and a folder is made: choose another name");
+  if (kind == Output::File) voxel::need_own_data_file(out);
   try {
     const voxel::StagedFiles trial(folder);
   } catch (const voxel::Error& error) {
@@ -53,16 +59,34 @@ void need_folder_of(const fs::path& out) {
   struct statvfs disk {};
   if (::statvfs(folder.c_str(), &disk) == 0 && disk.f_blocks > 0 && disk.f_bavail == 0)
     throw voxel::Error(voxel::ErrorCode::Resource,
-                       out.string() + ": the disk is full: make room, or choose another -o");
+                       out.string() + ": the disk is full: make room, or choose another name");
 }
 
-void need_mesh_extension(const fs::path& path) {
-  if (!has_extension(path, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}))
-    throw std::runtime_error(path.string() + ": a mesh is written as .stl, .ply, .obj, .off, .vtp or .glb");
+void need_folder_of(const fs::path& out) {
+  need_folder_of(out, Output::File);
+}
+
+void need_extension(const fs::path& out, const std::vector<std::string>& extensions,
+                    const std::string& what) {
+  const std::string name = out.filename().string();
+  std::string known;
+  for (const std::string& each : extensions) {
+    if (name.size() > each.size() && voxel::lower_case(name).ends_with(each)) return;
+    known += (known.empty() ? "" : &each == &extensions.back() ? " or " : ", ") + each;
+  }
+  throw std::runtime_error(out.string() + ": " + what + " written as " + known);
+}
+
+void need_mesh_extension(const fs::path& out) {
+  need_extension(out, {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}, "a mesh is");
 }
 
 void need_octree_extension(const fs::path& out) {
-  if (!is_octree(out)) throw std::runtime_error(out.string() + ": an octree is written as .octree");
+  need_extension(out, {".octree"}, "an octree is");
+}
+
+void need_picture_extension(const fs::path& out) {
+  need_extension(out, {".png", ".jpg", ".jpeg", ".webp"}, "a picture is");
 }
 
 }  // namespace octotomy::planner

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace octotomy::planner {
 
@@ -11,14 +13,27 @@ bool is_mesh(const std::filesystem::path& path);
 /// Whether a path is an octree's by its extension.
 bool is_octree(const std::filesystem::path& path);
 
-/// Throws std::runtime_error or voxel::Error where a file cannot be made at `out`: before the work, so that
-/// none is lost. Tries it with a hidden folder beside the file.
+/// What a verb makes at a path.
+enum class Output { File, Folder };
+
+/// Throws std::runtime_error or voxel::Error where a file or folder cannot be made at `out`, or would replace
+/// what is none, or a file beside it (voxel::need_own_data_file()): before the work, so that none is lost.
+/// Tries it with a hidden folder beside the path.
+void need_folder_of(const std::filesystem::path& out, Output kind);
+/// The same of a file.
 void need_folder_of(const std::filesystem::path& out);
+
+/// Throws std::runtime_error, "OUT: WHAT written as .a or .b", where the path ends in none of the extensions.
+void need_extension(const std::filesystem::path& out, const std::vector<std::string>& extensions,
+                    const std::string& what);
 
 /// Throws std::runtime_error where no mesh is written with the path's extension.
 void need_mesh_extension(const std::filesystem::path& out);
 
 /// Throws std::runtime_error where a path does not end in .octree.
 void need_octree_extension(const std::filesystem::path& out);
+
+/// Throws std::runtime_error where no picture is written with the path's extension.
+void need_picture_extension(const std::filesystem::path& out);
 
 }  // namespace octotomy::planner

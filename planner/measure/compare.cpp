@@ -4,11 +4,13 @@
 #include "brep/measure/difference.h"
 #include "brep/mesh/line_volume.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/outputs.h"
 #include "planner/measure/distance_histogram.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/scan/image_file.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
@@ -142,41 +144,45 @@ Json measure(const Compare& asked, const AnswerBench& bench) {
   return json;
 }
 
-void write_coloured(const Compare& asked, const brep::Triangles& a, const brep::Difference& difference,
-                    double range_mm, Timings& timings) {
+void write_coloured(const std::filesystem::path& out, const brep::Triangles& a,
+                    const brep::Difference& difference, double range_mm, Timings& timings) {
   brep::VertexData data;
   for (const double distance : difference.vertex_mm)
     data.colours.push_back(distance_colour(distance, range_mm));
-  if (asked.out.extension() != ".glb") {
+  if (voxel::extension_of(out) != ".glb") {
     data.scalar_name = "distance_mm";
     data.scalars = difference.vertex_mm;
   }
-  write_surface(a, asked.out, timings, data);
+  write_surface(a, out, timings, data);
+}
+
+void write_pictures(const Compare& asked, const brep::Triangles& a, const brep::Difference& difference,
+                    double range_mm, Timings& timings) {
+  Outputs outputs;
+  if (!asked.out.empty())
+    outputs.write(asked.out, [&](const std::filesystem::path& file) {
+      write_coloured(file, a, difference, range_mm, timings);
+    });
+  if (!asked.picture.empty()) {
+    const Stopwatch watch(timings, "picture");
+    const HistogramPicture picture = draw_histogram(difference, range_mm);
+    outputs.write(asked.picture, [&](const std::filesystem::path& file) {
+      voxel::write_image(file, picture.size_px, picture.rgb);
+    });
+  }
+  outputs.commit();
 }
 
 FileAnswer on_files(const Compare& asked, const FileBench& bench) {
-  if (!asked.out.empty()) {
-    const auto extension = asked.out.extension();
-    if (extension != ".ply" && extension != ".vtp" && extension != ".glb")
-      throw std::runtime_error(asked.out.string() + ": the coloured mesh is written as .ply, .vtp or .glb");
-    need_folder_of(asked.out);
-  }
-  if (!asked.picture.empty()) {
-    if (asked.picture.extension() != ".png")
-      throw std::runtime_error(asked.picture.string() + ": the histogram is drawn as .png");
-    need_folder_of(asked.picture);
-  }
+  if (!asked.out.empty()) need_extension(asked.out, {".ply", ".vtp", ".glb"}, "the coloured mesh is");
+  if (!asked.picture.empty()) need_extension(asked.picture, {".png"}, "the histogram is");
+  need_outputs({asked.out, asked.picture}, {asked.a.name, asked.b.name});
   std::vector<std::string> joined;
   const auto [a, b] = read_surfaces({asked.a.name, asked.b.name}, bench.timings, joined);
   Compared made = compared(asked, a, b, bench.timings);
   made.findings.insert(made.findings.begin(), joined.begin(), joined.end());
   const double range_mm = asked.range_mm.value_or(made.difference.hausdorff95_mm);
-  if (!asked.out.empty()) write_coloured(asked, a.triangles, made.difference, range_mm, bench.timings);
-  if (!asked.picture.empty()) {
-    const Stopwatch watch(bench.timings, "picture");
-    const HistogramPicture picture = draw_histogram(made.difference, range_mm);
-    voxel::write_image(asked.picture, picture.size_px, picture.rgb);
-  }
+  write_pictures(asked, a.triangles, made.difference, range_mm, bench.timings);
   FileAnswer answer{comparison_json(asked, made)};
   answer.json["path"] = asked.out.empty() ? Json(nullptr) : Json(asked.out.string());
   answer.json["picture"] = asked.picture.empty() ? Json(nullptr) : Json(asked.picture.string());

@@ -141,7 +141,7 @@ std::vector<fs::path> write_each(const brep::PartedSurface& made, const fs::path
   for (const auto& [part, name] : made.names) {
     std::string file = out.filename().string();
     std::string word = file_word(name);
-    if (!used.insert(word).second) used.insert(word += "_" + std::to_string(part));
+    while (!used.insert(word).second) word += "_" + std::to_string(part);
     file.replace(file.find(name_mark), std::string(name_mark).size(), word);
     brep::write_mesh(brep::surface_of_part(made, part), staged.folder() / file);
     written.push_back(out.parent_path() / file);

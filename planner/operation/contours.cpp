@@ -4,6 +4,7 @@
 #include "brep/contour/contour.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"
+#include "planner/file/outputs.h"
 #include "planner/file/region_file.h"
 #include "planner/file/slice_contours.h"
 #include "planner/measure/result_json.h"
@@ -95,10 +96,10 @@ void write(const Contours& asked, const AnswerBench& bench, Exported& made) {
 }
 
 FileAnswer on_files(const Contours& asked, const FileBench& bench) {
-  need_folder_of(asked.out);
-  if (!is_json(asked.out)) throw std::runtime_error(asked.out.string() + ": contours are written as .json");
-  if (!asked.codes.empty()) need_folder_of(asked.codes);
   const std::filesystem::path file = asked.scan.name;
+  need_extension(asked.out, {".json"}, "contours are");
+  if (!asked.codes.empty()) need_extension(asked.codes, {".json"}, "chain codes are");
+  need_outputs({asked.out, asked.codes}, {file, asked.edits});
   if (is_json(file) && asked.window)
     throw std::runtime_error(file.string() + ": holds contours already: leave --window out");
   if (!is_json(file) && !asked.window)
@@ -108,8 +109,13 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
   const voxel::SliceMask mask = finished(
       asked, is_json(file) ? read_slices(file) : followed(asked, bench.read_scan(file), bench.timings),
       bench.timings, findings);
-  write_json(to_json(mask), asked.out);
-  if (!asked.codes.empty()) write_json(chain_codes(mask, asked.code_spacing_mm), asked.codes);
+  Outputs outputs;
+  const auto put = [&](const Json& json, const std::filesystem::path& out) {
+    outputs.write(out, [&](const std::filesystem::path& hidden) { write_json(json, hidden); });
+  };
+  put(to_json(mask), asked.out);
+  if (!asked.codes.empty()) put(chain_codes(mask, asked.code_spacing_mm), asked.codes);
+  outputs.commit();
   const Sizes sizes = sizes_of(mask);
   return {{{"path", asked.out.string()},
            {"contours", sizes.contours},

@@ -10,6 +10,7 @@
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/health.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/outputs.h"
 #include "planner/measure/result_json.h"
 #include "planner/operation/trace.h"
 #include "planner/table/number_format.h"
@@ -138,12 +139,16 @@ FileAnswer on_files(const Repair& repair, const FileBench& bench) {
   const brep::Health before = timed("health", [&] { return brep::health(without_wild_points(read)); });
   const brep::RepairEffect effect =
       timed("effect", [&] { return brep::repair_effect(read, repaired.surface); });
-  write_surface(brep::mesh_of(repaired.surface), repair.out, bench.timings);
-  // Of the file: formats round points, and some say nothing of which triangles share one.
-  const brep::Health after = timed("health", [&] {
-    return readable(repair.out) ? brep::health(brep::read_triangles(repair.out))
-                                : brep::health(repaired.surface);
+  Outputs outputs;
+  brep::Health after;
+  outputs.write(repair.out, [&](const std::filesystem::path& file) {
+    write_surface(brep::mesh_of(repaired.surface), file, bench.timings);
+    // Of the file: formats round points, and some say nothing of which triangles share one.
+    after = timed("health", [&] {
+      return readable(file) ? brep::health(brep::read_triangles(file)) : brep::health(repaired.surface);
+    });
   });
+  outputs.commit();
   FileAnswer answer;
   for (const brep::Change& left : repaired.left) answer.findings.push_back(left.step + ": " + left.what);
   if (!after.solid() && brep::health(repaired.surface).solid())

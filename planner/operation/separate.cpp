@@ -7,6 +7,7 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/disjoint_sets.h"
 #include "planner/file/mesh_file.h"
+#include "planner/file/outputs.h"
 #include "planner/operation/trace.h"
 #include "planner/table/json.h"
 #include "planner/table/number_format.h"
@@ -91,9 +92,15 @@ std::filesystem::path numbered(const std::filesystem::path& out, std::size_t num
   return out.parent_path() / (out.stem().string() + "-" + std::to_string(number) + out.extension().string());
 }
 
+/// Refuses a piece whose file cannot be made or is the surface that is read.
+void need_piece(const Separate& asked, std::size_t number) {
+  need_folder_of(numbered(asked.out, number));
+  need_unread(numbered(asked.out, number), {asked.object.name});
+}
+
 FileAnswer on_files(const Separate& asked, const FileBench& bench) {
   need_mesh_extension(asked.out);
-  need_folder_of(asked.out);
+  asked.piece ? need_folder_of(asked.out) : need_piece(asked, 1);
   FileAnswer answer;
   const brep::Mesh surface = read_surface(asked.object.name, bench.timings, &answer.findings);
   std::vector<Piece> pieces;
@@ -104,6 +111,9 @@ FileAnswer on_files(const Separate& asked, const FileBench& bench) {
   if (asked.piece && static_cast<std::size_t>(*asked.piece) > pieces.size())
     throw std::runtime_error(asked.object.name + ": has " + std::to_string(pieces.size()) +
                              " pieces, so there is no piece " + std::to_string(*asked.piece));
+  for (std::size_t i = 0; i < pieces.size() && !asked.piece; ++i)
+    if (pieces[i].area_mm2 >= asked.least_mm2) need_piece(asked, i + 1);
+  Outputs outputs;
   Json written = Json::array();
   std::size_t small = 0;
   double small_mm2 = 0.0;
@@ -115,10 +125,11 @@ FileAnswer on_files(const Separate& asked, const FileBench& bench) {
       small_mm2 += piece.area_mm2;
       continue;
     }
-    if (bench.stop.stop_requested())
-      throw voxel::Stopped("stopped after " + std::to_string(written.size()) + " pieces were written");
+    if (bench.stop.stop_requested()) throw voxel::Stopped("stopped before the pieces were written");
     const std::filesystem::path path = asked.piece ? asked.out : numbered(asked.out, i + 1);
-    write_surface(brep::part_of(surface, piece.faces), path, bench.timings);
+    outputs.write(path, [&](const std::filesystem::path& file) {
+      write_surface(brep::part_of(surface, piece.faces), file, bench.timings);
+    });
     written.push_back({{"piece", i + 1},
                        {"path", path.string()},
                        {"triangles", piece.faces.size()},
@@ -136,6 +147,7 @@ FileAnswer on_files(const Separate& asked, const FileBench& bench) {
   if (written.empty())
     throw std::runtime_error(asked.object.name + ": no piece has " + plain(asked.least_mm2) +
                              " mm\u00b2, so nothing is written");
+  outputs.commit();
   answer.json = {{"pieces", pieces.size()}, {"written", written}, {"findings", answer.findings}};
   return answer;
 }
