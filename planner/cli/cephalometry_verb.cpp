@@ -101,7 +101,10 @@ std::string table_of(const CephalometricResults& found) {
 }
 
 int cephalometry(Program& program, const CephalometryText& text) {
-  if (!text.out.empty()) need_folder_of(text.out);
+  if (!text.out.empty()) {
+    need_extension(text.out, {".png"}, "a tracing is");
+    need_folder_of(text.out);
+  }
   const Cephalometry definitions = read_cephalometry(text.definitions);
   const Face face =
       text.plan.string().ends_with(".plan.json") ? face_of_plan(program, text) : face_of_files(text);

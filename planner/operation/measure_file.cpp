@@ -63,16 +63,17 @@ FileAnswer said(Json json) {
   return {std::move(json), std::move(rows)};
 }
 
+/// What cannot be written is refused before anything is read.
+void need_scalars_of(const Measure& asked) {
+  if (!asked.thickness && !asked.curvature)
+    throw std::runtime_error(asked.out.string() + ": say what to write, --thickness or --curvature");
+  need_extension(asked.out, {".vtp", ".ply"}, "scalars are");
+  need_folder_of(asked.out);
+}
+
 /// What is asked of a closed mesh beyond its size, and the file that it is written to.
 Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const FileBench& bench) {
   const std::filesystem::path& out = asked.out;
-  if (!out.empty()) {
-    need_folder_of(out);
-    if (!asked.thickness && !asked.curvature)
-      throw std::runtime_error(out.string() + ": say what to write, --thickness or --curvature");
-    if (out.extension() != ".vtp" && out.extension() != ".ply")
-      throw std::runtime_error(out.string() + ": scalars are written as .vtp or .ply");
-  }
   std::optional<brep::Mesh> other;
   if (asked.to) other = read_surface(asked.to->name, bench.timings);
   AtVertices shown;
@@ -107,7 +108,6 @@ FileAnswer measure_open(const brep::Triangles& triangles, const brep::Health& he
 }
 
 FileAnswer measure_mesh(const std::filesystem::path& file, const Measure& asked, const FileBench& bench) {
-  if (!asked.out.empty()) need_folder_of(asked.out);
   Timings& timings = bench.timings;
   brep::Triangles triangles;
   {
@@ -333,6 +333,7 @@ FileAnswer measure_scan(const std::filesystem::path& file, const Measure& asked,
 FileAnswer measure_file(const Measure& asked, const FileBench& bench) {
   if (!asked.object) throw std::runtime_error("file is required: a scan, an octree or a mesh");
   const std::filesystem::path file = asked.object->name;
+  if (!asked.out.empty()) need_scalars_of(asked);
   if ((asked.asks_surface() || asked.to) && !is_mesh(file))
     throw std::runtime_error(file.string() +
                              ": sections, ways, angles, walls and curvature are asked of a mesh: octotomy "

@@ -143,8 +143,15 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
            {"bytes", std::to_string(content.size())}}};
 }
 
+/// No scan's or result's, which a form must not replace by a slip of the hand.
+std::vector<std::string> extensions_of(const std::string& form) {
+  if (form == "packed" || form == "bits") return {".bin", ".txt"};
+  return {".txt"};
+}
+
 FileAnswer on_files(const Build& asked, const FileBench& bench) {
-  if (asked.as.empty()) need_octree_extension(asked.out);
+  asked.as.empty() ? need_octree_extension(asked.out)
+                   : need_extension(asked.out, extensions_of(asked.as), "the form " + asked.as + " is");
   if (asked.window && asked.grey)
     throw std::runtime_error("--grey: a tree is --grey or an object by --window, not both");
   need_folder_of(asked.out);
@@ -165,7 +172,9 @@ Operation octree_operation() {
       .takes(field("file", &Build::file, "A scan, an .octree file, or with --from a representation.")
                  .required()
                  .positional("file"))
-      .takes(field("out", &Build::out, "An .octree file, or with --as the representation's.").required())
+      .takes(
+          field("out", &Build::out, "An .octree file, or with --as a .txt; of packed and bits also a .bin.")
+              .required())
       .takes(
           field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree."))
       .takes(field("grey", &Build::grey, "A min-max octree of all samples."))

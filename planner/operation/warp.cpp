@@ -69,7 +69,10 @@ void bound(const Warp&, const BoundBench&, Object& made) {
 
 FileAnswer on_files(const Warp& warp, const FileBench& bench) {
   const std::filesystem::path file = warp.object.name;
-  if (is_mesh(file)) need_mesh_extension(warp.out);
+  if (is_mesh(file))
+    need_mesh_extension(warp.out);
+  else
+    need_extension(warp.out, {".nrrd", ".nhdr", ".nii", ".nii.gz", ".mha", ".mhd"}, "a scan is");
   need_folder_of(warp.out);
   Displaced by = displaced(warp.result, bench.progress("reading"), bench.timings);
   if (is_mesh(file)) {

@@ -222,6 +222,7 @@ void write(const Render& render, const AnswerBench& bench, Exported& made) {
 }
 
 FileAnswer on_files(const Render& asked, const FileBench& bench) {
+  need_picture_extension(asked.out);
   need_folder_of(asked.out);
   Render render = asked;
   if (is_ray_picture(render)) render.window = ray_window(render);

@@ -402,6 +402,7 @@ void write(const Slice& slice, const AnswerBench& bench, Exported& made) {
 }
 
 FileAnswer on_files(const Slice& asked, const FileBench& bench) {
+  need_picture_extension(asked.out);
   need_folder_of(asked.out);
   Slice slice = asked;
   if (!asked.curve.empty()) slice.curve_mm = curve_points(asked.curve);

@@ -362,16 +362,17 @@ TEST_F(CommandLine, Figure31GoesThroughEveryRepresentation) {
   for (const char* form : {"treecode", "linear", "explicit", "runs", "segments", "marginal", "faces", "array",
                            "packed", "bits"}) {
     SCOPED_TRACE(form);
-    ASSERT_EQ(run("octree " + at("figure.octree") + " --as " + form + " -o " + at(form)).status, 0);
-    ASSERT_EQ(run("octree " + at(form) + " --from " + form + " --depth 2 -o " + at("back.octree")).status, 0);
+    const std::string file = std::string(form) + ".txt";
+    ASSERT_EQ(run("octree " + at("figure.octree") + " --as " + form + " -o " + at(file)).status, 0);
+    ASSERT_EQ(run("octree " + at(file) + " --from " + form + " --depth 2 -o " + at("back.octree")).status, 0);
     ASSERT_EQ(run("octree " + at("back.octree") + " --as treecode -o " + at("back.txt")).status, 0);
     EXPECT_EQ(content("back.txt"), content("figure.txt"));
   }
-  EXPECT_EQ(content("linear"), "17, 2, 34, 61, 62, 65\n");
-  EXPECT_EQ(content("runs"), "8:9 12:13 23:26 28:29 41:41 44:44 57:57\n");
-  expect_refused(run("octree " + at("runs") + " --from linear --depth 2 -o " + at("x.octree")),
+  EXPECT_EQ(content("linear.txt"), "17, 2, 34, 61, 62, 65\n");
+  EXPECT_EQ(content("runs.txt"), "8:9 12:13 23:26 28:29 41:41 44:44 57:57\n");
+  expect_refused(run("octree " + at("runs.txt") + " --from linear --depth 2 -o " + at("x.octree")),
                  "character 1");
-  expect_refused(run("octree " + at("runs") + " --from runs -o " + at("x.octree")), "--depth");
+  expect_refused(run("octree " + at("runs.txt") + " --from runs -o " + at("x.octree")), "--depth");
 }
 
 TEST_F(CommandLine, TheThesissSphereHasTable3_1) {
