@@ -86,8 +86,12 @@ void need_disk_of_label_maps(const Plan& plan, const std::filesystem::path& out,
 }  // namespace
 
 int run(Program& program, const RunText& text) {
+  return run(program, text, plan_of(program, text));
+}
+
+int run(Program& program, const RunText& text, Plan plan, const std::function<void()>& beside) {
   Result result;
-  result.plan = plan_of(program, text);
+  result.plan = std::move(plan);
   result.as_pdf = text.as_pdf;
   if (text.as_pdf) need_pdf_printer();
   need_result_folder(text.out, result_names(result.plan));
@@ -104,6 +108,7 @@ int run(Program& program, const RunText& text) {
              : "left out as asked (--certify never): no number here is checked"});
   result.pictures = plan_pictures(result.plan, result.evaluation);
   Json json = written(program, result, text.out);
+  if (beside) beside();
   for (const Exported& exported : result.exported)
     for (const std::string& finding : exported.findings) warn(exported.path + ": " + finding);
   if (text.certify == Certify::Later) {

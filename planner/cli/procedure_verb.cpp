@@ -99,14 +99,17 @@ int procedure(Program& program, const ProcedureText& text) {
   if (text.scan.empty() && text.landmarks.empty() && text.out.empty()) return explain(program, text);
   if (text.name.empty()) throw std::runtime_error("name the procedure: octotomy procedure lists them");
   const Json plan = plan_of(read_procedure(text.name), input_of(text));
-  write_whole(text.out, plan.dump(2) + "\n");
+  const std::string written = plan.dump(2) + "\n";
+  const auto write = [&] { write_whole(text.out, written); };
   if (!text.report.empty()) {
     RunText replay;
-    replay.plan = text.out;
     replay.out = text.report;
     replay.certify = text.certify;
-    return run(program, replay);
+    Plan read = parse_plan(written, fs::absolute(text.out).parent_path());
+    read.file = text.out;
+    return run(program, replay, std::move(read), write);
   }
+  write();
   Json json = answer({});
   json["path"] = text.out.string();
   json["plan"] = plan;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct RunText : PlanIn {
 };
 /// Replays a plan into a result's folder and says what came of it; the exit status.
 int run(Program& program, const RunText& text);
+/// The same of a plan that was read. `beside` is called once when the result is first written: for what is
+/// there with it, or not at all.
+int run(Program& program, const RunText& text, Plan plan, const std::function<void()>& beside = {});
 /// Adds --certify to a verb that replays a plan.
 void add_certify(CLI::App& verb, Certify& certify);
 
