@@ -13,7 +13,9 @@
 #include "planner/cohort/result_rows.h"
 #include "planner/cohort/statistics.h"
 #include "planner/cohort/subjects.h"
+#include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"
+#include "planner/file/outputs.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/verb.h"
@@ -212,7 +214,8 @@ Json read_result(const fs::path& path) {
 
 /// Refuses an output that would replace a result or a part of one.
 void need_table_output(const TableText& text) {
-  need_output(text.out, "a table is", ".csv", text.results);
+  need_extension(text.out, {".csv"}, "a table is");
+  need_unread(text.out, text.results);
   need_folder_of(text.out);
   if (is_of_result(text.out))
     throw std::runtime_error(text.out.string() + ": is a file of a result: choose another -o");

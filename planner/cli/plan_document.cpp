@@ -4,6 +4,7 @@
 #include "planner/cli/verbs.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"
+#include "planner/file/outputs.h"
 #include "planner/plan/difference.h"
 #include "planner/plan/history.h"
 #include "planner/plan/merge.h"
@@ -35,7 +36,8 @@ int diff(const Program& program, const Paths& paths) {
 }
 
 int merge_plans(const Program& program, const Paths& paths) {
-  need_output(paths.out, "a plan is", ".json", {paths.base, paths.a, paths.b});
+  need_extension(paths.out, {".json"}, "a plan is");
+  need_unread(paths.out, {paths.base, paths.a, paths.b});
   need_folder_of(paths.out);
   const auto read = [folder = fs::absolute(paths.out).parent_path()](const fs::path& path) {
     return rebased(read_plan(path), folder);

@@ -5,6 +5,7 @@
 #include "planner/file/file_kind.h"
 #include "planner/file/landmarks_file.h"
 #include "planner/file/output_path.h"
+#include "planner/file/outputs.h"
 #include "planner/procedure/procedure.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/numbers.h"
@@ -70,7 +71,8 @@ ProcedureInput input_of(const ProcedureText& text) {
         "to plan it, give --scan, --landmarks and -o; without all three it is explained");
   std::vector<fs::path> inputs = text.landmarks;
   inputs.push_back(text.name);
-  need_output(text.out, "a plan is", ".json", inputs);
+  need_extension(text.out, {".json"}, "a plan is");
+  need_unread(text.out, inputs);
   need_folder_of(text.out);
   ProcedureInput input;
   const auto entry = [](const fs::path& path) {

@@ -40,16 +40,6 @@ std::filesystem::path output_path(const std::filesystem::path& path) {
   return path.lexically_normal().generic_string();
 }
 
-void need_output(const std::filesystem::path& out, const std::string& what, const std::string& extension,
-                 const std::vector<std::filesystem::path>& inputs) {
-  if (voxel::extension_of(out) != extension)
-    throw std::runtime_error(out.string() + ": " + what + " written as " + extension);
-  std::error_code ignored;
-  for (const std::filesystem::path& input : inputs)
-    if (std::filesystem::equivalent(out, input, ignored))
-      throw std::runtime_error(out.string() + ": is one of the files that are read: choose another -o");
-}
-
 void write_whole(const std::filesystem::path& path, const std::string& bytes) {
   voxel::StagedFiles staged(std::filesystem::absolute(path).parent_path());
   errno = 0;

@@ -21,12 +21,6 @@ std::filesystem::path output_file(const std::filesystem::path& folder, const std
 /// The path without "." and "..", as it is written and told.
 std::filesystem::path output_path(const std::filesystem::path& path);
 
-/// Refuses a file that a verb is to write before its work, where its name does not end in `extension`, or it
-/// is one of `inputs` under any name. Throws std::runtime_error: "a table is written as .csv" with "a table
-/// is" for `what`.
-void need_output(const std::filesystem::path& out, const std::string& what, const std::string& extension,
-                 const std::vector<std::filesystem::path>& inputs);
-
 /// Writes a file beside its place and renames it there, so that an old one is never half gone. Throws
 /// voxel::Error with the path where the disk does not take it.
 void write_whole(const std::filesystem::path& path, const std::string& bytes);

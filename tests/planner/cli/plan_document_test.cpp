@@ -60,8 +60,8 @@ TEST_F(PlanDocument, MergeReplacesNeitherAScanNorAPlanThatItReads) {
   const std::string scan = tests::bytes_of(folder_ / "ball.nrrd");
   const std::string merge = "plan merge base.plan.json a.plan.json base.plan.json -o ";
   expect_refused(run(merge + "ball.nrrd"), "ball.nrrd: a plan is written as .json");
-  expect_refused(run(merge + "./base.plan.json"), "base.plan.json: is one of the files that are read");
-  expect_refused(run(merge + "link.plan.json"), "link.plan.json: is one of the files that are read");
+  expect_refused(run(merge + "./base.plan.json"), "base.plan.json: would replace");
+  expect_refused(run(merge + "link.plan.json"), "link.plan.json: would replace");
   EXPECT_EQ(tests::bytes_of(folder_ / "ball.nrrd"), scan);
   EXPECT_EQ(tests::bytes_of(folder_ / "base.plan.json"), plan("0"));
   EXPECT_EQ(tests::bytes_of(folder_ / "a.plan.json"), plan("10"));
@@ -199,7 +199,7 @@ TEST_F(PlanDocument, AProcedureIsListedExplainedAndPlanned) {
   expect_refused(run("procedure le_fort_i --scan ball.nrrd --landmarks marks.json -o ball.nrrd"),
                  "ball.nrrd: a plan is written as .json");
   expect_refused(run("procedure le_fort_i --scan ball.nrrd --landmarks marks.json -o marks.json"),
-                 "marks.json: is one of the files that are read");
+                 "marks.json: would replace");
   write("own.json", R"({"procedure": "own", "says": "Own.", "landmarks": [{"name": "ans", "says": "any."}],
       "values": [{"name": "up_mm", "says": "up", "preset": 1, "least": 0, "most": 5}], "steps": [
       {"id": "bone", "do": "window", "scan": "ct", "low": 0},
