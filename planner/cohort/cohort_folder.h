@@ -32,8 +32,8 @@ std::filesystem::path cohort_plan(const std::filesystem::path& out);
 /// since;
 /// - the list `code/octotomy.sha256` is another file;
 /// - a folder of `needs` holds files but no result (may_hold_result()).
-/// A folder that was made before there was a list counts as Octotomy's by its
-/// description. Cost: a look into each folder.
+/// A folder that was made before there was a list counts as Octotomy's by its description. Cost: a look into
+/// each folder.
 void need_cohort_folder(const std::filesystem::path& out, const CohortNeeds& needs);
 
 /// Makes the folder, its description and the kept plan. Precondition: need_cohort_folder(). Throws as that

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // An octree of a scan's window or of all its samples in a file, or one in another form; in a plan it is
 // window.
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <fstream>
@@ -12,8 +14,10 @@
 #include "planner/table/json_file.h"
 #include "planner/table/operation.h"
 #include "planner/table/plan_universe.h"
+#include "voxel/scan/volume_header.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
+#include "voxel/space/file_text.h"
 #include "voxel/space/regular_file.h"
 #include "voxel/space/staged_files.h"
 #include "voxel/space/write_failure.h"
@@ -143,15 +147,20 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
            {"bytes", std::to_string(content.size())}}};
 }
 
-/// No scan's or result's, which a form must not replace by a slip of the hand.
-std::vector<std::string> extensions_of(const std::string& form) {
-  if (form == "packed" || form == "bits") return {".bin", ".txt"};
-  return {".txt"};
+/// Forms have no extension of their own. One of another kind is a slip of the hand, which must not replace a
+/// scan or a result.
+void need_form_name(const Build& asked) {
+  constexpr std::array others{".json", ".csv", ".dcm", ".png", ".jpg",  ".jpeg", ".webp", ".glb",
+                              ".inp",  ".feb", ".vtu", ".msh", ".node", ".html", ".svg",  ".pdf"};
+  if (!is_mesh(asked.out) && !is_octree(asked.out) && !voxel::volume_format(asked.out) &&
+      std::find(others.begin(), others.end(), voxel::extension_of(asked.out)) == others.end())
+    return;
+  throw std::runtime_error(asked.out.string() + ": is the name of another kind of file: the form " +
+                           asked.as + " is written as .txt or under a name of your own, as ." + asked.as);
 }
 
 FileAnswer on_files(const Build& asked, const FileBench& bench) {
-  asked.as.empty() ? need_octree_extension(asked.out)
-                   : need_extension(asked.out, extensions_of(asked.as), "the form " + asked.as + " is");
+  asked.as.empty() ? need_octree_extension(asked.out) : need_form_name(asked);
   if (asked.window && asked.grey)
     throw std::runtime_error("--grey: a tree is --grey or an object by --window, not both");
   need_folder_of(asked.out);
@@ -173,7 +182,7 @@ Operation octree_operation() {
                  .required()
                  .positional("file"))
       .takes(
-          field("out", &Build::out, "An .octree file, or with --as a .txt; of packed and bits also a .bin.")
+          field("out", &Build::out, "An .octree file, or with --as the representation's, for example .txt.")
               .required())
       .takes(
           field("window", &Build::window, "LOW:HIGH or LOW: in sample units, or a tissue: a binary octree."))
