@@ -2,6 +2,8 @@
 //
 // What a user put somewhere is there after a verb that fails: outputs are refused before the work, and
 // written together or not at all.
+#include "planner/file/outputs.h"
+
 #include <map>
 #include <sys/mount.h>
 
@@ -26,6 +28,11 @@ class VerbOutputs : public tests::CommandLine {
     brep::write_mesh(brep::shapes::sphere({0, 0, 0}, 10.0, 2), folder_ / "a.stl");
     brep::write_mesh(brep::shapes::sphere({0, 0, 0}, 11.0, 2), folder_ / "b.stl");
   }
+  /// In the folder; what it says is kept elsewhere.
+  tests::CommandAnswer run(const std::string& arguments) const {
+    return tests::run_command("cd " + at("") + " && " OCTOTOMY_BINARY_DIR "/octotomy " + arguments,
+                              said_ / "");
+  }
   std::string bytes(const std::string& name) const { return tests::bytes_of(folder_ / name); }
   /// What is in the folder, with each file's bytes.
   std::map<std::string, std::string> all() const {
@@ -41,6 +48,9 @@ class VerbOutputs : public tests::CommandLine {
     expect_refused(run(arguments), word);
     EXPECT_TRUE(before == all()) << "a file was made, changed or removed";
   }
+
+ private:
+  tests::ScratchFolder said_;
 };
 
 const std::string follow = "contours ball.nrrd --window 0: ";
