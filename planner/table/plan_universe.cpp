@@ -18,6 +18,7 @@ voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> vo
   const double finest_mm = std::min({spacing_mm.x, spacing_mm.y, spacing_mm.z});
   const double longest_mm = std::max({extent_mm.x, extent_mm.y, extent_mm.z});
   const double edge_mm = voxel_mm.value_or(std::max(finest_mm, longest_mm / most_a_side));
+  voxel::Universe universe = voxel::universe_around(box, edge_mm);
   if (edge_mm < 0.5 * finest_mm) {
     const glm::dvec3 voxels = glm::ceil(extent_mm / edge_mm);
     constexpr double most = 1e18;
@@ -25,7 +26,6 @@ voxel::Universe universe_of(const voxel::Lattice& scan, std::optional<double> vo
                        static_cast<std::uint64_t>(std::min(most, voxels.x * voxels.y * voxels.z)),
                        sizeof(std::int16_t), "in the scan's box they");
   }
-  voxel::Universe universe = voxel::universe_around(box, edge_mm);
   // A universe around an odd number of samples lies half a voxel off them, and resampling would blur what
   // need not be touched: put a voxel's centre on the first sample, where the box stays inside.
   const glm::dvec3 first = universe.lattice().voxel(scan.lps_mm(glm::dvec3(0.0)));
