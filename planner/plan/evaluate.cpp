@@ -134,7 +134,8 @@ class Evaluator {
     }
   }
 
-  void report(const std::string& doing, double fraction) const {
+  void report(const std::string& doing, double fraction) {
+    told_ = fraction;
     if (options_.stop.stop_requested()) throw Stopped("stopped before '" + doing + "': nothing was written");
     if (options_.progress) options_.progress(doing, fraction);
   }
@@ -270,7 +271,9 @@ class Evaluator {
     const Stopwatch watch(result_.timings, "octree");
     voxel::GreyOctree grey = voxel::grey_octree_of(
         result_.universe, scene, background_of(scene),
-        {options_.stop, [&](double fraction) { report("octree of " + name, fraction); }});
+        {options_.stop, [&](double share) {
+           report("octree of " + name + ", " + std::to_string(std::lround(100.0 * share)) + " %", told_);
+         }});
     loaded_.insert_or_assign(
         name, LoadedScan{std::make_shared<const voxel::Scene>(std::move(scene)), std::move(grey)});
   }
@@ -493,6 +496,7 @@ class Evaluator {
   const Plan& plan_;
   const EvaluateOptions& options_;
   Evaluation result_;
+  double told_ = 0.0;  ///< the share of the work that was told last
   std::map<std::string, LoadedScan> loaded_;
   std::map<std::string, std::size_t> uses_left_;
   std::set<std::string> wanted_, with_mesh_;      ///< steps
