@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 #include "voxel/space/helper_file.h"
+#include "voxel/space/write_failure.h"
 
 // The child is a spawned executable, not a fork: the parent has threads, and a forked child could wait for
 // ever on a lock that another thread held. Request, answer and log are files in memory, so neither side waits
@@ -36,7 +37,8 @@ constexpr std::chrono::milliseconds report_every{200};
 constexpr std::size_t last_words_bytes = 400;
 
 [[noreturn]] void fail(const std::string& what, int error) {
-  throw voxel::Error(voxel::ErrorCode::Resource, "tetrahedralise: " + what + ": " + std::strerror(error));
+  throw voxel::Error(voxel::ErrorCode::Resource,
+                     "tetrahedralise: " + what + ": " + std::strerror(error) + voxel::way_out_of(error));
 }
 
 /// A file in memory, without a name and not inherited.
