@@ -3,8 +3,7 @@
 // lines cross them; 3 follow each line: what is inside a result must be what the operation makes of the
 // insides of the operands; 4 lay lines that disagree anew through the same triangle, twice. Most triangles
 // lie between two lines: that is told by their points' stretches of y, two bytes each, which are computed in
-// order. Crossings are computed from the lower end of each side whichever triangle asks, so that a line
-// leaves a closed surface as often as it enters.
+// order.
 #include "brep/boolean/line_agreement.h"
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "brep/mesh/disjoint_sets.h"
+#include "brep/mesh/row_crossing.h"
 #include "brep/mesh/short_text.h"
 
 namespace octotomy::brep {
@@ -69,7 +69,7 @@ std::vector<Line> lines_through(const std::vector<Corners>& triangles, double cl
       const glm::dvec3 side = t[(k + 1) % 3] - t[k];
       longest = std::max(longest, std::hypot(side.y, side.z));
     }
-    if (2.0 * seen_along_x_mm2(t) > clearance * longest) lines.push_back({point_in(t, 0), t});
+    if (2.0 * shadow_mm2(t) > clearance * longest) lines.push_back({point_in(t, 0), t});
   }
   return lines;
 }
@@ -121,36 +121,6 @@ class LinesByY {
   double low_ = 0.0, scale_ = 0.0;
 };
 
-/// Where the row at z meets a side; false where it does not.
-struct Meeting {
-  double y = 0.0, x = 0.0;
-  bool upward = false;
-};
-bool meets(const glm::dvec3& from, const glm::dvec3& to, double z, Meeting& meeting) {
-  if ((from.z <= z) == (to.z <= z)) return false;
-  meeting.upward = from.z <= z;
-  const glm::dvec3 &low = meeting.upward ? from : to, &high = meeting.upward ? to : from;
-  const double share = (z - low.z) / (high.z - low.z);
-  meeting.y = low.y + share * (high.y - low.y);
-  meeting.x = low.x + share * (high.x - low.x);
-  return true;
-}
-
-std::optional<Crossing> crossing_of(const Corners& t, const glm::dvec3& at) {
-  std::array<Meeting, 3> met;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (meets(t[k], t[(k + 1) % 3], at.z, met[count])) ++count;
-  assert(count == 0 || count == 2);
-  if (count < 2) return std::nullopt;
-  if (met[1].y < met[0].y) std::swap(met[0], met[1]);
-  if (at.y < met[0].y || at.y >= met[1].y) return std::nullopt;
-  const double share = (at.y - met[0].y) / (met[1].y - met[0].y);
-  // Counter-clockwise in the plane of y and z, whose left side runs down, faces +x: there the line leaves.
-  const auto enters = static_cast<std::int8_t>(met[0].upward ? 1 : -1);
-  return Crossing{0, 0, enters, met[0].x + share * (met[1].x - met[0].x)};
-}
-
 std::vector<Crossing> crossings(const Triangles& surface, std::uint8_t number, const std::vector<Line>& lines,
                                 const LinesByY& by_y) {
   std::vector<std::uint16_t> stretches(surface.points_mm.size());
@@ -160,11 +130,9 @@ std::vector<Crossing> crossings(const Triangles& surface, std::uint8_t number, c
     const std::uint16_t p = stretches[face[0]], q = stretches[face[1]], r = stretches[face[2]];
     by_y.visit(std::min(std::min(p, q), r), std::max(std::max(p, q), r), [&](std::uint32_t line) {
       const Corners t{surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]};
-      std::optional<Crossing> crossing = crossing_of(t, lines[line].at_mm);
-      if (!crossing) return;
-      crossing->line = line;
-      crossing->surface = number;
-      found.push_back(*crossing);
+      const glm::dvec3& at_mm = lines[line].at_mm;
+      if (const auto crossing = row_crossing(t, at_mm.z); crossing && crossing->has(at_mm.y))
+        found.push_back({line, number, static_cast<std::int8_t>(crossing->enters), crossing->x_at(at_mm.y)});
     });
   }
   return found;
@@ -213,11 +181,6 @@ void follow_all(const Surfaces& surfaces, std::vector<Line>& lines) {
 
 }  // namespace
 
-double seen_along_x_mm2(const Corners& t) {
-  const glm::dvec3 u = t[1] - t[0], v = t[2] - t[0];
-  return 0.5 * std::abs(u.y * v.z - u.z * v.y);
-}
-
 Corners corners(const Triangles& surface, std::size_t f) {
   const auto& face = surface.faces[f];
   return {surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]};
@@ -238,7 +201,7 @@ std::vector<Corners> widest_triangles(const Triangles& surface) {
   std::vector<Widest> widest(surface.points_mm.size());
   for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
     Widest& of_shell = widest[sets.set_of(surface.faces[f][0])];
-    const double mm2 = seen_along_x_mm2(corners(surface, f));
+    const double mm2 = shadow_mm2(corners(surface, f));
     if (mm2 > of_shell.mm2) of_shell = {mm2, f};
   }
   std::vector<Corners> through;

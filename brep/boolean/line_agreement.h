@@ -25,9 +25,6 @@ using Corners = std::array<glm::dvec3, 3>;
 
 Corners corners(const Triangles& surface, std::size_t face);
 
-/// The area of the triangle's shadow along x in mm2.
-double seen_along_x_mm2(const Corners& corners);
-
 /// The triangle of each shell that is widest as seen along x, and some from all over the surface. Shells are
 /// connected across points. Cost: linear, some 30 ns a triangle.
 std::vector<Corners> widest_triangles(const Triangles& surface);

@@ -22,6 +22,7 @@
 #include "brep/mesh/flat_triangles.h"
 #include "brep/mesh/intersecting_triangles.h"
 #include "brep/mesh/measure.h"
+#include "brep/mesh/row_crossing.h"
 
 namespace octotomy::brep {
 namespace {
@@ -180,7 +181,7 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
     lost[part] += std::abs(side.volumes_mm3[part]) >= std::abs(term) ? (side.volumes_mm3[part] - sum) + term
                                                                      : (term - sum) + side.volumes_mm3[part];
     side.volumes_mm3[part] = sum;
-    const double mm2 = seen_along_x_mm2(corners(operand.triangles, f));
+    const double mm2 = shadow_mm2(corners(operand.triangles, f));
     if (mm2 > widest_mm2[part]) {
       widest_mm2[part] = mm2;
       side.widest[part] = static_cast<std::uint32_t>(f);

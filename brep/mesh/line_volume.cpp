@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 turn both surfaces about x and deal their triangles out to slabs of rows; 2 for each row that a triangle
 // passes, list the lines between its two sides there with the place where they cross it; 3 deal the crossings
-// of a row out to its lines; 4 follow each line and sum the lengths inside. Where a row meets a side is
-// computed from the side's lower end whichever triangle asks, and the sign of a crossing follows from the
-// direction of that side, so that lines through a closed surface always leave it as often as they enter.
+// of a row out to its lines; 4 follow each line and sum the lengths inside.
 #include "brep/mesh/line_volume.h"
 
 #include <algorithm>
@@ -12,10 +10,13 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <tbb/parallel_for.h>
 #include <tuple>
 #include <vector>
+
+#include "brep/mesh/row_crossing.h"
 
 namespace octotomy::brep {
 namespace {
@@ -68,9 +69,8 @@ Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
         low = glm::min(low, surface->points_mm[v]);
         high = glm::max(high, surface->points_mm[v]);
       }
-      const glm::dvec3 p = surface->points_mm[face[0]], u = surface->points_mm[face[1]] - p,
-                       v = surface->points_mm[face[2]] - p;
-      passed_mm2 += 0.5 * std::abs(u.y * v.z - u.z * v.y);
+      passed_mm2 +=
+          shadow_mm2({surface->points_mm[face[0]], surface->points_mm[face[1]], surface->points_mm[face[2]]});
     }
   const glm::dvec3 extent = high - low;
   Lines lines;
@@ -87,39 +87,15 @@ Lines lines_over(const Triangles& a, const Triangles& b, std::size_t count) {
   return lines;
 }
 
-/// Where a row at z meets a side, and whether the side runs upward there; false where it does not meet it.
-struct Meeting {
-  double y = 0.0, x = 0.0;
-  bool upward = false;
-};
-bool meets(const glm::dvec3& from, const glm::dvec3& to, double z, Meeting& meeting) {
-  if ((from.z <= z) == (to.z <= z)) return false;
-  meeting.upward = from.z <= z;
-  const glm::dvec3 &low = meeting.upward ? from : to, &high = meeting.upward ? to : from;
-  const double share = (z - low.z) / (high.z - low.z);
-  meeting.y = low.y + share * (high.y - low.y);
-  meeting.x = low.x + share * (high.x - low.x);
-  return true;
-}
-
 void add_hits(const std::array<glm::dvec3, 3>& t, std::uint8_t surface, const Lines& lines, double z,
               std::vector<Hit>& hits) {
-  std::array<Meeting, 3> met;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (meets(t[k], t[(k + 1) % 3], z, met[count])) ++count;
-  assert(count == 0 || count == 2);
-  if (count < 2) return;
-  if (met[1].y < met[0].y) std::swap(met[0], met[1]);
-  const std::int64_t begin = Lines::first(met[0].y, lines.low_y, lines.spacing, lines.columns);
-  const std::int64_t end = Lines::first(met[1].y, lines.low_y, lines.spacing, lines.columns);
-  // Counter-clockwise in the plane of y and z, whose left side runs down, faces +x: there the line leaves.
-  const std::int8_t enters = met[0].upward ? 1 : -1;
-  for (std::int64_t column = begin; column < end; ++column) {
-    const double share = (lines.y(column) - met[0].y) / (met[1].y - met[0].y);
-    hits.push_back(
-        {met[0].x + share * (met[1].x - met[0].x), static_cast<std::uint32_t>(column), enters, surface});
-  }
+  const std::optional<RowCrossing> crossing = row_crossing(t, z);
+  if (!crossing) return;
+  const std::int64_t begin = Lines::first(crossing->low_y, lines.low_y, lines.spacing, lines.columns);
+  const std::int64_t end = Lines::first(crossing->high_y, lines.low_y, lines.spacing, lines.columns);
+  for (std::int64_t column = begin; column < end; ++column)
+    hits.push_back({crossing->x_at(lines.y(column)), static_cast<std::uint32_t>(column),
+                    static_cast<std::int8_t>(crossing->enters), surface});
 }
 
 /// The hits of one row by their lines, and those of a line by rising x.
