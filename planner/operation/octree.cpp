@@ -3,12 +3,12 @@
 // window.
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdio>
 #include <fstream>
 
+#include "convert/deck/deck.h"
 #include "planner/file/file_kind.h"
 #include "planner/file/octree_in.h"
+#include "planner/file/output_path.h"
 #include "planner/file/representation.h"
 #include "planner/measure/octree_summary.h"
 #include "planner/table/json_file.h"
@@ -19,8 +19,6 @@
 #include "voxel/solid/expression.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/regular_file.h"
-#include "voxel/space/staged_files.h"
-#include "voxel/space/write_failure.h"
 
 namespace octotomy::planner {
 namespace {
@@ -38,17 +36,6 @@ struct Build {
 
   fs::path in() const { return file.name; }
 };
-
-void write_content(const std::string& content, const fs::path& path) {
-  voxel::StagedFiles staging(path.parent_path());
-  const fs::path staged = staging.folder() / path.filename();
-  std::FILE* const stream = std::fopen(staged.c_str(), "wb");
-  bool written =
-      stream != nullptr && std::fwrite(content.data(), 1, content.size(), stream) == content.size();
-  if (stream != nullptr && std::fclose(stream) != 0) written = false;  // a full disk may show only here
-  if (!written) voxel::refuse_unwritten(path, errno);
-  staging.commit(path.filename());
-}
 
 voxel::Octree windowed(const voxel::GreyOctree& grey, const SampleWindow& window) {
   return voxel::combine(grey.universe(), voxel::Expression(window_on(grey, window)));
@@ -134,7 +121,7 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
     throw voxel::Stopped("stopped before " + asked.out.string() + " was written");
   {
     const Stopwatch watch(timings, "write");
-    write_content(content, asked.out);
+    write_whole(asked.out, content);
   }
   Json json = octree_answer(file, std::nullopt, timings);
   json["path"] = asked.out.string();
@@ -150,9 +137,10 @@ FileAnswer export_as(const FileBench& bench, const Build& asked, const voxel::Oc
 /// Forms have no extension of their own. One of another kind is a slip of the hand, which must not replace a
 /// scan or a result.
 void need_form_name(const Build& asked) {
-  constexpr std::array others{".json", ".csv", ".dcm", ".png", ".jpg",  ".jpeg", ".webp", ".glb",
-                              ".inp",  ".feb", ".vtu", ".msh", ".node", ".html", ".svg",  ".pdf"};
+  constexpr std::array others{".json", ".csv", ".dcm",  ".png", ".jpg", ".jpeg",
+                              ".webp", ".glb", ".html", ".svg", ".pdf"};
   if (!is_mesh(asked.out) && !is_octree(asked.out) && !voxel::volume_format(asked.out) &&
+      !convert::is_deck(asked.out) &&
       std::find(others.begin(), others.end(), voxel::extension_of(asked.out)) == others.end())
     return;
   throw std::runtime_error(asked.out.string() + ": is the name of another kind of file: the form " +
