@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "tests/planner/ct_scene.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/scene.h"
@@ -13,19 +14,12 @@ namespace octotomy::tests {
 /// A scan of a ball about (0, 0, 0): 1000 inside, -1000 outside, in between by the part of a voxel that a
 /// flat boundary fills, so that a window from 0 is the ball. Voxels of 1 mm, `side` a side.
 inline voxel::Scene ball_scene(double radius_mm, int side = 64) {
-  voxel::Scene scene;
   const double first_mm = -0.5 * (side - 1);
-  scene.lattice = voxel::axis_aligned_lattice(glm::ivec3(side), glm::dvec3(1.0), glm::dvec3(first_mm));
-  voxel::Int16Samples samples;
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y)
-      for (int x = 0; x < side; ++x) {
-        const double depth_mm = radius_mm - glm::length(first_mm + glm::dvec3(x, y, z));
-        samples.push_back(static_cast<std::int16_t>(std::lround(2000.0 * std::clamp(depth_mm, -0.5, 0.5))));
-      }
-  scene.samples = std::move(samples);
-  scene.meaning = voxel::Meaning::Hounsfield;
-  scene.modality = "CT";
+  voxel::Scene scene = ct_scene(glm::ivec3(side), glm::dvec3(1.0), glm::dvec3(first_mm),
+                                [&](const glm::ivec3& at, const glm::dvec3& /*p_mm*/) {
+                                  const double depth_mm = radius_mm - glm::length(first_mm + glm::dvec3(at));
+                                  return std::lround(2000.0 * std::clamp(depth_mm, -0.5, 0.5));
+                                });
   scene.source = "ball";
   return scene;
 }

@@ -3,6 +3,7 @@
 // The verbs that draw, segment and prepare scans, as scripts see them.
 #include "tests/file_bytes.h"
 #include "tests/planner/cli/command_line.h"
+#include "tests/planner/ct_scene.h"
 #include "tests/reference_data.h"
 
 namespace octotomy::planner {
@@ -127,22 +128,14 @@ TEST_F(ScanVerbs, VoxelsThatPassOverAThinObjectSayHowMuchTheyMiss) {
 class Segments : public ScanVerbs {
  protected:
   Segments() {
-    voxel::Scene scene;
-    scene.lattice = voxel::axis_aligned_lattice({48, 40, 20}, {1, 1, 2}, {-23.5, -19.5, -19});
-    scene.meaning = voxel::Meaning::Hounsfield;
-    scene.modality = "CT";
-    voxel::Int16Samples samples;
-    for (int z = 0; z < 20; ++z)
-      for (int y = 0; y < 40; ++y)
-        for (int x = 0; x < 48; ++x) {
-          const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
-          const bool ball =
-              glm::distance(p, glm::dvec3(-12, 0, 0)) < 9 || glm::distance(p, glm::dvec3(10, 0, 0)) < 6;
-          const bool cube = p.y > 10 && p.y < 18 && std::abs(p.x) < 10 && std::abs(p.z) < 8;
-          samples.push_back(ball ? 900 : cube ? 300 : -1000);
-        }
-    scene.samples = std::move(samples);
-    voxel::write_scene(scene, folder_ / "scan.nrrd");
+    const auto value = [](const glm::ivec3& /*at*/, const glm::dvec3& p) {
+      const bool ball =
+          glm::distance(p, glm::dvec3(-12, 0, 0)) < 9 || glm::distance(p, glm::dvec3(10, 0, 0)) < 6;
+      const bool cube = p.y > 10 && p.y < 18 && std::abs(p.x) < 10 && std::abs(p.z) < 8;
+      return ball ? 900 : cube ? 300 : -1000;
+    };
+    voxel::write_scene(tests::ct_scene({48, 40, 20}, {1, 1, 2}, {-23.5, -19.5, -19}, value),
+                       folder_ / "scan.nrrd");
   }
   std::string segment(const std::string& out) const {
     return "segment " + at("scan.nrrd") + " -o " + at(out) + " ";

@@ -6,6 +6,7 @@
 #include "planner/plan/evaluate.h"
 #include "planner/table/json.h"
 #include "tests/planner/ball_scan.h"
+#include "tests/planner/ct_scene.h"
 #include "verify/leg_phantom.h"
 #include "voxel/scan/write_scene.h"
 
@@ -14,19 +15,10 @@ namespace {
 
 /// A jaw that is a bar along x, between y = 4 and 16, z = -7 and 7.
 voxel::Scene bar_scene() {
-  voxel::Scene scene;
-  scene.lattice = voxel::axis_aligned_lattice({120, 64, 48}, {1, 1, 1}, {-59.5, -31.5, -23.5});
-  scene.meaning = voxel::Meaning::Hounsfield;
-  scene.modality = "CT";
-  voxel::Int16Samples samples;
-  for (int z = 0; z < 48; ++z)
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 120; ++x) {
-        const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
-        samples.push_back(std::abs(p.x) < 55 && p.y > 4 && p.y < 16 && std::abs(p.z) < 7 ? 560 : 40);
-      }
-  scene.samples = samples;
-  return scene;
+  return tests::ct_scene({120, 64, 48}, {1, 1, 1}, {-59.5, -31.5, -23.5},
+                         [](const glm::ivec3& /*at*/, const glm::dvec3& p) {
+                           return std::abs(p.x) < 55 && p.y > 4 && p.y < 16 && std::abs(p.z) < 7 ? 560 : 40;
+                         });
 }
 
 constexpr const char* flap_fields =

@@ -8,6 +8,7 @@
 #include "planner/plan/answers.h"
 #include "planner/table/json.h"
 #include "tests/brep/shapes.h"
+#include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
@@ -74,20 +75,13 @@ TEST_F(MeasureStep, VoxelsThatPassOverAnImportedPlateSayHowMuchTheyMiss) {
 /// A scan of 1 x 1 x 0.1 mm with a plate of two samples between the planes of the universe's voxel centres,
 /// and perhaps a block beside it.
 Plan plan_of_thin_scan(const ScratchFolder& folder, bool has_block) {
-  voxel::Scene scene;
-  scene.lattice = voxel::axis_aligned_lattice({40, 40, 120}, {1, 1, 0.1}, {-19.5, -19.5, -5.95});
-  scene.meaning = voxel::Meaning::Hounsfield;
-  scene.modality = "CT";
-  voxel::Int16Samples samples;
-  for (int z = 0; z < 120; ++z)
-    for (int y = 0; y < 40; ++y)
-      for (int x = 0; x < 40; ++x) {
-        const bool is_plate = z / 2 == 27 && x >= 5 && x < 35 && y >= 5 && y < 35;
-        const bool is_block = has_block && z >= 50 && z < 80 && x / 3 == 5 && y / 3 == 5;
-        samples.push_back(is_plate || is_block ? 1000 : -1000);
-      }
-  scene.samples = std::move(samples);
-  voxel::write_scene(scene, folder / "thin.nrrd");
+  const auto value = [&](const glm::ivec3& at, const glm::dvec3& /*p_mm*/) {
+    const bool is_plate = at.z / 2 == 27 && at.x >= 5 && at.x < 35 && at.y >= 5 && at.y < 35;
+    const bool is_block = has_block && at.z >= 50 && at.z < 80 && at.x / 3 == 5 && at.y / 3 == 5;
+    return is_plate || is_block ? 1000 : -1000;
+  };
+  voxel::write_scene(tests::ct_scene({40, 40, 120}, {1, 1, 0.1}, {-19.5, -19.5, -5.95}, value),
+                     folder / "thin.nrrd");
   return parse_plan(R"({"octotomy_plan": 1, "name": "thin", "scans": {"ct": {"path": "thin.nrrd"}},
       "universe": {"voxel_mm": 1.0}, "steps": [
       {"id": "thin", "do": "window", "scan": "ct", "low": 0},

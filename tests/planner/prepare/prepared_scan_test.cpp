@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "tests/planner/ct_scene.h"
 #include "tests/planner/operation/ball_operation.h"
 
 namespace octotomy::planner {
@@ -47,22 +48,13 @@ TEST(PreparedScan, WarnsOfASupportThatHangsOnTheHeadAndTheAdviceTakesItOut) {
   const ScratchFolder folder;
   // A ball of 20 mm, a board of 4 mm behind it, and a bridge of 2 mm between them.
   const auto field = [](bool has_board, bool has_bridge) {
-    voxel::Scene scene;
-    scene.lattice = voxel::axis_aligned_lattice({80, 90, 40}, {1, 1, 1}, {-39.5, -39.5, -19.5});
-    scene.meaning = voxel::Meaning::Hounsfield;
-    scene.modality = "CT";
-    voxel::Int16Samples samples;
-    for (int z = 0; z < 40; ++z)
-      for (int y = 0; y < 90; ++y)
-        for (int x = 0; x < 80; ++x) {
-          const glm::dvec3 p = scene.lattice.lps_mm({x, y, z});
-          const bool in_head = glm::length(p * glm::dvec3(1, 1, 0.5)) < 20;
-          const bool in_board = has_board && p.y > 26 && p.y < 30;
-          const bool in_bridge = has_bridge && std::abs(p.x) < 1 && p.y > 0 && p.y < 30;
-          samples.push_back(in_head || in_board || in_bridge ? 60 : -1000);
-        }
-    scene.samples = std::move(samples);
-    return scene;
+    return tests::ct_scene({80, 90, 40}, {1, 1, 1}, {-39.5, -39.5, -19.5},
+                           [&](const glm::ivec3& /*at*/, const glm::dvec3& p) {
+                             const bool in_head = glm::length(p * glm::dvec3(1, 1, 0.5)) < 20;
+                             const bool in_board = has_board && p.y > 26 && p.y < 30;
+                             const bool in_bridge = has_bridge && std::abs(p.x) < 1 && p.y > 0 && p.y < 30;
+                             return in_head || in_board || in_bridge ? 60 : -1000;
+                           });
   };
   const auto step = [&](const voxel::Scene& scene, const std::string& more) {
     voxel::write_scene(scene, folder / "ct.nrrd");
