@@ -103,13 +103,14 @@ class Watch {
 
   static void run(Program& program, const std::stop_token& over) {
     const Clock::time_point start = Clock::now();
+    const bool shows = program.shows_progress();
     std::optional<Clock::time_point> asked;
     std::mutex mutex;
     std::unique_lock lock(mutex);
     std::condition_variable_any end;  // wakes at once, where a sleep would delay the program's end
     while (!end.wait_for(lock, over, look_every, [&over] { return over.stop_requested(); })) {
       if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
-      if (program.shows_progress()) cli::show_silent_work();
+      if (shows) cli::show_silent_work();
       const bool late = is_processor_time_over ||
                         (program.time_limit_s &&
                          std::chrono::duration<double>(Clock::now() - start).count() > *program.time_limit_s);

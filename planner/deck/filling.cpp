@@ -114,7 +114,7 @@ Filling by_meshers(const Object& object, const FillingOptions& wanted) {
   options.mesher = convert::Mesher::Best;
   options.progress = wanted.progress;
   options.finer = wanted.finer;
-  // Some times what a bone of 50 000 triangles takes, as machines are shared.
+  // Some times what a bone of 50 000 triangles takes.
   options.time_limit = std::chrono::minutes(2);
   filling.tetrahedra =
       convert::tetrahedralise(simplified(bodies, simplification_mm(universe), filling), options);

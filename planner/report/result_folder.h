@@ -23,8 +23,7 @@ void need_result_folder(const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& names = {});
 
 /// Whether a result may be put there by the look of it: nothing stands there, or a folder that is empty or
-/// has the list
-/// `.octotomy-result`. Reads no file but the list; need_result_folder() tells more.
+/// has the list `.octotomy-result`. Reads no file but the list; need_result_folder() tells more.
 bool may_hold_result(const std::filesystem::path& folder);
 
 /// Whether the list of a result, in a folder above, names this file.
