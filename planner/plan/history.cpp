@@ -2,23 +2,28 @@
 //
 // A text is kept as what it changed of its parent's: lengths of the beginning and the end that stay, and the
 // bytes between; every 64th whole, so that none takes more than 64 reads. A change of state is
-//   1 one transaction of the database: the edit and the current state; 2 the plan's file, written beside and
-//   renamed; 3 a note of the sum of what step 2 wrote.
+//   1 one transaction of the database: the edit and the current state; 2 the plan's file, as a whole; 3 a
+//   note of the sum of what step 2 wrote.
 // Whoever opens it compares the file's sum with that note: the same and not the current state's means that
 // step 2 was not reached, and is done then; another one means that another program wrote the file.
 #include "planner/plan/history.h"
 
 #include <algorithm>
+#include <fcntl.h>
 #include <fstream>
 #include <iterator>
 #include <sqlite3.h>
 #include <stdexcept>
+#include <sys/stat.h>
 #include <tuple>
+#include <unistd.h>
 #include <utility>
 
+#include "planner/file/output_path.h"
 #include "planner/plan/sha256.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 namespace {
@@ -28,6 +33,7 @@ namespace fs = std::filesystem;
 constexpr int layout = 1;
 constexpr int whole_every = 64;
 constexpr int busy_ms = 5000;
+constexpr std::size_t longest_name = 200;  // of a branch or a version, in bytes
 
 constexpr const char* tables = R"(
   CREATE TABLE edits (id INTEGER PRIMARY KEY, parent INTEGER REFERENCES edits, what TEXT NOT NULL,
@@ -41,8 +47,9 @@ constexpr const char* tables = R"(
 [[noreturn]] void fail(sqlite3* database, const fs::path& path) {
   const int code = sqlite3_errcode(database) & 0xff;
   const std::string what = path.string() + ": " + sqlite3_errmsg(database);
-  if (code == SQLITE_FULL || code == SQLITE_IOERR || code == SQLITE_NOMEM)
-    throw voxel::Error(voxel::ErrorCode::Resource, what);
+  if (code == SQLITE_FULL || code == SQLITE_IOERR)
+    throw voxel::Error(voxel::ErrorCode::Resource, what + ": is the disk full?");
+  if (code == SQLITE_NOMEM) throw voxel::Error(voxel::ErrorCode::Resource, what);
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     throw std::runtime_error(path.string() +
                              ": is no history of a plan: move it away, and a new one is begun");
@@ -115,7 +122,9 @@ std::string read_text(const fs::path& path) {
 
 class PlanHistory::Database {
  public:
-  explicit Database(const fs::path& plan) : plan_(fs::absolute(plan)), path_(path_of(plan_)) {
+  explicit Database(const fs::path& plan)
+      : plan_(voxel::behind_links(fs::absolute(plan))), path_(path_of(plan_)) {
+    make_as_readable_as_the_plan();
     const int code = sqlite3_open_v2(
         path_.c_str(), &database_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
     if (code != SQLITE_OK) refuse_open();
@@ -197,13 +206,16 @@ class PlanHistory::Database {
       changes.emplace_back(static_cast<std::size_t>(row.number(2)), static_cast<std::size_t>(row.number(3)),
                            row.text(4));
       if (row.number(1) == 0) break;
+      if (row.number(0) >= *at) refuse_damaged(*at);
       at = row.number(0);
     }
     std::string text;
     for (auto change = changes.rbegin(); change != changes.rend(); ++change) {
       const auto& [head, tail, middle] = *change;
+      if (head > text.size() || tail > text.size() - head) refuse_damaged(edit);
       text = text.substr(0, head) + middle + text.substr(text.size() - tail);
     }
+    if (sha256_of(text) != sum_of(edit)) refuse_damaged(edit);
     return text;
   }
   std::int64_t edit_count() {
@@ -237,6 +249,18 @@ class PlanHistory::Database {
     const std::string why = database_ == nullptr ? "out of memory" : sqlite3_errmsg(database_);
     sqlite3_close(database_);
     throw std::runtime_error(path_.string() + ": cannot be opened as the plan's history: " + why);
+  }
+  /// An edit follows those of smaller numbers, and its text has the sum that was kept with it.
+  [[noreturn]] void refuse_damaged(std::int64_t edit) const {
+    throw std::runtime_error(path_.string() + ": the history is damaged at state " + std::to_string(edit) +
+                             ": move it away, and a new one is begun");
+  }
+  /// A new history has the plan's permissions, since it holds the plan's text.
+  void make_as_readable_as_the_plan() const {
+    struct stat of_plan {};
+    if (::stat(plan_.c_str(), &of_plan) != 0) return;
+    const int file = ::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, of_plan.st_mode & 0666);
+    if (file >= 0) ::close(file);
   }
 
   template <typename... Values>
@@ -296,6 +320,7 @@ class PlanHistory::Database {
     current_ = row.number(0);
     branch_ = row.text(1);
     written_ = row.text(2);
+    if (!has_edit(current_)) refuse_damaged(current_);
   }
 
   /// Runs a change of state as steps 1 to 3. Throws where another writer came first.
@@ -327,18 +352,10 @@ class PlanHistory::Database {
     if (sum != state.text(2) && sum != sum_of(current_))
       throw std::runtime_error(plan_.string() + ": another program wrote this file" + again);
   }
-  /// Precondition: locked, so that one program at a time uses the name beside the file.
   void write_file() {
     const std::string text = text_of(current_), sum = sha256_of(text);
     if (sum == written_ && sha256_of(read_text(plan_)) == sum) return;
-    const fs::path beside = plan_.string() + ".writing";
-    std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-    file << text;
-    file.close();
-    std::error_code error;
-    if (file) fs::rename(beside, plan_, error);
-    if (!file || error)
-      throw voxel::Error(voxel::ErrorCode::Resource, plan_.string() + ": cannot be written");
+    write_whole(plan_, text);
     written_ = sum;
     query("UPDATE state SET written = ?", written_).next();
   }
@@ -366,7 +383,9 @@ class PlanHistory::Database {
   }
   std::optional<std::int64_t> parent_of(std::int64_t edit) {
     Query row = query("SELECT parent FROM edits WHERE id = ?", edit);
-    return row.next() && !row.is_null(0) ? std::optional(row.number(0)) : std::nullopt;
+    if (!row.next() || row.is_null(0)) return std::nullopt;
+    if (row.number(0) >= edit) refuse_damaged(edit);
+    return row.number(0);
   }
   std::optional<std::int64_t> tip_of(const std::string& branch) {
     Query row = query("SELECT tip FROM branches WHERE name = ?", branch);
@@ -378,6 +397,11 @@ class PlanHistory::Database {
   }
   bool has_edit(std::int64_t edit) { return query("SELECT 1 FROM edits WHERE id = ?", edit).next(); }
   void need_new_name(const std::string& name) {
+    if (name.size() > longest_name)
+      throw std::runtime_error("a name has " + std::to_string(longest_name) + " bytes at most, not " +
+                               std::to_string(name.size()));
+    if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c); }))
+      throw std::runtime_error("a name has letters and no control characters");
     const bool is_taken = query("SELECT 1 FROM branches WHERE name = ?", name).next() ||
                           query("SELECT 1 FROM versions WHERE name = ?", name).next();
     if (is_taken) throw std::runtime_error("the name '" + name + "' is taken: choose another");
@@ -395,7 +419,7 @@ PlanHistory::PlanHistory(const fs::path& plan) : database_(std::make_unique<Data
 PlanHistory::~PlanHistory() = default;
 
 fs::path PlanHistory::path_of(const fs::path& plan) {
-  return plan.string() + ".history";
+  return voxel::behind_links(plan).string() + ".history";
 }
 
 std::int64_t PlanHistory::record(const std::string& text, const std::string& what) {

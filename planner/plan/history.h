@@ -27,8 +27,11 @@ struct PlanEdit {
 /// record() returned, and the plan's file is whole, as of that edit. Several processes may hold a history;
 /// one whose state is no longer the current one is refused when it writes, and reads again.
 ///
-/// Members throw std::runtime_error with path and reason where the database is none or of a newer version,
-/// where another writer came first, or a name is unknown; voxel::Error, Resource, where the disk gives out.
+/// A plan that is a link is the file behind it, and its permissions are its history's too.
+///
+/// Members throw std::runtime_error with path and reason where the database is none, damaged or of a newer
+/// version, where another writer came first, or a name is unknown; voxel::Error, Resource, where the disk
+/// gives out.
 /// Cost: an edit stores what it changed and a sync of the disk; opening does not depend on the number of
 /// edits.
 class PlanHistory {
@@ -40,7 +43,7 @@ class PlanHistory {
   PlanHistory(const PlanHistory&) = delete;
   PlanHistory& operator=(const PlanHistory&) = delete;
 
-  /// Where the history of a plan's file lies.
+  /// Where the history of a plan's file lies: beside it, or beside the file behind the link that it is.
   static std::filesystem::path path_of(const std::filesystem::path& plan);
 
   /// Makes a text the current state, after the present one. The same text is no edit.
@@ -52,9 +55,10 @@ class PlanHistory {
   /// A state, by its number, the name of a version or of a branch, becomes current. Throws where there is
   /// none, with the nearest name.
   void go_to(const std::string& where);
-  /// Begins a branch at the current state, and is on it from then on. Throws where the name is taken.
+  /// Begins a branch at the current state, and is on it from then on. Throws where the name is taken, begins
+  /// with a digit, is longer than 200 bytes or has a control character.
   void begin_branch(const std::string& name);
-  /// Names the current state. Throws where the name is taken.
+  /// Names the current state. Throws as begin_branch().
   void name_version(const std::string& name);
 
   std::int64_t current() const;

@@ -114,6 +114,73 @@ TEST_F(History, AFileThatIsNoDatabaseIsRefusedByName) {
   }
 }
 
+TEST_F(History, AFileOfAnyOtherNameBesideThePlanIsNotWritten) {
+  PlanHistory history(plan_);
+  history.record(plan_text(1), "one");
+  std::ofstream(folder_ / "notes.txt") << "precious";
+  for (const char* ending : {".writing", ".part", ".tmp"})
+    fs::create_symlink("notes.txt", plan_.string() + ending);
+  ASSERT_TRUE(history.undo());
+  EXPECT_EQ(file(), plan_text(0));
+  EXPECT_FALSE(fs::is_symlink(plan_));
+  EXPECT_EQ(tests::bytes_of(folder_ / "notes.txt"), "precious");
+}
+
+TEST_F(History, OfALinkedPlanIsThePlansOwn) {
+  const fs::path link = folder_ / "link.plan.json";
+  fs::create_symlink("my.plan.json", link);
+  PlanHistory(link).record(plan_text(1), "one");
+  EXPECT_EQ(PlanHistory::path_of(link), PlanHistory::path_of(plan_));
+  PlanHistory history(plan_);
+  EXPECT_EQ(history.edit_count(), 2);
+  ASSERT_TRUE(PlanHistory(link).undo());
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(file(), plan_text(0));
+}
+
+TEST_F(History, ThePlansPermissionsStayAndAreItsHistorysToo) {
+  const fs::perms mine = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(plan_, mine);
+  PlanHistory history(plan_);
+  history.record(plan_text(1), "one");
+  EXPECT_EQ(fs::status(plan_).permissions(), mine);
+  EXPECT_EQ(fs::status(PlanHistory::path_of(plan_)).permissions(), mine);
+}
+
+TEST_F(History, ADamagedStateIsRefusedByItsNumber) {
+  for (int number = 1; number <= 3; ++number) PlanHistory(plan_).record(plan_text(number), "edit");
+  const std::string sound = tests::bytes_of(PlanHistory::path_of(plan_));
+  const auto refuses = [&](const std::string& damage) {
+    std::ofstream(PlanHistory::path_of(plan_), std::ios::binary) << sound;
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(PlanHistory::path_of(plan_).c_str(), &database), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(database, damage.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(database);
+    sqlite3_close(database);
+    try {
+      PlanHistory(plan_).undo();
+      ADD_FAILURE() << damage << " is not refused";
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find("the history is damaged at state"), std::string::npos)
+          << damage << ": " << error.what();
+    }
+  };
+  refuses("UPDATE edits SET parent = 3 WHERE id = 3");
+  refuses("UPDATE edits SET parent = 4 WHERE id = 3");
+  refuses("UPDATE edits SET tail = 99999999 WHERE id = 3");
+  refuses("UPDATE edits SET head = -1 WHERE id = 3");
+  refuses("UPDATE edits SET middle = 'other' WHERE id = 3");
+  refuses("UPDATE state SET current = 77");
+}
+
+TEST_F(History, NamesAreOfALineAndBounded) {
+  PlanHistory history(plan_);
+  EXPECT_THROW(history.begin_branch(std::string(201, 'a')), std::runtime_error);
+  EXPECT_THROW(history.begin_branch("two\nlines"), std::runtime_error);
+  EXPECT_THROW(history.name_version("bell\a"), std::runtime_error);
+  EXPECT_NO_THROW(history.name_version(std::string(200, 'a')));
+}
+
 /// Records edits for ever, telling each one's number once record() returned.
 [[noreturn]] void edit_until_killed(const fs::path& plan, int from, int told) {
   try {
