@@ -17,6 +17,8 @@
 #include "brep/mesh/components.h"
 #include "brep/mesh/distance.h"
 #include "brep/mesh/error.h"
+#include "brep/mesh/measure.h"
+#include "brep/mesh/short_text.h"
 #include "brep/mesh/surface_mesh.h"
 #include "brep/mesh/triangles.h"
 
@@ -92,12 +94,26 @@ std::vector<std::uint32_t> within_reach(const Triangles& triangles, const Foot& 
   return faces;
 }
 
+/// Refuses a point that lies farther away than the surface is large: it is meant for another one.
+void need_near(const glm::dvec3& asked_mm, const glm::dvec3& nearest_mm, const Triangles& triangles) {
+  const Size size = size_of(triangles);
+  const double off_mm = glm::distance(asked_mm, nearest_mm),
+               extent_mm = glm::distance(size.low_mm, size.high_mm);
+  if (off_mm <= extent_mm) return;
+  throw Error(ErrorCode::Geometry, "shortest_path: the point (" + short_text(asked_mm.x) + ", " +
+                                       short_text(asked_mm.y) + ", " + short_text(asked_mm.z) + ") mm lies " +
+                                       short_text(off_mm) + " mm from the surface, which is only " +
+                                       short_text(extent_mm) + " mm large: give a point near it");
+}
+
 }  // namespace
 
 SurfacePath shortest_path(const Mesh& mesh, const glm::dvec3& from_mm, const glm::dvec3& to_mm) {
   if (mesh.n_faces() == 0) throw std::invalid_argument("shortest_path: the surface has no triangles");
   const Triangles all = triangles_of(mesh);
   const std::vector<Foot> ends = SurfaceTree(all).feet({from_mm, to_mm});
+  need_near(from_mm, ends[0].p_mm, all);
+  need_near(to_mm, ends[1].p_mm, all);
   const double bound_mm = length_along_edges(mesh, all, ends[0], ends[1]);
   if (!std::isfinite(bound_mm))
     throw Error(ErrorCode::Geometry,

@@ -130,6 +130,9 @@ Json along_json(const SurfaceQuestions& questions, const brep::Mesh& mesh) {
   for (const glm::dvec3& p : path.points_mm) points.push_back(to_json(p));
   return {{"length_mm", path.length_mm},
           {"straight_mm", glm::distance(path.points_mm.front(), path.points_mm.back())},
+          {"off_mm",
+           {glm::distance(questions.along[0], path.points_mm.front()),
+            glm::distance(questions.along[1], path.points_mm.back())}},
           {"points_mm", points}};
 }
 
@@ -184,7 +187,10 @@ std::vector<std::pair<std::string, std::string>> surface_rows(const Json& answer
   });
   add("distance_mm", [&](const Json& distance) { return number(distance, 2, " mm"); });
   add("angle_deg", [&](const Json& angle) { return number(angle, 2, "\u00b0"); });
-  add("along", [&](const Json& path) { return number(path["length_mm"], 2, " mm"); });
+  add("along", [&](const Json& path) {
+    return number(path["length_mm"], 2, " mm") + ", from " + number(path["off_mm"][0], 2, " mm") + " to " +
+           number(path["off_mm"][1], 2, " mm") + " beside the points";
+  });
   add("gap", [&](const Json& gap) { return number(gap["distance_mm"], 3, " mm"); });
   add("curvature", [&](const Json& curvature) {
     return number(curvature["mean"]["mean_per_mm"], 4, " /mm, ") +

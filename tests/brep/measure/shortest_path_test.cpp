@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "brep/mesh/error.h"
 #include "tests/brep/shapes.h"
 
 namespace octotomy::brep {
@@ -42,6 +43,19 @@ TEST(ShortestPath, BetweenPiecesThereIsNone) {
       mesh_of(shapes::together(shapes::sphere({0, 0, 0}, 1, 1), shapes::sphere({5, 0, 0}, 1, 1)));
   EXPECT_THROW(shortest_path(two, {0, 0, 1}, {5, 0, 1}), std::runtime_error);
   EXPECT_THROW(shortest_path(Mesh(), {0, 0, 1}, {5, 0, 1}), std::invalid_argument);
+}
+
+TEST(ShortestPath, APointFartherOffThanTheSurfaceIsLargeIsRefusedWithItsDistance) {
+  const Mesh ball = mesh_of(shapes::sphere({0, 0, 0}, 10, 2));
+  EXPECT_NO_THROW(shortest_path(ball, {0, 0, 12}, {12, 0, 0}));
+  try {
+    shortest_path(ball, {0, 0, 10}, {500, 0, 0});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Geometry);
+    const std::string said = error.what();
+    EXPECT_NE(said.find("(500, 0, 0) mm lies 490 mm"), std::string::npos) << said;
+  }
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ TEST_F(MeshVerbs, AMeshIsAskedForSectionsWaysAnglesWallsAndCurvature) {
   EXPECT_EQ(json["distance_mm"], 13.0);
   EXPECT_EQ(json["angle_deg"], 90.0);
   EXPECT_NEAR(json["along"]["length_mm"].get<double>(), 0.5 * M_PI * r, 0.05 * r);
+  for (const auto& off_mm : json["along"]["off_mm"]) EXPECT_LT(off_mm.get<double>(), 0.05 * r);
   EXPECT_EQ(json["gap"]["distance_mm"], 0.0);
   EXPECT_NEAR(json["oriented_box"]["edges_mm"][0].get<double>(), 2 * r, 0.1 * r);
   EXPECT_NEAR(json["thickness"]["ray"]["median_mm"].get<double>(), 2 * r, 0.1 * r);
