@@ -60,16 +60,17 @@ std::string sha256_of(std::string_view bytes) {
 }
 
 std::string sha256_of_path(const fs::path& path) {
-  if (fs::is_regular_file(path)) return sha256_of_file(path);
+  std::error_code ignored;
+  if (fs::is_regular_file(path, ignored)) return sha256_of_file(path);
   std::vector<fs::path> files;
-  if (fs::is_directory(path)) {
+  if (fs::is_directory(path, ignored)) {
     for (const auto& entry : fs::recursive_directory_iterator(path))
-      if (entry.is_regular_file()) files.push_back(entry.path());
+      if (entry.is_regular_file(ignored)) files.push_back(entry.path());
   } else {
     files = voxel::image_files(path);
   }
   if (files.empty()) return sha256_of_file(path);
-  const fs::path folder = fs::is_directory(path) ? path : path.parent_path();
+  const fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
   std::vector<std::pair<std::string, std::string>> lines;
   lines.reserve(files.size());
   for (const fs::path& file : files)
