@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/plan/answers.h"
 
+#include "planner/plan/in_step.h"
 #include "planner/plan/sha256.h"
 #include "planner/plan/trial.h"
 #include "planner/table/json.h"
@@ -39,9 +40,11 @@ Json measurements_json(const Plan& plan, const Evaluation& evaluation) {
   for (const Step& step : plan.steps) {
     if (step.action.operation().makes != Makes::Measurement) continue;
     Json json{{"id", step.id}};
-    json.update(step.action.operation().measure(step.action.value(), bench));
-    if (const auto* trials = step.action.get_if<Trials>())
-      json.update(trials_json(plan, evaluation, *trials));
+    in_step(step.id, [&] {
+      json.update(step.action.operation().measure(step.action.value(), bench));
+      if (const auto* trials = step.action.get_if<Trials>())
+        json.update(trials_json(plan, evaluation, *trials));
+    });
     all.push_back(std::move(json));
   }
   return all;
@@ -62,7 +65,7 @@ Exported write_file(const Plan& plan, const Evaluation& evaluation, const Step& 
                           .scan = scans_of(evaluation)};
   Exported exported;
   exported.id = step.id;
-  step.action.operation().write(step.action.value(), bench, exported);
+  in_step(step.id, [&] { step.action.operation().write(step.action.value(), bench, exported); });
   if (exported.written) exported.details["bytes"] = std::filesystem::file_size(folder / exported.path);
   return exported;
 }

@@ -23,6 +23,7 @@
 #include "planner/operation/trace.h"
 #include "planner/plan/beside.h"
 #include "planner/plan/dependence.h"
+#include "planner/plan/in_step.h"
 #include "planner/plan/sha256.h"
 #include "planner/table/number_format.h"
 #include "verify/witness.h"
@@ -116,24 +117,6 @@ class Evaluator {
   }
 
  private:
-  /// Does a step's work and names the step in what it throws.
-  template <typename Work>
-  void in_step(const std::string& id, const Work& work) {
-    try {
-      work();
-    } catch (const Stopped&) {
-      throw;
-    } catch (const voxel::Error& error) {
-      throw voxel::Error(error.code(), "step '" + id + "': " + error.what());
-    } catch (const brep::Error& error) {
-      throw brep::Error(error.code(), "step '" + id + "': " + error.what());
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error("step '" + id + "': " + error.what());
-    } catch (const std::invalid_argument& error) {
-      throw std::runtime_error("step '" + id + "': " + error.what());
-    }
-  }
-
   void report(const std::string& doing, double fraction) {
     told_ = fraction;
     if (options_.stop.stop_requested()) throw Stopped("stopped before '" + doing + "': nothing was written");
