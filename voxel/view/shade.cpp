@@ -151,14 +151,15 @@ OCTOTOMY_VECTOR_CLONES void dim_row(const Dimming& dimming, const float* __restr
   }
 }
 
-/// Pass 5 for one channel: indices into the table of tones.
+/// Pass 5 for one channel: indices into the table of tones, within it for any light.
 OCTOTOMY_VECTOR_CLONES void root_row(const float* __restrict colour, const float* __restrict diffuse,
                                      const float* __restrict mirrored, int first, int last,
                                      int* __restrict root) {
   for (int i = first; i < last; ++i) {
     const float light = colour[i] * diffuse[i] + mirrored[i];
+    const float at_most = light < 1.0f ? light : 1.0f;
     constexpr float to_nearest = 0.5f;
-    root[i] = static_cast<int>(to_nearest + std::sqrt(light < 1.0f ? light : 1.0f) * Tone::root_steps);
+    root[i] = static_cast<int>(to_nearest + std::sqrt(at_most > 0.0f ? at_most : 0.0f) * Tone::root_steps);
   }
 }
 

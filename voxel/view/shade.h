@@ -56,7 +56,8 @@ std::vector<glm::vec2> slopes(const DepthImage& image, const Scenery& scenery);
 /// The picture of a depth image, 8-bit sRGB row by row: Phong's model (1975) for the scenery's lights, a
 /// gentle depth cue, and darker surfaces behind their surroundings (Luft, Colditz, Deussen 2006: unsharp
 /// masking of the depth buffer). Normals come from slopes(), or from `normals` if given, one per pixel in
-/// (right, up, look). Parallel over rows; same bits on any thread count.
+/// (right, up, look). Precondition: colours are within 0..1. Light beyond 0..1 is shown as its nearer end.
+/// Parallel over rows; same bits on any thread count.
 std::vector<std::uint8_t> shade(const DepthImage& image, const Scenery& scenery,
                                 std::span<const glm::vec3> normals = {});
 

@@ -105,6 +105,15 @@ TEST(Shade, BackgroundIsTheColourAskedForToTheLastBit) {
   }
 }
 
+TEST(Shade, LightBelowBlackIsBlackAndAboveWhiteIsWhite) {
+  const DepthImage image = image_of(16, [](int, int) { return Seen{10.0f, 0, false}; });
+  for (const auto& [colour, value] : {std::pair(-1.0f, 0), {-1e30f, 0}, {9.0f, 255}, {1e30f, 255}}) {
+    Scenery scenery = scenery_of();
+    scenery.colours[0] = glm::vec3(colour);
+    for (const std::uint8_t shown : shade(image, scenery)) ASSERT_EQ(shown, value) << colour;
+  }
+}
+
 TEST(EdgePixels, LieOnBothSidesOfABreakAndNowhereOnASlope) {
   const DepthImage image = image_of(16, [](int x, int y) {
     return Seen{2.0f * static_cast<float>(y) + (x < 8 ? 0.0f : 50.0f), 0, false};
