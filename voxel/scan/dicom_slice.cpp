@@ -110,9 +110,19 @@ std::size_t frame_bytes(const DicomSlice& slice) {
          8;
 }
 
+/// Whether every value that the pixels can hold stays finite in single precision when it is rescaled.
+bool is_rescale_finite(const DicomSlice& slice) {
+  const double largest_stored = std::ldexp(1.0, static_cast<int>(slice.pixels.stored));
+  return std::abs(slice.slope.value_or(1.0)) * largest_stored + std::abs(slice.intercept.value_or(0.0)) <=
+         static_cast<double>(std::numeric_limits<float>::max());
+}
+
 /// Fills the slice's geometry. Returns the reason if the file has none.
 std::optional<NoSlice> take_geometry(const Attributes& attributes, DicomSlice& slice) {
   constexpr auto unusable = NoSlice::Kind::Unusable;
+  const auto are_within = [](const std::vector<double>& numbers, double low, double high) {
+    return std::all_of(numbers.begin(), numbers.end(), [&](double x) { return x >= low && x <= high; });
+  };
   auto position = attributes.decimals(0x00200032);
   auto orientation = attributes.decimals(0x00200037);
   if (!position && !orientation) {
@@ -128,8 +138,13 @@ std::optional<NoSlice> take_geometry(const Attributes& attributes, DicomSlice& s
     spacing = attributes.decimals(0x00181164);
     slice.spacing_at_detector = true;
   }
-  if (!spacing || spacing->size() != 2 || (*spacing)[0] <= 0.0 || (*spacing)[1] <= 0.0)
-    return NoSlice{"an image without PixelSpacing", unusable};
+  if (!spacing || spacing->size() != 2) return NoSlice{"an image without PixelSpacing", unusable};
+  if (!are_within(*spacing, 1e-6, 1e6))  // no scanner's or microscope's
+    return NoSlice{"an image whose PixelSpacing is not 1e-6 to 1e6 mm", unusable};
+  if (!are_within(*position, -1e9, 1e9))  // doubles still part places by 1e-7 mm there
+    return NoSlice{"an image whose ImagePositionPatient is beyond 1e9 mm", unusable};
+  if (!are_within(*orientation, -1.001, 1.001))  // with the tolerance of the stack's own directions
+    return NoSlice{"an image whose ImageOrientationPatient is not two unit vectors", unusable};
   slice.first_mm = {(*position)[0], (*position)[1], (*position)[2]};
   slice.along_row = {(*orientation)[0], (*orientation)[1], (*orientation)[2]};
   slice.along_column = {(*orientation)[3], (*orientation)[4], (*orientation)[5]};
@@ -274,6 +289,8 @@ std::optional<NoSlice> take_frame(const DicomFile& file, const Attributes& attri
   slice.rescale_type = attributes.text(0x00281054);
   slice.intercept = attributes.decimal(0x00281052);
   slice.slope = attributes.decimal(0x00281053);
+  if (!is_rescale_finite(slice))
+    return NoSlice{"values that RescaleSlope takes beyond single precision", NoSlice::Kind::Unusable};
   for (std::size_t i = 0; i < dicom_traits.size(); ++i)
     for (const DicomTag tag : dicom_traits[i].tags)
       if (tag != 0 && slice.traits[i].empty()) slice.traits[i] = attributes.text(tag);

@@ -76,7 +76,8 @@ struct NoSlice {
 
 /// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or
 /// one for each frame of an enhanced CT or MR. Never throws on a file's contents. Memory: the file's
-/// attributes, or the whole file if it is compressed.
+/// attributes, or the whole file if it is compressed. Unusable are also positions beyond 1e9 mm, spacings not
+/// from 1e-6 to 1e6 mm, directions longer than a unit, and rescaled values beyond single precision.
 std::variant<std::vector<DicomSlice>, NoSlice> read_dicom_slices(const std::filesystem::path& path);
 
 /// Whether two images store the same pixels in the same way. Throws Error, Input, if a file has changed.
