@@ -19,9 +19,11 @@ Stored interpolated(const SlicePlan& plan, const glm::ivec2& from_px, const std:
   const std::size_t area = width * static_cast<std::size_t>(plan.size_px.y);
   assert(stored.size() == from_area * aside_px.size() && !stored.empty());
   const double fill = static_cast<double>(*std::min_element(stored.begin(), stored.end()));
+  // A slice ends half a pixel beyond the centres of its outer pixels.
+  const auto covers = [&](const glm::dvec2& p_px) {
+    return p_px.x >= -0.5 && p_px.y >= -0.5 && p_px.x <= from_px.x - 0.5 && p_px.y <= from_px.y - 0.5;
+  };
   const auto in_slice = [&](std::size_t slice, glm::dvec2 p_px) {
-    // The slice ends half a pixel beyond the centres of its outer pixels.
-    if (p_px.x < -0.5 || p_px.y < -0.5 || p_px.x > from_px.x - 0.5 || p_px.y > from_px.y - 0.5) return fill;
     p_px = glm::clamp(p_px, glm::dvec2(0.0), glm::dvec2(from_px - 1));
     const glm::ivec2 low = glm::min(glm::ivec2(p_px), glm::max(from_px - 2, 0));
     const glm::dvec2 t = p_px - glm::dvec2(low);
@@ -40,9 +42,14 @@ Stored interpolated(const SlicePlan& plan, const glm::ivec2& from_px, const std:
     for (std::size_t i = 0; i < area; ++i) {
       const glm::dvec2 p_px = glm::dvec2(plan.low_px) +
                               glm::dvec2(static_cast<double>(i % width), static_cast<double>(i / width));
-      double value = in_slice(source.below, p_px - aside_px[source.below]);
-      if (source.above != source.below)
-        value += source.share_above * (in_slice(source.above, p_px - aside_px[source.above]) - value);
+      const glm::dvec2 below_px = p_px - aside_px[source.below], above_px = p_px - aside_px[source.above];
+      // A mixture of a sample and the fill would be no measurement.
+      double value = fill;
+      if (covers(below_px) && covers(above_px)) {
+        value = in_slice(source.below, below_px);
+        if (source.above != source.below)
+          value += source.share_above * (in_slice(source.above, above_px) - value);
+      }
       if constexpr (std::is_integral_v<Sample>)
         samples[k * area + i] = static_cast<Sample>(std::floor(value + 0.5));
       else

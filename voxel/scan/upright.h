@@ -11,8 +11,8 @@ namespace octotomy::voxel {
 using SceneSamples = decltype(Scene::samples);
 
 /// The samples of a plan's lattice, interpolated linearly between the pixels of a slice and between slices;
-/// beyond a slice they are the least of all samples. `aside_px` tells how far each slice of the stack lies
-/// aside of the first. Integers are rounded, halves upwards. Parallel over slices.
+/// beyond either of two slices they are the least of all samples. `aside_px` tells how far each slice of the
+/// stack lies aside of the first. Integers are rounded, halves upwards. Parallel over slices.
 SceneSamples upright_samples(const SlicePlan& plan, const glm::ivec2& slice_px,
                              const std::vector<glm::dvec2>& aside_px, const SceneSamples& stored);
 

@@ -41,6 +41,31 @@ TEST(Upright, LeaningSlicesOfALinearFunctionStayItOnPerpendicularAxes) {
   }
 }
 
+TEST(Upright, ASampleBetweenLeaningSlicesIsMadeOfBothOrIsTheFill) {
+  // Two slices of four pixels, the upper one 1.5 pixels aside, and one between them that no image has.
+  const auto field = [](double x_px) { return 100.0 + 10.0 * x_px; };
+  const std::vector<glm::dvec2> aside_px{{0.0, 0.0}, {1.5, 0.0}};
+  FloatSamples stored;
+  for (const glm::dvec2& aside : aside_px)
+    for (int x = 0; x < 4; ++x) stored.push_back(static_cast<float>(field(x + aside.x)));
+  SlicePlan plan;
+  plan.sources = {{0, 0, 0.0}, {0, 1, 0.5}, {1, 1, 0.0}};
+  plan.size_px = {7, 1};
+  const SceneSamples made = upright_samples(plan, {4, 1}, aside_px, stored);
+  const auto& samples = std::get<FloatSamples>(made);
+  const float fill = stored.front();
+  for (int x = 0; x < 7; ++x) {
+    const float between = samples[static_cast<std::size_t>(7 + x)];
+    // Half a pixel beyond the outer centres a slice repeats its last sample.
+    if (x >= 1 && x <= 3)
+      EXPECT_NEAR(between, field(x), 5.0) << x;
+    else
+      EXPECT_EQ(between, fill) << x;
+  }
+  EXPECT_EQ(samples[3], field(3));
+  EXPECT_EQ(samples[14 + 6], fill);
+}
+
 TEST(Upright, SlicesThatStandStraightStayAsTheyAre) {
   Scene scene;
   scene.lattice.dims = {3, 2, 2};
