@@ -31,14 +31,25 @@ double repeat_tolerance_mm(double usual_gap_mm) {
   return 0.1 * usual_gap_mm;
 }
 
-/// The regular files of a folder and its subfolders, sorted.
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+/// Whether an entry is a regular file, or a link to nothing, which is told as a stray file.
+bool is_file(const fs::directory_entry& entry) {
+  std::error_code ignored;
+  return entry.is_regular_file(ignored) || (entry.is_symlink(ignored) && !entry.exists(ignored));
+}
+
+/// The files of a folder and its subfolders, sorted.
 std::vector<fs::path> files_of(const fs::path& path) {
-  if (!fs::is_directory(path)) return {path};
+  if (!is_folder(path)) return {path};
   std::vector<fs::path> files;
   std::error_code error;
   fs::recursive_directory_iterator entry(path, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
-    if (std::error_code ignored; entry->is_regular_file(ignored)) files.push_back(entry->path());
+    if (is_file(*entry)) files.push_back(entry->path());
   if (error) refuse(path, "the folder cannot be listed: " + error.message());
   std::sort(files.begin(), files.end());
   return files;
@@ -93,7 +104,7 @@ class SeriesAssembler {
     Skipped skipped;
     for (std::size_t i = 0; i < files.size(); ++i) {
       const std::string name =
-          (fs::is_directory(path_) ? files[i].lexically_relative(path_) : files[i].filename()).string();
+          (is_folder(path_) ? files[i].lexically_relative(path_) : files[i].filename()).string();
       if (auto* slices = std::get_if<std::vector<DicomSlice>>(&headers[i])) {
         for (DicomSlice& slice : *slices) {
           slice.name = name + (slices->size() == 1 ? "" : " frame " + std::to_string(slice.frame + 1));
@@ -105,7 +116,7 @@ class SeriesAssembler {
         skipped[none.kind].reasons.push_back(name + " (" + none.reason + ")");
       }
     }
-    if (found.empty() && !fs::is_directory(path_))
+    if (found.empty() && !is_folder(path_))
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
     if (found.empty()) refuse_empty(files.size(), skipped);

@@ -65,7 +65,9 @@ std::map<int, std::string> of_nrrd(const fs::path& path) {
 std::map<int, std::string> label_names(const fs::path& path) {
   const std::string extension = extension_of(path);
   if (extension == ".nrrd" || extension == ".nhdr") return of_nrrd(path);
-  return fs::is_regular_file(path) && is_dicom_seg(path) ? of_dicom(path) : std::map<int, std::string>{};
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) && is_dicom_seg(path) ? of_dicom(path)
+                                                                  : std::map<int, std::string>{};
 }
 
 }  // namespace octotomy::voxel

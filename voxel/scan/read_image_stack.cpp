@@ -64,10 +64,11 @@ bool matches(std::string_view pattern, std::string_view name) {
 std::vector<fs::path> files_in(const fs::path& folder, const std::string& pattern) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.is_regular_file() && is_image(entry.path()) &&
-        matches(pattern, entry.path().filename().string()))
-      files.push_back(entry.path());
+  fs::directory_iterator entry(folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+    if (std::error_code ignored; entry->is_regular_file(ignored) && is_image(entry->path()) &&
+                                 matches(pattern, entry->path().filename().string()))
+      files.push_back(entry->path());
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return comes_before(a.filename().string(), b.filename().string());
   });

@@ -46,7 +46,8 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
       refuse(path, "raw dims are larger than any file; check them");
     bytes *= static_cast<std::uint64_t>(layout.dims[axis]);
   }
-  if (!fs::is_regular_file(path)) refuse(path, "is no regular file; give a file of raw samples");
+  if (std::error_code ignored; !fs::is_regular_file(path, ignored))
+    refuse(path, "is no regular file; give a file of raw samples");
   const std::uint64_t held = fs::file_size(path);
   if (held < layout.offset || held - layout.offset != bytes)
     refuse(path, "holds " + std::to_string(held) + " bytes, but the raw layout takes " +

@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 Scene read_any(const fs::path& path, const ReadOptions& options) {
-  if (!fs::is_directory(path)) need_regular_file(path);
-  if (options.raw) return read_raw(path, options);
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   const bool is_folder = fs::is_directory(status);
+  if (!is_folder) need_regular_file(path);
+  if (options.raw) return read_raw(path, options);
   if (!is_folder) {
     if (!image_files(path).empty()) return read_image_stack(path, options);
     if (!fs::exists(status)) refuse(path, "no such file or folder");

@@ -39,18 +39,22 @@ struct StoredSamples {
 void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene& scene);
 
 /// Puts samples into the scene: as int16 if every one is an integer in its range, else as float. The audit
-/// states every change. Throws Error, Input, without a path, if no sample is a finite number.
+/// states every change. Numbers that are not finite, or beyond single precision, become the lowest of the
+/// others. Throws Error, Input, without a path, if there are no others.
 template <typename Stored, typename Allocator>
 void take_samples(const std::vector<Stored, Allocator>& stored, Scene& scene) {
   constexpr double int16_low = std::numeric_limits<std::int16_t>::min();
   constexpr double int16_high = std::numeric_limits<std::int16_t>::max();
+  // Greater ones would become infinite in single precision.
+  constexpr double largest = std::numeric_limits<float>::max();
+  const auto is_kept = [](double real) { return std::abs(real) <= largest; };
   std::size_t unreal_count = 0;
   bool fits = true;
   bool is_exact = true;
   double low = std::numeric_limits<double>::infinity();
   for (const Stored value : stored) {
     const auto real = static_cast<double>(value);
-    if (!std::isfinite(real)) {
+    if (!is_kept(real)) {
       ++unreal_count;
       continue;
     }
@@ -62,14 +66,15 @@ void take_samples(const std::vector<Stored, Allocator>& stored, Scene& scene) {
   if (unreal_count > 0)
     scene.audit.push_back({"finite", Verdict::Warn,
                            std::to_string(unreal_count) +
-                               " samples are no finite numbers; they are set to the lowest value, " +
+                               " samples are no finite numbers of single precision; they are set to the "
+                               "lowest value, " +
                                std::to_string(low)});
   const auto convert = [&](auto& samples) {
     using Sample = typename std::decay_t<decltype(samples)>::value_type;
     samples.resize(stored.size());
     std::transform(stored.begin(), stored.end(), samples.begin(), [&](Stored value) {
-      return static_cast<Sample>(std::isfinite(static_cast<double>(value)) ? static_cast<double>(value)
-                                                                           : low);
+      const auto real = static_cast<double>(value);
+      return static_cast<Sample>(is_kept(real) ? real : low);
     });
   };
   if (fits) {

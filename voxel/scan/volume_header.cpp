@@ -336,14 +336,16 @@ std::uintmax_t most_bytes(const fs::path& path, VolumeFormat format, const Volum
     if (lower_case(data_file) == "local") data_file.clear();
   }
   std::uintmax_t bytes = 0;
+  std::error_code error;
   if (data_file.empty()) {
     bytes = fs::file_size(path);
   } else if (is_in_several_files(data_file)) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(fs::absolute(path).parent_path()))
-      if (entry.is_regular_file()) bytes += entry.file_size();
+    fs::directory_iterator entry(fs::absolute(path).parent_path(), error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+      if (std::error_code ignored; entry->is_regular_file(ignored)) bytes += fs::file_size(entry->path());
   } else {
     const fs::path data = beside(path, data_file);
-    if (!fs::is_regular_file(data))
+    if (!fs::is_regular_file(data, error))
       refuse(path, "its data file '" + data_file + "' is missing; keep header and data together");
     bytes = fs::file_size(data);
   }

@@ -248,6 +248,20 @@ TEST(ReadDicom, CountsStrayFilesAndNamesTheFirst) {
   EXPECT_NE(finding(read, "stray_files")->detail.find("READ.ME"), std::string::npos);
 }
 
+TEST(ReadDicom, CountsLinksThatLeadToNoFileAsStrayFiles) {
+  const ScratchFolder folder;
+  write_dicom_series(linear_scene(leaning_lattice(0.0)), folder / "series");
+  fs::create_symlink("self", folder / "series" / fs::path("self"));
+  fs::create_symlink("nowhere", folder / "series" / fs::path("lost"));
+  fs::create_directory_symlink("..", folder / "series" / fs::path("above"));
+  const Scene read = read_scene(folder / "series");
+  EXPECT_EQ(read.lattice.dims.z, 20);
+  ASSERT_EQ(verdict(read, "stray_files"), Verdict::Warn);
+  EXPECT_EQ(finding(read, "stray_files")->files, (std::vector<std::string>{"lost", "self"}));
+  EXPECT_NE(reason_of(folder / "series" / fs::path("self")).find("no such file"), std::string::npos)
+      << reason_of(folder / "series" / fs::path("self"));
+}
+
 TEST(ReadDicom, AppliesEachSlicesOwnRescale) {
   const ScratchFolder folder;
   const Scene written = linear_scene(leaning_lattice(0.0));
@@ -284,7 +298,7 @@ TEST(ReadDicom, RefusesToCallValuesHounsfieldWhoseAirIsAtZero) {
 TEST(ReadDicom, RefusesScatteredSlicesInsteadOfInventingHundreds) {
   const ScratchFolder folder;
   write_dicom_series(linear_scene(leaning_lattice(0.0)), folder / "series");
-  exchange(folder / "series" / slice(20), "\\48.5", "\\9e9 ");
+  exchange(folder / "series" / slice(20), "\\48.5", "\\9e5 ");
   EXPECT_NE(reason_of(folder / "series").find("too scattered"), std::string::npos)
       << reason_of(folder / "series");
 }

@@ -73,6 +73,7 @@ TEST(ReadImageStack, TakesTheFilesOfAFolderInTheOrderOfTheirNumbers) {
   for (int z = 0; z < dims.z; ++z)
     write_page<std::uint16_t>(folder / ("slice" + std::to_string(z) + ".png"), OIIO::TypeDesc::UINT16, z,
                               700);
+  fs::create_symlink("self.png", folder / "self.png");  // no file
   expect_ramp(read_scene(folder.path(), spaced()), 700);
   expect_ramp(read_scene(folder / "slice*.png", spaced()), 700);
   EXPECT_EQ(read_scene(folder / "slice1?.png", spaced()).lattice.dims.z, 2);
@@ -145,6 +146,19 @@ TEST(ReadRaw, ReadsEveryTypeInEitherByteOrderAfterAnOffset) {
   check(std::uint32_t{}, SampleType::UInt32, 900);
   check(float{}, SampleType::Float, 0);
   check(double{}, SampleType::Double, 0);
+}
+
+TEST(ReadRaw, ReplacesDoublesBeyondSinglePrecisionAndSaysSo) {
+  const ScratchFolder folder;
+  std::string bytes = raw_bytes<double>(false);
+  const double beyond = 1e300;
+  std::memcpy(bytes.data() + sizeof beyond, &beyond, sizeof beyond);
+  std::ofstream(folder / "scan.raw", std::ios::binary) << bytes;
+  ReadOptions options = spaced();
+  options.raw = RawLayout{dims, SampleType::Double};
+  const Scene scene = read_scene(folder / "scan.raw", options);
+  EXPECT_EQ(verdict(scene, "finite"), Verdict::Warn);
+  EXPECT_EQ(std::get<voxel::Int16Samples>(scene.samples)[1], ramp(0, dims.y - 1, 0));
 }
 
 TEST(ReadRaw, RefusesAFileThatHasNotTheBytesThatItsLayoutTakes) {
