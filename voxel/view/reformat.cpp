@@ -11,14 +11,15 @@
 #include <tbb/parallel_for.h>
 
 #include "voxel/space/progress.h"
+#include "voxel/space/rounded.h"
 
 namespace octotomy::voxel {
 namespace {
 
 void need_pixel(double pixel_mm) {
   if (!(pixel_mm > 0.0) || !std::isfinite(pixel_mm))
-    throw std::invalid_argument("the edge of a picture's pixels must be positive, not " +
-                                std::to_string(pixel_mm) + " mm");
+    throw std::invalid_argument("the edge of a picture's pixels must be positive, not " + rounded(pixel_mm) +
+                                " mm");
 }
 
 // The number of pixels of a length. The rounding of lengths, sums of a few products of coordinates, must not
@@ -26,12 +27,13 @@ void need_pixel(double pixel_mm) {
 int pixels(double length_mm, double pixel_mm) {
   const double exact = length_mm / pixel_mm;
   const double rounding = 64.0 * std::numeric_limits<double>::epsilon() * (1.0 + exact) * most_sheet_px;
-  const double count = std::max(1.0, std::ceil(exact - rounding));
-  if (count > most_sheet_px)
-    throw std::invalid_argument("a picture of " + std::to_string(length_mm) + " mm takes more than " +
-                                std::to_string(most_sheet_px) + " pixels of " + std::to_string(pixel_mm) +
-                                " mm: choose larger pixels");
-  return static_cast<int>(count);
+  // Of infinite lengths the difference is no number.
+  if (!(std::ceil(exact - rounding) <= most_sheet_px))
+    throw std::invalid_argument(
+        "a picture of " + (std::isfinite(length_mm) ? rounded(length_mm) + " mm" : "points that far apart") +
+        " takes more than " + std::to_string(most_sheet_px) + " pixels of " + rounded(pixel_mm) +
+        " mm: choose larger pixels");
+  return static_cast<int>(std::max(1.0, std::ceil(exact - rounding)));
 }
 
 struct Rectangle {
@@ -171,7 +173,7 @@ Sheet curved_sheet(const CurveOptions& options) {
   need_pixel(options.pixel_mm);
   if (!(options.height_mm > 0.0) || !std::isfinite(options.height_mm))
     throw std::invalid_argument("the height of a curved slice must be positive, not " +
-                                std::to_string(options.height_mm) + " mm");
+                                rounded(options.height_mm) + " mm");
   const double up_length = glm::length(options.up);
   if (!(up_length > 0.0) || !std::isfinite(up_length))
     throw std::invalid_argument("the up vector of a curved slice must be finite and not zero");

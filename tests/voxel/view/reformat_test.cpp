@@ -201,6 +201,26 @@ TEST(CurvedSheet, RefusesPointsThatSpanNoSheet) {
   EXPECT_THROW(curved_sheet(options), std::invalid_argument);
 }
 
+TEST(CurvedSheet, NamesTheLengthsOfAPictureThatIsTooLarge) {
+  CurveOptions options;
+  options.points_mm = {{0, 0, 0}, {5, 0, 0}};
+  options.pixel_mm = 0.001;
+  try {
+    curved_sheet(options);
+    FAIL() << "was made";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "a picture of 60 mm takes more than 8192 pixels of 0.001 mm: choose larger pixels");
+  }
+}
+
+TEST(CurvedSheet, PointsWhoseDistanceOverflowsAreRefused) {
+  CurveOptions options;
+  options.points_mm = {{0, 0, 0}, {1e308, 0, 0}};
+  options.height_mm = 10;
+  EXPECT_THROW(curved_sheet(options), std::invalid_argument);
+}
+
 TEST(SheetSamples, OfAScanAndOfItsGreyOctreeAreTheSame) {
   const Scene scene = tests::linear_scene(axis_aligned_lattice({32, 32, 32}, {1, 1, 1}, {-15, -16, -17}));
   const Universe universe{5, scene.lattice.lps_from_voxel};
