@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "planner/table/number_format.h"
+
 namespace octotomy::planner::python {
 namespace {
 
@@ -46,6 +48,13 @@ std::vector<glm::dvec3> points_3d_of(const Numbers& numbers, const char* what) {
   return points;
 }
 
+double number_from(double number, double low, double high, const char* what) {
+  if (number >= low && number <= high) return number;
+  if (std::isnan(number)) throw std::invalid_argument(std::string(what) + " is not a number");
+  throw std::invalid_argument(std::string(what) + " is " + plain(number) + ": give " + plain(low) + " to " +
+                              plain(high));
+}
+
 glm::dmat4 matrix_of(const Numbers& numbers, const char* what) {
   check_shape(numbers, what, 4, 4);
   glm::dmat4 matrix(0.0);
@@ -54,6 +63,13 @@ glm::dmat4 matrix_of(const Numbers& numbers, const char* what) {
   if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0)
     throw std::invalid_argument(std::string(what) + " must end in the row 0, 0, 0, 1");
   return matrix;
+}
+
+py::str text_of(const std::string& bytes) {
+  PyObject* const text =
+      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "backslashreplace");
+  if (text == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(text);
 }
 
 py::array array_of(const glm::dvec3& vector) {
@@ -66,7 +82,9 @@ py::array array_of(const glm::dmat4& matrix) {
 }
 
 py::object python_of(const nlohmann::ordered_json& json) {
-  return py::module_::import("json").attr("loads")(json.dump());
+  // The names of files may be no UTF-8.
+  constexpr auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  return py::module_::import("json").attr("loads")(json.dump(-1, ' ', false, replace));
 }
 
 }  // namespace octotomy::planner::python

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <string>
 #include <vector>
 
 namespace octotomy::planner::python {
@@ -22,12 +23,18 @@ py::array shown(const Number* first, std::vector<py::ssize_t> shape, py::handle 
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Each throws std::invalid_argument naming `what` where the shape is another one or a number is not finite.
+/// Each throws std::invalid_argument naming `what` where the shape is another one or a number is not finite,
+/// or not in its range.
 glm::dvec3 vector_of(const Numbers& numbers, const char* what);
 std::vector<glm::dvec2> points_2d_of(const Numbers& numbers, const char* what);
 std::vector<glm::dvec3> points_3d_of(const Numbers& numbers, const char* what);
+/// `number` itself, which must lie from `low` to `high`; either may be infinite.
+double number_from(double number, double low, double high, const char* what);
 /// Row by row, as NumPy and nibabel have it.
 glm::dmat4 matrix_of(const Numbers& numbers, const char* what);
+
+/// Names of files may be any bytes: those that are no UTF-8 become \xff and the like.
+py::str text_of(const std::string& bytes);
 
 py::array array_of(const glm::dvec3& vector);
 py::array array_of(const glm::dmat4& matrix);

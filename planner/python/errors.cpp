@@ -4,13 +4,12 @@
 #include <string>
 
 #include "brep/mesh/error.h"
+#include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::python {
 namespace {
-
-namespace py = pybind11;
 
 /// By the codes' order: Input, Geometry, Cancelled, Resource. Never freed: they live as long as Python does.
 std::array<PyObject*, 4> of_code{};
@@ -25,7 +24,7 @@ PyObject* new_error(py::module_& module, const char* name, const char* says, con
 
 template <typename Code>
 void raise(Code code, const char* message) {
-  PyErr_SetString(of_code.at(static_cast<std::size_t>(code)), message);
+  PyErr_SetObject(of_code.at(static_cast<std::size_t>(code)), text_of(message).ptr());
 }
 
 void translate(std::exception_ptr thrown) {
@@ -37,6 +36,8 @@ void translate(std::exception_ptr thrown) {
     raise(error.code(), error.what());
   } catch (const brep::Error& error) {
     raise(error.code(), error.what());
+  } catch (const std::invalid_argument& error) {
+    PyErr_SetObject(PyExc_ValueError, text_of(error.what()).ptr());
   } catch (const std::runtime_error& error) {  // the planner's refusals
     raise(voxel::ErrorCode::Input, error.what());
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Triangles and solids as arrays.
+#include <cmath>
 #include <memory>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -14,6 +15,7 @@
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"
+#include "planner/table/number_format.h"
 #include "voxel/space/scene.h"
 
 namespace octotomy::planner::python {
@@ -22,21 +24,26 @@ namespace {
 using brep::Solid;
 using brep::Triangles;
 using SharedTriangles = std::shared_ptr<Triangles>;
-using Faces = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-SharedTriangles triangles_of_arrays(const Numbers& vertices_mm, const Faces& faces) {
+/// Doubles still part points by a ten-millionth of a millimetre at this distance.
+constexpr double farthest_mm = 1e9;
+
+SharedTriangles triangles_of_arrays(const Numbers& vertices_mm, const Numbers& faces) {
   auto triangles = std::make_shared<Triangles>();
   triangles->points_mm = points_3d_of(vertices_mm, "vertices_mm");
   if (faces.ndim() != 2 || faces.shape(1) != 3)
     throw std::invalid_argument("triangles must be an array of the shape (n, 3)");
-  const auto count = static_cast<std::int64_t>(triangles->points_mm.size());
+  const auto count = static_cast<double>(triangles->points_mm.size());
   triangles->faces.resize(static_cast<std::size_t>(faces.shape(0)));
   for (py::ssize_t i = 0; i < faces.shape(0); ++i)
     for (py::ssize_t corner = 0; corner < 3; ++corner) {
-      const std::int64_t point = faces.at(i, corner);
-      if (point < 0 || point >= count)
-        throw std::invalid_argument("triangle " + std::to_string(i) + " refers to vertex " +
-                                    std::to_string(point) + ", and there are " + std::to_string(count));
+      const double point = faces.at(i, corner);
+      if (point != std::trunc(point))
+        throw std::invalid_argument("triangle " + std::to_string(i) + " refers to vertex " + plain(point) +
+                                    ": give whole numbers");
+      if (!(point >= 0.0 && point < count))
+        throw std::invalid_argument("triangle " + std::to_string(i) + " refers to vertex " + plain(point) +
+                                    ", and there are " + plain(count));
       triangles->faces[static_cast<std::size_t>(i)][static_cast<std::size_t>(corner)] =
           static_cast<std::uint32_t>(point);
     }
@@ -57,6 +64,13 @@ SharedTriangles isosurface(const voxel::Scene& scan, double low, double high) {
   return without_lock([&](const std::stop_token& stop) {
     return std::make_shared<Triangles>(convert::isosurface(scan, low, high, {stop, {}}));
   });
+}
+
+Solid moved(const Solid& solid, const Numbers& moved_from_still) {
+  const glm::dmat4 motion = matrix_of(moved_from_still, "moved_from_still");
+  for (int axis = 0; axis < 3; ++axis)
+    number_from(motion[3][axis], -farthest_mm, farthest_mm, "the translation of moved_from_still, in mm,");
+  return brep::moved(solid, motion);
 }
 
 Solid combined(const Solid& a, brep::Operation operation, const Solid& b) {
@@ -118,12 +132,8 @@ void add_meshes(py::module_& module) {
       .def("__or__", [](const Solid& a, const Solid& b) { return combined(a, brep::Operation::Union, b); })
       .def("__sub__",
            [](const Solid& a, const Solid& b) { return combined(a, brep::Operation::Difference, b); })
-      .def(
-          "moved",
-          [](const Solid& solid, const Numbers& moved_from_still) {
-            return brep::moved(solid, matrix_of(moved_from_still, "moved_from_still"));
-          },
-          py::arg("moved_from_still"), "The solid under a rigid motion of LPS mm.")
+      .def("moved", &moved, py::arg("moved_from_still"),
+           "The solid under a rigid motion of LPS mm; its translation has at most 1e9 mm along each axis.")
       .def(
           "measures",
           [](const Solid& solid) {

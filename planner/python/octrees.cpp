@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Octrees, and expressions of them under Python's operators.
+#include <limits>
 #include <pybind11/operators.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -151,7 +152,9 @@ void add_octrees(py::module_& module) {
   module.def(
       "window",
       [](const voxel::GreyOctree& grey, double low, double high) {
-        return Expression(voxel::Window{grey, low, high});
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        return Expression(voxel::Window{grey, number_from(low, -infinite, infinite, "low"),
+                                        number_from(high, -infinite, infinite, "high")});
       },
       py::arg("grey"), py::arg("low"), py::arg("high") = 32767.0,
       "The samples from low to high, both included.");

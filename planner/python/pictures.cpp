@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Pictures as arrays.
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <pybind11/stl.h>
 
@@ -14,13 +16,19 @@ namespace {
 using voxel::Picture;
 using SharedPicture = std::shared_ptr<Picture>;
 
+/// As large as the program's pictures may be.
+constexpr int most_px = 8192;
+
 voxel::DrawnObject drawn(const voxel::Octree& octree, const std::optional<voxel::GreyOctree>& grey,
                          double threshold, const std::optional<std::array<float, 3>>& colour, float opacity) {
   voxel::DrawnObject object{"", octree};
   object.grey = grey;
-  object.threshold = threshold;
-  if (colour) object.colour = {(*colour)[0], (*colour)[1], (*colour)[2]};
-  object.opacity = opacity;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  object.threshold = number_from(threshold, -infinite, infinite, "threshold");
+  for (int channel = 0; colour && channel < 3; ++channel)
+    object.colour[channel] = static_cast<float>(
+        number_from((*colour)[static_cast<std::size_t>(channel)], 0.0, 1.0, "a part of colour"));
+  object.opacity = static_cast<float>(number_from(opacity, 0.0, 1.0, "opacity"));
   return object;
 }
 
@@ -28,6 +36,8 @@ SharedPicture render(const std::vector<voxel::DrawnObject>& objects, const std::
                      std::pair<int, int> size_px, const std::optional<double>& width_mm) {
   voxel::RenderOptions options;
   options.view = voxel::parse_view(view);
+  for (const int side_px : {size_px.first, size_px.second})
+    number_from(side_px, 1.0, most_px, "a side of size_px");
   options.size_px = {size_px.first, size_px.second};
   options.width_mm = width_mm;
   const bool all_grey = std::all_of(objects.begin(), objects.end(),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Scans as arrays.
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <pybind11/operators.h>
@@ -56,6 +57,9 @@ std::shared_ptr<Scene> scene_of(const py::array& array, const Numbers& lps_from_
   if (known == std::end(meanings))
     throw std::invalid_argument("meaning must be 'HU', 'raw' or 'label', not '" + meaning + "'");
   scene->meaning = known->second;
+  if (std::any_of(modality.begin(), modality.end(),
+                  [](unsigned char symbol) { return symbol < ' ' || symbol == 0x7f; }))
+    throw std::invalid_argument("modality must have no control characters: give DICOM's two letters");
   scene->modality = modality;
   scene->source = "an array";
   voxel::check(*scene);
@@ -116,7 +120,7 @@ void add_scans(py::module_& module) {
       .def_property_readonly("meaning", &meaning_of)
       .def_property_readonly("unit", [](const Scene& scene) { return voxel::unit(scene); })
       .def_readonly("modality", &Scene::modality)
-      .def_readonly("source", &Scene::source)
+      .def_property_readonly("source", [](const Scene& scene) { return text_of(scene.source); })
       .def_property_readonly("audit", [](const Scene& scene) { return python_of(to_json(scene.audit)); })
       .def(
           "universe",

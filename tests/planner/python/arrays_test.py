@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Scans, octrees, meshes and pictures as arrays."""
+import os
 import tempfile
 import unittest
 from pathlib import Path
@@ -54,6 +55,20 @@ class Scans(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "not finite"):
             octotomy.Scan(noise(), np.full((4, 4), np.nan))
 
+    def test_a_modality_is_of_letters(self):
+        self.assertEqual(octotomy.Scan(noise(), LATTICE, modality="MR").modality, "MR")
+        for modality in ("M\nR", "CT\x1b[31m", "\0", "\x7f"):
+            with self.assertRaisesRegex(ValueError, "modality"):
+                octotomy.Scan(noise(), LATTICE, modality=modality)
+
+    def test_names_of_files_may_be_any_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            name = os.fsdecode(os.fsencode(folder) + b"/x\xff.nrrd")
+            with self.assertRaisesRegex(octotomy.InputError, r"x\\xff\.nrrd: no such file"):
+                octotomy.read_scan(name)
+            octotomy.Scan(noise(), LATTICE).write(name)
+            self.assertTrue(octotomy.read_scan(name).source.endswith(r"/x\xff.nrrd"))
+
     @unittest.skipIf(nibabel is None, "nibabel is not installed")
     def test_nibabel_sees_the_same_places(self):
         scan = octotomy.Scan(noise(), LATTICE)
@@ -98,6 +113,10 @@ class Octrees(unittest.TestCase):
         grey = octotomy.Scan(samples, np.eye(4)).grey(self.universe)
         skull = octotomy.window(grey, 300, 900).octree(self.universe)
         np.testing.assert_array_equal(skull.voxels(), (samples >= 300) & (samples <= 900))
+        for low, high in ((np.nan, 900), (300, np.nan)):
+            with self.assertRaisesRegex(ValueError, "not a number"):
+                octotomy.window(grey, low, high)
+        self.assertEqual(octotomy.window(grey, -np.inf, np.inf).octree(self.universe).voxels().sum(), samples.size)
 
     def test_a_sphere_has_its_volume(self):
         ball = octotomy.sphere([16.3, 16.2, 15.9], 12).octree(self.universe)
@@ -123,6 +142,24 @@ class Meshes(unittest.TestCase):
         self.assertAlmostEqual((solid - half).volume_mm3, 36 - 36 / 8)
         points = solid.vertices_mm
         self.assertEqual(points.__array_interface__["data"][0], solid.vertices_mm.__array_interface__["data"][0])
+
+    def test_triangles_refer_to_vertices_by_whole_numbers(self):
+        vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+        np.testing.assert_array_equal(octotomy.Mesh(vertices, [[0.0, 1.0, 2.0]]).triangles, [[0, 1, 2]])
+        for wrong in (0.5, -0.5, np.nan):
+            with self.assertRaisesRegex(ValueError, "give whole numbers"):
+                octotomy.Mesh(vertices, [[0, 1, 2], [0, 1, wrong]])
+        for wrong in (-1, 3, 1e300, np.inf, 2**32):
+            with self.assertRaisesRegex(ValueError, "triangle 1 refers to vertex .*, and there are 3"):
+                octotomy.Mesh(vertices, [[0, 1, 2], [0, 1, wrong]])
+
+    def test_a_solid_is_moved_no_farther_than_its_points_stay_apart(self):
+        solid = octotomy.Mesh([[0, 0, 0], [6, 0, 0], [0, 6, 0], [0, 0, 6]],
+                              [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).solid()
+        self.assertAlmostEqual(solid.moved(octotomy.motion(translate_mm=[1e9, 0, -1e9])).volume_mm3, 36, places=3)
+        for far in ([1e18, 0, 0], [0, 0, -2e9]):
+            with self.assertRaisesRegex(ValueError, "the translation of moved_from_still, in mm, is"):
+                solid.moved(octotomy.motion(translate_mm=far))
 
     def test_arrays_outlive_their_solid(self):
         ball = np.where(sum(x**2 for x in np.mgrid[-9:10, -9:10, -9:10]) <= 64, 1000, -1000).astype(np.int16)
@@ -152,6 +189,26 @@ class Pictures(unittest.TestCase):
         self.assertEqual(picture.object[40, 60], 0)
         self.assertEqual(picture.object[0, 0], -1)
         self.assertIsNone(picture.point_mm(0, 0))
+
+    def test_colours_and_opacity_are_from_0_to_1(self):
+        universe = octotomy.Universe(3, np.eye(4))
+        ball = octotomy.sphere([4, 4, 4], 3).octree(universe)
+        for part in (-1, -1e-6, 1.001, 9, 1e30, np.inf, -np.inf, np.nan):
+            for colour in ((part, 0, 0), (0, part, 0), (0, 0, part)):
+                with self.assertRaisesRegex(ValueError, "a part of colour is"):
+                    octotomy.Drawn(ball, colour=colour)
+            with self.assertRaisesRegex(ValueError, "opacity is"):
+                octotomy.Drawn(ball, opacity=part)
+        with self.assertRaisesRegex(ValueError, "threshold is not a number"):
+            octotomy.Drawn(ball, threshold=np.nan)
+        black, white = (octotomy.render([octotomy.Drawn(ball, colour=[part] * 3)]).rgb.min() for part in (0, 1))
+        self.assertLess(black, white)
+
+    def test_a_picture_is_no_larger_than_the_programs(self):
+        ball = octotomy.sphere([4, 4, 4], 3).octree(octotomy.Universe(3, np.eye(4)))
+        for size_px in ((0, 5), (5, -1), (8193, 5), (2**31 - 1, 2**31 - 1)):
+            with self.assertRaisesRegex(ValueError, "a side of size_px is .*: give 1 to 8192"):
+                octotomy.render([octotomy.Drawn(ball)], size_px=size_px)
 
 
 if __name__ == "__main__":
