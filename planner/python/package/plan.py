@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -54,7 +55,9 @@ class Plan(Operations):
         return Name(id)
 
     def __str__(self) -> str:
-        return json.dumps(self.document, indent=2, ensure_ascii=False)
+        for where in _places_not_finite(self.document):
+            raise _kernel.InputError(f"{where}: must be a finite number")
+        return json.dumps(self.document, indent=2, ensure_ascii=False, allow_nan=False)
 
     def write(self, path: PathLike) -> None:
         """Writes the plan, beside and renamed into place, so that an older file is whole until then."""
@@ -131,6 +134,19 @@ class Result(Mapping[str, Made]):
     def write(self, folder: PathLike) -> dict[str, Any]:
         """Writes result.json, report.html, pictures and exports as `octotomy run` does; returns result.json."""
         return self._evaluation.write(Path(folder))
+
+
+def _places_not_finite(value: Any, where: str = "") -> Iterator[str]:
+    """Where JSON cannot have a number: "step 'cut', rotate, degrees"."""
+    if isinstance(value, float) and not math.isfinite(value):
+        yield where
+    elif isinstance(value, Mapping):
+        for key, each in value.items():
+            yield from _places_not_finite(each, f"{where}, {key}" if where else str(key))
+    elif isinstance(value, Sequence) and not isinstance(value, str):
+        for each in value:
+            is_step = where == "steps" and isinstance(each, Mapping) and "id" in each
+            yield from _places_not_finite(each, f"step '{each['id']}'" if is_step else where)
 
 
 def _plain(value: Any) -> Any:

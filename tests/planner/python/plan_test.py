@@ -136,6 +136,23 @@ class Plans(unittest.TestCase):
         with self.assertRaises(TypeError):
             plan.window("other", scan="ct", low=300, colour="red")
 
+    def test_a_number_that_is_not_finite_is_refused_by_its_step_and_key(self):
+        for value in (np.nan, float("inf"), -np.inf):
+            plan = octotomy.Plan({"ct": self.head})
+            plan.window("skull", scan="ct", low=300)
+            plan.move("moved", object="skull", translate_mm=[0, 0, 1], rotate={"degrees": value, "axis": [1, 0, 0]})
+            with self.assertRaisesRegex(octotomy.InputError, "^step 'moved', rotate, degrees: must be a finite"):
+                plan.run()
+            with self.assertRaisesRegex(octotomy.InputError, "step 'moved'"):
+                plan.write(self.folder / "infinite.plan.json")
+            self.assertFalse((self.folder / "infinite.plan.json").exists())
+        plan = octotomy.Plan({"ct": self.head})
+        plan.move("moved", object="skull", translate_mm=np.array([0, np.nan, 1]))
+        with self.assertRaisesRegex(octotomy.InputError, "^step 'moved', translate_mm: must be"):
+            str(plan)
+        with self.assertRaisesRegex(octotomy.InputError, "^universe, voxel_mm: must be"):
+            str(octotomy.Plan({"ct": self.head}, voxel_mm=np.inf))
+
     def test_progress_is_told_and_its_error_comes_through(self):
         told = []
         le_fort_i(self.head, 4.0).run(certify=False, progress=lambda doing, fraction: told.append((doing, fraction)))
