@@ -63,6 +63,22 @@ void need_landmarks_within(const Json& plan, const std::filesystem::path& folder
       folders.need_within(folder / step["file"].get<std::string>());
 }
 
+/// Refuses names that are new and that no list could show; those of the plan stay as they are.
+void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vector<NamedPoint>& known) {
+  constexpr std::size_t longest_name = 200;  // in bytes, as of a branch
+  for (const NamedPoint& landmark : landmarks) {
+    const std::string& name = landmark.name;
+    if (std::any_of(known.begin(), known.end(), [&](const NamedPoint& old) { return old.name == name; }))
+      continue;
+    if (name.size() > longest_name)
+      throw std::runtime_error("a landmark's name has " + std::to_string(longest_name) +
+                               " bytes at most, not " + std::to_string(name.size()));
+    if (std::any_of(name.begin(), name.end(),
+                    [](unsigned char symbol) { return symbol < ' ' || symbol == 0x7f; }))
+      throw std::runtime_error("the landmark '" + name + "' needs a name without control characters");
+  }
+}
+
 }  // namespace
 
 Document::Document(const std::filesystem::path& path, const Folders& folders)
@@ -114,7 +130,7 @@ void Document::place_landmark(const std::string& name, const Json& point_mm) {
 }
 
 void Document::record(const Json& json, const std::string& what) {
-  parsed(json);
+  need_short_names(parsed(json).landmarks, plan_->landmarks);
   history_->record(json_text(json, 2) + "\n", what);
   read_again();
 }

@@ -10,12 +10,17 @@ namespace octotomy::planner::serve {
 
 glm::ivec2 size_px_of(const Json& said) {
   const auto size = said.find("size");
-  const bool fits = size != said.end() && size->is_array() && size->size() == 2 &&
-                    (*size)[0].is_number_integer() && (*size)[1].is_number_integer();
-  const glm::ivec2 size_px =
-      fits ? glm::ivec2((*size)[0].get<std::int64_t>(), (*size)[1].get<std::int64_t>()) : glm::ivec2(0);
-  if (size_px.x < 1 || size_px.y < 1 || size_px.x > most_pane_px || size_px.y > most_pane_px)
-    throw std::runtime_error("size: must be [width, height] of 1 to 4096 pixels");
+  bool fits = size != said.end() && size->is_array() && size->size() == 2;
+  glm::ivec2 size_px(0);
+  for (int axis = 0; fits && axis < 2; ++axis) {
+    const Json& side = (*size)[static_cast<std::size_t>(axis)];
+    // As a double: no integer of JSON leaves its range.
+    fits = side.is_number_integer() && side.get<double>() >= 1.0 && side.get<double>() <= most_pane_px;
+    if (fits) size_px[axis] = side.get<int>();
+  }
+  if (!fits)
+    throw std::runtime_error("size: must be [width, height] of 1 to " + std::to_string(most_pane_px) +
+                             " pixels");
   return size_px;
 }
 

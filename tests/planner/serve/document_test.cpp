@@ -96,6 +96,37 @@ TEST_F(DocumentTest, LandmarksStandBeforeTheStepsThatUseThem) {
   EXPECT_EQ(document_->plan()->landmarks[0].p_mm, glm::dvec3(1, -80, 10));
 }
 
+TEST_F(DocumentTest, NewLandmarksHaveNamesThatAListCanShow) {
+  const std::string longest(200, 'n');
+  document_->place_landmark(longest, {0, -80, 10});
+  const auto step = [](const std::string& name) -> Json {
+    return {
+        {"id", "landmarks"}, {"do", "landmarks"}, {"points", {{{"name", name}, {"point_mm", {1, 2, 3}}}}}};
+  };
+  const std::string before = document_->plan()->text;
+  for (const std::string& wrong : {longest + "n", std::string("a\nb"), std::string("\x1b[31m")}) {
+    EXPECT_THROW(document_->place_landmark(wrong, {0, 0, 0}), std::runtime_error) << wrong;
+    EXPECT_THROW(document_->edit({{"landmarks", {{{"name", wrong}, {"point", {0, 0, 0}}}}}}),
+                 std::runtime_error)
+        << wrong;
+    EXPECT_THROW(document_->edit({{"replace", {{"id", "landmarks"}, {"step", step(wrong)}}}}),
+                 std::runtime_error)
+        << wrong;
+  }
+  EXPECT_EQ(document_->plan()->text, before);
+}
+
+TEST_F(DocumentTest, ALongNameThatThePlanHasAlreadyStays) {
+  const std::string name(300, 'n');
+  std::ofstream(folder_ / "b.plan.json") << R"({"octotomy_plan": 1, "name": "b",
+    "scans": {"ct": {"path": "a.nrrd"}}, "steps": [{"id": "landmarks", "do": "landmarks", "points":
+    [{"name": ")" << name << R"(", "point_mm": [1, 2, 3]}]}]})";
+  document_ = std::make_unique<Document>(folder_ / "b.plan.json", folders_);
+  document_->edit({{"add", {{"step", skin_}}}});
+  document_->place_landmark(name, {3, 2, 1});
+  EXPECT_EQ(document_->plan()->landmarks.at(0).p_mm, glm::dvec3(3, 2, 1));
+}
+
 TEST_F(DocumentTest, AnotherDocumentOfTheSameFileGoesOn) {
   document_->edit({{"add", {{"step", skin_}}}});
   document_.reset();
