@@ -210,7 +210,7 @@ Json export_file(Desk& desk, const Json& said, const Watched& watched) {
   const fs::path folder = files_folder(desk);
   const fs::path asked =
       need_plain_name(said.contains("path") ? said["path"].get<std::string>() : object + "." + kind);
-  const fs::path path = unused(folder / asked);
+  const fs::path path = desk.folders.need_within(unused_export(folder / asked));
   const Json step{
       {"id", asked_step}, {"do", "export"}, {"object", object}, {"path", path.filename().string()}};
   Plan plan =
@@ -234,7 +234,7 @@ Json export_file(Desk& desk, const Json& said, const Watched& watched) {
 }
 
 Json report(Desk& desk, const Json&, const Watched& watched) {
-  const fs::path folder = unused(files_folder(desk) / "report");
+  const fs::path folder = desk.folders.need_within(unused(files_folder(desk) / "report"));
   Result result;
   result.plan = desk.with_document([](const Document& document) { return *document.plan(); });
   fs::create_directories(folder.parent_path());

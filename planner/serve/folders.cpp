@@ -2,7 +2,10 @@
 #include "planner/serve/folders.h"
 
 #include <algorithm>
+#include <optional>
 
+#include "convert/deck/deck.h"
+#include "voxel/scan/write_scene.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner::serve {
@@ -15,11 +18,61 @@ bool holds(const fs::path& folder, const fs::path& path) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
+/// The path that a write reaches: links are followed, also those to nothing, which fs::weakly_canonical()
+/// leaves as they are. None where links lead in a circle.
+std::optional<fs::path> reached(fs::path path) {
+  constexpr int most_links = 40;  // as Linux follows
+  for (int links = 0; links <= most_links; ++links) {
+    std::error_code failed, absent;
+    path = fs::weakly_canonical(path, failed);
+    if (failed) return {};
+    fs::path followed;
+    bool has_link = false;
+    for (const fs::path& part : path) {
+      followed /= part;
+      if (has_link || !fs::is_symlink(fs::symlink_status(followed, absent))) continue;
+      has_link = true;
+      followed = followed.parent_path() / fs::read_symlink(followed, failed);
+      if (failed) return {};
+    }
+    if (!has_link) return path;
+    path = followed;
+  }
+  return {};
+}
+
+bool is_taken(const fs::path& path) {
+  return fs::exists(fs::symlink_status(path));
+}
+
+/// Whether an export would replace neither a file of its name nor one that is written beside it.
+bool is_free_for_export(const fs::path& path) {
+  if (is_taken(path)) return false;
+  try {
+    if (convert::is_deck(path)) convert::need_own_deck_files(path);
+    voxel::need_own_data_file(path);
+  } catch (const voxel::Error&) {
+    return false;
+  }
+  return true;
+}
+
 /// The endings of a file's name that say its kind.
 std::string endings_of(const std::string& name) {
   for (const char* both : {".plan.json", ".nii.gz"})
     if (name.ends_with(both)) return both;
   return fs::path(name).extension();
+}
+
+/// The path, or the first of NAME-2.EXT, NAME-3.EXT, ... that passes a test.
+template <typename Test>
+fs::path first_free(const fs::path& path, const Test& is_free) {
+  const std::string name = path.filename(), endings = endings_of(name);
+  fs::path tried = path;
+  for (int number = 2; !is_free(tried); ++number)
+    tried = path.parent_path() /
+            (name.substr(0, name.size() - endings.size()) + "-" + std::to_string(number) + endings);
+  return tried;
 }
 
 }  // namespace
@@ -41,12 +94,11 @@ std::vector<fs::path> Folders::opened() const {
 fs::path Folders::need_within(const fs::path& path) const {
   const std::lock_guard lock(mutex_);
   if (path.native().find('\0') == std::string::npos && path.native().size() < 4096 && !opened_.empty()) {
-    std::error_code failed;
-    const fs::path real = fs::weakly_canonical(opened_.front() / path, failed);
+    const std::optional<fs::path> real = reached(opened_.front() / path);
     for (const fs::path& folder : opened_)
-      if (!failed && holds(folder, real)) return real;
+      if (real && holds(folder, *real)) return *real;
   }
-  std::string shown = path.string().substr(0, 200);
+  std::string shown = path.string();
   std::erase(shown, '\0');
   throw voxel::Error(
       voxel::ErrorCode::Input,
@@ -64,17 +116,16 @@ fs::path need_plain_name(const std::string& name) {
                         });
   if (!is_plain)
     throw voxel::Error(voxel::ErrorCode::Input,
-                       "'" + name.substr(0, 100) + "' is no plain file name, as head.nrrd or series/1.dcm");
+                       "'" + name + "' is no plain file name, as head.nrrd or series/1.dcm");
   return path;
 }
 
 fs::path unused(const fs::path& path) {
-  const std::string name = path.filename(), endings = endings_of(name);
-  fs::path tried = path;
-  for (int number = 2; fs::exists(fs::symlink_status(tried)); ++number)
-    tried = path.parent_path() /
-            (name.substr(0, name.size() - endings.size()) + "-" + std::to_string(number) + endings);
-  return tried;
+  return first_free(path, [](const fs::path& tried) { return !is_taken(tried); });
+}
+
+fs::path unused_export(const fs::path& path) {
+  return first_free(path, is_free_for_export);
 }
 
 std::string plain_stem(const fs::path& path) {

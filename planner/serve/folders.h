@@ -7,8 +7,8 @@
 
 namespace octotomy::planner::serve {
 
-/// The folders that a page may name paths in. Links are followed before a path is judged. All members may be
-/// called from any thread.
+/// The folders that a page may name paths in. Links are followed before a path is judged, those to nothing
+/// yet too: a file that is written there would lie behind them. All members may be called from any thread.
 class Folders {
  public:
   /// Opens a folder, or the folder of a file. A folder within an open one is open already.
@@ -16,7 +16,7 @@ class Folders {
   std::vector<std::filesystem::path> opened() const;
 
   /// The path without links, made absolute against the first folder. Throws voxel::Error, Input, where it is
-  /// in none of the folders.
+  /// in none of the folders, or its links lead in a circle.
   std::filesystem::path need_within(const std::filesystem::path& path) const;
 
  private:
@@ -30,6 +30,8 @@ std::filesystem::path need_plain_name(const std::string& name);
 
 /// The path, or the first of NAME-2.EXT, NAME-3.EXT, ... that is not there; ".plan.json" is one ending.
 std::filesystem::path unused(const std::filesystem::path& path);
+/// The same of an export: what is written beside it, as the .ele of a .node, replaces nothing either.
+std::filesystem::path unused_export(const std::filesystem::path& path);
 
 /// A file's name without folder and endings as ".nii.gz" and ".plan.json".
 std::string plain_stem(const std::filesystem::path& path);

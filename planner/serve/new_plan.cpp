@@ -51,8 +51,7 @@ fs::path plan_of_scan(const fs::path& scan, const fs::path& folder, const voxel:
   return path;
 }
 
-fs::path phantom_in(const fs::path& folder, const voxel::Progress& progress) {
-  const fs::path path = folder / "head_phantom.nrrd";
+fs::path phantom_at(const fs::path& path, const voxel::Progress& progress) {
   if (!fs::exists(path)) voxel::write_scene(verify::head_phantom({}, progress), path);
   return path;
 }

@@ -14,7 +14,7 @@ namespace octotomy::planner::serve {
 std::filesystem::path plan_of_scan(const std::filesystem::path& scan, const std::filesystem::path& folder,
                                    const voxel::Progress& progress = {});
 
-/// The head phantom as a scan in `folder`: head_phantom.nrrd, which is made once.
-std::filesystem::path phantom_in(const std::filesystem::path& folder, const voxel::Progress& progress = {});
+/// The head phantom as a scan at `path`, where it is made once. Returns the path.
+std::filesystem::path phantom_at(const std::filesystem::path& path, const voxel::Progress& progress = {});
 
 }  // namespace octotomy::planner::serve

@@ -66,7 +66,8 @@ Json open(Desk& desk, const Json& said, const Watched& watched) {
     const voxel::Progress progress{watched.stop, [&](double share) {
                                      if (watched.progress) watched.progress("making the head phantom", share);
                                    }};
-    desk.open(phantom_in(desk.working_folder(), progress), watched);
+    const fs::path place = desk.folders.need_within(desk.working_folder() / "head_phantom.nrrd");
+    desk.open(phantom_at(place, progress), watched);
   } else {
     desk.open(desk.folders.need_within(said.at("path").get<std::string>()), watched);
   }
@@ -239,8 +240,11 @@ const Word& find_word(const std::string& name) {
     if (word.name == name) return word;
     names.push_back(word.name);
   }
-  throw voxel::Error(voxel::ErrorCode::Input, "there is no request '" + name.substr(0, 60) + "'" +
-                                                  suggestion(name.substr(0, 60), names));
+  // Looking for the nearest word takes time by the name's length.
+  constexpr std::size_t longest_typed = 60;
+  throw voxel::Error(
+      voxel::ErrorCode::Input,
+      "there is no request '" + name + "'" + (name.size() <= longest_typed ? suggestion(name, names) : ""));
 }
 
 }  // namespace octotomy::planner::serve

@@ -46,6 +46,19 @@ TEST_F(FoldersTest, NoWayLeadsOut) {
   EXPECT_THROW(Folders().need_within("a"), voxel::Error);
 }
 
+TEST_F(FoldersTest, ALinkToNothingIsJudgedByWhatAWriteWouldMake) {
+  fs::create_symlink(root_ / "shut/new.json", root_ / "open/out");
+  fs::create_symlink("../open/out", root_ / "open/out_twice");
+  fs::create_directory_symlink(root_ / "shut/new", root_ / "open/out_folder");
+  fs::create_symlink("within/new.json", root_ / "open/in");
+  fs::create_symlink("around", root_ / "open/around");
+  for (const char* path : {"out", "out_twice", "out_folder/new.json", "around"})
+    EXPECT_THROW(folders_.need_within(path), voxel::Error) << path;
+  EXPECT_EQ(folders_.need_within("in"), root_ / "open/within/new.json");
+  std::ofstream(folders_.need_within("in")) << "{}";
+  EXPECT_TRUE(fs::exists(root_ / "open/within/new.json"));
+}
+
 TEST_F(FoldersTest, AFileOpensItsFolderAndThatOnce) {
   folders_.open(root_ / "shut/b.nrrd");
   folders_.open(root_ / "open/within");
@@ -61,6 +74,15 @@ TEST_F(FoldersTest, UnusedNamesKeepTheirEndings) {
   EXPECT_EQ(unused(root_ / "open/a.plan.json"), root_ / "open/a-3.plan.json");
   EXPECT_EQ(plain_stem("x/head.nii.gz"), "head");
   EXPECT_EQ(plain_stem("x/series/"), "series");
+}
+
+TEST_F(FoldersTest, AnExportTakesANameWhoseFilesAreAllNew) {
+  std::ofstream(root_ / "open/p.ele") << "other";
+  std::ofstream(root_ / "open/p-2.face") << "other";
+  EXPECT_EQ(unused_export(root_ / "open/p.node"), root_ / "open/p-3.node");
+  EXPECT_EQ(unused_export(root_ / "open/p.stl"), root_ / "open/p.stl") << "a surface has no other file";
+  EXPECT_EQ(unused_export(root_ / "open/a.nrrd"), root_ / "open/a-2.nrrd");
+  EXPECT_EQ(unused(root_ / "open/p.node"), root_ / "open/p.node") << "an upload is one file";
 }
 
 TEST(PlainName, StaysBelowItsFolder) {
