@@ -322,6 +322,7 @@ Message ViewPane::draw(Desk& desk, const Request& request, double most_ms, const
   if (is_ray_picture(drawing.render)) return drawing.along_rays(stop);
   if (const Json colour_by = said.value("colour_by", Json()); colour_by.is_object())
     colour(colour_by, drawing);
+  if (stop.stop_requested()) throw Stopped("stopped before the picture was drawn");
   if (!drawing.is_moving) return drawing.at_rest();
   // A piece that is dragged is moved first; what that takes is left out of drawing.
   return moving(drawing, std::max(0.3 * most_ms, most_ms - ms_since(start)));

@@ -87,6 +87,53 @@ TEST(PaneQueue, AWindowThatHasGoneLeavesNothing) {
   queue.shown({7, 7}, 1);
 }
 
+/// A queue that has given out a request, whose picture is drawn, and its token.
+std::stop_token token_of_drawn(PaneQueue& queue, PaneQueue::Asked request) {
+  queue.ask(std::move(request));
+  return queue.next({})->stop.get_token();
+}
+
+TEST(PaneQueue, ANewerRequestOfThePaneStopsItsPictureAtRest) {
+  PaneQueue queue;
+  std::stop_token drawn = token_of_drawn(queue, asked(1, 0, false));
+  queue.ask(asked(2, 1, false));
+  queue.ask(asked(3, 0, false, 2));
+  EXPECT_FALSE(drawn.stop_requested()) << "they are of another pane and another window";
+  queue.ask(asked(4));
+  EXPECT_TRUE(drawn.stop_requested());
+  while (next_id(queue) != 0) continue;
+  drawn = token_of_drawn(queue, asked(5));
+  queue.ask(asked(6));
+  EXPECT_FALSE(drawn.stop_requested()) << "a drag that asks faster than it is drawn would show nothing";
+  queue.ask(asked(7, 0, false));
+  EXPECT_TRUE(drawn.stop_requested());
+}
+
+TEST(PaneQueue, WhatIsClosedOrCancelledIsStopped) {
+  PaneQueue queue;
+  std::stop_token drawn = token_of_drawn(queue, asked(1, 0, false));
+  EXPECT_FALSE(queue.stop(1, 2));
+  EXPECT_FALSE(queue.stop(2, 1));
+  EXPECT_FALSE(drawn.stop_requested());
+  EXPECT_TRUE(queue.stop(1, 1));
+  EXPECT_TRUE(drawn.stop_requested());
+  drawn = token_of_drawn(queue, asked(2, 0, false));
+  queue.close({1, 1});
+  EXPECT_FALSE(drawn.stop_requested());
+  queue.close({1, 0});
+  EXPECT_TRUE(drawn.stop_requested());
+  drawn = token_of_drawn(queue, asked(3, 0, false));
+  queue.close_window(2);
+  EXPECT_FALSE(drawn.stop_requested());
+  queue.close_window(1);
+  EXPECT_TRUE(drawn.stop_requested());
+  queue.ask(asked(4));
+  EXPECT_FALSE(queue.withdraw(1, 3));
+  EXPECT_EQ(queue.withdraw(1, 4)->request.id, 4);
+  EXPECT_EQ(next_id(queue), 0);
+  EXPECT_FALSE(queue.stop(1, 3)) << "it was drawn before";
+}
+
 TEST(PaneQueue, WaitsForARequest) {
   PaneQueue queue;
   std::int64_t got = 0;
