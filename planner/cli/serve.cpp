@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <unistd.h>
 
 #include "planner/cli/verbs.h"
@@ -31,18 +33,31 @@ void open_browser(const std::string& url) {
   ::_exit(1);
 }
 
-int run(Program& program, ServeText& text) {
-  serve::Desk desk(fs::current_path());
-  for (const fs::path& path : text.paths) desk.folders.open(path);
-  for (const fs::path& path : text.paths) {
-    if (desk.is_open()) throw std::runtime_error("name one plan or scan; others may be folders");
-    const bool is_folder_only = fs::is_directory(path) && text.paths.size() > 1;
-    if (!is_folder_only) desk.open(fs::canonical(path), {program.stop.get_token(), program.progress()});
+/// The plan or scan to begin with. Throws std::runtime_error where two are named.
+std::optional<fs::path> beginning_of(const std::vector<fs::path>& paths) {
+  std::optional<fs::path> beginning;
+  for (const fs::path& path : paths) {
+    if (fs::is_directory(path) && paths.size() > 1) continue;
+    if (beginning) throw std::runtime_error("name one plan or scan; others may be folders");
+    beginning = fs::canonical(path);
   }
-  serve::Service service(desk);
-  if (text.options.address != "127.0.0.1" && text.options.address != "::1")
-    warn("--listen " + text.options.address +
-         ": others on the network reach this server, and read what they send and get: nothing is encrypted");
+  return beginning;
+}
+
+/// Ends the program after the server: every edit is on the disk, and work that is under way is nobody's any
+/// more and may take long to stop.
+[[noreturn]] void end_program(bool is_out_of_time) {
+  while (!has_last_word(Speaker::Verb)) ::pause();
+  voxel::remove_unfinished();
+  if (is_out_of_time) warn("out of time: the server has ended; every edit is in the plan's file");
+  std::_Exit(is_out_of_time ? out_of_resources : done);
+}
+
+int run(Program& program, ServeText& text) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  // All that can be refused comes before a plan is written.
+  const std::optional<fs::path> beginning = beginning_of(text.paths);
   text.options.token = text.token_file.empty() ? serve::new_token() : serve::token_in(text.token_file);
   text.options.ready = [&](const std::string& url) {
     Json json = answer({});
@@ -53,11 +68,19 @@ int run(Program& program, ServeText& text) {
     std::fflush(stdout);
     if (text.open) open_browser(url);
   };
-  serve::serve(service, desk, text.options, program.stop.get_token());
-  // Every edit is on the disk. Work that is under way is nobody's any more, and may take long to stop.
-  while (!has_last_word(Speaker::Verb)) ::pause();
-  voxel::remove_unfinished();
-  std::_Exit(done);
+  serve::Server server(text.options);
+  if (text.options.address != "127.0.0.1" && text.options.address != "::1")
+    warn("--listen " + text.options.address +
+         ": others on the network reach this server, and read what they send and get: nothing is encrypted");
+  serve::Desk desk(fs::current_path());
+  for (const fs::path& path : text.paths) desk.folders.open(path);
+  if (beginning) desk.open(*beginning, {program.stop.get_token(), program.progress()});
+  serve::Service service(desk, line_of);
+  server.run(service, desk, program.stop.get_token());
+  // The watch began to count shortly before or after this verb did.
+  constexpr std::chrono::duration<double> margin{0.1};
+  end_program(program.time_limit_s &&
+              Clock::now() - start + margin >= std::chrono::duration<double>(*program.time_limit_s));
 }
 
 }  // namespace

@@ -135,11 +135,6 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   if (!snapshot_.evaluation) snapshot_ = {document_->plan(), std::move(evaluation), {}, Json::array()};
 }
 
-bool Desk::is_open() const {
-  const std::lock_guard lock(mutex_);
-  return document_ != nullptr;
-}
-
 Document& Desk::need_document() const {
   if (document_ == nullptr)
     throw voxel::Error(voxel::ErrorCode::Input, "no plan is open: open a scan, a plan or the head phantom");

@@ -47,7 +47,6 @@ class Desk {
   const std::filesystem::path& working_folder() const { return working_folder_; }
   /// Opens a plan, or a scan with a plan of its own (new_plan.h), in place of what is open.
   void open(const std::filesystem::path& path, const Watched& watched);
-  bool is_open() const;
 
   /// Does something with the document while nobody else does; returns what it returns. Throws voxel::Error,
   /// Input, where none is open.

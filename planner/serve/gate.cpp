@@ -92,7 +92,7 @@ std::string token_in(const std::filesystem::path& path) {
 
 std::optional<std::string> Gate::refusal_of_host(const Caller& caller) const {
   if (hosts_.empty() || std::find(hosts_.begin(), hosts_.end(), caller.host) != hosts_.end()) return {};
-  return "this server is not called '" + caller.host.substr(0, 100) + "': open the address that it printed";
+  return "this server is not called '" + caller.host + "': open the address that it printed";
 }
 
 std::optional<std::string> Gate::refusal(const Caller& caller) const {

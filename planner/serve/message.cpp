@@ -71,14 +71,14 @@ Message answer_to(std::int64_t id, const Json& ok) {
   return text_of({{"id", id}, {"ok", ok}});
 }
 
-Message refusal_to(std::int64_t id, const std::exception& error) {
+Message refusal_to(std::int64_t id, const std::exception& error, const LineOf& line_of) {
   std::string said = error.what();
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr)
     said = "out of memory: use larger voxels or a smaller scan";
   // The library begins with its own name and a number.
   if (dynamic_cast<const Json::exception*>(&error) != nullptr)
     said = "the request lacks a value or has one of another type: " + said.substr(said.find(']') + 1);
-  return text_of({{"id", id}, {"error", {{"message", said}, {"code", code_of(error)}}}});
+  return text_of({{"id", id}, {"error", {{"message", line_of(said)}, {"code", code_of(error)}}}});
 }
 
 Message event(const std::string& name, const Json& said) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,9 +35,13 @@ Request parse_request(std::string_view text);
 
 /// {"id": ..., "ok": ...}.
 Message answer_to(std::int64_t id, const Json& ok);
-/// {"id": ..., "error": {"message", "code"}}; the code is that of either kernel's error, "resource" where
-/// memory or the disk gave out, and else "input".
-Message refusal_to(std::int64_t id, const std::exception& error);
+/// Makes one line of a text, without control characters and no longer than a page: what a refusal quotes may
+/// be megabytes.
+using LineOf = std::function<std::string(const std::string& text)>;
+
+/// {"id": ..., "error": {"message", "code"}}; the message as `line_of` makes it. The code is that of either
+/// kernel's error, "resource" where memory or the disk gave out, and else "input".
+Message refusal_to(std::int64_t id, const std::exception& error, const LineOf& line_of);
 /// {"event": name, ...}.
 Message event(const std::string& name, const Json& said);
 

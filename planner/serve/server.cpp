@@ -35,6 +35,8 @@ constexpr std::uint32_t most_header_bytes = 16384;
 constexpr std::size_t most_unsent_bytes = std::size_t{64} << 20;
 constexpr std::chrono::seconds patience{30};
 constexpr std::chrono::seconds upload_patience{3600};
+/// Until callers are looked at again where files or memory gave out, which takes a caller that goes.
+constexpr std::chrono::milliseconds want_pause{100};
 
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
@@ -162,7 +164,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     try {
       work();
     } catch (const std::exception& error) {
-      say(http::status::bad_request, "text/plain; charset=utf-8", error.what());
+      refuse(http::status::bad_request, error.what());
     }
   }
 
@@ -171,7 +173,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const Target target = parse_target(std::string_view(request.target().data(), request.target().size()));
     const Caller caller = caller_of(request, target);
     const auto refused = [&](const Refusal& why) {
-      if (why) say(http::status::forbidden, "text/plain; charset=utf-8", *why);
+      if (why) refuse(http::status::forbidden, *why);
       return why.has_value();
     };
     if (target.path == "/upload" && request.method() == http::verb::post) {
@@ -180,14 +182,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     if (request.method() != http::verb::get || parser_->content_length().value_or(0) > 0) {
       if (!refused(context_.gate.refusal(caller)))
-        say(http::status::method_not_allowed, "text/plain; charset=utf-8", "only GET is known here");
+        refuse(http::status::method_not_allowed, "only GET is known here");
       return;
     }
     if (target.path == "/socket") {
       if (refused(context_.gate.refusal_of_action(caller))) return;
       http::request<http::string_body> upgrade(request.base());
       if (!beast::websocket::is_upgrade(upgrade))
-        return say(http::status::bad_request, "text/plain; charset=utf-8", "a WebSocket is expected");
+        return refuse(http::status::bad_request, "a WebSocket is expected");
       return std::make_shared<Socket>(std::move(stream_), context_)->run(upgrade);
     }
     if (target.path.starts_with("/file/")) {
@@ -200,7 +202,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       return;
     for (const PageFile& file : page_files())
       if (file.path == path) return say(http::status::ok, std::string(file.type), std::string(file.bytes));
-    say(http::status::not_found, "text/plain; charset=utf-8", "there is no such file");
+    refuse(http::status::not_found, "there is no such file");
   }
 
   template <typename Body>
@@ -233,6 +235,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
     write(response);
   }
 
+  void refuse(http::status status, const std::string& why) {
+    say(status, "text/plain; charset=utf-8", context_.service.line_of()(why));
+  }
+
   void send_file(const std::string& name) {
     const fs::path folder = files_folder(context_.desk);
     const fs::path path = context_.desk.folders.need_within(folder / need_plain_name(name));
@@ -240,7 +246,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     beast::error_code failed;
     if (fs::is_regular_file(path)) response->body().open(path.c_str(), beast::file_mode::scan, failed);
     if (failed || !response->body().is_open())
-      return say(http::status::not_found, "text/plain; charset=utf-8", "there is no such file");
+      return refuse(http::status::not_found, "there is no such file");
     const std::string ending = path.extension();
     const bool is_shown = ending == ".html" || ending == ".png" || ending == ".json";
     if (!is_shown) response->set(http::field::content_disposition, "attachment");
@@ -258,7 +264,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const auto named = target.query.find("name");
     const fs::path name = need_plain_name(named == target.query.end() ? "" : named->second);
     const fs::path folder = context_.desk.working_folder() / "uploads";
-    const fs::path place = name.has_parent_path() ? folder / name : unused(folder / name);
+    const fs::path place =
+        context_.desk.folders.need_within(name.has_parent_path() ? folder / name : unused(folder / name));
     fs::create_directories(place.parent_path());
     const fs::path part = unused(place.parent_path() / ("." + place.filename().string() + ".part"));
     upload_.emplace(std::move(*parser_));
@@ -290,12 +297,26 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<http::request_parser<http::file_body>> upload_;
 };
 
+/// Whether a caller could not be taken for want of what another's end gives back.
+bool is_want(const beast::error_code& failed) {
+  namespace errc = boost::system::errc;
+  return failed == errc::too_many_files_open || failed == errc::too_many_files_open_in_system ||
+         failed == errc::no_buffer_space || failed == errc::not_enough_memory;
+}
+
 /// Each connection has a strand: a message that another thread posts must not pass one that the connection's
 /// own handler posted before, and without a strand asio keeps the handler's back until it has ended.
 void accept(Tcp::acceptor& acceptor, Context& context) {
   const net::any_io_executor strand = net::make_strand(acceptor.get_executor());
   acceptor.async_accept(strand, [&](beast::error_code failed, Tcp::socket socket) {
     if (failed == net::error::operation_aborted) return;
+    if (is_want(failed)) {
+      const auto timer = std::make_shared<net::steady_timer>(acceptor.get_executor(), want_pause);
+      timer->async_wait([timer, &acceptor, &context](beast::error_code over) {
+        if (!over) accept(acceptor, context);
+      });
+      return;
+    }
     if (!failed) {
       beast::error_code ignored;
       socket.set_option(Tcp::no_delay(true), ignored);
@@ -307,33 +328,47 @@ void accept(Tcp::acceptor& acceptor, Context& context) {
 
 }  // namespace
 
-void serve(Service& service, Desk& desk, const ServerOptions& options, const std::stop_token& stop) {
-  net::io_context io(1);
+struct Server::Port {
+  net::io_context io{1};
+  Tcp::acceptor acceptor{io};
+};
+
+Server::Server(ServerOptions options) : options_(std::move(options)), port_(std::make_unique<Port>()) {
   beast::error_code failed;
-  const auto address = net::ip::make_address(options.address, failed);
-  if (failed) throw std::runtime_error("--listen: '" + options.address + "' is no address of an interface");
-  Tcp::acceptor acceptor(io);
+  const auto address = net::ip::make_address(options_.address, failed);
+  if (failed) throw std::runtime_error("--listen: '" + options_.address + "' is no address of an interface");
+  Tcp::acceptor& acceptor = port_->acceptor;
   try {
-    const Tcp::endpoint endpoint(address, static_cast<unsigned short>(options.port));
+    const Tcp::endpoint endpoint(address, static_cast<unsigned short>(options_.port));
     acceptor.open(endpoint.protocol());
     acceptor.set_option(net::socket_base::reuse_address(true));
     acceptor.bind(endpoint);
     acceptor.listen();
   } catch (const boost::system::system_error& error) {
-    throw std::runtime_error(options.address + ":" + std::to_string(options.port) +
+    throw std::runtime_error(options_.address + ":" + std::to_string(options_.port) +
                              ": cannot listen there: " + error.code().message() + "; choose another --port");
   }
-  const std::string port = std::to_string(acceptor.local_endpoint().port());
-  const std::string name = address.is_v6() ? "[" + options.address + "]" : options.address;
+}
+
+Server::~Server() = default;
+
+void Server::run(Service& service, Desk& desk, const std::stop_token& stop) {
+  const Tcp::endpoint endpoint = port_->acceptor.local_endpoint();
+  const net::ip::address address = endpoint.address();
+  const std::string port = std::to_string(endpoint.port());
+  const std::string name = address.is_v6() ? "[" + options_.address + "]" : options_.address;
   std::vector<std::string> hosts{name + ":" + port};
   if (address.is_loopback()) hosts.push_back("localhost:" + port);
   if (address.is_unspecified()) hosts.clear();
-  Context context{service, desk, Gate(options.token, hosts)};
-  accept(acceptor, context);
+  Context context{service, desk, Gate(options_.token, hosts)};
+  // Connections end with it, before what they refer to.
+  const std::unique_ptr<Port> opened = std::move(port_);
+  net::io_context& io = opened->io;
+  accept(opened->acceptor, context);
   const std::stop_callback end(stop, [&io] { io.stop(); });
-  if (options.ready)
-    options.ready("http://" + (address.is_unspecified() ? std::string("127.0.0.1") : name) + ":" + port +
-                  "/?token=" + options.token);
+  if (options_.ready)
+    options_.ready("http://" + (address.is_unspecified() ? std::string("127.0.0.1") : name) + ":" + port +
+                   "/?token=" + options_.token);
   while (!stop.stop_requested() && !io.stopped()) {
     try {
       io.run();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <stop_token>
 #include <string>
 
@@ -17,8 +18,24 @@ struct ServerOptions {
   std::function<void(const std::string& url)> ready;
 };
 
-/// Serves the page, its files and its WebSockets until the stop token is set. What one caller sends ends at
-/// most that caller's connection. Throws std::runtime_error where it cannot listen there.
-void serve(Service& service, Desk& desk, const ServerOptions& options, const std::stop_token& stop);
+/// A server that listens before it runs: who calls meanwhile waits, and no work is done for an address that
+/// cannot be had.
+class Server {
+ public:
+  /// Throws std::runtime_error where it cannot listen there.
+  explicit Server(ServerOptions options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  /// Serves the page, its files and its WebSockets until the stop token is set; once. What one caller sends
+  /// ends at most that caller's connection.
+  void run(Service& service, Desk& desk, const std::stop_token& stop);
+
+ private:
+  struct Port;
+  ServerOptions options_;
+  std::unique_ptr<Port> port_;
+};
 
 }  // namespace octotomy::planner::serve

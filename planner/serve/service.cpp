@@ -39,7 +39,7 @@ void guarded(const Work& work, const Refuse& refuse) noexcept {
 
 }  // namespace
 
-Service::Service(Desk& desk) : desk_(desk) {
+Service::Service(Desk& desk, LineOf line_of) : desk_(desk), line_of_(std::move(line_of)) {
   for (const Lane lane : {Lane::Desk, Lane::Evaluate, Lane::Certify, Lane::Overlap, Lane::Long})
     lanes_[lane] = std::make_unique<LaneQueue>(lane != Lane::Desk && lane != Lane::Long);
   drawing_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });
@@ -97,7 +97,7 @@ void Service::receive(std::uint64_t window, const std::string& text) {
         id = request.id;
         take(window, std::move(request));
       },
-      [&](const std::exception& error) { send(window, refusal_to(id, error)); });
+      [&](const std::exception& error) { refuse(window, id, error); });
 }
 
 void Service::take(std::uint64_t window, Request request) {
@@ -108,12 +108,14 @@ void Service::take(std::uint64_t window, Request request) {
   if (request.what == "alive") return send(window, answer_to(request.id, Json::object()));
   if (request.what == "cancel") {
     const std::int64_t target = said.value("target", std::int64_t{0});
-    bool is_here = false;
+    const auto waited = panes_.withdraw(window, target);
+    if (waited) drop(*waited, "the picture was cancelled");
+    bool is_here = waited || panes_.stop(window, target);
     for (const auto& [lane, queue] : lanes_) is_here = queue->cancel(window, target) || is_here;
     return send(window, answer_to(request.id, {{"cancelled", is_here}}));
   }
   if (request.what == "close_pane") {
-    if (const auto waited = panes_.close(pane())) drop(*waited);
+    if (const auto waited = panes_.close(pane())) drop(*waited, "the pane was closed");
     return send(window, answer_to(request.id, Json::object()));
   }
   if (request.what == "pane") {
@@ -121,7 +123,7 @@ void Service::take(std::uint64_t window, Request request) {
     if (number < 0 || number > 15) throw voxel::Error(voxel::ErrorCode::Input, "pane: must be 0 to 15");
     const bool is_moving = said.value("dragging", false);
     // The older request is refused before the newer can be drawn: a pane's answers come in their order.
-    if (const auto older = panes_.withdraw(pane())) drop(*older);
+    if (const auto older = panes_.withdraw(pane())) drop(*older, "a newer picture of the pane was asked for");
     return panes_.ask({pane(), std::move(request), is_moving});
   }
   const Word& word = find_word(request.what);
@@ -139,7 +141,7 @@ void Service::take(std::uint64_t window, Request request) {
                answer(window, *asked, word, stop);
              },
              [this, window, asked, leave] {
-               send(window, refusal_to(asked->id, Stopped("a newer request took its place")));
+               refuse(window, asked->id, Stopped("a newer request took its place"));
              }});
 }
 
@@ -173,16 +175,22 @@ void Service::answer(std::uint64_t window, const Request& request, const Word& w
         if (word.changes_objects) tell_plan();
         send(window, answer_to(request.id, ok));
       },
-      [&](const std::exception& error) { send(window, refusal_to(request.id, error)); });
+      [&](const std::exception& error) { refuse(window, request.id, error); });
   if (was_told) guarded([&] { send(window, event("job_done", {{"job", request.id}})); }, [](const auto&) {});
 }
 
-void Service::drop(const PaneQueue::Asked& asked) {
-  send(asked.name.window, refusal_to(asked.request.id, Stopped("a newer picture of the pane was asked for")));
+void Service::refuse(std::uint64_t window, std::int64_t id, const std::exception& error) {
+  send(window, refusal_to(id, error, line_of_));
 }
 
-void Service::draw(const std::stop_token& stop) {
-  while (const auto asked = panes_.next(stop)) {
+void Service::drop(const PaneQueue::Asked& asked, const char* why) {
+  refuse(asked.name.window, asked.request.id, Stopped(why));
+}
+
+void Service::draw(const std::stop_token& over) {
+  while (const auto asked = panes_.next(over)) {
+    const std::stop_token stop = asked->stop.get_token();
+    const std::stop_callback end(over, [source = asked->stop]() mutable { source.request_stop(); });
     guarded(
         [&] {
           if (find(asked->name.window) == nullptr) {
@@ -199,7 +207,7 @@ void Service::draw(const std::stop_token& stop) {
         },
         [&](const std::exception& error) {
           panes_.shown(asked->name, asked->request.id);
-          send(asked->name.window, refusal_to(asked->request.id, error));
+          refuse(asked->name.window, asked->request.id, error);
         });
     // Windows that have gone leave their drawers.
     guarded(

@@ -27,11 +27,13 @@ class Service {
   /// Takes a message for a window's socket; may be called from any thread and must not wait.
   using Send = std::function<void(Message message)>;
 
-  explicit Service(Desk& desk);
+  /// `line_of` makes the messages of refusals.
+  Service(Desk& desk, LineOf line_of);
   ~Service();
   Service(const Service&) = delete;
   Service& operator=(const Service&) = delete;
 
+  const LineOf& line_of() const { return line_of_; }
   std::uint64_t open_window(Send send);
   void close_window(std::uint64_t window);
   /// Takes a message of a window; what it asks is answered later.
@@ -50,10 +52,13 @@ class Service {
   void tell_plan();
   void take(std::uint64_t window, Request request);
   void answer(std::uint64_t window, const Request& request, const Word& word, const std::stop_token& stop);
-  void drop(const PaneQueue::Asked& asked);
-  void draw(const std::stop_token& stop);
+  void refuse(std::uint64_t window, std::int64_t id, const std::exception& error);
+  /// Answers a picture that waited and is not drawn.
+  void drop(const PaneQueue::Asked& asked, const char* why);
+  void draw(const std::stop_token& over);
 
   Desk& desk_;
+  LineOf line_of_;
   std::mutex mutex_;
   std::map<std::uint64_t, std::shared_ptr<Window>> windows_;
   std::uint64_t last_window_ = 0;

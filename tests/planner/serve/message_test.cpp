@@ -29,8 +29,12 @@ TEST(Request, IsRefusedBeforeItsDepthTakesTheStack) {
   EXPECT_EQ(parse_request(nested).what, "edit") << "brackets in a text are none";
 }
 
+std::string as_it_is(const std::string& text) {
+  return text;
+}
+
 std::string code_of(const std::exception& error) {
-  return Json::parse(refusal_to(3, error).bytes)["error"]["code"];
+  return Json::parse(refusal_to(3, error, as_it_is).bytes)["error"]["code"];
 }
 
 TEST(Refusal, HasTheCodeOfEitherKernel) {
@@ -44,9 +48,15 @@ TEST(Refusal, HasTheCodeOfEitherKernel) {
     (void)Json::object().at("missing");
     FAIL();
   } catch (const std::exception& error) {
-    const std::string said = refusal_to(3, error).bytes;
+    const std::string said = refusal_to(3, error, as_it_is).bytes;
     EXPECT_EQ(said.find("json.exception"), std::string::npos) << said;
   }
+}
+
+TEST(Refusal, IsTheLineThatIsMadeOfItsMessage) {
+  const auto first_line = [](const std::string& text) { return text.substr(0, text.find('\n')); };
+  const Message refusal = refusal_to(3, std::runtime_error("no step 'a\nb'"), first_line);
+  EXPECT_EQ(Json::parse(refusal.bytes)["error"]["message"], "no step 'a");
 }
 
 TEST(Frame, IsItsHeadersLengthTheHeaderAndThePayloads) {

@@ -5,9 +5,13 @@ import math
 import os
 import pathlib
 import random
+import resource
+import shutil
+import socket
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 import zlib
 
@@ -102,6 +106,22 @@ class Gate(Served):
             self.assertNotEqual(self.server.http(f"/file/{name}?token={token}")[0], 200, name)
         outside.close()
 
+    def test_nothing_is_written_through_a_link_that_leads_out(self):
+        origin = {"Origin": f"http://{self.server.host}:{self.server.port}"}
+        with tempfile.TemporaryDirectory() as outside:
+            (self.folder / "uploads").mkdir(exist_ok=True)
+            os.symlink(f"{outside}/new.plan.json", self.folder / "dangling.plan.json")
+            os.symlink(outside, self.folder / "uploads/linked")
+            os.symlink(f"{outside}/new folder", self.folder / "uploads/dangling")
+            with self.assertRaisesRegex(RuntimeError, "input: .*no folder that is open"):
+                self.window.ask("save", path="dangling.plan.json")
+            for name in ("linked/a.txt", "dangling/a.txt"):
+                status, _, body = self.server.http(f"/upload?token={self.server.token}&name={name}", "POST", b"x",
+                                                   **origin)
+                self.assertEqual(status, 400, name)
+                self.assertIn(b"no folder that is open", body)
+            self.assertEqual(os.listdir(outside), [])
+
     def test_an_upload_lands_in_the_working_folder_and_overwrites_nothing(self):
         origin = {"Origin": f"http://{self.server.host}:{self.server.port}"}
         target = f"/upload?token={self.server.token}&name="
@@ -181,6 +201,84 @@ class Wire(Served):
             other.close()
         self.assertIn("version", self.window.ask("hello"))
         self.assertLess(self.server.resident_mb() - before, 60)
+
+    def test_a_refusal_is_one_short_line(self):
+        most = "x" * 300000
+        for do, said in (("command", {"step": most}), ("command", {"step": "a\nb\x1b[31m"}), ("go_to", {"where": most}),
+                         ("open", {"path": "x\n" * 100}), ("list", {"folder": "\u00e9" * 3000}),
+                         ("landmark", {"name": most, "point": [1, 2, 3]}),
+                         ("landmark", {"name": "a\x1b[31m", "point": [1, 2, 3]}),
+                         ("export", {"object": "bone", "path": "a\nb.stl"}), ("a" + "\u00e9" * 40, {}), (most, {})):
+            with self.subTest(do=do[:20], said=str(said)[:60]):
+                with self.assertRaises(RuntimeError) as caught:
+                    self.window.ask(do, **said)
+                told = str(caught.exception)
+                self.assertLess(len(told.encode()), 1100)
+                self.assertTrue(told.isprintable(), told)
+                self.assertNotIn("\ufffd", told)  # stands for half a letter
+
+    def test_pictures_that_no_screen_shows_are_refused(self):
+        for size in ([2**32 + 1, 2**32 + 1], [2**63, 1], [2**64 - 1, 1], [4097, 1], [1, 0], [1.5, 2]):
+            with self.assertRaisesRegex(RuntimeError, "input: size: must be", msg=size):
+                self.window.ask("pane", pane=0, size=size, dragging=False, objects=[])
+        for end in ([1e308, 0, 0], [-1e200, 1e200, 0], [9000, 0, 0]):
+            with self.assertRaisesRegex(RuntimeError, "input: a picture of .* takes more than 8192 pixels", msg=end):
+                self.rest(kind="slice", pixel_mm=1, plane={"curve_mm": [[0, 0, 0], end]})
+        header, _ = self.rest(kind="slice", pixel_mm=1, plane={"curve_mm": [[0, 0, 0], [8192, 0, 0]], "height_mm": 2})
+        self.assertEqual(header["width"], 8192)
+
+    def endings(self, *numbers):
+        """How requests ended, by their numbers: "drawn", "ok" or an error's code."""
+        ended = {}
+        while len(ended) < len(numbers):
+            message = self.window.receive()
+            if isinstance(message, tuple):
+                ended[message[0]["id"]] = "drawn"
+            elif message.get("id") in numbers:
+                ended[message["id"]] = message["error"]["code"] if "error" in message else "ok"
+        return ended
+
+    def test_a_picture_that_nobody_wants_any_more_is_stopped(self):
+        large = {"pane": 0, "size": [4096, 4096], "dragging": False, "shading": "composite",
+                 "objects": [{"id": "bone"}]}
+        small = {**large, "size": [64, 64]}
+        for do, said in (("cancel", {}), ("close_pane", {"pane": 0}), ("pane", small)):
+            with self.subTest(do=do):
+                drawn = self.window.post("pane", **large)
+                time.sleep(0.5)  # so that it is drawn; it takes seconds
+                other = self.window.post(do, **({"target": drawn} if do == "cancel" else said))
+                self.assertEqual(self.endings(drawn, other),
+                                 {drawn: "cancelled", other: "drawn" if do == "pane" else "ok"})
+
+    def test_a_server_without_free_descriptors_rests_until_there_are(self):
+        process = self.server.process.pid
+
+        def descriptors():
+            return [int(name) for name in os.listdir(f"/proc/{process}/fd")]
+
+        def processor_s():
+            with open(f"/proc/{process}/stat", encoding="utf-8") as file:
+                fields = file.read().rpartition(")")[2].split()
+            return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+        before = resource.prlimit(process, resource.RLIMIT_NOFILE)
+        most = max(descriptors()) + 4
+        resource.prlimit(process, resource.RLIMIT_NOFILE, (most, before[1]))
+        callers = [socket.create_connection((self.server.host, self.server.port)) for _ in range(most + 8)]
+        try:
+            self.assertIn("version", self.window.ask("hello"))
+            while len(descriptors()) < most:
+                time.sleep(0.01)
+            spent = processor_s()
+            time.sleep(1.0)
+            self.assertLess(processor_s() - spent, 0.2)
+        finally:
+            for caller in callers:
+                caller.close()
+            resource.prlimit(process, resource.RLIMIT_NOFILE, before)
+        other = Window(self.server)
+        self.assertEqual(other.status, 101)
+        other.close()
 
     def test_every_request_is_answered_once_and_the_newest_picture_wins(self):
         said = {"pane": 3, "kind": "view", "size": [200, 150], "objects": [{"id": "bone"}], "dragging": True}
@@ -334,6 +432,51 @@ class Desk(Served):
         octotomy(self.folder, "run", "drawn.plan.json", "-o", "drawn")
         for step, png in zip(steps, pngs):
             self.assertEqual((self.folder / "drawn" / step["path"]).read_bytes(), png, step["id"])
+
+
+class Begun(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory()
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name).resolve()
+        octotomy(self.folder, "phantom", "head", "-o", "head.nrrd", "--voxel", "8")
+
+    def test_what_is_refused_has_written_nothing(self):
+        shutil.copy(self.folder / "head.nrrd", self.folder / "other.nrrd")
+        (self.folder / "token").write_text("0" * 32)
+        (self.folder / "token").chmod(0o644)
+        before = sorted(os.listdir(self.folder))
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            for said, why in ((["--port", taken.getsockname()[1]], "cannot listen there"),
+                              (["--listen", "nonsense"], "is no address"),
+                              (["--token-file", "token"], "others may read"),
+                              (["other.nrrd"], "name one plan or scan")):
+                with self.subTest(said=said):
+                    with self.assertRaisesRegex(RuntimeError, why):
+                        octotomy(self.folder, "serve", "head.nrrd", *said)
+                    self.assertEqual(sorted(os.listdir(self.folder)), before)
+
+    def test_the_end_of_its_time_is_told_and_an_interrupt_is_none(self):
+        server = Server(PROGRAM, self.folder, "--time-limit", 3)
+        self.assertEqual(server.process.wait(), 3)
+        self.assertIn("out of time", server.process.stderr.read())
+        server.kill()
+        server = Server(PROGRAM, self.folder, "--time-limit", 600)
+        server.process.terminate()
+        self.assertEqual(server.process.wait(), 0)
+        server.kill()
+
+    def test_an_export_leaves_the_files_of_others_alone(self):
+        folder = self.folder / "head files"
+        folder.mkdir()
+        (folder / "mesh.ele").write_text("of somebody else")
+        server = Server(PROGRAM, self.folder, "head.nrrd")
+        self.addCleanup(server.kill)
+        window = Window(server)
+        self.addCleanup(window.close)
+        self.assertEqual(window.ask("export", object="bone", path="mesh.node")["file"], "mesh-2.node")
+        self.assertTrue((folder / "mesh-2.ele").exists())
+        self.assertEqual((folder / "mesh.ele").read_text(), "of somebody else")
 
 
 class Killed(unittest.TestCase):
