@@ -10,13 +10,13 @@
 #include "brep/io/write_mesh.h"
 #include "brep/mesh/measure.h"
 #include "tests/brep/shapes.h"
+#include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::brep {
 namespace {
 
 std::filesystem::path file(const std::string& name, const std::string& bytes) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "octotomy_read_mesh";
-  std::filesystem::create_directories(folder);
+  static const tests::ScratchFolder folder;
   std::ofstream(folder / name, std::ios::binary) << bytes;
   return folder / name;
 }

@@ -7,14 +7,14 @@
 #include "brep/io/read_mesh.h"
 #include "tests/brep/shapes.h"
 #include "tests/file_bytes.h"
+#include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::brep {
 namespace {
 
 std::filesystem::path folder() {
-  const auto path = std::filesystem::path(testing::TempDir()) / "octotomy_write_mesh";
-  std::filesystem::create_directories(path);
-  return path;
+  static const tests::ScratchFolder scratch;
+  return scratch.path();
 }
 
 TEST(WriteMesh, DoublesComeBackToTheLastBit) {

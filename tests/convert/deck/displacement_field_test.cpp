@@ -11,6 +11,7 @@
 #include "convert/tet/octree_tetrahedra.h"
 #include "tests/convert/surfaces.h"
 #include "tests/unit_universe.h"
+#include "tests/voxel/scratch_folder.h"
 #include "voxel/solid/combine.h"
 
 namespace octotomy::convert {
@@ -118,8 +119,6 @@ TEST(DisplacementField, NeedsElementsAndADisplacementANode) {
 
 class SolvedFile : public testing::Test {
  protected:
-  SolvedFile() { std::filesystem::create_directories(folder_); }
-  ~SolvedFile() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path write(const std::string& text) const {
     std::ofstream(folder_ / "a.frd") << text;
     return folder_ / "a.frd";
@@ -144,7 +143,7 @@ class SolvedFile : public testing::Test {
       " -1         3 0.00000E+00 0.00000E+00 0.00000E+00\n"
       " -1         4 0.00000E+00 0.00000E+00-5.00000E-01\n"
       " -3\n";
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "octotomy_solved_file";
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(SolvedFile, IsReadWithItsNodesElementsAndDisplacements) {

@@ -6,6 +6,7 @@
 
 #include "planner/file/region_file.h"
 #include "tests/planner/cli/command_line.h"
+#include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::planner {
 namespace {
@@ -177,14 +178,14 @@ TEST(SliceContours, ComeBackFromTheirFileInAnyView) {
     voxel::SliceMask mask;
     mask.view = voxel::parse_view(view);
     mask.slices = {{-1.5, {{{0, 0}, {4, 0}, {4, 3}}}}, {2, {}}};
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "octotomy_slices.json";
+    const tests::ScratchFolder folder;
+    const std::filesystem::path path = folder / "slices.json";
     std::ofstream(path) << to_json(mask).dump();
     const voxel::SliceMask back = read_slices(path);
     EXPECT_LT(glm::distance(back.view.look, mask.view.look), 1e-6) << view;
     EXPECT_LT(glm::distance(back.view.up, mask.view.up), 1e-6) << view;
     ASSERT_EQ(back.slices.size(), 2u);
     EXPECT_EQ(back.slices[0].polygons_mm, mask.slices[0].polygons_mm);
-    std::filesystem::remove(path);
   }
 }
 

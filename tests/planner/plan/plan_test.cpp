@@ -8,6 +8,7 @@
 #include "planner/operation/mask.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json.h"
+#include "tests/voxel/scratch_folder.h"
 
 namespace octotomy::planner {
 namespace {
@@ -247,7 +248,8 @@ TEST(Plan, OnlyVersionOneIsRead) {
 }
 
 TEST(Plan, AFileThatIsNotAPlanIsNamed) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "octotomy_not_a.plan.json";
+  const tests::ScratchFolder folder;
+  const auto path = folder / "not_a.plan.json";
   std::ofstream(path) << "{ \"octotomy_plan\": 1 ";
   try {
     read_plan(path);
@@ -255,7 +257,6 @@ TEST(Plan, AFileThatIsNotAPlanIsNamed) {
   } catch (const std::runtime_error& error) {
     expect_says(error.what(), {path.string(), "not JSON"});
   }
-  std::filesystem::remove(path);
   EXPECT_THROW(read_plan("/no/such.plan.json"), std::runtime_error);
 }
 

@@ -5,19 +5,17 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "tests/voxel/scratch_folder.h"
+
 namespace octotomy::planner {
 namespace {
 
 class Sha256 : public testing::Test {
  protected:
-  Sha256() { std::filesystem::create_directories(folder_); }
-  ~Sha256() override { std::filesystem::remove_all(folder_); }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("octotomy_sha256_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  tests::ScratchFolder folder_;
 };
 
 TEST_F(Sha256, IsThatOfTheStandardsExamples) {
@@ -47,14 +45,14 @@ TEST_F(Sha256, OfAFolderIsTheSumOfItsSortedNamesAndSums) {
   write("a", "one");
   const std::string zero(1, '\0');
   const std::string lines = "a" + zero + sha256_of("one") + "\nb" + zero + sha256_of("two") + "\n";
-  EXPECT_EQ(sha256_of_path(folder_), sha256_of(lines));
+  EXPECT_EQ(sha256_of_path(folder_.path()), sha256_of(lines));
 }
 
 TEST_F(Sha256, OfAFolderChangesWithOneRenamedFile) {
   write("a", "one");
-  const std::string before = sha256_of_path(folder_);
+  const std::string before = sha256_of_path(folder_.path());
   std::filesystem::rename(folder_ / "a", folder_ / "b");
-  EXPECT_NE(sha256_of_path(folder_), before);
+  EXPECT_NE(sha256_of_path(folder_.path()), before);
 }
 
 TEST_F(Sha256, NamesTheFileThatIsNotThere) {
