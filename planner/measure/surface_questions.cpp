@@ -143,7 +143,8 @@ Json gap_json(const brep::Mesh& mesh, const brep::Mesh& other) {
 }
 
 double angle_deg(const std::vector<glm::dvec3>& points_mm) {
-  const glm::dvec3 at = points_mm[1], one = points_mm[0] - at, other = points_mm[2] - at;
+  const glm::dvec3& at = points_mm[1];
+  const glm::dvec3 one = points_mm[0] - at, other = points_mm[2] - at;
   if (!(glm::length(one) > 0.0) || !(glm::length(other) > 0.0))
     throw std::runtime_error("--angle: a point coincides with the corner, so there is no angle");
   return std::atan2(glm::length(glm::cross(one, other)), glm::dot(one, other)) * 180.0 / std::numbers::pi;

@@ -176,6 +176,7 @@ class PlanHistory::Database {
     if (!to && is_number && has_edit(std::stoll(where))) to = std::stoll(where);
     if (!to) {
       std::vector<std::string> known;
+      known.reserve(ends.size());
       for (const auto& [name, tip] : ends) known.push_back(name);
       Query names = query("SELECT name FROM versions ORDER BY name");
       while (names.next()) known.push_back(names.text(0));
@@ -213,7 +214,7 @@ class PlanHistory::Database {
     for (auto change = changes.rbegin(); change != changes.rend(); ++change) {
       const auto& [head, tail, middle] = *change;
       if (head > text.size() || tail > text.size() - head) refuse_damaged(edit);
-      text = text.substr(0, head) + middle + text.substr(text.size() - tail);
+      text.replace(head, text.size() - tail - head, middle);
     }
     if (sha256_of(text) != sum_of(edit)) refuse_damaged(edit);
     return text;

@@ -106,7 +106,7 @@ fs::path Folders::need_within(const fs::path& path) const {
 }
 
 fs::path need_plain_name(const std::string& name) {
-  const fs::path path(name);
+  fs::path path(name);
   const bool is_plain = !name.empty() && name.size() < 256 && !path.is_absolute() && path.has_filename() &&
                         std::distance(path.begin(), path.end()) <= 2 &&
                         std::all_of(path.begin(), path.end(),

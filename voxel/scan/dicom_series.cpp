@@ -162,6 +162,7 @@ class SeriesAssembler {
     std::map<std::string, Series> series;
     for (DicomSlice& slice : found) series[slice.series_uid].members.push_back(std::move(slice));
     std::vector<Series> sorted;
+    sorted.reserve(series.size());
     for (auto& [uid, one] : series) sorted.push_back(std::move(one));
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const Series& a, const Series& b) { return a.members.size() > b.members.size(); });

@@ -40,8 +40,8 @@ Stored interpolated(const SlicePlan& plan, const glm::ivec2& from_px, const std:
   tbb::parallel_for(std::size_t{0}, plan.sources.size(), [&](std::size_t k) {
     const SlicePlan::Source source = plan.sources[k];
     for (std::size_t i = 0; i < area; ++i) {
-      const glm::dvec2 p_px = glm::dvec2(plan.low_px) +
-                              glm::dvec2(static_cast<double>(i % width), static_cast<double>(i / width));
+      const std::size_t column = i % width, row = i / width;
+      const glm::dvec2 p_px = glm::dvec2(plan.low_px) + glm::dvec2(column, row);
       const glm::dvec2 below_px = p_px - aside_px[source.below], above_px = p_px - aside_px[source.above];
       // A mixture of a sample and the fill would be no measurement.
       double value = fill;
