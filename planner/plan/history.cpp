@@ -256,11 +256,12 @@ class PlanHistory::Database {
     throw std::runtime_error(path_.string() + ": the history is damaged at state " + std::to_string(edit) +
                              ": move it away, and a new one is begun");
   }
-  /// A new history has the plan's permissions, since it holds the plan's text.
+  /// A new history has the plan's permissions, since it holds the plan's text; its owner may always write it.
   void make_as_readable_as_the_plan() const {
     struct stat of_plan {};
     if (::stat(plan_.c_str(), &of_plan) != 0) return;
-    const int file = ::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, of_plan.st_mode & 0666);
+    const int file = ::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC,
+                            (of_plan.st_mode & 0666) | S_IRUSR | S_IWUSR);
     if (file >= 0) ::close(file);
   }
 

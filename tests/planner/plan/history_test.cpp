@@ -147,6 +147,13 @@ TEST_F(History, ThePlansPermissionsStayAndAreItsHistorysToo) {
   EXPECT_EQ(fs::status(PlanHistory::path_of(plan_)).permissions(), mine);
 }
 
+TEST_F(History, OfAPlanThatNobodyMayWriteItsOwnerMay) {
+  fs::permissions(plan_, fs::perms::owner_read);
+  const PlanHistory history(plan_);
+  EXPECT_EQ(fs::status(PlanHistory::path_of(plan_)).permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(History, ADamagedStateIsRefusedByItsNumber) {
   for (int number = 1; number <= 3; ++number) PlanHistory(plan_).record(plan_text(number), "edit");
   const std::string sound = tests::bytes_of(PlanHistory::path_of(plan_));
