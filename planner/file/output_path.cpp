@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <fstream>
 
+#include "planner/table/control_character.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/file_text.h"
@@ -17,9 +18,7 @@ namespace octotomy::planner {
 void check_output_path(const std::filesystem::path& path, const std::vector<std::string>& extensions,
                        const Place& place) {
   const std::string name = output_path(path).generic_string();
-  if (std::any_of(name.begin(), name.end(),
-                  [](unsigned char symbol) { return symbol < ' ' || symbol == 0x7f; }))
-    place.refuse("a path has no control characters: choose another name");
+  if (has_control(name)) place.refuse("a path has no control characters: choose another name");
   if (std::none_of(extensions.begin(), extensions.end(),
                    [&](const std::string& known) { return name.ends_with(known); }))
     place.refuse("nothing can be written as '" + name + "'" +

@@ -21,6 +21,7 @@
 
 #include "planner/file/output_path.h"
 #include "planner/plan/sha256.h"
+#include "planner/table/control_character.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
 #include "voxel/space/staged_files.h"
@@ -402,8 +403,7 @@ class PlanHistory::Database {
     if (name.size() > longest_name)
       throw std::runtime_error("a name has " + std::to_string(longest_name) + " bytes at most, not " +
                                std::to_string(name.size()));
-    if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c); }))
-      throw std::runtime_error("a name has letters and no control characters");
+    if (has_control(name)) throw std::runtime_error("a name has letters and no control characters");
     const bool is_taken = query("SELECT 1 FROM branches WHERE name = ?", name).next() ||
                           query("SELECT 1 FROM versions WHERE name = ?", name).next();
     if (is_taken) throw std::runtime_error("the name '" + name + "' is taken: choose another");

@@ -12,6 +12,7 @@
 #include "planner/python/arrays.h"
 #include "planner/python/module.h"
 #include "planner/python/waiting.h"
+#include "planner/table/control_character.h"
 #include "planner/table/plan_universe.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
@@ -57,8 +58,7 @@ std::shared_ptr<Scene> scene_of(const py::array& array, const Numbers& lps_from_
   if (known == std::end(meanings))
     throw std::invalid_argument("meaning must be 'HU', 'raw' or 'label', not '" + meaning + "'");
   scene->meaning = known->second;
-  if (std::any_of(modality.begin(), modality.end(),
-                  [](unsigned char symbol) { return symbol < ' ' || symbol == 0x7f; }))
+  if (has_control(modality))
     throw std::invalid_argument("modality must have no control characters: give DICOM's two letters");
   scene->modality = modality;
   scene->source = "an array";

@@ -5,6 +5,7 @@
 
 #include "planner/plan/dependence.h"
 #include "planner/plan/difference.h"
+#include "planner/table/control_character.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 
@@ -73,8 +74,7 @@ void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vecto
     if (name.size() > longest_name)
       throw std::runtime_error("a landmark's name has " + std::to_string(longest_name) +
                                " bytes at most, not " + std::to_string(name.size()));
-    if (std::any_of(name.begin(), name.end(),
-                    [](unsigned char symbol) { return symbol < ' ' || symbol == 0x7f; }))
+    if (has_control(name))
       throw std::runtime_error("the landmark '" + name + "' needs a name without control characters");
   }
 }

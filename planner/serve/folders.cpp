@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "convert/deck/deck.h"
+#include "planner/table/control_character.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/error.h"
 
@@ -111,9 +112,7 @@ fs::path need_plain_name(const std::string& name) {
                         std::distance(path.begin(), path.end()) <= 2 &&
                         std::all_of(path.begin(), path.end(),
                                     [](const fs::path& part) { return part.native().front() != '.'; }) &&
-                        std::none_of(name.begin(), name.end(), [](char symbol) {
-                          return static_cast<unsigned char>(symbol) < ' ' || symbol == 0x7f || symbol == '\\';
-                        });
+                        !has_control(name) && name.find('\\') == std::string::npos;
   if (!is_plain)
     throw voxel::Error(voxel::ErrorCode::Input,
                        "'" + name + "' is no plain file name, as head.nrrd or series/1.dcm");

@@ -11,6 +11,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "planner/table/control_character.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "planner/verb/numbers.h"
@@ -21,11 +22,6 @@ namespace octotomy::planner::cli {
 namespace {
 
 std::atomic<Speaker> last_speaker{Speaker::None};
-
-/// Controls other than the ends of lines: names and texts of files reach a terminal, which would obey them.
-bool is_control(char symbol) {
-  return static_cast<unsigned char>(symbol) < ' ' || symbol == 0x7f;
-}
 
 /// Writes all of it, or throws; a reader that has gone away wants no more, which is no error.
 void put(const std::string& text) {
