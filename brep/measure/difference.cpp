@@ -26,8 +26,14 @@ constexpr double samples_wanted = 200'000.0;
 
 /// A triangle's share of the area is half its side's square at most, so that this side gives the samples
 /// wanted where triangles are large; where they are small each has its own.
-double spacing_mm(double area_mm2) {
-  return std::sqrt(2.0 * area_mm2 / samples_wanted);
+double spacing_mm(double area_mm2, const Triangles& a, const Triangles& b) {
+  const double even_mm = std::sqrt(2.0 * area_mm2 / samples_wanted);
+  return std::max(widened_spacing_mm(a, even_mm, 8.0 * samples_wanted),
+                  widened_spacing_mm(b, even_mm, 8.0 * samples_wanted));
+}
+
+std::size_t most_samples(const Triangles& triangles) {
+  return (std::size_t{1} << 23) + 4 * triangles.faces.size();
 }
 
 void check(const DifferenceOptions& options, double area_a_mm2, double area_b_mm2) {
@@ -96,8 +102,12 @@ Distances distances_to(const Triangles& from, const OrientedSurface& to, double 
   found.reach_mm = split.reach_mm;
   if (split.large.faces.empty()) return found;
   split.large.points_mm = from.points_mm;
-  const SurfaceSamples samples = sample_surface(split.large, spacing);
+  SurfaceSamples samples = sample_surface(split.large, spacing, most_samples(from));
   const std::vector<OrientedSurface::Distance> distances = to.distances(samples.points_mm);
+  samples.points_mm = {};
+  samples.normals = {};
+  found.sample_mm.reserve(found.sample_mm.size() + distances.size());
+  found.areas_mm2.reserve(found.areas_mm2.size() + distances.size());
   for (std::size_t i = 0; i < distances.size(); ++i) add(distances[i], samples.areas_mm2[i]);
   found.reach_mm = std::max(found.reach_mm, samples.reach_mm);
   return found;
@@ -170,7 +180,8 @@ double area_of(const Distances& distances) {
 Difference difference(const Linked& a, const Linked& b, const DifferenceOptions& options) {
   const double area_a = size_of(a.triangles).area_mm2, area_b = size_of(b.triangles).area_mm2;
   check(options, area_a, area_b);
-  const double spacing = options.spacing_mm.value_or(spacing_mm(std::max(area_a, area_b)));
+  const double spacing = options.spacing_mm ? *options.spacing_mm
+                                            : spacing_mm(std::max(area_a, area_b), a.triangles, b.triangles);
   Difference answer;
   Distances from_a, from_b;
   tbb::parallel_invoke(

@@ -15,7 +15,7 @@
 namespace octotomy::brep {
 namespace {
 
-constexpr double most_samples = 1 << 26;
+constexpr std::size_t most_of_all = std::size_t{1} << 26;
 
 /// A triangle split into parts^2 equal ones, each sampled at its centre.
 struct Grid {
@@ -119,7 +119,7 @@ Split split_of(const std::array<glm::dvec3, 3>& corners, double spacing_mm) {
   split.grid = {a, ab, ac, 0.5 * glm::length(split.normal),
                 std::max(1.0, std::ceil(split.longest_mm / spacing_mm))};
   split.count = split.grid.area_mm2 == 0.0 ? 0.0 : split.grid.count();
-  const double enough = std::min(split.count / 4.0, most_samples);
+  const double enough = std::min(split.count / 4.0, static_cast<double>(most_of_all));
   // Wedges have about two strips, or more, for each part of the longest side.
   if (!(2.0 * split.grid.parts < enough)) return split;
   split.wedges = wedges_of(corners, split.grid.area_mm2, spacing_mm);
@@ -135,10 +135,11 @@ SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm) {
   return sample_surface(triangles_of(mesh), spacing_mm);
 }
 
-SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm) {
+SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm, std::size_t most_samples) {
   if (!(spacing_mm > 0.0))
     throw std::invalid_argument("sample_surface: the spacing must be positive, it is " +
                                 std::to_string(spacing_mm) + " mm");
+  most_samples = std::min(most_samples, most_of_all);
   const auto split_at = [&](std::size_t f) {
     const auto& face = triangles.faces[f];
     return split_of(
@@ -152,12 +153,13 @@ SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm) {
     const Split split = split_at(f);
     samples.reach_mm = std::max(samples.reach_mm, split.reach_mm(spacing_mm));
     count += split.count;
-    if (!(count <= most_samples))
+    if (!(count <= static_cast<double>(most_samples)))
       throw Error(ErrorCode::Resource,
                   "samples " + short_text(spacing_mm) + " mm apart are too many: the triangle at (" +
                       short_text(split.grid.a.x) + ", " + short_text(split.grid.a.y) + ", " +
                       short_text(split.grid.a.z) + ") mm, which is " + short_text(split.longest_mm) +
-                      " mm long, brings them over 2^26; take them further apart or mend the triangle");
+                      " mm long, brings them over " + std::to_string(most_samples) +
+                      "; take them further apart or mend the triangle");
     first[f + 1] = first[f] + static_cast<std::size_t>(split.count);
   }
   samples.points_mm.resize(first.back());

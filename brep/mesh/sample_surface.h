@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -20,10 +21,11 @@ struct SurfaceSamples {
 /// Splits each triangle into n * n equal ones with sides of at most `spacing_mm`, a sliver into cells of
 /// at most that diameter, and takes their centres of gravity, by triangle. Triangles without area get none.
 /// Throws std::invalid_argument where the spacing is not positive; Error, Resource, where that makes more
-/// than 2^26 samples. Cost: linear in the samples, 56 bytes each; at least one a triangle, and a few for each
-/// square of the spacing and each stretch of it along a sliver.
+/// than `most_samples`, of which 2^26 are the limit. Cost: linear in the samples, 56 bytes each; at least one
+/// a triangle, and a few for each square of the spacing and each stretch of it along a sliver.
 SurfaceSamples sample_surface(const Mesh& mesh, double spacing_mm);
-SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm);
+SurfaceSamples sample_surface(const Triangles& triangles, double spacing_mm,
+                              std::size_t most_samples = std::size_t{1} << 26);
 
 /// The spacing itself, or a larger one at which the triangles with sides longer than it, which may be
 /// slivers, take at most about so many samples for their length. Of well-shaped triangles the area decides:

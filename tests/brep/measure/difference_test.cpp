@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "brep/io/read_mesh.h"
+#include "brep/mesh/error.h"
 #include "brep/mesh/move.h"
 #include "tests/brep/shapes.h"
 #include "tests/reference_data.h"
@@ -154,6 +155,21 @@ TEST(Difference, ThreadsDoNotChangeTheBits) {
   EXPECT_EQ(many.mean_mm, alone.mean_mm);
   EXPECT_EQ(many.hausdorff95_mm, alone.hausdorff95_mm);
   EXPECT_EQ(many.vertex_mm, alone.vertex_mm);
+}
+
+TEST(Difference, ASliverTakesNoMoreSamplesThanItsSurfaceAndNoMoreThanCanBeHeld) {
+  Triangles needle = triangles_of(mesh_of(shapes::sphere({0, 0, 0}, 10, 4)));
+  needle.points_mm.front().z = 1e8;
+  const Linked surface = linked(needle);
+  EXPECT_LT(difference(surface, surface).sample_count, 4'000'000u);
+  DifferenceOptions finer;
+  finer.spacing_mm = 10.0;
+  try {
+    difference(surface, surface, finer);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Resource) << error.what();
+  }
 }
 
 TEST(Difference, RefusesWhatHasNoAreaAndOptionsOutOfRange) {
