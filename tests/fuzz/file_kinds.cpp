@@ -144,7 +144,7 @@ class Kinds {
 
   FileKind& add(const std::string& name, const std::string& file, std::string sound,
                 Command command = {"info", "MUTANT"}) {
-    all_.push_back({name, file, std::move(sound), {}, {}, false, false, std::move(command), {}, 0});
+    all_.push_back({name, file, std::move(sound), {}, {}, false, false, std::move(command), {}});
     return all_.back();
   }
 
@@ -164,13 +164,13 @@ class Kinds {
                   {"prepare", "MUTANT", "--step", "median=1", "-o", "OUT.nrrd"},
                   {"prepare", "MUTANT", "--step", "average_down=2", "-o", "OUT.nrrd"},
                   {"convert", "MUTANT", "-o", "OUT.nii.gz"},
-                  {"convert", "MUTANT", "-o", "OUT_dicom", "--dicom"},
-                  {"look", "MUTANT", "-o", "OUT_look"},
-                  {"find_landmarks", "MUTANT", "-o", "OUT.json"},
-                  {"outcome", at("small.plan.json"), "MUTANT"}};
-    kind.declining = 2;
+                  {"convert", "MUTANT", "-o", "OUT_dicom", "--dicom"}};
+    kind.slow_verbs = {{"look", "MUTANT", "-o", "OUT_look"},
+                       {"find_landmarks", "MUTANT", "-o", "OUT.json"},
+                       {"outcome", at("small.plan.json"), "MUTANT"}};
     kind.command.insert(kind.command.end(), options.begin(), options.end());
-    for (Command& verb : kind.verbs) verb.insert(verb.end(), options.begin(), options.end());
+    for (auto* verbs : {&kind.verbs, &kind.slow_verbs})
+      for (Command& verb : *verbs) verb.insert(verb.end(), options.begin(), options.end());
     return kind;
   }
 

@@ -20,10 +20,10 @@ struct FileKind {
   bool is_folder = false;                     ///< the program is given that folder
   bool is_changed = false;                    ///< by its commands: its folder is laid anew for each
   std::vector<std::string> command;           ///< reads a mutant
-  /// Of these one, chosen by the seed, computes with a mutant that was read. All take the sound file, but
-  /// for the last few, which may find too little in it.
+  /// Of these one, chosen by the seed, computes with a mutant that was read. All take the sound file.
   std::vector<std::vector<std::string>> verbs;
-  std::size_t declining = 0;  ///< how many verbs at the end may refuse the sound file
+  /// Take a second or so, and may find too little in the sound file: one mutant in 64 is for them.
+  std::vector<std::vector<std::string>> slow_verbs = {};
 };
 
 /// Every kind. `make` runs the program with arguments and throws where it fails: it makes the sound files, in

@@ -35,6 +35,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace octotomy::tests;
 using Clock = std::chrono::steady_clock;
+using Command = std::vector<std::string>;
 
 struct Options {
   Subject subject{.program = fs::path(OCTOTOMY_BINARY_DIR) / "octotomy"};
@@ -119,7 +120,7 @@ class KindRun {
     };
     need_taken(kind_.command, false);
     if (!has_new_verbs) return;
-    for (std::size_t i = 0; i + kind_.declining < kind_.verbs.size(); ++i) need_taken(kind_.verbs[i], true);
+    for (const Command& verb : kind_.verbs) need_taken(verb, true);
   }
 
   Tally run(const std::vector<std::unique_ptr<Worker>>& workers) {
@@ -163,8 +164,9 @@ class KindRun {
       if (!judged.fault.empty()) tell(mutant, seed, command.front(), judged.fault);
       return judged.fault.empty() && judged.outcome.status == 0;
     };
-    if (pass(kind_.command, false) && !kind_.verbs.empty())
-      pass(kind_.verbs[scattered(seed + 2) % kind_.verbs.size()], true);
+    const bool is_slow = !kind_.slow_verbs.empty() && scattered(seed + 3) % 64 == 0;
+    const std::vector<Command>& verbs = is_slow ? kind_.slow_verbs : kind_.verbs;
+    if (pass(kind_.command, false) && !verbs.empty()) pass(verbs[scattered(seed + 2) % verbs.size()], true);
   }
 
   void count(const LoadedProgram::Judged& judged, double seconds, bool is_checked, bool computes) {
