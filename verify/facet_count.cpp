@@ -5,7 +5,8 @@
 // T(k) = i / (2 pi |t|^2) * sum over sides of (t . m) L J(k), m the side's outward normal in the plane, L its
 // length and J the mean of exp(-2 pi i k . x) along it. If t vanishes, all of the facet is in phase, and T is
 // its area.
-//   1  lay each facet's sides end to end, so that a point between two sides is taken once
+//   1  lay each facet's sides end to end, so that a point between two sides is taken once, and sides that
+//      run on straight, as along the cells of a scan, are one
 //   2  of up to `part_sides` of them take the phases exp(-2 pi i x) of their points' coordinates, of which
 //      only the fraction counts, and their powers up to the largest component of any k, by multiplication
 //   3  for each k three powers multiplied are a point's phase, and J the difference of a side's two phases
@@ -49,6 +50,25 @@ bool before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
+/// The path with its sides that run on straight joined: points that lie on the line are left out.
+Path straightened(const Path& path) {
+  constexpr double off_line_voxels = 1e-9;
+  Path made;
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    const bool between = i > 0 && i < path.counts.size() && path.counts[i - 1] && path.counts[i];
+    if (between) {
+      const glm::dvec3 side = path.points[i] - made.points.back(),
+                       along = path.points[i + 1] - made.points.back();
+      if (glm::dot(side, path.points[i + 1] - path.points[i]) > 0.0 &&
+          glm::length(glm::cross(side, along)) < off_line_voxels * glm::length(along))
+        continue;
+    }
+    if (i > 0) made.counts.push_back(path.counts[i - 1]);
+    made.points.push_back(path.points[i]);
+  }
+  return made;
+}
+
 Path path_of(std::vector<std::array<glm::dvec3, 2>> sides) {
   std::sort(sides.begin(), sides.end(), [](const auto& a, const auto& b) {
     return a[0] != b[0] ? before(a[0], b[0]) : before(a[1], b[1]);
@@ -75,7 +95,7 @@ Path path_of(std::vector<std::array<glm::dvec3, 2>> sides) {
       if (found) take(next);
     }
   }
-  return path;
+  return straightened(path);
 }
 
 /// Some sides of a facet, and what a vector k makes of them.

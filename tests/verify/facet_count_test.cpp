@@ -153,5 +153,23 @@ TEST(FacetCount, SplittingAFacetChangesNothing) {
   EXPECT_NEAR(of_split, of_whole, 1e-9 * of_whole);
 }
 
+TEST(FacetCount, PointsWithinStraightSidesChangeNothing) {
+  const std::vector<Facet> whole = facets_of({{7.3, 9.1, 5.7}, turned({23, 41, 67})});
+  std::vector<Facet> cut = whole;
+  for (Facet& facet : cut) {
+    const auto sides = std::move(facet.sides);
+    facet.sides.clear();
+    for (const auto& [from, to] : sides)
+      for (int i = 0; i < 60; ++i)
+        facet.sides.push_back({glm::mix(from, to, i / 60.0), glm::mix(from, to, (i + 1) / 60.0)});
+    // A corner in the midst of a side, and back: both of its sides count.
+    const glm::dvec3 out = facet.sides[30][0] + 0.3 * (facet.sides[30][0] - facet.sides[100][0]);
+    facet.sides.push_back({facet.sides[30][0], out});
+    facet.sides.push_back({out, facet.sides[30][0]});
+  }
+  const double of_whole = count_variance(whole);
+  EXPECT_NEAR(count_variance(cut), of_whole, 1e-9 * of_whole);
+}
+
 }  // namespace
 }  // namespace octotomy::verify
