@@ -172,6 +172,14 @@ int run_chosen(Program& program) {
   }
 }
 
+/// Refuses an output of no name, which a script's empty variable gives.
+void need_named_outputs(const CLI::App& verb) {
+  for (const CLI::Option* option : verb.get_options())
+    if (option->check_sname("o") && option->count() > 0 && option->results().back().empty())
+      throw CLI::ValidationError("-o", "has no name: say which file or folder to write");
+  for (const CLI::App* chosen : verb.get_subcommands()) need_named_outputs(*chosen);
+}
+
 /// Help and version go to standard output, which may be full.
 int say_help(const CLI::App& app, const CLI::ParseError& error) {
   app.exit(error);
@@ -213,6 +221,7 @@ int parse_and_run(int count, char** arguments) {
   cli::add_serve(program);
   try {
     app.parse(count, arguments);
+    need_named_outputs(app);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return say_help(app, error);
     if (count > 1 && arguments[1][0] != '-' && app.get_subcommands().empty())

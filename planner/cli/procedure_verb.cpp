@@ -11,6 +11,7 @@
 #include "planner/verb/numbers.h"
 #include "planner/verb/plan_in.h"
 #include "planner/verb/scan_in.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -75,9 +76,7 @@ ProcedureInput input_of(const ProcedureText& text) {
   need_unread(text.out, inputs);
   need_folder_of(text.out);
   ProcedureInput input;
-  const auto entry = [](const fs::path& path) {
-    return Json{{"path", fs::absolute(path).lexically_normal().string()}};
-  };
+  const auto entry = [](const fs::path& path) { return Json{{"path", voxel::absolute_of(path).string()}}; };
   input.scan = entry(text.scan);
   if (!text.donor.empty()) input.further_scans["donor"] = entry(text.donor);
   for (const fs::path& path : text.landmarks) {

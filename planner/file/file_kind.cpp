@@ -8,6 +8,7 @@
 #include <string>
 #include <sys/statvfs.h>
 
+#include "planner/table/control_character.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
@@ -37,11 +38,13 @@ bool is_octree(const fs::path& path) {
 
 void need_folder_of(const fs::path& out, Output kind) {
   const auto refuse = [&](const std::string& why) { throw std::runtime_error(out.string() + ": " + why); };
-  const fs::path file = voxel::behind_links(fs::absolute(out).lexically_normal());
-  const fs::path folder = file.parent_path();
+  if (has_control(out.native())) refuse("a file's name has no control characters: choose another name");
+  if (kind == Output::File && !out.has_filename()) refuse("names a folder: add the file's name");
+  const fs::path file = voxel::place_of(out), folder = file.parent_path();
   if (!fs::is_directory(folder))
     refuse("there is no folder " + folder.string() + ": make it, or choose another name");
-  if (file.filename().native().size() > longest_name || file.native().size() + longest_name > PATH_MAX)
+  if (file.filename().native().size() > longest_name ||
+      std::max(out.native().size(), file.native().size()) + longest_name > PATH_MAX)
     refuse("is too long a name: choose a shorter one");
   const fs::file_status status = fs::symlink_status(file);
   const bool is_folder = fs::is_directory(status);

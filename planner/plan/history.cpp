@@ -24,6 +24,7 @@
 #include "planner/table/control_character.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
@@ -114,7 +115,7 @@ class Query {
 };
 
 std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = voxel::opened(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "voxel/scan/read_image_stack.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 namespace {
@@ -60,7 +61,7 @@ std::string state_of_path(const std::filesystem::path& path) {
   } else {
     for (const fs::path& file : voxel::image_files(path)) files.insert(file);
   }
-  std::string state = fs::absolute(path).lexically_normal().string();
+  std::string state = voxel::absolute_of(path).string();
   for (const fs::path& file : files)
     state += "\n" + file.string() + " " + std::to_string(fs::file_size(file)) + " " +
              std::to_string(fs::last_write_time(file).time_since_epoch().count());

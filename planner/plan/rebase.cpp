@@ -6,6 +6,7 @@
 
 #include "planner/plan/dependence.h"
 #include "planner/table/json.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 namespace {
@@ -21,7 +22,7 @@ struct Rebase {
 
   std::string of(const std::string& path) const {
     if (path.empty() || fs::path(path).is_absolute()) return path;
-    const fs::path found = (from / path).lexically_normal().lexically_relative(to);
+    const fs::path found = voxel::absolute_of(from / path).lexically_relative(to);
     if (found.empty())
       throw std::runtime_error("'" + path + "' of " + from.string() + " has no relative path from " +
                                to.string() + ": name it by an absolute one");

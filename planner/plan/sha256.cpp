@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "voxel/scan/read_image_stack.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
@@ -41,7 +42,7 @@ class Digest {
 };
 
 std::string sha256_of_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = voxel::opened(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be opened for its SHA-256");
   Digest digest;
   std::vector<char> buffer(std::size_t{1} << 20);

@@ -10,6 +10,7 @@
 #include "voxel/filter/otsu.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/scan/read_scene.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 namespace {
@@ -18,7 +19,7 @@ constexpr int look_picture_px = 400;
 
 /// A scan as a plan names it.
 Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& read) {
-  Json entry{{"path", std::filesystem::absolute(scan).lexically_normal().string()}};
+  Json entry{{"path", voxel::absolute_of(scan).string()}};
   if (!read.series.empty()) entry["series"] = read.series;
   if (!read.slices.empty()) entry["slices"] = voxel::to_string(read.slices);
   if (read.spacing_mm) entry["spacing_mm"] = to_json(*read.spacing_mm);

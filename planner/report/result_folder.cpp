@@ -26,14 +26,17 @@
 #include <unistd.h>
 
 #include "planner/plan/sha256.h"
+#include "planner/table/control_character.h"
 #include "voxel/space/disk_need.h"
 #include "voxel/space/error.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
 using voxel::ErrorCode;
+using voxel::place_of;
 
 constexpr const char* steps_suffix = "-earlier";
 constexpr const char* list_name = ".octotomy-result";
@@ -42,18 +45,6 @@ using List = std::map<std::string, std::string>;
 
 [[noreturn]] void refuse(const std::string& message) {
   throw voxel::Error(ErrorCode::Input, message);
-}
-
-/// The folder that a path means: absolute, links at its end followed, even one to nothing yet.
-fs::path place_of(const fs::path& path) {
-  fs::path whole = fs::absolute(path).lexically_normal();
-  if (!whole.has_filename()) whole = whole.parent_path();
-  for (int links = 0; fs::is_symlink(whole); ++links) {
-    if (links == 40) refuse(path.string() + ": is a link that leads to itself: choose another -o");
-    whole = (whole.parent_path() / fs::read_symlink(whole)).lexically_normal();
-    if (!whole.has_filename()) whole = whole.parent_path();
-  }
-  return whole;
 }
 
 bool is_there(const fs::path& path) {
@@ -75,6 +66,7 @@ bool rename_to_new(const fs::path& from, const fs::path& to) {
 
 List read_list(const fs::path& folder) {
   List list;
+  if (!fs::is_regular_file(folder / list_name)) return list;
   std::ifstream file(folder / list_name);
   std::string line;
   while (std::getline(file, line))
@@ -333,6 +325,8 @@ void take_usual_mode(const fs::path& folder) {
 }  // namespace
 
 void need_result_folder(const fs::path& folder, const std::vector<fs::path>& names) {
+  if (has_control(folder.native()))
+    refuse(folder.string() + ": a folder's name has no control characters: choose another -o");
   const fs::path place = place_of(folder);
   need_place(place, folder, names);
   try_to_write(place.parent_path(), folder);

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "voxel/space/file_text.h"
+
 namespace octotomy::planner::serve {
 namespace {
 
@@ -81,7 +83,7 @@ std::string token_in(const std::filesystem::path& path) {
   }
   if ((fs::status(path).permissions() & of_others) != fs::perms::none)
     throw std::runtime_error(path.string() + ": others may read this token: chmod 600, or name a new file");
-  std::ifstream file(path);
+  std::ifstream file = voxel::opened(path);
   std::string token;
   file >> token;
   constexpr std::size_t least_length = 32;

@@ -12,6 +12,7 @@
 #include "voxel/filter/tissue.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 /// Whether a plan's only scan is this one.
 bool is_plan_of(const fs::path& plan, const fs::path& scan) {
-  std::ifstream file(plan, std::ios::binary);
+  std::ifstream file = voxel::opened(plan);
   const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("scans") || json["scans"].size() != 1) return false;

@@ -12,6 +12,7 @@
 #include "planner/table/nearest_name.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/space/error.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -123,7 +124,7 @@ Json save(Desk& desk, const Json& said, const Watched&) {
   // Relative paths of scans go along.
   Json json = Json::parse(text);
   for (Json& scan : json["scans"])
-    scan["path"] = (path.parent_path() / scan.at("path").get<std::string>()).lexically_normal().string();
+    scan["path"] = voxel::absolute_of(path.parent_path() / scan.at("path").get<std::string>()).string();
   write_json(json, to);
   return {{"path", to.string()}};
 }

@@ -7,6 +7,7 @@
 #include "planner/report/report.h"
 #include "planner/table/nearest_name.h"
 #include "planner/table/number_format.h"
+#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::cli {
 
@@ -33,7 +34,7 @@ Plan plan_of(const Program& program, const PlanIn& text) {
     if (found == plan.scans.end())
       throw std::runtime_error("--scan: the plan has no scan called '" + name + "'" +
                                suggestion(name, names));
-    found->second.path = std::filesystem::absolute(scan.substr(equals + 1)).lexically_normal();
+    found->second.path = voxel::absolute_of(scan.substr(equals + 1));
   }
   if (const voxel::ReadOptions read = read_options(program, text.in);
       !read.series.empty() || !read.slices.empty() || read.spacing_mm || read.raw) {

@@ -328,7 +328,7 @@ std::variant<std::vector<DicomSlice>, NoSlice> slices_of(const DicomFile& file,
 
 /// The first `count` bytes of a file, or all of them.
 std::string beginning_of(const std::filesystem::path& path, std::size_t count) {
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = opened(path);
   std::string bytes(count, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));

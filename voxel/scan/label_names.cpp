@@ -38,7 +38,7 @@ std::map<int, std::string> of_nrrd(const fs::path& path) {
     int label = 0;
   };
   std::map<int, Segment> segments;
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = opened(path);
   constexpr std::size_t most_lines = 100000;
   std::string line;
   for (std::size_t i = 0; i < most_lines && std::getline(in, line) && !trimmed(line).empty(); ++i) {

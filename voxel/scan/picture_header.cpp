@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "voxel/scan/png_chunk.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -173,7 +174,7 @@ PictureHeader read_picture_header(std::string_view bytes, std::size_t most_bytes
 }
 
 std::string picture_header_bytes(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = opened(path);
   std::string bytes(longest_header, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));

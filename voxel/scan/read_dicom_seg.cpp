@@ -209,7 +209,7 @@ class SegReader {
 bool is_dicom_seg(const fs::path& path) {
   // The class stands among the first attributes.
   std::string bytes(4096, '\0');
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = opened(path);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(in.gcount()));
   return DicomFile::begins(bytes) && bytes.find(segmentation_storage) != std::string::npos;

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint64_t count) {
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = opened(path);
   in.seekg(static_cast<std::streamoff>(offset));
   std::string bytes(count, '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(count));

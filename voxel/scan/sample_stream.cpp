@@ -117,7 +117,7 @@ std::uintmax_t SampleStream::skip_rest() {
 }
 
 bool is_gzip(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = opened(path);
   char first[2] = {};
   in.read(first, sizeof first);
   return in.gcount() == sizeof first && std::equal(first, first + 2, gzip_magic, [](char a, unsigned char b) {

@@ -311,7 +311,7 @@ std::string nifti_beginning(std::string header, const Scene& scene) {
 /// writer, whose level is fixed, and a few per cent larger.
 void finish_nifti(const fs::path& from, const fs::path& to, const Scene& scene) {
   constexpr std::size_t header_bytes = 352;
-  std::ifstream in(from, std::ios::binary);
+  std::ifstream in = opened(from);
   std::string part(header_bytes, '\0');
   in.read(part.data(), static_cast<std::streamsize>(part.size()));
   bool written = static_cast<bool>(in);

@@ -39,7 +39,7 @@ std::optional<std::uint64_t> free_disk(const std::filesystem::path& folder) {
 }
 
 void need_disk(const std::filesystem::path& out, std::uint64_t least_bytes) {
-  std::filesystem::path folder = behind_links(std::filesystem::absolute(out).lexically_normal());
+  std::filesystem::path folder = place_of(out);
   std::error_code ignored;
   while (!std::filesystem::is_directory(folder, ignored) && folder.has_relative_path())
     folder = folder.parent_path();

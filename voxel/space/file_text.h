@@ -19,9 +19,25 @@ namespace octotomy::voxel {
   throw Error(code, path.string() + ": " + reason);
 }
 
-/// All bytes of a file; none if it cannot be read.
+/// Opens a file to read it; a missing one or a folder gives a stream that cannot be read. Throws Error
+/// (Input) of a pipe or a device: reading it may wait for ever or never end.
+inline std::ifstream opened(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  std::ifstream in;
+  if (std::filesystem::is_directory(status)) {
+    in.setstate(std::ios::failbit);
+    return in;
+  }
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    refuse(path, "is a pipe or device: copy it into a file first");
+  in.open(path, std::ios::binary);
+  return in;
+}
+
+/// All bytes of a file; none if it cannot be read. Throws as opened().
 inline std::string file_bytes(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in = opened(path);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -110,14 +110,29 @@ fs::path behind_links(fs::path path) {
   return path;
 }
 
+fs::path place_of(const fs::path& path) {
+  fs::path file = fs::absolute(path);
+  while (file.has_relative_path() && (!file.has_filename() || file.filename() == "."))
+    file = file.parent_path();
+  file = behind_links(file);
+  std::error_code fails;
+  const bool is_folder = file.filename() == ".." || !file.has_relative_path();
+  const fs::path folder = fs::weakly_canonical(is_folder ? file : file.parent_path(), fails);
+  if (fails) return file.lexically_normal();
+  return is_folder ? folder : folder / file.filename();
+}
+
+fs::path absolute_of(const fs::path& path) {
+  const fs::path whole = fs::absolute(path), plain = whole.lexically_normal();
+  std::error_code fails;
+  if (!fs::exists(whole, fails) || fs::equivalent(whole, plain, fails)) return plain;
+  return fs::weakly_canonical(whole);
+}
+
 bool are_one_file(const fs::path& a, const fs::path& b) {
   std::error_code ignored;
   if (fs::equivalent(a, b, ignored)) return true;
-  const auto whole = [](const fs::path& path) {
-    const fs::path file = behind_links(fs::absolute(path).lexically_normal());
-    return fs::weakly_canonical(file.parent_path()) / file.filename();
-  };
-  return whole(a) == whole(b);
+  return place_of(a) == place_of(b);
 }
 
 StagedFiles::StagedFiles(const fs::path& destination)
@@ -132,7 +147,7 @@ void StagedFiles::commit(const fs::path& last) {
 }
 
 fs::path StagedOutputs::beside(const fs::path& place) {
-  const fs::path folder = fs::absolute(place).parent_path();
+  const fs::path folder = place_of(fs::absolute(place).parent_path());
   const StagedFiles& files = folders_.try_emplace(folder, folder).first->second;
   places_.push_back(folder / place.filename());
   return files.folder() / place.filename();

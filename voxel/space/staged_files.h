@@ -48,6 +48,15 @@ class StagedOutputs {
 /// the links lead in a circle.
 std::filesystem::path behind_links(std::filesystem::path path);
 
+/// The absolute path of the file or folder that a path means to the system: folders' links are resolved
+/// before a ".." after them, links at the end are followed, even one to nothing yet, and a "/" at the end
+/// says nothing. Throws as behind_links().
+std::filesystem::path place_of(const std::filesystem::path& path);
+
+/// An absolute path as short as it can be told: without "." and "..", and with links as they are, but where
+/// ".." follows one.
+std::filesystem::path absolute_of(const std::filesystem::path& path);
+
 /// Whether two paths mean one file, by links of either kind or by another spelling. Files need not be there.
 /// Throws as behind_links().
 bool are_one_file(const std::filesystem::path& a, const std::filesystem::path& b);

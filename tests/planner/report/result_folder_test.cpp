@@ -215,6 +215,26 @@ TEST(ResultFolder, ALinkIsFollowedAndPermissionsStay) {
   EXPECT_NE(refusal(folder / "link").find("link"), std::string::npos);
 }
 
+TEST(ResultFolder, ALinkIsReadFromTheFolderThatItLiesIn) {
+  const tests::ScratchFolder folder;
+  fs::create_directories(folder / "home");
+  fs::create_directories(folder / "disk/deep");
+  publish(folder / "home/target", {"report.html"}, "of another plan");
+  fs::create_directory_symlink("../disk/deep", folder / "home/link");
+  fs::create_directory_symlink("../target", folder / "disk/deep/report");
+  publish(folder / "home/link/report", {"report.html"}, "new");
+  EXPECT_EQ(tests::bytes_of(folder / "home/target/report.html"), "of another plan");
+  EXPECT_EQ(tests::bytes_of(folder / "disk/target/report.html"), "new");
+  publish(folder / "home/link/../beside", {"report.html"}, "new");
+  EXPECT_TRUE(fs::exists(folder / "disk/beside/report.html"));
+  EXPECT_FALSE(fs::exists(folder / "home/beside"));
+}
+
+TEST(ResultFolder, ANameThatATerminalWouldObeyIsRefused) {
+  const tests::ScratchFolder folder;
+  EXPECT_NE(refusal(folder / "re\nport").find("control characters"), std::string::npos);
+}
+
 /// Runs `work` in a process that is killed after a while; false if it had failed before.
 template <typename Work>
 bool killed_after(std::chrono::microseconds while_us, const Work& work) {
