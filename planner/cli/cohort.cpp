@@ -17,8 +17,10 @@
 #include "planner/file/output_path.h"
 #include "planner/file/outputs.h"
 #include "planner/report/result_folder.h"
+#include "planner/table/csv.h"
 #include "planner/table/number_format.h"
 #include "planner/verb/verb.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -40,6 +42,8 @@ Plan plan_of(const CohortText& text) {
   return read_plan(path);
 }
 
+/// What a process of an engine runs. The time limit is left out: it is this process's, whose end ends serial
+/// and parallel engines, and --slurm=--time bounds a job.
 std::vector<std::string> command(const Program& program, const CohortText& text, const std::string& level) {
   std::vector<std::string> words{
       fs::read_symlink("/proc/self/exe").string(),
@@ -49,11 +53,10 @@ std::vector<std::string> command(const Program& program, const CohortText& text,
       level,
       "--plan",
       fs::absolute(text.plan.empty() ? cohort_plan(text.out) : text.plan).string()};
-  if (level == "participant") {
-    if (text.again) words.emplace_back("--again");
-    if (text.reports) words.emplace_back("--reports");
-    if (program.threads) words.insert(words.end(), {"--threads", std::to_string(*program.threads)});
-  }
+  if (program.threads) words.insert(words.end(), {"--threads", std::to_string(*program.threads)});
+  if (program.memory_gb) words.insert(words.end(), {"--memory", csv_number(program.memory_gb)});
+  if (level == "participant" && text.again) words.emplace_back("--again");
+  if (level == "participant" && text.reports) words.emplace_back("--reports");
   return words;
 }
 
@@ -180,6 +183,7 @@ int dry_run(const Program& program, const CohortText& text, const std::vector<Su
 }
 
 int cohort(Program& program, const CohortText& text) {
+  if (text.level == "participant") end_with_engine();
   const Plan plan = plan_of(text);
   const std::vector<Subject> subjects = chosen_subjects(find_subjects(text.in, plan), text.labels);
   if (text.dry_run) return dry_run(program, text, subjects);
@@ -191,6 +195,7 @@ int cohort(Program& program, const CohortText& text) {
   if (!text.against.empty()) options.against = text.against;
   Json json = answer({});
   json.update(merge_group(subjects, text.out, options));
+  for (const Json& finding : json["findings"]) warn(finding.get<std::string>());
   program.say(json, std::to_string(json["done"].get<std::size_t>()) + " of " +
                         std::to_string(subjects.size()) +
                         " subjects merged\nwritten: " + (text.out / "group/index.html").string() + "\n");
@@ -204,7 +209,7 @@ struct TableText {
 };
 
 Json read_result(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = voxel::opened(path);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   Json json = Json::parse(text, nullptr, false);
   if (!file || !json.is_object() || !json.contains("octotomy"))

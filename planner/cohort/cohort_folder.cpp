@@ -28,6 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* plan_name = "plan.plan.json";
+constexpr const char* description_name = "dataset_description.json";
 constexpr const char* list_begin =
     "# What octotomy cohort wrote here and may replace while it is unchanged.\n";
 
@@ -37,6 +38,26 @@ fs::path list_of(const fs::path& out) {
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& why) {
   voxel::refuse(path, why + ", or choose another OUT");
+}
+
+/// Refuses what stands in the place of a file and is none: a pipe would be waited for.
+void need_file(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::exists(fs::symlink_status(path)) && !fs::is_regular_file(path, ignored))
+    refuse(path, "is no regular file: move it");
+}
+
+/// Refuses what stands in the place of a folder and is none. Tries to write into the folder, or into the
+/// nearest above that is there, as a system may grant what it then refuses.
+void need_writable_folder(fs::path folder, const fs::path& out) {
+  while (!fs::exists(fs::symlink_status(folder))) folder = folder.parent_path();
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) refuse(folder, "is no folder: move it");
+  try {
+    const voxel::StagedFiles trial(folder);
+  } catch (const voxel::Error& error) {
+    throw voxel::Error(error.code(), out.string() + ": " + error.what());
+  }
 }
 
 /// Beside and renamed into place.
@@ -74,7 +95,7 @@ Description description_of(const fs::path& path) {
 }
 
 Description need_description(const fs::path& out) {
-  const fs::path path = out / "dataset_description.json";
+  const fs::path path = out / description_name;
   const Description found = description_of(path);
   if (found == Description::Foreign)
     refuse(path, "describes a dataset that is not of octotomy cohort: move it");
@@ -88,7 +109,7 @@ bool is_ours(const fs::path& out, const std::string& name) {
   // GNU parallel adds to it.
   if (name == cohort_log) return voxel::file_bytes(path).starts_with("Seq\tHost\tStarttime");
   const std::string list = voxel::file_bytes(list_of(out));
-  if (list.empty()) return description_of(out / "dataset_description.json") != Description::None;
+  if (list.empty()) return description_of(out / description_name) != Description::None;
   return list.starts_with(list_begin) &&
          list.find(sha256_of_path(path) + "  " + name + "\n") != std::string::npos;
 }
@@ -131,7 +152,13 @@ fs::path cohort_plan(const fs::path& out) {
   return out / "code" / plan_name;
 }
 
+fs::path cohort_locks(const fs::path& out) {
+  return out / "code/locks";
+}
+
 void need_cohort_folder(const fs::path& out, const CohortNeeds& needs) {
+  const fs::path place = voxel::place_of(out);
+  for (const fs::path& file : {out / description_name, list_of(out), cohort_plan(out)}) need_file(file);
   need_description(out);
   const std::string list = voxel::file_bytes(list_of(out));
   if (!list.empty() && !list.starts_with(list_begin)) refuse(list_of(out), "is not Octotomy's: move it");
@@ -140,10 +167,12 @@ void need_cohort_folder(const fs::path& out, const CohortNeeds& needs) {
   for (const std::string& name : needs.files) need_ours(out, name);
   for (const std::string& name : needs.folders)
     if (!may_hold_result(out / name)) refuse(out / name, "is not a result, so it may be yours: move it");
+  for (const fs::path& folder : {place, place / "code", cohort_locks(place)})
+    need_writable_folder(folder, out);
 }
 
 void prepare_cohort_folder(const fs::path& out, const std::string& plan_text) {
-  fs::create_directories(out / "code");
+  fs::create_directories(voxel::place_of(out) / "code");
   const Description found = need_description(out);
   {
     const LockedList list(out);
@@ -158,8 +187,8 @@ void prepare_cohort_folder(const fs::path& out, const std::string& plan_text) {
     }
   }
   const std::string description = description_text(OCTOTOMY_VERSION);
-  if (found != Description::Edited && voxel::file_bytes(out / "dataset_description.json") != description)
-    replace_text(out / "dataset_description.json", description);
+  if (found != Description::Edited && voxel::file_bytes(out / description_name) != description)
+    replace_text(out / description_name, description);
   if (!plan_text.empty()) write_cohort_file(out, plan_name, plan_text);
 }
 

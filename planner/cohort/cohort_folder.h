@@ -24,6 +24,8 @@ inline constexpr const char* cohort_log = "parallel.log";
 
 /// The plan that every subject went through last.
 std::filesystem::path cohort_plan(const std::filesystem::path& out);
+/// The folder of a file a subject, locked by the process that has the subject in hand.
+std::filesystem::path cohort_locks(const std::filesystem::path& out);
 
 /// Refuses a cohort's folder before anything is written to it. Throws voxel::Error (Input) that names the
 /// file and the way out if
@@ -31,9 +33,11 @@ std::filesystem::path cohort_plan(const std::filesystem::path& out);
 /// - the kept plan, unless it is the same, or a file of `needs` was not written by a cohort, or was changed
 /// since;
 /// - the list `code/octotomy.sha256` is another file;
-/// - a folder of `needs` holds files but no result (may_hold_result()).
-/// A folder that was made before there was a list counts as Octotomy's by its description. Cost: a look into
-/// each folder.
+/// - the description, the list or the kept plan is no regular file;
+/// - a folder of `needs` holds files but no result (may_hold_result());
+/// - `out`, `code` or cohort_locks() is no folder, or cannot be made or written to (or Resource, by the
+/// cause). A link to nothing stands for the folder that it names. A folder that was made before there was a
+/// list counts as Octotomy's by its description. Cost: a look into each folder.
 void need_cohort_folder(const std::filesystem::path& out, const CohortNeeds& needs);
 
 /// Makes the folder, its description and the kept plan. Precondition: need_cohort_folder(). Throws as that

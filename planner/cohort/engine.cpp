@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/cohort/engine.h"
 
-#include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
-#include <fcntl.h>
+#include <cstdlib>
 #include <fstream>
-#include <spawn.h>
+#include <poll.h>
 #include <sstream>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
+#include "planner/cohort/child_process.h"
 #include "planner/cohort/cohort_folder.h"
 #include "voxel/space/error.h"
-
-extern char** environ;  // NOLINT(readability-redundant-declaration)
 
 namespace octotomy::planner {
 namespace {
@@ -27,54 +25,11 @@ using Words = std::vector<std::string>;
 /// Exit status of a process that ran out of time, memory or disk.
 constexpr int out_of_resources = 3;
 
-/// How a child ended, and its first line on standard output.
-struct Child {
-  int status = 0;
-  std::string said;
-};
-
-/// Runs a program found by PATH. Its standard error is ours. A stop is passed on as SIGTERM, and its end
-/// waited for; then throws Stopped. Throws voxel::Error (Resource) where it cannot be started.
-Child run_child(const Words& words, const std::stop_token& stop) {
-  std::array<int, 2> pipe{};
-  if (pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
-  std::vector<char*> arguments;
-  for (const std::string& word : words)
-    arguments.push_back(const_cast<char*>(word.c_str()));  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(pipe[1]);
-  if (error != 0) {
-    close(pipe[0]);
-    throw voxel::Error(voxel::ErrorCode::Resource,
-                       words[0] + " cannot be started: " + std::generic_category().message(error) +
-                           (error == ENOENT ? "; install it, or choose another --engine" : ""));
-  }
-  std::string said;
-  std::thread reader([&] {
-    std::array<char, 4096> part{};
-    for (ssize_t count = 0; (count = read(pipe[0], part.data(), part.size())) > 0;)
-      if (said.size() < 65536) said.append(part.data(), static_cast<std::size_t>(count));
-  });
-  int status = 0;
-  bool asked = false;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (stop.stop_requested() && !asked) {
-      kill(child, SIGTERM);
-      asked = true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  reader.join();
-  close(pipe[0]);
-  if (asked) throw voxel::Stopped("stopped: the subjects that were done stay");
-  return {status, said.substr(0, said.find('\n'))};
-}
+/// The environment variable by which participants of GNU parallel know the number of a descriptor: a pipe
+/// that this process alone can write into. The system closes that end when this process ends, however it
+/// ends, and the participants watch for it. A signal at the end of a parent would not reach them: their
+/// parent is a shell.
+constexpr const char* pipe_variable = "OCTOTOMY_ENGINE_PIPE";
 
 Words with_label(const EngineRequest& request, const std::string& label) {
   Words words = request.program;
@@ -111,7 +66,7 @@ std::string submit(const EngineRequest& request, const Words& options, const Wor
   words.insert(words.end(), options.begin(), options.end());
   words.insert(words.end(), request.slurm.begin(), request.slurm.end());
   words.insert(words.end(), script.begin(), script.end());
-  const Child child = run_child(words, request.stop);
+  const ChildEnd child = run_child_process({words}, request.stop);
   const std::string job = child.said.substr(0, child.said.find(';'));
   if (!WIFEXITED(child.status) || WEXITSTATUS(child.status) != 0 || job.empty() ||
       job.find_first_not_of("0123456789") != std::string::npos)
@@ -136,13 +91,26 @@ bool log_tells_end_of_resources(const fs::path& log) {
 
 }  // namespace
 
+void end_with_engine() {
+  const char* text = std::getenv(pipe_variable);
+  const int file = text == nullptr ? -1 : std::atoi(text);
+  struct stat of_file {};
+  if (file < 0 || fstat(file, &of_file) != 0 || !S_ISFIFO(of_file.st_mode)) return;
+  // Never joined: it waits as long as this process lives.
+  std::thread([file] {
+    pollfd engine{file, 0, 0};
+    while (poll(&engine, 1, -1) < 0 && errno == EINTR) continue;
+    kill(getpid(), SIGTERM);
+  }).detach();
+}
+
 bool run_serial(const EngineRequest& request) {
   bool ran_out = false;
   for (std::size_t i = 0; i < request.labels.size(); ++i) {
     if (request.progress)
       request.progress("subject " + request.labels[i],
                        static_cast<double>(i) / static_cast<double>(request.labels.size()));
-    const int status = run_child(with_label(request, request.labels[i]), request.stop).status;
+    const int status = run_child_process({with_label(request, request.labels[i])}, request.stop).status;
     ran_out |= WIFEXITED(status) && WEXITSTATUS(status) == out_of_resources;
   }
   return ran_out;
@@ -154,7 +122,15 @@ bool run_parallel(const EngineRequest& request) {
               "--arg-file", write_labels(request).string()};
   if (request.jobs > 0) words.insert(words.end(), {"--jobs", std::to_string(request.jobs)});
   words.push_back(shell_text(request.program) + " --participant-label {} >/dev/null");
-  run_child(words, request.stop);
+  const Pipe pipe;
+  run_child_process({.words = words,
+                     // The user's shell may close the pipe, as csh does.
+                     .environment = {"PARALLEL_SHELL=/bin/sh",
+                                     std::string(pipe_variable) + "=" + std::to_string(pipe.reading())},
+                     .inherited_file = pipe.reading(),
+                     // GNU parallel ignores SIGTERM at its start, and would go through the whole list.
+                     .signal_at_our_end = SIGKILL},
+                    request.stop);
   return log_tells_end_of_resources(code_path(request, cohort_log));
 }
 

@@ -21,12 +21,17 @@ struct EngineRequest {
   std::function<void(const std::string& doing, double fraction)> progress;
 };
 
+/// Ends this process by SIGTERM to itself when the process that runs its engine has ended, even by SIGKILL.
+/// For a participant, before its work. Does nothing where run_parallel() did not start it.
+void end_with_engine();
+
 /// One process after another; one that crashes takes nobody with it. Each leaves its subject's record, or
-/// none. Returns whether a process ran out of time, memory or disk (status 3). Throws voxel::Stopped after
-/// the process at work ended.
+/// none. The process at work gets SIGTERM when this one ends, however it ends. Returns whether a process ran
+/// out of time, memory or disk (status 3). Throws voxel::Stopped after the process at work ended.
 bool run_serial(const EngineRequest& request);
 
-/// The same by GNU parallel, whose log is code/parallel.log. Throws voxel::Error (Resource) where it is not
+/// The same by GNU parallel, whose log is code/parallel.log. It ends with this process, and so do the
+/// processes that it started if they called end_with_engine(). Throws voxel::Error (Resource) where it is not
 /// installed.
 bool run_parallel(const EngineRequest& request);
 

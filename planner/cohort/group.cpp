@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <map>
 
 #include "planner/cohort/group_page.h"
@@ -14,20 +13,18 @@
 #include "planner/table/csv.h"
 #include "planner/table/json.h"
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
 
 namespace fs = std::filesystem;
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
+/// Of a subject whose record is Done.
 std::vector<ResultRow> rows_in(const fs::path& out, const Subject& subject) {
   const fs::path path = out / subject.folder() / "rows.csv";
   try {
-    return parse_long_table(text_of(path));
+    return parse_long_table(voxel::file_bytes(path));
   } catch (const voxel::Error& error) {
     throw voxel::Error(error.code(), path.string() + ": " + error.what());
   }
@@ -103,6 +100,14 @@ GroupColumn summarised(const CohortColumn& column, const std::vector<Subject>& s
   return made;
 }
 
+/// Tells the progress and heeds a stop, at a few of the subjects.
+void look_up(const GroupOptions& options, std::size_t subject, std::size_t count) {
+  if (subject % 256 != 0) return;
+  if (options.stop.stop_requested()) throw voxel::Stopped("stopped before the group was written");
+  if (options.progress)
+    options.progress("subjects", static_cast<double>(subject) / static_cast<double>(count));
+}
+
 }  // namespace
 
 std::string wide_table(const std::vector<std::string>& labels, const CohortTable& table) {
@@ -145,14 +150,17 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
   std::vector<std::string> labels;
   GroupPage page;
   std::size_t done = 0, failed = 0;
+  Json findings = Json::array();
   for (std::uint32_t i = 0; i < subjects.size(); ++i) {
     const Subject& subject = subjects[i];
-    if (i % 256 == 0) {
-      if (options.stop.stop_requested()) throw voxel::Stopped("stopped before the group was written");
-      if (options.progress)
-        options.progress("subjects", static_cast<double>(i) / static_cast<double>(subjects.size()));
-    }
-    const SubjectRecord record = subject_record(out, subject);
+    look_up(options, i, subjects.size());
+    const auto told_record = [&](const fs::path& cohort) {
+      SubjectRecord record = subject_record(cohort, subject);
+      if (record.state == SubjectRecord::State::Changed)
+        findings.push_back(subject.label + ": " + record.reason);
+      return record;
+    };
+    const SubjectRecord record = told_record(out);
     const bool is_done = record.state == SubjectRecord::State::Done;
     ++(is_done ? done : failed);
     labels.push_back(subject.label);
@@ -160,7 +168,7 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
       const std::vector<ResultRow> rows = rows_in(out, subject);
       for (const ResultRow& row : rows) rows_file << long_line(row);
       table.add(i, rows);
-      if (other && subject_record(*options.against, subject).state == SubjectRecord::State::Done)
+      if (other && told_record(*options.against).state == SubjectRecord::State::Done)
         other->add(i, rows_in(*options.against, subject));
     }
     subjects_file << csv_line({subject.label, to_string(record.state), is_done ? "" : record.reason,
@@ -172,11 +180,9 @@ Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, cons
     throw voxel::Error(voxel::ErrorCode::Resource,
                        folder.path().string() + ": cannot be written: the disk may be full");
 
-  Json summary{{"octotomy", OCTOTOMY_VERSION},
-               {"subjects", subjects.size()},
-               {"done", done},
-               {"without_answer", failed},
-               {"measurements", Json::array()}};
+  Json summary{
+      {"octotomy", OCTOTOMY_VERSION}, {"subjects", subjects.size()}, {"done", done},
+      {"without_answer", failed},     {"findings", findings},        {"measurements", Json::array()}};
   for (const CohortColumn& column : table.columns()) {
     page.columns.push_back(summarised(column, subjects, other));
     summary["measurements"].push_back(page.columns.back().summary);

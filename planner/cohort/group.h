@@ -22,8 +22,9 @@ struct GroupOptions {
 
 /// Merges the subjects' answers into out/group: measurements.csv (long), wide.csv, subjects.csv (everyone,
 /// with the reason where there is no answer), summary.json, plots/*.svg, and index.html with everyone's
-/// picture. Returns summary.json. Reads a subject's folder once. Cost: linear; memory some 100 bytes a
-/// number. Throws voxel::Error, Input or Resource, and Stopped; an earlier group stays then.
+/// picture. Returns summary.json, whose findings name the subjects with files that were changed after they
+/// were written: these are not merged. Cost: linear; memory some 100 bytes a number. Throws voxel::Error,
+/// Input or Resource, and Stopped; an earlier group stays then.
 nlohmann::ordered_json merge_group(const std::vector<Subject>& subjects, const std::filesystem::path& out,
                                    const GroupOptions& options = {});
 

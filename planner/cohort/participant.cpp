@@ -3,13 +3,12 @@
 
 #include <chrono>
 #include <fcntl.h>
-#include <fstream>
-#include <iterator>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "brep/mesh/error.h"
+#include "planner/cohort/cohort_folder.h"
 #include "planner/cohort/result_rows.h"
 #include "planner/plan/evaluate.h"
 #include "planner/plan/sha256.h"
@@ -17,6 +16,7 @@
 #include "planner/report/result_folder.h"
 #include "planner/table/json.h"
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
@@ -29,7 +29,7 @@ constexpr const char* report_folder = "report";
 class Claim {
  public:
   Claim(const fs::path& out, const Subject& subject) {
-    const fs::path locks = out / "code/locks";
+    const fs::path locks = cohort_locks(out);
     fs::create_directories(locks);
     const fs::path path = locks / subject.label;
     file_ = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
@@ -50,6 +50,29 @@ std::string key_of(const Plan& plan, const Subject& subject) {
   std::string text = OCTOTOMY_VERSION "\n" + plan_sha256(Json::parse(plan.text)) + "\n";
   for (const auto& [name, path] : subject.scans) text += name + " " + sha256_of_path(path) + "\n";
   return sha256_of(text);
+}
+
+/// The bytes of a file; none where it is no regular file, as a pipe would be waited for.
+std::string bytes_of_regular(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) ? voxel::file_bytes(path) : "";
+}
+
+/// The record of a subject whose folder has lost a file of its answer, or holds it changed. None where the
+/// file is as `list`, the folder's list of what was written, has it.
+std::optional<SubjectRecord> record_of_loss(const fs::path& path, const std::string& list) {
+  const std::string line = sha256_of(bytes_of_regular(path)) + "  " + path.filename().string() + "\n";
+  if (list.find(line) != std::string::npos) return std::nullopt;
+  const bool is_there = fs::exists(fs::symlink_status(path));
+  SubjectRecord record;
+  record.state = is_there ? SubjectRecord::State::Changed : SubjectRecord::State::Missing;
+  record.reason =
+      path.string() +
+      (is_there
+           ? ": is not as Octotomy wrote it, by the list .octotomy-result beside it: move or delete it, then "
+           : ": is missing: ") +
+      "evaluate the subject again";
+  return record;
 }
 
 double peak_mb() {
@@ -144,17 +167,21 @@ std::string to_string(SubjectRecord::State state) {
       return "done";
     case SubjectRecord::State::Failed:
       return "failed";
+    case SubjectRecord::State::Changed:
+      return "changed";
     default:
       return "missing";
   }
 }
 
 SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
+  const fs::path folder = out / subject.folder();
   SubjectRecord record;
   record.reason = "no result: its process was killed, or never ran";
-  std::ifstream file(out / subject.folder() / "subject.json");
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const Json json = Json::parse(text, nullptr, false);
+  if (!fs::exists(fs::symlink_status(folder / "subject.json"))) return record;
+  const std::string list = bytes_of_regular(folder / ".octotomy-result");
+  if (const auto loss = record_of_loss(folder / "subject.json", list)) return *loss;
+  const Json json = Json::parse(bytes_of_regular(folder / "subject.json"), nullptr, false);
   if (!json.is_object() || !json.contains("state")) return record;
   const std::string state = json.value("state", "");
   if (state != "done" && state != "failed") return record;
@@ -164,6 +191,9 @@ SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
   record.seconds = json.value("seconds", 0.0);
   record.peak_mb = json.value("peak_mb", 0.0);
   record.scan_bytes = json.value("scan_bytes", std::uint64_t{0});
+  if (record.state == SubjectRecord::State::Done)
+    for (const char* name : {"rows.csv", "result.json"})
+      if (const auto loss = record_of_loss(folder / name, list)) return *loss;
   return record;
 }
 
@@ -176,15 +206,15 @@ SubjectRecord run_participant(const Plan& plan, const Subject& subject, const fs
     record.is_another_at_work = true;
     return record;
   }
+  SubjectRecord earlier = subject_record(out, subject);
+  if (earlier.state == SubjectRecord::State::Changed) return earlier;
   record.scan_bytes = subject.scan_bytes();
   record.reason = subject.trouble;
   if (record.reason.empty()) record.reason = reason_of([&] { record.key = key_of(plan, subject); });
-  if (!options.again && record.reason.empty()) {
-    SubjectRecord earlier = subject_record(out, subject);
-    if (earlier.state == SubjectRecord::State::Done && earlier.key == record.key) {
-      earlier.was_kept = true;
-      return earlier;
-    }
+  if (!options.again && record.reason.empty() && earlier.state == SubjectRecord::State::Done &&
+      earlier.key == record.key) {
+    earlier.was_kept = true;
+    return earlier;
   }
   ResultFolder folder(out / subject.folder(), needed_names(plan, options));
   if (record.reason.empty())

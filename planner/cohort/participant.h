@@ -14,7 +14,8 @@ namespace octotomy::planner {
 
 /// What became of a subject, as its folder's subject.json tells it.
 struct SubjectRecord {
-  enum class State { Done, Failed, Missing };
+  /// Changed: a file of the answer is not as it was written, so nothing is told of the subject.
+  enum class State { Done, Failed, Missing, Changed };
 
   State state = State::Missing;
   std::string reason;  ///< of what is not done
@@ -38,12 +39,14 @@ struct ParticipantOptions {
 /// Evaluates the plan on a subject's scans into out/sub-LABEL: subject.json, rows.csv (the long table's
 /// rows), result.json and picture.png; with `reports` the whole result in report/. The folder appears whole
 /// or not at all, so a killed worker leaves the earlier one. A subject that is done under the same key is
-/// kept. A failure is an answer, too: its reason is written. Throws Stopped, and voxel::Error where the disk
-/// does not take the answer.
+/// kept. One that was changed is not evaluated: its record says so. A failure is an answer, too: its reason
+/// is written. Throws Stopped, and voxel::Error where the disk does not take the answer.
 SubjectRecord run_participant(const Plan& plan, const Subject& subject, const std::filesystem::path& out,
                               const ParticipantOptions& options = {});
 
-/// The record of a subject's folder; Missing where there is none, or none that can be read.
+/// The record of a subject's folder; Missing where there is none, or a file of the answer is not there.
+/// Changed where subject.json, rows.csv or result.json is not as the folder's list has it; no pipe is waited
+/// for. Cost: a reading of these files.
 SubjectRecord subject_record(const std::filesystem::path& out, const Subject& subject);
 
 }  // namespace octotomy::planner

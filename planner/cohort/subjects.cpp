@@ -10,6 +10,7 @@
 #include "planner/table/csv.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/error.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 namespace {
@@ -96,7 +97,7 @@ std::vector<Subject> subjects_of_folder(const fs::path& input, const Plan& plan)
 }
 
 std::vector<Subject> subjects_of_table(const fs::path& input, const Plan& plan) {
-  std::ifstream file(input, std::ios::binary);
+  std::ifstream file = voxel::opened(input);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (!file) refuse(input.string() + ": cannot be read");
   std::vector<std::vector<std::string>> rows;

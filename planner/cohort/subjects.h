@@ -27,8 +27,9 @@ struct Subject {
 ///   ends in _NAME before its extension, or the subject's only scan;
 /// - a .csv: a column participant_id (or subject), and a column a plan's scan; `scan` stands for a plan's
 ///   only one. Paths are relative to the table.
-/// Throws voxel::Error (Input) with path and reason: no subjects, a label said twice or not of those letters,
-/// a missing column. A subject without its scans has its trouble told.
+/// Throws voxel::Error (Input) with path and reason: no folder or file, but a pipe or device; no subjects, a
+/// label said twice or not of those letters, a missing column. A subject without its scans has its trouble
+/// told.
 std::vector<Subject> find_subjects(const std::filesystem::path& input, const Plan& plan);
 
 /// Those with one of these labels, "sub-" before them or not; all where there are no labels. Throws

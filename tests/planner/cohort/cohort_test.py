@@ -469,6 +469,33 @@ class Cohort(unittest.TestCase):
         self.assertLess(told["hours"], 10 * sum(record["seconds"] for record in records) / 3600)
         self.assertGreater(told["peak_gb_a_job"], 0)
 
+    def test_a_pipe_is_refused_at_once(self):
+        table = self.cohort(1)
+        self.participants(table, "out")
+        pipe = self.folder / "pipe.csv"
+        os.mkfifo(pipe)
+        written = self.folder / "out/sub-0000/result.json"
+        written.unlink()
+        os.mkfifo(written)
+        for arguments in (("cohort", pipe, self.folder / "out", "participant"), ("table", pipe, "-o", self.folder / "t.csv"),
+                          ("table", written.parent, "-o", self.folder / "t.csv")):
+            run = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=False, timeout=60)
+            self.assert_refused(run, "is a pipe or device")
+
+    def test_an_answer_that_was_changed_is_named_and_not_merged(self):
+        table = self.cohort(2)
+        self.participants(table, "out")
+        (self.folder / "out/sub-0001/result.json").write_text("mine")
+        for more in ((), ("--again",)):
+            run = self.participants(table, "out", *more, check=False)
+            self.assertEqual(run.returncode, 2)
+            self.assertIn("1 of 2 subjects done", run.stdout)
+            self.assertIn("sub-0001/result.json: is not as Octotomy wrote it", run.stderr)
+        run = octotomy_program("cohort", table, self.folder / "out", "group")
+        self.assertIn("1 of 2 subjects merged", run.stdout)
+        self.assertIn("sub-0001/result.json: is not as Octotomy wrote it", run.stderr)
+        self.assertEqual({row["subject"] for row in rows(self.folder / "out/group/measurements.csv")}, {"0000"})
+
     def test_inputs_that_are_no_cohort_are_refused(self):
         table = self.cohort(2)
         for text, word in (("scan\na.nrrd\n", "participant_id"), ("participant_id\n1\n", "column 'ct'"),

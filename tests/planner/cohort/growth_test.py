@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """The group step's time and memory by the number of subjects, on simulated results of 1 KB to 100 KB each."""
+import hashlib
 import json
 import os
 import random
@@ -54,10 +55,13 @@ def simulate(folder, count, files, seed):
                     row[at[name]] = repr(float(row[at[name]]) * by)
                 text += ",".join(row) + "\n"
                 row_count += 1
-        (place / "rows.csv").write_text(text)
-        (place / "subject.json").write_text(files["subject.json"])
         size = int(1000 * 100 ** choice.random()) - len(text) - len(files["subject.json"])
-        (place / "result.json").write_text((files["result.json"] * 10)[:max(0, size)])
+        written = {"rows.csv": text, "subject.json": files["subject.json"],
+                   "result.json": (files["result.json"] * 10)[:max(0, size)]}
+        for name, content in written.items():
+            (place / name).write_text(content)
+        (place / ".octotomy-result").write_text("".join(
+            f"{hashlib.sha256(content.encode()).hexdigest()}  {name}\n" for name, content in written.items()))
         byte_count += len(text) + len(files["subject.json"]) + max(0, size)
     scans = "".join(f"{i:06d},ball.nrrd\n" for i in range(count))
     (folder / "scans.csv").write_text("participant_id,scan\n" + scans)

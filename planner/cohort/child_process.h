@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <csignal>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+namespace octotomy::planner {
+
+/// A pipe that the programs that are started do not inherit, unless they are given an end of it.
+class Pipe {
+ public:
+  /// Throws std::system_error where the system has none left.
+  Pipe();
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe();
+
+  int reading() const { return reading_; }
+  int writing() const { return writing_; }
+  void close_writing();
+
+ private:
+  int reading_ = -1, writing_ = -1;
+};
+
+struct ChildProcess {
+  std::vector<std::string> words;             ///< the program, found by PATH, and its arguments
+  std::vector<std::string> environment = {};  ///< "NAME=value", added to ours or in place of it
+  std::optional<int> inherited_file = {};     ///< a descriptor that keeps its number in the child
+  /// Sent to the child when this process ends, even by SIGKILL. What the child started is not reached.
+  int signal_at_our_end = SIGTERM;
+};
+
+struct ChildEnd {
+  int status = 0;    ///< as waitpid() tells it
+  std::string said;  ///< the first line on its standard output
+};
+
+/// Runs a program to its end; its standard input and error are ours. A stop is passed on as SIGTERM and the
+/// end waited for; then throws Stopped. Throws voxel::Error (Resource) where the program cannot be started.
+ChildEnd run_child_process(const ChildProcess& child, const std::stop_token& stop);
+
+}  // namespace octotomy::planner
