@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // 1 gather the sides of all triangles by edge; 2 count edges, fans, shells and duplicates from the sides of
-// each; 3 count degenerate triangles; 4 place each shell among the others by a ray; 5 test for intersections
-// the pairs whose boxes overlap, each by exact predicates, behind a filter in doubles that lets most pass.
-// Works on triangles rather than halfedges so that what is not manifold can be reported. Rays and pairs go
-// through one tree.
+// each; 3 count degenerate triangles; 4 place each shell among the others; 5 find the triangles that
+// intersect. Works on triangles rather than halfedges so that what is not manifold can be reported.
 #include "brep/mesh/health.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -25,8 +23,10 @@
 #include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/morton_tree.h"
-#include "brep/mesh/ray_passing.h"
+#include "brep/mesh/self_intersections.h"
+#include "brep/mesh/shell_places.h"
 #include "brep/mesh/sides.h"
+#include "brep/mesh/sure_plane.h"
 
 namespace octotomy::brep {
 namespace {
@@ -269,44 +269,6 @@ void count_coincident(const Triangles& triangles, const std::vector<std::uint32_
   health.unwelded_edges = health.boundary_edges - std::min(open, health.boundary_edges);
 }
 
-/// The sign of a sum of products whose terms add up to `permanent` without signs, in doubles; 0 where
-/// rounding may decide: eight half epsilons, and two for the rounding of the bound (Shewchuk, "Adaptive
-/// precision floating-point arithmetic and fast robust geometric predicates", 1997, has seven for a
-/// determinant of three differences). Below `least` products may be lost to underflow.
-int sure_sign(double determinant, double permanent) {
-  constexpr double half_epsilon = 0.5 * std::numeric_limits<double>::epsilon();
-  constexpr double share = 10.0 * half_epsilon;
-  constexpr double least = 1e-250;
-  const double bound = share * permanent;
-  return !(permanent > least) ? 0 : determinant > bound ? 1 : determinant < -bound ? -1 : 0;
-}
-
-/// The plane through three points, and which side of it others are on as far as doubles can tell.
-class SurePlane {
- public:
-  SurePlane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) : a_(a) {
-    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.z - a.z;
-    const double vx = c.x - a.x, vy = c.y - a.y, vz = c.z - a.z;
-    const double yz = uy * vz, zy = uz * vy, zx = uz * vx, xz = ux * vz, xy = ux * vy, yx = uy * vx;
-    nx_ = yz - zy;
-    ny_ = zx - xz;
-    nz_ = xy - yx;
-    px_ = std::abs(yz) + std::abs(zy);
-    py_ = std::abs(zx) + std::abs(xz);
-    pz_ = std::abs(xy) + std::abs(yx);
-  }
-  /// 0 where rounding may decide. A component of the normal is off by four half epsilons of its products at
-  /// most, its product with a difference by two more, and their sum by two more of each.
-  int side(const glm::dvec3& p) const {
-    const double x = p.x - a_.x, y = p.y - a_.y, z = p.z - a_.z;
-    return sure_sign(nx_ * x + ny_ * y + nz_ * z, px_ * std::abs(x) + py_ * std::abs(y) + pz_ * std::abs(z));
-  }
-
- private:
-  const glm::dvec3& a_;
-  double nx_, ny_, nz_, px_, py_, pz_;
-};
-
 /// Whether three points certainly span a triangle, by its three projections.
 bool surely_has_area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 u = b - a, v = c - a;
@@ -337,63 +299,6 @@ std::vector<std::uint8_t> mark_degenerate(const Triangles& triangles, Health& he
   return degenerate;
 }
 
-/// What places a shell among the others.
-struct Probe {
-  std::uint32_t shell = 0;
-  double volume_mm3 = 0.0;
-  /// The shell's point of largest x, one that no other shell shares where there is any.
-  glm::dvec3 p_mm{-std::numeric_limits<double>::infinity()};
-  bool touches = true;
-};
-
-/// The probe of each shell, in the order of their names.
-std::vector<Probe> probes_of(const Triangles& triangles, const std::vector<std::uint32_t>& shell,
-                             const std::vector<std::uint8_t>& touching) {
-  std::vector<Probe> probes;
-  std::vector<std::uint32_t> number(shell.size());
-  for (std::uint32_t f = 0; f < shell.size(); ++f) {
-    // A shell is named by its first triangle.
-    if (shell[f] == f) {
-      number[f] = static_cast<std::uint32_t>(probes.size());
-      probes.push_back({.shell = f});
-    }
-    Probe& probe = probes[number[shell[f]]];
-    for (const std::uint32_t v : triangles.faces[f]) {
-      const glm::dvec3& p = triangles.points_mm[v];
-      const bool touches = !touching.empty() && touching[v] != 0;
-      if (touches != probe.touches ? probe.touches : p.x > probe.p_mm.x) {
-        probe.p_mm = p;
-        probe.touches = touches;
-      }
-    }
-    const auto point = [&](std::size_t k) { return triangles.points_mm[triangles.faces[f][k]]; };
-    // About the shell's first point, which keeps digits far from the origin.
-    const glm::dvec3 origin = triangles.points_mm[triangles.faces[shell[f]][0]];
-    probe.volume_mm3 += glm::dot(point(0) - origin, glm::cross(point(1) - origin, point(2) - origin)) / 6.0;
-  }
-  return probes;
-}
-
-/// How often the shells other than the probe's wind about it.
-int winding_around(const Probe& probe, const Triangles& triangles, const std::vector<std::uint32_t>& shell,
-                   const MortonTree& tree) {
-  int winding = 0;
-  const glm::dvec3& p = probe.p_mm;
-  tree.visit(
-      [&](const OuterBox& box) {
-        return !(box.high.x < p.x || box.low.y > p.y || box.high.y < p.y || box.low.z > p.z ||
-                 box.high.z < p.z);
-      },
-      [&](std::uint32_t f) {
-        if (shell[f] == probe.shell) return;
-        const auto& [a, b, c] = triangles.faces[f];
-        const RayPassing passing =
-            passing_of(p, triangles.points_mm[a], triangles.points_mm[b], triangles.points_mm[c]);
-        winding += passing == RayPassing::Leaving ? 1 : passing == RayPassing::Entering ? -1 : 0;
-      });
-  return winding;
-}
-
 /// Counts shells on the wrong side of the others: the shells around one must add up to no winding where it is
 /// turned outward, to one where it is turned inward. Returns the total volume. Needs a closed, manifold,
 /// consistently wound mesh, and a tree where there are several shells.
@@ -401,131 +306,22 @@ double place_shells(const Triangles& triangles, const std::vector<std::uint32_t>
                     const std::vector<std::uint32_t>& shell, const MortonTree* tree, Health& health,
                     Offenders& offenders) {
   assert(health.closed && health.nonmanifold_edges == 0 && health.misoriented_edges == 0);
-  const std::vector<Probe> probes =
-      probes_of(triangles, shell,
-                health.shells > 1 ? shared_points(triangles, first, shell) : std::vector<std::uint8_t>());
-  std::vector<std::uint8_t> misplaced(probes.size(), 0);
-  tbb::parallel_for(std::size_t{0}, probes.size(), [&](std::size_t i) {
-    const int winding = probes.size() > 1 ? winding_around(probes[i], triangles, shell, *tree) : 0;
-    misplaced[i] = winding != (probes[i].volume_mm3 > 0.0 ? 0 : 1);
-  });
   double volume_mm3 = 0.0;
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    volume_mm3 += probes[i].volume_mm3;
-    if (misplaced[i] == 0) continue;
+  for (const ShellPlace& place : shell_places({triangles, first, shell}, tree)) {
+    volume_mm3 += place.volume_mm3;
+    if (place.winding == (place.volume_mm3 > 0.0 ? 0 : 1)) continue;
     ++health.misplaced_shells;
-    Offenders::note(offenders.misplaced, probes[i].shell);
+    Offenders::note(offenders.misplaced, place.shell);
   }
   return volume_mm3;
 }
 
-/// Whether two triangles meet elsewhere than in the corners or the side they share.
-class MeetsElsewhere {
- public:
-  explicit MeetsElsewhere(const Triangles& triangles) : triangles_(triangles) {}
-
-  bool operator()(std::uint32_t f, std::uint32_t g) const {
-    const auto &a = triangles_.faces[f], &b = triangles_.faces[g];
-    // Corners of each that the other has too, and one that it has not.
-    std::size_t shared = 0, own_a = 0, own_b = 0, shared_a = 0, shared_b = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto at = std::find(b.begin(), b.end(), a[i]);
-      if (at == b.end()) {
-        own_a = i;
-        continue;
-      }
-      ++shared;
-      shared_a = i;
-      shared_b = static_cast<std::size_t>(at - b.begin());
-    }
-    if (shared == 3) return true;
-    // Neither reaches through the other's plane: they meet in the corner they share at most.
-    if (shared < 2 &&
-        (is_beside(b, shared == 1 ? shared_b : 3, a) || is_beside(a, shared == 1 ? shared_a : 3, b)))
-      return false;
-    if (shared == 0) return CGAL::do_intersect(triangle(a), triangle(b));
-    if (shared == 1)
-      return CGAL::do_intersect(triangle(a), opposite(b, shared_b)) ||
-             CGAL::do_intersect(triangle(b), opposite(a, shared_a));
-    assert(shared == 2);
-    for (std::size_t i = 0; i < 3; ++i)
-      if (std::find(a.begin(), a.end(), b[i]) == a.end()) own_b = i;
-    if (plane_of(a).side(at(b[own_b])) != 0) return false;
-    // Folded flat onto each other: coplanar, with both free corners on one side of the shared edge.
-    const Kernel::Point_3 p = point(a[(own_a + 1) % 3]), q = point(a[(own_a + 2) % 3]);
-    const Kernel::Point_3 r = point(a[own_a]), s = point(b[own_b]);
-    return CGAL::coplanar(p, q, r, s) && CGAL::coplanar_orientation(p, q, r, s) == CGAL::POSITIVE;
-  }
-
- private:
-  using Face = std::array<std::uint32_t, 3>;
-  const glm::dvec3& at(std::uint32_t v) const { return triangles_.points_mm[v]; }
-  SurePlane plane_of(const Face& f) const { return {at(f[0]), at(f[1]), at(f[2])}; }
-  /// Whether all corners of f but one are certainly on one side of g's plane.
-  bool is_beside(const Face& f, std::size_t but, const Face& g) const {
-    const SurePlane plane = plane_of(g);
-    int side = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (k == but) continue;
-      const int of_corner = plane.side(at(f[k]));
-      if (of_corner == 0 || of_corner == -side) return false;
-      side = of_corner;
-    }
-    return true;
-  }
-  Kernel::Point_3 point(std::uint32_t v) const { return exact(triangles_.points_mm[v]); }
-  Kernel::Triangle_3 triangle(const Face& f) const { return {point(f[0]), point(f[1]), point(f[2])}; }
-  Kernel::Segment_3 opposite(const Face& f, std::size_t corner) const {
-    return {point(f[(corner + 1) % 3]), point(f[(corner + 2) % 3])};
-  }
-
-  const Triangles& triangles_;
-};
-
-/// Counts pairs of triangles and keeps the first of them, since there may be as many as the square of
-/// triangles.
-class FirstPairs {
- public:
-  using Pair = std::pair<std::uint32_t, std::uint32_t>;
-
-  void add(const Pair& pair) {
-    ++count_;
-    first_.push_back(pair);
-    if (first_.size() == 2 * crossing_limit) keep_first();
-  }
-  void add(const FirstPairs& other) {
-    count_ += other.count_;
-    first_.insert(first_.end(), other.first_.begin(), other.first_.end());
-    keep_first();
-  }
-  std::size_t count() const { return count_; }
-  const std::vector<Pair>& first() const { return first_; }  ///< ascending once others were added
-
- private:
-  void keep_first() {
-    std::sort(first_.begin(), first_.end());
-    first_.resize(std::min(first_.size(), crossing_limit));
-  }
-
-  std::size_t count_ = 0;
-  std::vector<Pair> first_;
-};
-
 void test_intersections(const Triangles& triangles, const MortonTree& tree,
                         const std::vector<std::uint8_t>& degenerate, Health& health) {
-  tbb::enumerable_thread_specific<FirstPairs> found;
-  const MeetsElsewhere meets_elsewhere(triangles);
-  tree.visit_own_pairs([&](std::uint32_t f, std::uint32_t g) {
-    if (degenerate[f] != 0 || degenerate[g] != 0) return;
-    const FirstPairs::Pair pair = std::minmax(f, g);
-    if (meets_elsewhere(pair.first, pair.second)) found.local().add(pair);
-  });
-  FirstPairs meeting;
-  for (const FirstPairs& part : found) meeting.add(part);
-
+  const SelfIntersections found = self_intersections({triangles, tree, degenerate, crossing_limit});
   health.intersections_tested = true;
-  health.self_intersections = meeting.count();
-  for (const auto& [f, g] : meeting.first())
+  health.self_intersections = found.count;
+  for (const auto& [f, g] : found.first)
     health.crossing.emplace_back(static_cast<int>(f), static_cast<int>(g));
 }
 

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "brep/mesh/self_intersections.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <tbb/global_control.h>
+
+#include "tests/brep/shapes.h"
+
+namespace octotomy::brep {
+namespace {
+
+using FacePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+constexpr std::size_t all = 1'000'000;
+
+/// Of lattice points below 2^20: exactly.
+std::vector<std::uint8_t> without_area(const Triangles& t) {
+  std::vector<std::uint8_t> marks;
+  for (const auto& [a, b, c] : t.faces)
+    marks.push_back(glm::cross(t.points_mm[b] - t.points_mm[a], t.points_mm[c] - t.points_mm[a]) ==
+                    glm::dvec3(0.0));
+  return marks;
+}
+
+SelfIntersections found(const Triangles& t, std::size_t most_first = all) {
+  const MortonTree tree(t);
+  const std::vector<std::uint8_t> degenerate = without_area(t);
+  return self_intersections({t, tree, degenerate, most_first});
+}
+
+/// By exact predicates without a filter of ours.
+bool meet_elsewhere(const Triangles& t, std::array<std::uint32_t, 3> f, std::array<std::uint32_t, 3> g) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  const auto point = [&](std::uint32_t v) {
+    return Kernel::Point_3(t.points_mm[v].x, t.points_mm[v].y, t.points_mm[v].z);
+  };
+  const auto triangle = [&](const auto& of) {
+    return Kernel::Triangle_3(point(of[0]), point(of[1]), point(of[2]));
+  };
+  const auto last = [&](const auto& of) { return Kernel::Segment_3(point(of[1]), point(of[2])); };
+  // Shared corners first.
+  const auto shared =
+      std::partition(f.begin(), f.end(),
+                     [&](std::uint32_t v) { return std::find(g.begin(), g.end(), v) != g.end(); }) -
+      f.begin();
+  std::partition(g.begin(), g.end(),
+                 [&](std::uint32_t v) { return std::find(f.begin(), f.end(), v) != f.end(); });
+  if (shared == 0) return CGAL::do_intersect(triangle(f), triangle(g));
+  if (shared == 1)
+    return CGAL::do_intersect(triangle(f), last(g)) || CGAL::do_intersect(triangle(g), last(f));
+  if (shared == 3) return true;
+  const auto p = point(f[0]), q = point(f[1]), r = point(f[2]), s = point(g[2]);
+  return CGAL::coplanar(p, q, r, s) && CGAL::coplanar_orientation(p, q, r, s) == CGAL::POSITIVE;
+}
+
+FacePairs one_by_one(const Triangles& t) {
+  const std::vector<std::uint8_t> degenerate = without_area(t);
+  FacePairs pairs;
+  for (std::uint32_t f = 0; f < t.faces.size(); ++f)
+    for (std::uint32_t g = f + 1; g < t.faces.size(); ++g)
+      if (degenerate[f] == 0 && degenerate[g] == 0 && meet_elsewhere(t, t.faces[f], t.faces[g]))
+        pairs.emplace_back(f, g);
+  return pairs;
+}
+
+/// A flat fan of triangles about point 0 on a lattice, one for each pair of neighbouring rim points.
+Triangles fan(std::uint32_t count) {
+  Triangles t;
+  t.points_mm.push_back({0, 0, 0});
+  for (std::uint32_t k = 0; k <= count; ++k) {
+    const double angle = 6.0 * k / count;
+    t.points_mm.push_back({std::round(1e5 * std::cos(angle)), std::round(1e5 * std::sin(angle)), 0});
+    if (k > 0) t.faces.push_back({0, k, k + 1});
+  }
+  return t;
+}
+
+TEST(SelfIntersections, AFanOfManyTrianglesHasNone) {
+  EXPECT_EQ(found(fan(500)).count, 0u);
+}
+
+TEST(SelfIntersections, AFanThatOverlapsItselfMeetsAtTheOverlap) {
+  Triangles t = fan(100);
+  t.points_mm.push_back({-70000, 3000, 10});
+  t.points_mm.push_back({70000, 3000, -10});
+  t.faces.push_back({0, 102, 103});
+  EXPECT_EQ(found(t).first, one_by_one(t));
+  EXPECT_GT(found(t).count, 0u);
+}
+
+TEST(SelfIntersections, ABladeThroughAFanIsFound) {
+  Triangles t = fan(200);
+  const auto v = static_cast<std::uint32_t>(t.points_mm.size());
+  t.points_mm.insert(t.points_mm.end(), {{-90000, -5, -7}, {90000, 11, -7}, {0, 0, 100}});
+  t.faces.push_back({v, v + 1, v + 2});
+  const SelfIntersections crossing = found(t);
+  EXPECT_EQ(crossing.first, one_by_one(t));
+  EXPECT_GT(crossing.count, 1u);
+}
+
+TEST(SelfIntersections, TrianglesAboutHubsMeetAsEachPairSays) {
+  std::size_t meeting = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    std::mt19937 random(seed);
+    // Few places, so that triangles are coplanar, equal, without area and of both hubs at times.
+    std::uniform_int_distribution<int> place(-3, 3), number(0, 39), hub(0, 4);
+    Triangles t;
+    for (int k = 0; k < 40; ++k) t.points_mm.emplace_back(place(random), place(random), place(random));
+    const auto any = [&] { return static_cast<std::uint32_t>(number(random)); };
+    for (int k = 0; k < 220; ++k) {
+      const int of = hub(random);
+      t.faces.push_back({of > 3 ? any() : static_cast<std::uint32_t>(of / 2), any(), any()});
+    }
+    for (const std::uint32_t of : {0u, 1u})
+      ASSERT_GE(
+          std::count_if(t.faces.begin(), t.faces.end(), [&](const auto& face) { return face[0] == of; }), 64);
+    const SelfIntersections crossing = found(t);
+    EXPECT_EQ(crossing.first, one_by_one(t)) << "seed " << seed;
+    EXPECT_EQ(crossing.count, crossing.first.size()) << "seed " << seed;
+    meeting += crossing.count;
+  }
+  EXPECT_GT(meeting, 0u);
+}
+
+TEST(SelfIntersections, FarFromTheOriginAFanIsTheSame) {
+  Triangles t = fan(100);
+  t.faces.push_back({0, 20, 50});
+  const SelfIntersections here = found(t);
+  for (glm::dvec3& p : t.points_mm) p += glm::dvec3(1 << 30, -(1 << 30), 1 << 20);
+  EXPECT_EQ(found(t).first, here.first);
+  EXPECT_GT(here.count, 0u);
+}
+
+TEST(SelfIntersections, TheFirstAreKeptOfMany) {
+  Triangles t;
+  t.points_mm = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  t.faces.assign(90, {0, 1, 2});
+  const SelfIntersections crossing = found(t, 100);
+  EXPECT_EQ(crossing.count, 90u * 89u / 2);
+  FacePairs first = one_by_one(t);
+  first.resize(100);
+  EXPECT_EQ(crossing.first, first);
+}
+
+TEST(SelfIntersections, ThreadsDoNotChangeTheAnswer) {
+  Triangles t = shapes::together(fan(300), fan(200));
+  for (std::size_t v = 302; v < t.points_mm.size(); ++v) t.points_mm[v].z = t.points_mm[v].x / 4;
+  const SelfIntersections many = found(t, 100);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const SelfIntersections single = found(t, 100);
+  EXPECT_GT(many.count, 100u);
+  EXPECT_EQ(many.count, single.count);
+  EXPECT_EQ(many.first, single.first);
+}
+
+}  // namespace
+}  // namespace octotomy::brep
