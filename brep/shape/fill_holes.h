@@ -21,7 +21,12 @@ struct Hole {
   std::vector<std::array<std::uint32_t, 3>> faces;
 };
 
-/// The holes of a mesh, by their lowest edge. Cost: a border's length cubed at worst.
+/// The holes of a mesh, by their lowest edge. Borders of up to 128 sides are closed by the triangles of least
+/// sharpness and area. Of longer ones up to 1024 sides those of the border's Delaunay tetrahedra are
+/// searched. Where that finds none, and on still longer borders, corners are cut off before such a search,
+/// those with the shortest third side first; the triangles may then be sharper than need be or meet the
+/// surface. Cost: n log n in a border's sides, and the search: about 0.1 s, and 7 s for the worst border
+/// known.
 std::vector<Hole> holes(const Mesh& mesh, const std::optional<double>& longest_mm);
 
 }  // namespace octotomy::brep
