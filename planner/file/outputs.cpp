@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/file/outputs.h"
 
+#include <fstream>
 #include <stdexcept>
 
 #include "brep/mesh/error.h"
 #include "planner/file/file_kind.h"
+#include "voxel/scan/write_scene.h"
 #include "voxel/space/error.h"
 
 namespace octotomy::planner {
@@ -24,6 +26,17 @@ std::string renamed(std::string message, const std::string& hidden, const std::s
   return message;
 }
 
+/// Whether a file begins as the surfaces that Octotomy writes: with a comment, in .glb with its generator.
+bool is_own_surface(const fs::path& file) {
+  if (!fs::is_regular_file(fs::symlink_status(file))) return false;
+  std::string head(128, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return head.find("octotomy, ") != std::string::npos ||
+         head.find("\"generator\":\"octotomy\"") != std::string::npos;
+}
+
 }  // namespace
 
 void need_unread(const fs::path& out, const std::vector<fs::path>& read) {
@@ -32,6 +45,14 @@ void need_unread(const fs::path& out, const std::vector<fs::path>& read) {
     if (fs::equivalent(out, each, is_none))
       throw std::runtime_error(out.string() + ": would replace " + each.string() +
                                ", which is read: choose another name");
+}
+
+void need_untyped_surface(const fs::path& out, const std::vector<fs::path>& read) {
+  need_folder_of(out);
+  need_unread(out, read);
+  if (fs::exists(fs::symlink_status(out)) && !is_own_surface(out))
+    throw std::runtime_error(out.string() +
+                             ": is there already and not Octotomy's: move it away, or choose another name");
 }
 
 void need_outputs(const std::vector<fs::path>& outs, const std::vector<fs::path>& read) {
@@ -48,7 +69,8 @@ void need_outputs(const std::vector<fs::path>& outs, const std::vector<fs::path>
 }
 
 void Outputs::write(const fs::path& out, const std::function<void(const fs::path& file)>& write) {
-  const fs::path file = staged_.beside(out);
+  const fs::path place = staged_.beside(out);
+  const fs::path file = place.parent_path() / voxel::staged_scene_name(out);
   const auto shown = [&](const std::exception& error) {
     return renamed(error.what(), file.string(), out.string());
   };
@@ -63,6 +85,14 @@ void Outputs::write(const fs::path& out, const std::function<void(const fs::path
   } catch (const brep::Error& error) {
     throw brep::Error(error.code(), shown(error));
   }
+  if (file != place) fs::rename(file, place);
+  if (const auto samples = voxel::own_data_file(out)) older_samples_.push_back(*samples);
+}
+
+void Outputs::commit() {
+  staged_.commit();
+  std::error_code stays;
+  for (const fs::path& samples : older_samples_) fs::remove(samples, stays);
 }
 
 }  // namespace octotomy::planner

@@ -11,12 +11,12 @@
 #include "planner/file/label_table.h"
 #include "planner/file/mesh_file.h"
 #include "planner/file/output_path.h"
+#include "planner/file/outputs.h"
 #include "planner/measure/result_json.h"
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/label_map.h"
 #include "voxel/space/disk_need.h"
-#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner {
 namespace {
@@ -40,19 +40,39 @@ void check(const Surfaces& surfaces, const Place& place) {
     if (label < 1 || label > 32767) place.at("labels").refuse("a label is from 1 to 32767");
 }
 
-brep::PartedSurface surfaces_of(const Surfaces& asked, const voxel::Scene& scene, const LabelTable& table,
-                                const voxel::Progress& progress) {
-  brep::PartedSurface made;
+/// Of labels.
+using Names = std::map<int, std::string>;
+
+/// What `work` makes of a scene; refuses a scene that is no label map.
+template <typename Work>
+auto of_label_map(const voxel::Scene& scene, const Work& work) {
   try {
-    made =
-        convert::label_surfaces(scene, {{asked.labels.begin(), asked.labels.end()}, asked.smooth, progress});
+    return work();
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(scene.source + ": is no label map: " + error.what());
   }
-  for (auto& [label, name] : made.names) {
-    const auto known = table.names.find(label);
-    name = known == table.names.end() ? "label " + std::to_string(label) : known->second;
+}
+
+/// The names of the labels that have a surface; "label 5" where the table has none.
+Names names_of(const Surfaces& asked, const voxel::Scene& scene, const LabelTable& table) {
+  const std::set<int> wanted(asked.labels.begin(), asked.labels.end());
+  Names names;
+  for (const voxel::Label& label : of_label_map(scene, [&] { return voxel::labels(scene); })) {
+    if (!wanted.empty() && !wanted.contains(label.number)) continue;
+    const auto known = table.names.find(label.number);
+    names[label.number] =
+        known == table.names.end() ? "label " + std::to_string(label.number) : known->second;
   }
+  return names;
+}
+
+brep::PartedSurface surfaces_of(const Surfaces& asked, const voxel::Scene& scene, const Names& names,
+                                const voxel::Progress& progress) {
+  brep::PartedSurface made = of_label_map(scene, [&] {
+    return convert::label_surfaces(scene,
+                                   {{asked.labels.begin(), asked.labels.end()}, asked.smooth, progress});
+  });
+  made.names = names;
   return made;
 }
 
@@ -110,15 +130,21 @@ Json parted_json(const brep::PartedSurface& made, const Sizes& sizes, const voxe
 /// Parts whose surface holds another volume than their samples: layers between others, which are thin.
 std::vector<std::string> findings_of(const Json& json) {
   constexpr double told_share = 0.1;
+  constexpr std::size_t most_told = 8;
   std::vector<std::string> findings;
+  std::size_t more = 0;
   for (const Json& part : json["parts"]) {
     const double surface = part["volume_mm3"].get<double>(),
                  samples = part["volume_samples_mm3"].get<double>();
-    if (std::abs(surface - samples) > told_share * samples)
+    if (!(std::abs(surface - samples) > told_share * samples)) continue;
+    if (findings.size() == most_told)
+      ++more;
+    else
       findings.push_back(part["name"].get<std::string>() + ": the surface holds " + grouped(surface, 0) +
                          " mm\u00b3, its samples " + grouped(samples, 0) +
                          " mm\u00b3: it is thin, and smoothing changed it; --smooth 0 changes less");
   }
+  if (more > 0) findings.push_back(std::to_string(more) + " more surfaces differ as much from their samples");
   return findings;
 }
 
@@ -132,45 +158,69 @@ std::string file_word(const std::string& name) {
   return word;
 }
 
-/// One file a part: `out` with the part's name in place of {name}. Two parts of one name have their numbers,
+/// A file a part: `out` with the part's name in place of {name}. Two parts of one name have their numbers,
 /// too.
-std::vector<fs::path> write_each(const brep::PartedSurface& made, const fs::path& out) {
-  std::vector<fs::path> written;
-  voxel::StagedFiles staged(out.parent_path());
+std::map<int, fs::path> files_of_parts(const Names& names, const fs::path& out) {
+  std::map<int, fs::path> files;
   std::set<std::string> used;
-  for (const auto& [part, name] : made.names) {
+  for (const auto& [part, name] : names) {
     std::string file = out.filename().string();
     std::string word = file_word(name);
     while (!used.insert(word).second) word += "_" + std::to_string(part);
     file.replace(file.find(name_mark), std::string(name_mark).size(), word);
-    brep::write_mesh(brep::surface_of_part(made, part), staged.folder() / file);
-    written.push_back(out.parent_path() / file);
+    files[part] = out.parent_path() / file;
   }
-  staged.commit();
-  return written;
+  return files;
 }
 
-/// Writes the surfaces; returns the files.
-std::vector<fs::path> write_all(const brep::PartedSurface& made, const fs::path& out, Timings& timings) {
-  const Stopwatch watch(timings, "write");
+bool is_of_parts(const fs::path& out) {
+  return out.filename().string().find(name_mark) != std::string::npos;
+}
+
+/// The files that the verb writes; refuses those that nobody typed and that cannot be written.
+std::vector<fs::path> need_files(const Surfaces& asked, const Names& names) {
+  if (!is_of_parts(asked.out)) return {asked.out};
+  std::vector<fs::path> files;
+  for (const auto& [part, file] : files_of_parts(names, asked.out)) {
+    need_untyped_surface(file, {asked.scan.name, asked.names});
+    files.push_back(file);
+  }
+  return files;
+}
+
+void need_disk_of(const brep::PartedSurface& made, const fs::path& out) {
   voxel::need_disk(out,
                    brep::least_mesh_bytes(made.triangles.points_mm.size(), made.triangles.faces.size(), out));
-  if (out.filename().string().find(name_mark) != std::string::npos) return write_each(made, out);
-  voxel::StagedFiles staged(out.parent_path());
-  brep::write_parts(made, staged.folder() / out.filename());
-  staged.commit();
-  return {out};
+}
+
+void write_one(const brep::PartedSurface& made, const fs::path& out, Timings& timings) {
+  const Stopwatch watch(timings, "write");
+  need_disk_of(made, out);
+  Outputs outputs;
+  outputs.write(out, [&](const fs::path& file) { brep::write_parts(made, file); });
+  outputs.commit();
+}
+
+void write_each(const brep::PartedSurface& made, const fs::path& out, Timings& timings) {
+  const Stopwatch watch(timings, "write");
+  need_disk_of(made, out);
+  Outputs outputs;
+  for (const auto& [part, path] : files_of_parts(made.names, out)) {
+    const brep::Triangles surface = brep::surface_of_part(made, part);
+    outputs.write(path, [&](const fs::path& file) { brep::write_mesh(surface, file); });
+  }
+  outputs.commit();
 }
 
 void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
   made.path = output_path(asked.path).generic_string();
   const voxel::Scene& scene = bench.samples(asked.scan.name);
   const LabelTable table = asked.names.empty() ? label_table_of(scene.source) : read_label_table(asked.names);
-  const brep::PartedSurface parted =
-      surfaces_of(asked, scene, table, bench.progress("surfaces of " + asked.scan.name));
+  const brep::PartedSurface parted = surfaces_of(asked, scene, names_of(asked, scene, table),
+                                                 bench.progress("surfaces of " + asked.scan.name));
   if (parted.triangles.faces.empty())
     return made.findings.push_back("not written: '" + asked.scan.name + "' has no labels");
-  write_all(parted, output_file(bench.folder, made.path), bench.timings);
+  write_one(parted, output_file(bench.folder, made.path), bench.timings);
   made.written = true;
   made.content = grouped(static_cast<double>(parted.names.size()), 0) + " labels, " +
                  grouped(static_cast<double>(parted.triangles.faces.size()), 0) + " triangles";
@@ -179,8 +229,7 @@ void write(const Surfaces& asked, const AnswerBench& bench, Exported& made) {
 }
 
 FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
-  const std::string name = asked.out.filename().string();
-  if (name.find(name_mark) == std::string::npos && !brep::is_parts_file(asked.out))
+  if (!is_of_parts(asked.out) && !brep::is_parts_file(asked.out))
     throw std::runtime_error(asked.out.string() +
                              ": several surfaces are one .vtp, .obj or .glb file; or one file a label: put " +
                              name_mark + " into its name");
@@ -189,14 +238,17 @@ FileAnswer on_files(const Surfaces& asked, const FileBench& bench) {
   const fs::path file = asked.scan.name;
   const LabelTable table = asked.names.empty() ? label_table_of(file) : read_label_table(asked.names);
   const voxel::Scene scene = bench.read_scan(file);
+  const Names names = names_of(asked, scene, table);
+  const std::vector<fs::path> files = need_files(asked, names);
   brep::PartedSurface made;
   {
     const Stopwatch watch(bench.timings, "surfaces");
-    made = surfaces_of(asked, scene, table, bench.progress("surfaces"));
+    made = surfaces_of(asked, scene, names, bench.progress("surfaces"));
   }
   if (made.triangles.faces.empty())
     throw std::runtime_error(file.string() + ": every sample is 0, so there are no labels");
-  const std::vector<fs::path> files = write_all(made, asked.out, bench.timings);
+  is_of_parts(asked.out) ? write_each(made, asked.out, bench.timings)
+                         : write_one(made, asked.out, bench.timings);
   FileAnswer answer{{{"kind", "surfaces of labels"}, {"path", asked.out.string()}}};
   answer.json["files"] = Json::array();
   for (const fs::path& each : files) answer.json["files"].push_back(each.string());
@@ -228,7 +280,8 @@ Operation surfaces_operation() {
                  .from(0)
                  .to(4))
       .verb_takes(field("out", &Surfaces::out,
-                        "One .vtp, .obj or .glb file of all; or one file a label, with {name} in its name.")
+                        "One .vtp, .obj or .glb file of all; or one file a label, with {name} in its name, "
+                        "which replaces only a file that Octotomy wrote.")
                       .required())
       .verb_takes(
           field("names", &Surfaces::names,

@@ -92,10 +92,8 @@ std::filesystem::path numbered(const std::filesystem::path& out, std::size_t num
   return out.parent_path() / (out.stem().string() + "-" + std::to_string(number) + out.extension().string());
 }
 
-/// Refuses a piece whose file cannot be made or is the surface that is read.
 void need_piece(const Separate& asked, std::size_t number) {
-  need_folder_of(numbered(asked.out, number));
-  need_unread(numbered(asked.out, number), {asked.object.name});
+  need_untyped_surface(numbered(asked.out, number), {asked.object.name});
 }
 
 FileAnswer on_files(const Separate& asked, const FileBench& bench) {
@@ -167,7 +165,7 @@ Operation separate_operation() {
           field("least_mm2", &Separate::least_mm2, "Leaves out pieces of a smaller area.").from(0.0).to(1e9))
       .verb_takes(field("out", &Separate::out,
                         "A .stl, .ply, .obj, .off, .vtp or .glb file; without --piece each piece's is "
-                        "numbered: parts-1.ply.")
+                        "numbered, parts-1.ply, and replaces only a file that Octotomy wrote.")
                       .required())
       .example(R"({"id": "condyle", "do": "separate", "object": "rest", "piece": 2})")
       .on_files("octotomy separate scan.vtp --least 10 -o parts.ply", on_files)

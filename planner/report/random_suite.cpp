@@ -4,10 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstdlib>
 #include <mutex>
 #include <optional>
-#include <system_error>
 #include <tbb/parallel_for.h>
 
 #include "planner/plan/evaluate.h"
@@ -21,6 +19,7 @@
 #include "voxel/filter/label_map.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/solid/combine.h"
+#include "voxel/space/unfinished_folder.h"
 
 namespace octotomy::planner {
 namespace {
@@ -31,26 +30,14 @@ using verify::Verdict;
 using voxel::Expression;
 using voxel::Octree;
 
-/// A folder that is gone when its owner is.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string path = (std::filesystem::temp_directory_path() / "octotomy-XXXXXX").string();
-    if (::mkdtemp(path.data()) == nullptr)
-      throw std::system_error(errno, std::generic_category(), "a temporary folder " + path);
-    path_ = path;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  const std::filesystem::path& path() const { return path_; }
+constexpr const char* scans_prefix = "octotomy-random-";
 
- private:
-  std::filesystem::path path_;
-};
+/// The system's folder for temporary files, without what killed runs left there.
+std::filesystem::path cleared_temporary_folder() {
+  std::filesystem::path folder = std::filesystem::temp_directory_path();
+  voxel::remove_abandoned(folder, scans_prefix);
+  return folder;
+}
 
 std::string letter(int leaf) {
   return std::string(1, static_cast<char>('a' + leaf));
@@ -375,7 +362,7 @@ class Asking {
   }
 
   const RandomSuiteOptions& options_;
-  TemporaryFolder folder_;
+  voxel::UnfinishedFolder folder_{cleared_temporary_folder(), scans_prefix};
   std::vector<RandomScan> scans_;
   std::atomic<std::size_t> done_ = 0;
   std::mutex reporting_, keeping_;

@@ -42,17 +42,35 @@ bool is_file(const fs::directory_entry& entry) {
   return entry.is_regular_file(ignored) || (entry.is_symlink(ignored) && !entry.exists(ignored));
 }
 
-/// The files of a folder and its subfolders, sorted.
-std::vector<fs::path> files_of(const fs::path& path) {
-  if (!is_folder(path)) return {path};
-  std::vector<fs::path> files;
-  std::error_code error;
+/// Whether a name is that of a folder of staged files, which are not in their place yet, or of the list of a
+/// result's files.
+bool is_of_octotomy(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with('.') && name.find(".octotomy-") != std::string::npos;
+}
+
+struct FolderFiles {
+  std::vector<fs::path> files;   ///< of a folder and its subfolders, sorted
+  std::vector<fs::path> staged;  ///< folders of files that a run has not put in their place, sorted
+};
+
+FolderFiles files_of(const fs::path& path) {
+  if (!is_folder(path)) return {{path}, {}};
+  FolderFiles found;
+  std::error_code error, is_closed;
   fs::recursive_directory_iterator entry(path, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
-    if (is_file(*entry)) files.push_back(entry->path());
+    if (is_of_octotomy(entry->path())) {
+      entry.disable_recursion_pending();
+      if (is_folder(entry->path()) && !fs::is_empty(entry->path(), is_closed))
+        found.staged.push_back(entry->path());
+    } else if (is_file(*entry)) {
+      found.files.push_back(entry->path());
+    }
   if (error) refuse(path, "the folder cannot be listed: " + error.message());
-  std::sort(files.begin(), files.end());
-  return files;
+  std::sort(found.files.begin(), found.files.end());
+  std::sort(found.staged.begin(), found.staged.end());
+  return found;
 }
 
 class SeriesAssembler {
@@ -96,32 +114,41 @@ class SeriesAssembler {
   }
 
   std::vector<DicomSlice> read_headers() {
-    const std::vector<fs::path> files = files_of(path_);
+    const FolderFiles folder = files_of(path_);
+    const std::vector<fs::path>& files = folder.files;
     std::vector<std::variant<std::vector<DicomSlice>, NoSlice>> headers(files.size());
     for_each_index(files.size(), options_.progress,
                    [&](std::size_t i) { headers[i] = read_dicom_slices(files[i]); });
     std::vector<DicomSlice> found;
     Skipped skipped;
+    const auto skip = [&](const std::string& name, const NoSlice& none) {
+      skipped[none.kind].names.push_back(name);
+      skipped[none.kind].reasons.push_back(name + " (" + none.reason + ")");
+    };
     for (std::size_t i = 0; i < files.size(); ++i) {
-      const std::string name =
-          (is_folder(path_) ? files[i].lexically_relative(path_) : files[i].filename()).string();
+      const std::string name = name_of(files[i]);
       if (auto* slices = std::get_if<std::vector<DicomSlice>>(&headers[i])) {
         for (DicomSlice& slice : *slices) {
           slice.name = name + (slices->size() == 1 ? "" : " frame " + std::to_string(slice.frame + 1));
           found.push_back(std::move(slice));
         }
       } else {
-        const NoSlice& none = std::get<NoSlice>(headers[i]);
-        skipped[none.kind].names.push_back(name);
-        skipped[none.kind].reasons.push_back(name + " (" + none.reason + ")");
+        skip(name, std::get<NoSlice>(headers[i]));
       }
     }
+    for (const fs::path& staged : folder.staged)
+      skip(name_of(staged), {"files that another run did not finish or still writes"});
     if (found.empty() && !is_folder(path_))
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
-    if (found.empty()) refuse_empty(files.size(), skipped);
+    if (found.empty()) refuse_empty(files.size() + folder.staged.size(), skipped);
     audit_skipped(skipped);
     return found;
+  }
+
+  /// For people: the path below the scan's folder.
+  std::string name_of(const fs::path& file) const {
+    return (is_folder(path_) ? file.lexically_relative(path_) : file.filename()).string();
   }
 
   struct SkippedFiles {

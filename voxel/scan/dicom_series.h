@@ -32,7 +32,8 @@ struct DicomStack {
 /// Reads the headers below a path, chooses the series that the options ask for, and keeps the slices that
 /// form a stack. The audit names the files that were left out and why: stray_files, unusable_images,
 /// damaged_files, series, localizers, patient, study, modality, frame_of_reference, size, orientation,
-/// stacks, pixel_spacing, duplicates; then audit_stack()'s lines. Throws as read_scene().
+/// stacks, pixel_spacing, duplicates; then audit_stack()'s lines. Folders of staged files count as stray
+/// files. Throws as read_scene().
 DicomStack stack_of_series(const std::filesystem::path& path, const ReadOptions& options,
                            std::vector<Finding>& audit);
 

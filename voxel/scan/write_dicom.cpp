@@ -223,39 +223,65 @@ std::string slice_name(int k) {
   return name;
 }
 
-/// A folder that is removed again where no slice came into it.
-class MadeFolder {
+/// Whether write_dicom_series() gives a file such a name.
+bool is_slice_name(const std::string& name) {
+  return name.starts_with("slice_") && name.ends_with(".dcm");
+}
+
+/// A folder of slices that takes its name when all are written. Slices for a folder that is there are staged
+/// in it instead: another program may stand in that folder, or a disk be mounted there.
+class StagedSeries {
  public:
-  explicit MadeFolder(const fs::path& folder) : folder_(folder) {
+  explicit StagedSeries(const fs::path& folder)
+      : folder_(folder), place_(place_of(folder)), is_new_(!fs::exists(place_)), staging_(made_beside()) {
+    if (!is_new_) return;
     std::error_code error;
-    is_new_ = fs::create_directories(folder, error);
-    if (error) refuse(folder, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
-  }
-  MadeFolder(const MadeFolder&) = delete;
-  MadeFolder& operator=(const MadeFolder&) = delete;
-  ~MadeFolder() {
-    std::error_code holds_slices;
-    if (is_new_) fs::remove(folder_, holds_slices);
+    fs::create_directory(path(), error);
+    need_made(error);
   }
 
+  fs::path path() const { return is_new_ ? staging_.folder() / place_.filename() : staging_.folder(); }
+  void commit() { staging_.commit(); }
+
  private:
-  fs::path folder_;
+  /// The folder to stage in.
+  fs::path made_beside() const {
+    if (!is_new_) return place_;
+    std::error_code error;
+    fs::create_directories(place_.parent_path(), error);
+    need_made(error);
+    return place_.parent_path();
+  }
+  void need_made(const std::error_code& error) const {
+    if (error) refuse(folder_, "the folder cannot be made: " + error.message(), code_of_errno(error.value()));
+  }
+
+  fs::path folder_, place_;
   bool is_new_ = false;
+  StagedFiles staging_;
 };
 
 }  // namespace
 
+void need_no_slices(const fs::path& folder) {
+  std::vector<fs::path> slices;
+  std::error_code is_none;
+  for (fs::directory_iterator entry(folder, is_none); !is_none && entry != fs::directory_iterator();
+       entry.increment(is_none))
+    if (is_slice_name(entry->path().filename().string())) slices.push_back(entry->path().filename());
+  if (!slices.empty())
+    refuse(folder / *std::min_element(slices.begin(), slices.end()),
+           "exists already; choose another folder or empty it");
+}
+
 void write_dicom_series(const Scene& scene, const fs::path& folder, const DicomOptions& options) {
   need_disk(folder, least_file_bytes(scene.lattice, sizeof(std::int16_t), folder));
   const SeriesWriter series(scene, options);
-  const MadeFolder made(folder);
+  need_no_slices(folder);
+  StagedSeries staged(folder);
   for (int k = 0; k < scene.lattice.dims.z; ++k)
-    if (fs::exists(folder / slice_name(k)))
-      refuse(folder / slice_name(k), "exists already; choose another folder or empty it");
-  StagedFiles staging(folder);
-  for (int k = 0; k < scene.lattice.dims.z; ++k)
-    series.write(k, staging.folder() / slice_name(k), folder / slice_name(k));
-  staging.commit();
+    series.write(k, staged.path() / slice_name(k), folder / slice_name(k));
+  staged.commit();
 }
 
 }  // namespace octotomy::voxel

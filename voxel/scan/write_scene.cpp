@@ -22,16 +22,22 @@ std::optional<std::filesystem::path> data_file_beside(std::filesystem::path head
   return std::nullopt;
 }
 
-/// Whether the header that is there says that its samples are in `data`.
-bool names(const std::filesystem::path& header, const std::filesystem::path& data) {
-  try {
-    std::error_code is_none;
-    return std::filesystem::is_regular_file(header) &&
-           std::filesystem::equivalent(read_volume_header(header, *volume_format(header)).data_file, data,
-                                       is_none);
-  } catch (const std::runtime_error&) {  // a damaged header names nothing
-    return false;
-  }
+/// The header whose data file has the name that is tried as the `count`-th.
+std::filesystem::path header_of_try(const std::filesystem::path& path, int count) {
+  if (count == 1) return path;
+  return path.parent_path() /
+         (path.stem().string() + ".samples-" + std::to_string(count) + path.extension().string());
+}
+
+/// Whether a data file has one of the names that are tried for the header.
+bool has_own_name(const std::filesystem::path& data, const std::filesystem::path& header) {
+  const std::string name = data.filename().string();
+  const std::string first = data_file_beside(header)->filename().string(), stem = header.stem().string();
+  return name == first || (name.starts_with(stem + ".samples-") && name.ends_with(first.substr(stem.size())));
+}
+
+bool is_there(const std::filesystem::path& path) {
+  return std::filesystem::exists(std::filesystem::symlink_status(path));
 }
 
 }  // namespace
@@ -44,14 +50,35 @@ std::uint64_t least_file_bytes(const Lattice& lattice, std::uint64_t sample_byte
   return format && *format != VolumeFormat::Nifti ? bytes / deflate_ratio : bytes;
 }
 
+std::optional<std::filesystem::path> own_data_file(const std::filesystem::path& path) {
+  if (!data_file_beside(path)) return std::nullopt;
+  try {
+    if (!std::filesystem::is_regular_file(path)) return std::nullopt;
+    const std::filesystem::path named = read_volume_header(path, *volume_format(path)).data_file;
+    const std::filesystem::path own = std::filesystem::absolute(path).parent_path() / named.filename();
+    std::error_code is_none;
+    if (has_own_name(named, path) && std::filesystem::equivalent(named, own, is_none)) return own;
+  } catch (const std::runtime_error&) {  // a damaged header names nothing
+  }
+  return std::nullopt;
+}
+
 void need_own_data_file(const std::filesystem::path& path) {
   const std::optional<std::filesystem::path> data = data_file_beside(path);
   if (!data) return;
   if (std::filesystem::is_symlink(std::filesystem::symlink_status(path)))
     refuse(path, "is a link, beside which its samples would lie apart from the header: name the file itself");
-  if (!std::filesystem::exists(std::filesystem::symlink_status(*data)) || names(path, *data)) return;
-  refuse(path, "its samples would replace " + data->string() +
+  if (!is_there(*data) || own_data_file(path)) return;
+  refuse(path, "the name of its samples is taken by " + data->string() +
                    ", which is not this header's: move that file away, or choose another name");
+}
+
+std::filesystem::path staged_scene_name(const std::filesystem::path& path) {
+  for (int count = 1;; ++count) {
+    const std::filesystem::path header = header_of_try(path, count);
+    const std::optional<std::filesystem::path> data = data_file_beside(header);
+    if (!data || !is_there(*data)) return header.filename();
+  }
 }
 
 void write_scene(const Scene& scene, const std::filesystem::path& path) {
@@ -62,7 +89,7 @@ void write_scene(const Scene& scene, const std::filesystem::path& path) {
   need_own_data_file(path);
   need_disk(path, least_file_bytes(scene.lattice, bytes_of_sample(scene), path));
   StagedFiles staging(path.parent_path());
-  const std::filesystem::path staged = staging.folder() / path.filename();
+  const std::filesystem::path staged = staging.folder() / staged_scene_name(path);
   try {
     write_volume_file(scene, staged, *format);
   } catch (const Error& error) {
@@ -70,7 +97,11 @@ void write_scene(const Scene& scene, const std::filesystem::path& path) {
     if (reason.starts_with(staged.string())) reason.erase(0, staged.string().size());
     throw Error(error.code(), path.string() + reason);
   }
+  const std::optional<std::filesystem::path> older = own_data_file(path);
+  std::filesystem::rename(staged, staging.folder() / path.filename());
   staging.commit(path.filename());
+  std::error_code stays;
+  if (older) std::filesystem::remove(*older, stays);
 }
 
 }  // namespace octotomy::voxel

@@ -14,16 +14,25 @@ namespace octotomy::voxel {
 /// Writes a scene in the format of the extension: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. The samples' type,
 /// their meaning and the modality survive a round trip. Geometry is kept in double precision; NIfTI files,
 /// single precision by themselves, keep it in an extension that other readers skip. Written beside and
-/// renamed into place, so that a failure leaves an older file intact. Throws Error, Input or Resource, with
-/// path and reason, before a byte is written where the disk cannot take it; as need_own_data_file();
-/// std::invalid_argument for NIfTI and MetaImage, which cannot store them, if the lattice's axes are not
-/// perpendicular.
+/// renamed into place, so that a failure leaves an older file intact. The samples of .nhdr and .mhd go into a
+/// data file beside the header under a name that was free, so that an older header never reads them; those of
+/// the older header are removed last. Throws Error, Input or Resource, with path and reason, before a byte is
+/// written where the disk cannot take it; as need_own_data_file(); std::invalid_argument for NIfTI and
+/// MetaImage, which cannot store them, if the lattice's axes are not perpendicular.
 void write_scene(const Scene& scene, const std::filesystem::path& path);
 
 /// Of .nhdr and .mhd, whose samples go into a data file beside them: throws Error (Input) where a file of
-/// that name is there and the header at `path` does not name it, or where `path` is a link. For refusals
-/// before the samples are made. Cost: reads a header.
+/// that name is there and the header at `path` has no own_data_file(), or where `path` is a link. For
+/// refusals before the samples are made. Cost: reads a header.
 void need_own_data_file(const std::filesystem::path& path);
+
+/// The data file that the .nhdr or .mhd at `path` names, if it is there, beside the header, and has a name
+/// that write_scene() gives. None where `path` is damaged, absent or of another format. Cost: reads a header.
+std::optional<std::filesystem::path> own_data_file(const std::filesystem::path& path);
+
+/// The file name under which a scene for `path` is written into a folder of staged files, before it gets the
+/// name of `path`: of .nhdr and .mhd the first for which the name of the data file is free beside `path`.
+std::filesystem::path staged_scene_name(const std::filesystem::path& path);
 
 /// Bytes that write_scene(), or for a path of another extension write_dicom_series(), takes of the disk at
 /// least while it writes samples of this size: what NIfTI has unpacked, and the rest as packed as it can be.
@@ -39,15 +48,20 @@ struct DicomOptions {
   std::optional<DicomSource> source = std::nullopt;
 };
 
+/// Throws Error (Input) with the file's path where a folder holds slices as write_dicom_series() names them.
+/// For refusals before the samples are made.
+void need_no_slices(const std::filesystem::path& folder);
+
 /// Writes each slice as a file (slice_0001.dcm and so on) into a folder, as MR Image Storage if the scene's
-/// modality is MR and as CT otherwise. Makes the folder if it is absent. A lattice whose third axis is not
+/// modality is MR and as CT otherwise. A folder that is absent appears whole, with all slices, or not at all;
+/// one that is there gets them one after the other. A lattice whose third axis is not
 /// perpendicular to the first two becomes a series with gantry tilt. Samples are written as int16: integers
 /// with slope 1 and intercept 0, others with the finest slope for which their range fits, a power of two; the
 /// rescale type of a CT says if it is not Hounsfield. Viewers get a window: level 500, width 2000 in
 /// Hounsfield units, else all values. Unique identifiers come from the
 /// content: the same scene and options give the same files, byte by byte. Throws Error, Input or Resource,
-/// with path and reason, also if a file of that name is there; std::invalid_argument if a sample is not
-/// finite, the first two axes are not perpendicular or a text is too long.
+/// with path and reason, also as need_no_slices(); std::invalid_argument if a sample is not finite, the first
+/// two axes are not perpendicular or a text is too long.
 void write_dicom_series(const Scene& scene, const std::filesystem::path& folder,
                         const DicomOptions& options = {});
 

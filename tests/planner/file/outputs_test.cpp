@@ -28,10 +28,12 @@ class VerbOutputs : public tests::CommandLine {
     brep::write_mesh(brep::shapes::sphere({0, 0, 0}, 10.0, 2), folder_ / "a.stl");
     brep::write_mesh(brep::shapes::sphere({0, 0, 0}, 11.0, 2), folder_ / "b.stl");
   }
-  /// In the folder; what it says is kept elsewhere.
+  /// A shell's line in the folder; what it says is kept elsewhere.
+  tests::CommandAnswer shell(const std::string& line) const {
+    return tests::run_command("{ cd " + at("") + " && " + line + "; }", said_ / "");
+  }
   tests::CommandAnswer run(const std::string& arguments) const {
-    return tests::run_command("cd " + at("") + " && " OCTOTOMY_BINARY_DIR "/octotomy " + arguments,
-                              said_ / "");
+    return shell(OCTOTOMY_BINARY_DIR "/octotomy " + arguments);
   }
   std::string bytes(const std::string& name) const { return tests::bytes_of(folder_ / name); }
   /// What is in the folder, with each file's bytes.
@@ -72,12 +74,28 @@ TEST_F(VerbOutputs, AFolderInPlaceOfALaterPieceLeavesTheOthers) {
   brep::write_mesh(
       together(brep::shapes::sphere({0, 0, 0}, 10.0, 2), brep::shapes::box({30, 30, 30}, {34, 34, 34})),
       folder_ / "p.stl");
-  write("q-1.stl", "mine");
-  fs::create_directory(folder_ / "q-2.stl");
-  expect_untouched("separate p.stl -o q.stl", "q-2.stl: is a folder");
-  fs::remove(folder_ / "q-2.stl");
   ASSERT_EQ(run("separate p.stl -o q.stl").status, 0);
-  EXPECT_FALSE(brep::read_triangles(folder_ / "q-1.stl").faces.empty());
+  fs::remove(folder_ / "q-2.stl");
+  fs::create_directory(folder_ / "q-2.stl");
+  expect_untouched("separate p.stl -o q.stl --least 1", "q-2.stl: is a folder");
+}
+
+TEST_F(VerbOutputs, AFileThatNobodyTypedAndOctotomyDidNotWriteStays) {
+  brep::write_mesh(
+      together(brep::shapes::sphere({0, 0, 0}, 10.0, 2), brep::shapes::box({30, 30, 30}, {34, 34, 34})),
+      folder_ / "p.stl");
+  ASSERT_EQ(run("segment ball.nrrd --window 0: -o labels.nrrd").status, 0);
+  for (const auto& [verb, file] : {std::pair{"separate p.stl -o q.stl", "q-2.stl"},
+                                   std::pair{"surfaces labels.nrrd -o '{name}.ply'", "label_1.ply"}}) {
+    const std::string refused = std::string(file) + ": is there already";
+    write(file, "mine");
+    expect_untouched(verb, refused);
+    fs::remove(folder_ / file);
+    fs::create_symlink("a.stl", folder_ / file);
+    expect_untouched(verb, refused);
+    fs::remove(folder_ / file);
+    EXPECT_EQ(run(verb).status, 0);
+  }
 }
 
 TEST_F(VerbOutputs, APieceDoesNotReplaceTheSurfaceThatItIsOf) {
@@ -150,6 +168,19 @@ TEST_F(VerbOutputs, ADataFileThatIsNotTheHeadersOwnStays) {
   expect_untouched("convert ball.nrrd -o link.nhdr", "is a link");
 }
 
+TEST_F(VerbOutputs, AnOlderHeaderIsRefusedWhereItsSamplesWereReplaced) {
+  for (const auto& [header, data] : {std::pair{"k.nhdr", "k.raw.gz"}, std::pair{"k.mhd", "k.zraw"}}) {
+    ASSERT_EQ(run(std::string("convert ball.nrrd -o ") + header).status, 0);
+    const std::string older = bytes(header);
+    ASSERT_EQ(run(std::string("prepare ball.nrrd --step gaussian=1 -o ") + header).status, 0);
+    EXPECT_FALSE(fs::exists(folder_ / data)) << "the new samples have another name, the old ones are gone";
+    EXPECT_EQ(run(std::string("info ") + header).status, 0);
+    write(header, older);
+    expect_refused(run(std::string("info ") + header), data);
+    fs::remove(folder_ / header);
+  }
+}
+
 TEST_F(VerbOutputs, ADeckDoesNotReplaceFilesOfNoDeck) {
   write("t.ele", "mine");
   expect_untouched("tet a.stl -o t.node", "t.ele");
@@ -166,6 +197,20 @@ TEST_F(VerbOutputs, APlanIsNotWrittenWithoutItsReport) {
   write("p.plan.json", "mine");
   expect_untouched("procedure own.json --scan ball.nrrd --landmarks marks.json -o p.plan.json --report full",
                    "full");
+}
+
+TEST_F(VerbOutputs, AnInterruptedSeriesLeavesNothing) {
+  write("flat.raw", std::string(2 * 16 * 16 * 3000, '\0'));
+  const auto before = all();
+  // Two signals end the verb at once, between the first slice and the last.
+  const tests::CommandAnswer answer =
+      shell("{ " OCTOTOMY_BINARY_DIR
+            "/octotomy convert flat.raw --raw 16x16x3000 int16 --spacing 1,1,1 --dicom -o series & } && "
+            "for i in $(seq 3000); do [ -e .octotomy-*/series/slice_0001.dcm ] && break; sleep 0.01; done; "
+            "kill -STOP $!; kill -TERM $!; kill -INT $!; kill -CONT $!; wait $!");
+  EXPECT_EQ(answer.status, 3) << answer.errors;
+  EXPECT_NE(answer.errors.find("interrupted"), std::string::npos) << answer.errors;
+  EXPECT_TRUE(before == all()) << "something was left";
 }
 
 TEST_F(VerbOutputs, AFullDiskTakesNeitherOfTwoFiles) {

@@ -7,6 +7,7 @@
 #include "planner/plan/answers.h"
 #include "planner/table/field_json.h"
 #include "planner/table/operation.h"
+#include "tests/file_bytes.h"
 #include "tests/planner/operation/ball_operation.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
@@ -54,15 +55,16 @@ TEST(SurfacesStep, WritesAllLabelsAsOneFile) {
   EXPECT_FALSE(brep::read_triangles(folder / "parts.vtp").faces.empty());
 }
 
-TEST(SurfacesVerb, WritesAFileALabelUnderItsName) {
-  const ScratchFolder folder;
-  write_halves(folder);
-  const Operation& operation = *find_operation("surfaces");
-  const auto run = [&](const std::string& out) {
+class SurfacesVerb : public testing::Test {
+ protected:
+  SurfacesVerb() { write_halves(folder_); }
+
+  FileAnswer run(const std::string& out) const {
+    const Operation& operation = *find_operation("surfaces");
     Action action(operation);
     std::vector<Field> fields = operation.fields;
     fields.insert(fields.end(), operation.verb_fields.begin(), operation.verb_fields.end());
-    read_fields(fields, {{"scan", (folder / "halves.nrrd").string()}, {"out", (folder / out).string()}},
+    read_fields(fields, {{"scan", (folder_ / "halves.nrrd").string()}, {"out", (folder_ / out).string()}},
                 action.value(), {});
     Timings timings;
     FileBench bench{timings};
@@ -70,13 +72,48 @@ TEST(SurfacesVerb, WritesAFileALabelUnderItsName) {
       return voxel::read_scene(path);
     };
     return operation.on_files(action.value(), bench);
-  };
+  }
+  std::string refusal(const std::string& out) const {
+    try {
+      run(out);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(SurfacesVerb, WritesAFileALabelUnderItsName) {
   const FileAnswer answer = run("{name}.ply");
   ASSERT_EQ(answer.json["files"].size(), 2u);
   for (const char* name : {"left_half.ply", "right_half.ply"})
-    EXPECT_TRUE(brep::health(brep::read_triangles(folder / name)).solid()) << name;
+    EXPECT_TRUE(brep::health(brep::read_triangles(folder_ / name)).solid()) << name;
   EXPECT_THROW(run("one.stl"), std::runtime_error) << "holds one surface";
   EXPECT_TRUE(answer.findings.empty());
+}
+
+TEST_F(SurfacesVerb, ReplacesFilesThatNobodyTypedOnlyWhereItWroteThem) {
+  for (const char* extension : {".stl", ".ply", ".obj", ".off", ".vtp", ".glb"}) {
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(refusal(std::string("{name}") + extension), "");
+    const std::string name = std::string("right_half") + extension;
+    std::ofstream(folder_ / name) << "mine";
+    EXPECT_TRUE(
+        refusal(std::string("{name}") + extension).starts_with((folder_ / name).string() + ": is there"));
+    EXPECT_EQ(bytes_of(folder_ / name), "mine");
+  }
+  std::ofstream(folder_ / "typed.vtp") << "old";
+  EXPECT_EQ(refusal("typed.vtp"), "");
+  EXPECT_NE(bytes_of(folder_ / "typed.vtp"), "old");
+}
+
+TEST_F(SurfacesVerb, RefusesANameThatIsTooLongByThePathThatWasTyped) {
+  std::ofstream(folder_ / "halves.json") << R"({"right half": 1, ")" << std::string(250, 'x') << R"(": 4})";
+  const std::string reason = refusal("{name}.stl");
+  EXPECT_NE(reason.find("x.stl: is too long a name"), std::string::npos) << reason;
+  EXPECT_EQ(reason.find(".octotomy-"), std::string::npos) << reason;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "right_half.stl"));
 }
 
 }  // namespace

@@ -74,6 +74,19 @@ TEST_F(SeparateVerb, EachPieceOfAnOpenSurfaceIsAFileAndTheyAddUpToTheWhole) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "large-3.ply"));
 }
 
+TEST_F(SeparateVerb, ARepeatedRunReplacesItsOwnPiecesInEveryFormat) {
+  brep::write_mesh(hollow_and_small(), folder_ / "two.off");
+  for (const char* extension : {"stl", "ply", "obj", "off", "vtp", "glb"}) {
+    const std::string command = "separate " + at("two.off") + " -o " + at(std::string("part.") + extension);
+    for (int i = 0; i < 2; ++i) {
+      const CommandAnswer answer = run(command);
+      EXPECT_EQ(answer.status, 0) << extension << ": " << answer.errors;
+    }
+    write(std::string("part-2.") + extension, "mine");
+    expect_refused(run(command), std::string("part-2.") + extension + ": is there already");
+  }
+}
+
 TEST_F(SeparateVerb, OnePieceGetsTheNameThatIsGivenAndAMissingOneIsRefused) {
   brep::write_mesh(hollow_and_small(), folder_ / "two.off");
   const CommandAnswer answer =

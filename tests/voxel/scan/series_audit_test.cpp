@@ -107,6 +107,22 @@ TEST(SeriesAudit, PassesEveryLineOfASoundSeries) {
   EXPECT_EQ(sample(scene, 3, 2, 1), 123 - 1000);
 }
 
+TEST(SeriesAudit, LeavesOutAndTellsWhatAnotherRunHasNotFinished) {
+  const ScratchFolder folder;
+  for (const char* hidden : {".octotomy-AbCdEf", ".report.octotomy-AbCdEf", ".octotomy-empty1"})
+    fs::create_directory(folder / hidden);
+  Slice below(-1);
+  write_bytes(folder / ".octotomy-AbCdEf/slice9.dcm", below.file());
+  write_bytes(folder / ".report.octotomy-AbCdEf/slice9.dcm", below.file());
+  write_bytes(folder / ".octotomy-result", "a list");
+  const Scene scene = read_spoiled(folder, [](Slice&, int) {});
+  EXPECT_EQ(scene.lattice.dims.z, slices);
+  EXPECT_EQ(verdict(scene, "stray_files"), Verdict::Warn);
+  EXPECT_EQ(finding(scene, "stray_files")->files,
+            (std::vector<std::string>{".octotomy-AbCdEf", ".report.octotomy-AbCdEf"}))
+      << detail(scene, "stray_files");
+}
+
 TEST(SeriesAudit, KeepsTheCommonestOfMixedResolutions) {
   const ScratchFolder folder;
   const Scene scene = read_spoiled(folder, [](Slice& slice, int k) {

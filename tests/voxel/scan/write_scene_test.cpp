@@ -5,7 +5,9 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "tests/file_bytes.h"
 #include "tests/voxel/linear_scene.h"
@@ -151,6 +153,56 @@ TEST(WriteScene, LeavesTheOldFileWhereItFails) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
 }
 
+std::set<std::string> entry_names(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST(WriteScene, AnOlderHeaderNeverReadsNewSamples) {
+  for (const auto& [name, data] :
+       {std::pair{"scan.nhdr", "scan.raw.gz"}, std::pair{"scan.mhd", "scan.zraw"}}) {
+    const ScratchFolder folder;
+    const fs::path header = folder / name;
+    const Scene older = linear_scene(oblique_lattice()), newer = half_scene(older.lattice);
+    write_scene(older, header);
+    const std::string older_header = bytes_of(header), older_data = bytes_of(folder / data);
+    write_scene(newer, header);
+    EXPECT_EQ(read_scene(header).samples, newer.samples);
+    EXPECT_EQ(entry_names(folder.path()).size(), 2u) << "the older samples are gone";
+    std::ofstream(header, std::ios::binary) << older_header;
+    EXPECT_THROW(read_scene(header), std::runtime_error) << "the older header alone";
+    // As a kill leaves it that comes after the new samples and before the new header.
+    std::ofstream(folder / data, std::ios::binary) << older_data;
+    EXPECT_EQ(entry_names(folder.path()).size(), 3u);
+    EXPECT_EQ(read_scene(header).samples, older.samples);
+    write_scene(newer, header);
+    EXPECT_EQ(read_scene(header).samples, newer.samples);
+    EXPECT_FALSE(fs::exists(folder / data));
+  }
+}
+
+TEST(WriteScene, SamplesThatTheOlderHeaderDoesNotNameStay) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(oblique_lattice());
+  write_scene(scene, folder / "scan.mhd");
+  std::ofstream(folder / "scan.samples-2.zraw") << "mine";
+  write_scene(scene, folder / "scan.mhd");
+  EXPECT_EQ(bytes_of(folder / "scan.samples-2.zraw"), "mine");
+  // A header whose samples have another name.
+  std::string header = bytes_of(folder / "scan.mhd");
+  const std::string named = "scan.samples-3.zraw";
+  ASSERT_NE(header.find(named), std::string::npos) << header;
+  std::ofstream(folder / "scan.mhd") << header.replace(header.find(named), named.size(), "other.data");
+  fs::rename(folder / named, folder / "other.data");
+  EXPECT_FALSE(own_data_file(folder / "scan.mhd"));
+  write_scene(scene, folder / "scan.mhd");
+  EXPECT_EQ(entry_names(folder.path()),
+            (std::set<std::string>{"other.data", "scan.mhd", "scan.samples-2.zraw", "scan.zraw"}));
+  EXPECT_EQ(own_data_file(folder / "scan.mhd"), folder / "scan.zraw");
+}
+
 TEST(WriteScene, NamesTheFolderThatIsNotThereAndTheUnknownExtension) {
   const ScratchFolder folder;
   const Scene scene = linear_scene(oblique_lattice());
@@ -175,6 +227,27 @@ TEST(WriteDicomSeries, WritesTheSameBytesForTheSameScene) {
   ASSERT_FALSE(first.empty());
   EXPECT_EQ(first, bytes_of(folder / "b" / fs::path("slice_0007.dcm")));
   EXPECT_NE(first, bytes_of(folder / "c" / fs::path("slice_0007.dcm")));
+}
+
+TEST(WriteDicomSeries, AFolderAppearsWithAllItsSlices) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(axis_aligned_lattice({16, 16, 300}, {1, 1, 2}, {-10, -8, 5}));
+  const std::jthread writer([&] { write_dicom_series(scene, folder / "made/series"); });
+  while (!fs::exists(folder / "made/series")) std::this_thread::yield();
+  EXPECT_EQ(entry_names(folder / "made/series").size(), 300u);
+}
+
+TEST(WriteDicomSeries, AFolderThatIsThereKeepsItsOtherFiles) {
+  const ScratchFolder folder;
+  const Scene scene = linear_scene(oblique_lattice());
+  fs::create_directory(folder / "series");
+  fs::create_directory_symlink("series", folder / "link");
+  std::ofstream(folder / "series/notes.txt") << "mine";
+  write_dicom_series(scene, folder / "link/");
+  EXPECT_EQ(entry_names(folder / "series").size(), static_cast<std::size_t>(scene.lattice.dims.z) + 1);
+  EXPECT_EQ(bytes_of(folder / "series/notes.txt"), "mine");
+  EXPECT_EQ(entry_names(folder.path()), (std::set<std::string>{"link", "series"}));
+  EXPECT_EQ(read_scene(folder / "series").samples, scene.samples);
 }
 
 TEST(WriteDicomSeries, PlacesEverySliceToAMillionthOfAMillimetre) {
@@ -254,7 +327,7 @@ TEST(WriteDicomSeries, RefusesWhatItCannotHoldAndOverwritesNothing) {
   Scene endless = half_scene(scene.lattice);
   std::get<FloatSamples>(endless.samples)[7] = std::numeric_limits<float>::infinity();
   EXPECT_THROW(write_dicom_series(endless, folder / "endless"), std::invalid_argument);
-  EXPECT_FALSE(fs::exists(folder / "endless" / fs::path("slice_0001.dcm")));
+  EXPECT_TRUE(entry_names(folder.path()).empty());
   Scene skewed = scene;
   skewed.lattice.lps_from_voxel[1] += 0.2 * skewed.lattice.lps_from_voxel[0];
   EXPECT_THROW(write_dicom_series(skewed, folder / "skewed"), std::invalid_argument);
@@ -262,6 +335,15 @@ TEST(WriteDicomSeries, RefusesWhatItCannotHoldAndOverwritesNothing) {
                std::invalid_argument);
   write_dicom_series(scene, folder / "series");
   EXPECT_THROW(write_dicom_series(scene, folder / "series"), std::runtime_error);
+  fs::create_directory(folder / "longer");
+  EXPECT_NO_THROW(need_no_slices(folder / "longer"));
+  fs::copy(folder / "series/slice_0002.dcm", folder / "longer/slice_9000.dcm");
+  try {
+    write_dicom_series(scene, folder / "longer");
+    FAIL() << "slices of another series were added";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("longer/slice_9000.dcm"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace
