@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Refuses a NIfTI-1 header with impossible values, on some of which the library behind ITK hangs. Reads the
-/// first kilobyte, unpacked.
+/// first kilobyte, unpacked, and passes over the extensions between header and samples.
 class NiftiGate {
  public:
   explicit NiftiGate(const fs::path& path) : path_(path) {
@@ -42,6 +42,7 @@ class NiftiGate {
     require(bytes_[344] == 'n' && bytes_[345] == '+' && bytes_[346] == '1', "magic (n+1 is expected)");
     check_dims();
     check_places();
+    if (has_extensions()) check_extensions();
   }
 
   std::uintmax_t sample_bytes() const { return static_cast<std::uintmax_t>(number<std::int16_t>(72)) / 8; }
@@ -55,12 +56,11 @@ class NiftiGate {
 
   /// The geometry in our own extension; none if that is absent or damaged.
   std::optional<glm::dmat4> exact_geometry() const {
-    constexpr std::size_t flag_at = 348;
     const auto samples_at = static_cast<std::size_t>(number<float>(108));
-    if (held_ <= flag_at || bytes_[flag_at] == 0) return std::nullopt;
-    for (std::size_t at = flag_at + 4; at + 8 <= std::min(held_, samples_at);) {
+    if (!has_extensions()) return std::nullopt;
+    for (std::size_t at = extensions_at; at + 8 <= std::min(held_, samples_at);) {
       const auto length = static_cast<std::size_t>(std::max(0, number<std::int32_t>(at)));
-      if (length < 16 || length > std::min(held_, samples_at) - at) break;
+      if (length < shortest_extension || length > std::min(held_, samples_at) - at) break;
       const std::string_view text(bytes_.data() + at + 8, length - 8);
       if (number<std::int32_t>(at + 4) == nifti_text_extension && text.starts_with(nifti_geometry_mark))
         return rows_of(text.substr(nifti_geometry_mark.size()));
@@ -81,6 +81,38 @@ class NiftiGate {
       matrix[i % 4][i / 4] = number;
     }
     return matrix;
+  }
+
+  bool has_extensions() const { return held_ > header_bytes && bytes_[header_bytes] != 0; }
+
+  /// The library behind ITK copies its list of extensions for each one more.
+  void check_extensions() const {
+    constexpr int most = 1024;  // programs write a handful
+    SampleStream stream(path_, 0, is_gzip(path_));
+    if (!skip(stream, extensions_at)) return;
+    std::uintmax_t at = extensions_at;
+    std::array<char, 8> head{};
+    for (int count = 1; at + head.size() <= samples_at(); ++count) {
+      if (stream.read(head.data(), head.size()) < head.size()) return;
+      const auto length = static_cast<std::uintmax_t>(std::max(0, number_in<std::int32_t>(head.data())));
+      if (length < shortest_extension || length > samples_at() - at) return;
+      if (count > most)
+        refuse(path_, "its NIfTI header has more than " + std::to_string(most) +
+                          " extensions: save the volume without them");
+      if (!skip(stream, length - head.size())) return;
+      at += length;
+    }
+  }
+
+  /// False where fewer bytes follow.
+  static bool skip(SampleStream& stream, std::uintmax_t bytes) {
+    std::array<char, 4096> part{};
+    while (bytes > 0) {
+      const auto wanted = static_cast<std::size_t>(std::min<std::uintmax_t>(bytes, part.size()));
+      if (stream.read(part.data(), wanted) < wanted) return false;
+      bytes -= wanted;
+    }
+    return true;
   }
 
   void check_dims() const {
@@ -115,8 +147,12 @@ class NiftiGate {
 
   template <typename Number>
   Number number(std::size_t at) const {
+    return number_in<Number>(bytes_.data() + at);
+  }
+  template <typename Number>
+  Number number_in(const char* bytes) const {
     std::array<char, sizeof(Number)> raw{};
-    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(at), raw.size(), raw.begin());
+    std::copy_n(bytes, raw.size(), raw.begin());
     if (swapped_) std::reverse(raw.begin(), raw.end());
     return std::bit_cast<Number>(raw);
   }
@@ -126,6 +162,8 @@ class NiftiGate {
   }
 
   static constexpr std::size_t header_bytes = 348;
+  static constexpr std::size_t extensions_at = header_bytes + 4;  // behind the flags that say there are any
+  static constexpr std::size_t shortest_extension = 16;
   fs::path path_;
   std::array<char, 1024> bytes_{};
   std::size_t held_ = 0;
@@ -136,10 +174,9 @@ class NiftiGate {
 class TextHeader {
  public:
   TextHeader(const fs::path& path, VolumeFormat format) : path_(path) {
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in = opened(path);
     if (!in) refuse(path, "cannot be opened; check that it is a file and that you may read it");
-    // Real headers are far shorter; the bytes beyond are samples.
-    std::string head(std::size_t{1} << 16, '\0');
+    std::string head(most_bytes, '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
     head.resize(static_cast<std::size_t>(in.gcount()));
     if (head.empty()) refuse(path, "the file is empty");
@@ -179,7 +216,9 @@ class TextHeader {
   }
 
   void parse(const std::string& head, VolumeFormat format) {
+    std::size_t lines = 0;
     for (std::size_t at = 0; at < head.size();) {
+      if (++lines > most_lines) refuse_length(format);
       const std::size_t end = std::min(head.find('\n', at), head.size());
       const std::string line = trimmed(head.substr(at, end - at));
       at = end + 1;
@@ -199,6 +238,13 @@ class TextHeader {
         break;
       }
     }
+    if (end_ == 0 && head.size() == most_bytes) refuse_length(format);
+  }
+
+  [[noreturn]] void refuse_length(VolumeFormat format) const {
+    refuse(path_, std::string("its ") + name_of(format) + " header is longer than " +
+                      std::to_string(most_lines) + " lines or " + std::to_string(most_bytes >> 20) +
+                      " MB: save the volume without its additional fields");
   }
 
   /// MetaIO writes beyond its buffers on a line that it cannot parse.
@@ -252,6 +298,10 @@ class TextHeader {
     return found;
   }
 
+  /// The library behind ITK looks through all lines for each one more. Segmentations have the longest
+  /// headers: some ten lines a segment.
+  static constexpr std::size_t most_lines = 8192;
+  static constexpr std::size_t most_bytes = std::size_t{4} << 20;
   fs::path path_;
   std::map<std::string, std::string> values_;
   std::size_t end_ = 0;
