@@ -150,18 +150,14 @@ LandmarkPlaces with_means(const Cephalometry& definitions, LandmarkPlaces points
 }
 
 Cephalometry parse_cephalometry(const std::string& text) {
-  try {
-    return Reader().read(SortedJson::parse(text));
-  } catch (const SortedJson::exception& error) {
-    throw std::runtime_error(std::string("is no JSON of definitions: ") + error.what());
-  }
+  return Reader().read(parse_json(text));
 }
 
 Cephalometry read_cephalometry(const std::string& name_or_path) {
   if (name_or_path.ends_with(".json")) {
-    const std::string text = read_json(name_or_path).dump();
+    const SortedJson root = read_json(name_or_path);
     try {
-      return parse_cephalometry(text);
+      return Reader().read(root);
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(name_or_path + ": " + error.what());
     }

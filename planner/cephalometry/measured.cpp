@@ -2,9 +2,15 @@
 #include "planner/cephalometry/measured.h"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "planner/table/json.h"
 #include "verify/chance.h"
@@ -15,8 +21,7 @@ namespace {
 
 using Kind = CephalometricKind;
 using Plane = CephalometricPlane;
-using Points = LandmarkPlaces;
-using Values = std::map<std::string, double>;
+using Points = std::vector<glm::dvec3>;
 
 constexpr double shortest_line_mm = 1e-6;
 
@@ -27,8 +32,11 @@ double degrees(double radians) {
 /// Measures in the head's directions: x to the left, y back, z up.
 class Ruler {
  public:
-  Ruler(const CephalometricMeasure& measure, const Points& points) : measure_(measure) {
-    for (const std::string& name : measure.points) points_.push_back(projected(points.at(name)));
+  /// `of` numbers the measure's points.
+  Ruler(const CephalometricMeasure& measure, const Points& points, const std::vector<std::size_t>& of)
+      : measure_(measure) {
+    assert(of.size() <= points_.size());
+    for (std::size_t i = 0; i < of.size(); ++i) points_[i] = projected(points[of[i]]);
   }
 
   double value() const {
@@ -80,53 +88,130 @@ class Ruler {
   }
 
   const CephalometricMeasure& measure_;
-  std::vector<glm::dvec3> points_;
+  std::array<glm::dvec3, 4> points_{};
 };
 
-/// The measures that have their points, in the order of their definitions.
-Values values_of(const Cephalometry& definitions, const Points& placed) {
-  const Points points = with_means(definitions, placed);
-  Values values;
-  for (const CephalometricMeasure& measure : definitions.measures) {
-    const bool has_points = std::all_of(measure.points.begin(), measure.points.end(),
-                                        [&](const std::string& name) { return points.contains(name); });
-    const bool has_measures = std::all_of(measure.of.begin(), measure.of.end(),
-                                          [&](const std::string& name) { return values.contains(name); });
-    if (!has_points || !has_measures) continue;
-    if (measure.of.empty()) {
-      values[measure.name] = Ruler(measure, points).value();
-      continue;
-    }
-    const double a = values.at(measure.of[0]), b = values.at(measure.of[1]);
-    values[measure.name] = measure.kind == Kind::Difference ? a - b : 100.0 * a / b;
-  }
-  return values;
-}
+/// Of the measures that a chart has, in their order.
+using Values = std::vector<double>;
 
-/// The landmarks that a measure needs and nobody placed.
-std::vector<std::string> lacking(const Cephalometry& definitions, const CephalometricMeasure& measure,
-                                 const Points& points) {
-  std::set<std::string> names;
-  for (const std::string& part : measure.of)
-    for (const CephalometricMeasure& other : definitions.measures)
-      if (other.name == part)
-        names.merge(std::set<std::string>([&] {
-          const std::vector<std::string> of_part = lacking(definitions, other, points);
-          return std::set<std::string>(of_part.begin(), of_part.end());
-        }()));
-  for (const std::string& name : measure.points)
-    if (!points.contains(name)) names.insert(name);
-  return {names.begin(), names.end()};
-}
+/// A measure that has its landmarks: where these and its parts stand in the chart.
+struct ChartedMeasure {
+  const CephalometricMeasure* definition = nullptr;
+  std::vector<std::size_t> points, of;
+};
+
+/// Definitions bound to landmarks: names are looked up once, and not in each trial.
+class Chart {
+ public:
+  Chart(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks) {
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+      const auto [known, is_new] = place_of_.try_emplace(landmarks[i].landmark.name, places_.size());
+      if (is_new) places_.emplace_back();
+      places_[known->second].landmark = i;
+    }
+    for (const CephalometricLandmark& landmark : definitions.landmarks)
+      if (!landmark.mean_of.empty() && !place_of_.contains(landmark.name)) add_mean(landmark);
+    for (const CephalometricMeasure& measure : definitions.measures) add(measure);
+    find_used();
+  }
+
+  const std::vector<ChartedMeasure>& measures() const { return measures_; }
+  const auto& lacking() const { return lacking_; }
+  /// Precondition: the landmarks of the chart, in their order. Landmarks that no measure uses are not looked
+  /// at.
+  Values values(const Points& landmarks_mm) const {
+    Points points(places_.size());
+    for (const std::size_t place : used_)
+      points[place] = places_[place].landmark ? landmarks_mm[*places_[place].landmark]
+                                              : mean(points, places_[place].mean_of);
+    Values values;
+    for (const ChartedMeasure& measure : measures_) values.push_back(value(measure, points, values));
+    return values;
+  }
+  /// Landmarks that the measures use, by number.
+  std::vector<std::size_t> used_landmarks() const {
+    std::vector<std::size_t> numbers;
+    for (const std::size_t place : used_)
+      if (places_[place].landmark) numbers.push_back(*places_[place].landmark);
+    return numbers;
+  }
+
+ private:
+  /// A landmark that was placed, or the mean of places before it.
+  struct Place {
+    std::optional<std::size_t> landmark;
+    std::vector<std::size_t> mean_of;
+  };
+
+  void add_mean(const CephalometricLandmark& landmark) {
+    Place mean;
+    for (const std::string& name : landmark.mean_of) {
+      const auto part = place_of_.find(name);
+      if (part == place_of_.end()) return;
+      mean.mean_of.push_back(part->second);
+    }
+    place_of_.emplace(landmark.name, places_.size());
+    places_.push_back(std::move(mean));
+  }
+
+  /// A measure is defined after its parts, so that what these lack is known.
+  void add(const CephalometricMeasure& measure) {
+    std::set<std::string> missing;
+    for (const std::string& name : measure.points)
+      if (!place_of_.contains(name)) missing.insert(name);
+    for (const std::string& name : measure.of)
+      if (const auto part = lacking_of_.find(name); part != lacking_of_.end())
+        missing.insert(lacking_[part->second].second.begin(), lacking_[part->second].second.end());
+    if (!missing.empty()) {
+      lacking_of_.emplace(measure.name, lacking_.size());
+      lacking_.emplace_back(measure.name, std::vector<std::string>(missing.begin(), missing.end()));
+      return;
+    }
+    ChartedMeasure charted{&measure, {}, {}};
+    for (const std::string& name : measure.points) charted.points.push_back(place_of_.at(name));
+    for (const std::string& name : measure.of) charted.of.push_back(measure_of_.at(name));
+    measure_of_.emplace(measure.name, measures_.size());
+    measures_.push_back(std::move(charted));
+  }
+
+  void find_used() {
+    std::vector<bool> is_used(places_.size(), false);
+    for (const ChartedMeasure& measure : measures_)
+      for (const std::size_t place : measure.points) is_used[place] = true;
+    for (std::size_t place = places_.size(); place-- > 0;)
+      if (is_used[place])
+        for (const std::size_t part : places_[place].mean_of) is_used[part] = true;
+    for (std::size_t place = 0; place < places_.size(); ++place)
+      if (is_used[place]) used_.push_back(place);
+  }
+
+  static glm::dvec3 mean(const Points& points, const std::vector<std::size_t>& of) {
+    glm::dvec3 sum(0.0);
+    for (const std::size_t part : of) sum += points[part];
+    return sum / static_cast<double>(of.size());
+  }
+  static double value(const ChartedMeasure& measure, const Points& points, const Values& values) {
+    if (measure.of.empty()) return Ruler(*measure.definition, points, measure.points).value();
+    const double a = values[measure.of[0]], b = values[measure.of[1]];
+    return measure.definition->kind == Kind::Difference ? a - b : 100.0 * a / b;
+  }
+
+  std::vector<Place> places_;
+  std::vector<std::size_t> used_;  ///< places, ascending
+  std::vector<ChartedMeasure> measures_;
+  std::vector<std::pair<std::string, std::vector<std::string>>> lacking_;
+  std::map<std::string, std::size_t> place_of_, measure_of_, lacking_of_;
+};
 
 class Trials {
  public:
-  void add(const Values& value) {
-    for (const auto& [name, number] : value) found_[name].push_back(number);
+  void add(const Values& values) {
+    found_.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) found_[i].push_back(values[i]);
   }
   /// Half of the shortest interval about the value that holds the claimed share of the trials.
-  double half_width(const std::string& name, double value) {
-    std::vector<double>& found = found_[name];
+  double half_width(std::size_t measure, double value) {
+    std::vector<double>& found = found_[measure];
     for (double& each : found) each = std::abs(each - value);
     const auto at = static_cast<std::ptrdiff_t>(
         std::min(std::ceil(verify::claimed_coverage * static_cast<double>(found.size())),
@@ -137,29 +222,41 @@ class Trials {
   }
 
  private:
-  std::map<std::string, std::vector<double>> found_;
+  std::vector<std::vector<double>> found_;
 };
 
 /// The landmarks along the head's directions, before and after.
-struct Placed {
-  Points before, after;
-};
-Placed placed(const std::vector<MovedLandmark>& landmarks, const glm::dmat3& head_from_lps,
-              const std::vector<glm::dvec3>* errors_mm) {
-  Placed made;
-  for (std::size_t i = 0; i < landmarks.size(); ++i) {
-    const glm::dvec3 p =
-        landmarks[i].landmark.p_mm + (errors_mm == nullptr ? glm::dvec3(0.0) : (*errors_mm)[i]);
-    made.before[landmarks[i].landmark.name] = head_from_lps * p;
-    made.after[landmarks[i].landmark.name] =
-        head_from_lps * glm::dvec3(landmarks[i].moved_from_still * glm::dvec4(p, 1.0));
+class Placing {
+ public:
+  Placing(const std::vector<MovedLandmark>& landmarks, const glm::dmat3& lps_from_head,
+          std::vector<std::size_t> used)
+      : landmarks_(landmarks),
+        head_from_lps_(glm::transpose(lps_from_head)),
+        used_(std::move(used)),
+        before_mm_(landmarks.size()),
+        after_mm_(landmarks.size()) {}
+
+  /// Places those that are used.
+  void place(const Points& errors_mm) {
+    for (const std::size_t i : used_) {
+      const glm::dvec3 p_mm = landmarks_[i].landmark.p_mm + errors_mm[i];
+      before_mm_[i] = head_from_lps_ * p_mm;
+      after_mm_[i] = head_from_lps_ * glm::dvec3(landmarks_[i].moved_from_still * glm::dvec4(p_mm, 1.0));
+    }
   }
-  return made;
-}
+  const Points& before_mm() const { return before_mm_; }
+  const Points& after_mm() const { return after_mm_; }
+
+ private:
+  const std::vector<MovedLandmark>& landmarks_;
+  glm::dmat3 head_from_lps_;
+  std::vector<std::size_t> used_;
+  Points before_mm_, after_mm_;
+};
 
 Values changes(const Values& before, const Values& after) {
-  Values made;
-  for (const auto& [name, value] : before) made[name] = after.at(name) - value;
+  Values made(before.size());
+  for (std::size_t i = 0; i < made.size(); ++i) made[i] = after[i] - before[i];
   return made;
 }
 
@@ -171,40 +268,36 @@ Json value_json(const CephalometricValue& value) {
 
 CephalometricResults measured(const Cephalometry& definitions, const std::vector<MovedLandmark>& landmarks,
                               const glm::dmat3& lps_from_head, const LandmarkDoubt& doubt) {
-  const glm::dmat3 head_from_lps = glm::transpose(lps_from_head);
-  const Placed still = placed(landmarks, head_from_lps, nullptr);
-  const Values before = values_of(definitions, still.before), after = values_of(definitions, still.after),
+  const Chart chart(definitions, landmarks);
+  Placing placing(landmarks, lps_from_head, chart.used_landmarks());
+  Points errors_mm(landmarks.size(), glm::dvec3(0.0));
+  placing.place(errors_mm);
+  const Values before = chart.values(placing.before_mm()), after = chart.values(placing.after_mm()),
                change = changes(before, after);
   const bool moves = std::any_of(landmarks.begin(), landmarks.end(), [](const MovedLandmark& landmark) {
     return landmark.moved_from_still != glm::dmat4(1.0);
   });
   Trials of_before, of_after, of_change;
   verify::Chance chance(doubt.seed);
-  std::vector<glm::dvec3> errors_mm(landmarks.size());
   for (int trial = 0; trial < doubt.trials; ++trial) {
     for (glm::dvec3& error : errors_mm)
       for (int axis = 0; axis < 3; ++axis) error[axis] = doubt.deviation_mm * chance.normal();
-    const Placed off = placed(landmarks, head_from_lps, &errors_mm);
-    const Values first = values_of(definitions, off.before);
+    placing.place(errors_mm);
+    const Values first = chart.values(placing.before_mm());
     of_before.add(first);
     if (!moves) continue;
-    const Values second = values_of(definitions, off.after);
+    const Values second = chart.values(placing.after_mm());
     of_after.add(second);
     of_change.add(changes(first, second));
   }
   CephalometricResults results;
-  const Points points = with_means(definitions, still.before);
-  for (const CephalometricMeasure& measure : definitions.measures) {
-    const std::string& name = measure.name;
-    if (!before.contains(name)) {
-      results.lacking.emplace_back(name, lacking(definitions, measure, points));
-      continue;
-    }
+  results.lacking = chart.lacking();
+  for (std::size_t i = 0; i < before.size(); ++i) {
     CephalometricResult result{
-        measure, {before.at(name), of_before.half_width(name, before.at(name))}, {}, {}};
+        *chart.measures()[i].definition, {before[i], of_before.half_width(i, before[i])}, {}, {}};
     if (moves) {
-      result.after = {after.at(name), of_after.half_width(name, after.at(name))};
-      result.change = {change.at(name), of_change.half_width(name, change.at(name))};
+      result.after = {after[i], of_after.half_width(i, after[i])};
+      result.change = {change[i], of_change.half_width(i, change[i])};
     }
     results.measured.push_back(std::move(result));
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "planner/table/csv.h"
@@ -28,24 +29,34 @@ std::optional<int> whole(const std::string& text) {
   return number;
 }
 
-/// Adds a name; `where` is for refusals.
-void add(LabelTable& table, int label, const std::string& name, const std::string& where) {
-  if (label == 0 || name.empty()) return;
-  if (!table.names.emplace(label, name).second)
-    refuse(where, "label " + std::to_string(label) + " has two names, '" + table.names[label] + "' and '" +
-                      name + "'");
-  for (const auto& [other, known] : table.names)
-    if (other != label && known == name)
-      refuse(where, "'" + name + "' is the name of two labels, " + std::to_string(other) + " and " +
+/// The names of labels while a table is read.
+class Names {
+ public:
+  /// `where` is for refusals.
+  void add(int label, const std::string& name, const std::string& where) {
+    if (label == 0 || name.empty()) return;
+    const auto [own, is_new_label] = names_.emplace(label, name);
+    if (!is_new_label)
+      refuse(where,
+             "label " + std::to_string(label) + " has two names, '" + own->second + "' and '" + name + "'");
+    const auto [known, is_new_name] = labels_.emplace(name, label);
+    if (!is_new_name)
+      refuse(where, "'" + name + "' is the name of two labels, " + std::to_string(known->second) + " and " +
                         std::to_string(label));
-}
+  }
+  std::map<int, std::string> all() && { return std::move(names_); }
 
-void add_json(LabelTable& table, const SortedJson& json, const std::string& where) {
+ private:
+  std::map<int, std::string> names_;
+  std::map<std::string, int> labels_;
+};
+
+void add_json(Names& table, const SortedJson& json, const std::string& where) {
   if (json.is_array()) {
     for (const SortedJson& entry : json) {
       const std::string at = where + "[" + std::to_string(&entry - &json.front()) + "]";
-      add(table, static_cast<int>(count_of(need(entry, "label", at), at + ".label")),
-          word_of(need(entry, "name", at), at + ".name"), at);
+      table.add(static_cast<int>(count_of(need(entry, "label", at), at + ".label")),
+                word_of(need(entry, "name", at), at + ".name"), at);
     }
     return;
   }
@@ -54,9 +65,9 @@ void add_json(LabelTable& table, const SortedJson& json, const std::string& wher
   for (const auto& [key, value] : json.items()) {
     const std::string at = where + ": " + key;
     if (const std::optional<int> label = whole(key); label && value.is_string())
-      add(table, *label, value.get<std::string>(), at);
+      table.add(*label, value.get<std::string>(), at);
     else if (value.is_number_integer() && value >= 0 && value <= 32767)
-      add(table, value.get<int>(), key, at);
+      table.add(value.get<int>(), key, at);
     else
       refuse(at, "must be a name with its label, or a label with its name");
   }
@@ -71,8 +82,7 @@ std::optional<std::size_t> column(const std::vector<std::string>& heading,
   return std::nullopt;
 }
 
-void add_rows(LabelTable& table, const std::vector<std::vector<std::string>>& rows,
-              const std::string& where) {
+void add_rows(Names& table, const std::vector<std::vector<std::string>>& rows, const std::string& where) {
   if (rows.empty()) return;
   std::size_t label_at = 0, name_at = 1, first = 0;
   if (!whole(rows[0][0])) {
@@ -88,12 +98,12 @@ void add_rows(LabelTable& table, const std::vector<std::vector<std::string>>& ro
     const std::string at = where + ":" + std::to_string(i + 1);
     const std::optional<int> label = label_at < rows[i].size() ? whole(rows[i][label_at]) : std::nullopt;
     if (!label || name_at >= rows[i].size()) refuse(at, "has no label from 0 to 32767 and a name");
-    add(table, *label, voxel::trimmed(rows[i][name_at]), at);
+    table.add(*label, voxel::trimmed(rows[i][name_at]), at);
   }
 }
 
 /// "5 255 0 0 1 1 1 "liver"" of ITK-SNAP, "5 liver 255 0 0 255" of 3D Slicer.
-void add_lines(LabelTable& table, std::istream& in, const std::string& where) {
+void add_lines(Names& table, std::istream& in, const std::string& where) {
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     const std::string text = voxel::trimmed(line), at = where + ":" + std::to_string(number);
@@ -103,7 +113,8 @@ void add_lines(LabelTable& table, std::istream& in, const std::string& where) {
     if (!label || blank == std::string::npos) refuse(at, "begins with no label from 0 to 32767");
     const std::string rest = voxel::trimmed(text.substr(blank));
     const std::size_t quote = rest.find('"'), last = rest.rfind('"');
-    add(table, *label,
+    table.add(
+        *label,
         quote != last ? rest.substr(quote + 1, last - quote - 1) : rest.substr(0, rest.find_first_of(" \t")),
         at);
   }
@@ -112,11 +123,10 @@ void add_lines(LabelTable& table, std::istream& in, const std::string& where) {
 }  // namespace
 
 int LabelTable::label(const std::string& name) const {
-  std::vector<std::string> known;
-  for (const auto& [number, label] : names) {
+  for (const auto& [number, label] : names)
     if (label == name) return number;
-    known.push_back(label);
-  }
+  std::vector<std::string> known;
+  for (const auto& [number, label] : names) known.push_back(label);
   if (known.empty())
     throw std::runtime_error("there is no label '" + name +
                              "': neither the label map nor a table beside it has names; say its number");
@@ -124,14 +134,13 @@ int LabelTable::label(const std::string& name) const {
 }
 
 LabelTable read_label_table(const fs::path& path) {
-  LabelTable table;
-  table.file = path;
+  Names table;
   const std::string extension = voxel::extension_of(path), where = path.string();
   if (extension == ".json") {
     add_json(table, read_json(path), where);
-    return table;
+    return {std::move(table).all(), path};
   }
-  std::ifstream in(path);
+  std::ifstream in = voxel::opened(path);
   if (!in) refuse(where, "cannot be read");
   if (extension == ".csv" || extension == ".tsv") {
     std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -142,7 +151,7 @@ LabelTable read_label_table(const fs::path& path) {
   } else {
     add_lines(table, in, where);
   }
-  return table;
+  return {std::move(table).all(), path};
 }
 
 LabelTable label_table_of(const fs::path& label_map) {

@@ -3,10 +3,12 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
 #include "planner/table/json.h"
+#include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/regular_file.h"
 
@@ -79,7 +81,7 @@ std::vector<brep::Landmark> read_landmarks(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
   try {
-    const SortedJson root = SortedJson::parse(file);
+    const auto root = parse_json(std::string{std::istreambuf_iterator<char>(file), {}});
     const auto is_list = [&](const char* key) {
       return root.is_object() && root.contains(key) && root[key].is_array();
     };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "planner/table/json_file.h"
 #include "planner/table/number_format.h"
 #include "voxel/measure/grey_level_counts.h"
 
@@ -69,7 +70,9 @@ Json octree_answer(const voxel::OctreeFile& file, std::optional<std::uint64_t> b
   json["bytes_file"] = bytes_file ? Json(*bytes_file) : Json(nullptr);
   json["spacing_mm"] = to_json(universe.lattice().spacing_mm());
   json["lps_from_voxel"] = to_json(universe.lps_from_voxel);
-  const Json metadata = Json::parse(file.metadata, nullptr, false);
+  const bool is_shallow = json_levels(file.metadata) <= most_json_levels;
+  const Json metadata =
+      is_shallow ? Json::parse(file.metadata, nullptr, false) : Json(Json::value_t::discarded);
   json["metadata"] = file.metadata.empty()     ? Json(nullptr)
                      : metadata.is_discarded() ? Json(file.metadata)
                                                : metadata;

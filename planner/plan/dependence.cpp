@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/plan/dependence.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "planner/plan/sha256.h"
@@ -39,10 +38,10 @@ std::vector<std::filesystem::path> files_read(const Step& step) {
 }
 
 std::set<std::string> needed_for(const Plan& plan, const std::vector<std::string>& ids) {
-  std::set<std::string> needed(ids.begin(), ids.end());
+  std::set<std::string> needed(ids.begin(), ids.end()), known;
+  for (const Step& step : plan.steps) known.insert(step.id);
   for (const std::string& id : ids)
-    if (std::none_of(plan.steps.begin(), plan.steps.end(), [&](const Step& step) { return step.id == id; }))
-      throw std::invalid_argument("the plan has no step called '" + id + "'");
+    if (!known.contains(id)) throw std::invalid_argument("the plan has no step called '" + id + "'");
   // Steps use earlier ones only: one pass from the last to the first finds all.
   for (auto step = plan.steps.rbegin(); step != plan.steps.rend(); ++step)
     if (needed.contains(step->id))

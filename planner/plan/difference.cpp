@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/plan/difference.h"
 
-#include <algorithm>
+#include <map>
 
 #include "planner/table/field_json.h"
 #include "planner/table/json.h"
@@ -48,17 +48,24 @@ Json fields_of(const Step& step) {
   return fields;
 }
 
-const Step* find(const Plan& plan, const std::string& id) {
-  for (const Step& step : plan.steps)
-    if (step.id == id) return &step;
-  return nullptr;
+using StepsById = std::map<std::string, const Step*>;
+
+StepsById steps_by_id(const Plan& plan) {
+  StepsById steps;
+  for (const Step& step : plan.steps) steps.emplace(step.id, &step);
+  return steps;
 }
 
-std::vector<std::string> ids_in_both(const Plan& plan, const Plan& other) {
-  std::vector<std::string> ids;
-  for (const Step& step : plan.steps)
-    if (find(other, step.id) != nullptr) ids.push_back(step.id);
-  return ids;
+/// The step before each one that another plan has too, of those that both have; "" before the first.
+std::map<std::string, std::string> steps_before(const Plan& plan, const StepsById& other) {
+  std::map<std::string, std::string> before;
+  std::string last;
+  for (const Step& step : plan.steps) {
+    if (!other.contains(step.id)) continue;
+    before.emplace(step.id, last);
+    last = step.id;
+  }
+  return before;
 }
 
 }  // namespace
@@ -66,24 +73,24 @@ std::vector<std::string> ids_in_both(const Plan& plan, const Plan& other) {
 PlanDifference difference(const Plan& from, const Plan& to) {
   PlanDifference found;
   compare(document_of(from), document_of(to), "", found.document);
+  const StepsById steps_from = steps_by_id(from), steps_to = steps_by_id(to);
   for (const Step& step : from.steps) {
-    const Step* same = find(to, step.id);
-    if (same == nullptr) {
+    const auto same = steps_to.find(step.id);
+    if (same == steps_to.end()) {
       found.removed.push_back(step.id);
       continue;
     }
     StepChange change{step.id, {}};
-    compare(fields_of(step), fields_of(*same), "", change.fields);
+    compare(fields_of(step), fields_of(*same->second), "", change.fields);
     if (!change.fields.empty()) found.changed.push_back(std::move(change));
   }
   for (const Step& step : to.steps)
-    if (find(from, step.id) == nullptr) found.added.push_back(step.id);
-  const std::vector<std::string> before = ids_in_both(from, to), after = ids_in_both(to, from);
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    const auto place = std::find(before.begin(), before.end(), after[i]);
-    const std::string earlier = place == before.begin() ? "" : *(place - 1);
-    if (earlier != (i == 0 ? "" : after[i - 1])) found.reordered.push_back(after[i]);
-  }
+    if (!steps_from.contains(step.id)) found.added.push_back(step.id);
+  const auto before_in_from = steps_before(from, steps_to), before_in_to = steps_before(to, steps_from);
+  for (const Step& step : to.steps)
+    if (const auto before = before_in_from.find(step.id);
+        before != before_in_from.end() && before->second != before_in_to.at(step.id))
+      found.reordered.push_back(step.id);
   return found;
 }
 

@@ -4,8 +4,10 @@
 // they stood behind there.
 #include "planner/plan/merge.h"
 
-#include <algorithm>
+#include <iterator>
+#include <list>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 #include "planner/table/json.h"
@@ -59,29 +61,26 @@ Ids ids_of(const Json& plan) {
   return ids;
 }
 
-bool has(const Ids& ids, const std::string& id) {
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
-}
-
 Ids those_in(const Ids& ids, const Ids& others, const Ids& more) {
+  const std::set<std::string> in_others(others.begin(), others.end()), in_more(more.begin(), more.end());
   Ids kept;
   for (const std::string& id : ids)
-    if (has(others, id) && has(more, id)) kept.push_back(id);
+    if (in_others.contains(id) && in_more.contains(id)) kept.push_back(id);
   return kept;
 }
 
 /// Adds the ids of `from` that `order` lacks, each behind the one that it follows there.
 void add_missing(const Ids& from, Ids& order) {
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (has(order, from[i])) continue;
-    auto place = order.begin();
-    for (std::size_t before = i; before-- > 0;)
-      if (const auto found = std::find(order.begin(), order.end(), from[before]); found != order.end()) {
-        place = found + 1;
-        break;
-      }
-    order.insert(place, from[i]);
+  std::list<std::string> all(order.begin(), order.end());
+  std::map<std::string, std::list<std::string>::iterator> place_of;
+  for (auto place = all.begin(); place != all.end(); ++place) place_of.emplace(*place, place);
+  auto behind = all.begin();
+  for (const std::string& id : from) {
+    const auto [known, is_new] = place_of.try_emplace(id);
+    if (is_new) known->second = all.insert(behind, id);
+    behind = std::next(known->second);
   }
+  order.assign(all.begin(), all.end());
 }
 
 Ids merged_order(const Ids& base, const Ids& a, const Ids& b, Merge& merge) {

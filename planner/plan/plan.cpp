@@ -16,6 +16,7 @@
 #include "planner/plan/signature.h"
 #include "planner/table/field_json.h"
 #include "planner/table/json.h"
+#include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/space/regular_file.h"
 
@@ -33,6 +34,7 @@ SortedJson strict_json(const std::string& text) {
                                "' is said twice in one object: keep one");
     return true;
   };
+  need_shallow_json(text);
   try {
     return SortedJson::parse(text, watch);
   } catch (const SortedJson::exception& error) {

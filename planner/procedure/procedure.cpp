@@ -5,12 +5,14 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "planner/plan/plan.h"
 #include "planner/procedure/formula.h"
 #include "planner/table/json.h"
 #include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
+#include "voxel/space/file_text.h"
 
 namespace octotomy::planner {
 
@@ -46,9 +48,11 @@ const brep::Landmark* find(const std::vector<brep::Landmark>& landmarks, const s
 }
 
 void need_landmarks(const Procedure& procedure, const std::vector<brep::Landmark>& given) {
+  std::set<std::string> names;
+  for (const brep::Landmark& landmark : given) names.insert(landmark.name);
   std::string missing;
   for (const ProcedureLandmark& landmark : procedure.landmarks)
-    if (find(given, landmark.name) == nullptr)
+    if (!names.contains(landmark.name))
       missing += (missing.empty() ? "" : "; ") + ("'" + landmark.name + "', " + landmark.says);
   if (!missing.empty())
     throw std::runtime_error("procedure " + procedure.name + " lacks landmarks: " + missing + ": place them");
@@ -148,12 +152,7 @@ double number_at(const SortedJson& entry, const char* key, const std::string& wh
 }  // namespace
 
 Procedure parse_procedure(const std::string& text) {
-  Json root;
-  try {
-    root = Json::parse(text);
-  } catch (const Json::exception& error) {
-    throw std::runtime_error(std::string("is no JSON: ") + error.what());
-  }
+  const Json root = parse_json<Json>(text);
   const SortedJson plain = root;
   check_keys(plain, "procedure", {"procedure", "says", "landmarks", "scans", "values", "steps"});
   Procedure procedure;
@@ -203,7 +202,7 @@ Procedure parse_procedure(const std::string& text) {
 
 Procedure read_procedure(const std::string& name_or_path) {
   if (name_or_path.ends_with(".json")) {
-    std::ifstream file(name_or_path, std::ios::binary);
+    std::ifstream file = voxel::opened(name_or_path);
     if (!file) throw std::runtime_error(name_or_path + ": cannot be read");
     const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     try {

@@ -17,21 +17,6 @@ namespace {
   throw voxel::Error(voxel::ErrorCode::Input, "the request " + why);
 }
 
-/// Levels of brackets outside of texts, before anything is built of them.
-int levels_of(std::string_view text) {
-  int level = 0, deepest = 0;
-  bool in_text = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char symbol = text[i];
-    if (symbol == '"') in_text = !in_text;
-    if (in_text && symbol == '\\') ++i;
-    if (in_text) continue;
-    if (symbol == '[' || symbol == '{') deepest = std::max(deepest, ++level);
-    if (symbol == ']' || symbol == '}') --level;
-  }
-  return deepest;
-}
-
 template <typename Code>
 std::string name_of(Code code) {
   if (code == Code::Geometry) return "geometry";
@@ -55,7 +40,7 @@ Message text_of(const Json& json) {
 }  // namespace
 
 Request parse_request(std::string_view text) {
-  if (levels_of(text) > most_levels) refuse_request("is nested too deeply");
+  if (json_levels(text) > most_levels) refuse_request("is nested too deeply");
   Request request;
   request.said = Json::parse(text, nullptr, false);
   if (!request.said.is_object()) refuse_request("is no JSON object");

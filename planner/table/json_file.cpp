@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "planner/table/json.h"
@@ -26,14 +27,34 @@ std::string type_of(const SortedJson& value) {
                            : "a JSON " + std::string(value.type_name());
 }
 
+int json_levels(std::string_view text) {
+  int level = 0, deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char symbol = text[i];
+    if (symbol == '"') in_text = !in_text;
+    if (in_text && symbol == '\\') ++i;
+    if (in_text) continue;
+    if (symbol == '[' || symbol == '{') deepest = std::max(deepest, ++level);
+    if (symbol == ']' || symbol == '}') --level;
+  }
+  return deepest;
+}
+
+void need_shallow_json(std::string_view text) {
+  if (json_levels(text) > most_json_levels)
+    refuse("", "is nested more than " + std::to_string(most_json_levels) + " deep");
+}
+
 SortedJson read_json(const std::filesystem::path& path) {
   voxel::need_regular_file(path);
-  std::ifstream stream(path);
+  std::ifstream stream(path, std::ios::binary);
   if (!stream) refuse(path.string(), "cannot be opened");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
   try {
-    return SortedJson::parse(stream);
-  } catch (const SortedJson::exception& error) {
-    refuse(path.string(), std::string("is no JSON: ") + error.what());
+    return parse_json(text);
+  } catch (const std::runtime_error& error) {
+    refuse(path.string(), error.what());
   }
 }
 

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 // Files of JSON that people write. All throw std::runtime_error that begins with `where`: the file, then the
@@ -16,6 +17,25 @@ namespace octotomy::planner {
 
 /// For a refusal: "a number", "a JSON array".
 std::string type_of(const nlohmann::json& value);
+
+/// The most levels that JSON may be deep: it is copied and written by calls within calls, which take the
+/// stack.
+inline constexpr int most_json_levels = 512;
+/// Levels of brackets outside of texts, before anything is built of them. Linear.
+int json_levels(std::string_view text);
+/// Refuses a text that is deeper than most_json_levels.
+void need_shallow_json(std::string_view text);
+
+/// Throws std::runtime_error where a text is no JSON, or too deep.
+template <typename AnyJson = nlohmann::json>
+AnyJson parse_json(std::string_view text) {
+  need_shallow_json(text);
+  try {
+    return AnyJson::parse(text);
+  } catch (const typename AnyJson::exception& error) {
+    refuse("", std::string("is no JSON: ") + error.what());
+  }
+}
 
 nlohmann::json read_json(const std::filesystem::path& path);
 

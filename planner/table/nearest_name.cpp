@@ -32,6 +32,17 @@ std::size_t edits(std::string_view a, std::string_view b) {
   return above[b.size()];
 }
 
+/// Whether this number of edits changes at most half of the longer word.
+bool is_near(std::size_t edits, std::string_view a, std::string_view b) {
+  return 2 * edits <= std::max(a.size(), b.size());
+}
+
+/// Whether the edits are worth counting: they are at least as many as one word is longer than the other.
+bool may_be_near(std::string_view a, std::string_view b) {
+  const std::size_t shorter = std::min(a.size(), b.size()), longer = std::max(a.size(), b.size());
+  return longer <= longest_suggested && is_near(longer - shorter, a, b);
+}
+
 std::size_t common_beginning(std::string_view a, std::string_view b) {
   std::size_t length = 0;
   while (length < std::min(a.size(), b.size()) && lower(a[length]) == lower(b[length])) ++length;
@@ -44,8 +55,9 @@ std::optional<std::string> nearest_name(std::string_view name, std::span<const s
   std::optional<std::string> nearest;
   std::size_t fewest = 0, beginning = 0;
   for (const std::string& candidate : known) {
+    if (!may_be_near(name, candidate)) continue;
     const std::size_t distance = edits(name, candidate);
-    if (2 * distance > std::max(name.size(), candidate.size())) continue;
+    if (!is_near(distance, name, candidate)) continue;
     const std::size_t shared = common_beginning(name, candidate);
     if (nearest && (distance > fewest || (distance == fewest && shared <= beginning))) continue;
     nearest = candidate;

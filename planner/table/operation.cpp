@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/table/operation.h"
 
-#include <algorithm>
+#include <set>
+#include <utility>
 
 namespace octotomy::planner {
 namespace {
@@ -19,21 +20,31 @@ void collect_marks(const std::vector<Field>& fields, void* owner, std::vector<Ma
   }
 }
 
+/// Names, each once, in the order they come.
+class Names {
+ public:
+  void add(const std::string& name) {
+    if (!name.empty() && known_.insert(name).second) in_order_.push_back(name);
+  }
+  std::vector<std::string> all() && { return std::move(in_order_); }
+
+ private:
+  std::vector<std::string> in_order_;
+  std::set<std::string> known_;
+};
+
 /// Collects the names in fields of one type.
 template <typename Name>
-void collect(const std::vector<Field>& fields, void* owner, std::vector<std::string>& names) {
-  const auto add = [&](const std::string& name) {
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
+void collect(const std::vector<Field>& fields, void* owner, Names& names) {
   for (const Field& field : fields) {
     const Slot slot = field.slot(owner);
-    if (const auto* name = std::get_if<Name*>(&slot)) add((*name)->name);
+    if (const auto* name = std::get_if<Name*>(&slot)) names.add((*name)->name);
     if constexpr (std::is_same_v<Name, ObjectName>) {
-      if (const auto* site = std::get_if<Site*>(&slot)) add((*site)->object);
+      if (const auto* site = std::get_if<Site*>(&slot)) names.add((*site)->object);
       if (const auto* name = std::get_if<std::optional<Name>*>(&slot); name != nullptr && **name)
-        add((**name)->name);
+        names.add((**name)->name);
       if (const auto* list = std::get_if<std::vector<Name>*>(&slot))
-        for (const Name& name : **list) add(name.name);
+        for (const Name& name : **list) names.add(name.name);
     }
     if (const auto* records = std::get_if<Records>(&slot))
       for (std::size_t i = 0; i < records->count; ++i) collect<Name>(field.fields, records->at(i), names);
@@ -49,15 +60,12 @@ const Operation* find_operation(const std::string& name) {
 }
 
 std::vector<std::string> objects_used(const Action& action) {
-  std::vector<std::string> names;
+  Names names;
   collect<ObjectName>(action.operation().fields, const_cast<void*>(action.value()), names);
-  for (const Mark& mark : marks_used(action))
-    if (!mark.object.empty() && std::find(names.begin(), names.end(), mark.object) == names.end())
-      names.push_back(mark.object);
+  for (const Mark& mark : marks_used(action)) names.add(mark.object);
   if (action.operation().uses)
-    for (const std::string& name : action.operation().uses(action.value()))
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  return names;
+    for (const std::string& name : action.operation().uses(action.value())) names.add(name);
+  return std::move(names).all();
 }
 
 std::filesystem::path path_written(const Action& action) {
@@ -76,9 +84,9 @@ std::vector<Mark> marks_used(const Action& action) {
 }
 
 std::vector<std::string> scans_used(const Action& action) {
-  std::vector<std::string> names;
+  Names names;
   collect<ScanName>(action.operation().fields, const_cast<void*>(action.value()), names);
-  return names;
+  return std::move(names).all();
 }
 
 }  // namespace octotomy::planner

@@ -59,18 +59,16 @@ void Scope::bind_landmark(const std::string& where, const NamedPoint& landmark) 
   const Place place{where};
   if (landmark.name.empty() || landmark.name.find('@') != std::string::npos)
     place.refuse("the landmark '" + landmark.name + "' needs a name without '@'");
-  if (std::any_of(landmarks_.begin(), landmarks_.end(),
-                  [&](const NamedPoint& other) { return other.name == landmark.name; }))
+  if (!landmark_of_.emplace(landmark.name, landmarks_.size()).second)
     place.refuse("the landmark '" + landmark.name + "' is named twice: rename or delete one");
   landmarks_.push_back(landmark);
 }
 
 glm::dvec3 Scope::landmark_mm(const std::string& where, const std::string& name) const {
+  if (const auto found = landmark_of_.find(name); found != landmark_of_.end())
+    return landmarks_[found->second].p_mm;
   std::vector<std::string> known;
-  for (const NamedPoint& landmark : landmarks_) {
-    if (landmark.name == name) return landmark.p_mm;
-    known.push_back(landmark.name);
-  }
+  for (const NamedPoint& landmark : landmarks_) known.push_back(landmark.name);
   Place{where}.refuse(known.empty()
                           ? "no earlier step names landmarks: add a landmarks step, or type [x, y, z]"
                           : "no landmark is called '" + name + "'" + suggestion(name, known));
@@ -82,9 +80,8 @@ void Scope::hold_head(const std::string& where, const glm::dmat3& lps_from_head)
 }
 
 void Scope::take_path(const std::string& where, const std::string& path) {
-  if (contains(paths_, path))
+  if (!paths_.insert(path).second)
     Place{where}.refuse("'" + path + "' is written by an earlier step: choose another");
-  paths_.push_back(path);
 }
 
 }  // namespace octotomy::planner

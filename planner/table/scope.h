@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,9 +51,11 @@ class Scope {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  std::vector<std::string> scans_, objects_, paths_;
+  std::vector<std::string> scans_, objects_;
+  std::set<std::string> paths_;
   std::filesystem::path folder_;
   std::vector<NamedPoint> landmarks_;
+  std::map<std::string, std::size_t> landmark_of_;  ///< numbers by names
   std::optional<glm::dmat3> lps_from_head_;
   std::map<std::string, const Operation*> operations_;
 };

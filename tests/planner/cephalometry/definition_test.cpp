@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/file_bytes.h"
+#include "tests/voxel/scratch_folder.h"
+
 namespace octotomy::planner {
 namespace {
 
@@ -46,6 +49,20 @@ TEST(CephalometricDefinition, RefusalsNameThePlaceAndTheNearestName) {
             std::string::npos);
   EXPECT_NE(refusal("7").find("measures[0]"), std::string::npos);
   EXPECT_THROW(parse_cephalometry("{"), std::runtime_error);
+}
+
+TEST(CephalometricDefinition, NestedTooDeepIsRefusedAsTextAndAsFile) {
+  const tests::ScratchFolder folder;
+  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
+  const std::filesystem::path path = folder / "deep.json";
+  tests::write_bytes(path, deep);
+  EXPECT_THROW(parse_cephalometry(deep), std::runtime_error);
+  try {
+    read_cephalometry(path.string());
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), path.string() + ": is nested more than 512 deep");
+  }
 }
 
 }  // namespace

@@ -117,5 +117,52 @@ TEST(Cephalometry, WhatIsNotMeasuredSaysWhichLandmarksAreLacking) {
   EXPECT_THROW(measure(same), std::invalid_argument);
 }
 
+/// A distance that a landmark lacks, and differences of which each is of the one before with itself.
+std::string chain(int differences) {
+  std::string text = R"({"cephalometry": "own", "says": "s", "landmarks": [{"name": "a", "says": "s"},
+    {"name": "b", "says": "s"}], "measures": [
+    {"name": "m0", "says": "s", "kind": "distance", "points": ["a", "b"]})";
+  for (int i = 1; i <= differences; ++i) {
+    const std::string before = '"' + ("m" + std::to_string(i - 1)) + '"';
+    text += R"(, {"name": "m)" + std::to_string(i) + R"(", "says": "s", "kind": "difference", "of": [)" +
+            before + ", " + before + "]}";
+  }
+  return text + "]}";
+}
+
+TEST(Cephalometry, WhatIsLackingIsFoundOnceWhereEachMeasureNamesTheOneBeforeTwice) {
+  const Cephalometry definitions = parse_cephalometry(chain(60));
+  const MovedLandmark a{{"a", {0, 0, 0}}, glm::dmat4(1.0)}, b{{"b", {3, 0, 4}}, glm::dmat4(1.0)};
+  const CephalometricResults found = measured(definitions, {a}, glm::dmat3(1.0));
+  EXPECT_TRUE(found.measured.empty());
+  ASSERT_EQ(found.lacking.size(), 61u);
+  for (const auto& [name, landmarks] : found.lacking)
+    EXPECT_EQ(landmarks, std::vector<std::string>{"b"}) << name;
+  const CephalometricResults whole = measured(definitions, {a, b}, glm::dmat3(1.0), {1.0, 100, 1});
+  ASSERT_EQ(whole.measured.size(), 61u);
+  EXPECT_EQ(whole.measured[60].before.value, 0.0);
+}
+
+TEST(Cephalometry, ALandmarkThatIsNotPlacedIsTheMeanOfOthersAndErrsWithThem) {
+  const Cephalometry definitions = parse_cephalometry(R"({"cephalometry": "own", "says": "s", "landmarks": [
+    {"name": "left", "says": "s"}, {"name": "right", "says": "s"}, {"name": "base", "says": "s"},
+    {"name": "middle", "says": "s", "mean_of": ["left", "right"]},
+    {"name": "half way", "says": "s", "mean_of": ["middle", "base"]}], "measures": [
+    {"name": "d", "says": "s", "kind": "distance", "plane": "space", "points": ["half way", "base"]}]})");
+  const auto at = [](const char* name, const glm::dvec3& p_mm) {
+    return MovedLandmark{{name, p_mm}, glm::dmat4(1.0)};
+  };
+  std::vector<MovedLandmark> placed{at("of nothing", {9, 9, 9}), at("left", {1, 0, 0}),
+                                    at("right", {-1, 0, 0}), at("base", {0, 80, 0})};
+  const LandmarkDoubt doubt{1.0, 40000, 1};
+  const CephalometricValue of_means =
+      measured(definitions, placed, glm::dmat3(1.0), doubt).measured[0].before;
+  EXPECT_DOUBLE_EQ(of_means.value, 40.0);
+  // (left + right) / 4 - base / 2 along the line.
+  EXPECT_NEAR(of_means.half_width, 2.5758 * std::sqrt(1.0 / 16 + 1.0 / 16 + 1.0 / 4), 0.06);
+  placed.push_back(at("half way", {0, 50, 0}));
+  EXPECT_DOUBLE_EQ(measured(definitions, placed, glm::dmat3(1.0), doubt).measured[0].before.value, 30.0);
+}
+
 }  // namespace
 }  // namespace octotomy::planner

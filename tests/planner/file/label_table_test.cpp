@@ -61,6 +61,13 @@ TEST(LabelTable, ASpoiledTableIsRefusedByItsLine) {
   EXPECT_NE(refusal("b.csv", "5,liver\n5,spleen\n").find("b.csv:2: label 5 has two names"),
             std::string::npos);
   EXPECT_NE(refusal("c.csv", "colour,organ\nred,liver\n").find("must name a column"), std::string::npos);
+  std::string all;
+  for (int label = 1; label < 32767; ++label)
+    all += std::to_string(label) + ",part" + std::to_string(label) + "\n";
+  EXPECT_EQ(refusal("all.csv", all), "taken");
+  EXPECT_NE(refusal("again.csv", all + "32767,part2\n")
+                .find("again.csv:32767: 'part2' is the name of two labels, 2 and 32767"),
+            std::string::npos);
   EXPECT_NE(refusal("d.txt", "5 255 0 0 1 1 1 \"liver\"\nliver 5\n").find("d.txt:2"), std::string::npos);
   EXPECT_NE(refusal("e.json", R"({"liver": -1})").find("liver"), std::string::npos);
   EXPECT_NE(refusal("f.csv", "5,liver\n40000,spleen\n").find("f.csv:2"), std::string::npos);

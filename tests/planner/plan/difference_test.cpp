@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/plan/difference.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <random>
 
 namespace octotomy::planner {
 namespace {
@@ -63,6 +65,57 @@ TEST(Difference, AnotherOrderIsToldOnce) {
                                           plan_of(std::string(skull) + "," + b + "," + a));
   EXPECT_FALSE(found.is_empty());
   EXPECT_EQ(found.reordered, (std::vector<std::string>{"b", "a"}));
+}
+
+/// Of steps that both plans have, those that follow another one of them than before, by a look at all pairs.
+std::vector<std::string> plainly_reordered(const std::string& from, const std::string& to) {
+  const auto before = [](const std::string& plan, const std::string& other, char id) {
+    char last = ' ';
+    for (const char each : plan.substr(0, plan.find(id)))
+      if (other.find(each) != std::string::npos) last = each;
+    return last;
+  };
+  std::vector<std::string> ids;
+  for (const char id : to)
+    if (from.find(id) != std::string::npos && before(from, to, id) != before(to, from, id))
+      ids.emplace_back(1, id);
+  return ids;
+}
+
+/// Some of the steps a to j in any order.
+std::string random_order(std::mt19937& random) {
+  std::string ids = "abcdefghij";
+  std::shuffle(ids.begin(), ids.end(), random);
+  ids.resize(1 + random() % ids.size());
+  return ids;
+}
+
+TEST(Difference, AddedRemovedAndReorderedAreThoseOfALookAtAllPairs) {
+  std::size_t reordered = 0, kept = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    const std::string from = random_order(random), to = random_order(random);
+    const auto plan = [](const std::string& ids) {
+      std::string steps = skull;
+      for (const char id : ids)
+        steps += R"(,{"id": ")" + std::string(1, id) + R"(", "do": "mirror", "object": "skull"})";
+      return plan_of(steps);
+    };
+    const auto lacking = [](const std::string& ids, const std::string& in) {
+      std::vector<std::string> found;
+      for (const char id : ids)
+        if (in.find(id) == std::string::npos) found.emplace_back(1, id);
+      return found;
+    };
+    const PlanDifference found = difference(plan(from), plan(to));
+    EXPECT_EQ(found.removed, lacking(from, to)) << "seed " << seed;
+    EXPECT_EQ(found.added, lacking(to, from)) << "seed " << seed;
+    EXPECT_EQ(found.reordered, plainly_reordered('0' + from, '0' + to)) << "seed " << seed;
+    reordered += found.reordered.size();
+    kept += found.reordered.empty();
+  }
+  EXPECT_GT(reordered, 100U);
+  EXPECT_GT(kept, 10U);
 }
 
 }  // namespace

@@ -95,5 +95,24 @@ TEST(Merge, ChangesThatAreAtPeaceAndMakeNoPlanAreRefusedByPlace) {
   }
 }
 
+TEST(Merge, AddedStepsStandBehindTheOnesThatTheyFollow) {
+  Json a = base(), b = base();
+  const auto add = [](Json& plan, std::size_t place, const char* id) {
+    plan["steps"].insert(plan["steps"].begin() + static_cast<std::ptrdiff_t>(place),
+                         Json{{"id", id}, {"do", "window"}, {"scan", "ct"}, {"low", 300}});
+  };
+  add(a, 0, "a_first");
+  add(a, 1, "a_second");
+  add(a, 5, "a_last");
+  add(b, 0, "b_first");
+  add(b, 2, "b_third");
+  add(b, 5, "b_last");
+  const Merged one = merged(a, b);
+  ASSERT_TRUE(one.conflicts.empty()) << one.conflicts[0].text();
+  std::string order;
+  for (const Step& step : parse_plan(one.text, ".").steps) order += step.id + " ";
+  EXPECT_EQ(order, "a_first a_second b_first skull b_third m size a_last b_last ");
+}
+
 }  // namespace
 }  // namespace octotomy::planner

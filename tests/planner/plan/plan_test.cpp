@@ -260,5 +260,9 @@ TEST(Plan, AFileThatIsNotAPlanIsNamed) {
   EXPECT_THROW(read_plan("/no/such.plan.json"), std::runtime_error);
 }
 
+TEST(Plan, NestedTooDeepIsRefused) {
+  expect_says(refusal(std::string(100'000, '[')), {"nested more than 512 deep"});
+}
+
 }  // namespace
 }  // namespace octotomy::planner

@@ -435,5 +435,14 @@ TEST(Procedure, RefusalsNameLandmarkValueAndStep) {
   }
 }
 
+TEST(Procedure, NestedTooDeepIsRefused) {
+  try {
+    parse_procedure(std::string(100'000, '[') + std::string(100'000, ']'));
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "is nested more than 512 deep");
+  }
+}
+
 }  // namespace
 }  // namespace octotomy::planner

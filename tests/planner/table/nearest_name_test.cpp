@@ -30,6 +30,20 @@ TEST(NearestName, GivesNoneWhereTheNearestWouldMislead) {
   EXPECT_EQ(nearest_name("", known), std::nullopt);
 }
 
+TEST(NearestName, GivesNoneThatIsLongerThanPeopleType) {
+  for (const std::size_t letters : {std::size_t{99}, std::size_t{100}, std::size_t{1'000'000}}) {
+    const std::vector<std::string> words{std::string(letters, 'a')};
+    const auto expected = letters < 100 ? std::optional(words[0]) : std::nullopt;
+    EXPECT_EQ(nearest_name(words[0] + "b", words), expected) << letters;
+  }
+}
+
+TEST(NearestName, GivesOneOfTwiceTheLengthAndNoneThatIsLonger) {
+  const std::vector<std::string> twice{"abcd"}, longer{"abcde"};
+  EXPECT_EQ(nearest_name("ab", twice), "abcd");
+  EXPECT_EQ(nearest_name("ab", longer), std::nullopt);
+}
+
 TEST(NearestName, SuggestsAndListsWhatThereIs) {
   EXPECT_EQ(suggestion("objekt", known),
             ", did you mean 'object'? Known are translate_mm, rotate, object, window, do");
