@@ -53,7 +53,7 @@ void need_folder_of(const fs::path& out, Output kind) {
   if (fs::exists(status) && is_folder != (kind == Output::Folder))
     refuse(is_folder ? "is a folder and is not replaced: choose another name"
                      : "is a file, and a folder is made: choose another name");
-  if (kind == Output::File) voxel::need_own_data_file(out);
+  kind == Output::File ? voxel::need_own_data_file(out) : voxel::need_no_slices(out);
   try {
     const voxel::StagedFiles trial(folder);
   } catch (const voxel::Error& error) {

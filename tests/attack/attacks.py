@@ -229,21 +229,32 @@ def a_closed_terminal_ends_it_unless_that_is_ignored(subject):
 @case
 def names_that_are_not_utf8_work(subject):
     found = []
-    name = b"caf\xe9 \x1b[31m\n"
-    scan, mesh = name + b".nrrd", name + b".stl"
+    name, made = b"caf\xe9 \x1b[31m\n", b"caf\xe9 "
+    scan, mesh = name + b".nrrd", made + b".stl"
     (Path(os.fsencode(subject.folder).decode(errors="surrogateescape")) / os.fsdecode(scan)).write_bytes(
         (subject.folder / "head.nrrd").read_bytes())
     for arguments in (("info", scan), ("info", scan, "--json"), ("mesh", scan, "--window", "300:", "-o", mesh),
                       ("mesh", scan, "--window", "300:", "-o", mesh, "--json"), ("info", mesh), ("info", mesh, "--json"),
-                      ("octree", scan, "--window", "300:", "-o", name + b".octree", "--json"),
-                      ("look", scan, "-o", name + b"looked", "--json"),
-                      ("run", "plan.json", "--scan", b"ct=" + scan, "-o", name + b"out", "--json")):
+                      ("octree", scan, "--window", "300:", "-o", made + b".octree", "--json"),
+                      ("look", scan, "-o", made + b"looked", "--json"),
+                      ("run", "plan.json", "--scan", b"ct=" + scan, "-o", made + b"out", "--json")):
         ended = subject.run(*arguments)
         why = done(ended) or control_in(ended)
         if not why and "--json" in arguments:
             json.loads(ended.out)
         if why:
             found.append(f"{arguments}: {why}")
+    return found
+
+
+@case
+def outputs_are_named_without_controls(subject):
+    found = []
+    for arguments in (("mesh", "head.nrrd", "--window", "300:", "-o", "a\nb.stl"), ("look", "head.nrrd", "-o", "\x1b[2Jlooked"),
+                      ("convert", "head.nrrd", "-o", "a\tb.nii.gz"), ("run", "plan.json", "-o", "a\rb")):
+        ended = subject.run(*arguments)
+        if ended.status != 2 or control_in(ended):
+            found.append(f"{arguments}: status {ended.status}")
     return found
 
 

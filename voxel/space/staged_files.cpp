@@ -123,7 +123,8 @@ fs::path place_of(const fs::path& path) {
 }
 
 fs::path absolute_of(const fs::path& path) {
-  const fs::path whole = fs::absolute(path), plain = whole.lexically_normal();
+  const fs::path whole = fs::absolute(path);
+  fs::path plain = whole.lexically_normal();
   std::error_code fails;
   if (!fs::exists(whole, fails) || fs::equivalent(whole, plain, fails)) return plain;
   return fs::weakly_canonical(whole);

@@ -48,11 +48,13 @@ void forget(const fs::path& path) {
   std::erase(folders().paths, path);
 }
 
+/// Also what another thread is about to remove, since the process may end before that one is done.
 void remove_folder(const fs::path& path) {
   std::error_code ignored;
   const fs::path gone = path.string() + leaving;
   fs::rename(path, gone, ignored);
-  fs::remove_all(ignored ? path : gone, ignored);
+  fs::remove_all(gone, ignored);
+  fs::remove_all(path, ignored);
 }
 
 /// The locked folder's descriptor; -1 if it was removed meanwhile or there are no locks.
