@@ -47,6 +47,13 @@ using List = std::map<std::string, std::string>;
   throw voxel::Error(ErrorCode::Input, message);
 }
 
+/// Refuses a name that a terminal or a list would obey or break at.
+fs::path plain_place_of(const fs::path& folder) {
+  if (has_control(folder.native()))
+    refuse(folder.string() + ": a folder's name has no control characters: choose another -o");
+  return place_of(folder);
+}
+
 bool is_there(const fs::path& path) {
   return fs::symlink_status(path).type() != fs::file_type::not_found;
 }
@@ -325,9 +332,7 @@ void take_usual_mode(const fs::path& folder) {
 }  // namespace
 
 void need_result_folder(const fs::path& folder, const std::vector<fs::path>& names) {
-  if (has_control(folder.native()))
-    refuse(folder.string() + ": a folder's name has no control characters: choose another -o");
-  const fs::path place = place_of(folder);
+  const fs::path place = plain_place_of(folder);
   need_place(place, folder, names);
   try_to_write(place.parent_path(), folder);
   // A page without pictures, its tables and the list of files.
@@ -350,7 +355,7 @@ bool is_of_result(const fs::path& file) {
 }
 
 ResultFolder::ResultFolder(const fs::path& folder, const std::vector<fs::path>& names)
-    : final_(place_of(folder)) {
+    : final_(plain_place_of(folder)) {
   if (!fs::is_directory(final_.parent_path())) need_place(final_, folder, names);
   fs::create_directories(final_.parent_path());
   const PlaceLock held(final_.parent_path());
