@@ -99,22 +99,26 @@ std::vector<fs::path> names_in(const fs::path& folder, const fs::path& last) {
   return names;
 }
 
+/// A path without what says nothing at its end: "/" and "/.".
+fs::path without_end(fs::path path) {
+  while (path.has_relative_path() && (!path.has_filename() || path.filename() == "."))
+    path = path.parent_path();
+  return path;
+}
+
 }  // namespace
 
 fs::path behind_links(fs::path path) {
   for (int links = 0; fs::is_symlink(fs::symlink_status(path)); ++links) {
     if (links == 40)
       throw Error(ErrorCode::Input, path.string() + ": is a link that leads to itself: choose another name");
-    path = path.parent_path() / fs::read_symlink(path);
+    path = without_end(path.parent_path() / fs::read_symlink(path));
   }
   return path;
 }
 
 fs::path place_of(const fs::path& path) {
-  fs::path file = fs::absolute(path);
-  while (file.has_relative_path() && (!file.has_filename() || file.filename() == "."))
-    file = file.parent_path();
-  file = behind_links(file);
+  const fs::path file = behind_links(without_end(fs::absolute(path)));
   std::error_code fails;
   const bool is_folder = file.filename() == ".." || !file.has_relative_path();
   const fs::path folder = fs::weakly_canonical(is_folder ? file : file.parent_path(), fails);

@@ -198,7 +198,7 @@ TEST(ResultFolder, TheWorkingFolderIsNotReplacedUnderItsShell) {
 TEST(ResultFolder, ALinkIsFollowedAndPermissionsStay) {
   const tests::ScratchFolder folder;
   fs::create_directories(folder / "disk");
-  fs::create_directory_symlink("disk/out", folder / "link");
+  fs::create_directory_symlink("disk/out/", folder / "link");
   publish(folder / "link", {"report.html"}, "old");
   EXPECT_TRUE(fs::is_symlink(folder / "link"));
   EXPECT_EQ(tests::bytes_of(folder / "disk/out/report.html"), "old");

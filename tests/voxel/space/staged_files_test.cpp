@@ -169,6 +169,11 @@ TEST(StagedOutputs, WhatFollowsALinkedFolderIsAsTheSystemTakesIt) {
   EXPECT_EQ(place_of(folder / "home/link/to_new"), folder / "elsewhere/new");
   EXPECT_EQ(place_of(folder / "home/inner/./../a/"), folder / "home/a");
   EXPECT_EQ(place_of(folder / "home/link/.."), folder / "elsewhere");
+  fs::create_directory_symlink("inner/./", folder / "home/ends");
+  fs::create_directory_symlink("ends/", folder / "home/twice");
+  fs::create_directory_symlink("itself/", folder / "itself");
+  EXPECT_EQ(place_of(folder / "home/twice/"), folder / "home/inner");
+  EXPECT_THROW(place_of(folder / "itself"), Error);
   EXPECT_EQ(absolute_of(folder / "home/link/./a"), folder / "home/link/a");
   write(folder / "elsewhere/a", "here");
   EXPECT_EQ(absolute_of(folder / "home/link/../a"), folder / "elsewhere/a");
