@@ -60,9 +60,9 @@ std::string bytes_of_regular(const fs::path& path) {
 
 /// The record of a subject whose folder has lost a file of its answer, or holds it changed. None where the
 /// file is as `list`, the folder's list of what was written, has it.
-std::optional<SubjectRecord> record_of_loss(const fs::path& path, const std::string& list) {
-  const std::string line = sha256_of(bytes_of_regular(path)) + "  " + path.filename().string() + "\n";
-  if (list.find(line) != std::string::npos) return std::nullopt;
+std::optional<SubjectRecord> record_of_loss(const fs::path& path, const ResultList& list) {
+  const auto listed = list.find(path.filename().string());
+  if (listed != list.end() && listed->second == sha256_of(bytes_of_regular(path))) return std::nullopt;
   const bool is_there = fs::exists(fs::symlink_status(path));
   SubjectRecord record;
   record.state = is_there ? SubjectRecord::State::Changed : SubjectRecord::State::Missing;
@@ -179,7 +179,7 @@ SubjectRecord subject_record(const fs::path& out, const Subject& subject) {
   SubjectRecord record;
   record.reason = "no result: its process was killed, or never ran";
   if (!fs::exists(fs::symlink_status(folder / "subject.json"))) return record;
-  const std::string list = bytes_of_regular(folder / ".octotomy-result");
+  const ResultList list = result_list(folder);
   if (const auto loss = record_of_loss(folder / "subject.json", list)) return *loss;
   const Json json = Json::parse(bytes_of_regular(folder / "subject.json"), nullptr, false);
   if (!json.is_object() || !json.contains("state")) return record;

@@ -18,7 +18,6 @@
 #include <cstdio>
 #include <fcntl.h>
 #include <fstream>
-#include <map>
 #include <string_view>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -40,8 +39,6 @@ using voxel::place_of;
 
 constexpr const char* steps_suffix = "-earlier";
 constexpr const char* list_name = ".octotomy-result";
-/// SHA-256 by path within the folder.
-using List = std::map<std::string, std::string>;
 
 [[noreturn]] void refuse(const std::string& message) {
   throw voxel::Error(ErrorCode::Input, message);
@@ -71,18 +68,8 @@ bool rename_to_new(const fs::path& from, const fs::path& to) {
          (errno == EINVAL && !is_there(to) && ::rename(from.c_str(), to.c_str()) == 0);
 }
 
-List read_list(const fs::path& folder) {
-  List list;
-  if (!fs::is_regular_file(folder / list_name)) return list;
-  std::ifstream file(folder / list_name);
-  std::string line;
-  while (std::getline(file, line))
-    if (line.size() > 66 && line[0] != '#') list.emplace(line.substr(66), line.substr(0, 64));
-  return list;
-}
-
 void write_list(const fs::path& folder) {
-  List list;
+  ResultList list;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file())
       list.emplace(entry.path().lexically_relative(folder).generic_string(), sha256_of_path(entry.path()));
@@ -138,9 +125,9 @@ dev_t device_of(const fs::path& path) {
 }
 
 /// The list of the earlier result in `folder`; empty for an empty folder. `named` is the user's name for it.
-List need_earlier_result(const fs::path& folder, const fs::path& named) {
+ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
   if (fs::is_empty(folder)) return {};
-  const List list = read_list(folder);
+  const ResultList list = result_list(folder);
   if (list.empty())
     refuse(named.string() + ": holds files but no list of an earlier result (" + list_name +
            "), so they may be yours: choose another -o, or move them");
@@ -156,7 +143,7 @@ List need_earlier_result(const fs::path& folder, const fs::path& named) {
 }
 
 /// Refuses if a file that the list does not name stands at `name`, or where a folder of it must be.
-void need_free(const fs::path& folder, const List& list, const fs::path& name, const fs::path& named) {
+void need_free(const fs::path& folder, const ResultList& list, const fs::path& name, const fs::path& named) {
   fs::path part;
   for (const fs::path& step : name) {
     part /= step;
@@ -169,7 +156,7 @@ void need_free(const fs::path& folder, const List& list, const fs::path& name, c
 }
 
 /// As need_result_folder(), of a path without links; the list of the earlier result there.
-List need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
+ResultList need_place(const fs::path& place, const fs::path& named, const std::vector<fs::path>& names) {
   if (lies_in(fs::current_path(), fs::weakly_canonical(place)))
     refuse(
         named.string() +
@@ -194,7 +181,7 @@ List need_place(const fs::path& place, const fs::path& named, const std::vector<
            (named / "report").string());
   need_writable(place.parent_path(), named);
   need_writable(place, named);
-  List list = need_earlier_result(place, named);
+  ResultList list = need_earlier_result(place, named);
   for (const fs::path& name : names) need_free(place, list, name.lexically_normal(), named);
   return list;
 }
@@ -224,7 +211,7 @@ void keep_mode(const fs::path& old, const fs::path& made) {
 
 /// Links into `made` the files of `old` that its list does not name, and keeps permissions. Throws Error if a
 /// name is taken.
-void take_over(const fs::path& old, const List& list, const fs::path& made, const fs::path& named) {
+void take_over(const fs::path& old, const ResultList& list, const fs::path& made, const fs::path& named) {
   std::vector<fs::path> kept{""};
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(old)) {
     const fs::path name = entry.path().lexically_relative(old);
@@ -257,7 +244,7 @@ void discard(const fs::path& hidden, const fs::path& place, bool sure) {
     fs::remove_all(hidden, ignored);
     return;
   }
-  const List list = read_list(hidden);
+  const ResultList list = result_list(hidden);
   std::vector<fs::path> folders;
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(hidden))
@@ -331,6 +318,16 @@ void take_usual_mode(const fs::path& folder) {
 
 }  // namespace
 
+ResultList result_list(const fs::path& folder) {
+  ResultList list;
+  if (!fs::is_regular_file(folder / list_name)) return list;
+  std::ifstream file(folder / list_name);
+  std::string line;
+  while (std::getline(file, line))
+    if (line.size() > 66 && line[0] != '#') list.emplace(line.substr(66), line.substr(0, 64));
+  return list;
+}
+
 void need_result_folder(const fs::path& folder, const std::vector<fs::path>& names) {
   const fs::path place = plain_place_of(folder);
   need_place(place, folder, names);
@@ -343,13 +340,13 @@ void need_result_folder(const fs::path& folder, const std::vector<fs::path>& nam
 bool may_hold_result(const fs::path& folder) {
   const fs::path place = place_of(folder);
   if (!is_there(place)) return true;
-  return fs::is_directory(place) && (fs::is_empty(place) || !read_list(place).empty());
+  return fs::is_directory(place) && (fs::is_empty(place) || !result_list(place).empty());
 }
 
 bool is_of_result(const fs::path& file) {
   const fs::path place = place_of(file);
   for (fs::path above = place.parent_path();; above = above.parent_path()) {
-    if (read_list(above).contains(place.lexically_relative(above).generic_string())) return true;
+    if (result_list(above).contains(place.lexically_relative(above).generic_string())) return true;
     if (!above.has_relative_path()) return false;
   }
 }
@@ -378,7 +375,7 @@ void ResultFolder::keep_beside(const std::string& reason, const fs::path& hidden
 }
 
 void ResultFolder::copy_rest() {
-  for (const auto& [name, sum] : read_list(final_)) {
+  for (const auto& [name, sum] : result_list(final_)) {
     if (is_there(path() / name) || !fs::is_regular_file(fs::symlink_status(final_ / name))) continue;
     voxel::create_folders_in(path(), fs::path(name).parent_path());
     fs::copy_file(final_ / name, path() / name);
@@ -390,7 +387,7 @@ void ResultFolder::publish() {
   const PlaceLock held(final_.parent_path());
   const bool replaces = is_there(final_) && !(fs::is_directory(final_) && fs::is_empty(final_));
   try {
-    const List earlier = need_place(final_, final_, {});
+    const ResultList earlier = need_place(final_, final_, {});
     if (replaces) take_over(final_, earlier, path(), final_);
   } catch (const std::exception& error) {
     keep_beside(error.what());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,11 @@ bool may_hold_result(const std::filesystem::path& folder);
 
 /// Whether the list of a result, in a folder above, names this file.
 bool is_of_result(const std::filesystem::path& file);
+
+/// SHA-256 by path within the folder.
+using ResultList = std::map<std::string, std::string>;
+/// What `.octotomy-result` in a folder says was written there; empty without that list.
+ResultList result_list(const std::filesystem::path& folder);
 
 /// A folder of results that appears whole or not at all. Files are written into a hidden folder beside the
 /// place; publish() exchanges the two in one step. The file `.octotomy-result` lists what was written with
