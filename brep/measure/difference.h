@@ -54,7 +54,7 @@ struct Difference {
 /// Signs are those of OrientedSurface. Throws std::invalid_argument where a surface has no area or an option
 /// is out of its range; Error, Resource, where the spacing asks for more than 2^23 samples and four a
 /// triangle of a surface. The same bits on any number of threads. Cost: n log n of samples and triangles;
-/// about 0.3 s for 2 x 200 000 samples on two cores; 72 bytes a sample. Source: Aspert et al., "MESH:
+/// about 0.3 s for 2 x 200 000 samples on two cores; some 80 bytes a sample. Source: Aspert et al., "MESH:
 /// measuring errors between surfaces using the Hausdorff distance", ICME 2002, with percentiles.
 Difference difference(const Linked& a, const Linked& b, const DifferenceOptions& options = {});
 Difference difference(const Mesh& a, const Mesh& b, const DifferenceOptions& options = {});

@@ -29,10 +29,10 @@ using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Halfedge = Surface::Halfedge_index;
 using Patch = std::vector<Surface::Face_index>;
 
-/// Most sides of a border over which all triangulations are searched: about 0.1 s.
+/// Most sides of a border over which all triangulations are searched.
 constexpr std::size_t most_sides_for_all = 128;
-/// Most sides of a border whose Delaunay tetrahedra are searched: 0.05 s on a jagged ring, 7 s on a space
-/// curve every two points of which are neighbours.
+/// Most sides of a border whose Delaunay tetrahedra are searched. A space curve every two points of which are
+/// neighbours costs most.
 constexpr std::size_t most_sides_for_delaunay = 1024;
 
 glm::dvec3 point_of(const Mesh& mesh, std::uint32_t v) {

@@ -25,8 +25,7 @@ struct Hole {
 /// sharpness and area. Of longer ones up to 1024 sides those of the border's Delaunay tetrahedra are
 /// searched. Where that finds none, and on still longer borders, corners are cut off before such a search,
 /// those with the shortest third side first; the triangles may then be sharper than need be or meet the
-/// surface. Cost: n log n in a border's sides, and the search: about 0.1 s, and 7 s for the worst border
-/// known.
+/// surface. Cost: n log n in a border's sides, and the search, cubic in those that it is given at worst.
 std::vector<Hole> holes(const Mesh& mesh, const std::optional<double>& longest_mm);
 
 }  // namespace octotomy::brep
