@@ -206,7 +206,7 @@ class Kinds {
     stack("jpeg_stack", "jpg", sound_.bytes("left.jpg"));
     stack("webp_stack", "webp", sound_.bytes("left.webp"));
     stack("tiff_stack", "tif", tiff(), "300:");
-    stack("tiff_tiles_stack", "tif", tiff_of_tiles(16));
+    stack("tiff_tiles_stack", "tif", tiff_of_tiles(16, 16));
     stack("bmp_stack", "bmp", bmp());
     stack("pgm_stack", "pgm", pgm());
     stack("pgm_deep_stack", "pgm", pgm(4095));
@@ -303,13 +303,13 @@ class Kinds {
 
   void add_meshes() {
     const auto mesh = [&](const std::string& name, const std::string& file, std::string sound) {
-      add(name, file, std::move(sound)).verbs = {
+      FileKind& kind = add(name, file, std::move(sound));
+      kind.verbs = {
           {"measure", "MUTANT"},
           {"measure", "MUTANT", "--section", "1,1,1", "0,0,1"},
           {"measure", "MUTANT", "--curvature"},
           {"voxelise", "MUTANT", "--voxel", "6", "-o", "OUT.octree"},
           {"boolean", "MUTANT", "union", at("box.stl"), "-o", "OUT.stl"},
-          {"boolean", at("box.stl"), "intersection", "MUTANT", "--mend", "-o", "OUT.stl"},
           {"repair", "MUTANT", "--orient", "--flat", "--duplicates", "--weld", "0.001", "-o", "OUT.stl"},
           {"repair", "MUTANT", "--solid", "--cell", "8", "-o", "OUT.ply"},
           {"smooth", "MUTANT", "--rounds", "1", "--max-volume-share", "0.9", "-o", "OUT.ply"},
@@ -321,12 +321,13 @@ class Kinds {
           {"slice", at("head.nrrd"), "--octree", "MUTANT", "--size", "16x16", "-o", "OUT.png"},
           {"mirror", "MUTANT", "-o", "OUT.stl"},
           {"mirror", "MUTANT", "--plane", "1,2,3", "1,1,0", "--exactly", "-o", "OUT.ply"},
-          {"offset", "MUTANT", "--by", "20", "--mend", "-o", "OUT.stl"},
           {"shell", "MUTANT", "--thickness", "8", "--voxel", "2", "-o", "OUT.octree"},
           {"fill", "MUTANT", "--certify", "-o", "OUT.stl"},
           {"saw", "MUTANT", "--line", "-60,-120,-20", "60,-120,-20", "--direction", "0,1,0", "--certify",
-           "-o", "OUT.stl"},
-          {"tet", "MUTANT", "--mend", "-o", "OUT.vtu"}};
+           "-o", "OUT.stl"}};
+      kind.slow_verbs = {{"boolean", at("box.stl"), "intersection", "MUTANT", "--mend", "-o", "OUT.stl"},
+                         {"offset", "MUTANT", "--by", "20", "--mend", "-o", "OUT.stl"},
+                         {"tet", "MUTANT", "--mend", "-o", "OUT.vtu"}};
     };
     for (const char* kind : {"stl", "ply", "obj", "off", "vtp"})
       mesh(kind, std::string("ball.") + kind, sound_.bytes(std::string("ball.") + kind));

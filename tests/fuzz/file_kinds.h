@@ -22,7 +22,7 @@ struct FileKind {
   std::vector<std::string> command;           ///< reads a mutant
   /// Of these one, chosen by the seed, computes with a mutant that was read. All take the sound file.
   std::vector<std::vector<std::string>> verbs;
-  /// Take a second or so, and may find too little in the sound file: one mutant in 64 is for them.
+  /// Take a second or so, and may find too little in the sound file: one mutant in 256 is for them.
   std::vector<std::vector<std::string>> slow_verbs = {};
 };
 

@@ -164,7 +164,7 @@ class KindRun {
       if (!judged.fault.empty()) tell(mutant, seed, command.front(), judged.fault);
       return judged.fault.empty() && judged.outcome.status == 0;
     };
-    const bool is_slow = !kind_.slow_verbs.empty() && scattered(seed + 3) % 64 == 0;
+    const bool is_slow = !kind_.slow_verbs.empty() && scattered(seed + 3) % 256 == 0;
     const std::vector<Command>& verbs = is_slow ? kind_.slow_verbs : kind_.verbs;
     if (pass(kind_.command, false) && !verbs.empty()) pass(verbs[scattered(seed + 2) % verbs.size()], true);
   }

@@ -136,6 +136,10 @@ std::string read_page(OIIO::ImageInput& in, int page, std::uint32_t largest_samp
   const OIIO::TypeDesc type = reading.read_as;
   const auto channels = static_cast<std::size_t>(spec.nchannels);
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || channels < 1) return "a page that is no image";
+  // TIFF's reader would step by a tile's height for ever.
+  const bool has_tiles = spec.tile_width != 0 || spec.tile_height != 0;
+  if (has_tiles && (spec.tile_width < 1 || spec.tile_height < 1 || spec.tile_depth > 1))
+    return "tiles of no size that a picture may have";
   const auto bytes_of = [&](int width, int height) {
     return static_cast<double>(width) * height * static_cast<double>(channels * type.size());
   };

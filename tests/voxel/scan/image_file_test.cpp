@@ -147,7 +147,7 @@ std::vector<double> every(const Sample& sample) {
 }
 
 TEST(ReadImages, TakesPicturesPutTogetherByHand) {
-  for (const std::string& bytes : {tests::pgm(), tests::bmp(), tests::tiff_of_tiles(16), tests::exr()})
+  for (const std::string& bytes : {tests::pgm(), tests::bmp(), tests::tiff_of_tiles(16, 16), tests::exr()})
     EXPECT_EQ(samples_of(bytes), every(tests::picture_shade));
   EXPECT_EQ(samples_of(tests::tiff()), every([](std::uint32_t i) { return 1000 + 37 * i % 5000; }));
   const std::string blank = tests::blank_codestream(16, 12);
@@ -189,8 +189,8 @@ TEST(ReadImages, SamplesOfAnyDepthKeepTheirValues) {
 TEST(ReadImages, RefusesWhatItsReaderWouldTakeMemoryFor) {
   const ScratchFolder folder;
   const std::string blank = tests::blank_codestream(1u << 14, 1u << 13);
-  for (const std::string& bytes :
-       {tests::tiff_of_tiles(1u << 14), blank, tests::jp2(blank, tests::blank_codestream(16, 12))}) {
+  for (const std::string& bytes : {tests::tiff_of_tiles(1u << 14, 1u << 14), blank,
+                                   tests::jp2(blank, tests::blank_codestream(16, 12))}) {
     tests::write_bytes(folder / "slice.png", bytes);
     try {
       read_images(folder / "slice.png");
@@ -198,6 +198,20 @@ TEST(ReadImages, RefusesWhatItsReaderWouldTakeMemoryFor) {
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("than the file can hold"), std::string::npos) << error.what();
     }
+  }
+}
+
+TEST(ReadImages, RefusesTilesOfNoSize) {
+  const ScratchFolder folder;
+  constexpr std::uint32_t negative = 0xffffffffu;  // as OpenImageIO takes it
+  for (const auto& [width, height] : {std::pair{16u, negative},
+                                      {negative, 16u},
+                                      {negative, negative},
+                                      {16u, 0u},
+                                      {0u, 16u},
+                                      {16u, 0x80000000u}}) {
+    tests::write_bytes(folder / "slice.tif", tests::tiff_of_tiles(width, height));
+    EXPECT_THROW(read_images(folder / "slice.tif"), Error) << width << " x " << height;
   }
 }
 

@@ -74,7 +74,7 @@ std::string tiff_of(std::uint32_t bits, std::uint32_t kind, const std::string& s
                    samples);
 }
 
-std::string tiff_of_tiles(std::uint32_t tile_side) {
+std::string tiff_of_tiles(std::uint32_t tile_width, std::uint32_t tile_height) {
   std::string samples;
   for (std::uint32_t y = 0; y < 16; ++y)
     for (std::uint32_t x = 0; x < 16; ++x)
@@ -85,8 +85,8 @@ std::string tiff_of_tiles(std::uint32_t tile_side) {
                     {259, 3, 1},
                     {262, 3, 1},
                     {277, 3, 1},
-                    {322, 4, tile_side},
-                    {323, 4, tile_side},
+                    {322, 4, tile_width},
+                    {323, 4, tile_height},
                     {324, 4, behind(10)},
                     {325, 4, static_cast<std::uint32_t>(samples.size())}},
                    samples);

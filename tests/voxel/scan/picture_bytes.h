@@ -16,7 +16,7 @@ std::uint32_t picture_shade(std::uint32_t pixel);
 std::string tiff();  ///< samples of 16 bits in one strip, uncompressed
 /// Samples of any bits, as they lie in the file; `kind` 1: unsigned, 2: signed, 3: floating.
 std::string tiff_of(std::uint32_t bits, std::uint32_t kind, const std::string& samples);
-std::string tiff_of_tiles(std::uint32_t tile_side);
+std::string tiff_of_tiles(std::uint32_t tile_width, std::uint32_t tile_height);
 std::string bmp();
 /// Sealed by its checksums; `colours` 0: grey, 4: with what covers it.
 std::string png(std::uint32_t bits, char colours, const std::string& rows);
