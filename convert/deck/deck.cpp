@@ -148,6 +148,16 @@ std::vector<Part> parts_of(const std::filesystem::path& path) {
   refuse_to_write(path, "'" + extension + "' is no deck this program writes: " + deck_extensions());
 }
 
+/// Whether a file begins as TetGen's that are written here.
+bool is_own_tetgen_file(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) return false;
+  std::string line(4096, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(line.data(), static_cast<std::streamsize>(line.size()));
+  line.resize(std::min(static_cast<std::size_t>(in.gcount()), line.find('\n')));
+  return line.starts_with(tetgen_title_begin) && line.ends_with(tetgen_title_end);
+}
+
 /// The approximate size of a deck in bytes, for its progress: text of nodes, elements and entries of sets.
 /// Binary parts are smaller.
 double bytes_about(const Tetrahedra& tetrahedra, const DeckOptions& options) {
@@ -213,16 +223,19 @@ bool is_deck(const std::filesystem::path& path) {
          extension == ".node" || extension == ".ele" || extension == ".face";
 }
 
+std::vector<std::filesystem::path> deck_files(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files;
+  for (const Part& part : parts_of(path)) files.push_back(part.path);
+  return files;
+}
+
 void need_own_deck_files(const std::filesystem::path& path) {
-  const auto is_there = [](const std::filesystem::path& file) {
-    return std::filesystem::exists(std::filesystem::symlink_status(file));
-  };
-  if (is_there(path)) return;
-  for (const Part& part : parts_of(path))
-    if (is_there(part.path))
+  for (const std::filesystem::path& file : deck_files(path))
+    if (file != path && std::filesystem::exists(std::filesystem::symlink_status(file)) &&
+        !is_own_tetgen_file(file))
       throw voxel::Error(voxel::ErrorCode::Input,
-                         path.string() + ": the deck would replace " + part.path.string() +
-                             ", which is of no such deck: move that file away, or choose another name");
+                         path.string() + ": the deck would replace " + file.string() +
+                             ", which is not Octotomy's: move that file away, or choose another name");
 }
 
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path, const DeckOptions& options) {

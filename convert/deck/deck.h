@@ -87,8 +87,12 @@ struct DeckOptions {
 void write_deck(const Tetrahedra& tetrahedra, const std::filesystem::path& path,
                 const DeckOptions& options = {});
 
-/// Throws voxel::Error (Input) where the file that `path` names is not there and another of the deck's is,
-/// which nobody asked to replace. For refusals before the work.
+/// The files that write_deck() makes for a path: of TetGen's three, else it alone. Throws as write_deck() for
+/// another extension.
+std::vector<std::filesystem::path> deck_files(const std::filesystem::path& path);
+
+/// Throws voxel::Error (Input) where another of the deck's files than `path` names is there and is not
+/// Octotomy's: nobody asked to replace it. For refusals before the work.
 void need_own_deck_files(const std::filesystem::path& path);
 
 /// The extensions of write_deck() for messages: ".inp, .feb, .vtu, .msh or .node".

@@ -4,6 +4,7 @@
 #include <array>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "convert/deck/deck.h"
@@ -20,6 +21,9 @@ void write_msh(const Tetrahedra& tetrahedra, const DeckOptions& options, std::os
 void write_tetgen_node(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
 void write_tetgen_ele(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
 void write_tetgen_face(const Tetrahedra& tetrahedra, const DeckOptions& options, std::ostream& out);
+
+/// What stands about the title in the first line of TetGen's files.
+inline constexpr std::string_view tetgen_title_begin = "# ", tetgen_title_end = "; mm, LPS";
 
 /// A number for the solvers, in 12 digits. CalculiX reads at most 20 characters of a field; these are 19 with
 /// sign, point and exponent.

@@ -10,7 +10,7 @@ void write_header(const DeckOptions& options, std::ostream& out) {
   std::string title = options.title;
   for (char& c : title)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  out << "# " << title << "; mm, LPS\n";
+  out << tetgen_title_begin << title << tetgen_title_end << "\n";
 }
 
 }  // namespace

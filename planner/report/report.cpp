@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "convert/deck/deck.h"
 #include "planner/anatomy/head_directions.h"
 #include "planner/anatomy/movement.h"
 #include "planner/cephalometry/cephalogram.h"
@@ -192,8 +193,10 @@ std::vector<std::filesystem::path> result_names(const Plan& plan) {
   std::vector<std::filesystem::path> names{"report.html", "report.pdf", "result.json", "credibility.html",
                                            "credibility.json"};
   for (const Step& step : plan.steps)
-    if (std::filesystem::path path = path_written(step.action); !path.empty())
-      names.push_back(std::move(path));
+    if (const std::filesystem::path path = path_written(step.action); convert::is_deck(path))
+      for (std::filesystem::path& file : convert::deck_files(path)) names.push_back(std::move(file));
+    else if (!path.empty())
+      names.push_back(path);
   return names;
 }
 

@@ -48,9 +48,9 @@ bool is_taken(const fs::path& path) {
 
 /// Whether an export would replace neither a file of its name nor one that is written beside it.
 bool is_free_for_export(const fs::path& path) {
-  if (is_taken(path)) return false;
+  for (const fs::path& file : convert::is_deck(path) ? convert::deck_files(path) : std::vector{path})
+    if (is_taken(file)) return false;
   try {
-    if (convert::is_deck(path)) convert::need_own_deck_files(path);
     voxel::need_own_data_file(path);
   } catch (const voxel::Error&) {
     return false;

@@ -260,5 +260,21 @@ TEST(Deck, ReplacesAnEarlierFileAsAWhole) {
   EXPECT_EQ(file_count(folder), 1);
 }
 
+TEST(Deck, OfSeveralFilesReplacesTheOnesThatAreNotNamedOnlyIfItWroteThem) {
+  const ScratchFolder folder;
+  write_deck(far_cube(), folder / "a.node", titled("first"));
+  write_deck(far_cube(), folder / "a.ele", titled("second"));
+  for (const char* name : {"a.node", "a.ele", "a.face"})
+    EXPECT_NE(bytes_of(folder / name).find("second"), std::string::npos) << name;
+  for (const char* of_user : {"mine\n", "# mine\n", "mine; mm, LPS", ""}) {
+    tests::write_bytes(folder / "a.face", of_user);
+    EXPECT_THROW(write_deck(far_cube(), folder / "a.node", titled("third")), voxel::Error);
+    EXPECT_EQ(bytes_of(folder / "a.face"), of_user);
+    EXPECT_EQ(bytes_of(folder / "a.node").find("third"), std::string::npos);
+  }
+  write_deck(far_cube(), folder / "a.face", titled("third"));
+  EXPECT_NE(bytes_of(folder / "a.face").find("third"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace octotomy::convert

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/report/report.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "planner/operation/mask.h"
@@ -65,6 +66,17 @@ TEST_F(Report, TheFolderHoldsWhatTheAnswerSays) {
       EXPECT_FALSE(exported["findings"].empty()) << path;
     }
   }
+}
+
+TEST_F(Report, NamesOfAResultAreThoseOfEachFileOfADeck) {
+  const Plan plan =
+      parse_plan(R"({"octotomy_plan": 1, "name": "deck", "scans": {"ct": {"path": "ball.nrrd"}}, "steps": [
+      {"id": "ball", "do": "window", "scan": "ct", "low": 0},
+      {"id": "tets", "do": "export", "object": "ball", "path": "decks/ball.ele"}]})",
+                 folder_.path());
+  const std::vector<std::filesystem::path> names = result_names(plan);
+  for (const char* name : {"result.json", "decks/ball.node", "decks/ball.ele", "decks/ball.face"})
+    EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }
 
 TEST_F(Report, AnswersHaveTheirKeysAndAMissingOneIsNull) {
