@@ -154,6 +154,7 @@ int run_chosen(Program& program) {
       if (octotomy::voxel::is_memory_over()) end_for_want(out_of_memory);
     }
     const Watch watch(program);
+    const cli::FindingsOfRun findings;
     return program.chosen();
   } catch (const CLI::ParseError& error) {
     return refuse(error.what(), cli::bad_input);

@@ -48,6 +48,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
   std::size_t at = 0;
   while (at < text.size()) {
     const char symbol = text[at];
+    if (symbol == '\0') refuse(rows.size() + 1, "a byte 0: it is no text, or not UTF-8");
     if (symbol == ',') {
       row.emplace_back();
       ++at;
@@ -57,7 +58,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
     } else if (symbol == '"' && row.back().empty()) {
       std::string& cell = row.back();
       for (++at;; ++at) {
-        if (at >= text.size()) refuse(rows.size() + 1, "a quote is not closed");
+        if (at >= text.size() || text[at] == '\0') refuse(rows.size() + 1, "a quote is not closed");
         if (text[at] != '"') {
           cell += text[at];
         } else if (at + 1 < text.size() && text[at + 1] == '"') {

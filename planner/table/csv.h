@@ -16,7 +16,7 @@ std::string csv_line(const std::vector<std::string>& cells);
 std::string csv_number(const std::optional<double>& number);
 
 /// All rows. Lines may end as on any system; blank ones are passed over. Throws voxel::Error (Input) with the
-/// row's number where a quote is not closed or text follows a closed one.
+/// row's number where a quote is not closed, text follows a closed one, or a byte 0 shows that it is no text.
 std::vector<std::vector<std::string>> parse_csv(std::string_view text);
 
 }  // namespace octotomy::planner

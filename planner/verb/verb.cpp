@@ -23,6 +23,9 @@ namespace {
 
 std::atomic<Speaker> last_speaker{Speaker::None};
 
+constexpr std::size_t most_findings = 40;  ///< that are said; about a page
+std::size_t findings = 0;                  ///< of this program's run
+
 /// Writes all of it, or throws; a reader that has gone away wants no more, which is no error.
 void put(const std::string& text) {
   // The watch has said how the program ends, which it does at any moment.
@@ -146,6 +149,16 @@ std::string unknown_verb(const CLI::App& app, const std::string& word) {
 void warn(const std::string& line) {
   erase_progress();
   std::fprintf(stderr, "octotomy: %s\n", line_of(line).c_str());
+}
+
+void warn_of(const std::string& finding) {
+  if (++findings <= most_findings) warn(finding);
+}
+
+FindingsOfRun::~FindingsOfRun() {
+  if (findings > most_findings)
+    warn(std::to_string(findings - most_findings) + " more findings: --json gives them all");
+  findings = 0;
 }
 
 std::string line_of(const std::string& text) {

@@ -71,6 +71,18 @@ std::string unknown_verb(const CLI::App& app, const std::string& word);
 /// One line on standard error, as line_of() makes it.
 void warn(const std::string& line);
 
+/// The same of one finding among many: the first of a run are said, so that what matters is not lost among
+/// thousands.
+void warn_of(const std::string& finding);
+
+/// A run of the program, at whose end the number of findings is said that warn_of() has kept back.
+struct FindingsOfRun {
+  FindingsOfRun() = default;
+  FindingsOfRun(const FindingsOfRun&) = delete;
+  FindingsOfRun& operator=(const FindingsOfRun&) = delete;
+  ~FindingsOfRun();
+};
+
 /// A text as one line for a terminal: without control characters, at most 1000 bytes.
 std::string line_of(const std::string& text);
 

@@ -2,6 +2,7 @@
 #include "planner/verb/verb.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace octotomy::planner::cli {
@@ -31,6 +32,23 @@ TEST(Verb, OfAnUnknownNameTheNearestIsSaid) {
   app.add_subcommand("measure", "");
   EXPECT_EQ(unknown_verb(app, "mesure"),
             "there is no verb 'mesure', did you mean 'measure'?; see octotomy --help");
+}
+
+TEST(Verb, OfManyFindingsThatAreToldAPageIsSaidAndHowManyMore) {
+  for (int run = 0; run < 2; ++run) {
+    testing::internal::CaptureStderr();
+    {
+      const FindingsOfRun findings;
+      for (int i = 0; i < 1000; ++i) warn_of("finding " + std::to_string(i));
+      warn("what matters");
+    }
+    const std::string said = testing::internal::GetCapturedStderr();
+    const auto lines = std::count(said.begin(), said.end(), '\n');
+    EXPECT_LE(lines, 60);
+    EXPECT_NE(said.find("what matters\n"), std::string::npos);
+    EXPECT_NE(said.find(std::to_string(1002 - lines) + " more findings: --json gives them all\n"),
+              std::string::npos);
+  }
 }
 
 }  // namespace
