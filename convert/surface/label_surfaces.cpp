@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,7 @@
 #include "voxel/filter/label_map.h"
 #include "voxel/space/error.h"
 #include "voxel/space/large_allocator.h"
+#include "voxel/space/memory_need.h"
 #include "voxel/space/shared_progress.h"
 
 // Source: Bloomenthal and Ferguson, "Polygonization of non-manifold implicit surfaces", SIGGRAPH 1995, for
@@ -174,7 +176,7 @@ const std::array<std::array<Pieces, 64>, 6>& pieces() {
 class Extraction {
  public:
   Extraction(const voxel::Scene& scene, const LabelSurfaceOptions& options)
-      : lattice_(scene.lattice), options_(options), size_(scene.lattice.dims + 2) {
+      : source_(scene.source), lattice_(scene.lattice), options_(options), size_(scene.lattice.dims + 2) {
     copy_labels(scene);
     for (int corner = 0; corner < 8; ++corner)
       step_[corner] = static_cast<std::size_t>(corner & 1) +
@@ -185,7 +187,8 @@ class Extraction {
   }
 
   brep::PartedSurface run() {
-    find_faces(voxel::part_of(options_.progress, 0.0, 0.4));
+    count_faces(voxel::part_of(options_.progress, 0.0, 0.1));
+    find_faces(voxel::part_of(options_.progress, 0.1, 0.4));
     number_points(voxel::part_of(options_.progress, 0.4, 0.6));
     write(voxel::part_of(options_.progress, 0.6, 1.0));
     return std::move(made_);
@@ -253,17 +256,22 @@ class Extraction {
     return {static_cast<int>(index % x), static_cast<int>(index / x % y), static_cast<int>(index / x / y)};
   }
 
-  void find_faces(const voxel::Progress& progress) {
-    faces_.resize(static_cast<std::size_t>(size_.z - 1));
+  /// Calls visit(z, cell, labels of its corners, pieces of a tetrahedron) wherever labels differ, in parallel
+  /// by planes.
+  template <typename Visit>
+  void visit_pieces(const voxel::Progress& progress, const Visit& visit) const {
     voxel::SharedProgress done(progress, faces_.size());
     tbb::parallel_for(0, size_.z - 1, [&](int z) {
       done.one_more();
       for (int y = 0; y + 1 < size_.y; ++y)
-        for (int x = 0; x + 1 < size_.x; ++x) add_cell(at(x, y, z), faces_[static_cast<std::size_t>(z)]);
+        for (int x = 0; x + 1 < size_.x; ++x)
+          visit_cell(at(x, y, z),
+                     [&](const auto&... found) { visit(static_cast<std::size_t>(z), found...); });
     });
   }
 
-  void add_cell(std::size_t cell, std::vector<Face>& faces) const {
+  template <typename Visit>
+  void visit_cell(std::size_t cell, const Visit& visit) const {
     std::array<std::int16_t, 8> labels{};
     bool differ = false;
     for (std::size_t corner = 0; corner < 8; ++corner) {
@@ -273,8 +281,39 @@ class Extraction {
     if (!differ) return;
     for (std::size_t t = 0; t < 6; ++t) {
       const std::array<int, 4>& c = tetrahedra[t];
-      for (const Piece& piece :
-           pieces()[t][pattern_of(labels[c[0]], labels[c[1]], labels[c[2]], labels[c[3]])]) {
+      visit(cell, labels, pieces()[t][pattern_of(labels[c[0]], labels[c[1]], labels[c[2]], labels[c[3]])]);
+    }
+  }
+
+  /// Refuses more than memory holds before any is taken.
+  void count_faces(const voxel::Progress& progress) {
+    faces_.resize(static_cast<std::size_t>(size_.z - 1));
+    std::vector<std::uint64_t> counts(faces_.size());
+    visit_pieces(progress, [&](std::size_t z, std::size_t, const auto&, const Pieces& found) {
+      counts[z] += found.size();
+    });
+    std::uint64_t count = 0;
+    for (const std::uint64_t in_layer : counts) {
+      first_face_.push_back(count);
+      count += in_layer;
+    }
+    if (count > std::numeric_limits<std::uint32_t>::max())
+      throw voxel::Error(voxel::ErrorCode::Resource,
+                         "the labels' surfaces would have " + std::to_string(count) +
+                             " triangles, more than 32-bit numbers can name: crop or resample the label map");
+    // A surface has about half as many points as triangles, each with its key.
+    constexpr std::size_t face_bytes = sizeof(Face) + sizeof(std::array<std::uint32_t, 3>) +
+                                       sizeof(brep::PartedSurface::Sides) +
+                                       (sizeof(glm::dvec3) + sizeof(Key)) / 2;
+    voxel::need_memory(source_, count, face_bytes,
+                       "the " + std::to_string(count) + " triangles between its labels");
+    for (std::size_t z = 0; z < faces_.size(); ++z) faces_[z].reserve(counts[z]);
+    face_count_ = count;
+  }
+
+  void find_faces(const voxel::Progress& progress) {
+    visit_pieces(progress, [&](std::size_t z, std::size_t cell, const auto& labels, const Pieces& found) {
+      for (const Piece& piece : found) {
         Face face;
         face.sides = {labels[piece.behind], labels[piece.front]};
         for (std::size_t i = 0; i < 3; ++i)
@@ -284,9 +323,9 @@ class Extraction {
             face.sides.behind == 0 || (face.sides.front != 0 && face.sides.front < face.sides.behind);
         if (turn) std::swap(face.sides.behind, face.sides.front);
         if (turn == lattice_.right_handed()) std::swap(face.points[1], face.points[2]);
-        faces.push_back(face);
+        faces_[z].push_back(face);
       }
-    }
+    });
   }
 
   /// The keys of plane z are named by the cells above and below it.
@@ -305,21 +344,14 @@ class Extraction {
       keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
       keys.shrink_to_fit();
     });
-    std::uint64_t points = 0, faces = 0;
+    std::uint64_t points = 0;  // fewer than faces
     for (const std::vector<Key>& keys : keys_) {
       first_point_.push_back(points);
       points += keys.size();
     }
-    for (const std::vector<Face>& layer : faces_) {
-      first_face_.push_back(faces);
-      faces += layer.size();
-    }
-    if (std::max(points, faces) > std::numeric_limits<std::uint32_t>::max())
-      throw voxel::Error(voxel::ErrorCode::Resource,
-                         "the labels' surfaces would have " + std::to_string(faces) +
-                             " triangles, more than 32-bit numbers can name: crop or resample the label map");
     tbb::parallel_invoke([&] { made_.triangles.points_mm.resize(points); },
-                         [&] { made_.triangles.faces.resize(faces); }, [&] { made_.sides.resize(faces); });
+                         [&] { made_.triangles.faces.resize(face_count_); },
+                         [&] { made_.sides.resize(face_count_); });
   }
 
   void write(const voxel::Progress& progress) {
@@ -402,6 +434,7 @@ class Extraction {
     return std::max(0.0, sum);
   }
 
+  std::filesystem::path source_;
   voxel::Lattice lattice_;
   LabelSurfaceOptions options_;
   glm::ivec3 size_;  ///< with the border
@@ -411,6 +444,7 @@ class Extraction {
   std::vector<std::vector<Face>> faces_;  ///< by the plane of samples below
   std::vector<std::vector<Key>> keys_;    ///< by the plane of the lowest sample
   std::vector<std::uint64_t> first_point_, first_face_;
+  std::uint64_t face_count_ = 0;
   brep::PartedSurface made_;
 };
 
