@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -16,6 +17,8 @@
 #include "planner/file/file_kind.h"
 #include "planner/file/output_path.h"
 #include "planner/file/outputs.h"
+#include "planner/plan/dependence.h"
+#include "planner/plan/rebase.h"
 #include "planner/report/result_folder.h"
 #include "planner/table/csv.h"
 #include "planner/table/number_format.h"
@@ -35,11 +38,16 @@ struct CohortText {
   bool again = false, reports = false, dry_run = false;
 };
 
+/// The plan as it reads where the cohort keeps it, so that later calls without --plan read the same files.
 Plan plan_of(const CohortText& text) {
   const fs::path path = text.plan.empty() ? cohort_plan(text.out) : text.plan;
   if (text.plan.empty() && !fs::exists(path))
     throw std::runtime_error("--plan is missing: name the plan that every subject's scans go through");
-  return read_plan(path);
+  const Plan plan = read_plan(path);
+  // Its scans are the subjects': a plan whose steps read no file is kept as it is.
+  const bool reads_files = std::any_of(plan.steps.begin(), plan.steps.end(),
+                                       [](const Step& step) { return !files_read(step).empty(); });
+  return reads_files ? rebased(plan, cohort_plan(text.out).parent_path()) : plan;
 }
 
 /// What a process of an engine runs. The time limit is left out: it is this process's, whose end ends serial
@@ -93,7 +101,7 @@ int say_records(const Program& program, const std::vector<Subject>& subjects,
     done_count += records[i].state == SubjectRecord::State::Done ? 1 : 0;
     in_hand += records[i].is_another_at_work ? 1 : 0;
     if (records[i].state != SubjectRecord::State::Done && !records[i].is_another_at_work && jobs.empty())
-      warn(subjects[i].label + ": " + records[i].reason);
+      warn_of(subjects[i].label + ": " + records[i].reason);
   }
   json["done"] = done_count;
   json["without_answer"] = records.size() - done_count - in_hand;
@@ -195,7 +203,7 @@ int cohort(Program& program, const CohortText& text) {
   if (!text.against.empty()) options.against = text.against;
   Json json = answer({});
   json.update(merge_group(subjects, text.out, options));
-  for (const Json& finding : json["findings"]) warn(finding.get<std::string>());
+  for (const Json& finding : json["findings"]) warn_of(finding.get<std::string>());
   program.say(json, std::to_string(json["done"].get<std::size_t>()) + " of " +
                         std::to_string(subjects.size()) +
                         " subjects merged\nwritten: " + (text.out / "group/index.html").string() + "\n");

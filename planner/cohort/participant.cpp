@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <fcntl.h>
+#include <new>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -153,6 +154,8 @@ std::string reason_of(const Work& work) {
     if (error.code() == brep::ErrorCode::Cancelled || error.code() == brep::ErrorCode::Resource) throw;
     return error.what();
   } catch (const std::system_error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
     return error.what();

@@ -126,6 +126,22 @@ class Cohort(unittest.TestCase):
         hidden = [path for path in (self.folder / out).rglob(".*") if path.name != ".octotomy-result"]
         self.assertEqual(hidden, [])
 
+    def test_a_plan_that_is_kept_reads_the_files_of_its_own_folder(self):
+        for folder, far in ((self.folder, 10), (self.folder / "out/code", 77)):
+            folder.mkdir(parents=True, exist_ok=True)
+            marks = [{"name": name, "point_mm": [x, 0, 0]} for name, x in (("a", 0), ("b", far))]
+            (folder / "marks.json").write_text(json.dumps({"landmarks": marks}))
+        plan = json.loads(self.plan.read_text())
+        plan["steps"] += [{"id": "marks", "do": "landmarks", "file": "marks.json"},
+                          {"id": "far", "do": "measure", "points_mm": ["a", "b"]}]
+        self.plan.write_text(json.dumps(plan))
+        table = self.cohort(1)
+        self.participants(table, "out")
+        again = json.loads(octotomy_program("cohort", table, self.folder / "out", "participant", "--json").stdout)
+        self.assertTrue(again["subjects"][0]["kept"])
+        merged = rows(self.group(table, "out") / "measurements.csv")
+        self.assertEqual([float(row["value"]) for row in merged if row["measurement"] == "far"], [10.0])
+
     def test_the_table_is_that_of_the_plans_themselves(self):
         table = self.cohort(5)
         self.participants(table, "out")
