@@ -138,12 +138,20 @@ class SeriesAssembler {
     }
     for (const fs::path& staged : folder.staged)
       skip(name_of(staged), {"files that another run did not finish or still writes"});
+    if (found.empty() && !is_folder(path_) && is_directory_of_dicom(headers.front()))
+      refuse(path_,
+             "is a DICOM directory, which lists images and holds none: give the folder that it lies in");
     if (found.empty() && !is_folder(path_))
       refuse(path_, "is not a readable scan: " + std::get<NoSlice>(headers.front()).reason +
                         "; scans are DICOM, .nii, .nii.gz, .nrrd, .nhdr, .mha and .mhd");
     if (found.empty()) refuse_empty(files.size() + folder.staged.size(), skipped);
     audit_skipped(skipped);
     return found;
+  }
+
+  static bool is_directory_of_dicom(const std::variant<std::vector<DicomSlice>, NoSlice>& header) {
+    const auto* none = std::get_if<NoSlice>(&header);
+    return none != nullptr && none->is_directory;
   }
 
   /// For people: the path below the scan's folder.
@@ -286,18 +294,9 @@ class SeriesAssembler {
   }
 
   /// Keeps the largest group of slices that are alike; a finding states the others.
-  void keep_commonest(const char* check, std::vector<DicomSlice>& members,
-                      const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike,
+  void keep_commonest(const char* check, std::vector<DicomSlice>& members, Likeness likeness,
                       const std::function<std::string(const DicomSlice&)>& named) {
-    std::vector<std::vector<DicomSlice>> kinds;
-    for (DicomSlice& slice : members) {
-      const auto kind = std::find_if(kinds.begin(), kinds.end(),
-                                     [&](const auto& known) { return alike(known.front(), slice); });
-      if (kind == kinds.end())
-        kinds.push_back({std::move(slice)});
-      else
-        kind->push_back(std::move(slice));
-    }
+    std::vector<std::vector<DicomSlice>> kinds = grouped(std::move(members), likeness);
     auto& most = *std::max_element(kinds.begin(), kinds.end(),
                                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
     const std::string taken = named(most.front());
@@ -384,11 +383,11 @@ class SeriesAssembler {
   }
 
   DicomStack orient(std::vector<DicomSlice> members) {
-    keep_commonest("size", members, same_grid, [](const DicomSlice& slice) {
+    keep_commonest("size", members, {.grid = true}, [](const DicomSlice& slice) {
       return print("%d x %d pixels of %.6g x %.6g mm", slice.size_px.x, slice.size_px.y, slice.spacing_mm.x,
                    slice.spacing_mm.y);
     });
-    keep_commonest("orientation", members, same_orientation, [](const DicomSlice& slice) {
+    keep_commonest("orientation", members, {.orientation = true}, [](const DicomSlice& slice) {
       const glm::dvec3 normal = glm::abs(glm::cross(slice.along_row, slice.along_column));
       const char* plane = normal.z >= normal.x && normal.z >= normal.y ? "axial"
                           : normal.y >= normal.x                       ? "coronal"

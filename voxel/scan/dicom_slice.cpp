@@ -252,7 +252,8 @@ std::optional<NoSlice> take_pixels(const DicomFile& file, std::vector<DicomSlice
 
 /// The part of the header that all frames of a file share.
 std::variant<DicomSlice, NoSlice> common_of(const DicomFile& file, const std::filesystem::path& path) {
-  if (file.text(0x00020002) == "1.2.840.10008.1.3.10") return NoSlice{"a DICOM directory"};
+  if (file.text(0x00020002) == "1.2.840.10008.1.3.10")
+    return NoSlice{"a DICOM directory", NoSlice::Kind::Stray, true};
   DicomSlice slice;
   slice.path = path;
   const auto rows = file.unsigned_short(0x00280010);

@@ -72,6 +72,7 @@ struct NoSlice {
 
   std::string reason;
   Kind kind = Kind::Stray;
+  bool is_directory = false;  ///< a DICOMDIR, which lists the images beside it
 };
 
 /// Reads the header of a file and checks that its attributes and pixels end within it. Returns one slice, or

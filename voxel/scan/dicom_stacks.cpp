@@ -2,7 +2,9 @@
 #include "voxel/scan/dicom_stacks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -79,33 +81,63 @@ const char* plane_of(const DicomSlice& slice) {
                                                       : "sagittal";
 }
 
-/// What tells parts from each other. Identities are not shown: a report may leave the hospital.
-std::string words_of(const std::vector<std::vector<DicomSlice>>& parts, const DicomSlice& slice) {
-  std::string words;
-  const auto add = [&](const std::string& text) { words += (words.empty() ? "" : ", ") + text; };
-  const auto differs = [&](const auto& of) {
-    return std::any_of(parts.begin(), parts.end(),
-                       [&](const auto& part) { return of(part.front()) != of(slice); });
-  };
-  for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
-    const auto value = [&](const DicomSlice& of) { return of.traits[trait]; };
-    if (dicom_traits[trait].role == TraitRole::Uniformity || !differs(value)) continue;
-    const bool is_shown = dicom_traits[trait].role == TraitRole::Stack || value(slice).size() == 2;
-    add(std::string(dicom_traits[trait].words) + (is_shown ? " " + value(slice) : " of its own"));
+/// What tells parts from each other. Identities are not shown: a report may leave the hospital. Linear: what
+/// all parts share is found once.
+class Words {
+ public:
+  explicit Words(const std::vector<std::vector<DicomSlice>>& parts) {
+    if (parts.empty()) return;
+    const DicomSlice& first = parts.front().front();
+    for (const std::vector<DicomSlice>& part : parts) {
+      const DicomSlice& slice = part.front();
+      for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait)
+        trait_differs_[trait] |= slice.traits[trait] != first.traits[trait];
+      plane_differs_ |= std::string(plane_of(slice)) != plane_of(first);
+      size_differs_ |= slice.size_px != first.size_px;
+    }
+    // A spacing differs most from the least or the largest.
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto [least, largest] =
+          std::minmax_element(parts.begin(), parts.end(), [&](const auto& a, const auto& b) {
+            return a.front().spacing_mm[axis] < b.front().spacing_mm[axis];
+          });
+      extremes_.push_back(&least->front());
+      extremes_.push_back(&largest->front());
+    }
   }
-  if (differs([](const DicomSlice& of) { return std::string(plane_of(of)); })) add(plane_of(slice));
-  if (std::any_of(parts.begin(), parts.end(),
-                  [&](const auto& part) { return !same_grid(part.front(), slice); }))
-    add(print("%d x %d pixels of %.4g mm", slice.size_px.x, slice.size_px.y, slice.spacing_mm.x));
-  return words;
-}
+
+  std::string operator()(const DicomSlice& slice) const {
+    std::string words;
+    const auto add = [&](const std::string& text) { words += (words.empty() ? "" : ", ") + text; };
+    for (std::size_t trait = 0; trait < dicom_traits.size(); ++trait) {
+      if (dicom_traits[trait].role == TraitRole::Uniformity || !trait_differs_[trait]) continue;
+      const std::string& value = slice.traits[trait];
+      const bool is_shown = dicom_traits[trait].role == TraitRole::Stack || value.size() == 2;
+      add(std::string(dicom_traits[trait].words) + (is_shown ? " " + value : " of its own"));
+    }
+    if (plane_differs_) add(plane_of(slice));
+    if (size_differs_ || std::any_of(extremes_.begin(), extremes_.end(),
+                                     [&](const DicomSlice* other) { return !same_grid(*other, slice); }))
+      add(print("%d x %d pixels of %.4g mm", slice.size_px.x, slice.size_px.y, slice.spacing_mm.x));
+    return words;
+  }
+
+ private:
+  std::array<bool, dicom_traits.size()> trait_differs_{};
+  bool plane_differs_ = false, size_differs_ = false;
+  std::vector<const DicomSlice*> extremes_;
+};
 
 std::vector<DicomSubseries> sorted(std::vector<std::vector<DicomSlice>> parts) {
   std::stable_sort(parts.begin(), parts.end(),
                    [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  std::vector<std::string> words;
+  {
+    const Words of(parts);
+    for (const std::vector<DicomSlice>& members : parts) words.push_back(of(members.front()));
+  }
   std::vector<DicomSubseries> found;
-  for (const std::vector<DicomSlice>& members : parts)
-    found.push_back({members, words_of(parts, members.front())});
+  for (std::size_t i = 0; i < parts.size(); ++i) found.push_back({std::move(parts[i]), std::move(words[i])});
   return found;
 }
 
@@ -117,7 +149,26 @@ bool same_identity(const DicomSlice& a, const DicomSlice& b) {
   return true;
 }
 
+bool are_alike(const DicomSlice& a, const DicomSlice& b, Likeness likeness) {
+  return (!likeness.grid || same_grid(a, b)) && (!likeness.orientation || same_orientation(a, b)) &&
+         (!likeness.identity || same_identity(a, b));
+}
+
 }  // namespace
+
+std::vector<std::vector<DicomSlice>> grouped(std::vector<DicomSlice> slices, Likeness likeness) {
+  std::vector<std::vector<DicomSlice>> parts;
+  for (DicomSlice& slice : slices) {
+    const auto part = std::find_if(parts.begin(), parts.end(), [&](const auto& members) {
+      return are_alike(members.front(), slice, likeness);
+    });
+    if (part == parts.end())
+      parts.push_back({std::move(slice)});
+    else
+      part->push_back(std::move(slice));
+  }
+  return parts;
+}
 
 bool same_grid(const DicomSlice& a, const DicomSlice& b) {
   return a.size_px == b.size_px &&
@@ -138,18 +189,11 @@ std::vector<DicomSubseries> parted_at_one_place(std::vector<DicomSlice> slices) 
 std::vector<DicomSubseries> subseries_of(const std::vector<DicomSlice>& series) {
   const bool is_scout_only =
       std::all_of(series.begin(), series.end(), [](const DicomSlice& slice) { return slice.is_localizer; });
-  std::vector<std::vector<DicomSlice>> alike;
-  for (const DicomSlice& slice : series) {
-    if (slice.is_localizer && !is_scout_only) continue;
-    const auto group = std::find_if(alike.begin(), alike.end(), [&](const auto& members) {
-      return same_grid(members.front(), slice) && same_orientation(members.front(), slice) &&
-             same_identity(members.front(), slice);
-    });
-    if (group == alike.end())
-      alike.push_back({slice});
-    else
-      group->push_back(slice);
-  }
+  std::vector<DicomSlice> asked;
+  std::copy_if(series.begin(), series.end(), std::back_inserter(asked),
+               [&](const DicomSlice& slice) { return is_scout_only || !slice.is_localizer; });
+  std::vector<std::vector<DicomSlice>> alike =
+      grouped(std::move(asked), {.grid = true, .orientation = true, .identity = true});
   std::vector<std::vector<DicomSlice>> parts;
   for (std::vector<DicomSlice>& members : alike) part(std::move(members), parts);
   return sorted(std::move(parts));

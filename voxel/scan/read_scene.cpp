@@ -43,6 +43,14 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
   }
 }
 
+/// Findings name files, whose names may hold control characters: terminals obey them and lists break.
+std::string on_one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char symbol) { return static_cast<unsigned char>(symbol) < ' ' || symbol == 0x7f; }, '?');
+  return text;
+}
+
 }  // namespace
 
 std::vector<SliceRange> parse_slices(const std::string& text) {
@@ -78,6 +86,7 @@ std::string to_string(const std::vector<SliceRange>& slices) {
 
 Scene read_scene(const fs::path& path, const ReadOptions& options) {
   Scene scene = read_any(path, options);
+  for (Finding& finding : scene.audit) finding.detail = on_one_line(finding.detail);
   try {
     check(scene);
   } catch (const std::invalid_argument& flaw) {

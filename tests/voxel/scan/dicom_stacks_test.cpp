@@ -2,6 +2,7 @@
 #include "voxel/scan/dicom_stacks.h"
 
 #include <gtest/gtest.h>
+#include <string>
 
 #include "tests/voxel/linear_scene.h"
 #include "tests/voxel/scan/spoiled_series.h"
@@ -91,6 +92,21 @@ TEST(DicomStacks, AnImageThatNoAttributeTellsApartStaysWithItsRival) {
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_EQ(parts[0].slices.size(), 2U);
   EXPECT_EQ(parts[1].words, "kernel H60s");
+}
+
+TEST(DicomStacks, GroupsAreThoseOfTheFirstImageThatIsAlike) {
+  std::vector<DicomSlice> images(6);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    images[i].size_px = {4, 4};
+    images[i].spacing_mm = glm::dvec2(1.0 + 0.6e-5 * static_cast<double>(i % 3));
+    images[i].instance_uid = std::to_string(i);
+  }
+  images[3].size_px = {4, 5};
+  const std::vector<std::vector<DicomSlice>> groups = grouped(images, {.grid = true});
+  std::string told;
+  for (const auto& group : groups)
+    for (const DicomSlice& image : group) told += (&image == &group.front() ? "|" : "") + image.instance_uid;
+  EXPECT_EQ(told, "|014|25|3") << "2 is as near to 1, but not to 0";
 }
 
 }  // namespace

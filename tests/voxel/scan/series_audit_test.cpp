@@ -209,15 +209,20 @@ TEST(SeriesAudit, AssumesNoThicknessOfASingleSliceWithoutSayingSo) {
   }
 }
 
-TEST(SeriesAudit, SkipsADirectoryFileAndAReportAmongTheSlices) {
-  const ScratchFolder folder;
+/// A DICOMDIR, which lists files and holds no image.
+void write_directory(const std::filesystem::path& path) {
   const std::string directory = DicomBytes::element(0x00020002, "UI", "1.2.840.10008.1.3.10") +
                                 DicomBytes::element(0x00020010, "UI", "1.2.840.10008.1.2.1");
-  write_bytes(folder / "DICOMDIR",
+  write_bytes(path,
               std::string(128, '\0') + "DICM" +
                   DicomBytes::element(0x00020000, "UL",
                                       DicomBytes::number(static_cast<std::uint32_t>(directory.size()), 4)) +
                   directory + DicomBytes::element(0x00041130, "CS", "DISC"));
+}
+
+TEST(SeriesAudit, SkipsADirectoryFileAndAReportAmongTheSlices) {
+  const ScratchFolder folder;
+  write_directory(folder / "DICOMDIR");
   write_bytes(folder / "report.dcm",
               DicomBytes::file("1.2.840.10008.1.2.1", DicomBytes::element(0x00080060, "CS", "SR")));
   const Scene scene = read_spoiled(folder, [](Slice&, int) {});
@@ -226,6 +231,30 @@ TEST(SeriesAudit, SkipsADirectoryFileAndAReportAmongTheSlices) {
   EXPECT_NE(detail(scene, "stray_files").find("DICOMDIR (a DICOM directory)"), std::string::npos)
       << detail(scene, "stray_files");
   EXPECT_EQ(scene.lattice.dims.z, slices);
+}
+
+TEST(SeriesAudit, OfADirectoryFileAsksForItsFolder) {
+  const ScratchFolder folder;
+  write_directory(folder / "DICOMDIR");
+  try {
+    read_scene(folder / "DICOMDIR");
+    FAIL() << "it holds no image";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::Input);
+    EXPECT_NE(std::string(error.what()).find("give the folder that it lies in"), std::string::npos)
+        << error.what();
+    EXPECT_EQ(std::string(error.what()).find(".nii"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SeriesAudit, NamesFilesOnOneLine) {
+  const ScratchFolder folder;
+  write_bytes(folder / "read\nme\x1b[2J.txt", "no image");
+  const Scene scene = read_spoiled(folder, [](Slice&, int) {});
+  EXPECT_NE(detail(scene, "stray_files").find("read?me?[2J.txt (not DICOM)"), std::string::npos)
+      << detail(scene, "stray_files");
+  ASSERT_EQ(tests::finding(scene, "stray_files")->files.size(), 1U);
+  EXPECT_EQ(tests::finding(scene, "stray_files")->files[0], "read\nme\x1b[2J.txt") << "as the disk has it";
 }
 
 TEST(SeriesAudit, ReadsFilesOlderThanThePreamble) {
