@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <stdexcept>
 
 #include "planner/table/json.h"
@@ -12,6 +14,7 @@
 #include "planner/table/number_format.h"
 #include "voxel/scan/read_rtstruct.h"
 #include "voxel/solid/polygon.h"
+#include "voxel/solid/polygon_overlaps.h"
 
 namespace octotomy::planner {
 namespace {
@@ -90,6 +93,12 @@ voxel::View view_across(const glm::dvec3& area) {
 
 using Slices = std::vector<voxel::SliceMask::Slice>;
 
+/// Of planes that count as one though they are not.
+std::string too_near(double gap_mm) {
+  return plain(gap_mm) + " mm apart, and planes within " + plain(2.0 * off_plane_mm()) +
+         " mm count as one: draw it on planes that are further apart, or check that positions are in mm";
+}
+
 /// A structure's contours by plane, ascending. `source` names it in refusals.
 Slices planes_of(const voxel::Structure& structure, const voxel::View& view, const std::string& source) {
   std::vector<voxel::SliceMask::Slice> single;
@@ -113,27 +122,42 @@ Slices planes_of(const voxel::Structure& structure, const voxel::View& view, con
   std::stable_sort(single.begin(), single.end(),
                    [](const auto& a, const auto& b) { return a.position_mm < b.position_mm; });
   Slices planes;
-  for (voxel::SliceMask::Slice& slice : single)
-    if (planes.empty() || slice.position_mm - planes.back().position_mm > 2.0 * off_plane_mm())
+  double before_mm = -std::numeric_limits<double>::infinity();
+  for (voxel::SliceMask::Slice& slice : single) {
+    const double gap_mm = slice.position_mm - before_mm;
+    before_mm = slice.position_mm;
+    if (planes.empty() || slice.position_mm - planes.back().position_mm > 2.0 * off_plane_mm()) {
+      if (gap_mm <= 2.0 * off_plane_mm()) refuse(source, "has planes " + too_near(gap_mm));
       planes.push_back(std::move(slice));
-    else
+    } else {
       planes.back().polygons_mm.push_back(std::move(slice.polygons_mm.front()));
+    }
+  }
   return planes;
 }
 
-/// The least distance of planes of all structures that lie across the view; none where there is but one.
-double least_distance_mm(const std::vector<voxel::Structure>& structures, const voxel::View& view) {
+struct PlaneDistances {
+  double least_mm = std::numeric_limits<double>::infinity();  ///< of planes that are told apart
+  double nearest_mm = least_mm;                               ///< of those that count as one as well
+};
+
+/// Of the planes of all structures that lie across the view; infinite where there is but one.
+PlaneDistances distances_of_planes(const std::vector<voxel::Structure>& structures, const voxel::View& view) {
   std::vector<double> positions;
   for (const voxel::Structure& structure : structures)
     for (const auto& contour : structure.contours_mm)
       if (glm::length(glm::cross(area_of(contour), view.look)) <= 1e-3 * glm::length(area_of(contour)))
         positions.push_back(glm::dot(contour.front(), view.look));
   std::sort(positions.begin(), positions.end());
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < positions.size(); ++i)
-    if (const double gap = positions[i] - positions[i - 1]; gap > 2.0 * off_plane_mm())
-      least = std::min(least, gap);
-  return least;
+  PlaneDistances distances;
+  // What strings of three decimals round is no distance.
+  constexpr double in_plane_mm = 0.1 * off_plane_mm();
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    const double gap = positions[i] - positions[i - 1];
+    if (gap > in_plane_mm) distances.nearest_mm = std::min(distances.nearest_mm, gap);
+    if (gap > 2.0 * off_plane_mm()) distances.least_mm = std::min(distances.least_mm, gap);
+  }
+  return distances;
 }
 
 /// The planes with empty ones where the set has one and the structure has no contour.
@@ -152,18 +176,48 @@ Slices with_empty(const Slices& planes, double apart_mm) {
   return all;
 }
 
+/// Names in quotes; with the number of those that several have.
+std::string list_of(const std::vector<voxel::Structure>& structures) {
+  std::map<std::string, int> counts;
+  for (const voxel::Structure& structure : structures) ++counts[structure.name];
+  std::string list;
+  for (const voxel::Structure& structure : structures)
+    list += (list.empty() ? "'" : ", '") + structure.name +
+            (counts[structure.name] > 1 ? "' (" + std::to_string(structure.number) + ")" : "'");
+  return list;
+}
+
+/// The structure of this name; else of this ROI number.
+const voxel::Structure& chosen(const std::vector<voxel::Structure>& structures, const std::string& name,
+                               const std::string& source) {
+  if (name.empty() && structures.size() > 1)
+    refuse(source, "holds several structures: say which by 'structure', one of " + list_of(structures));
+  if (name.empty()) return structures.front();
+  std::vector<const voxel::Structure*> named, numbered;
+  for (const voxel::Structure& structure : structures) {
+    if (structure.name == name) named.push_back(&structure);
+    if (std::to_string(structure.number) == name) numbered.push_back(&structure);
+  }
+  if (named.size() == 1) return *named.front();
+  if (numbered.size() == 1) return *numbered.front();
+  if (named.empty() && !numbered.empty())
+    refuse(source, "has " + std::to_string(numbered.size()) + " structures of the ROI number " + name +
+                       ": say which by its name, one of " + list_of(structures));
+  if (named.empty()) {
+    std::vector<std::string> names;
+    for (const voxel::Structure& structure : structures) names.push_back(structure.name);
+    refuse(source, "has no structure '" + name + "'" + suggestion(name, names));
+  }
+  std::string numbers;
+  for (const voxel::Structure* each : named)
+    numbers += (numbers.empty() ? "" : each == named.back() ? " and " : ", ") + std::to_string(each->number);
+  refuse(source, "has " + std::to_string(named.size()) + " structures '" + name + "', of the ROI numbers " +
+                     numbers + ": say which by its number as 'structure'");
+}
+
 voxel::SliceMask slices_of(const std::vector<voxel::Structure>& structures, const std::string& name,
                            const std::string& source) {
-  std::vector<std::string> names;
-  for (const voxel::Structure& structure : structures) names.push_back(structure.name);
-  std::string list;
-  for (const std::string& known : names) list += (list.empty() ? "'" : ", '") + known + "'";
-  if (name.empty() && structures.size() > 1)
-    refuse(source, "holds several structures: say which by 'structure', one of " + list);
-  const auto found =
-      std::find_if(structures.begin(), structures.end(),
-                   [&](const voxel::Structure& structure) { return name.empty() || structure.name == name; });
-  if (found == structures.end()) refuse(source, "has no structure '" + name + "'" + suggestion(name, names));
+  const voxel::Structure* found = &chosen(structures, name, source);
   const std::string where = source + ": '" + found->name + "'";
   glm::dvec3 largest(0.0);
   for (const auto& contour : found->contours_mm)
@@ -174,12 +228,109 @@ voxel::SliceMask slices_of(const std::vector<voxel::Structure>& structures, cons
                                          : std::string()));
   voxel::SliceMask mask;
   mask.view = view_across(largest);
-  const double apart_mm = least_distance_mm(structures, mask.view);
-  if (!std::isfinite(apart_mm))
+  const PlaneDistances distances = distances_of_planes(structures, mask.view);
+  if (!std::isfinite(distances.nearest_mm))
     refuse(where, "lies in one plane, as the whole set does: how thick it is cannot be told");
-  mask.slices = with_empty(planes_of(*found, mask.view, where), apart_mm);
+  if (!std::isfinite(distances.least_mm))
+    refuse(where, "lies in planes, as the whole set does, that are " + too_near(distances.nearest_mm));
+  mask.slices = with_empty(planes_of(*found, mask.view, where), distances.least_mm);
   voxel::check(mask);
   return mask;
+}
+
+/// "10, 12 and 3 more".
+class Listed {
+ public:
+  void add(const std::string& word) {
+    constexpr int most = 8;
+    if (++count_ <= most)
+      words_ += (words_.empty() ? "" : ", ") + word;
+    else
+      ++left_;
+  }
+  std::string text() const { return words_ + (left_ > 0 ? " and " + std::to_string(left_) + " more" : ""); }
+
+ private:
+  std::string words_;
+  int count_ = 0, left_ = 0;
+};
+
+std::string contours(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " contour" : " contours");
+}
+
+std::string place(const voxel::View& view, const glm::dvec2& p, double position_mm) {
+  const glm::dvec3 at = p.x * view.right + p.y * view.up + position_mm * view.look;
+  const auto number = [](double value) { return plain(std::round(100.0 * value) / 100.0 + 0.0); };
+  return "near (" + number(at.x) + ", " + number(at.y) + ", " + number(at.z) + ") mm";
+}
+
+/// Takes contours that are drawn again in their plane once: by the even-odd rule they would delete each
+/// other.
+void take_once(voxel::SliceMask& mask, const std::string& where, std::vector<std::string>* findings) {
+  std::size_t count = 0;
+  std::string first;
+  Listed planes;
+  for (voxel::SliceMask::Slice& slice : mask.slices) {
+    const std::vector<std::size_t> again = voxel::repeated_polygons(slice.polygons_mm, off_plane_mm());
+    if (again.empty()) continue;
+    if (count == 0) first = place(mask.view, slice.polygons_mm[again.front()].front(), slice.position_mm);
+    count += again.size();
+    planes.add(plain(slice.position_mm));
+    const std::set<std::size_t> left(again.begin(), again.end());
+    std::vector<std::vector<glm::dvec2>> kept;
+    for (std::size_t i = 0; i < slice.polygons_mm.size(); ++i)
+      if (!left.contains(i)) kept.push_back(std::move(slice.polygons_mm[i]));
+    slice.polygons_mm = std::move(kept);
+  }
+  if (count > 0 && findings != nullptr)
+    findings->push_back(where + ": " + contours(count) + (count == 1 ? " repeats" : " repeat") +
+                        " another of the same plane, which is taken once: planes at " + planes.text() +
+                        " mm, first " + first);
+}
+
+/// The even-odd rule leaves out what two contours enclose, which is a hole where one lies in the other. Of
+/// contours that cross, DICOM's exclusive or says the same (PS3.3, C.8.8.6.3), and other programs join them.
+void tell_crossings(const voxel::SliceMask& mask, const std::string& where,
+                    std::vector<std::string>& findings) {
+  std::size_t count = 0;
+  std::string first;
+  Listed planes, unknown;
+  for (const voxel::SliceMask::Slice& slice : mask.slices) {
+    const voxel::CrossingPolygons crossing = voxel::crossing_polygons(slice.polygons_mm, off_plane_mm());
+    if (!crossing.is_complete) unknown.add(plain(slice.position_mm));
+    if (crossing.all.empty()) continue;
+    if (count == 0) first = place(mask.view, crossing.all.front().at_mm, slice.position_mm);
+    count += crossing.all.size();
+    planes.add(std::to_string(crossing.all.size()) + " at " + plain(slice.position_mm) + " mm");
+  }
+  if (count > 0)
+    findings.push_back(where + ": " + contours(count) +
+                       (count == 1 ? " crosses itself" : " cross another of the same plane or themselves") +
+                       ", so that parts enclosed twice are left out: " + planes.text() + ", first " + first +
+                       "; redraw them as one outline if the parts belong to it");
+  if (!unknown.text().empty())
+    findings.push_back(where +
+                       ": too many edges lie over each other to tell all contours that cross: "
+                       "planes at " +
+                       unknown.text() + " mm");
+}
+
+voxel::SliceMask slices_of_file(const std::filesystem::path& path, const std::string& structure,
+                                std::vector<std::string>* findings) {
+  const bool is_set = voxel::is_rtstruct(path);
+  if (!is_set && !structure.empty())
+    refuse(path.string(), "is no DICOM structure set, which 'structure' chooses of");
+  try {
+    voxel::SliceMask mask = is_set ? slices_of(voxel::read_rtstruct(path), structure, path.string())
+                                   : slices_of(read_json(path), path.string());
+    const std::string where = path.string() + (structure.empty() ? "" : ": '" + structure + "'");
+    take_once(mask, where, findings);
+    if (findings != nullptr) tell_crossings(mask, where, *findings);
+    return mask;
+  } catch (const std::invalid_argument& error) {
+    refuse(path.string(), error.what());
+  }
 }
 
 }  // namespace
@@ -192,15 +343,12 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 }
 
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure) {
-  const bool is_set = voxel::is_rtstruct(path);
-  if (!is_set && !structure.empty())
-    refuse(path.string(), "is no DICOM structure set, which 'structure' chooses of");
-  try {
-    return is_set ? slices_of(voxel::read_rtstruct(path), structure, path.string())
-                  : slices_of(read_json(path), path.string());
-  } catch (const std::invalid_argument& error) {
-    refuse(path.string(), error.what());
-  }
+  return slices_of_file(path, structure, nullptr);
+}
+
+voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure,
+                             std::vector<std::string>& findings) {
+  return slices_of_file(path, structure, &findings);
 }
 
 }  // namespace octotomy::planner

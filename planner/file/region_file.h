@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "voxel/solid/region_mask.h"
 #include "voxel/solid/slice_mask.h"
@@ -18,11 +19,20 @@ voxel::Region read_region(const voxel::View& view, const std::filesystem::path& 
 /// "polygons_mm": [...]}, ...]}; "between" may be left out. Slices are put in order. Throws as read_region(),
 /// and what check(SliceMask) refuses.
 ///
-/// Of a DICOM structure set, the region of this name: its closed contours as polygons of its planes, holes by
-/// the even-odd rule. Planes as far apart as the set's nearest ones; where one of them has no contour,
-/// nothing is there, and the first and last plane speak for half a distance beyond. Throws std::runtime_error
-/// if the name is not one of the set's, or none is given and there are several; if contours lie in no
-/// parallel planes, or all in one plane, which tells no distance.
+/// Of a DICOM structure set, the region of this name, or of this ROI number where no name or several are it:
+/// its closed contours as polygons of its planes, holes by the even-odd rule. Planes as far apart as the
+/// set's nearest ones; where one of them has no contour, nothing is there, and the first and last plane speak
+/// for half a distance beyond. Throws std::runtime_error if the name is not one of the set's or several have
+/// it, or none is given and there are several; if contours lie in no parallel planes, or all in one plane or
+/// in planes within 0.02 mm, which tell no distance.
+///
+/// A contour that is drawn again in its plane, within 0.01 mm, is taken once.
 voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure = {});
+
+/// The same; adds to `findings` a line on contours that are drawn again, and one on contours that cross
+/// another of their plane or themselves, so that the even-odd rule leaves a part out: how many, in which
+/// planes and where.
+voxel::SliceMask read_slices(const std::filesystem::path& path, const std::string& structure,
+                             std::vector<std::string>& findings);
 
 }  // namespace octotomy::planner

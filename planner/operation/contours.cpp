@@ -107,7 +107,8 @@ FileAnswer on_files(const Contours& asked, const FileBench& bench) {
         "--window: what are the contours of? for example --window 300: or --window skin");
   std::vector<std::string> findings;
   const voxel::SliceMask mask = finished(
-      asked, is_json(file) ? read_slices(file) : followed(asked, bench.read_scan(file), bench.timings),
+      asked,
+      is_json(file) ? read_slices(file, {}, findings) : followed(asked, bench.read_scan(file), bench.timings),
       bench.timings, findings);
   Outputs outputs;
   const auto put = [&](const Json& json, const std::filesystem::path& out) {

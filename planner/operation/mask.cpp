@@ -78,7 +78,7 @@ void voxels(const Mask& mask, const VoxelBench& bench, VoxelSide& made) {
   if (const auto turned = held(mask, bench.objects); turned && made.symbol)
     made.symbol = moved(*made.symbol, *turned);
   if (!mask.slices.empty()) {
-    const voxel::Expression slices = read_slices(bench.folder / mask.slices, mask.structure);
+    const voxel::Expression slices = read_slices(bench.folder / mask.slices, mask.structure, made.findings);
     made.symbol = made.symbol ? *made.symbol & slices : slices;
   }
   made.octree = bench.combined(*made.symbol);
@@ -140,8 +140,9 @@ Operation mask_operation() {
                    "A file of regions on parallel slices, {\"view\", \"slices\": [{\"position_mm\", "
                    "\"polygons_mm\"}]}, or a DICOM structure set, which cut the mask too.")
                  .a_file())
-      .takes(field("structure", &Mask::structure,
-                   "The name of the structure that is meant, where the slices are a structure set."))
+      .takes(field(
+          "structure", &Mask::structure,
+          "The name or ROI number of the structure that is meant, where the slices are a structure set."))
       .verb_takes(
           field("region", &Mask::region_files,
                 "VIEW:FILE, repeated: the mask is what all of their back-projections enclose. The file "

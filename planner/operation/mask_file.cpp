@@ -103,6 +103,7 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
     throw std::runtime_error(
         "a mask needs --region VIEW:FILE.json, --region-pixels PICTURE.png:X,Y... or --slices FILE");
   std::vector<DrawnRegion> drawn;
+  std::vector<std::string> findings;
   std::optional<voxel::SliceMask> slices;
   std::optional<voxel::Expression> expression;
   std::optional<voxel::Universe> universe;
@@ -111,7 +112,7 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
     const Stopwatch watch(bench.timings, "read");
     for (const std::string& region : asked.region_files) drawn.push_back(read_drawn_region(region));
     for (const std::string& pixels : asked.region_pixels) drawn.push_back(region_of_pixels(pixels));
-    if (!asked.slices.empty()) slices = read_slices(asked.slices, asked.structure);
+    if (!asked.slices.empty()) slices = read_slices(asked.slices, asked.structure, findings);
     if (!asked.edit.empty()) {
       const voxel::OctreeFile old = voxel::read_octree(asked.edit);
       const auto* octree = std::get_if<voxel::Octree>(&old.tree);
@@ -134,7 +135,6 @@ FileAnswer mask_file(const Mask& asked, const FileBench& bench) {
     const Stopwatch watch(bench.timings, "combine");
     file.tree = voxel::combine(*universe, *expression);
   }
-  std::vector<std::string> findings;
   for (const DrawnRegion& each : drawn)
     findings.insert(findings.end(), each.findings.begin(), each.findings.end());
   if (std::get<voxel::Octree>(file.tree).is_empty())

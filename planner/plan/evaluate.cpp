@@ -307,6 +307,7 @@ class Evaluator {
           value,
           {result_.universe, result_.objects, scan_, result_.timings, {options_.stop, {}}, plan_.folder},
           object.voxel);
+    object.findings.insert(object.findings.end(), object.voxel.findings.begin(), object.voxel.findings.end());
     if (with_mesh_.contains(step.id)) make_mesh(step, value, object);
     object.mesh.details.update(told);
     if (!operation.voxel) voxelise(object);

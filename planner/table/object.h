@@ -30,6 +30,7 @@ struct VoxelSide {
   std::optional<voxel::Expression> symbol;
   voxel::Measures measures;
   std::string lineage;
+  std::vector<std::string> findings;
 };
 
 /// The mesh kernel's answer to the same operation.

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "planner/file/region_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "tests/voxel/scan/structure_set.h"
+#include "tests/voxel/scratch_folder.h"
+
+namespace octotomy::planner {
+namespace {
+
+using tests::DrawnStructure;
+using tests::rectangle;
+using tests::ScratchFolder;
+
+using Outlines = std::vector<std::vector<glm::dvec3>>;
+
+std::filesystem::path set_file(const ScratchFolder& folder, const std::vector<DrawnStructure>& structures) {
+  std::ofstream(folder / "rs.dcm", std::ios::binary) << tests::structure_set(structures);
+  return folder / "rs.dcm";
+}
+
+/// Squares of 20 mm on five planes, 2 mm apart.
+Outlines square_block() {
+  Outlines contours;
+  for (const double z : {0.0, 2.0, 4.0, 6.0, 8.0}) contours.push_back(rectangle({-10, -10}, {10, 10}, z));
+  return contours;
+}
+
+/// The counts of contours in the planes at 0, 2, ... 8 mm.
+std::vector<std::size_t> contour_counts(const voxel::SliceMask& mask) {
+  std::vector<std::size_t> counts;
+  for (const auto& slice : mask.slices)
+    if (slice.position_mm > -1.0 && slice.position_mm < 9.0) counts.push_back(slice.polygons_mm.size());
+  return counts;
+}
+
+std::string slices_refusal(const std::filesystem::path& path, const std::string& structure) {
+  try {
+    read_slices(path, structure);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+#define EXPECT_HOLDS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << text
+
+TEST(RegionFile, AContourDrawnAgainInItsPlaneIsTakenOnceAndTold) {
+  const ScratchFolder folder;
+  Outlines contours = square_block();
+  contours.push_back(contours[2]);
+  contours.push_back(contours[3]);
+  std::rotate(contours.back().begin(), contours.back().begin() + 1, contours.back().end());
+  contours.push_back(contours[3]);
+  std::reverse(contours.back().begin(), contours.back().end());
+  for (glm::dvec3& p : contours.back()) p.z += 0.0005;
+  std::vector<std::string> findings;
+  const auto path = set_file(folder, {{1, "A", contours}});
+  EXPECT_EQ(contour_counts(read_slices(path, "A", findings)), (std::vector<std::size_t>{1, 1, 1, 1, 1}));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_HOLDS(findings[0], "rs.dcm: 'A': 3 contours repeat another of the same plane");
+  EXPECT_HOLDS(findings[0], "planes at 4, 6 mm, first near (-10, -10, 4) mm");
+  EXPECT_EQ(contour_counts(read_slices(path, "A")), (std::vector<std::size_t>{1, 1, 1, 1, 1}))
+      << "the same where nobody asks for findings";
+}
+
+TEST(RegionFile, AStructureOfWhichEveryContourIsDrawnAgainIsWhole) {
+  const ScratchFolder folder;
+  Outlines contours = square_block();
+  const Outlines again = contours;
+  contours.insert(contours.end(), again.begin(), again.end());
+  std::vector<std::string> findings;
+  const voxel::SliceMask mask = read_slices(set_file(folder, {{1, "A", contours}}), "A", findings);
+  EXPECT_EQ(contour_counts(mask), (std::vector<std::size_t>{1, 1, 1, 1, 1}));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_HOLDS(findings[0], "5 contours");
+}
+
+TEST(RegionFile, ContoursThatCrossAreToldAndHolesAreNot) {
+  const ScratchFolder folder;
+  Outlines contours = square_block();
+  for (const double z : {0.0, 2.0}) contours.push_back(rectangle({-4, -4}, {4, 4}, z));
+  std::vector<std::string> findings;
+  read_slices(set_file(folder, {{1, "A", contours}}), "A", findings);
+  EXPECT_TRUE(findings.empty()) << findings[0];
+  contours.push_back(rectangle({-9.7, -10}, {10.3, 10}, 4));
+  const voxel::SliceMask mask = read_slices(set_file(folder, {{1, "A", contours}}), "A", findings);
+  EXPECT_EQ(contour_counts(mask), (std::vector<std::size_t>{2, 2, 2, 1, 1})) << "told, and left as drawn";
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_HOLDS(findings[0], "2 contours cross another");
+  EXPECT_HOLDS(findings[0], "2 at 4 mm, first near (");
+}
+
+TEST(RegionFile, ContoursOfJsonThatRepeatOrCrossAreToldToo) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "slices.json") << R"({"view": "inferior", "slices": [
+      {"position_mm": 0, "polygons_mm": [[[0, 0], [9, 0], [9, 9], [0, 9]], [[9, 0], [9, 9], [0, 9], [0, 0]]]},
+      {"position_mm": 2, "polygons_mm": [[[0, 0], [9, 0], [9, 9], [0, 9]], [[5, 5], [5, 15], [15, 15], [15, 5]]]}]})";
+  std::vector<std::string> findings;
+  const voxel::SliceMask mask = read_slices(folder / "slices.json", "", findings);
+  EXPECT_EQ(mask.slices[0].polygons_mm.size(), 1U);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_HOLDS(findings[0], "slices.json: 1 contour repeats another");
+  EXPECT_HOLDS(findings[1], "2 at 2 mm");
+}
+
+TEST(RegionFile, OfTwoStructuresOfOneNameTheNumberSaysWhich) {
+  const ScratchFolder folder;
+  Outlines small;
+  for (const double z : {0.0, 2.0}) small.push_back(rectangle({-1, -1}, {1, 1}, z));
+  const auto path = set_file(
+      folder, {{4, "A", square_block()}, {7, "A", small}, {9, "B", square_block()}, {2, "9", small}});
+  EXPECT_HOLDS(slices_refusal(path, "A"), "2 structures 'A', of the ROI numbers 4 and 7");
+  EXPECT_HOLDS(slices_refusal(path, ""), "'A' (4), 'A' (7), 'B', '9'");
+  EXPECT_EQ(read_slices(path, "7").slices.size(), 4U);
+  EXPECT_EQ(read_slices(path, "4").slices.size(), 7U);
+  EXPECT_EQ(read_slices(path, "9").slices.size(), 4U) << "a name comes before a number";
+  EXPECT_HOLDS(slices_refusal(path, "8"), "has no structure '8'");
+}
+
+TEST(RegionFile, PlanesNearerThanTheirRoundingAreRefusedForThat) {
+  const ScratchFolder folder;
+  for (const double apart_mm : {0.01, 0.0125}) {
+    Outlines contours;
+    for (int i = 0; i < 40; ++i) contours.push_back(rectangle({-10, -10}, {10, 10}, i * apart_mm));
+    const std::string alone = slices_refusal(set_file(folder, {{1, "A", contours}}), "A");
+    EXPECT_HOLDS(alone, apart_mm == 0.01 ? " 0.01 mm apart" : " 0.0125 mm apart");
+    EXPECT_EQ(alone.find("one plane,"), std::string::npos) << alone;
+    const std::string beside =
+        slices_refusal(set_file(folder, {{1, "A", contours}, {2, "B", square_block()}}), "A");
+    EXPECT_HOLDS(beside, apart_mm == 0.01 ? " 0.01 mm apart" : " 0.0125 mm apart");
+  }
+  EXPECT_HOLDS(slices_refusal(set_file(folder, {{1, "A", {rectangle({0, 0}, {9, 9}, 0)}}}), "A"),
+               "lies in one plane");
+}
+
+#undef EXPECT_HOLDS
+
+}  // namespace
+}  // namespace octotomy::planner
