@@ -11,6 +11,7 @@
 #include "planner/plan/rebase.h"
 #include "planner/plan/sha256.h"
 #include "planner/plan/signature.h"
+#include "planner/table/control_character.h"
 
 namespace octotomy::planner::cli {
 namespace {
@@ -93,8 +94,8 @@ void show_history(const Program& program, PlanHistory& history, const HistoryTex
                              {"what", edit.what},
                              {"made_at", edit.made_at},
                              {"names", edit.names}});
-    shown += (edit.id == history.current() ? "> " : "  ") + std::to_string(edit.id) + "  " + edit.made_at +
-             "  " + edit.what;
+    shown += (edit.id == history.current() ? "> " : "  ") + std::to_string(edit.id) + "  " +
+             line_of(edit.made_at + "  " + edit.what);
     for (const std::string& name : edit.names) shown += "  [" + name + "]";
     shown += "\n";
   }
@@ -104,8 +105,14 @@ void show_history(const Program& program, PlanHistory& history, const HistoryTex
 int history_of(const Program& program, const HistoryText& text) {
   if (int{text.undo} + int{text.redo} + int{!text.go_to.empty()} > 1)
     throw std::runtime_error("--undo, --redo and --go-to each choose a state: give one of them");
-  read_plan(text.plan);
-  PlanHistory history(text.plan);
+  const Plan plan = read_plan(text.plan);
+  // What changes nothing needs no folder that can be written.
+  const bool only_lists = !text.undo && !text.redo && text.go_to.empty() && text.branch.empty() &&
+                          text.name.empty() && !PlanHistory::can_write(text.plan);
+  PlanHistory history(text.plan, only_lists ? PlanHistory::Access::Read : PlanHistory::Access::Write);
+  if (only_lists && history.text() != plan.text)
+    warn(text.plan.string() + ": was changed after state " + std::to_string(history.current()) +
+         ", which is not recorded, as its history cannot be written: copy both to a folder of yours");
   if (text.undo && !history.undo())
     throw std::runtime_error("this is the first state: there is none to undo");
   if (text.redo && !history.redo())
@@ -141,7 +148,16 @@ struct SignText {
   std::string by, as = "reader", note;
 };
 
+/// What is signed is read in lists and on terminals.
+void need_plain(const std::string& option, const std::string& text) {
+  if (has_control(text))
+    throw std::runtime_error(option + " '" + text + "' has control characters: take them out");
+}
+
 int sign_plan(const Program& program, const SignText& text) {
+  need_plain("--by", text.by);
+  need_plain("--as", text.as);
+  need_plain("--note", text.note);
   const Plan plan = read_plan(text.plan);
   std::string signed_text = plan.text;
   if (!text.by.empty()) {
@@ -162,11 +178,11 @@ int sign_plan(const Program& program, const SignText& text) {
     const std::vector<std::string> changed = changed_since(signature, signed_text, sums);
     json["signatures"].push_back(to_json(signature));
     json["signatures"].back()["changed_since"] = changed;
-    shown += signature.at + "  " + signature.by + ", " + signature.as + ": ";
+    std::string line = signature.at + "  " + signature.by + ", " + signature.as + ": ";
     for (const std::string& part : changed)
-      shown += part + (&part == &changed.back() ? " changed since" : ", ");
-    shown +=
-        (changed.empty() ? "holds" : "") + (signature.note.empty() ? "" : " (" + signature.note + ")") + "\n";
+      line += part + (&part == &changed.back() ? " changed since" : ", ");
+    line += (changed.empty() ? "holds" : "") + (signature.note.empty() ? "" : " (" + signature.note + ")");
+    shown += line_of(line) + "\n";
   }
   program.say(json, shown.empty() ? "nobody has signed it; --by NAME signs\n" : shown);
   return done;

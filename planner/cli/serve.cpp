@@ -45,9 +45,11 @@ std::optional<fs::path> beginning_of(const std::vector<fs::path>& paths) {
 }
 
 /// Ends the program after the server: every edit is on the disk, and work that is under way is nobody's any
-/// more and may take long to stop.
-[[noreturn]] void end_program(bool is_out_of_time) {
+/// more and may take long to stop. An edit ends before names are forbidden to change, as it changes some.
+[[noreturn]] void end_program(serve::Desk& desk, bool is_out_of_time) {
+  constexpr std::chrono::milliseconds longest_edit{100};
   while (!has_last_word(Speaker::Verb)) ::pause();
+  desk.close_within(longest_edit);
   voxel::remove_unfinished();
   if (is_out_of_time) warn("out of time: the server has ended; every edit is in the plan's file");
   std::_Exit(is_out_of_time ? out_of_resources : done);
@@ -79,8 +81,8 @@ int run(Program& program, ServeText& text) {
   server.run(service, desk, program.stop.get_token());
   // The watch began to count shortly before or after this verb did.
   constexpr std::chrono::duration<double> margin{0.1};
-  end_program(program.time_limit_s &&
-              Clock::now() - start + margin >= std::chrono::duration<double>(*program.time_limit_s));
+  end_program(desk, program.time_limit_s && Clock::now() - start + margin >=
+                                                std::chrono::duration<double>(*program.time_limit_s));
 }
 
 }  // namespace

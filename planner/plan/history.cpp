@@ -6,11 +6,16 @@
 //   note of the sum of what step 2 wrote.
 // Whoever opens it compares the file's sum with that note: the same and not the current state's means that
 // step 2 was not reached, and is done then; another one means that another program wrote the file.
+//
+// The journal is one that is removed at each commit, so that the history is whole in its one file between
+// edits: whoever copies that file has all of it. A write-ahead log would take a third less time an edit, and
+// keep the newest edits in a second file.
 #include "planner/plan/history.h"
 
 #include <algorithm>
 #include <fcntl.h>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <sqlite3.h>
 #include <stdexcept>
@@ -37,6 +42,8 @@ constexpr int whole_every = 64;
 constexpr int busy_ms = 5000;
 constexpr std::size_t longest_name = 200;  // of a branch or a version, in bytes
 
+using Access = PlanHistory::Access;
+
 constexpr const char* tables = R"(
   CREATE TABLE edits (id INTEGER PRIMARY KEY, parent INTEGER REFERENCES edits, what TEXT NOT NULL,
     made_at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%SZ', 'now')), sum TEXT NOT NULL,
@@ -45,6 +52,14 @@ constexpr const char* tables = R"(
   CREATE TABLE versions (name TEXT PRIMARY KEY, edit INTEGER NOT NULL REFERENCES edits) WITHOUT ROWID;
   CREATE TABLE state (current INTEGER NOT NULL, branch TEXT NOT NULL, written TEXT NOT NULL);
 )";
+
+/// States that are not yet in the history's file are in others beside it.
+[[noreturn]] void refuse_read_only(const fs::path& path) {
+  throw std::runtime_error(path.string() +
+                           ": cannot be written, which its newest states need: copy the plan and all files "
+                           "whose names begin with " +
+                           path.filename().string() + " to a folder of yours");
+}
 
 [[noreturn]] void fail(sqlite3* database, const fs::path& path) {
   const int code = sqlite3_errcode(database) & 0xff;
@@ -55,6 +70,7 @@ constexpr const char* tables = R"(
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     throw std::runtime_error(path.string() +
                              ": is no history of a plan: move it away, and a new one is begun");
+  if (code == SQLITE_READONLY) refuse_read_only(path);
   if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
     throw std::runtime_error(path.string() + ": another program is writing this plan's history: try again");
   throw std::runtime_error(what);
@@ -114,6 +130,17 @@ class Query {
   int bound_ = 0;
 };
 
+/// A path within a URI, where these three letters have a meaning.
+std::string uri_of(const fs::path& path) {
+  std::string uri;
+  for (const char letter : path.string())
+    if (letter == '%' || letter == '?' || letter == '#')
+      uri += letter == '%' ? "%25" : letter == '?' ? "%3f" : "%23";
+    else
+      uri += letter;
+  return uri;
+}
+
 std::string read_text(const fs::path& path) {
   std::ifstream file = voxel::opened(path);
   if (!file) throw std::runtime_error(path.string() + ": cannot be read");
@@ -124,17 +151,10 @@ std::string read_text(const fs::path& path) {
 
 class PlanHistory::Database {
  public:
-  explicit Database(const fs::path& plan)
+  Database(const fs::path& plan, Access access)
       : plan_(voxel::behind_links(fs::absolute(plan))), path_(path_of(plan_)) {
-    make_as_readable_as_the_plan();
-    const int code = sqlite3_open_v2(
-        path_.c_str(), &database_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
-    if (code != SQLITE_OK) refuse_open();
     try {
-      sqlite3_busy_timeout(database_, busy_ms);
-      run("PRAGMA journal_mode = WAL");
-      run("PRAGMA synchronous = FULL");
-      open();
+      access == Access::Read ? open_to_read() : open_to_write();
     } catch (...) {
       sqlite3_close(database_);
       throw;
@@ -158,13 +178,12 @@ class PlanHistory::Database {
     return parent.has_value();
   }
   bool redo() {
-    // The way from the branch's end down to the current state; its last step up is the one that was undone.
-    std::optional<std::int64_t> at = tip_of(branch_), above;
-    while (at && *at > current_) above = at, at = parent_of(*at);
-    if (!at || *at != current_ || !above) return false;
-    change([&] { current_ = *above; });
-    return true;
+    const std::optional<std::int64_t> above = state_above();
+    if (above) change([&] { current_ = *above; });
+    return above.has_value();
   }
+  bool can_undo() { return parent_of(current_).has_value(); }
+  bool can_redo() { return state_above().has_value(); }
   void go_to(const std::string& where) {
     const std::vector<std::pair<std::string, std::int64_t>> ends = branches();
     for (const auto& [name, tip] : ends)
@@ -235,8 +254,14 @@ class PlanHistory::Database {
                        row.text(2),
                        row.text(3),
                        {}});
-      Query names = query("SELECT name FROM versions WHERE edit = ? ORDER BY name", edits.back().id);
-      while (names.next()) edits.back().names.push_back(names.text(0));
+    }
+    if (edits.empty()) return edits;
+    // Versions have no index by their states: all are read once.
+    Query names = query("SELECT edit, name FROM versions WHERE edit >= ? ORDER BY name", edits.back().id);
+    while (names.next()) {
+      const auto named = std::lower_bound(edits.begin(), edits.end(), names.number(0),
+                                          [](const PlanEdit& edit, std::int64_t id) { return edit.id > id; });
+      if (named != edits.end() && named->id == names.number(0)) named->names.push_back(names.text(1));
     }
     return edits;
   }
@@ -248,10 +273,53 @@ class PlanHistory::Database {
   }
 
  private:
-  [[noreturn]] void refuse_open() {
-    const std::string why = database_ == nullptr ? "out of memory" : sqlite3_errmsg(database_);
-    sqlite3_close(database_);
-    throw std::runtime_error(path_.string() + ": cannot be opened as the plan's history: " + why);
+  void open_file(int how, const std::string& name) {
+    if (sqlite3_open_v2(name.c_str(), &database_, how | SQLITE_OPEN_NOMUTEX, nullptr) != SQLITE_OK) {
+      const std::string why = database_ == nullptr ? "out of memory" : sqlite3_errmsg(database_);
+      throw std::runtime_error(path_.string() + ": cannot be opened as the plan's history: " + why);
+    }
+    sqlite3_busy_timeout(database_, busy_ms);
+  }
+  void open_to_write() {
+    need_writable();
+    make_as_readable_as_the_plan();
+    open_file(SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, path_.string());
+    // Where another process holds an older history with a log, the log stays; nothing is lost by that.
+    sqlite3_exec(database_, "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
+    run("PRAGMA synchronous = EXTRA");
+    open();
+  }
+  void open_to_read() {
+    need_history();
+    open_file(SQLITE_OPEN_READONLY, path_.string());
+    // An older history has a log, whose reader writes beside it. Where that is not allowed and the log is
+    // empty, nobody has it open, and it is read without locks.
+    const int code = sqlite3_exec(database_, "PRAGMA user_version", nullptr, nullptr, nullptr);
+    if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
+      for (const char* ending : {"-wal", "-journal"}) need_nothing_beside(ending);
+      sqlite3_close(std::exchange(database_, nullptr));
+      open_file(SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, "file:" + uri_of(path_) + "?immutable=1");
+    }
+    need_known_layout();
+    read_state();
+  }
+  void need_nothing_beside(const std::string& ending) const {
+    std::error_code absent;
+    const auto bytes = fs::file_size(path_.string() + ending, absent);
+    if (!absent && bytes > 0) refuse_read_only(path_);
+  }
+  void need_history() const {
+    if (!fs::exists(path_))
+      throw std::runtime_error(plan_.string() + ": has no history yet, and none can be begun in " +
+                               plan_.parent_path().string() +
+                               ", which cannot be written: copy the plan to a folder of yours");
+  }
+  void need_writable() const {
+    if (can_write(plan_)) return;
+    const bool is_folder = ::access(plan_.parent_path().c_str(), W_OK) != 0;
+    throw std::runtime_error((is_folder ? plan_.parent_path() : path_).string() +
+                             ": cannot be written, so that the plan's states cannot be kept there: copy the "
+                             "plan and its .history to a folder of yours");
   }
   /// An edit follows those of smaller numbers, and its text has the sum that was kept with it.
   [[noreturn]] void refuse_damaged(std::int64_t edit) const {
@@ -293,10 +361,7 @@ class PlanHistory::Database {
   void open() {
     locked([&] {
       const std::string text = read_text(plan_), sum = sha256_of(text);
-      const int found = version();
-      if (found > layout)
-        throw std::runtime_error(path_.string() + ": a newer program wrote this history: install that");
-      if (found == 0) begin(text);
+      if (need_known_layout() == 0) begin(text);
       read_state();
       if (sum == sum_of(current_)) return;
       if (sum == written_) return write_file();
@@ -306,9 +371,12 @@ class PlanHistory::Database {
       query("UPDATE state SET current = ?, written = ?", current_, written_).next();
     });
   }
-  int version() {
+  /// The layout of the file; 0: it is new.
+  int need_known_layout() {
     Query row = query("PRAGMA user_version");
     row.next();
+    if (row.number(0) > layout)
+      throw std::runtime_error(path_.string() + ": a newer program wrote this history: install that");
     return static_cast<int>(row.number(0));
   }
   void begin(const std::string& text) {
@@ -391,6 +459,30 @@ class PlanHistory::Database {
     if (row.number(0) >= edit) refuse_damaged(edit);
     return row.number(0);
   }
+  /// The state that undo() left on the current branch; none where the branch ends at the current one, or does
+  /// not lead through it.
+  std::optional<std::int64_t> state_above() {
+    const std::optional<std::int64_t> tip = tip_of(branch_);
+    if (!tip || *tip <= current_) return std::nullopt;
+    if (way_.empty() || way_.front() != *tip) way_ = {*tip};
+    if (way_.back() > current_) extend_way();
+    const auto here = std::lower_bound(way_.begin(), way_.end(), current_, std::greater<>());
+    if (here == way_.end() || *here != current_) return std::nullopt;
+    return *std::prev(here);
+  }
+  /// Goes on down until the current state, or one before it.
+  void extend_way() {
+    Query row = query(
+        "WITH RECURSIVE way (id, parent) AS (SELECT id, parent FROM edits WHERE id = ? UNION ALL "
+        "SELECT edits.id, edits.parent FROM way JOIN edits ON edits.id = way.parent "
+        "WHERE way.id > ? AND way.parent < way.id) SELECT id, parent FROM way",
+        way_.back(), current_);
+    way_.pop_back();
+    while (row.next()) {
+      way_.push_back(row.number(0));
+      if (!row.is_null(1) && row.number(1) >= row.number(0)) refuse_damaged(row.number(0));
+    }
+  }
   std::optional<std::int64_t> tip_of(const std::string& branch) {
     Query row = query("SELECT tip FROM branches WHERE name = ?", branch);
     return row.next() ? std::optional(row.number(0)) : std::nullopt;
@@ -416,10 +508,19 @@ class PlanHistory::Database {
   sqlite3* database_ = nullptr;
   std::int64_t current_ = 0;
   std::string branch_, written_;
+  std::vector<std::int64_t>
+      way_;  ///< from a branch's end down: it stays, as no edit ever gets another parent
 };
 
-PlanHistory::PlanHistory(const fs::path& plan) : database_(std::make_unique<Database>(plan)) {}
+PlanHistory::PlanHistory(const fs::path& plan, Access access)
+    : database_(std::make_unique<Database>(plan, access)) {}
 PlanHistory::~PlanHistory() = default;
+
+bool PlanHistory::can_write(const fs::path& plan) {
+  const fs::path file = voxel::behind_links(fs::absolute(plan)), history = path_of(file);
+  return ::access(file.parent_path().c_str(), W_OK) == 0 &&
+         (!fs::exists(history) || ::access(history.c_str(), W_OK) == 0);
+}
 
 fs::path PlanHistory::path_of(const fs::path& plan) {
   return voxel::behind_links(plan).string() + ".history";
@@ -433,6 +534,12 @@ bool PlanHistory::undo() {
 }
 bool PlanHistory::redo() {
   return database_->redo();
+}
+bool PlanHistory::can_undo() const {
+  return database_->can_undo();
+}
+bool PlanHistory::can_redo() const {
+  return database_->can_redo();
 }
 void PlanHistory::go_to(const std::string& where) {
   database_->go_to(where);

@@ -24,21 +24,24 @@ struct PlanEdit {
 /// text, so that other programs read it as before.
 ///
 /// A process may be killed at any instant: the next one that opens the history finds every edit whose
-/// record() returned, and the plan's file is whole, as of that edit. Several processes may hold a history;
-/// one whose state is no longer the current one is refused when it writes, and reads again.
+/// record() returned, and the plan's file is whole, as of that edit. Between edits the history is whole in
+/// its one file, so that a copy of it has all of them. Several processes may hold a history; one whose state
+/// is no longer the current one is refused when it writes, and reads again.
 ///
 /// A plan that is a link is the file behind it, and its permissions are its history's too.
 ///
 /// Members throw std::runtime_error with path and reason where the database is none, damaged or of a newer
 /// version, where another writer came first, or a name is unknown; voxel::Error, Resource, where the disk
 /// gives out.
-/// Cost: an edit stores what it changed and a sync of the disk; opening does not depend on the number of
+/// Cost: an edit stores what it changed and a few syncs of the disk; opening does not depend on the number of
 /// edits.
 class PlanHistory {
  public:
+  enum class Access { Write, Read };
   /// Opens the history of a plan's file, or begins one with its text as the first edit. A file that was
-  /// changed since by another program becomes an edit of its own, "changed outside".
-  explicit PlanHistory(const std::filesystem::path& plan);
+  /// changed since by another program becomes an edit of its own, "changed outside". With Access::Read
+  /// nothing is written: only what is recorded can be asked, and there must be a history.
+  explicit PlanHistory(const std::filesystem::path& plan, Access access = Access::Write);
   ~PlanHistory();
   PlanHistory(const PlanHistory&) = delete;
   PlanHistory& operator=(const PlanHistory&) = delete;
@@ -46,12 +49,19 @@ class PlanHistory {
   /// Where the history of a plan's file lies: beside it, or beside the file behind the link that it is.
   static std::filesystem::path path_of(const std::filesystem::path& plan);
 
+  /// Whether the history of a plan's file can be begun or written, by the permissions of folder and file.
+  static bool can_write(const std::filesystem::path& plan);
+
   /// Makes a text the current state, after the present one. The same text is no edit.
   std::int64_t record(const std::string& text, const std::string& what);
   /// The state before the current one becomes current; false where that is the first.
   bool undo();
   /// The state on the current branch that undo() left; false where there is none.
   bool redo();
+  /// Whether undo() and redo() find a state. Cost of can_redo(): the first time linear in the states up to
+  /// the branch's end, later constant.
+  bool can_undo() const;
+  bool can_redo() const;
   /// A state, by its number, the name of a version or of a branch, becomes current. Throws where there is
   /// none, with the nearest name.
   void go_to(const std::string& where);

@@ -11,7 +11,7 @@
 #include "planner/plan/answers.h"
 #include "planner/plan/dependence.h"
 #include "planner/report/report.h"
-#include "planner/report/result_folder.h"
+#include "planner/serve/new_files.h"
 #include "planner/serve/pane_fields.h"
 #include "planner/serve/told_measurement.h"
 #include "planner/table/json_file.h"
@@ -215,18 +215,19 @@ Json export_file(Desk& desk, const Json& said, const Watched& watched) {
       {"id", asked_step}, {"do", "export"}, {"object", object}, {"path", path.filename().string()}};
   Plan plan =
       desk.with_document([&](const Document& document) { return document.with_steps(Json::array({step})); });
-  fs::create_directories(path.parent_path());
   const Step last = plan.steps.back();
   plan.steps.pop_back();
   const Evaluation evaluation = desk.evaluate(plan, {object}, true, watched);
   plan.steps.push_back(last);
   Timings timings;
   std::map<std::string, std::shared_ptr<const void>> kept;
+  NewFiles files(path.parent_path());
   const Exported exported =
-      write_file(plan, evaluation, last, path.parent_path(), timings, kept, {watched.stop, watched.progress});
+      write_file(plan, evaluation, last, files.hidden(), timings, kept, {watched.stop, watched.progress});
   if (!exported.written)
     throw voxel::Error(voxel::ErrorCode::Geometry,
                        exported.findings.empty() ? object + " was not written" : exported.findings.front());
+  files.commit(path.filename());
   return {{"file", fs::relative(path, folder).generic_string()},
           {"path", path.string()},
           {"content", exported.content},
@@ -237,11 +238,11 @@ Json report(Desk& desk, const Json&, const Watched& watched) {
   const fs::path folder = desk.folders.need_within(unused(files_folder(desk) / "report"));
   Result result;
   result.plan = desk.with_document([](const Document& document) { return *document.plan(); });
-  fs::create_directories(folder.parent_path());
-  need_result_folder(folder, result_names(result.plan));
   result.evaluation = desk.evaluate(result.plan, {}, true, watched);
   result.pictures = plan_pictures(result.plan, result.evaluation);
-  write_result(result, folder, {watched.stop, watched.progress});
+  NewFiles files(folder.parent_path());
+  write_result(result, files.hidden() / folder.filename(), {watched.stop, watched.progress});
+  files.commit(folder.filename());
   return {{"folder", folder.string()},
           {"file", folder.filename().string() + "/report.html"},
           {"counts", planner::to_json(verdict_counts(result.evaluation))}};

@@ -132,7 +132,13 @@ void Desk::open(const fs::path& path, const Watched& watched) {
   without_steps.steps.clear();
   auto evaluation = std::make_shared<const Evaluation>(evaluate(without_steps, {}, false, watched));
   const std::lock_guard lock(mutex_);
-  if (!snapshot_.evaluation) snapshot_ = {document_->plan(), std::move(evaluation), {}, Json::array()};
+  if (document_ && !snapshot_.evaluation)
+    snapshot_ = {document_->plan(), std::move(evaluation), {}, Json::array()};
+}
+
+void Desk::close_within(std::chrono::milliseconds most) {
+  const std::unique_lock lock(mutex_, most);
+  if (lock.owns_lock()) document_.reset();
 }
 
 Document& Desk::need_document() const {
@@ -205,7 +211,7 @@ Snapshot Desk::evaluate(const std::vector<std::string>& steps, bool certify, con
   made.measurements = measurements_of(*made.plan, *made.evaluation);
   const std::lock_guard lock(mutex_);
   // What was certified of an earlier state of the plan is no picture of the present one.
-  const bool is_present = opened == opened_ && (!certify || document_->plan() == made.plan);
+  const bool is_present = document_ && opened == opened_ && (!certify || document_->plan() == made.plan);
   if (is_present && (!certify || steps.empty())) snapshot_ = made;
   return made;
 }

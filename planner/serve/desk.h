@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -48,6 +49,10 @@ class Desk {
   /// Opens a plan, or a scan with a plan of its own (new_plan.h), in place of what is open.
   void open(const std::filesystem::path& path, const Watched& watched);
 
+  /// Closes the document once the edit that is under way has ended, so that its history is whole. Does
+  /// nothing where that takes longer than `most`.
+  void close_within(std::chrono::milliseconds most);
+
   /// Does something with the document while nobody else does; returns what it returns. Throws voxel::Error,
   /// Input, where none is open.
   template <typename Work>
@@ -91,7 +96,7 @@ class Desk {
   void keep_certified(const Plan& plan, const Evaluation& evaluation);
 
   std::filesystem::path working_folder_;
-  mutable std::mutex mutex_;  ///< of all below
+  mutable std::timed_mutex mutex_;  ///< of all below
   std::unique_ptr<Document> document_;
   std::uint64_t opened_ = 0;  ///< documents so far: what is evaluated of an earlier one is not kept
   Snapshot snapshot_;

@@ -64,6 +64,11 @@ void need_landmarks_within(const Json& plan, const std::filesystem::path& folder
       folders.need_within(folder / step["file"].get<std::string>());
 }
 
+/// Refuses texts that are new and that no list or terminal could show.
+void need_plain(const std::string& text, const std::string& what) {
+  if (has_control(text)) throw std::runtime_error(what + " has control characters: take them out");
+}
+
 /// Refuses names that are new and that no list could show; those of the plan stay as they are.
 void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vector<NamedPoint>& known) {
   constexpr std::size_t longest_name = 200;  // in bytes, as of a branch
@@ -130,7 +135,12 @@ void Document::place_landmark(const std::string& name, const Json& point_mm) {
 }
 
 void Document::record(const Json& json, const std::string& what) {
-  need_short_names(parsed(json).landmarks, plan_->landmarks);
+  const Plan plan = parsed(json);
+  need_short_names(plan.landmarks, plan_->landmarks);
+  if (plan.name != plan_->name) need_plain(plan.name, "the plan's name");
+  for (const auto& [name, scan] : plan.scans)
+    if (!plan_->scans.contains(name)) need_plain(name, "a scan's name");
+  need_plain(what, "the text of what was done");
   history_->record(json_text(json, 2) + "\n", what);
   read_again();
 }
@@ -170,25 +180,18 @@ Json Document::difference_of(std::int64_t a, std::int64_t b) const {
 Json Document::history_json() const {
   Json json{{"branch", history_->branch()}, {"edit", history_->current()}};
   Json list = Json::array();
-  bool can_undo = false;
   std::vector<PlanEdit> edits = history_->newest(most_listed);
   std::reverse(edits.begin(), edits.end());
-  for (const PlanEdit& edit : edits) {
-    if (edit.id == history_->current()) can_undo = edit.parent.has_value();
+  for (const PlanEdit& edit : edits)
     list.push_back({{"id", edit.id},
                     {"parent", edit.parent ? Json(*edit.parent) : Json(nullptr)},
                     {"what", edit.what},
                     {"made_at", edit.made_at},
                     {"names", edit.names}});
-  }
   Json branches = Json::array();
-  bool can_redo = false;
-  for (const auto& [name, end] : history_->branches()) {
-    branches.push_back({name, end});
-    if (name == history_->branch()) can_redo = end != history_->current();
-  }
-  json["can_undo"] = can_undo;
-  json["can_redo"] = can_redo;
+  for (const auto& [name, end] : history_->branches()) branches.push_back({name, end});
+  json["can_undo"] = history_->can_undo();
+  json["can_redo"] = history_->can_redo();
   json["history"] = list;
   json["branches"] = branches;
   return json;

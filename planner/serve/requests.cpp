@@ -3,16 +3,17 @@
 
 #include <algorithm>
 
+#include "planner/file/file_kind.h"
+#include "planner/file/output_path.h"
 #include "planner/plan/plan.h"
+#include "planner/plan/rebase.h"
 #include "planner/procedure/procedure.h"
 #include "planner/serve/answers.h"
 #include "planner/serve/new_plan.h"
 #include "planner/serve/pane_fields.h"
-#include "planner/table/json_file.h"
 #include "planner/table/nearest_name.h"
 #include "voxel/filter/tissue.h"
 #include "voxel/space/error.h"
-#include "voxel/space/staged_files.h"
 
 namespace octotomy::planner::serve {
 namespace {
@@ -113,19 +114,15 @@ auto change(const Change& work) {
 }
 
 Json save(Desk& desk, const Json& said, const Watched&) {
-  const auto [path, text] = desk.with_document(
-      [](const Document& document) { return std::pair(document.path(), document.plan()->text); });
-  if (!said.contains("path") || said["path"].is_null()) return {{"path", path.string()}};
+  const auto plan = desk.with_document([](const Document& document) { return document.plan(); });
+  if (!said.contains("path") || said["path"].is_null()) return {{"path", plan->file.string()}};
   const fs::path to = desk.folders.need_within(said["path"].get<std::string>());
   if (to.extension() != ".json")
     throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": a plan's name ends in .plan.json");
   if (fs::exists(to))
     throw voxel::Error(voxel::ErrorCode::Input, to.string() + ": is there already; choose another name");
-  // Relative paths of scans go along.
-  Json json = Json::parse(text);
-  for (Json& scan : json["scans"])
-    scan["path"] = voxel::absolute_of(path.parent_path() / scan.at("path").get<std::string>()).string();
-  write_json(json, to);
+  need_folder_of(to);
+  write_whole(to, rebased(*plan, to.parent_path()).text);
   return {{"path", to.string()}};
 }
 

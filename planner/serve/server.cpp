@@ -15,6 +15,7 @@
 
 #include "planner/serve/answers.h"
 #include "planner/serve/gate.h"
+#include "planner/serve/new_files.h"
 #include "planner/serve/page.h"
 #include "planner/table/json_file.h"
 
@@ -150,10 +151,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
     parser_->header_limit(most_header_bytes);
     parser_->body_limit(most_upload_bytes);
     stream_.expires_after(patience);
-    http::async_read_header(stream_, buffer_, *parser_,
-                            [self = shared_from_this()](beast::error_code failed, std::size_t) {
-                              if (!failed) self->guard([&] { self->take(); });
-                            });
+    http::async_read_header(
+        stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code failed, std::size_t) {
+          if (!failed) self->guard([&] { self->take(); });
+          if (failed == http::error::header_limit)
+            self->refuse(http::status::request_header_fields_too_large,
+                         "a header may hold " + std::to_string(most_header_bytes / 1024) + " KB");
+        });
   }
 
  private:
@@ -259,15 +263,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     write(response);
   }
 
-  /// The body goes to the disk as it comes, under a hidden name until it is whole.
+  /// The body goes to the disk as it comes, into a hidden folder until it is whole.
   void upload(const Target& target) {
     const auto named = target.query.find("name");
     const fs::path name = need_plain_name(named == target.query.end() ? "" : named->second);
     const fs::path folder = context_.desk.working_folder() / "uploads";
     const fs::path place =
         context_.desk.folders.need_within(name.has_parent_path() ? folder / name : unused(folder / name));
-    fs::create_directories(place.parent_path());
-    const fs::path part = unused(place.parent_path() / ("." + place.filename().string() + ".part"));
+    arriving_.emplace(place.parent_path());
+    const fs::path part = arriving_->hidden() / place.filename();
     upload_.emplace(std::move(*parser_));
     upload_->body_limit(most_upload_bytes);
     beast::error_code failed;
@@ -275,16 +279,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (failed) throw std::runtime_error(place.string() + ": " + failed.message());
     stream_.expires_after(upload_patience);
     http::async_read(
-        stream_, buffer_, *upload_,
-        [self = shared_from_this(), part, place](beast::error_code ended, std::size_t) {
+        stream_, buffer_, *upload_, [self = shared_from_this(), place](beast::error_code ended, std::size_t) {
           self->upload_->get().body().close();
           self->guard([&] {
-            if (ended || fs::exists(place)) {
-              fs::remove(part);
-              throw std::runtime_error(place.string() + ": " +
-                                       (ended ? ended.message() : "is there already"));
-            }
-            fs::rename(part, place);
+            if (ended) throw std::runtime_error(place.string() + ": " + ended.message());
+            self->arriving_->commit(place.filename());
+            self->arriving_.reset();
             self->say(http::status::ok, "application/json", json_text(Json{{"path", place.string()}}));
           });
         });
@@ -294,6 +294,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Context& context_;
   beast::flat_buffer buffer_{most_header_bytes * 4};
   std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<NewFiles> arriving_;
   std::optional<http::request_parser<http::file_body>> upload_;
 };
 

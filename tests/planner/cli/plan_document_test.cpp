@@ -147,6 +147,21 @@ TEST_F(PlanDocument, HistoryRecordsWhatAnEditorChangesAndGoesBack) {
   expect_refused(run("plan history my.plan.json --go-to frist"), "did you mean 'first'?");
 }
 
+TEST_F(PlanDocument, WhoSignsHasANameThatATerminalCanShow) {
+  write("my.plan.json", plan("0"));
+  for (const char* wrong : {"--by 'A\033[31m'", "--by A --as 'two\nlines'", "--by A --note 'bell\a'"})
+    expect_refused(run(std::string("plan sign my.plan.json ") + wrong), "has control characters");
+  EXPECT_EQ(tests::bytes_of(folder_ / "my.plan.json"), plan("0"));
+  ASSERT_EQ(run("plan sign my.plan.json --by 'A. Reader'").status, 0);
+  // Another program may have signed otherwise.
+  auto signed_plan = tests::SortedJson::parse(tests::bytes_of(folder_ / "my.plan.json"));
+  signed_plan["signatures"][0]["by"] = "red \033[31m";
+  write("my.plan.json", signed_plan.dump());
+  const auto told = run("plan sign my.plan.json");
+  EXPECT_EQ(told.status, 0) << told.errors;
+  EXPECT_EQ(told.out.find('\033'), std::string::npos) << told.out;
+}
+
 TEST_F(PlanDocument, PreviewDrawsOneStepAndTellsAMaskThatCutsNothing) {
   write("my.plan.json",
         plan("0", std::string(cut) + R"(, {"id": "cap", "do": "combine", "expression": "ball & cut"})"));

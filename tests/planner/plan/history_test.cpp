@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
+#include <functional>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -188,6 +191,143 @@ TEST_F(History, NamesAreOfALineAndBounded) {
   EXPECT_NO_THROW(history.name_version(std::string(200, 'a')));
 }
 
+bool is_beside(const fs::path& plan, const char* ending) {
+  return fs::exists(PlanHistory::path_of(plan).string() + ending);
+}
+
+TEST_F(History, ACopyOfItsOneFileHasEveryEditWhileItIsOpen) {
+  PlanHistory history(plan_);
+  for (int number = 1; number <= 3; ++number) history.record(plan_text(number), "edit");
+  for (const char* ending : {"-wal", "-shm", "-journal"}) EXPECT_FALSE(is_beside(plan_, ending)) << ending;
+  const fs::path copy = folder_ / "copy.plan.json";
+  fs::copy_file(plan_, copy);
+  fs::copy_file(PlanHistory::path_of(plan_), PlanHistory::path_of(copy));
+  const PlanHistory copied(copy);
+  EXPECT_EQ(copied.edit_count(), 4);
+  EXPECT_EQ(copied.newest(1)[0].what, "edit");
+}
+
+/// Gives a history the log that older ones have.
+void give_a_log(const fs::path& plan) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(PlanHistory::path_of(plan).c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  ASSERT_EQ(tests::bytes_of(PlanHistory::path_of(plan))[18], 2) << "the format's mark of a log";
+}
+
+TEST_F(History, AnOlderOneGivesUpItsLogAndKeepsItsEdits) {
+  { PlanHistory(plan_).record(plan_text(1), "one"); }
+  give_a_log(plan_);
+  PlanHistory history(plan_);
+  EXPECT_EQ(history.newest(1)[0].what, "one");
+  EXPECT_EQ(tests::bytes_of(PlanHistory::path_of(plan_))[18], 1);
+  history.record(plan_text(2), "two");
+  EXPECT_FALSE(is_beside(plan_, "-wal"));
+}
+
+TEST_F(History, WhatCanBeUndoneAndRedoneIsWhatUndoAndRedoDo) {
+  PlanHistory history(plan_);
+  const auto told = [&](bool undo, bool redo) {
+    EXPECT_EQ(history.can_undo(), undo) << "at state " << history.current();
+    EXPECT_EQ(history.can_redo(), redo) << "at state " << history.current();
+  };
+  told(false, false);
+  history.record(plan_text(1), "2");
+  history.record(plan_text(2), "3");
+  told(true, false);
+  history.undo();
+  told(true, true);
+  history.undo();
+  told(false, true);
+  history.record(plan_text(3), "4");
+  told(true, false);
+  history.go_to("3");  // the branch leads past it
+  told(true, false);
+  EXPECT_FALSE(history.redo());
+  history.go_to("1");
+  told(false, true);
+  EXPECT_TRUE(history.redo());
+  EXPECT_EQ(history.current(), 4);
+  history.begin_branch("bold");
+  told(true, false);
+}
+
+TEST_F(History, TwentyThousandNamesAreListedAtOnce) {
+  PlanHistory history(plan_);
+  history.record(plan_text(1), "one");
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(PlanHistory::path_of(plan_).c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database,
+                         "WITH RECURSIVE n(i) AS (SELECT 3 UNION ALL SELECT i + 1 FROM n WHERE i < 20000) "
+                         "INSERT INTO edits SELECT i, i - 1, 'edit', '', '', 0, 0, 0, '' FROM n; "
+                         "INSERT INTO versions SELECT 'b' || id, id FROM edits; "
+                         "INSERT INTO versions VALUES ('a7', 7);",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK)
+      << sqlite3_errmsg(database);
+  sqlite3_close(database);
+  const std::clock_t start = std::clock();
+  const std::vector<PlanEdit> edits = history.newest(1000000);
+  // One search of the names for each state takes over half a minute.
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 3.0);
+  ASSERT_EQ(edits.size(), 20000u);
+  EXPECT_EQ(edits[0].names, std::vector<std::string>{"b20000"});
+  EXPECT_EQ(edits[20000 - 7].names, (std::vector<std::string>{"a7", "b7"}));
+  EXPECT_EQ(history.newest(3)[2].names, std::vector<std::string>{"b19998"});
+}
+
+/// Whether something holds for a user who may write nothing here; throws nothing.
+bool holds_for_a_reader(const fs::path& folder, const std::function<bool()>& claim) {
+  constexpr uid_t nobody = 65534;
+  fs::permissions(folder, fs::perms(0555));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::geteuid() == 0 && ::setuid(nobody) != 0) std::_Exit(2);
+    try {
+      std::_Exit(claim() ? 0 : 1);
+    } catch (const std::exception& error) {
+      std::fputs(error.what(), stderr);
+      std::_Exit(3);
+    }
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  fs::permissions(folder, fs::perms(0755));
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+bool is_refused(const fs::path& plan, PlanHistory::Access access, const std::string& words) {
+  try {
+    const PlanHistory history(plan, access);
+  } catch (const std::runtime_error& error) {
+    return std::string(error.what()).find(words) != std::string::npos;
+  }
+  return false;
+}
+
+TEST_F(History, OfAFolderThatCannotBeWrittenIsRead) {
+  using Access = PlanHistory::Access;
+  const auto reads = [&] {
+    PlanHistory history(plan_, Access::Read);
+    return !PlanHistory::can_write(plan_) && history.edit_count() == 2 && history.text() == plan_text(1) &&
+           history.newest(1)[0].what == "one";
+  };
+  const auto refuses_to_write = [&] { return is_refused(plan_, Access::Write, "cannot be written"); };
+  EXPECT_TRUE(holds_for_a_reader(folder_.path(),
+                                 [&] { return is_refused(plan_, Access::Read, "has no history yet"); }));
+  EXPECT_TRUE(holds_for_a_reader(folder_.path(), refuses_to_write));
+  { PlanHistory(plan_).record(plan_text(1), "one"); }
+  EXPECT_TRUE(holds_for_a_reader(folder_.path(), reads));
+  EXPECT_TRUE(holds_for_a_reader(folder_.path(), refuses_to_write));
+  give_a_log(plan_);
+  EXPECT_TRUE(holds_for_a_reader(folder_.path(), reads)) << "an older one";
+  std::ofstream(PlanHistory::path_of(plan_).string() + "-wal") << "states that are not in the file";
+  EXPECT_TRUE(holds_for_a_reader(folder_.path(), [&] {
+    return is_refused(plan_, Access::Read, "copy the plan and all files whose names begin with");
+  }));
+}
+
 /// Records edits for ever, telling each one's number once record() returned.
 [[noreturn]] void edit_until_killed(const fs::path& plan, int from, int told) {
   try {
@@ -246,20 +386,25 @@ std::optional<std::int64_t> bytes_read() {
   return std::nullopt;
 }
 
-TEST_F(History, AHundredThousandEditsOpenWithoutBeingRead) {
-  { PlanHistory(plan_).record(plan_text(1), "one"); }
+/// Makes a history of two edits one of a hundred thousand, those that are added with the first's text.
+void add_edits(const fs::path& plan) {
   sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open(PlanHistory::path_of(plan_).c_str(), &database), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(
-                database,
-                "WITH RECURSIVE n(i) AS (SELECT 3 UNION ALL SELECT i + 1 FROM n WHERE i < 100000) "
-                "INSERT INTO edits SELECT i, i - 1, 'edit', '', (SELECT sum FROM edits WHERE id = 2), "
-                "(i - 1) % 64, (SELECT CASE WHEN (i - 1) % 64 THEN length(middle) + 1 ELSE 0 END FROM edits "
-                "WHERE id = 1), 0, (SELECT middle FROM edits WHERE id = 1) FROM n",
-                nullptr, nullptr, nullptr),
-            SQLITE_OK)
+  ASSERT_EQ(sqlite3_open(PlanHistory::path_of(plan).c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(
+      sqlite3_exec(
+          database,
+          "WITH RECURSIVE n(i) AS (SELECT 3 UNION ALL SELECT i + 1 FROM n WHERE i < 100000) "
+          "INSERT INTO edits SELECT i, i - 1, 'edit', '', (SELECT sum FROM edits WHERE id = 1), 0, 0, 0, "
+          "(SELECT middle FROM edits WHERE id = 1) FROM n",
+          nullptr, nullptr, nullptr),
+      SQLITE_OK)
       << sqlite3_errmsg(database);
   sqlite3_close(database);
+}
+
+TEST_F(History, AHundredThousandEditsOpenWithoutBeingRead) {
+  { PlanHistory(plan_).record(plan_text(1), "one"); }
+  add_edits(plan_);
   const auto kept = static_cast<std::int64_t>(fs::file_size(PlanHistory::path_of(plan_)));
   const std::optional<std::int64_t> before = bytes_read();
   const PlanHistory history(plan_);
@@ -269,6 +414,24 @@ TEST_F(History, AHundredThousandEditsOpenWithoutBeingRead) {
   const std::int64_t read = *bytes_read() - *before;
   EXPECT_GT(read, 0) << "nothing is counted";
   EXPECT_LT(read, kept / 64);
+}
+
+TEST_F(History, AHundredThousandStatesBelowTheEndRedoReadsTheWayOnce) {
+  { PlanHistory(plan_).record(plan_text(1), "one"); }
+  add_edits(plan_);
+  const auto kept = static_cast<std::int64_t>(fs::file_size(PlanHistory::path_of(plan_)));
+  PlanHistory history(plan_);
+  history.go_to("100000");
+  history.begin_branch("long");
+  history.go_to("2");
+  ASSERT_TRUE(history.redo());
+  const std::optional<std::int64_t> before = bytes_read();
+  for (int number = 4; number < 14; ++number) {
+    ASSERT_TRUE(history.redo());
+    ASSERT_EQ(history.current(), number);
+  }
+  if (!before) GTEST_SKIP() << "this system does not count what is read";
+  EXPECT_LT(*bytes_read() - *before, kept);
 }
 
 }  // namespace

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/serve/desk.h"
 
+#include <atomic>
+#include <chrono>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <thread>
 
+#include "planner/serve/requests.h"
 #include "tests/planner/ball_scan.h"
 #include "voxel/space/error.h"
 
@@ -87,6 +91,51 @@ TEST_F(DeskTest, ACertificateIsOfTheStepAsItWas) {
   EXPECT_FALSE(desk_->state()["objects"][0].contains("certificate"));
   desk_->with_document([](Document& document) { document.undo(); });
   EXPECT_TRUE(desk_->state()["objects"][0].contains("certificate"));
+}
+
+TEST_F(DeskTest, APlanSavedInAnotherFolderReadsTheSameFiles) {
+  const auto write_marks = [&](const fs::path& path, double x) {
+    std::ofstream(path) << Json{{"landmarks", {{{"name", "ans"}, {"point_mm", {x, 0, 0}}}}}};
+  };
+  write_marks(folder_ / "marks.json", 1);
+  fs::create_directory(folder_ / "other");
+  write_marks(folder_ / "other/marks.json", 2);
+  std::ofstream(folder_ / "own.plan.json") << R"({"octotomy_plan": 1, "name": "own",
+    "scans": {"ct": {"path": "ball.nrrd"}}, "steps": [
+      {"id": "marks", "do": "landmarks", "file": "marks.json"},
+      {"id": "bone", "do": "window", "scan": "ct", "low": 0},
+      {"id": "plate", "do": "import", "path": "plate.stl"},
+      {"id": "piece", "do": "export", "object": "bone", "path": "piece.stl"}]})";
+  desk_->open(folder_ / "own.plan.json", {});
+  const fs::path saved = folder_ / "other/q.plan.json";
+  find_word("save").answer(*desk_, {{"path", saved.string()}}, {});
+  const Plan plan = read_plan(saved);
+  EXPECT_EQ(scan_path(plan, plan.scans.at("ct")).lexically_normal(), folder_ / "ball.nrrd");
+  ASSERT_EQ(plan.landmarks.size(), 1u);
+  EXPECT_EQ(plan.landmarks[0].p_mm.x, 1.0) << "the landmarks are those of the new folder";
+  const Json steps = Json::parse(plan.text)["steps"];
+  EXPECT_EQ(steps[2]["path"], "../plate.stl");
+  EXPECT_EQ(steps[3]["path"], "piece.stl");
+  find_word("save").answer(*desk_, {{"path", (folder_ / "same.plan.json").string()}}, {});
+  EXPECT_EQ(read_plan(folder_ / "same.plan.json").text, read_plan(folder_ / "own.plan.json").text);
+  EXPECT_ANY_THROW(find_word("save").answer(*desk_, {{"path", saved.string()}}, {})) << "it is there already";
+}
+
+TEST_F(DeskTest, AClosedOneLetsTheEditThatIsUnderWayEndAndTakesNoOther) {
+  desk_->open(folder_ / "ball.nrrd", {});
+  std::atomic<bool> is_editing = false;
+  std::jthread editing([&] {
+    desk_->with_document([&](Document& document) {
+      is_editing = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      document.name_version("late");
+    });
+  });
+  while (!is_editing) std::this_thread::yield();
+  desk_->close_within(std::chrono::seconds(10));
+  editing.join();
+  EXPECT_EQ(PlanHistory(folder_ / "ball.plan.json").newest(1)[0].names, std::vector<std::string>{"late"});
+  EXPECT_THROW(desk_->with_document([](Document&) {}), voxel::Error);
 }
 
 TEST_F(DeskTest, AStoppedEvaluationChangesNothing) {

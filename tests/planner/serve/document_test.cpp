@@ -87,6 +87,36 @@ TEST_F(DocumentTest, UndoRedoAndBranchesAreTold) {
   EXPECT_EQ(ids(), "bone ");
 }
 
+TEST_F(DocumentTest, AStateBelowTheListedOnesCanBeUndoneAndRedone) {
+  Json step = skin_;
+  document_->edit({{"add", {{"step", step}}}});
+  for (int number = 0; number < 205; ++number) {
+    step["low"] = number;
+    document_->edit({{"replace", {{"id", "skin"}, {"step", step}}}});
+  }
+  document_->go_to("3");
+  const Json told = document_->history_json();
+  EXPECT_GT(told["history"][0]["id"], 3) << "the state is listed after all";
+  EXPECT_TRUE(told["can_undo"]);
+  EXPECT_TRUE(told["can_redo"]);
+  document_->edit({{"remove", "skin"}});
+  document_->go_to("200");
+  EXPECT_FALSE(document_->history_json()["can_redo"]) << "the branch leads past it";
+  EXPECT_FALSE(document_->redo());
+}
+
+TEST_F(DocumentTest, TextsWithControlCharactersAreRefused) {
+  const std::string before = document_->plan()->text;
+  for (const Json& wrong :
+       {Json{{"name", std::string("\0\x1b", 2)}}, Json{{"name", "two\nlines"}},
+        Json{{"scans", {{"ct", {{"path", "a.nrrd"}}}, {"c\x1b[31m", {{"path", "a.nrrd"}}}}}},
+        Json{{"add", {{"step", skin_}}}, {"what", "red \x1b[31m"}}})
+    EXPECT_THROW(document_->edit(wrong), std::runtime_error) << wrong;
+  EXPECT_EQ(document_->plan()->text, before);
+  document_->edit({{"name", "le nom pr\u00e9vu"}});
+  EXPECT_EQ(document_->plan()->name, "le nom pr\u00e9vu");
+}
+
 TEST_F(DocumentTest, LandmarksStandBeforeTheStepsThatUseThem) {
   document_->place_landmark("ans", {0, -80, 10});
   EXPECT_EQ(ids(), "landmarks bone ");

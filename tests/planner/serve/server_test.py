@@ -85,6 +85,18 @@ class Gate(Served):
         self.assertEqual(self.server.http("/../etc/passwd")[0], 404)
         self.assertEqual(self.server.http("/%zz")[0], 400)
 
+    def test_a_header_that_is_too_long_is_told_its_bound(self):
+        with socket.create_connection((self.server.host, self.server.port), timeout=60) as stream:
+            stream.sendall(b"GET / HTTP/1.1\r\nX-Long: " + b"x" * 20000 + b"\r\n\r\n")
+            answer = b""
+            try:
+                while part := stream.recv(1 << 16):
+                    answer += part
+            except ConnectionResetError:
+                pass  # as the rest of the header is not read
+        self.assertTrue(answer.startswith(b"HTTP/1.1 431 "), answer)
+        self.assertIn(b"16 KB", answer)
+
     def test_no_path_outside_of_the_open_folders(self):
         outside = tempfile.NamedTemporaryFile(suffix=".plan.json", dir="/tmp")
         os.symlink("/etc", self.folder / "link") if not (self.folder / "link").is_symlink() else None
@@ -465,6 +477,66 @@ class Begun(unittest.TestCase):
         server.process.terminate()
         self.assertEqual(server.process.wait(), 0)
         server.kill()
+
+    def begun(self):
+        """A server of the phantom, and a window of it."""
+        server = Server(PROGRAM, self.folder, "head.nrrd")
+        self.addCleanup(server.kill)
+        window = Window(server)
+        self.addCleanup(window.close)
+        return server, window
+
+    def names(self):
+        """All files and folders, hidden ones too."""
+        return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*"))
+
+    def wait_for_more_than(self, names):
+        """Waits until something else is there."""
+        end = time.monotonic() + 60
+        while self.names() == names:
+            self.assertLess(time.monotonic(), end, "nothing is written")
+            time.sleep(0.001)
+
+    def test_the_history_is_whole_in_one_file_at_any_time(self):
+        server, window = self.begun()
+        for number in range(3):
+            window.ask("edit", add={"step": {**BOX, "id": f"cut{number}"}}, what=f"cut {number}")
+        for name in ("served", "ended"):
+            copy = self.folder / name
+            copy.mkdir()
+            for path in (self.folder / "head.plan.json", self.folder / "head.plan.json.history"):
+                shutil.copy(path, copy)
+            told = json.loads(octotomy(copy, "plan", "history", "head.plan.json", "--json"))
+            self.assertEqual((told["count"], told["edits"][0]["what"]), (4, "cut 2"), name)
+            self.assertEqual([path.name for path in self.folder.glob("head.plan.json?*")],
+                             ["head.plan.json.history"], name)
+            server.process.terminate()
+            self.assertEqual(server.process.wait(), 0)
+
+    def test_an_upload_that_the_end_interrupts_leaves_nothing(self):
+        server, _ = self.begun()
+        before = self.names()
+        with socket.create_connection((server.host, server.port), timeout=60) as stream:
+            stream.sendall((f"POST /upload?token={server.token}&name=u.nrrd HTTP/1.1\r\n"
+                            f"Host: {server.host}:{server.port}\r\nOrigin: http://{server.host}:{server.port}\r\n"
+                            "Content-Length: 100000000\r\n\r\n").encode() + b"x" * 5000000)
+            self.wait_for_more_than(before)
+            server.process.terminate()
+            self.assertEqual(server.process.wait(), 0)
+        self.assertEqual(self.names(), before)
+
+    def test_an_export_that_the_end_interrupts_leaves_no_empty_folder(self):
+        for do, said in (("export", {"object": "bone"}), ("report", {})):
+            with self.subTest(do=do):
+                server, window = self.begun()
+                before = self.names()
+                window.post(do, **said)
+                self.wait_for_more_than(before)
+                server.process.terminate()
+                self.assertEqual(server.process.wait(), 0)
+                for path in self.folder.rglob("*"):
+                    self.assertFalse(path.name.startswith(".octotomy-"), path)
+                    self.assertFalse(path.is_dir() and not os.listdir(path), path)
 
     def test_an_export_leaves_the_files_of_others_alone(self):
         folder = self.folder / "head files"
