@@ -259,7 +259,6 @@ class Field {
     corners.reserve(8 * cells.size());
     for (const std::uint64_t cell : cells)
       for (int k = 0; k < 8; ++k) corners.push_back(key_of(place_of(cell) + corner_place(k)));
-    const std::vector<std::uint64_t> before = keys_;
     const std::vector<std::uint64_t> fresh = add_new(std::move(corners), keys_);
     std::vector<glm::dvec3> points_mm(fresh.size());
     for (std::size_t i = 0; i < fresh.size(); ++i) points_mm[i] = lattice_.at(place_of(fresh[i]));

@@ -72,7 +72,7 @@ TEST_F(Report, NamesOfAResultAreThoseOfEachFileOfADeck) {
   const Plan plan =
       parse_plan(R"({"octotomy_plan": 1, "name": "deck", "scans": {"ct": {"path": "ball.nrrd"}}, "steps": [
       {"id": "ball", "do": "window", "scan": "ct", "low": 0},
-      {"id": "tets", "do": "export", "object": "ball", "path": "decks/ball.ele"}]})",
+      {"id": "tets", "do": "export", "object": "ball", "path": "decks/ball.node"}]})",
                  folder_.path());
   const std::vector<std::filesystem::path> names = result_names(plan);
   for (const char* name : {"result.json", "decks/ball.node", "decks/ball.ele", "decks/ball.face"})
