@@ -240,9 +240,9 @@ Json report(Desk& desk, const Json&, const Watched& watched) {
   result.plan = desk.with_document([](const Document& document) { return *document.plan(); });
   result.evaluation = desk.evaluate(result.plan, {}, true, watched);
   result.pictures = plan_pictures(result.plan, result.evaluation);
-  NewFiles files(folder.parent_path());
-  write_result(result, files.hidden() / folder.filename(), {watched.stop, watched.progress});
-  files.commit(folder.filename());
+  // The result appears as a whole by itself.
+  fs::create_directories(folder.parent_path());
+  write_result(result, folder, {watched.stop, watched.progress});
   return {{"folder", folder.string()},
           {"file", folder.filename().string() + "/report.html"},
           {"counts", planner::to_json(verdict_counts(result.evaluation))}};

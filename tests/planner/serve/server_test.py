@@ -526,17 +526,22 @@ class Begun(unittest.TestCase):
         self.assertEqual(self.names(), before)
 
     def test_an_export_that_the_end_interrupts_leaves_no_empty_folder(self):
-        for do, said in (("export", {"object": "bone"}), ("report", {})):
-            with self.subTest(do=do):
-                server, window = self.begun()
-                before = self.names()
-                window.post(do, **said)
-                self.wait_for_more_than(before)
-                server.process.terminate()
-                self.assertEqual(server.process.wait(), 0)
-                for path in self.folder.rglob("*"):
-                    self.assertFalse(path.name.startswith(".octotomy-"), path)
-                    self.assertFalse(path.is_dir() and not os.listdir(path), path)
+        server, window = self.begun()
+        before = self.names()
+        window.post("export", object="bone")
+        self.wait_for_more_than(before)
+        server.process.terminate()
+        self.assertEqual(server.process.wait(), 0)
+        for path in self.folder.rglob("*"):
+            self.assertFalse(path.name.startswith(".octotomy-"), path)
+            self.assertFalse(path.is_dir() and not os.listdir(path), path)
+
+    def test_a_report_is_written_and_the_next_one_beside_it(self):
+        _, window = self.begun()
+        for name in ("report", "report-2"):
+            folder = pathlib.Path(window.ask("report")["folder"])
+            self.assertEqual(folder.name, name)
+            self.assertTrue((folder / "report.html").exists())
 
     def test_an_export_leaves_the_files_of_others_alone(self):
         folder = self.folder / "head files"
