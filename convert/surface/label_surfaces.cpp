@@ -256,22 +256,20 @@ class Extraction {
     return {static_cast<int>(index % x), static_cast<int>(index / x % y), static_cast<int>(index / x / y)};
   }
 
-  /// Calls visit(z, cell, labels of its corners, pieces of a tetrahedron) wherever labels differ, in parallel
-  /// by planes.
+  /// Calls visit(z, cell, labels of its corners, pieces of a tetrahedron) for the six of each cell where
+  /// labels differ, in parallel by planes.
   template <typename Visit>
   void visit_pieces(const voxel::Progress& progress, const Visit& visit) const {
     voxel::SharedProgress done(progress, faces_.size());
     tbb::parallel_for(0, size_.z - 1, [&](int z) {
       done.one_more();
       for (int y = 0; y + 1 < size_.y; ++y)
-        for (int x = 0; x + 1 < size_.x; ++x)
-          visit_cell(at(x, y, z),
-                     [&](const auto&... found) { visit(static_cast<std::size_t>(z), found...); });
+        for (int x = 0; x + 1 < size_.x; ++x) visit_cell(static_cast<std::size_t>(z), at(x, y, z), visit);
     });
   }
 
   template <typename Visit>
-  void visit_cell(std::size_t cell, const Visit& visit) const {
+  void visit_cell(std::size_t z, std::size_t cell, const Visit& visit) const {
     std::array<std::int16_t, 8> labels{};
     bool differ = false;
     for (std::size_t corner = 0; corner < 8; ++corner) {
@@ -281,7 +279,7 @@ class Extraction {
     if (!differ) return;
     for (std::size_t t = 0; t < 6; ++t) {
       const std::array<int, 4>& c = tetrahedra[t];
-      visit(cell, labels, pieces()[t][pattern_of(labels[c[0]], labels[c[1]], labels[c[2]], labels[c[3]])]);
+      visit(z, cell, labels, pieces()[t][pattern_of(labels[c[0]], labels[c[1]], labels[c[2]], labels[c[3]])]);
     }
   }
 
@@ -308,7 +306,7 @@ class Extraction {
     voxel::need_memory(source_, count, face_bytes,
                        "the " + std::to_string(count) + " triangles between its labels");
     for (std::size_t z = 0; z < faces_.size(); ++z) faces_[z].reserve(counts[z]);
-    face_count_ = count;
+    first_face_.push_back(count);
   }
 
   void find_faces(const voxel::Progress& progress) {
@@ -344,14 +342,14 @@ class Extraction {
       keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
       keys.shrink_to_fit();
     });
-    std::uint64_t points = 0;  // fewer than faces
+    std::uint64_t points = 0;  // no more than faces, as each is a corner of three and more
     for (const std::vector<Key>& keys : keys_) {
       first_point_.push_back(points);
       points += keys.size();
     }
     tbb::parallel_invoke([&] { made_.triangles.points_mm.resize(points); },
-                         [&] { made_.triangles.faces.resize(face_count_); },
-                         [&] { made_.sides.resize(face_count_); });
+                         [&] { made_.triangles.faces.resize(first_face_.back()); },
+                         [&] { made_.sides.resize(first_face_.back()); });
   }
 
   void write(const voxel::Progress& progress) {
@@ -441,10 +439,9 @@ class Extraction {
   std::vector<std::int16_t, voxel::LargeAllocator<std::int16_t>> labels_;
   std::array<std::size_t, 8> step_{};
   std::vector<double> weights_;
-  std::vector<std::vector<Face>> faces_;  ///< by the plane of samples below
-  std::vector<std::vector<Key>> keys_;    ///< by the plane of the lowest sample
-  std::vector<std::uint64_t> first_point_, first_face_;
-  std::uint64_t face_count_ = 0;
+  std::vector<std::vector<Face>> faces_;                 ///< by the plane of samples below
+  std::vector<std::vector<Key>> keys_;                   ///< by the plane of the lowest sample
+  std::vector<std::uint64_t> first_point_, first_face_;  ///< of each plane; of faces, their number at the end
   brep::PartedSurface made_;
 };
 

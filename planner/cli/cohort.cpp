@@ -101,7 +101,7 @@ int say_records(const Program& program, const std::vector<Subject>& subjects,
     done_count += records[i].state == SubjectRecord::State::Done ? 1 : 0;
     in_hand += records[i].is_another_at_work ? 1 : 0;
     if (records[i].state != SubjectRecord::State::Done && !records[i].is_another_at_work && jobs.empty())
-      warn_of(subjects[i].label + ": " + records[i].reason);
+      warn_finding(subjects[i].label + ": " + records[i].reason);
   }
   json["done"] = done_count;
   json["without_answer"] = records.size() - done_count - in_hand;
@@ -203,7 +203,7 @@ int cohort(Program& program, const CohortText& text) {
   if (!text.against.empty()) options.against = text.against;
   Json json = answer({});
   json.update(merge_group(subjects, text.out, options));
-  for (const Json& finding : json["findings"]) warn_of(finding.get<std::string>());
+  for (const Json& finding : json["findings"]) warn_finding(finding.get<std::string>());
   program.say(json, std::to_string(json["done"].get<std::size_t>()) + " of " +
                         std::to_string(subjects.size()) +
                         " subjects merged\nwritten: " + (text.out / "group/index.html").string() + "\n");

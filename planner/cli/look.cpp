@@ -23,7 +23,7 @@ int look(Program& program, LookText& text) {
   text.options.evaluation = {program.stop.get_token(), program.progress(), true};
   text.options.read = read_options(program, text.in);
   Result result = first_look(text.scan, text.options);
-  for (const voxel::Finding& finding : result.findings) warn_of(finding.detail);
+  for (const voxel::Finding& finding : result.findings) warn_finding(finding.detail);
   for (const ScanRecord& scan : result.evaluation.scans) program.note_scan(scan);
   if (result.evaluation.scans.front().meaning == voxel::Meaning::Hounsfield) {
     if (!text.options.bone_low) program.note_tissues({"bone"});

@@ -203,7 +203,7 @@ class OperationRun {
     const brep::Health health = brep::health(solid.triangles());
     const brep::Measures& measures = solid.measures();
     write_surface(solid, text_.out, timings_);
-    for (const std::string& finding : made.findings) warn_of(finding);
+    for (const std::string& finding : made.findings) warn_finding(finding);
     Json json = answer(timings_);
     json["path"] = text_.out.string();
     json.update(to_json(health));

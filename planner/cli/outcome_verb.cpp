@@ -68,9 +68,9 @@ int judge(Program& program, const OutcomeText& text) {
     const Stopwatch watch(timings, "register");
     outcome = outcome_of(plan, before, after, options);
   }
-  for (const std::string& finding : outcome.findings) warn_of(outcome.unmoved + ": " + finding);
+  for (const std::string& finding : outcome.findings) warn_finding(outcome.unmoved + ": " + finding);
   for (const PieceOutcome& piece : outcome.pieces)
-    for (const std::string& finding : piece.findings) warn_of(piece.object + ": " + finding);
+    for (const std::string& finding : piece.findings) warn_finding(piece.object + ": " + finding);
   Json json = answer(timings);
   json.update(to_json(outcome));
   program.say(json, text_of(outcome));

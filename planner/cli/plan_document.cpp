@@ -148,16 +148,10 @@ struct SignText {
   std::string by, as = "reader", note;
 };
 
-/// What is signed is read in lists and on terminals.
-void need_plain(const std::string& option, const std::string& text) {
-  if (has_control(text))
-    throw std::runtime_error(option + " '" + text + "' has control characters: take them out");
-}
-
 int sign_plan(const Program& program, const SignText& text) {
-  need_plain("--by", text.by);
-  need_plain("--as", text.as);
-  need_plain("--note", text.note);
+  need_no_control(text.by, "--by");
+  need_no_control(text.as, "--as");
+  need_no_control(text.note, "--note");
   const Plan plan = read_plan(text.plan);
   std::string signed_text = plan.text;
   if (!text.by.empty()) {

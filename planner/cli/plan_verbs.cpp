@@ -51,7 +51,7 @@ int preview_step(Program& program, PreviewText& text) {
     json["objects"].push_back(
         {{"id", object.id}, {"volume_mm3", object.voxel.measures.volume_mm3}, {"findings", object.findings}});
     rows.emplace_back(object.id, grouped(object.voxel.measures.volume_mm3, 0) + " mm\u00b3");
-    for (const std::string& finding : object.findings) warn_of(object.id + ": " + finding);
+    for (const std::string& finding : object.findings) warn_finding(object.id + ": " + finding);
   }
   rows.emplace_back("written", text.out.string());
   program.say(json, lines(rows));
@@ -110,7 +110,7 @@ int run(Program& program, const RunText& text, Plan plan, const std::function<vo
   Json json = written(program, result, text.out);
   if (beside) beside();
   for (const Exported& exported : result.exported)
-    for (const std::string& finding : exported.findings) warn_of(exported.path + ": " + finding);
+    for (const std::string& finding : exported.findings) warn_finding(exported.path + ": " + finding);
   if (text.certify == Certify::Later) {
     warn("written without certificates: " + (text.out / "report.html").string() + "; they follow");
     result.findings.pop_back();

@@ -273,7 +273,7 @@ int segment(const Program& program, const SegmentText& text) {
   Json whole = answer(timings);
   for (const auto& [key, value] : json.items())
     if (key != "octotomy" && key != "timings_ms") whole[key] = value;
-  for (const Json& finding : json.value("findings", Json::array())) warn_of(finding.get<std::string>());
+  for (const Json& finding : json.value("findings", Json::array())) warn_finding(finding.get<std::string>());
   std::vector<std::pair<std::string, std::string>> rows;
   if (!written.empty()) rows.emplace_back("written", written);
   if (json.contains("suggestion")) rows.emplace_back("thresholds", json["suggestion"]["thresholds"].dump());

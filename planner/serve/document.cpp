@@ -64,11 +64,6 @@ void need_landmarks_within(const Json& plan, const std::filesystem::path& folder
       folders.need_within(folder / step["file"].get<std::string>());
 }
 
-/// Refuses texts that are new and that no list or terminal could show.
-void need_plain(const std::string& text, const std::string& what) {
-  if (has_control(text)) throw std::runtime_error(what + " has control characters: take them out");
-}
-
 /// Refuses names that are new and that no list could show; those of the plan stay as they are.
 void need_short_names(const std::vector<NamedPoint>& landmarks, const std::vector<NamedPoint>& known) {
   constexpr std::size_t longest_name = 200;  // in bytes, as of a branch
@@ -137,10 +132,10 @@ void Document::place_landmark(const std::string& name, const Json& point_mm) {
 void Document::record(const Json& json, const std::string& what) {
   const Plan plan = parsed(json);
   need_short_names(plan.landmarks, plan_->landmarks);
-  if (plan.name != plan_->name) need_plain(plan.name, "the plan's name");
+  if (plan.name != plan_->name) need_no_control(plan.name, "the plan's name");
   for (const auto& [name, scan] : plan.scans)
-    if (!plan_->scans.contains(name)) need_plain(name, "a scan's name");
-  need_plain(what, "the text of what was done");
+    if (!plan_->scans.contains(name)) need_no_control(name, "a scan's name");
+  need_no_control(what, "the text of what was done");
   history_->record(json_text(json, 2) + "\n", what);
   read_again();
 }

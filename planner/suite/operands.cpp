@@ -314,7 +314,7 @@ SuiteAnswer verify_operands(Program& program, const VerifyText& text) {
   if (found.kernels.solid) answer.worst = {kernels, found.kernels.octree, found.kernels.solid};
   answer.more["volume_mm3"] = found.volume_mm3();
   answer.not_covered = found.not_covered;
-  for (const std::string& finding : found.not_covered) warn_of(finding);
+  for (const std::string& finding : found.not_covered) warn_finding(finding);
   answer.text = lines({{"volume", grouped(found.volume_mm3(), 3) + " mm\u00b3 by the voxel kernel"}});
   for (const verify::Certificate& certificate : found.certificates) {
     answer.certificates.push_back(planner::to_json(certificate));

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 
 // Names and texts of files reach terminals and lists, which would obey control characters or break at them.
@@ -14,6 +16,11 @@ inline bool is_control(char symbol) {
 
 inline bool has_control(std::string_view text) {
   return std::any_of(text.begin(), text.end(), is_control);
+}
+
+/// Throws std::runtime_error of `what`, for example "a scan's name", where its text has such characters.
+inline void need_no_control(std::string_view text, const std::string& what) {
+  if (has_control(text)) throw std::runtime_error(what + " has control characters: take them out");
 }
 
 }  // namespace octotomy::planner

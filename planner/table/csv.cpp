@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/table/csv.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -45,10 +46,12 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
     row.assign(1, {});
   };
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // as spreadsheets begin UTF-8
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
+    refuse(1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + zero, '\n')),
+           "a byte 0: it is no text, or not UTF-8");
   std::size_t at = 0;
   while (at < text.size()) {
     const char symbol = text[at];
-    if (symbol == '\0') refuse(rows.size() + 1, "a byte 0: it is no text, or not UTF-8");
     if (symbol == ',') {
       row.emplace_back();
       ++at;
@@ -58,7 +61,7 @@ std::vector<std::vector<std::string>> parse_csv(std::string_view text) {
     } else if (symbol == '"' && row.back().empty()) {
       std::string& cell = row.back();
       for (++at;; ++at) {
-        if (at >= text.size() || text[at] == '\0') refuse(rows.size() + 1, "a quote is not closed");
+        if (at >= text.size()) refuse(rows.size() + 1, "a quote is not closed");
         if (text[at] != '"') {
           cell += text[at];
         } else if (at + 1 < text.size() && text[at + 1] == '"') {

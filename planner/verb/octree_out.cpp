@@ -8,7 +8,7 @@ namespace octotomy::planner::cli {
 namespace fs = std::filesystem;
 
 int say(const Program& program, const FileAnswer& made, const Timings& timings) {
-  for (const std::string& finding : made.findings) warn_of(finding);
+  for (const std::string& finding : made.findings) warn_finding(finding);
   Json json = answer(timings);
   json.update(made.json);
   program.say(json,

@@ -76,7 +76,7 @@ std::string verdict_text(const Evaluation& evaluation) {
       for (const std::string& reason : c.reasons) line += "; " + reason;
     }
     if (!object.is_tool || object.certificate) rows.emplace_back(object.id, line);
-    for (const std::string& finding : object.findings) warn_of(object.id + ": " + finding);
+    for (const std::string& finding : object.findings) warn_finding(object.id + ": " + finding);
   }
   return lines(rows);
 }

@@ -151,7 +151,7 @@ void warn(const std::string& line) {
   std::fprintf(stderr, "octotomy: %s\n", line_of(line).c_str());
 }
 
-void warn_of(const std::string& finding) {
+void warn_finding(const std::string& finding) {
   if (++findings <= most_findings) warn(finding);
 }
 

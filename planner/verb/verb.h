@@ -73,9 +73,9 @@ void warn(const std::string& line);
 
 /// The same of one finding among many: the first of a run are said, so that what matters is not lost among
 /// thousands.
-void warn_of(const std::string& finding);
+void warn_finding(const std::string& finding);
 
-/// A run of the program, at whose end the number of findings is said that warn_of() has kept back.
+/// A run of the program, at whose end the number of findings is said that warn_finding() has kept back.
 struct FindingsOfRun {
   FindingsOfRun() = default;
   FindingsOfRun(const FindingsOfRun&) = delete;

@@ -294,9 +294,10 @@ class SeriesAssembler {
   }
 
   /// Keeps the largest group of slices that are alike; a finding states the others.
-  void keep_commonest(const char* check, std::vector<DicomSlice>& members, Likeness likeness,
+  void keep_commonest(const char* check, std::vector<DicomSlice>& members,
+                      const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike,
                       const std::function<std::string(const DicomSlice&)>& named) {
-    std::vector<std::vector<DicomSlice>> kinds = grouped(std::move(members), likeness);
+    std::vector<std::vector<DicomSlice>> kinds = grouped(std::move(members), alike);
     auto& most = *std::max_element(kinds.begin(), kinds.end(),
                                    [](const auto& a, const auto& b) { return a.size() < b.size(); });
     const std::string taken = named(most.front());
@@ -383,11 +384,11 @@ class SeriesAssembler {
   }
 
   DicomStack orient(std::vector<DicomSlice> members) {
-    keep_commonest("size", members, {.grid = true}, [](const DicomSlice& slice) {
+    keep_commonest("size", members, same_grid, [](const DicomSlice& slice) {
       return print("%d x %d pixels of %.6g x %.6g mm", slice.size_px.x, slice.size_px.y, slice.spacing_mm.x,
                    slice.spacing_mm.y);
     });
-    keep_commonest("orientation", members, {.orientation = true}, [](const DicomSlice& slice) {
+    keep_commonest("orientation", members, same_orientation, [](const DicomSlice& slice) {
       const glm::dvec3 normal = glm::abs(glm::cross(slice.along_row, slice.along_column));
       const char* plane = normal.z >= normal.x && normal.z >= normal.y ? "axial"
                           : normal.y >= normal.x                       ? "coronal"

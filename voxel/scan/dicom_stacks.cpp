@@ -149,19 +149,14 @@ bool same_identity(const DicomSlice& a, const DicomSlice& b) {
   return true;
 }
 
-bool are_alike(const DicomSlice& a, const DicomSlice& b, Likeness likeness) {
-  return (!likeness.grid || same_grid(a, b)) && (!likeness.orientation || same_orientation(a, b)) &&
-         (!likeness.identity || same_identity(a, b));
-}
-
 }  // namespace
 
-std::vector<std::vector<DicomSlice>> grouped(std::vector<DicomSlice> slices, Likeness likeness) {
+std::vector<std::vector<DicomSlice>> grouped(
+    std::vector<DicomSlice> slices, const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike) {
   std::vector<std::vector<DicomSlice>> parts;
   for (DicomSlice& slice : slices) {
-    const auto part = std::find_if(parts.begin(), parts.end(), [&](const auto& members) {
-      return are_alike(members.front(), slice, likeness);
-    });
+    const auto part = std::find_if(parts.begin(), parts.end(),
+                                   [&](const auto& members) { return alike(members.front(), slice); });
     if (part == parts.end())
       parts.push_back({std::move(slice)});
     else
@@ -193,7 +188,9 @@ std::vector<DicomSubseries> subseries_of(const std::vector<DicomSlice>& series) 
   std::copy_if(series.begin(), series.end(), std::back_inserter(asked),
                [&](const DicomSlice& slice) { return is_scout_only || !slice.is_localizer; });
   std::vector<std::vector<DicomSlice>> alike =
-      grouped(std::move(asked), {.grid = true, .orientation = true, .identity = true});
+      grouped(std::move(asked), [](const DicomSlice& a, const DicomSlice& b) {
+        return same_grid(a, b) && same_orientation(a, b) && same_identity(a, b);
+      });
   std::vector<std::vector<DicomSlice>> parts;
   for (std::vector<DicomSlice>& members : alike) part(std::move(members), parts);
   return sorted(std::move(parts));

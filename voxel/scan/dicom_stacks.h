@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,16 +20,10 @@ bool same_grid(const DicomSlice& a, const DicomSlice& b);
 /// Whether two images lie in parallel planes with parallel rows.
 bool same_orientation(const DicomSlice& a, const DicomSlice& b);
 
-/// What images of one group have in common.
-struct Likeness {
-  bool grid = false;         ///< same_grid()
-  bool orientation = false;  ///< same_orientation()
-  bool identity = false;     ///< patient, study, modality and frame of reference, or one of both lacks them
-};
-
 /// Puts each image into the first group whose first image it is like, or into a new one; in the order of the
 /// images. Cost: images by groups.
-std::vector<std::vector<DicomSlice>> grouped(std::vector<DicomSlice> slices, Likeness likeness);
+std::vector<std::vector<DicomSlice>> grouped(
+    std::vector<DicomSlice> slices, const std::function<bool(const DicomSlice&, const DicomSlice&)>& alike);
 
 /// Parts the images of one series by size, orientation and identity, and images at one place by the attribute
 /// that parts most of them: a kernel, an acquisition, a phase. Most images first. Images at one place that no

@@ -39,7 +39,7 @@ TEST(Verb, OfManyFindingsThatAreToldAPageIsSaidAndHowManyMore) {
     testing::internal::CaptureStderr();
     {
       const FindingsOfRun findings;
-      for (int i = 0; i < 1000; ++i) warn_of("finding " + std::to_string(i));
+      for (int i = 0; i < 1000; ++i) warn_finding("finding " + std::to_string(i));
       warn("what matters");
     }
     const std::string said = testing::internal::GetCapturedStderr();

@@ -102,7 +102,7 @@ TEST(DicomStacks, GroupsAreThoseOfTheFirstImageThatIsAlike) {
     images[i].instance_uid = std::to_string(i);
   }
   images[3].size_px = {4, 5};
-  const std::vector<std::vector<DicomSlice>> groups = grouped(images, {.grid = true});
+  const std::vector<std::vector<DicomSlice>> groups = grouped(images, same_grid);
   std::string told;
   for (const auto& group : groups)
     for (const DicomSlice& image : group) told += (&image == &group.front() ? "|" : "") + image.instance_uid;
