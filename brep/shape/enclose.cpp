@@ -20,6 +20,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tuple>
 #include <utility>
 
 #include "brep/mesh/disjoint_sets.h"
@@ -231,16 +232,29 @@ std::vector<Passage> passages_of(const Triangles& surface, const Lattice& lattic
   return passages;
 }
 
-/// Adds keys that are new to an ascending list; returns the new ones, ascending.
-std::vector<std::uint64_t> add_new(std::vector<std::uint64_t> keys, std::vector<std::uint64_t>& list) {
-  tbb::parallel_sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+/// Adds the keys of one ascending list that are new to the other; returns the new ones, ascending.
+std::vector<std::uint64_t> add_new(const std::vector<std::uint64_t>& keys, std::vector<std::uint64_t>& list) {
   std::vector<std::uint64_t> fresh, all;
   std::set_difference(keys.begin(), keys.end(), list.begin(), list.end(), std::back_inserter(fresh));
   all.reserve(list.size() + fresh.size());
   std::merge(list.begin(), list.end(), fresh.begin(), fresh.end(), std::back_inserter(all));
   list = std::move(all);
   return fresh;
+}
+
+/// The corners of cells, each once; both ascending. A list keeps its order when it is moved along an axis, so
+/// that nothing is sorted and no corner listed eight times.
+std::vector<std::uint64_t> corners_of(const std::vector<std::uint64_t>& cells) {
+  std::vector<std::uint64_t> corners = cells, moved, both;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t step = std::uint64_t{1} << axis * side_bits;
+    moved = corners;
+    for (std::uint64_t& key : moved) key += step;
+    both.clear();
+    std::set_union(corners.begin(), corners.end(), moved.begin(), moved.end(), std::back_inserter(both));
+    std::swap(corners, both);
+  }
+  return corners;
 }
 
 /// A half less the winding number at lattice points: below 0 inside.
@@ -255,11 +269,7 @@ class Field {
   }
 
   void learn(const std::vector<std::uint64_t>& cells) {
-    std::vector<std::uint64_t> corners;
-    corners.reserve(8 * cells.size());
-    for (const std::uint64_t cell : cells)
-      for (int k = 0; k < 8; ++k) corners.push_back(key_of(place_of(cell) + corner_place(k)));
-    const std::vector<std::uint64_t> fresh = add_new(std::move(corners), keys_);
+    const std::vector<std::uint64_t> fresh = add_new(corners_of(cells), keys_);
     std::vector<glm::dvec3> points_mm(fresh.size());
     for (std::size_t i = 0; i < fresh.size(); ++i) points_mm[i] = lattice_.at(place_of(fresh[i]));
     std::vector<double> found = at(points_mm), all(keys_.size());
@@ -307,27 +317,13 @@ void add_neighbours(const Place& cell, const std::array<double, 8>& values, cons
     }
 }
 
-/// What each cell appends, in parallel, in the cells' order.
-template <typename Item, typename Append>
-std::vector<Item> in_order(const std::vector<std::uint64_t>& cells, const Append& append) {
-  constexpr std::size_t block = 4096;
-  std::vector<std::vector<Item>> parts((cells.size() + block - 1) / block);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t b) {
-    for (std::size_t i = b * block; i < std::min((b + 1) * block, cells.size()); ++i)
-      append(place_of(cells[i]), parts[b]);
-  });
-  std::vector<Item> items;
-  for (const std::vector<Item>& part : parts) items.insert(items.end(), part.begin(), part.end());
-  return items;
-}
-
 /// Every cell that the surface passes, with others, ascending.
 std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const Lattice& lattice,
                                     Field& field, const Progress& progress) {
   std::vector<std::uint64_t> cells, fresh;
   for (const Passage& passage : passages)
     if (fresh.empty() || fresh.back() != passage.cell) fresh.push_back(passage.cell);
-  fresh = add_new(std::move(fresh), cells);
+  cells = fresh;
   while (!fresh.empty()) {
     progress.at(0.2);
     const bool may_learn = cells.size() <= most_cells;
@@ -335,11 +331,13 @@ std::vector<std::uint64_t> cells_of(const std::vector<Passage>& passages, const 
     if (!may_learn || field.size() > 2 * most_cells)
       throw Error(ErrorCode::Geometry, "the surface passes more than 2^24 cells of " +
                                            short_text(lattice.cell_mm) + " mm: take larger ones, --cell");
-    fresh = add_new(in_order<std::uint64_t>(fresh,
-                                            [&](const Place& cell, std::vector<std::uint64_t>& beyond) {
-                                              add_neighbours(cell, field.about(cell), lattice, beyond);
-                                            }),
-                    cells);
+    std::vector<std::uint64_t> beyond =
+        appended<std::uint64_t>(fresh, [&](const Place& cell, std::vector<std::uint64_t>& found) {
+          add_neighbours(cell, field.about(cell), lattice, found);
+        });
+    tbb::parallel_sort(beyond.begin(), beyond.end());
+    beyond.erase(std::unique(beyond.begin(), beyond.end()), beyond.end());
+    fresh = add_new(beyond, cells);
   }
   return cells;
 }
@@ -367,8 +365,8 @@ EdgePoints points_on(const std::vector<LatticeEdge>& edges, const std::vector<Pa
   // From inside outward; the crossing nearest to the outside is the surface's.
   std::vector<double> share(edges.size(), -1.0), at_from(edges.size()), at_to(edges.size());
   const auto ends = [&](std::size_t i) {
-    const Place from = place_of(edges[i].from);
-    return std::pair(from, from + corner_place(edges[i].along));
+    const Place from = place_of(edges[i].from());
+    return std::pair(from, from + corner_place(edges[i].along()));
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, edges.size(), 512), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
@@ -376,8 +374,8 @@ EdgePoints points_on(const std::vector<LatticeEdge>& edges, const std::vector<Pa
       at_from[i] = field.at(from);
       at_to[i] = field.at(to);
       const glm::dvec3 a = lattice.at(from), b = lattice.at(to);
-      auto passage = std::lower_bound(passages.begin(), passages.end(), Passage{edges[i].from, 0});
-      for (; passage != passages.end() && passage->cell == edges[i].from; ++passage) {
+      auto passage = std::lower_bound(passages.begin(), passages.end(), Passage{edges[i].from(), 0});
+      for (; passage != passages.end() && passage->cell == edges[i].from(); ++passage) {
         const auto& face = surface.faces[passage->face];
         const std::optional<double> found = crossing(
             a, b, {surface.points_mm[face[0]], surface.points_mm[face[1]], surface.points_mm[face[2]]});
@@ -468,7 +466,7 @@ Enclosed enclose(const Triangles& given, const EncloseOptions& options) {
   const std::vector<std::uint64_t> cells = cells_of(passages, lattice, field, options.progress);
   options.progress.at(0.6);
   const auto triangles =
-      in_order<EdgeTriangle>(cells, [&](const Place& cell, std::vector<EdgeTriangle>& made) {
+      appended<EdgeTriangle>(cells, [&](const Place& cell, std::vector<EdgeTriangle>& made) {
         add_triangles(cell, field.about(cell), made);
       });
   if (triangles.empty())

@@ -2,7 +2,6 @@
 #include "brep/shape/kuhn_cells.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -19,7 +18,7 @@ constexpr std::array<Tetrahedron, 6> tetrahedra = {
 LatticeEdge edge_between(const Place& cell, int p, int q) {
   assert(((p & q) == p || (p & q) == q) && p != q);
   const int low = p & q;  // one of the two, as the tetrahedra's edges only ascend
-  return {key_of(cell + corner_place(low)), (p | q) ^ low};
+  return {cell + corner_place(low), (p | q) ^ low};
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <tuple>
+#include <tbb/parallel_for.h>
 #include <vector>
 
 // A lattice of cells, each of six tetrahedra after Kuhn, and the surface between lattice points of either
@@ -37,14 +40,41 @@ inline Place corner_place(int corner) {
   return {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
 }
 
-/// An edge of a tetrahedron whose ends lie on either side of the surface.
-struct LatticeEdge {
-  std::uint64_t from = 0;  // key of its lower end
-  int along = 0;           // corner of the cell above that end where it leads
-  bool operator==(const LatticeEdge&) const = default;
-  bool operator<(const LatticeEdge& other) const {
-    return std::tie(from, along) < std::tie(other.from, other.along);
+/// What append(place, items) adds for each of the places of these keys, in their order; in parallel.
+template <typename Item, typename Append>
+std::vector<Item> appended(const std::vector<std::uint64_t>& keys, const Append& append) {
+  constexpr std::size_t part = 1024;
+  std::vector<std::vector<Item>> parts((keys.size() + part - 1) / part);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+    for (std::size_t i = p * part; i < std::min((p + 1) * part, keys.size()); ++i)
+      append(place_of(keys[i]), parts[p]);
+  });
+  std::size_t count = 0;
+  for (const std::vector<Item>& items : parts) count += items.size();
+  std::vector<Item> all;
+  all.reserve(count);
+  for (std::vector<Item>& items : parts) {
+    all.insert(all.end(), items.begin(), items.end());
+    items = {};
   }
+  return all;
+}
+
+/// An edge of a tetrahedron whose ends lie on either side of the surface; sorts by its lower end. One
+/// number, as a surface has millions of them.
+class LatticeEdge {
+ public:
+  LatticeEdge() = default;
+  /// `along` is the corner of the cell above the lower end where the edge leads.
+  LatticeEdge(const Place& from, int along) : packed_(key_of(from) << 3 | static_cast<std::uint64_t>(along)) {
+    assert(along > 0 && along < 8);
+  }
+  std::uint64_t from() const { return packed_ >> 3; }  ///< key of its lower end
+  int along() const { return static_cast<int>(packed_ & 7); }
+  auto operator<=>(const LatticeEdge&) const = default;
+
+ private:
+  std::uint64_t packed_ = 0;
 };
 
 /// Three edges for each triangle, outward.

@@ -133,26 +133,17 @@ Corners corners_of(const std::vector<std::uint64_t>& blocks, const Field& field,
 }
 
 std::vector<EdgeTriangle> triangles_in(const std::vector<std::uint64_t>& blocks, const Corners& corners) {
-  constexpr std::size_t blocks_a_part = 1024;
-  std::vector<std::vector<EdgeTriangle>> parts((blocks.size() + blocks_a_part - 1) / blocks_a_part);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-    for (std::size_t b = part * blocks_a_part; b < std::min((part + 1) * blocks_a_part, blocks.size()); ++b) {
-      const Place low = place_of(blocks[b]);
-      const std::array<double, 27> at_points = corners.of_block(low);
-      for (int i = 0; i < 8; ++i) {
-        std::array<double, 8> values{};
-        for (int k = 0; k < 8; ++k) {
-          const Place p = corner_place(i) + corner_place(k);
-          values[static_cast<std::size_t>(k)] = at_points[static_cast<std::size_t>(p.x + 3 * p.y + 9 * p.z)];
-        }
-        add_triangles(low + corner_place(i), values, parts[part]);
+  return appended<EdgeTriangle>(blocks, [&](const Place& low, std::vector<EdgeTriangle>& triangles) {
+    const std::array<double, 27> at_points = corners.of_block(low);
+    for (int i = 0; i < 8; ++i) {
+      std::array<double, 8> values{};
+      for (int k = 0; k < 8; ++k) {
+        const Place p = corner_place(i) + corner_place(k);
+        values[static_cast<std::size_t>(k)] = at_points[static_cast<std::size_t>(p.x + 3 * p.y + 9 * p.z)];
       }
+      add_triangles(low + corner_place(i), values, triangles);
     }
   });
-  std::vector<EdgeTriangle> triangles;
-  for (const std::vector<EdgeTriangle>& part : parts)
-    triangles.insert(triangles.end(), part.begin(), part.end());
-  return triangles;
 }
 
 /// A root between two places of either sign, by regula falsi; an end that stays has its value halved, so that
@@ -186,15 +177,15 @@ std::vector<glm::dvec3> points_on(const std::vector<LatticeEdge>& edges, const C
   std::vector<Root> roots(edges.size());
   std::vector<std::size_t> open(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Place from = place_of(edges[i].from);
+    const Place from = place_of(edges[i].from());
     roots[i].at_low = corners.at(from);
-    roots[i].at_high = corners.at(from + corner_place(edges[i].along));
+    roots[i].at_high = corners.at(from + corner_place(edges[i].along()));
     roots[i].guess();
     open[i] = i;
   }
   const auto place = [&](std::size_t i) {
-    return lattice.at(place_of(edges[i].from)) +
-           roots[i].share * lattice.cell_mm * glm::dvec3(corner_place(edges[i].along));
+    return lattice.at(place_of(edges[i].from())) +
+           roots[i].share * lattice.cell_mm * glm::dvec3(corner_place(edges[i].along()));
   };
   // Twenty rounds would do by halving alone, were it ever needed.
   for (int round = 0; round < 20 && !open.empty(); ++round) {
