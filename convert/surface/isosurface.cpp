@@ -245,4 +245,15 @@ brep::Triangles isosurface(const voxel::GreyOctree& grey, double low, double hig
   return surface_of(GreySamples(grey), low, high, progress);
 }
 
+bool stays_apart(const voxel::Lattice& lattice) {
+  const glm::dmat3 edges(lattice.lps_from_voxel);
+  const double largest_face_mm2 =
+      std::max({glm::length(glm::cross(edges[0], edges[1])), glm::length(glm::cross(edges[1], edges[2])),
+                glm::length(glm::cross(edges[2], edges[0]))});
+  const voxel::Box box = voxel::bounds(lattice);
+  const glm::dvec3 farthest_mm = glm::max(glm::abs(box.low_mm), glm::abs(box.high_mm));
+  return std::max({farthest_mm.x, farthest_mm.y, farthest_mm.z}) * largest_face_mm2 <
+         0x1p16 * lattice.voxel_mm3();
+}
+
 }  // namespace octotomy::convert

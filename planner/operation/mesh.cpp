@@ -35,6 +35,17 @@ struct Meshed {
   std::filesystem::path out;
 };
 
+/// A surface as its maker leaves it.
+struct Made {
+  Made(brep::Triangles triangles) : surface(std::move(triangles)) {}  // NOLINT(google-explicit-constructor)
+  /// An isosurface of the samples of a lattice.
+  Made(brep::Triangles triangles, const voxel::Lattice& lattice)
+      : surface(std::move(triangles)), stays_apart(convert::stays_apart(lattice)) {}
+
+  brep::Triangles surface;
+  bool stays_apart = false;  ///< known to be free of self-intersection, which is dear to test
+};
+
 brep::Triangles cuberille_of(const voxel::Octree& octree, const Meshed& asked) {
   return triangles_of(convert::cuberille(
       octree, asked.touching == "apart" ? convert::Touching::Apart : convert::Touching::Together));
@@ -64,7 +75,7 @@ brep::Triangles tiled_contours(const voxel::Scene& scene, const SampleWindow& wi
   return std::move(tiled.surface);
 }
 
-brep::Triangles of_octree(const Meshed& asked, Timings& timings, std::vector<std::string>& findings) {
+Made of_octree(const Meshed& asked, Timings& timings, std::vector<std::string>& findings) {
   if (asked.surface == "contours")
     throw std::runtime_error(asked.file.name +
                              ": contours are followed on a scan's slices: give the scan the octree is of");
@@ -73,7 +84,8 @@ brep::Triangles of_octree(const Meshed& asked, Timings& timings, std::vector<std
   const Stopwatch watch(timings, asked.surface);
   if (const auto* grey = std::get_if<voxel::GreyOctree>(&file.tree)) {
     const SampleWindow window = window_of(asked, findings);
-    if (!cubes) return convert::isosurface(*grey, window.low, window.high_or_infinity());
+    if (!cubes)
+      return {convert::isosurface(*grey, window.low, window.high_or_infinity()), grey->universe().lattice()};
     return cuberille_of(voxel::combine(grey->universe(), voxel::Expression(window_on(*grey, window))), asked);
   }
   if (asked.window)
@@ -92,12 +104,13 @@ brep::Triangles of_octree(const Meshed& asked, Timings& timings, std::vector<std
   return convert::isosurface(octree.universe(), octree);
 }
 
-brep::Triangles of_scan(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
+Made of_scan(const FileBench& bench, const Meshed& asked, std::vector<std::string>& findings) {
   const SampleWindow window = window_of(asked, findings);
   const voxel::Scene scene = bench.read_scan(asked.file.name);
   need_hounsfield(window, scene);
   const Stopwatch watch(bench.timings, asked.surface);
-  if (asked.surface == "isosurface") return convert::isosurface(scene, window.low, window.high_or_infinity());
+  if (asked.surface == "isosurface")
+    return {convert::isosurface(scene, window.low, window.high_or_infinity()), scene.lattice};
   if (asked.surface == "contours") return tiled_contours(scene, window, asked, findings);
   throw std::runtime_error(
       asked.file.name +
@@ -109,17 +122,18 @@ brep::Triangles of_scan(const FileBench& bench, const Meshed& asked, std::vector
 struct Finished {
   brep::Triangles surface;
   brep::Measures measures;
+  bool stays_apart = false;
 };
 
-Finished finished(brep::Triangles triangles, const Meshed& asked, Timings& timings) {
-  const bool fewer = asked.faces && static_cast<std::size_t>(*asked.faces) < triangles.faces.size();
+Finished finished(Made made, const Meshed& asked, Timings& timings) {
+  const bool fewer = asked.faces && static_cast<std::size_t>(*asked.faces) < made.surface.faces.size();
   if (!asked.smooth && !fewer) {
-    brep::Linked linked = brep::linked(std::move(triangles));
+    brep::Linked linked = brep::linked(std::move(made.surface));
     brep::Measures measures = measure(linked);
-    return {std::move(linked.triangles), std::move(measures)};
+    return {std::move(linked.triangles), std::move(measures), made.stays_apart};
   }
-  brep::Mesh surface = mesh_of(triangles);
-  triangles = {};
+  brep::Mesh surface = mesh_of(made.surface);
+  made.surface = {};
   if (asked.smooth) {
     const Stopwatch watch(timings, "smooth");
     surface = brep::smooth(surface);
@@ -139,20 +153,20 @@ FileAnswer on_files(const Meshed& asked, const FileBench& bench) {
   need_folder_of(asked.out);
   if (is_mesh(asked.file.name)) throw std::runtime_error(asked.file.name + ": is a mesh already");
   std::vector<std::string> findings;
-  brep::Triangles triangles = is_octree(asked.file.name) ? of_octree(asked, bench.timings, findings)
-                                                         : of_scan(bench, asked, findings);
-  if (triangles.faces.empty())
+  Made made = is_octree(asked.file.name) ? of_octree(asked, bench.timings, findings)
+                                         : of_scan(bench, asked, findings);
+  if (made.surface.faces.empty())
     throw std::runtime_error(
         asked.file.name + ": nothing is " +
         (asked.window ? "in the window " + to_string(*asked.window) + ": choose another" : "in it"));
   if (!asked.faces)
-    voxel::need_disk(asked.out,
-                     brep::least_mesh_bytes(triangles.points_mm.size(), triangles.faces.size(), asked.out));
-  const auto& [surface, measures] = finished(std::move(triangles), asked, bench.timings);
+    voxel::need_disk(asked.out, brep::least_mesh_bytes(made.surface.points_mm.size(),
+                                                       made.surface.faces.size(), asked.out));
+  const auto& [surface, measures, stays_apart] = finished(std::move(made), asked, bench.timings);
   brep::Health health;
   {
     const Stopwatch watch(bench.timings, "health");
-    health = brep::health(surface);
+    health = brep::health(surface, {.self_intersections = !stays_apart});
   }
   write_surface(surface, asked.out, bench.timings);
   FileAnswer answer{{{"kind", "mesh"}, {"path", asked.out.string()}, {"surface", asked.surface}}};

@@ -161,6 +161,30 @@ TEST(Isosurface, OfNoiseDoesNotIntersectItself) {
   }
 }
 
+TEST(Isosurface, StaysApartAsFarFromTheOriginAsItSays) {
+  // Samples on the bound, and others so far below it that crossings lie as close to samples as they may.
+  voxel::Scene scene = noise({20, 19, 18}, 5, 50);
+  for (std::int16_t& sample : std::get<voxel::Int16Samples>(scene.samples))
+    sample = sample >= 1000 ? 1000 : -30000;
+  const glm::dmat4 sheared = glm::rotate(glm::dmat4(1.0), 0.7, glm::dvec3(1, 2, 3)) *
+                             glm::dmat4({0.2, 0, 0, 0}, {0.1, 0.3, 0, 0}, {0.1, -0.1, 0.9, 0}, {0, 0, 0, 1});
+  for (const glm::dmat4& axes : {glm::scale(glm::dmat4(1.0), glm::dvec3(0.2)), sheared}) {
+    scene.lattice.lps_from_voxel = axes;
+    scene.lattice.lps_from_voxel[3] = {9000.0, -7000.0, 5000.0, 1.0};
+    ASSERT_TRUE(stays_apart(scene.lattice));
+    const brep::Health health = brep::health(isosurface(scene, 1000, no_limit));
+    EXPECT_GT(health.faces, 5000U);
+    EXPECT_EQ(health.self_intersections, 0U);
+    EXPECT_EQ(health.degenerate_faces, 0U);
+    scene.lattice.lps_from_voxel[3].x = 14000.0;
+    EXPECT_FALSE(stays_apart(scene.lattice));
+  }
+  // What the bound is for: here doubles are a quarter of a millimetre apart.
+  scene.lattice.lps_from_voxel[3].x = 0x1p51;
+  EXPECT_FALSE(stays_apart(scene.lattice));
+  EXPECT_GT(brep::health(isosurface(scene, 1000, no_limit)).self_intersections, 0U);
+}
+
 // Triangles with their points on a sphere of r voxels lie within it by 0.2 / r of a voxel on average, so
 // volume is 0.6 / r^2 low, area 0.31 / r^2.
 TEST(Isosurface, VolumeAndAreaOfADistanceFieldConvergeAtSecondOrder) {
