@@ -242,21 +242,6 @@ std::vector<std::uint64_t> add_new(const std::vector<std::uint64_t>& keys, std::
   return fresh;
 }
 
-/// The corners of cells, each once; both ascending. A list keeps its order when it is moved along an axis, so
-/// that nothing is sorted and no corner listed eight times.
-std::vector<std::uint64_t> corners_of(const std::vector<std::uint64_t>& cells) {
-  std::vector<std::uint64_t> corners = cells, moved, both;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::uint64_t step = std::uint64_t{1} << axis * side_bits;
-    moved = corners;
-    for (std::uint64_t& key : moved) key += step;
-    both.clear();
-    std::set_union(corners.begin(), corners.end(), moved.begin(), moved.end(), std::back_inserter(both));
-    std::swap(corners, both);
-  }
-  return corners;
-}
-
 /// A half less the winding number at lattice points: below 0 inside.
 class Field {
  public:
@@ -269,7 +254,7 @@ class Field {
   }
 
   void learn(const std::vector<std::uint64_t>& cells) {
-    const std::vector<std::uint64_t> fresh = add_new(corners_of(cells), keys_);
+    const std::vector<std::uint64_t> fresh = add_new(points_about(cells, 1), keys_);
     std::vector<glm::dvec3> points_mm(fresh.size());
     for (std::size_t i = 0; i < fresh.size(); ++i) points_mm[i] = lattice_.at(place_of(fresh[i]));
     std::vector<double> found = at(points_mm), all(keys_.size());

@@ -2,6 +2,7 @@
 #include "brep/shape/kuhn_cells.h"
 
 #include <algorithm>
+#include <iterator>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -22,6 +23,22 @@ LatticeEdge edge_between(const Place& cell, int p, int q) {
 }
 
 }  // namespace
+
+std::vector<std::uint64_t> points_about(const std::vector<std::uint64_t>& lowest, int width) {
+  assert(std::is_sorted(lowest.begin(), lowest.end()));
+  std::vector<std::uint64_t> points = lowest, moved, both;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint64_t step = std::uint64_t{1} << axis * side_bits;
+    for (int cell = 0; cell < width; ++cell) {
+      moved = points;
+      for (std::uint64_t& key : moved) key += step;
+      both.clear();
+      std::set_union(points.begin(), points.end(), moved.begin(), moved.end(), std::back_inserter(both));
+      std::swap(points, both);
+    }
+  }
+  return points;
+}
 
 void add_triangles(const Place& cell, const std::array<double, 8>& values,
                    std::vector<EdgeTriangle>& triangles) {

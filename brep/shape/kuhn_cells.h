@@ -40,6 +40,10 @@ inline Place corner_place(int corner) {
   return {corner & 1, corner >> 1 & 1, corner >> 2 & 1};
 }
 
+/// The lattice points of cubes of `width` cells with these lowest points, each once; both lists ascend.
+/// Linear: a list that is moved along an axis keeps its order, so that nothing is sorted.
+std::vector<std::uint64_t> points_about(const std::vector<std::uint64_t>& lowest, int width);
+
 /// What append(place, items) adds for each of the places of these keys, in their order; in parallel.
 template <typename Item, typename Append>
 std::vector<Item> appended(const std::vector<std::uint64_t>& keys, const Append& append) {

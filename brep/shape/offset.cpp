@@ -119,12 +119,10 @@ struct Corners {
 };
 
 Corners corners_of(const std::vector<std::uint64_t>& blocks, const Field& field, const Lattice& lattice) {
+  std::vector<std::uint64_t> ascending = blocks;
+  tbb::parallel_sort(ascending.begin(), ascending.end());
   Corners corners;
-  for (const std::uint64_t block : blocks)
-    for (int i = 0; i < 27; ++i)
-      corners.keys.push_back(key_of(place_of(block) + Place(i % 3, i / 3 % 3, i / 9)));
-  tbb::parallel_sort(corners.keys.begin(), corners.keys.end());
-  corners.keys.erase(std::unique(corners.keys.begin(), corners.keys.end()), corners.keys.end());
+  corners.keys = points_about(ascending, 2);
   std::vector<glm::dvec3> points_mm;
   points_mm.reserve(corners.keys.size());
   for (const std::uint64_t key : corners.keys) points_mm.push_back(lattice.at(place_of(key)));
