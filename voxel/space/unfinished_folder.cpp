@@ -28,9 +28,11 @@ constexpr std::size_t letter_count = 6;
 /// A folder is renamed before it is emptied, so that no thread writes into it meanwhile.
 constexpr const char* leaving = "~";
 
-/// The folders of this process; never destroyed, since threads may outlive main().
+/// The folders of this process; never destroyed, since threads may outlive main(). Held while one is made or
+/// removed: of two threads that empty the same folder, one stumbles over what the other took and leaves the
+/// rest. Recursive, as an allocation that fails meanwhile may end the process on the same thread.
 struct Folders {
-  std::mutex mutex;
+  std::recursive_timed_mutex mutex;
   std::vector<fs::path> paths;
 };
 Folders& folders() {
@@ -48,13 +50,13 @@ void forget(const fs::path& path) {
   std::erase(folders().paths, path);
 }
 
-/// Also what another thread is about to remove, since the process may end before that one is done.
+/// Needs the lock of folders().
 void remove_folder(const fs::path& path) {
   std::error_code ignored;
   const fs::path gone = path.string() + leaving;
   fs::rename(path, gone, ignored);
   fs::remove_all(gone, ignored);
-  fs::remove_all(path, ignored);
+  fs::remove_all(path, ignored);  // where it could not be renamed
 }
 
 /// The locked folder's descriptor; -1 if it was removed meanwhile or there are no locks.
@@ -90,6 +92,7 @@ UnfinishedFolder::UnfinishedFolder(const fs::path& beside, const std::string& pr
 
 UnfinishedFolder::~UnfinishedFolder() {
   if (!path_.empty()) {
+    const std::lock_guard held(folders().mutex);
     remove_folder(path_);
     forget(path_);
   }
@@ -135,9 +138,10 @@ void remove_abandoned(const fs::path& beside, const std::string& prefix) {
 NamesChange::NamesChange() : held_(names_mutex()) {}
 
 void remove_unfinished() noexcept {
-  const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
-  static_cast<void>(settled);  // never unlocked: no name changes after this
-  folders().mutex.lock();      // never unlocked: no folder is made after this
+  // Never unlocked: after this no name changes, and no folder is made or removed by others.
+  const bool are_named = names_mutex().try_lock_for(std::chrono::milliseconds(100));
+  const bool are_mine = folders().mutex.try_lock_for(std::chrono::seconds(10));
+  static_cast<void>(are_named && are_mine);
   for (const fs::path& path : folders().paths) {
     try {
       remove_folder(path);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/space/staged_files.h"
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 #include "tests/file_bytes.h"
@@ -252,6 +254,29 @@ TEST(UnfinishedFolder, AnEndingWithoutDestructorsRemovesAll) {
   ::waitpid(child, &status, 0);
   EXPECT_EQ(status, 0);
   EXPECT_EQ(entries(folder.path()), 1) << "what was given away stays";
+}
+
+TEST(UnfinishedFolder, AnEndingWhileAFolderIsRemovedLeavesNoneOfIt) {
+  const tests::ScratchFolder folder;
+  for (int i = 0; i < 10; ++i) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      auto* one = new UnfinishedFolder(folder.path(), ".octotomy-");
+      for (int file = 0; file < 2000; ++file) write(one->path() / std::to_string(file), "half");
+      std::atomic<bool> has_begun{false};
+      std::thread removal([&] {
+        has_begun = true;
+        delete one;
+      });
+      while (!has_begun) std::this_thread::yield();
+      remove_unfinished();
+      ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_EQ(status, 0);
+    ASSERT_EQ(entries(folder.path()), 0) << "in round " << i;
+  }
 }
 
 }  // namespace
