@@ -14,7 +14,7 @@ namespace octotomy::bench {
 namespace {
 
 // The picture in pixels: margins leave room for labels, and for the curves' names on the right.
-constexpr double width = 760, height = 460, left = 80, right = 250, top = 46, bottom = 60;
+constexpr double width = 840, height = 460, left = 80, right = 330, top = 46, bottom = 60;
 constexpr std::array<const char*, 6> colours{"#1b6ca8", "#c0392b", "#2e8b57",
                                              "#8e44ad", "#b9770e", "#444444"};
 
