@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 
+#include <functional>
+#include <numeric>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/subjects.h"
 #include "voxel/measure/measure.h"
@@ -32,6 +37,16 @@ void register_build() {
     const voxel::Scene& scene = whole_scene(512);
     for (auto _ : state)
       benchmark::DoNotOptimize(voxel::octree_of_window(universe(512), scene, 300, 32767).root());
+  });
+  // No build takes less: every sample is read once.
+  add("reference/read/build/binary/512", [](benchmark::State& state) {
+    const auto& samples = std::get<voxel::Int16Samples>(whole_scene(512).samples);
+    for (auto _ : state)
+      benchmark::DoNotOptimize(tbb::parallel_reduce(
+          tbb::blocked_range<const std::int16_t*>(samples.data(), samples.data() + samples.size(), 1 << 16),
+          0u,
+          [](const auto& range, unsigned sum) { return std::accumulate(range.begin(), range.end(), sum); },
+          std::plus<>()));
   });
   add("build/grey/512", [](benchmark::State& state) {
     const voxel::Scene& scene = whole_scene(512);

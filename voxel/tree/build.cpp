@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -57,14 +60,17 @@ BlockGrid parents(const BlockGrid& children, int parent_height) {
   return grid;
 }
 
-// Blocks of height 2 cover dims * 16 voxels from the universe's first voxel on; all others are empty.
+// Blocks of height 2 cover dims * 16 voxels from the universe's first voxel on; all others are empty. `make`
+// gets a row of blocks at a time, by the place of its first.
 Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims,
-                      const std::function<Block(const glm::ivec3&)>& make) {
+                      const std::function<void(const glm::ivec3& first, std::span<BlockRef> row)>& make) {
   BlockGrid grid{dims, {}};
-  grid.blocks.resize(static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
-                     static_cast<std::size_t>(dims.z));
-  for_each_block(dims,
-                 [&](const glm::ivec3& block) { grid.blocks[grid.index(block)] = make(block).detach(); });
+  const auto length = static_cast<std::size_t>(dims.x);
+  grid.blocks.resize(length * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z));
+  tbb::parallel_for(0, dims.y * dims.z, [&](int row) {
+    const glm::ivec3 first{0, row % dims.y, row / dims.y};
+    make(first, std::span(grid.blocks).subspan(grid.index(first), length));
+  });
   for (int height = 3; height <= root_height(universe.depth); ++height) grid = parents(grid, height);
   return {universe, Block::adopt(grid.blocks.front())};
 }
@@ -105,6 +111,7 @@ void check_fits(const Universe& universe, const Scene& scene) {
 }  // namespace
 
 Block leaf_block_of_rows(const BlockRows& rows) {
+  if (std::accumulate(rows.begin(), rows.end(), std::uint16_t{0}, std::bit_or<>()) == 0) return {};
   std::array<std::uint64_t, 64> words{};
   for (int z = 0; z < 16; ++z)
     for (int y = 0; y < 16; ++y) {
@@ -123,7 +130,11 @@ Octree octree_of_box(const Universe& universe, const glm::ivec3& low, const glm:
 }
 
 Octree octree_of_blocks(const Universe& universe, const std::function<Block(const glm::ivec3& block)>& make) {
-  return octree_of_grid(universe, glm::ivec3((universe.side() + 15) / 16), make);
+  return octree_of_grid(universe, glm::ivec3((universe.side() + 15) / 16),
+                        [&](const glm::ivec3& first, std::span<BlockRef> row) {
+                          for (std::size_t x = 0; x < row.size(); ++x)
+                            row[x] = make(first + glm::ivec3(static_cast<int>(x), 0, 0)).detach();
+                        });
 }
 
 Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high) {
@@ -133,16 +144,20 @@ Octree octree_of_window(const Universe& universe, const Scene& scene, double low
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) *
            static_cast<std::size_t>(dims.x);
   };
+  // Samples are read in their order in memory, whole rows of them.
   const auto build = [&](const auto& row_bits) {
-    return octree_of_grid(universe, (dims + 15) / 16, [&](const glm::ivec3& block) {
-      const glm::ivec3 origin = block * 16;
+    return octree_of_grid(universe, (dims + 15) / 16, [&](const glm::ivec3& first, std::span<BlockRef> row) {
+      const glm::ivec3 origin = first * 16;
       const glm::ivec3 count = glm::min(glm::ivec3(16), dims - origin);
-      BlockRows rows{};
+      std::vector<BlockRows> rows(row.size());
       for (int z = 0; z < count.z; ++z)
-        for (int y = 0; y < count.y; ++y)
-          rows[static_cast<std::size_t>(y + 16 * z)] = static_cast<std::uint16_t>(
-              row_bits(row_start(origin.y + y, origin.z + z) + static_cast<std::size_t>(origin.x), count.x));
-      return leaf_block_of_rows(rows);
+        for (int y = 0; y < count.y; ++y) {
+          const std::size_t start = row_start(origin.y + y, origin.z + z);
+          for (std::size_t x = 0; x < row.size(); ++x)
+            rows[x][static_cast<std::size_t>(y + 16 * z)] = static_cast<std::uint16_t>(
+                row_bits(start + 16 * x, std::min(16, dims.x - 16 * static_cast<int>(x))));
+        }
+      for (std::size_t x = 0; x < row.size(); ++x) row[x] = leaf_block_of_rows(rows[x]).detach();
     });
   };
   if (const auto* shorts = std::get_if<Int16Samples>(&scene.samples)) {
