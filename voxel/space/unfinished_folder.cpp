@@ -50,7 +50,7 @@ void forget(const fs::path& path) {
   std::erase(folders().paths, path);
 }
 
-/// Needs the lock of folders().
+/// Precondition: this thread holds the lock of folders().
 void remove_folder(const fs::path& path) {
   std::error_code ignored;
   const fs::path gone = path.string() + leaving;
@@ -138,10 +138,10 @@ void remove_abandoned(const fs::path& beside, const std::string& prefix) {
 NamesChange::NamesChange() : held_(names_mutex()) {}
 
 void remove_unfinished() noexcept {
-  // Never unlocked: after this no name changes, and no folder is made or removed by others.
-  const bool are_named = names_mutex().try_lock_for(std::chrono::milliseconds(100));
-  const bool are_mine = folders().mutex.try_lock_for(std::chrono::seconds(10));
-  static_cast<void>(are_named && are_mine);
+  // Neither is unlocked: after this no name changes, and no other thread makes or removes a folder.
+  const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
+  static_cast<void>(settled);
+  if (!folders().mutex.try_lock_for(std::chrono::seconds(10))) return;  // the next run removes what is left
   for (const fs::path& path : folders().paths) {
     try {
       remove_folder(path);

@@ -50,7 +50,7 @@ class NamesChange {
 
 /// Removes every unfinished folder of this process, for a process that ends without its destructors. No
 /// folder can be made or removed afterwards: a thread that tries waits for the end. Waits at most 100 ms for
-/// a NamesChange, and 10 s for a folder that is being removed.
+/// a NamesChange, and 10 s for a folder that is being removed; after that it leaves all to the next run.
 void remove_unfinished() noexcept;
 
 }  // namespace octotomy::voxel

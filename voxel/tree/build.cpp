@@ -18,7 +18,12 @@ namespace {
 
 // A dense grid of blocks of one height, x fastest.
 struct BlockGrid {
-  glm::ivec3 dims{0};
+  explicit BlockGrid(const glm::ivec3& blocks_each_way)
+      : dims(blocks_each_way),
+        blocks(static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) *
+               static_cast<std::size_t>(dims.z)) {}
+
+  glm::ivec3 dims;
   std::vector<BlockRef> blocks;
 
   std::size_t index(const glm::ivec3& block) const {
@@ -29,18 +34,28 @@ struct BlockGrid {
   }
 };
 
-void for_each_block(const glm::ivec3& dims, const std::function<void(const glm::ivec3&)>& visit) {
-  tbb::parallel_for(0, dims.y * dims.z, [&](int row) {
-    for (int x = 0; x < dims.x; ++x) visit({x, row % dims.y, row / dims.y});
+// Fills rows along x, in parallel; `fill` gets the place of a row's first block.
+using FillRow = std::function<void(const glm::ivec3& first, std::span<BlockRef> row)>;
+void fill_rows(BlockGrid& grid, const FillRow& fill) {
+  tbb::parallel_for(0, grid.dims.y * grid.dims.z, [&](int row) {
+    const glm::ivec3 first{0, row % grid.dims.y, row / grid.dims.y};
+    fill(first, std::span(grid.blocks).subspan(grid.index(first), static_cast<std::size_t>(grid.dims.x)));
   });
+}
+
+// The same by `make`, which gives one block.
+template <typename Make>
+FillRow block_by_block(const Make& make) {
+  return [&make](const glm::ivec3& first, std::span<BlockRef> row) {
+    for (std::size_t x = 0; x < row.size(); ++x)
+      row[x] = make(first + glm::ivec3(static_cast<int>(x), 0, 0)).detach();
+  };
 }
 
 // Joins blocks of height h, 4 x 4 x 4 at a time, to blocks of height h + 1.
 BlockGrid parents(const BlockGrid& children, int parent_height) {
-  BlockGrid grid{(children.dims + 3) / 4, {}};
-  grid.blocks.resize(static_cast<std::size_t>(grid.dims.x) * static_cast<std::size_t>(grid.dims.y) *
-                     static_cast<std::size_t>(grid.dims.z));
-  for_each_block(grid.dims, [&](const glm::ivec3& parent) {
+  BlockGrid grid((children.dims + 3) / 4);
+  const auto join = [&](const glm::ivec3& parent) {
     std::array<BlockRef, 64> present;
     std::size_t count = 0;
     std::uint64_t full = 0;
@@ -54,23 +69,16 @@ BlockGrid parents(const BlockGrid& children, int parent_height) {
       undecided |= std::uint64_t{1} << child;
       present[count++] = block;
     }
-    grid.blocks[grid.index(parent)] =
-        make_block(parent_height, full, undecided, {present.data(), count}).detach();
-  });
+    return make_block(parent_height, full, undecided, {present.data(), count});
+  };
+  fill_rows(grid, block_by_block(join));
   return grid;
 }
 
-// Blocks of height 2 cover dims * 16 voxels from the universe's first voxel on; all others are empty. `make`
-// gets a row of blocks at a time, by the place of its first.
-Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims,
-                      const std::function<void(const glm::ivec3& first, std::span<BlockRef> row)>& make) {
-  BlockGrid grid{dims, {}};
-  const auto length = static_cast<std::size_t>(dims.x);
-  grid.blocks.resize(length * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z));
-  tbb::parallel_for(0, dims.y * dims.z, [&](int row) {
-    const glm::ivec3 first{0, row % dims.y, row / dims.y};
-    make(first, std::span(grid.blocks).subspan(grid.index(first), length));
-  });
+// Blocks of height 2 cover dims * 16 voxels from the universe's first voxel on; all others are empty.
+Octree octree_of_grid(const Universe& universe, const glm::ivec3& dims, const FillRow& fill) {
+  BlockGrid grid(dims);
+  fill_rows(grid, fill);
   for (int height = 3; height <= root_height(universe.depth); ++height) grid = parents(grid, height);
   return {universe, Block::adopt(grid.blocks.front())};
 }
@@ -130,11 +138,7 @@ Octree octree_of_box(const Universe& universe, const glm::ivec3& low, const glm:
 }
 
 Octree octree_of_blocks(const Universe& universe, const std::function<Block(const glm::ivec3& block)>& make) {
-  return octree_of_grid(universe, glm::ivec3((universe.side() + 15) / 16),
-                        [&](const glm::ivec3& first, std::span<BlockRef> row) {
-                          for (std::size_t x = 0; x < row.size(); ++x)
-                            row[x] = make(first + glm::ivec3(static_cast<int>(x), 0, 0)).detach();
-                        });
+  return octree_of_grid(universe, glm::ivec3((universe.side() + 15) / 16), block_by_block(make));
 }
 
 Octree octree_of_window(const Universe& universe, const Scene& scene, double low, double high) {
