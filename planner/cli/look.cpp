@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <memory>
 
 #include "planner/cli/verbs.h"
 #include "planner/report/first_look.h"
@@ -22,6 +23,16 @@ int look(Program& program, LookText& text) {
   need_result_folder(text.out, {"report.html", "result.json"});
   text.options.evaluation = {program.stop.get_token(), program.progress(), true};
   text.options.read = read_options(program, text.in);
+  std::unique_ptr<voxel::Undo> early;
+  text.options.seen = [&](Result first) {
+    ResultFolder output(text.out);
+    if (output.replaces()) return;
+    write_result_files(first, output.path(), {program.stop.get_token(), {}});
+    early = output.publish_early();
+    // Only to people: a script reads one line of how the verb ended.
+    if (early && program.shows_progress())
+      warn("audit and pictures: " + (text.out / "report.html").string() + "; certificates follow");
+  };
   Result result = first_look(text.scan, text.options);
   for (const voxel::Finding& finding : result.findings) warn_finding(finding.detail);
   for (const ScanRecord& scan : result.evaluation.scans) program.note_scan(scan);

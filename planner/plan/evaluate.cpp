@@ -166,7 +166,7 @@ class Evaluator {
       report("read " + name, 0.0);
       const ScanSource& source = plan_.scans.at(name);
       std::string sha256;
-      if (take_cached_scan(name, source)) continue;
+      if (take_cached_scan(name, source) || take_loaded_scan(name)) continue;
       voxel::Scene scene = read(name, source, sha256);
       if (result_.scans.empty()) set_universe(scene.lattice);
       result_.scans.push_back(record_of(name, source.path, scene));
@@ -219,11 +219,24 @@ class Evaluator {
     const std::string key = scan_key(name, source);
     const auto known = options_.cache->scan(key);
     if (known == nullptr || (source.sha256 && *source.sha256 != known->record.sha256)) return false;
-    if (result_.scans.empty()) set_universe(known->loaded.scene().lattice);
     scan_keys_[name] = key;
-    result_.scans.push_back(known->record);
-    loaded_.insert_or_assign(name, known->loaded);
+    take_scan(name, known->loaded, known->record);
     return true;
+  }
+
+  bool take_loaded_scan(const std::string& name) {
+    if (options_.scans_of == nullptr) return false;
+    const auto known = options_.scans_of->loaded.find(name);
+    if (known == options_.scans_of->loaded.end()) return false;
+    for (const ScanRecord& record : options_.scans_of->scans)
+      if (record.name == name) take_scan(name, *known->second, record);
+    return true;
+  }
+
+  void take_scan(const std::string& name, const LoadedScan& scan, const ScanRecord& record) {
+    if (result_.scans.empty()) set_universe(scan.scene().lattice);
+    result_.scans.push_back(record);
+    loaded_.insert_or_assign(name, scan);
   }
 
   /// What every answer depends on beside its own step.

@@ -48,6 +48,9 @@ struct EvaluateOptions {
   bool ahead = false;
   /// Leaves every scan in Evaluation::loaded, so that slices of it can be drawn.
   bool keep_scans = false;
+  /// An earlier evaluation whose plan has the same scans and that kept them: they are not read again. May be
+  /// null.
+  const Evaluation* scans_of = nullptr;
   /// Answers of earlier evaluations, which are not made again, and to which new ones are added; may be null.
   ObjectCache* cache = nullptr;
   /// Adds no objects to the cache, as for a piece that is dragged, of which none comes again.

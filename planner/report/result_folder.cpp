@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <fcntl.h>
 #include <fstream>
+#include <set>
 #include <string_view>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -236,6 +237,21 @@ void take_over(const fs::path& old, const ResultList& list, const fs::path& made
   for (auto name = kept.rbegin(); name != kept.rend(); ++name) keep_mode(old / *name, made / *name);
 }
 
+/// Removes the files of a list that are unchanged, the list, and the folders that this empties; `place`
+/// itself unless it `was_there` before.
+void take_back(const fs::path& place, const ResultList& list, bool was_there) {
+  std::set<fs::path> folders;
+  for (const auto& [name, sum] : list) {
+    for (fs::path above = fs::path(name).parent_path(); !above.empty(); above = above.parent_path())
+      folders.insert(above);
+    if (unchanged(place / name, sum)) fs::remove(place / name);
+  }
+  fs::remove(place / list_name);
+  // Inner ones first; one that holds a user's file stays.
+  for (auto folder = folders.rbegin(); folder != folders.rend(); ++folder) ::rmdir((place / *folder).c_str());
+  if (!was_there) ::rmdir(place.c_str());
+}
+
 /// Step 4: empties a hidden folder and removes it. What is neither listed nor in `place` moves there. `sure`
 /// if the listed files are known to be unchanged.
 void discard(const fs::path& hidden, const fs::path& place, bool sure) {
@@ -383,31 +399,52 @@ void ResultFolder::copy_rest() {
 }
 
 void ResultFolder::publish() {
+  put_in_place([] {});
+}
+
+std::unique_ptr<voxel::Undo> ResultFolder::publish_early() {
+  std::unique_ptr<voxel::Undo> undo;
+  if (replaces()) return undo;
+  const bool was_there = is_there(final_);
+  put_in_place([&] {
+    undo = std::make_unique<voxel::Undo>([place = final_, list = result_list(final_), was_there] {
+      if (result_list(place) == list) take_back(place, list, was_there);
+    });
+  });
+  return undo;
+}
+
+bool ResultFolder::replaces() const {
+  return is_there(final_) && !(fs::is_directory(final_) && fs::is_empty(final_));
+}
+
+void ResultFolder::put_in_place(const std::function<void()>& then) {
   write_list(path());
   const PlaceLock held(final_.parent_path());
-  const bool replaces = is_there(final_) && !(fs::is_directory(final_) && fs::is_empty(final_));
+  const bool exchanges = replaces();
   try {
     const ResultList earlier = need_place(final_, final_, {});
-    if (replaces) take_over(final_, earlier, path(), final_);
+    if (exchanges) take_over(final_, earlier, path(), final_);
   } catch (const std::exception& error) {
     keep_beside(error.what());
   }
-  if (!replaces) keep_mode(final_, path());
+  if (!exchanges) keep_mode(final_, path());
   fs::path old;
   {
     const voxel::NamesChange change;
     // From the exchange on, the hidden folder holds other people's files: no ending may remove it.
     old = staged_->keep();
     // An empty folder is replaced, never a file or a folder with something in it.
-    const bool done = replaces
+    const bool done = exchanges
                           ? ::renameat2(AT_FDCWD, old.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0
                           : ::rename(old.c_str(), final_.c_str()) == 0;
-    if (!done && replaces && (errno == EINVAL || errno == ENOSYS))
+    if (!done && exchanges && (errno == EINVAL || errno == ENOSYS))
       exchange_in_steps(old, final_);
     else if (!done)
       keep_beside(final_.string() + ": " + std::generic_category().message(errno), old);
+    then();
   }
-  if (!replaces) return;
+  if (!exchanges) return;
   try {
     discard(old, final_, true);
   } catch (const std::exception&) {

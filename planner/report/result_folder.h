@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -57,8 +58,16 @@ class ResultFolder {
   /// put in the way during the work; the result then stays complete beside it, under the name in the message.
   /// Cost: one reading of all files, old and new.
   void publish();
+  /// Whether anything stands in its place by now but an empty folder.
+  bool replaces() const;
+  /// As publish(), for a first part of the result that says what it lacks; not where it replaces(),
+  /// since an earlier result is worth more than a part of the next: then it does nothing and returns null.
+  /// The answer takes the files out again, unless a later result has replaced them by then.
+  std::unique_ptr<voxel::Undo> publish_early();
 
  private:
+  /// Calls `then` before any ending can come between.
+  void put_in_place(const std::function<void()>& then);
   /// `hidden` is where the staged files are once they were kept.
   [[noreturn]] void keep_beside(const std::string& reason, const std::filesystem::path& hidden = {});
 

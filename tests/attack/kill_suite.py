@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Ends verbs at random instants and looks at what is left.
 
-Each verb runs again and again over an older answer and is ended somewhere between its first and last moment: by
-SIGKILL, by SIGTERM, SIGINT, SIGHUP or SIGXCPU, or by --time-limit. Afterwards the older answer or the newer one is
-there, whole, with every file of somebody else; no process that it started lives on; except after SIGKILL nothing
-unfinished is left, and after SIGKILL the next run removes it.
+Each verb runs again and again over an older answer, or where there is none, and is ended somewhere between its first
+and last moment: by SIGKILL, by SIGTERM, SIGINT, SIGHUP or SIGXCPU, or by --time-limit. Afterwards the older answer
+or the newer one is there, whole, with every file of somebody else; no process that it started lives on; except after
+SIGKILL nothing unfinished is left, and after SIGKILL the next run removes it.
 
   tests/attack/kill_suite.py build/release --count 1000
 """
 import argparse
+import json
 import random
+import shutil
 import signal
 import sys
 from collections import Counter
@@ -25,13 +27,15 @@ ENDINGS = (*SIGNALS, "limit")
 class Verb:
     """A command line, and the older answer that stands where it writes."""
 
-    def __init__(self, name, arguments, out):
-        self.name, self.arguments, self.out = name, arguments, out
+    def __init__(self, name, arguments, out, over_older=True):
+        self.name, self.arguments, self.out, self.over_older = name, arguments, out, over_older
         self.seconds, self.newer = 0.0, None
 
     def lay_older(self, subject):
         path = subject.folder / self.out
-        if self.is_folder:
+        if not self.over_older:
+            shutil.rmtree(path, ignore_errors=True)
+        elif self.is_folder:
             if not path.exists():
                 subject.need(*self.arguments)
                 (path / "mine.frd").write_text("mine")
@@ -44,9 +48,15 @@ class Verb:
     def is_folder(self):
         return "." not in self.out
 
-    def broken(self, subject):
-        """Why neither the older nor the newer answer is there."""
+    def broken(self, subject, killed=False):
+        """Why neither the older nor the newer answer is there. A killed look may leave its first pictures, whole."""
         path = subject.folder / self.out
+        if not self.over_older:
+            if not path.exists():
+                return ""
+            if not killed and not json.loads((path / "result.json").read_text())["certificates"]:
+                return "a result without certificates was left"
+            return broken_list(path)
         if self.is_folder:
             for mine in ("mine.frd", "views/mine.png"):
                 if not (path / mine).is_file() or (path / mine).read_text() != "mine":
@@ -65,6 +75,7 @@ class Verb:
 VERBS = (
     Verb("run", ("run", "plan.json", "-o", "result"), "result"),
     Verb("look", ("look", "head.nrrd", "-o", "looked"), "looked"),
+    Verb("look_new", ("look", "head.nrrd", "-o", "seen"), "seen", over_older=False),
     Verb("tet", ("tet", "ball.stl", "-o", "ball.inp"), "ball.inp"),
     Verb("convert", ("convert", "head.nrrd", "-o", "head.nii.gz"), "head.nii.gz"),
     Verb("mesh", ("mesh", "head.nrrd", "--window", "300:", "-o", "made.stl"), "made.stl"),
@@ -111,7 +122,7 @@ def judge(subject, verb, ending, asked):
         statuses[ended.status] += 1
         late = ended.after_signal if ending != "limit" else max(0.0, ended.seconds - delay_s)
         slowest = max(slowest, late or 0.0)
-        why = verb.broken(subject)
+        why = verb.broken(subject, ending == "kill")
         if left := subject.children_left():
             why = why or f"processes {left} live on"
         hidden = subject.hidden_left()

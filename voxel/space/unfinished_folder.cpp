@@ -34,6 +34,7 @@ constexpr const char* leaving = "~";
 struct Folders {
   std::recursive_timed_mutex mutex;
   std::vector<fs::path> paths;
+  std::vector<const std::function<void()>*> undone_at_end;
 };
 Folders& folders() {
   static auto* all = new Folders;
@@ -57,6 +58,16 @@ void remove_folder(const fs::path& path) {
   fs::rename(path, gone, ignored);
   fs::remove_all(gone, ignored);
   fs::remove_all(path, ignored);  // where it could not be renamed
+}
+
+/// What cannot be removed stays: it is hidden or says that it is unfinished, and the next run takes it away.
+template <typename Work>
+void quietly(const Work& work) {
+  try {
+    work();
+  } catch (...) {
+    return;
+  }
 }
 
 /// The locked folder's descriptor; -1 if it was removed meanwhile or there are no locks.
@@ -104,6 +115,17 @@ fs::path UnfinishedFolder::keep() {
   return std::exchange(path_, {});
 }
 
+Undo::Undo(std::function<void()> undo) : undo_(std::move(undo)) {
+  const std::lock_guard held(folders().mutex);
+  folders().undone_at_end.push_back(&undo_);
+}
+
+Undo::~Undo() {
+  const std::lock_guard held(folders().mutex);
+  std::erase(folders().undone_at_end, &undo_);
+  quietly(undo_);
+}
+
 void create_folders_in(const fs::path& folder, const fs::path& name) {
   fs::path made = folder;
   for (const fs::path& part : name) fs::create_directory(made /= part);
@@ -142,13 +164,8 @@ void remove_unfinished() noexcept {
   const bool settled = names_mutex().try_lock_for(std::chrono::milliseconds(100));
   static_cast<void>(settled);
   if (!folders().mutex.try_lock_for(std::chrono::seconds(10))) return;  // the next run removes what is left
-  for (const fs::path& path : folders().paths) {
-    try {
-      remove_folder(path);
-    } catch (...) {  // what is left is hidden, and the next run removes it
-      continue;
-    }
-  }
+  for (const fs::path& path : folders().paths) quietly([&path] { remove_folder(path); });
+  for (const auto* undo : folders().undone_at_end) quietly(*undo);
 }
 
 }  // namespace octotomy::voxel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <mutex>
 
 namespace octotomy::voxel {
@@ -28,6 +29,19 @@ class UnfinishedFolder {
   int lock_ = -1;
 };
 
+/// What takes back something that others see already and that is not finished: called when the object goes,
+/// or by remove_unfinished(), whichever comes first.
+class Undo {
+ public:
+  explicit Undo(std::function<void()> undo);
+  Undo(const Undo&) = delete;
+  Undo& operator=(const Undo&) = delete;
+  ~Undo();
+
+ private:
+  std::function<void()> undo_;
+};
+
 /// Makes the folders that a name in a folder leads through, and that folder itself never: it may have been
 /// removed for good meanwhile, by remove_unfinished(). Throws std::filesystem::filesystem_error.
 void create_folders_in(const std::filesystem::path& folder, const std::filesystem::path& name);
@@ -48,7 +62,8 @@ class NamesChange {
   std::unique_lock<std::timed_mutex> held_;
 };
 
-/// Removes every unfinished folder of this process, for a process that ends without its destructors. No
+/// Removes every unfinished folder of this process and undoes what an Undo stands for, for a process that
+/// ends without its destructors. No
 /// folder can be made or removed afterwards: a thread that tries waits for the end. Waits at most 100 ms for
 /// a NamesChange, and 10 s for a folder that is being removed; after that it leaves all to the next run.
 void remove_unfinished() noexcept;

@@ -213,6 +213,21 @@ TEST_F(VerbOutputs, AnInterruptedSeriesLeavesNothing) {
   EXPECT_TRUE(before == all()) << "something was left";
 }
 
+TEST_F(VerbOutputs, ALookShowsPicturesFirstAndTakesThemBackWhenItIsInterrupted) {
+  ASSERT_EQ(run("phantom head -o head.nrrd").status, 0);
+  const auto before = all();
+  const tests::CommandAnswer answer =
+      shell("{ " OCTOTOMY_BINARY_DIR
+            "/octotomy look head.nrrd -o seen & } && "
+            "for i in $(seq 3000); do [ -e seen/report.html ] && break; sleep 0.01; done; "
+            "kill -STOP $!; ls seen/views; cat seen/result.json; kill -TERM $!; kill -CONT $!; wait $!");
+  EXPECT_EQ(answer.status, 3) << answer.errors;
+  EXPECT_NE(answer.out.find("bone_anterior.png"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("\"audit\": ["), std::string::npos);
+  EXPECT_NE(answer.out.find("\"certificates\": []"), std::string::npos);
+  EXPECT_TRUE(before == all()) << "something was left";
+}
+
 TEST_F(VerbOutputs, AFullDiskTakesNeitherOfTwoFiles) {
   ASSERT_EQ(run(follow + "-o c.json --codes e.json").status, 0);
   const fs::path disk = folder_ / "disk";

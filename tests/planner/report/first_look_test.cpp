@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "planner/report/first_look.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "tests/planner/ball_scan.h"
@@ -60,6 +61,40 @@ TEST(FirstLook, ARawScanIsLookedAtWithAWarning) {
   EXPECT_EQ(result.parts[0].volumes_mm3.size(), 1u);
   ASSERT_EQ(result.pictures.size(), 2u);
   EXPECT_EQ(result.pictures[0].pictures.size(), all_views().size());
+}
+
+TEST(FirstLook, PicturesAndAuditAreSeenBeforeCertificates) {
+  const tests::ScratchFolder folder;
+  voxel::write_scene(raw_head(), folder / "head.nrrd");
+  std::vector<Result> seen;
+  std::vector<double> shares;
+  LookOptions options{1500.0, 500.0, {}};
+  options.evaluation.progress = [&](const std::string&, double share) { shares.push_back(share); };
+  options.seen = [&](Result first) {
+    EXPECT_LT(shares.back(), 0.5);
+    seen.push_back(std::move(first));
+  };
+  const Result whole = first_look(folder / "head.nrrd", options);
+  ASSERT_EQ(seen.size(), 1u);
+  const Result& first = seen.front();
+  ASSERT_EQ(first.findings.size(), 1u);
+  EXPECT_EQ(first.findings[0].check, "certificates");
+  EXPECT_TRUE(whole.findings.empty());
+  ASSERT_EQ(first.evaluation.scans.size(), 1u);
+  EXPECT_FALSE(first.evaluation.scans[0].audit.empty());
+  EXPECT_EQ(first.evaluation.scans[0].sha256, whole.evaluation.scans.at(0).sha256);
+  for (const char* id : {"bone", "skin"}) {
+    const Object &before = first.evaluation.object(id), &after = whole.evaluation.object(id);
+    EXPECT_FALSE(before.certificate);
+    ASSERT_TRUE(after.certificate);
+    EXPECT_EQ(after.certificate->verdict, verify::Verdict::Pass);
+    EXPECT_TRUE(before.voxel.octree == after.voxel.octree);
+  }
+  ASSERT_EQ(first.pictures.size(), 2u);
+  EXPECT_EQ(first.pictures[0].pictures[0].png, whole.pictures.at(0).pictures.at(0).png);
+  EXPECT_EQ(first.parts[0].volumes_mm3, whole.parts.at(0).volumes_mm3);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.back(), 1.0);
 }
 
 TEST(FirstLook, ItsPlanCanBeReplayed) {

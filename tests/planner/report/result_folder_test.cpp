@@ -107,6 +107,50 @@ TEST(ResultFolder, FilesOfSomebodyElseStayWhereTheyAre) {
   EXPECT_EQ(tests::bytes_of(folder / "out/face.frd"), "solved");
 }
 
+/// Publishes `text` early; what takes it back.
+std::unique_ptr<voxel::Undo> publish_early(const fs::path& folder, const std::string& text) {
+  ResultFolder result(folder);
+  fs::create_directory(result.path() / "views");
+  write_text(result.path() / "report.html", text);
+  write_text(result.path() / "views/left.png", text);
+  return result.publish_early();
+}
+
+TEST(ResultFolder, AnEarlyResultIsTakenBackWithNothingOfSomebodyElse) {
+  const tests::ScratchFolder folder;
+  {
+    const auto early = publish_early(folder / "out", "early");
+    EXPECT_EQ(tests::bytes_of(folder / "out/views/left.png"), "early");
+    EXPECT_EQ(refusal(folder / "out"), "") << "it is a result as any other";
+  }
+  EXPECT_EQ(entries(folder.path()), 0);
+  {
+    const auto early = publish_early(folder / "out", "early");
+    write_text(folder / "out/report.html", "mine");
+    write_text(folder / "out/views/mine.png", "mine");
+  }
+  EXPECT_EQ(tests::bytes_of(folder / "out/report.html"), "mine");
+  EXPECT_EQ(tests::bytes_of(folder / "out/views/mine.png"), "mine");
+  EXPECT_EQ(entries(folder / "out") + entries(folder / "out/views"), 3);
+  fs::create_directory(folder / "empty");
+  { const auto early = publish_early(folder / "empty", "early"); }
+  EXPECT_TRUE(fs::is_directory(folder / "empty")) << "it was there before";
+  EXPECT_EQ(entries(folder / "empty"), 0);
+}
+
+TEST(ResultFolder, AnEarlyResultYieldsToAWholeOne) {
+  const tests::ScratchFolder folder;
+  {
+    const auto early = publish_early(folder / "out", "early");
+    publish(folder / "out", {"report.html", "views/left.png"}, "whole");
+  }
+  EXPECT_EQ(tests::bytes_of(folder / "out/report.html"), "whole");
+  EXPECT_EQ(tests::bytes_of(folder / "out/views/left.png"), "whole");
+  EXPECT_EQ(publish_early(folder / "out", "next"), nullptr) << "an earlier result stands there";
+  EXPECT_EQ(tests::bytes_of(folder / "out/report.html"), "whole");
+  EXPECT_EQ(entries(folder.path()), 1);
+}
+
 TEST(ResultFolder, AChangedFileIsRefusedByItsName) {
   const tests::ScratchFolder folder;
   publish(folder / "out", {"report.html", "views/left.png"}, "old");

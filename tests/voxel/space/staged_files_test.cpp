@@ -247,13 +247,15 @@ TEST(UnfinishedFolder, AnEndingWithoutDestructorsRemovesAll) {
     UnfinishedFolder given(folder.path(), "given-");
     write(one.path() / "a", "half");
     const fs::path kept = given.keep();
+    const Undo undo([&kept] { write(kept / "b", "undone"); });
     remove_unfinished();
     ::_exit(fs::exists(one.path()) ? 1 : 0);
   }
   int status = 0;
   ::waitpid(child, &status, 0);
   EXPECT_EQ(status, 0);
-  EXPECT_EQ(entries(folder.path()), 1) << "what was given away stays";
+  ASSERT_EQ(entries(folder.path()), 1) << "what was given away stays";
+  EXPECT_TRUE(fs::exists(fs::directory_iterator(folder.path())->path() / "b"));
 }
 
 TEST(UnfinishedFolder, AnEndingWhileAFolderIsRemovedLeavesNoneOfIt) {
