@@ -166,6 +166,50 @@ OCTOTOMY_FOR_VECTORS void squared_distances(const FourTriangles& four, double px
   }
 }
 
+Lanes absolute(Lanes a) {
+  return larger(a, -a);
+}
+
+/// The part of a segment that is in a box about the origin, by its own middle and half its way. `slack` is
+/// more than what roundings add up to: in floats of the part's ends and of a box's middle and size, five of
+/// 2^-24 of the longest ways at most; in doubles of where a far end is cut off.
+struct FlatSegment {
+  ThreeLanes middle, way, reach;
+  Lanes slack;
+  bool is_empty;
+
+  FlatSegment(glm::dvec3 from, glm::dvec3 to, const glm::dvec3& most) {
+    const glm::dvec3 far = glm::max(glm::abs(from), glm::abs(to));
+    const double slack_mm = 0x1p-20 * (most.x + most.y + most.z) + 0x1p-48 * std::max({far.x, far.y, far.z});
+    is_empty = !cut_off(from, to, most + slack_mm);
+    middle = lanes_of(glm::vec3(0.5 * (from + to)));
+    way = lanes_of(glm::vec3(0.5 * (to - from)));
+    for (std::size_t axis = 0; axis < 3; ++axis) reach[axis] = absolute(way[axis]);
+    slack = lanes_of(static_cast<float>(2.0 * slack_mm));
+  }
+
+ private:
+  /// Whether anything is left.
+  static bool cut_off(glm::dvec3& from, glm::dvec3& to, const glm::dvec3& most) {
+    const glm::dvec3 start = from, whole = to - from;
+    double first = 0.0, last = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (whole[axis] == 0.0) {
+        if (std::abs(start[axis]) > most[axis]) return false;
+        continue;
+      }
+      const double a = (-most[axis] - start[axis]) / whole[axis],
+                   b = (most[axis] - start[axis]) / whole[axis];
+      first = std::max(first, std::min(a, b));
+      last = std::min(last, std::max(a, b));
+    }
+    if (first > last) return false;
+    if (last < 1.0) to = start + last * whole;
+    if (first > 0.0) from = start + first * whole;
+    return true;
+  }
+};
+
 /// From here on a child is a leaf.
 constexpr std::uint32_t first_leaf = std::uint32_t{1} << 31;
 
@@ -191,6 +235,27 @@ struct FourBoxes {
     };
     const Lanes x = apart(0), y = apart(1), z = apart(2);
     return x * x + y * y + z * z;
+  }
+
+  /// Not 0 where a segment may meet the box: no axis of the box and no direction across both parts them
+  /// (Akenine-Moller et al., Real-Time Rendering, 2018, 22.9). Along an axis their middles are apart by more
+  /// than both reach; across, a product of what is off by `slack` is off by that times the other's size.
+  auto met(const FlatSegment& segment) const {
+    ThreeLanes apart, size;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      apart[axis] = 0.5f * (low[axis] + high[axis]) - segment.middle[axis];
+      size[axis] = 0.5f * (high[axis] - low[axis]) + segment.slack;
+    }
+    auto met = absolute(apart[0]) <= size[0] + segment.reach[0];
+    for (std::size_t axis = 1; axis < 3; ++axis)
+      met &= absolute(apart[axis]) <= size[axis] + segment.reach[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+      met &= absolute(segment.way[u] * apart[v] - segment.way[v] * apart[u]) <=
+             size[u] * segment.reach[v] + size[v] * segment.reach[u] +
+                 segment.slack * (absolute(apart[u]) + absolute(apart[v]));
+    }
+    return met;
   }
 
   /// Not 0 where a ray towards +x may pass the box; the point that it leaves lies in low_mm .. high_mm.
@@ -270,8 +335,10 @@ struct SurfaceTree::Tree {
   std::vector<FourBoxes> wide;  ///< two levels of nodes each; the first is the root
   glm::dvec3 middle{0.0};  ///< of all boxes: floats are taken from here, so that a far place costs no digits
   bool is_halved;          ///< nodes halve their triangles
+  std::vector<FourBoxes> boxes_of_leaf;    ///< of its triangles; for segments only
+  std::vector<std::uint32_t> leaf_number;  ///< by node; likewise
 
-  Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build == SurfaceTree::Build::Searched) {
+  Tree(const Triangles& source, SurfaceTree::Build build) : is_halved(build != SurfaceTree::Build::Hasty) {
     const auto count = static_cast<std::uint32_t>(source.faces.size());
     if (count == 0) return;
     std::vector<Centred> items(count);
@@ -310,6 +377,7 @@ struct SurfaceTree::Tree {
     for (std::uint32_t i = count; i < 4 * triangles.size(); ++i)
       triangles.back().put(i % 4, triangle(count - 1));
     widen();
+    if (build == SurfaceTree::Build::ForSegments) add_boxes_of_leaves();
   }
 
   Corners triangle(std::uint32_t number) const { return triangles[number / 4].at(number % 4); }
@@ -384,6 +452,40 @@ struct SurfaceTree::Tree {
         found(i, distance_mm, triangle);
       }
     });
+  }
+
+  Foot foot_on(std::uint32_t number, const glm::dvec3& p, double distance_mm) const {
+    const Corners t = triangle(number);
+    const glm::dvec3 weights = nearest_weights(p, t);
+    return {weights.x * t.a + weights.y * t.b + weights.z * t.c, distance_mm, faces[number], weights};
+  }
+
+  template <typename Meets>
+  bool any_along(const glm::dvec3& from, const glm::dvec3& to, const Meets& meets) const {
+    if (nodes.empty()) return false;
+    assert(!boxes_of_leaf.empty());
+    const FlatSegment segment(from - middle, to - middle, nodes[0].box.high - middle);
+    if (segment.is_empty) return false;
+    std::array<std::uint32_t, most_waiting> waiting;
+    std::size_t top = 0;
+    waiting[top++] = 0;
+    while (top > 0) {
+      const std::uint32_t child = waiting[--top];
+      const bool is_leaf = child >= first_leaf;
+      const FourBoxes& node = is_leaf ? boxes_of_leaf[leaf_number[child - first_leaf]] : wide[child];
+      assert(top + 4 <= waiting.size());
+      const auto met = node.met(segment);
+      // The first comes last, to be the next.
+      for (int lane = node.count - 1; lane >= 0; --lane) {
+        if (met[lane] == 0) continue;
+        const std::uint32_t number = node.child[static_cast<std::size_t>(lane)];
+        if (!is_leaf)
+          waiting[top++] = number;
+        else if (meets(faces[number]))
+          return true;
+      }
+    }
+    return false;
   }
 
   template <typename Visit>
@@ -465,6 +567,19 @@ struct SurfaceTree::Tree {
     });
   }
 
+  void add_boxes_of_leaves() {
+    leaf_number.resize(nodes.size());
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      if (nodes[n].count == 0) continue;
+      leaf_number[n] = static_cast<std::uint32_t>(boxes_of_leaf.size());
+      FourBoxes& boxes = boxes_of_leaf.emplace_back();
+      for (std::uint32_t i = nodes[n].first; i < nodes[n].first + nodes[n].count; ++i) {
+        const TreeBox box = box_of(triangle(i));
+        boxes.add({box.low - middle, box.high - middle}, i);
+      }
+    }
+  }
+
   std::pair<std::uint32_t, std::uint32_t> triangles_of_leaf(std::uint32_t node) const {
     return {nodes[node].first, nodes[node].first + nodes[node].count};
   }
@@ -491,7 +606,6 @@ struct SurfaceTree::Tree {
 SurfaceTree::SurfaceTree(const Triangles& triangles) : SurfaceTree(triangles, Build::Searched) {}
 SurfaceTree::SurfaceTree(const Triangles& triangles, Build build)
     : tree_(std::make_unique<Tree>(triangles, build)) {}
-SurfaceTree::SurfaceTree(const Mesh& mesh) : SurfaceTree(triangles_of(mesh)) {}
 SurfaceTree::~SurfaceTree() = default;
 SurfaceTree::SurfaceTree(SurfaceTree&&) noexcept = default;
 SurfaceTree& SurfaceTree::operator=(SurfaceTree&&) noexcept = default;
@@ -507,6 +621,12 @@ double SurfaceTree::distance_mm(const glm::dvec3& p_mm, std::uint32_t& triangle,
   return tree_->distance(p_mm, triangle, enough_mm);
 }
 
+Foot SurfaceTree::foot(const glm::dvec3& p_mm, std::uint32_t& triangle, double enough_mm) const {
+  tree_->check_not_empty();
+  const double distance_mm = tree_->distance(p_mm, triangle, enough_mm);
+  return tree_->foot_on(triangle, p_mm, distance_mm);
+}
+
 std::vector<Foot> SurfaceTree::feet(const std::vector<glm::dvec3>& points_mm) const {
   std::vector<Foot> feet(points_mm.size());
   visit_feet(points_mm, [&](std::size_t i, const Foot& foot) { feet[i] = foot; });
@@ -516,10 +636,7 @@ std::vector<Foot> SurfaceTree::feet(const std::vector<glm::dvec3>& points_mm) co
 void SurfaceTree::visit_feet(const std::vector<glm::dvec3>& points_mm,
                              const std::function<void(std::size_t point, const Foot& foot)>& visit) const {
   tree_->search(points_mm, [&](std::size_t i, double distance, std::uint32_t triangle) {
-    const Corners t = tree_->triangle(triangle);
-    const glm::dvec3 weights = nearest_weights(points_mm[i], t);
-    visit(i,
-          {weights.x * t.a + weights.y * t.b + weights.z * t.c, distance, tree_->faces[triangle], weights});
+    visit(i, tree_->foot_on(triangle, points_mm[i], distance));
   });
 }
 
@@ -530,6 +647,17 @@ std::vector<std::uint8_t> SurfaceTree::inside(const std::vector<glm::dvec3>& poi
       tree_->visit_crossings(points_mm[i], [&](std::uint32_t) { inside[i] ^= 1u; });
   });
   return inside;
+}
+
+bool SurfaceTree::is_inside(const glm::dvec3& p_mm) const {
+  bool inside = false;
+  tree_->visit_crossings(p_mm, [&](std::uint32_t) { inside = !inside; });
+  return inside;
+}
+
+bool SurfaceTree::meets_any(const glm::dvec3& from_mm, const glm::dvec3& to_mm,
+                            const std::function<bool(std::uint32_t face)>& meets) const {
+  return tree_->any_along(from_mm, to_mm, meets);
 }
 
 std::vector<Crossing> SurfaceTree::crossings(const glm::dvec3& p_mm) const {

@@ -4,7 +4,7 @@
 #include <CGAL/number_utils.h>
 #include <cstdint>
 #include <limits>
-#include <map>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -54,7 +54,7 @@ enum class AnswerLabels { none, of_each };
 /// label. False if they cannot be written.
 template <typename Complex>
 bool write_answer(int file, const Complex& complex, AnswerLabels with) {
-  std::map<typename Complex::Vertex_handle, std::uint32_t> number;
+  std::unordered_map<const void*, std::uint32_t> number;
   std::vector<double> points;
   std::vector<std::uint32_t> corners, labels;
   for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
@@ -62,7 +62,7 @@ bool write_answer(int file, const Complex& complex, AnswerLabels with) {
       labels.push_back(static_cast<std::uint32_t>(complex.subdomain_index(cell)));
     for (int i = 0; i < 4; ++i) {
       const auto [at, is_new] =
-          number.try_emplace(cell->vertex(i), static_cast<std::uint32_t>(number.size()));
+          number.try_emplace(&*cell->vertex(i), static_cast<std::uint32_t>(number.size()));
       if (is_new) {
         const auto& p = cell->vertex(i)->point();
         points.insert(points.end(), {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())});

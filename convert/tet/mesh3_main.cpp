@@ -6,24 +6,21 @@
 // Tournois, Yvinec, "3D mesh generation", CGAL user and reference manual 5.5; slivers are exuded as Cheng et
 // al. do, "Sliver exudation", JACM 47(5), 2000.
 
-#include <CGAL/AABB_face_graph_triangle_primitive.h>
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
-#include <CGAL/Polyhedral_mesh_domain_3.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/make_mesh_3.h>
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <tbb/task_arena.h>
+#include <unordered_set>
 #include <vector>
 
 #include "convert/tet/mesh3_criteria.h"
 #include "convert/tet/mesh3_exchange.h"
 #include "convert/tet/mesher_child.h"
+#include "convert/tet/surface_domain.h"
 
 using octotomy::convert::Mesh3Sizes;
 using octotomy::convert::MesherRequest;
@@ -32,11 +29,8 @@ namespace convert = octotomy::convert;
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using Surface = CGAL::Surface_mesh<Point>;
-
-using Domain = convert::StartingFrom<CGAL::Polyhedral_mesh_domain_3<Surface, Kernel>, Point>;
+using Point = convert::SurfaceDomain::Point_3;
+using Domain = convert::StartingFrom<convert::SurfaceDomain, Point>;
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 
@@ -44,45 +38,39 @@ using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 /// barycentric coordinates, and more with the way from there.
 class SizeField {
  public:
-  using FT = Kernel::FT;
+  using FT = Domain::FT;
 
-  SizeField(const Surface& surface, const std::vector<double>& sizes_mm, double grading)
-      : surface_(surface), sizes_mm_(sizes_mm), grading_(grading) {
-    tree_.insert(faces(surface).first, faces(surface).second, surface);
-    tree_.accelerate_distance_queries();
-  }
+  SizeField(const octotomy::brep::Triangles& surface, const octotomy::brep::SurfaceTree& tree,
+            const std::vector<double>& sizes_mm, double grading)
+      : surface_(surface), tree_(tree), sizes_mm_(sizes_mm), grading_(grading) {}
 
   FT operator()(const Point& p) const {
-    const auto [foot, face] = tree_.closest_point_and_primitive(p);
-    double size_mm = 0.0;
-    double weights = 0.0;
-    auto halfedge = surface_.halfedge(face);
-    for (int i = 0; i < 3; ++i, halfedge = surface_.next(halfedge)) {
-      // The weight of the corner opposite the side is the area between the side and the foot.
-      const Point& a = surface_.point(surface_.source(halfedge));
-      const Point& b = surface_.point(surface_.target(halfedge));
-      const double weight = std::sqrt(CGAL::squared_area(a, b, foot));
-      size_mm += weight * sizes_mm_[surface_.target(surface_.next(halfedge))];
-      weights += weight;
-    }
-    // A triangle without area takes the size of one of its corners.
-    size_mm = weights > 0.0 ? size_mm / weights : sizes_mm_[surface_.target(halfedge)];
-    return size_mm + grading_ * std::sqrt(CGAL::squared_distance(p, foot));
+    // Mesh_3 asks about one point twice, and about near ones one after the other; most are on the surface.
+    const glm::dvec3 p_mm(p.x(), p.y(), p.z());
+    if (p_mm == asked_mm_) return size_mm_;
+    const octotomy::brep::Foot foot = tree_.foot(p_mm, nearest_, on_surface_mm);
+    size_mm_ = grading_ * foot.distance_mm;
+    for (int i = 0; i < 3; ++i)
+      size_mm_ += foot.weights[i] * sizes_mm_[surface_.faces[foot.face][static_cast<std::size_t>(i)]];
+    asked_mm_ = p_mm;
+    return size_mm_;
   }
 
  private:
-  using Primitive = CGAL::AABB_face_graph_triangle_primitive<Surface>;
-  using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+  static constexpr double on_surface_mm = 1e-9;
 
-  const Surface& surface_;
+  const octotomy::brep::Triangles& surface_;
+  const octotomy::brep::SurfaceTree& tree_;
   const std::vector<double>& sizes_mm_;
   double grading_;
-  Tree tree_;
+  mutable std::uint32_t nearest_ = 0;
+  mutable glm::dvec3 asked_mm_{std::numeric_limits<double>::infinity()};
+  mutable double size_mm_ = 0.0;
 };
 
 /// A share of the field, up to a length, as Mesh_3 asks for it.
 struct Sizes {
-  using FT = Kernel::FT;
+  using FT = Domain::FT;
   const SizeField& field;
   double share = 1.0;
   double most_mm = std::numeric_limits<double>::infinity();
@@ -101,24 +89,26 @@ struct Least {
   double operator()(const Point& p) const { return share * field(p); }
 };
 
-bool read_surface(const MesherRequest& request, Surface& surface) {
+bool read_surface(const MesherRequest& request, octotomy::brep::Triangles& surface) {
   std::vector<Point> points;
   if (!convert::read_points(request.points, points) ||
       request.triangles > std::numeric_limits<std::uint32_t>::max() / 3)
     return false;
-  std::vector<std::uint32_t> corners(3 * request.triangles);
-  if (!read_all(corners.data(), corners.size() * sizeof(std::uint32_t))) return false;
-  for (const Point& p : points) surface.add_vertex(p);
-  for (std::size_t i = 0; i < corners.size(); i += 3)
-    if (surface.add_face(Surface::Vertex_index(corners[i]), Surface::Vertex_index(corners[i + 1]),
-                         Surface::Vertex_index(corners[i + 2])) == Surface::null_face())
-      throw std::runtime_error("triangle " + std::to_string(i / 3) + " does not join the others");
+  for (const Point& p : points) surface.points_mm.emplace_back(p.x(), p.y(), p.z());
+  surface.faces.resize(request.triangles);
+  if (!read_all(surface.faces.data(), surface.faces.size() * sizeof surface.faces[0])) return false;
+  // A side that two triangles run along the same way would count twice in what is inside.
+  std::unordered_set<std::uint64_t> sides;
+  for (std::size_t f = 0; f < surface.faces.size(); ++f)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!sides.insert(std::uint64_t{surface.faces[f][i]} << 32 | surface.faces[f][(i + 1) % 3]).second)
+        throw std::runtime_error("triangle " + std::to_string(f) + " does not join the others");
   return true;
 }
 
 struct Request {
   Mesh3Sizes sizes;
-  Surface surface;
+  octotomy::brep::Triangles surface;
   std::vector<Point> start;
   std::vector<double> sizes_mm;
 };
@@ -135,9 +125,13 @@ bool read(const MesherRequest& request, Request& read) {
 
 Complex mesh(const Request& request) {
   namespace p = CGAL::parameters;
-  const Domain domain(request.start, request.surface);
+  // No thread is started, which the limit of memory might refuse.
+  using octotomy::brep::SurfaceTree;
+  const SurfaceTree tree = tbb::task_arena(1).execute(
+      [&] { return SurfaceTree(request.surface, SurfaceTree::Build::ForSegments); });
+  const Domain domain(request.start, request.surface, tree);
   const Mesh3Sizes& sizes = request.sizes;
-  const SizeField field(request.surface, request.sizes_mm, sizes.grading);
+  const SizeField field(request.surface, tree, request.sizes_mm, sizes.grading);
   // A twentieth of the elements' target size there.
   constexpr double least_share = 0.05;
   const Least least{field, least_share};

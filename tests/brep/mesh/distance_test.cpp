@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "brep/mesh/distance.h"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
+#include <set>
 #include <tbb/global_control.h>
 
 #include "brep/mesh/halving.h"
@@ -106,6 +108,63 @@ TEST(SurfaceTree, ASphereOfManyTrianglesAgreesWithEveryTriangleAskedAloneHowever
   }
 }
 
+TEST(SurfaceTree, OnePointIsAnsweredAsManyAre) {
+  const SurfaceTree tree(shapes::sphere({0.1, 0.2, 0.3}, 1, 3));
+  const auto points = random_points(500, 1.5, 6);
+  const std::vector<Foot> feet = tree.feet(points);
+  const auto inside = tree.inside(points);
+  std::uint32_t near = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Foot foot = tree.foot(points[i], near);
+    EXPECT_EQ(foot.distance_mm, feet[i].distance_mm) << "point " << i;
+    EXPECT_NEAR(glm::length(foot.p_mm - feet[i].p_mm), 0.0, 1e-7) << "point " << i;
+    EXPECT_EQ(tree.is_inside(points[i]), inside[i] != 0) << "point " << i;
+  }
+}
+
+TEST(SurfaceTree, ASegmentIsAskedAboutAllTrianglesThatItMeetsAndFewOthers) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  const auto exact = [](const glm::dvec3& p) { return Kernel::Point_3(p.x, p.y, p.z); };
+  for (const glm::dvec3& centre : {glm::dvec3(0.1, 0.2, 0.3), glm::dvec3(1e6, -2e6, 3e5)}) {
+    const Triangles sphere = shapes::sphere(centre, 1, 4);
+    const SurfaceTree tree(sphere, SurfaceTree::Build::ForSegments);
+    std::vector<std::pair<glm::dvec3, glm::dvec3>> segments;
+    const auto points = random_points(400, 1.5, 5);
+    for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+      const glm::dvec3 from = centre + points[i], to = centre + points[i + 1];
+      const auto& corners = sphere.points_mm;
+      segments.emplace_back(from, to);
+      segments.emplace_back(from, from + 0.05 * (to - from));
+      segments.emplace_back(from, glm::dvec3(to.x, from.y, from.z));
+      segments.emplace_back(from, corners[i % corners.size()]);
+      segments.emplace_back(corners[i % corners.size()], corners[(7 * i + 1) % corners.size()]);
+      const auto& face = sphere.faces[3 * i % sphere.faces.size()];
+      segments.emplace_back(corners[face[0]], corners[face[1]]);
+    }
+    std::size_t met = 0, asked_about = 0;
+    for (const auto& [from, to] : segments) {
+      std::set<std::uint32_t> asked;
+      EXPECT_FALSE(tree.meets_any(from, to, [&](std::uint32_t face) {
+        asked.insert(face);
+        return false;
+      }));
+      asked_about += asked.size();
+      const Kernel::Segment_3 segment(exact(from), exact(to));
+      for (std::uint32_t f = 0; f < sphere.faces.size(); ++f) {
+        const auto& [a, b, c] = sphere.faces[f];
+        const Kernel::Triangle_3 triangle(exact(sphere.points_mm[a]), exact(sphere.points_mm[b]),
+                                          exact(sphere.points_mm[c]));
+        if (!CGAL::do_intersect(triangle, segment)) continue;
+        ++met;
+        EXPECT_TRUE(asked.contains(f)) << "triangle " << f;
+        EXPECT_TRUE(tree.meets_any(from, to, [&](std::uint32_t face) { return face == f; }));
+      }
+    }
+    EXPECT_GT(met, segments.size());
+    EXPECT_LT(asked_about, 8 * met);
+  }
+}
+
 TEST(SurfaceTree, ThreadsDoNotChangeTheBits) {
   const SurfaceTree tree(shapes::sphere({0, 0, 0}, 1, 4));
   const auto points = random_points(2000, 1.5, 3);
@@ -118,6 +177,8 @@ TEST(SurfaceTree, OfNothingHasNoDistanceAndNoInside) {
   const SurfaceTree tree{Triangles{}};
   EXPECT_THROW(tree.distances_mm({{0, 0, 0}}), std::invalid_argument);
   EXPECT_EQ(tree.inside({{0, 0, 0}}), std::vector<std::uint8_t>{0});
+  EXPECT_FALSE(tree.is_inside({0, 0, 0}));
+  EXPECT_FALSE(tree.meets_any({0, 0, 0}, {1, 1, 1}, [](std::uint32_t) { return true; }));
 }
 
 /// The search that SurfaceTree's answers are defined by, one box and one triangle at a time.
