@@ -528,10 +528,10 @@ struct SurfaceTree::Tree {
         leaf(self, begin, end);
         return;
       }
-      const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
-      again(again, begin, middle);
+      const auto parting = static_cast<std::uint32_t>(order.split(begin, end));
+      again(again, begin, parting);
       const auto second = static_cast<std::uint32_t>(nodes.size());
-      again(again, middle, end);
+      again(again, parting, end);
       inner(self, second);
     };
     build_run(build_run, 0, static_cast<std::uint32_t>(items.size()));
@@ -590,14 +590,14 @@ struct SurfaceTree::Tree {
     if (b == start || !is_halved) return false;
     std::uint32_t node = 0, begin = 0, end = static_cast<std::uint32_t>(faces.size());
     while (nodes[node].count == 0) {
-      const std::uint32_t middle = begin + (end - begin) / 2, second = nodes[node].first;
-      if ((a < middle) != (b < middle)) {
+      const std::uint32_t half = begin + (end - begin) / 2, second = nodes[node].first;
+      if ((a < half) != (b < half)) {
         const bool second_first =
             nodes[second].box.squared_distance(p) < nodes[node + 1].box.squared_distance(p);
-        return (a < middle) != second_first;
+        return (a < half) != second_first;
       }
-      (a < middle ? end : begin) = middle;
-      node = a < middle ? node + 1 : second;
+      (a < half ? end : begin) = half;
+      node = a < half ? node + 1 : second;
     }
     return a < b;
   }
