@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/glm.hpp>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "brep/mesh/triangles.h"
 
@@ -27,6 +30,21 @@ class CgalSurface {
   struct Mesh;
   explicit CgalSurface(std::unique_ptr<Mesh> mesh);
   std::unique_ptr<Mesh> mesh_;
+};
+
+using Segments = std::vector<std::pair<glm::dvec3, glm::dvec3>>;
+/// Asks which segments meet a surface, by CGAL's exact predicate: with CGAL's own tree, and with ours. Both
+/// return how many do.
+class SegmentQuestions {
+ public:
+  explicit SegmentQuestions(const brep::Triangles& triangles);
+  ~SegmentQuestions();
+  std::size_t met_by_cgal(const Segments& segments) const;
+  std::size_t met_by_ours(const Segments& segments) const;
+
+ private:
+  struct Trees;
+  std::unique_ptr<Trees> trees_;
 };
 
 }  // namespace octotomy::bench

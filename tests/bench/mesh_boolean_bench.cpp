@@ -133,6 +133,23 @@ void run_cgal_size(benchmark::State& state, const brep::Triangles& triangles) {
   const CgalSurface surface(triangles);
   for (auto _ : state) benchmark::DoNotOptimize(surface.volume_and_area());
 }
+
+/// Short ways about a ball's surface, as a mesher asks about them.
+void run_segments(benchmark::State& state, std::size_t (SegmentQuestions::*met)(const Segments&) const) {
+  const brep::Triangles surface = ball({0, 0, 0}, 224);
+  const SegmentQuestions questions(surface);
+  Segments segments;
+  for (std::size_t i = 0; i < surface.points_mm.size(); ++i) {
+    const glm::dvec3 from = surface.points_mm[i] * (0.97 + 0.06 * static_cast<double>(i % 64) / 63.0);
+    const auto turn = static_cast<double>(i + 1);
+    const glm::dvec3 way(std::sin(turn), std::sin(2.0 * turn), std::sin(3.0 * turn));
+    segments.emplace_back(from, from + 0.03 * glm::normalize(way));
+  }
+  std::size_t count = 0;
+  for (auto _ : state) count = (questions.*met)(segments);
+  state.counters["met"] = static_cast<double>(count);
+  state.counters["segments"] = static_cast<double>(segments.size());
+}
 #endif
 
 void run_manifold(benchmark::State& state, const Pair& pair) {
@@ -194,6 +211,10 @@ void register_mesh_boolean() {
   add("peer/cgal/mesh_measure/size/500k", [](benchmark::State& state) {
     run_cgal_size(state, ball({0, 0, 0}, 500));
   });
+  add("mesh_measure/segments/100k",
+      [](benchmark::State& state) { run_segments(state, &SegmentQuestions::met_by_ours); });
+  add("peer/cgal/mesh_measure/segments/100k",
+      [](benchmark::State& state) { run_segments(state, &SegmentQuestions::met_by_cgal); });
 #endif
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Whole verbs, run as the program that stands beside this one, and what the kernels need for the same
 // answers, called here: `kernels_s` tells their seconds and `ratio` how many times those the verb took.
-// Processor seconds are those of the verb's process.
+// Processor seconds are those of the verb's process. `first_s` is when the first pictures can be looked at.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -18,6 +18,7 @@
 #include <string>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 #include <utility>
 #include <variant>
@@ -60,8 +61,9 @@ Path program() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octotomy";
 }
 
-/// Runs the program to its end. Returns its exit status, or -1 where it did not start or was killed.
-int run_verb(std::vector<std::string> words, rusage& used) {
+/// Runs the program to its end, and calls `look` every few milliseconds meanwhile. Returns its exit status,
+/// or -1 where it did not start or was killed.
+int run_verb(std::vector<std::string> words, rusage& used, const std::function<void()>& look) {
   words.insert(words.begin(), program().string());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -73,8 +75,14 @@ int run_verb(std::vector<std::string> words, rusage& used) {
   pid_t child = -1;
   const int failed = ::posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return -1;
   int status = 0;
-  if (failed != 0 || ::wait4(child, &status, 0, &used) != child || !WIFEXITED(status)) return -1;
+  pid_t ended = 0;
+  while ((ended = ::wait4(child, &status, WNOHANG, &used)) == 0) {
+    look();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  if (ended != child || !WIFEXITED(status)) return -1;
   return WEXITSTATUS(status);
 }
 
@@ -91,6 +99,7 @@ double seconds_of(const std::function<void()>& run) {
 struct Verb {
   std::vector<std::string> words;
   std::function<void()> kernels;  ///< the same answers, without what verbs do beside
+  Path page = {};                 ///< in a folder of the verb's own: what it shows first, where it does
 };
 
 /// `make` prepares the data; it throws std::runtime_error to say what is missing.
@@ -100,17 +109,25 @@ void run(benchmark::State& state, const std::function<Verb()>& make) {
       throw std::runtime_error(program().string() + " is not built: ninja octotomy");
     const Verb verb = make();
     const double kernels_s = seconds_of(verb.kernels);
-    double verb_s = 0.0;
+    double verb_s = 0.0, first_s = 0.0;
     rusage used{};
     for (auto _ : state) {
       int status = 0;
-      verb_s += seconds_of([&] { status = run_verb(verb.words, used); });
+      if (!verb.page.empty()) std::filesystem::remove_all(verb.page.parent_path());
+      const auto start = std::chrono::steady_clock::now();
+      first_s = 0.0;
+      const auto look = [&] {
+        if (first_s == 0.0 && !verb.page.empty() && std::filesystem::exists(verb.page))
+          first_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      };
+      verb_s += seconds_of([&] { status = run_verb(verb.words, used, look); });
       // 1 is a certificate that fails, which takes as long.
       if (status != 0 && status != 1)
         throw std::runtime_error("'" + verb.words.front() + "' ended with status " + std::to_string(status));
     }
     state.counters["kernels_s"] = kernels_s;
     state.counters["ratio"] = verb_s / static_cast<double>(state.iterations()) / kernels_s;
+    if (!verb.page.empty()) state.counters["first_s"] = first_s;
     state.counters["cpu_s"] = seconds_of(used.ru_utime) + seconds_of(used.ru_stime);
   } catch (const std::exception& error) {
     state.SkipWithError(error.what());
@@ -178,11 +195,13 @@ voxel::Universe universe_about(const voxel::Scene& scene) {
 
 Verb look() {
   const Path scan = fine_head({512, 512, 200});
-  return {{"look", scan.string(), "-o", (workspace() / "look").string()}, [scan] {
+  return {{"look", scan.string(), "-o", (workspace() / "look").string()},
+          [scan] {
             const voxel::Scene scene = voxel::read_scene(scan, {});
             const voxel::GreyOctree grey = voxel::grey_octree_of(universe_about(scene), scene, -1024);
             for (const double low : {300.0, -300.0}) window_kernels(scene, grey, low);
-          }};
+          },
+          workspace() / "look/report.html"};
 }
 
 /// A skull cut by a mask, its piece moved and joined: seven objects with certificates.
