@@ -80,12 +80,14 @@ class SurfaceDomain {
 
   static glm::dvec3 vector_of(const Point_3& p) { return {p.x(), p.y(), p.z()}; }
 
+  /// Its last corner comes first, as in CGAL's surface mesh: common points are then rounded as they are
+  /// there.
   Triangle triangle(std::uint32_t face) const {
     const auto corner = [&](std::size_t i) {
       const glm::dvec3& p = surface_.points_mm[surface_.faces[face][i]];
       return Point_3(p.x, p.y, p.z);
     };
-    return {corner(0), corner(1), corner(2)};
+    return {corner(2), corner(0), corner(1)};
   }
 
   /// The part of a query that can meet the surface.

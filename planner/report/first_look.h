@@ -14,7 +14,7 @@ struct LookOptions {
   /// Hounsfield units; otherwise thresholds_of() the scan's own samples, with a finding that says so.
   std::optional<double> bone_low, skin_low;
   EvaluateOptions evaluation;
-  /// Called with what the voxel kernel has alone: audit, pictures, parts and volumes, after about a tenth of
+  /// Called with what the voxel kernel has alone: audit, pictures, parts and volumes, after about a fifth of
   /// the time. A finding in it says that the mesh kernel and the certificates are still to come.
   std::function<void(Result first)> seen = nullptr;
   voxel::ReadOptions read = {};  ///< the series, and what the file does not say of itself

@@ -62,10 +62,10 @@ class NamesChange {
   std::unique_lock<std::timed_mutex> held_;
 };
 
-/// Removes every unfinished folder of this process and undoes what an Undo stands for, for a process that
-/// ends without its destructors. No
-/// folder can be made or removed afterwards: a thread that tries waits for the end. Waits at most 100 ms for
-/// a NamesChange, and 10 s for a folder that is being removed; after that it leaves all to the next run.
+/// Removes every unfinished folder of this process and calls what each Undo holds, for a process that ends
+/// without its destructors. No folder can be made or removed afterwards: a thread that tries waits for the
+/// end. Waits at most 100 ms for a NamesChange, and 10 s for a folder that is being removed; after that it
+/// leaves all to the next run.
 void remove_unfinished() noexcept;
 
 }  // namespace octotomy::voxel

@@ -35,6 +35,13 @@ class VerbOutputs : public tests::CommandLine {
   tests::CommandAnswer run(const std::string& arguments) const {
     return shell(OCTOTOMY_BINARY_DIR "/octotomy " + arguments);
   }
+  /// A verb that stands still as soon as a file is there, and goes on after `meanwhile`, whose $! it is.
+  tests::CommandAnswer stopped_at(const std::string& file, const std::string& arguments,
+                                  const std::string& meanwhile) const {
+    return shell("{ " OCTOTOMY_BINARY_DIR "/octotomy " + arguments +
+                 " & } && for i in $(seq 3000); do [ -e " + file +
+                 " ] && break; sleep 0.01; done; kill -STOP $!; " + meanwhile + "; kill -CONT $!; wait $!");
+  }
   std::string bytes(const std::string& name) const { return tests::bytes_of(folder_ / name); }
   /// What is in the folder, with each file's bytes.
   std::map<std::string, std::string> all() const {
@@ -204,10 +211,9 @@ TEST_F(VerbOutputs, AnInterruptedSeriesLeavesNothing) {
   const auto before = all();
   // Two signals end the verb at once, between the first slice and the last.
   const tests::CommandAnswer answer =
-      shell("{ " OCTOTOMY_BINARY_DIR
-            "/octotomy convert flat.raw --raw 16x16x3000 int16 --spacing 1,1,1 --dicom -o series & } && "
-            "for i in $(seq 3000); do [ -e .octotomy-*/series/slice_0001.dcm ] && break; sleep 0.01; done; "
-            "kill -STOP $!; kill -TERM $!; kill -INT $!; kill -CONT $!; wait $!");
+      stopped_at(".octotomy-*/series/slice_0001.dcm",
+                 "convert flat.raw --raw 16x16x3000 int16 --spacing 1,1,1 --dicom -o series",
+                 "kill -TERM $!; kill -INT $!");
   EXPECT_EQ(answer.status, 3) << answer.errors;
   EXPECT_NE(answer.errors.find("interrupted"), std::string::npos) << answer.errors;
   EXPECT_TRUE(before == all()) << "something was left";
@@ -216,11 +222,8 @@ TEST_F(VerbOutputs, AnInterruptedSeriesLeavesNothing) {
 TEST_F(VerbOutputs, ALookShowsPicturesFirstAndTakesThemBackWhenItIsInterrupted) {
   ASSERT_EQ(run("phantom head -o head.nrrd").status, 0);
   const auto before = all();
-  const tests::CommandAnswer answer =
-      shell("{ " OCTOTOMY_BINARY_DIR
-            "/octotomy look head.nrrd -o seen & } && "
-            "for i in $(seq 3000); do [ -e seen/report.html ] && break; sleep 0.01; done; "
-            "kill -STOP $!; ls seen/views; cat seen/result.json; kill -TERM $!; kill -CONT $!; wait $!");
+  const tests::CommandAnswer answer = stopped_at("seen/report.html", "look head.nrrd -o seen",
+                                                 "ls seen/views; cat seen/result.json; kill -TERM $!");
   EXPECT_EQ(answer.status, 3) << answer.errors;
   EXPECT_NE(answer.out.find("bone_anterior.png"), std::string::npos) << answer.out;
   EXPECT_NE(answer.out.find("\"audit\": ["), std::string::npos);
