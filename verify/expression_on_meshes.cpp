@@ -251,7 +251,7 @@ brep::Solid MeshExpressions::boolean(const brep::Solid& a, brep::Operation opera
   if (a.empty()) return operation == Operation::Union ? b : a;
   if (b.empty()) return operation == Operation::Intersection ? b : a;
 
-  Pair& pair = pairs_.try_emplace({&a.mesh(), &b.mesh()}, Pair{a, b, {}}).first->second;
+  Pair& pair = pairs_.try_emplace({&a.linked(), &b.linked()}, Pair{a, b, {}}).first->second;
   if (!pair.answers.contains(operation)) corefine(operation, pair);
   shift_mm_ += pair.shift_mm;
   return pair.answers.at(operation);

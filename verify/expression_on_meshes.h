@@ -71,7 +71,7 @@ class MeshExpressions {
   Signed intersection(const Signed& a, const Signed& b);
 
   brep::Solid world_;
-  /// By the operands' meshes. Keeps the operands, so that no address is reused.
+  /// By the triangles that each operand keeps. Keeps the operands, so that no address is reused.
   struct Pair {
     brep::Solid a, b;
     Answers answers;
@@ -79,7 +79,7 @@ class MeshExpressions {
   };
   /// Adds the answers of one corefinement to the known ones of the pair, `operation` among them.
   void corefine(brep::Operation operation, Pair& pair);
-  std::map<std::pair<const brep::Mesh*, const brep::Mesh*>, Pair> pairs_;
+  std::map<std::pair<const brep::Linked*, const brep::Linked*>, Pair> pairs_;
   double shift_mm_ = 0.0;
   std::vector<std::string> findings_;
   std::stop_token stop_;  ///< of the evaluate() under way

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <tuple>
@@ -52,8 +53,10 @@ std::pair<EdgePlace, Edge> placed(const Triangles& triangles, const Edge& edge) 
 
 /// A solid and its triangles as they are to be cut: its own, or others of the same surface.
 struct Operand {
+  Operand(const Solid& of, const Linked& as) : solid(of), linked(as), triangles(as.triangles) {}
+
   const Solid& solid;
-  const Mesh& mesh;
+  const Linked& linked;
   const Triangles& triangles;
 };
 
@@ -86,32 +89,41 @@ double cone_mm3(const Triangles& triangles, const std::array<std::uint32_t, 3>& 
   return glm::dot(a, glm::cross(b, c)) / 6.0;
 }
 
+/// Calls visit(side) for each side that leaves the same point as the given one, which is the first. Each is
+/// of another triangle. Precondition: the surface is closed, so that they come round.
+template <typename Visit>
+void visit_leaving(const Linked& linked, std::uint32_t first, const Visit& visit) {
+  std::uint32_t side = first;
+  do {
+    assert(linked.from(side) == linked.from(first));
+    visit(side);
+    side = linked.opposite[side % 3 == 0 ? side + 2 : side - 1];
+  } while (side != first);
+}
+
 /// Marks the triangles that meet, and all about points where these would be two fans: corefinement takes
 /// points for different ones where a surface has two at one place.
 void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting, Side& side) {
-  const Mesh& mesh = operand.mesh;
-  assert(operand.triangles.faces.size() == mesh.n_faces());
   side.near.assign(operand.triangles.faces.size(), 0);
   side.touching.assign(operand.triangles.points_mm.size(), 0);
-  std::vector<std::uint32_t> unseen;
+  std::vector<std::uint32_t> unseen;  // sides, which stand for the points that they leave
   const auto mark = [&](std::uint32_t f) {
     assert(f < side.near.size());
     if (side.near[f]) return;
     side.near[f] = 1;
     side.near_faces.push_back(f);
-    const auto& face = operand.triangles.faces[f];
-    unseen.insert(unseen.end(), face.begin(), face.end());
+    unseen.insert(unseen.end(), {3 * f, 3 * f + 1, 3 * f + 2});
   };
   for (const std::uint32_t f : meeting) mark(f);
   while (!unseen.empty()) {
-    const Mesh::VertexHandle v(static_cast<int>(unseen.back()));
+    const std::uint32_t leaving = unseen.back();
     unseen.pop_back();
     int fans = 0;
-    for (auto h = mesh.cvoh_begin(v); h != mesh.cvoh_end(v); ++h)
-      fans += side.near[static_cast<std::size_t>(mesh.face_handle(*h).idx())] &&
-              !side.near[static_cast<std::size_t>(mesh.opposite_face_handle(*h).idx())];
+    visit_leaving(operand.linked, leaving, [&](std::uint32_t s) {
+      fans += side.near[s / 3] && !side.near[operand.linked.opposite[s] / 3];
+    });
     if (fans < 2) continue;
-    for (auto f = mesh.cvf_begin(v); f != mesh.cvf_end(v); ++f) mark(static_cast<std::uint32_t>(f->idx()));
+    visit_leaving(operand.linked, leaving, [&](std::uint32_t s) { mark(s / 3); });
   }
   std::sort(side.near_faces.begin(), side.near_faces.end());
 }
@@ -149,22 +161,18 @@ void find_parts(const Operand& operand, Side& side) {
 }
 
 void find_border(const Operand& operand, Side& side) {
-  const Mesh& mesh = operand.mesh;
   side.border.clear();
   side.border_edges.clear();
-  for (const std::uint32_t f : side.near_faces) {
-    Mesh::HalfedgeHandle h = mesh.halfedge_handle(Mesh::FaceHandle(static_cast<int>(f)));
-    for (int k = 0; k < 3; ++k, h = mesh.next_halfedge_handle(h)) {
-      if (side.near[static_cast<std::size_t>(mesh.opposite_face_handle(h).idx())]) continue;
-      const auto from = static_cast<std::uint32_t>(mesh.from_vertex_handle(h).idx());
-      const auto to = static_cast<std::uint32_t>(mesh.to_vertex_handle(h).idx());
+  for (const std::uint32_t f : side.near_faces)
+    for (std::uint32_t s = 3 * f; s < 3 * f + 3; ++s) {
+      if (side.near[operand.linked.opposite[s] / 3]) continue;
+      const std::uint32_t from = operand.linked.from(s), to = operand.linked.to(s);
       assert(side.part[from] != none && side.part[from] == side.part[to]);
       side.border[edge_of(from, to)] = side.part[from];
       const auto [place, edge] = placed(operand.triangles, {from, to});
       if (!side.border_edges.try_emplace(place, edge).second)
         throw Obstacle("sheets of an operand touch along a border");
     }
-  }
 }
 
 /// Compensated, as one part may be nearly all of an operand (Neumaier 1974).
@@ -217,22 +225,23 @@ Patch patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) 
 /// Takes the near triangles that hang together with the points for far ones: they touch the other surface,
 /// and it does not cut them.
 void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& points, Side& side) {
-  const Mesh& mesh = operand.mesh;
+  std::vector<std::uint8_t> is_among(operand.triangles.points_mm.size(), 0);
+  for (const std::uint32_t v : points) is_among[v] = 1;
   std::vector<std::uint32_t> flood;
-  const auto take = [&](Mesh::FaceHandle face) {
-    const auto f = static_cast<std::uint32_t>(face.idx());
+  const auto take = [&](std::uint32_t f) {
     if (!side.near[f]) return;
     side.near[f] = 0;
     flood.push_back(f);
   };
-  for (const std::uint32_t v : points)
-    for (auto face = mesh.cvf_begin(Mesh::VertexHandle(static_cast<int>(v))); face.is_valid(); ++face)
-      take(*face);
+  for (const std::uint32_t f : side.near_faces) {
+    const auto& face = operand.triangles.faces[f];
+    if (is_among[face[0]] || is_among[face[1]] || is_among[face[2]]) take(f);
+  }
   while (!flood.empty()) {
-    const Mesh::FaceHandle face(static_cast<int>(flood.back()));
-    for (const std::uint32_t v : operand.triangles.faces[flood.back()]) side.touching[v] = 1;
+    const std::uint32_t f = flood.back();
     flood.pop_back();
-    for (auto beyond = mesh.cff_begin(face); beyond.is_valid(); ++beyond) take(*beyond);
+    for (const std::uint32_t v : operand.triangles.faces[f]) side.touching[v] = 1;
+    for (std::uint32_t s = 3 * f; s < 3 * f + 3; ++s) take(operand.linked.opposite[s] / 3);
   }
   std::erase_if(side.near_faces, [&](std::uint32_t f) { return !side.near[f]; });
 }
@@ -448,32 +457,21 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
   }
 }
 
-/// A solid's surface without the triangles that have no area: where one of them reaches over the border it
-/// breaks a corefinement off.
-struct Flattened {
-  explicit Flattened(const Solid& solid) : mesh(solid.mesh()), taken(take_out_flat_triangles(mesh).taken()) {
-    triangles = triangles_of(mesh);
-  }
-  Mesh mesh;
-  std::size_t taken;
-  Triangles triangles;
-};
-
-/// Sews the same surfaces cut into other triangles, if they have any without area.
+/// Sews the same surfaces cut into other triangles, if they have any without area: where one of those reaches
+/// over the border it breaks a corefinement off.
 void sew_flattened(const Solid& a, const Solid& b, const Wanted& wanted, const std::stop_token& stop,
                    NearBoolean& answer) {
-  std::array<std::optional<Flattened>, 2> flattened;
-  const auto operand = [&](const Solid& solid, std::optional<Flattened>& made) -> Operand {
-    if (has_flat_triangles(solid.triangles())) made.emplace(solid);
-    if (!made) return {solid, solid.mesh(), solid.triangles()};
-    return {solid, made->mesh, made->triangles};
+  std::size_t taken = 0;
+  const auto flattened = [&](const Solid& solid) -> std::optional<Linked> {
+    if (!has_flat_triangles(solid.triangles())) return {};
+    Mesh mesh = solid.mesh();
+    taken += take_out_flat_triangles(mesh).taken();
+    return linked_of(mesh);
   };
-  const Operand of_a = operand(a, flattened[0]), of_b = operand(b, flattened[1]);
-  const std::size_t taken =
-      (flattened[0] ? flattened[0]->taken : 0) + (flattened[1] ? flattened[1]->taken : 0);
+  const std::optional<Linked> of_a = flattened(a), of_b = flattened(b);
   if (taken == 0) return;
   answer = {};
-  sew(of_a, of_b, wanted, stop, answer);
+  sew({a, of_a ? *of_a : a.linked()}, {b, of_b ? *of_b : b.linked()}, wanted, stop, answer);
   answer.flat += taken;
 }
 
@@ -489,7 +487,7 @@ NearBoolean near_boolean(const Solid& a, const Solid& b, const Wanted& wanted, c
       answer.obstacle = obstacle.what();
     }
   };
-  attempt([&] { sew({a, a.mesh(), a.triangles()}, {b, b.mesh(), b.triangles()}, wanted, stop, answer); });
+  attempt([&] { sew({a, a.linked()}, {b, b.linked()}, wanted, stop, answer); });
   if (!answer.obstacle.empty() || answer.meets_itself)
     attempt([&] { sew_flattened(a, b, wanted, stop, answer); });
   return answer;
