@@ -404,7 +404,7 @@ Certificate certify_bounded(const voxel::Octree& octree, const brep::Solid& soli
   derive_volume_tolerance(certificate, evidence);
   derive_other_tolerances(certificate, evidence);
   progress.at(0.4);
-  const voxel::Octree digitised = convert::voxelise(octree.universe(), solid);
+  const voxel::Octree digitised = convert::voxelise(octree.universe(), solid.linked());
   const voxel::Octree either =
       voxel::combine(octree.universe(), voxel::Expression(octree) ^ voxel::Expression(digitised));
   certificate.symmetric_difference_mm3 = static_cast<double>(either.voxel_count()) * evidence.voxel_mm3;

@@ -114,7 +114,7 @@ Certificate certify_at_centres(const voxel::Octree& octree, const brep::Solid& s
                   std::abs(certificate.difference_mm3), certificate.tolerance_mm3, "sum of the terms"});
 
   const voxel::Octree differing = voxel::combine(
-      octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), solid));
+      octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), solid.linked()));
   certificate.symmetric_difference_mm3 = static_cast<double>(differing.voxel_count()) * lattice.voxel_mm3();
   const double reach_mm = glm::length(glm::max(glm::abs(triangles.low_mm), glm::abs(triangles.high_mm)));
   const DifferingCentres beyond = differing_centres(differing, solid, undecided_mm(reach_mm, shift_mm));
@@ -149,9 +149,9 @@ OperationAnswers certify_operation(const brep::Solid& a, brep::Operation operati
   OperationAnswers answers;
   const voxel::Progress& progress = options.progress;
   progress.at(0.0);
-  const voxel::Octree voxels_of_a = convert::voxelise(universe, a);
+  const voxel::Octree voxels_of_a = convert::voxelise(universe, a.linked());
   progress.at(0.15);
-  const voxel::Octree voxels_of_b = convert::voxelise(universe, b);
+  const voxel::Octree voxels_of_b = convert::voxelise(universe, b.linked());
   answers.octree = voxel::combine(universe, expression_of(voxels_of_a, operation, voxels_of_b));
   progress.at(0.3);
   brep::BooleanResult result;

@@ -359,7 +359,7 @@ Certificate certify_exact(const ExactAnswers& answers) {
     }
     area += brep::measure(solid).area_mm2;
     float_volume += brep::volume_mm3(solid);
-    const voxel::Octree part = convert::voxelise(answers.octree.universe(), solid);
+    const voxel::Octree part = convert::voxelise(answers.octree.universe(), brep::linked_of(solid));
     filled += part.voxel_count();
     either = either | Expression(part);
   }

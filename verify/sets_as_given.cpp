@@ -149,7 +149,7 @@ void compare(const voxel::Octree& octree, const brep::Solid& solid, double near,
     fail("The mesh kernel's volume is " + voxel::rounded(certificate.mesh.volume_mm3 / unit_mm3) +
          " voxels, the voxel kernel's " + std::to_string(voxels) + ".");
   const voxel::Octree differing = voxel::combine(
-      octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), solid));
+      octree.universe(), voxel::Expression(octree) ^ convert::voxelise(octree.universe(), solid.linked()));
   certificate.symmetric_difference_mm3 = static_cast<double>(differing.voxel_count()) * unit_mm3;
   if (!differing.is_empty())
     fail("Voxels of " + voxel::rounded(certificate.symmetric_difference_mm3) +

@@ -92,7 +92,7 @@ brep::Triangles interpolated(const voxel::PartialOctree& partial, const voxel::P
 }
 
 /// Pass 2: the volume that each voxel of the solid has more than within the surface.
-VoxelSums lacks_of(const voxel::PartialOctree& partial, const brep::Mesh& surface,
+VoxelSums lacks_of(const voxel::PartialOctree& partial, const brep::Linked& surface,
                    const voxel::Progress& progress) {
   const voxel::PartialOctree now = voxelise_partial(partial.inside.universe(), surface, progress);
   const double voxel_mm3 = partial.inside.universe().lattice().voxel_mm3();
@@ -114,7 +114,7 @@ VoxelSums lacks_of(const voxel::PartialOctree& partial, const brep::Mesh& surfac
 void move_outward(const voxel::PartialOctree& partial, brep::Triangles& surface,
                   const voxel::Progress& progress) {
   const voxel::Lattice lattice = partial.inside.universe().lattice();
-  const VoxelSums lacks_mm3 = lacks_of(partial, brep::mesh_of(surface), progress);
+  const VoxelSums lacks_mm3 = lacks_of(partial, brep::linked(surface), progress);
   std::vector<glm::dvec3> normal_mm2(surface.points_mm.size(), glm::dvec3(0.0));
   std::vector<double> area_mm2(surface.points_mm.size(), 0.0);
   for (const auto& [a, b, c] : surface.faces) {

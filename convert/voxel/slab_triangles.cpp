@@ -26,13 +26,13 @@ class VoxelFromLps {
   glm::dvec3 first_mm_;
 };
 
-template <typename Point>
-std::vector<glm::dvec3> points_in_index_space(const voxel::Universe& universe, std::size_t count,
-                                              const Point& point_mm) {
+std::vector<glm::dvec3> points_in_index_space(const voxel::Universe& universe,
+                                              const std::vector<glm::dvec3>& points_mm) {
   const VoxelFromLps voxel_from_lps(universe);
-  std::vector<glm::dvec3> points(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t v) { points[v] = voxel_from_lps(point_mm(v)); });
-  for (std::size_t v = 0; v < count; ++v)
+  std::vector<glm::dvec3> points(points_mm.size());
+  tbb::parallel_for(std::size_t{0}, points.size(),
+                    [&](std::size_t v) { points[v] = voxel_from_lps(points_mm[v]); });
+  for (std::size_t v = 0; v < points.size(); ++v)
     if (!std::isfinite(points[v].x + points[v].y + points[v].z))
       throw voxel::Error(voxel::ErrorCode::Geometry,
                          "voxelise: vertex " + std::to_string(v) + " has a coordinate that is not finite");
@@ -41,38 +41,19 @@ std::vector<glm::dvec3> points_in_index_space(const voxel::Universe& universe, s
 
 }  // namespace
 
-std::vector<Corners> triangles_in_index_space(const voxel::Universe& universe, const brep::Mesh& mesh) {
-  const std::vector<glm::dvec3> points =
-      points_in_index_space(universe, mesh.n_vertices(), [&](std::size_t v) {
-        const OpenMesh::Vec3d& p = mesh.point(OpenMesh::VertexHandle(static_cast<int>(v)));
-        return glm::dvec3(p[0], p[1], p[2]);
-      });
-  std::vector<Corners> triangles(mesh.n_faces());
+std::vector<Corners> triangles_in_index_space(const voxel::Universe& universe, const brep::Triangles& mesh) {
+  const std::vector<glm::dvec3> points = points_in_index_space(universe, mesh.points_mm);
+  std::vector<Corners> triangles(mesh.faces.size());
   tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t f) {
-    const OpenMesh::FaceHandle face(static_cast<int>(f));
-    if (mesh.status(face).deleted()) return;
-    OpenMesh::HalfedgeHandle halfedge = mesh.halfedge_handle(face);
-    for (glm::dvec3& corner : triangles[f]) {
-      corner = points[static_cast<std::size_t>(mesh.to_vertex_handle(halfedge).idx())];
-      halfedge = mesh.next_halfedge_handle(halfedge);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t point = mesh.faces[f][i];
+      if (point >= points.size())
+        throw voxel::Error(voxel::ErrorCode::Geometry, "voxelise: triangle " + std::to_string(f) +
+                                                           " names point " + std::to_string(point) +
+                                                           ", there are " + std::to_string(points.size()));
+      triangles[f][i] = points[point];
     }
   });
-  return triangles;
-}
-
-std::vector<Corners> triangles_in_index_space(const voxel::Universe& universe, const brep::Triangles& mesh) {
-  const std::vector<glm::dvec3> points = points_in_index_space(
-      universe, mesh.points_mm.size(), [&](std::size_t v) { return mesh.points_mm[v]; });
-  std::vector<Corners> triangles(mesh.faces.size());
-  for (std::size_t f = 0; f < triangles.size(); ++f)
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (mesh.faces[f][i] >= points.size())
-        throw voxel::Error(voxel::ErrorCode::Geometry, "voxelise: triangle " + std::to_string(f) +
-                                                           " names point " +
-                                                           std::to_string(mesh.faces[f][i]) + ", there are " +
-                                                           std::to_string(points.size()));
-      triangles[f][i] = points[mesh.faces[f][i]];
-    }
   return triangles;
 }
 

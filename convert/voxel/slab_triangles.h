@@ -21,9 +21,7 @@ inline constexpr int slab_layers = 16;
 /// Corners in a universe's index space, where voxel centres are integers.
 using Corners = std::array<glm::dvec3, 3>;
 
-/// Faces marked as deleted become triangles without extent. Throws voxel::Error (Geometry) if a point is not
-/// finite or does not exist. Parallel.
-std::vector<Corners> triangles_in_index_space(const voxel::Universe& universe, const brep::Mesh& mesh);
+/// Throws voxel::Error (Geometry) if a point is not finite or does not exist. Parallel.
 std::vector<Corners> triangles_in_index_space(const voxel::Universe& universe,
                                               const brep::Triangles& triangles);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <tbb/parallel_for.h>
 #include <utility>
@@ -27,15 +29,14 @@
 namespace octotomy::convert {
 namespace {
 
-void check_closed(const brep::Mesh& solid) {
-  for (const auto halfedge : solid.halfedges()) {
-    if (!solid.is_boundary(halfedge)) continue;
-    const OpenMesh::Vec3d& p = solid.point(solid.to_vertex_handle(halfedge));
-    throw voxel::Error(voxel::ErrorCode::Geometry, "voxelise: the mesh is open at (" + std::to_string(p[0]) +
-                                                       ", " + std::to_string(p[1]) + ", " +
-                                                       std::to_string(p[2]) +
-                                                       ") mm, so it has no inside: close its holes first");
-  }
+void check_closed(const brep::Linked& solid) {
+  const auto open = std::find(solid.opposite.begin(), solid.opposite.end(), brep::Linked::none);
+  if (open == solid.opposite.end()) return;
+  const glm::dvec3& p =
+      solid.triangles.points_mm[solid.from(static_cast<std::uint32_t>(open - solid.opposite.begin()))];
+  throw voxel::Error(voxel::ErrorCode::Geometry, "voxelise: the mesh is open at (" + std::to_string(p.x) +
+                                                     ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
+                                                     ") mm, so it has no inside: close its holes first");
 }
 
 /// Sixteen layers of voxels as rows of bits along x.
@@ -131,12 +132,12 @@ class Slab {
 
 }  // namespace
 
-voxel::Octree voxelise(const voxel::Universe& universe, const brep::Mesh& solid,
+voxel::Octree voxelise(const voxel::Universe& universe, const brep::Linked& solid,
                        const voxel::Progress& progress) {
   const int side = universe.side();
   progress.at(0.0);
   check_closed(solid);
-  const std::vector<Corners> triangles = triangles_in_index_space(universe, solid);
+  const std::vector<Corners> triangles = triangles_in_index_space(universe, solid.triangles);
   const SlabLists lists =
       sort_into_slabs(triangles, side, [side](const Corners& corners) { return layers_cut(corners, side); });
 

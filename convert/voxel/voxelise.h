@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/octree.h"
 
@@ -15,7 +15,7 @@ namespace octotomy::convert {
 /// is open, naming a place, or a vertex is not finite; voxel::Stopped. Parallel over slabs; same bits on any
 /// thread count. Cost: the triangles' footprint in the yz plane; memory 72 bytes a triangle and 8 bytes a
 /// block of 16^3 voxels.
-voxel::Octree voxelise(const voxel::Universe& universe, const brep::Mesh& solid,
+voxel::Octree voxelise(const voxel::Universe& universe, const brep::Linked& solid,
                        const voxel::Progress& progress = {});
 
 }  // namespace octotomy::convert

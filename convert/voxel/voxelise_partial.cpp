@@ -245,10 +245,10 @@ voxel::Octree touched_octree(const voxel::Universe& universe, const std::vector<
 
 }  // namespace
 
-voxel::PartialOctree voxelise_partial(const voxel::Universe& universe, const brep::Mesh& solid,
+voxel::PartialOctree voxelise_partial(const voxel::Universe& universe, const brep::Linked& solid,
                                       const voxel::Progress& progress) {
   const voxel::Octree centres = voxelise(universe, solid, {progress.stop, {}});
-  const std::vector<Corners> triangles = triangles_in_index_space(universe, solid);
+  const std::vector<Corners> triangles = triangles_in_index_space(universe, solid.triangles);
   const int side = universe.side();
   const SlabLists lists = sort_into_slabs(triangles, side, [side](const Corners& corners) {
     const auto [low, high] = std::minmax({corners[0].z, corners[1].z, corners[2].z});

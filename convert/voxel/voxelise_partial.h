@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "brep/mesh/mesh.h"
+#include "brep/mesh/triangles.h"
 #include "voxel/space/progress.h"
 #include "voxel/tree/partial_octree.h"
 
@@ -14,7 +14,7 @@ namespace octotomy::convert {
 /// the universe. Precondition: no self-intersection; otherwise shares are clamped to 0 and 1. Throws as
 /// voxelise(). Parallel over slabs; same bits on any thread count. Cost: the pieces into which voxels cut the
 /// triangles, each a polygon; 24 bytes a piece in sixteen layers a thread.
-voxel::PartialOctree voxelise_partial(const voxel::Universe& universe, const brep::Mesh& solid,
+voxel::PartialOctree voxelise_partial(const voxel::Universe& universe, const brep::Linked& solid,
                                       const voxel::Progress& progress = {});
 
 }  // namespace octotomy::convert

@@ -144,7 +144,7 @@ class OperationRun {
   void add_voxels(Object& object) {
     if (object.voxel.symbol) return;
     const Stopwatch watch(timings_, "voxelise");
-    object.voxel.octree = convert::voxelise(universe_, *object.mesh.whole, progress());
+    object.voxel.octree = convert::voxelise(universe_, object.mesh.whole->linked(), progress());
     object.voxel.symbol = voxel::Expression(object.voxel.octree);
     object.voxel.lineage = "voxel centres inside of " + object.definition;
   }
@@ -170,7 +170,8 @@ class OperationRun {
     const Stopwatch watch(timings_, "voxelise");
     const brep::Solid& solid = *made.mesh.whole;
     const voxel::Box box{solid.size().low_mm, solid.size().high_mm};
-    made.voxel.octree = convert::voxelise(universe_around(box, longest_side_mm(box)), solid, progress());
+    made.voxel.octree =
+        convert::voxelise(universe_around(box, longest_side_mm(box)), solid.linked(), progress());
     made.findings.emplace_back(mesh_alone);
   }
 

@@ -119,11 +119,10 @@ voxel::Octree voxels_of(const Tet& asked, const brep::Triangles& triangles, bool
     box.high_mm = glm::max(box.high_mm, p);
   }
   const glm::dvec3 extent = box.high_mm - box.low_mm;
-  const double volume_mm3 =
-      solid ? brep::volume_mm3(brep::mesh_of(triangles)) : extent.x * extent.y * extent.z;
+  const double volume_mm3 = solid ? brep::size_of(triangles).volume_mm3 : extent.x * extent.y * extent.z;
   const voxel::Universe universe =
       voxel::universe_around(box, asked.voxel_mm.value_or(fallback_voxel_mm(volume_mm3)));
-  return solid ? convert::voxelise(universe, brep::mesh_of(triangles))
+  return solid ? convert::voxelise(universe, brep::linked(triangles))
                : convert::voxelise_by_winding_number(universe, brep::joined_surface(triangles).surface);
 }
 

@@ -80,7 +80,7 @@ voxel::Universe universe_of(const Voxelise& asked, const std::vector<Subject>& s
   }
 }
 
-decltype(voxel::OctreeFile::tree) of_solid(const voxel::Universe& universe, const brep::Mesh& solid,
+decltype(voxel::OctreeFile::tree) of_solid(const voxel::Universe& universe, const brep::Linked& solid,
                                            const std::string& digitise, const voxel::Progress& progress) {
   if (digitise == "centre") return convert::voxelise(universe, solid, progress);
   voxel::PartialOctree partial = convert::voxelise_partial(universe, solid, progress);
@@ -100,7 +100,7 @@ decltype(voxel::OctreeFile::tree) voxelised(const FileBench& bench, const Voxeli
   const voxel::Progress progress = bench.progress("voxelising");
   const Stopwatch watch(bench.timings, "voxelise");
   decltype(voxel::OctreeFile::tree) tree =
-      subject.health.solid() ? of_solid(universe, brep::mesh_of(subject.triangles), asked.digitise, progress)
+      subject.health.solid() ? of_solid(universe, brep::linked(subject.triangles), asked.digitise, progress)
                              : convert::voxelise_by_winding_number(universe, subject.triangles, progress);
   if (is_nothing(tree))
     throw std::runtime_error(subject.path.string() +

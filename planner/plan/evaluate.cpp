@@ -431,7 +431,7 @@ class Evaluator {
       throw std::runtime_error(object.findings.empty() ? "there is no mesh to make voxels of"
                                                        : object.findings.front());
     const Stopwatch watch(result_.timings, "voxelise");
-    object.voxel.octree = convert::voxelise(result_.universe, *object.mesh.whole);
+    object.voxel.octree = convert::voxelise(result_.universe, object.mesh.whole->linked());
     object.voxel.symbol = voxel::Expression(object.voxel.octree);
     object.voxel.lineage = "the mesh kernel's answer, voxelised";
     object.witness = verify::witness_of_surface(*object.mesh.whole);

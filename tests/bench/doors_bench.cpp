@@ -114,11 +114,11 @@ brep::Triangles ball(int side) {
 }
 
 void run_voxelise(benchmark::State& state, int side) {
-  const brep::Mesh solid = brep::mesh_of(ball(side));
+  const brep::Linked solid = brep::linked(ball(side));
   std::uint64_t voxels = 0;
   for (auto _ : state) voxels = convert::voxelise(universe(side), solid).voxel_count();
   state.counters["voxels"] = static_cast<double>(voxels);
-  state.counters["triangles"] = static_cast<double>(solid.n_faces());
+  state.counters["triangles"] = static_cast<double>(solid.triangles.faces.size());
 }
 
 #if defined(OCTOTOMY_HAS_OPENVDB)

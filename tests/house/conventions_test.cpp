@@ -113,7 +113,7 @@ TEST(Conventions, BothKernelsPutAnObjectInTheSamePlace) {
   const voxel::Scene scene = box_scene(1.0);
   const voxel::Universe universe = voxel::universe_around(voxel::bounds(scene.lattice), 1.0);
   const brep::Mesh mesh = brep::mesh_of(convert::isosurface(scene, 500, 2000));
-  const voxel::Octree from_mesh = convert::voxelise(universe, mesh);
+  const voxel::Octree from_mesh = convert::voxelise(universe, brep::linked_of(mesh));
   const voxel::Octree from_samples =
       voxel::combine(universe, voxel::Window{voxel::grey_octree_of(universe, scene), 500, 2000});
   EXPECT_EQ(from_mesh.voxel_count(), from_samples.voxel_count());

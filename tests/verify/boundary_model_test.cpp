@@ -53,7 +53,7 @@ TEST(BoundaryModel, TheDeviationPredictedIsThatOfACountOverManyPlaces) {
       const glm::dvec3 by_mm =
           glm::fract(glm::dvec3(i) * glm::dvec3(0.8191725134, 0.6710436067, 0.5497004779));
       const auto count = static_cast<double>(
-          convert::voxelise(universe, brep::moved(mesh, glm::translate(glm::dmat4(1.0), by_mm)))
+          convert::voxelise(universe, brep::moved(mesh, glm::translate(glm::dmat4(1.0), by_mm)).linked())
               .voxel_count());
       squares += (count - truth_mm3) * (count - truth_mm3);
     }
@@ -82,7 +82,7 @@ TEST(BoundaryModel, APlanesDisplacementIsExactAndASlopesIsNone) {
   const brep::Solid box = brep::solid_of(prism);
   const BoundaryModel model = boundary_model(box, {unit_lattice(), glm::dvec3(1.0), {}});
   const voxel::Universe universe{6, unit_lattice().lps_from_voxel};
-  const auto count = static_cast<double>(convert::voxelise(universe, box).voxel_count());
+  const auto count = static_cast<double>(convert::voxelise(universe, box.linked()).voxel_count());
   // To first order: along 100 mm of edges displacements of 0.3 and 0.4 mm multiply.
   EXPECT_NEAR(count - brep::volume_mm3(box), model.planes.mm3, 15.0);
   EXPECT_DOUBLE_EQ(model.count_mm6, 0.0);
@@ -113,7 +113,7 @@ TEST(BoundaryModel, ARoughPlaneIsDisplacedInStepThoughNoneOfItsTrianglesIsFlat) 
     const brep::Solid mesh =
         brep::trusted_solid(convert::isosurface(scene, 0.0, 1e9), brep::Proof::Construction);
     const BoundaryModel model = boundary_model(mesh, {unit_lattice(), glm::dvec3(1.0), {}});
-    const auto count = static_cast<double>(convert::voxelise(universe, mesh).voxel_count());
+    const auto count = static_cast<double>(convert::voxelise(universe, mesh.linked()).voxel_count());
     const double displaced = count - brep::volume_mm3(mesh);
     EXPECT_NEAR(displaced, model.planes.mm3 + model.nearly_planes.mm3, 3.0 * std::sqrt(model.count_mm6))
         << "top at " << top;

@@ -43,7 +43,7 @@ struct Subject {
   Witness witness;
 
   voxel::Octree digitised(const brep::Solid& surface) const {
-    return convert::voxelise(octree.universe(), surface);
+    return convert::voxelise(octree.universe(), surface.linked());
   }
 };
 
@@ -297,7 +297,7 @@ TEST(Places, OfPartsAKernelThatKeepsACertainWordIsRight) {
   };
   const auto contradicted = [&](const Witness& witness, const voxel::Octree& octree,
                                 const brep::Solid& mesh) {
-    return judge_places(octree, convert::voxelise(universe, mesh), mesh, witness).voxel_count;
+    return judge_places(octree, convert::voxelise(universe, mesh.linked()), mesh, witness).voxel_count;
   };
   EXPECT_EQ(contradicted(whole, voxels, surface), 0U);
   EXPECT_EQ(contradicted(witness_of_parts(whole), voxels, surface), 0U);
@@ -328,8 +328,8 @@ TEST(Places, OfPartsACrumbThatNoFaceHoldsIsChanceAndABiteIsNone) {
     return {word, word};
   };
   const auto contradicted = [&](const Expression& octree) {
-    return judge_places(voxel::combine(universe, octree), convert::voxelise(universe, surface), surface,
-                        witness_of_parts(whole))
+    return judge_places(voxel::combine(universe, octree), convert::voxelise(universe, surface.linked()),
+                        surface, witness_of_parts(whole))
         .voxel_count;
   };
   EXPECT_EQ(contradicted(body), 0U);

@@ -90,7 +90,7 @@ std::string fault_of(const voxel::Octree& octree, const LatticeSurface& surface)
   if (twice_area_half(surface) != 8 * faces)
     return "twice the area " + std::to_string(twice_area_half(surface)) + " of " + std::to_string(faces) +
            " faces";
-  if (!(voxelise(octree.universe(), brep::mesh_of(triangles)) == octree)) return "another octree comes back";
+  if (!(voxelise(octree.universe(), brep::linked(triangles)) == octree)) return "another octree comes back";
   return "";
 }
 

@@ -59,19 +59,19 @@ std::string difference_from_box(const voxel::PartialOctree& partial, const glm::
 TEST(VoxelisePartial, ABoxFillsEachVoxelByTheProductOfItsOverlaps) {
   const glm::dvec3 low(2.3, 4.5, 5.125);
   const glm::dvec3 high(9.75, 11.5, 12.9);
-  EXPECT_EQ(difference_from_box(voxelise_partial(unit_universe(4), brep::mesh_of(box(low, high))), low, high),
+  EXPECT_EQ(difference_from_box(voxelise_partial(unit_universe(4), brep::linked(box(low, high))), low, high),
             "");
 }
 
 TEST(VoxelisePartial, TheComparisonWithABoxSeesAFaceMovedByAThousandthOfAVoxel) {
   const voxel::PartialOctree partial =
-      voxelise_partial(unit_universe(4), brep::mesh_of(box({2.3, 4.5, 5.125}, {9.75, 11.5, 12.9})));
+      voxelise_partial(unit_universe(4), brep::linked(box({2.3, 4.5, 5.125}, {9.75, 11.5, 12.9})));
   EXPECT_NE(difference_from_box(partial, {2.3, 4.5, 5.125}, {9.751, 11.5, 12.9}), "");
 }
 
 TEST(VoxelisePartial, ABoxWhoseFacesAreVoxelsFacesTouchesNoVoxelOutside) {
   const voxel::PartialOctree partial =
-      voxelise_partial(unit_universe(4), brep::mesh_of(box({1.5, 2.5, 3.5}, {8.5, 9.5, 12.5})));
+      voxelise_partial(unit_universe(4), brep::linked(box({1.5, 2.5, 3.5}, {8.5, 9.5, 12.5})));
   EXPECT_EQ(partial.inside.voxel_count(), 7U * 7U * 9U);
   EXPECT_TRUE(partial.inside == partial.touching);
 }
@@ -82,7 +82,7 @@ TEST(VoxelisePartial, ABoxLargerThanTheUniverseOnSomeSidesIsCutByIt) {
     const glm::dvec3 low(-20.0, -0.5, 1.25);
     const glm::dvec3 high(side - 1.75, side + 9.0, 1e4);
     EXPECT_EQ(
-        difference_from_box(voxelise_partial(unit_universe(depth), brep::mesh_of(box(low, high))), low, high),
+        difference_from_box(voxelise_partial(unit_universe(depth), brep::linked(box(low, high))), low, high),
         "")
         << "depth " << depth;
   }
@@ -91,7 +91,7 @@ TEST(VoxelisePartial, ABoxLargerThanTheUniverseOnSomeSidesIsCutByIt) {
 TEST(VoxelisePartial, AFaceInTheUniversesFirstPlaneStillFillsTheRow) {
   const glm::dvec3 low(-0.5, 1.0, 1.0);
   const glm::dvec3 high(6.0, 6.0, 6.0);
-  EXPECT_EQ(difference_from_box(voxelise_partial(unit_universe(3), brep::mesh_of(box(low, high))), low, high),
+  EXPECT_EQ(difference_from_box(voxelise_partial(unit_universe(3), brep::linked(box(low, high))), low, high),
             "");
 }
 
@@ -103,7 +103,7 @@ TEST(VoxelisePartial, AnObliqueBoxAgreesWithTheShapeThatTheVoxelKernelDigitisesB
   const glm::dvec3 half(8.2, 6.1, 9.7);
   brep::Triangles mesh = box(-half, half);
   for (glm::dvec3& p : mesh.points_mm) p = centre + turn * p;
-  const voxel::PartialOctree of_mesh = voxelise_partial(universe, brep::mesh_of(mesh));
+  const voxel::PartialOctree of_mesh = voxelise_partial(universe, brep::linked(mesh));
   const voxel::PartialOctree of_shape =
       voxel::digitise_partial(universe, voxel::OrientedBox{centre, half, turn});
   EXPECT_TRUE(of_mesh.inside == of_shape.inside);
@@ -122,12 +122,12 @@ TEST(VoxelisePartial, SharesSumToTheMeshsVolumeInAnyPoseAndHandednessWithACavity
                               glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, mirror * 1.1, 0.8));
     const glm::dvec3 centre = universe.lattice().lps_mm(glm::dvec3(15.2, 15.9, 16.3));
     const brep::Triangles shell = together(ball(centre, 10.1, 3), inside_out(ball(centre + 0.7, 5.3, 3)));
-    const voxel::PartialOctree partial = voxelise_partial(universe, brep::mesh_of(shell));
+    const voxel::PartialOctree partial = voxelise_partial(universe, brep::linked(shell));
     const double boundary = static_cast<double>(partial.fractions.size());
     // Roundings are independent: the root of their number, five times.
     EXPECT_NEAR(voxel::volume_mm3(partial), tests::volume_mm3(shell),
                 5.0 * std::sqrt(boundary) * share_rounding * universe.lattice().voxel_mm3());
-    const voxel::Octree centres = voxelise(universe, brep::mesh_of(shell));
+    const voxel::Octree centres = voxelise(universe, brep::linked(shell));
     EXPECT_LT(partial.inside.voxel_count(), centres.voxel_count());
     EXPECT_GT(partial.touching.voxel_count(), centres.voxel_count());
   }
@@ -149,21 +149,21 @@ TEST(VoxelisePartial, RandomTetrahedraFillTheirVolumeAndTouchingIsTheComplementO
     tet.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     if (tests::volume_mm3(tet) < 0.0) tet = inside_out(tet);
     if (tests::volume_mm3(tet) < 1e-3) continue;
-    const voxel::PartialOctree partial = voxelise_partial(unit_universe(4), brep::mesh_of(tet));
+    const voxel::PartialOctree partial = voxelise_partial(unit_universe(4), brep::linked(tet));
     boundary += partial.fractions.size();
     double outside = 0.0;  // what rounding puts beyond the universe
     EXPECT_NEAR(voxel::volume_mm3(partial) + outside, tests::volume_mm3(tet),
                 5.0 * std::sqrt(static_cast<double>(partial.fractions.size()) + 1.0) * share_rounding)
         << "seed " << seed;
     const voxel::PartialOctree coarse = voxelise_partial(
-        unit_universe(4), brep::mesh_of(together(box({-9, -9, -9}, {30, 30, 30}), inside_out(tet))));
+        unit_universe(4), brep::linked(together(box({-9, -9, -9}, {30, 30, 30}), inside_out(tet))));
     EXPECT_EQ(coarse.inside.voxel_count(), 4096U - partial.touching.voxel_count()) << "seed " << seed;
   }
   EXPECT_GT(boundary, 10000U);
 }
 
 TEST(VoxelisePartial, SaysHowFarItIsAndStopsWhenAsked) {
-  const brep::Mesh solid = brep::mesh_of(ball({31, 31, 31}, 20.0, 3));
+  const brep::Linked solid = brep::linked(ball({31, 31, 31}, 20.0, 3));
   double last = 0.0;
   voxelise_partial(unit_universe(6), solid, {{}, [&](double share) {
                                                EXPECT_GE(share, last);
@@ -176,7 +176,7 @@ TEST(VoxelisePartial, SaysHowFarItIsAndStopsWhenAsked) {
 }
 
 TEST(VoxelisePartial, GivesTheSameBitsOnOneThreadAndMany) {
-  const brep::Mesh solid = brep::mesh_of(ball({31.2, 30.7, 33.1}, 25.0, 4));
+  const brep::Linked solid = brep::linked(ball({31.2, 30.7, 33.1}, 25.0, 4));
   const voxel::PartialOctree many = voxelise_partial(unit_universe(6), solid);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const voxel::PartialOctree single = voxelise_partial(unit_universe(6), solid);

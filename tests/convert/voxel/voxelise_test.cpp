@@ -52,7 +52,7 @@ std::optional<glm::ivec3> first_unlike_winding(const voxel::Octree& octree, cons
 
 TEST(Voxelise, ABoxBetweenVoxelCentresHoldsItsVoxelsExactly) {
   const voxel::Octree octree =
-      voxelise(unit_universe(5), brep::mesh_of(box({1.5, 2.5, 3.5}, {20.5, 9.5, 30.5})));
+      voxelise(unit_universe(5), brep::linked(box({1.5, 2.5, 3.5}, {20.5, 9.5, 30.5})));
   EXPECT_EQ(octree.voxel_count(), 19U * 7U * 27U);
   EXPECT_TRUE(octree.contains({2, 3, 4}));
   EXPECT_TRUE(octree.contains({20, 9, 30}));
@@ -60,7 +60,7 @@ TEST(Voxelise, ABoxBetweenVoxelCentresHoldsItsVoxelsExactly) {
 }
 
 TEST(Voxelise, ABoxWithItsFacesOnVoxelCentresTakesTheLowerOnes) {
-  const voxel::Octree octree = voxelise(unit_universe(5), brep::mesh_of(box({3, 4, 5}, {13, 11, 30})));
+  const voxel::Octree octree = voxelise(unit_universe(5), brep::linked(box({3, 4, 5}, {13, 11, 30})));
   EXPECT_EQ(octree.voxel_count(), 10U * 7U * 25U);
   EXPECT_TRUE(octree.contains({3, 4, 5}));
   EXPECT_FALSE(octree.contains({13, 4, 5}));
@@ -72,7 +72,7 @@ TEST(Voxelise, VerticesAndEdgesOnRowsOfVoxelCentresDoNotLeak) {
   // Every vertex and every edge of the octahedron lies on rows of centres. Strictly inside are the points of
   // |x| + |y| + |z| <= r - 1, in number (2n + 1)(2n^2 + 2n + 3) / 3 with n = r - 1.
   const int r = 9;
-  const voxel::Octree octree = voxelise(unit_universe(5), brep::mesh_of(octahedron({15, 16, 14}, r)));
+  const voxel::Octree octree = voxelise(unit_universe(5), brep::linked(octahedron({15, 16, 14}, r)));
   std::uint64_t strictly = 0;
   std::uint64_t boundary = 0;
   for (int z = 0; z < 32; ++z)
@@ -107,12 +107,12 @@ TEST(Voxelise, TwoSolidsThatShareAFaceShareNoVoxelAndLoseNone) {
   upper.points_mm[4] = {2, 2, 12.75};
   upper.points_mm[6] = {2, 12, 12.75};
   const voxel::Universe universe = unit_universe(4);
-  const voxel::Octree low = voxelise(universe, brep::mesh_of(lower));
-  const voxel::Octree up = voxelise(universe, brep::mesh_of(upper));
+  const voxel::Octree low = voxelise(universe, brep::linked(lower));
+  const voxel::Octree up = voxelise(universe, brep::linked(upper));
   brep::Triangles whole = box({2, 2, 2}, {12, 12, 12});
   whole.points_mm[4] = upper.points_mm[4];
   whole.points_mm[6] = upper.points_mm[6];
-  const voxel::Octree all = voxelise(universe, brep::mesh_of(whole));
+  const voxel::Octree all = voxelise(universe, brep::linked(whole));
   for (int z = 0; z < 16; ++z)
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x) {
@@ -133,7 +133,7 @@ TEST(Voxelise, AgreesWithTheWindingNumberOnEveryVoxelInAnyPoseAndSize) {
                               glm::scale(glm::dmat4(1.0), glm::dvec3(h, h, 0.8 * h));
     const glm::dvec3 centre = universe.lattice().lps_mm(glm::dvec3(0.5 * (universe.side() - 1)));
     const brep::Triangles solid = ball(centre + 0.37, 10.3, 2);
-    const voxel::Octree octree = voxelise(universe, brep::mesh_of(solid));
+    const voxel::Octree octree = voxelise(universe, brep::linked(solid));
     EXPECT_EQ(first_unlike_winding(octree, solid), std::nullopt) << "depth " << depth;
     EXPECT_GT(octree.voxel_count(), 0U);
   }
@@ -141,7 +141,7 @@ TEST(Voxelise, AgreesWithTheWindingNumberOnEveryVoxelInAnyPoseAndSize) {
 
 TEST(Voxelise, TheComparisonWithTheWindingNumberSeesAMovedVertex) {
   brep::Triangles solid = ball({15.3, 15.1, 15.2}, 10.3, 1);
-  const voxel::Octree octree = voxelise(unit_universe(5), brep::mesh_of(solid));
+  const voxel::Octree octree = voxelise(unit_universe(5), brep::linked(solid));
   ASSERT_EQ(first_unlike_winding(octree, solid), std::nullopt);
   solid.points_mm[0].x -= 3.0;
   EXPECT_NE(first_unlike_winding(octree, solid), std::nullopt);
@@ -149,7 +149,7 @@ TEST(Voxelise, TheComparisonWithTheWindingNumberSeesAMovedVertex) {
 
 TEST(Voxelise, ABallsVoxelsTakeItsVolume) {
   const brep::Triangles solid = ball({63.2, 63.7, 64.1}, 50.0, 5);
-  const voxel::Octree octree = voxelise(unit_universe(7), brep::mesh_of(solid));
+  const voxel::Octree octree = voxelise(unit_universe(7), brep::linked(solid));
   // Three times the standard error 0.3 sqrt(S) of a count of voxel centres on curved boundary.
   const double tolerance = 3.0 * 0.3 * std::sqrt(4.0 * std::numbers::pi) * 50.0;
   EXPECT_NEAR(static_cast<double>(octree.voxel_count()), tests::volume_mm3(solid), tolerance);
@@ -158,26 +158,26 @@ TEST(Voxelise, ABallsVoxelsTakeItsVolume) {
 TEST(Voxelise, ACavityStaysEmpty) {
   const brep::Triangles shell = together(box({1.5, 1.5, 1.5}, {13.5, 13.5, 13.5}),
                                          inside_out(box({4.5, 4.5, 4.5}, {10.5, 10.5, 10.5})));
-  const voxel::Octree octree = voxelise(unit_universe(4), brep::mesh_of(shell));
+  const voxel::Octree octree = voxelise(unit_universe(4), brep::linked(shell));
   EXPECT_EQ(octree.voxel_count(), 12U * 12U * 12U - 6U * 6U * 6U);
   EXPECT_FALSE(octree.contains({7, 7, 7}));
 }
 
 TEST(Voxelise, ASolidLargerThanTheUniverseIsCutByIt) {
-  EXPECT_EQ(voxelise(unit_universe(4), brep::mesh_of(box({-100, -100, -100}, {100, 100, 100}))).voxel_count(),
+  EXPECT_EQ(voxelise(unit_universe(4), brep::linked(box({-100, -100, -100}, {100, 100, 100}))).voxel_count(),
             4096U);
-  EXPECT_EQ(voxelise(unit_universe(3), brep::mesh_of(box({-100, -100, -100}, {100, 100, 100}))).voxel_count(),
+  EXPECT_EQ(voxelise(unit_universe(3), brep::linked(box({-100, -100, -100}, {100, 100, 100}))).voxel_count(),
             512U);
-  EXPECT_EQ(voxelise(unit_universe(4), brep::mesh_of(box({4.5, -100, -1e6}, {1e6, 7.5, 3.5}))).voxel_count(),
+  EXPECT_EQ(voxelise(unit_universe(4), brep::linked(box({4.5, -100, -1e6}, {1e6, 7.5, 3.5}))).voxel_count(),
             11U * 8U * 4U);
-  EXPECT_TRUE(voxelise(unit_universe(4), brep::mesh_of(box({20, 20, 20}, {30, 30, 30}))).is_empty());
+  EXPECT_TRUE(voxelise(unit_universe(4), brep::linked(box({20, 20, 20}, {30, 30, 30}))).is_empty());
 }
 
 TEST(Voxelise, AnOpenMeshIsRefusedAndTheMessageSaysWhere) {
   brep::Triangles open = box({1, 1, 1}, {5, 5, 5});
   open.faces.pop_back();
   try {
-    voxelise(unit_universe(4), brep::mesh_of(open));
+    voxelise(unit_universe(4), brep::linked(open));
     FAIL() << "an open mesh was accepted";
   } catch (const voxel::Error& error) {
     EXPECT_NE(std::string(error.what()).find("open at ("), std::string::npos) << error.what();
@@ -185,11 +185,11 @@ TEST(Voxelise, AnOpenMeshIsRefusedAndTheMessageSaysWhere) {
 }
 
 TEST(Voxelise, AnEmptyMeshIsAnEmptyOctree) {
-  EXPECT_TRUE(voxelise(unit_universe(4), brep::Mesh()).is_empty());
+  EXPECT_TRUE(voxelise(unit_universe(4), brep::Linked()).is_empty());
 }
 
 TEST(Voxelise, GivesTheSameOctreeOnOneThreadAndMany) {
-  const brep::Mesh solid = brep::mesh_of(ball({31.2, 30.7, 33.1}, 25.0, 4));
+  const brep::Linked solid = brep::linked(ball({31.2, 30.7, 33.1}, 25.0, 4));
   const voxel::Octree many = voxelise(unit_universe(6), solid);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_TRUE(voxelise(unit_universe(6), solid) == many);

@@ -76,7 +76,7 @@ TEST(WindingNumber, VoxelsOfAClosedSolidAreThoseOfParityInEveryPoseAndHandedness
     const glm::dvec3 centre = universe.lattice().lps_mm(glm::dvec3(31.7));
     const brep::Triangles solid = together(ball(centre, 24.0, 4), inside_out(ball(centre + 2.0, 11.0, 4)));
     const voxel::Octree wound = voxelise_by_winding_number(universe, solid);
-    EXPECT_TRUE(wound == voxelise(universe, brep::mesh_of(solid)));
+    EXPECT_TRUE(wound == voxelise(universe, brep::linked(solid)));
     EXPECT_GT(wound.voxel_count(), 30000U);
   }
 }
@@ -84,7 +84,7 @@ TEST(WindingNumber, VoxelsOfAClosedSolidAreThoseOfParityInEveryPoseAndHandedness
 TEST(WindingNumber, VerticesAndFacesOnCentresFollowTheSameRuleAsParity) {
   const voxel::Universe universe = unit_universe(5);
   for (const brep::Triangles& solid : {box({3, 4, 5}, {13, 11, 30}), tests::octahedron({15, 16, 14}, 9)})
-    EXPECT_TRUE(voxelise_by_winding_number(universe, solid) == voxelise(universe, brep::mesh_of(solid)));
+    EXPECT_TRUE(voxelise_by_winding_number(universe, solid) == voxelise(universe, brep::linked(solid)));
 }
 
 TEST(WindingNumber, ASurfaceWithHolesAgreesWithTheSumOfSolidAnglesInEveryVoxel) {
@@ -186,7 +186,7 @@ TEST(WindingNumber, OverlapsAreInsideOnceAndNotCutOutAsByParity) {
       together(box({2.5, 2.5, 2.5}, {9.5, 9.5, 9.5}), box({6.5, 6.5, 6.5}, {12.5, 12.5, 12.5}));
   const voxel::Octree octree = voxelise_by_winding_number(unit_universe(4), two);
   EXPECT_EQ(octree.voxel_count(), 343U + 216U - 27U);
-  EXPECT_LT(voxelise(unit_universe(4), brep::mesh_of(two)).voxel_count(), octree.voxel_count());
+  EXPECT_LT(voxelise(unit_universe(4), brep::linked(two)).voxel_count(), octree.voxel_count());
 }
 
 TEST(WindingNumber, ATriangleThatNamesNoPointIsRefused) {
@@ -220,7 +220,7 @@ TEST_P(Broken, VoxelsAwayFromTheDamageAreThoseOfTheSoundTwin) {
   const brep::Triangles sound =
       brep::read_triangles(tests::reference_data(std::string("meshes/") + GetParam()));
   const voxel::Universe universe = universe_of(sound, 64);
-  const voxel::Octree truth = voxelise(universe, brep::mesh_of(sound));
+  const voxel::Octree truth = voxelise(universe, brep::linked(sound));
   const double voxel_mm = universe.lattice().spacing_mm().x;
 
   std::mt19937 random(7);
