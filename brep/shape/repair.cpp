@@ -67,7 +67,7 @@ bool is_lone(const Face& face, const Mesh& mesh) {
 /// it is large, or where collapses made it meet itself.
 Triangles thinned(const Enclosed& made) {
   constexpr std::size_t most_thinned = 300'000;
-  if (made.solid.mesh().n_faces() > most_thinned) return made.solid.triangles();
+  if (made.solid.triangles().faces.size() > most_thinned) return made.solid.triangles();
   DecimateOptions options;
   options.max_error_mm = made.cell_mm / 20.0;
   try {

@@ -208,7 +208,7 @@ Json to_json(const Object& object) {
       {"definition", object.definition},
       {"voxel", to_json(object.voxel.measures)},
       {"mesh", object.mesh.within ? to_json(object.mesh.within->measures()) : Json(nullptr)},
-      {"mesh_faces", object.mesh.within ? Json(object.mesh.within->mesh().n_faces()) : Json(nullptr)},
+      {"mesh_faces", object.mesh.within ? Json(object.mesh.within->triangles().faces.size()) : Json(nullptr)},
       {"verdict", object.certificate ? Json(verify::to_string(object.certificate->verdict)) : Json(nullptr)},
       {"resolved", object.certificate ? Json(object.certificate->resolved()) : Json(nullptr)},
       {"findings", object.findings}};

@@ -89,9 +89,9 @@ FileAnswer on_files(const Boolean& asked, const FileBench& bench) {
                              " is empty" + (proof.is_null() ? "" : ", as exact numbers prove") +
                              ": there is no surface to write");
   result.findings.insert(result.findings.begin(), mended.begin(), mended.end());
-  const brep::Health health = brep::health(result.solid);
+  const brep::Health health = brep::health(result.solid.triangles());
   const brep::Measures& measures = result.solid.measures();
-  write_surface(result.solid, asked.out, bench.timings);
+  write_surface(result.solid.triangles(), asked.out, bench.timings);
   FileAnswer answer{{{"path", asked.out.string()}}};
   answer.findings = result.findings;
   answer.json.update(to_json(measures));

@@ -84,7 +84,7 @@ Json asked_of_surface(const Measure& asked, const brep::Solid& solid, const File
   brep::VertexData data;
   data.scalar_name = shown.name;
   data.scalars = std::move(shown.values);
-  write_surface(solid, out, bench.timings, data);
+  write_surface(solid.triangles(), out, bench.timings, data);
   json["path"] = out.string();
   return json;
 }
