@@ -9,42 +9,14 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
 
 #include "brep/io/mesh_scanner.h"
+#include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
 
 namespace octotomy::brep {
 namespace {
-
-/// Gives equal points one number, in the order they are met.
-class Welder {
- public:
-  explicit Welder(Triangles& triangles) : triangles_(triangles) {}
-  std::uint32_t number_of(const glm::dvec3& p) {
-    // Adding zero makes -0 and 0 one point.
-    const glm::dvec3 key = p + 0.0;
-    const auto [entry, is_new] =
-        numbers_.try_emplace(key, static_cast<std::uint32_t>(triangles_.points_mm.size()));
-    if (is_new) triangles_.points_mm.push_back(key);
-    return entry->second;
-  }
-
- private:
-  struct Hash {
-    std::size_t operator()(const glm::dvec3& p) const {
-      std::uint64_t hash = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis])) * 0x9E3779B97F4A7C15ull;
-        hash ^= hash >> 29;
-      }
-      return hash;
-    }
-  };
-  Triangles& triangles_;
-  std::unordered_map<glm::dvec3, std::uint32_t, Hash> numbers_;
-};
 
 constexpr std::size_t stl_header_bytes = 84, stl_triangle_bytes = 50;
 
@@ -55,19 +27,26 @@ Triangles read_binary_stl(std::string_view bytes) {
       scanner.bounded(scanner.binary<std::uint32_t>(std::endian::little), stl_triangle_bytes);
   Triangles triangles;
   triangles.faces.reserve(count);
-  Welder welder(triangles);
-  for (std::size_t i = 0; i < count; ++i) {
-    scanner.skip(12);
-    std::array<std::uint32_t, 3> face{};
-    for (std::uint32_t& corner : face) {
-      glm::dvec3 p;
-      for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.binary<float>(std::endian::little);
-      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        scanner.fail("triangle " + std::to_string(i) + " has a point that is not finite");
-      corner = welder.number_of(p);
+  PointNumbers numbers(triangles.points_mm, count / 2);  // as a closed surface has
+  constexpr std::size_t most_at_once = 64;
+  std::array<glm::dvec3, 3 * most_at_once> corners;
+  std::array<std::uint32_t, 3 * most_at_once> points;
+  for (std::size_t begin = 0; begin < count; begin += most_at_once) {
+    const std::size_t end = std::min(begin + most_at_once, count);
+    for (std::size_t i = begin; i < end; ++i) {
+      scanner.skip(12);
+      for (std::size_t k = 0; k < 3; ++k) {
+        glm::dvec3& p = corners[3 * (i - begin) + k];
+        for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.binary<float>(std::endian::little);
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+          scanner.fail("triangle " + std::to_string(i) + " has a point that is not finite");
+      }
+      scanner.skip(2);
     }
-    scanner.skip(2);
-    triangles.faces.push_back(face);
+    const std::size_t met = 3 * (end - begin);
+    numbers.number({corners.data(), met}, {points.data(), met});
+    for (std::size_t k = 0; k < met; k += 3)
+      triangles.faces.push_back({points[k], points[k + 1], points[k + 2]});
   }
   return triangles;
 }
@@ -76,14 +55,14 @@ Triangles read_ascii_stl(std::string_view bytes) {
   MeshScanner scanner(bytes);
   scanner.line();
   Triangles triangles;
-  Welder welder(triangles);
+  PointNumbers numbers(triangles.points_mm);
   std::vector<std::uint32_t> corners;
   bool ended = false;
   for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
     if (word == "vertex") {
       glm::dvec3 p;
       for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
-      corners.push_back(welder.number_of(p));
+      corners.push_back(numbers.number_of(p));
     } else if (word == "endloop") {
       if (corners.size() != 3)
         scanner.fail("a facet of " + std::to_string(corners.size()) + " vertices; STL has triangles only");

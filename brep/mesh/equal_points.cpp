@@ -3,6 +3,7 @@
 #include "brep/mesh/equal_points.h"
 
 #include <bit>
+#include <cassert>
 #include <limits>
 
 namespace octotomy::brep {
@@ -20,19 +21,65 @@ std::uint64_t hash_of(const glm::dvec3& p) {
   return hash * 0xbf58476d1ce4e5b9u >> 20;
 }
 
+/// The place in a table of a point, or where it would stand. Precondition: the table has a free place.
+std::size_t slot_of(const glm::dvec3& p, const std::vector<glm::dvec3>& points_mm,
+                    const std::vector<std::uint32_t>& table) {
+  const std::size_t mask = table.size() - 1;
+  std::size_t slot = hash_of(p) & mask;
+  while (table[slot] != none && points_mm[table[slot]] != p) slot = (slot + 1) & mask;
+  return slot;
+}
+
+/// What is no number equals nothing, so that it has no place: many in one table would search each other.
+bool has_place(const glm::dvec3& p) {
+  return !glm::any(glm::isnan(p));
+}
+
+/// Of a table that so many points fill by half at most.
+std::size_t table_size(std::size_t points) {
+  return std::bit_ceil(2 * points + 1);
+}
+
 }  // namespace
 
+PointNumbers::PointNumbers(std::vector<glm::dvec3>& points_mm, std::size_t expected) : points_mm_(points_mm) {
+  assert(points_mm.empty());
+  points_mm_.reserve(expected);
+  make_room(expected);
+}
+
+void PointNumbers::make_room(std::size_t expected) {
+  table_.assign(table_size(expected), none);
+  for (std::uint32_t v = 0; v < points_mm_.size(); ++v)
+    if (has_place(points_mm_[v])) table_[slot_of(points_mm_[v], points_mm_, table_)] = v;
+}
+
+std::uint32_t PointNumbers::number_of(const glm::dvec3& p_mm) {
+  const auto next = static_cast<std::uint32_t>(points_mm_.size());
+  if (has_place(p_mm)) {
+    std::uint32_t& number = table_[slot_of(p_mm, points_mm_, table_)];
+    if (number != none) return number;
+    number = next;
+  }
+  points_mm_.push_back(p_mm + 0.0);  // -0 becomes 0
+  if (2 * points_mm_.size() >= table_.size()) make_room(2 * points_mm_.size());
+  return next;
+}
+
+void PointNumbers::number(std::span<const glm::dvec3> points_mm, std::span<std::uint32_t> numbers) {
+  assert(numbers.size() == points_mm.size());
+  for (const glm::dvec3& p : points_mm) __builtin_prefetch(&table_[hash_of(p) & (table_.size() - 1)]);
+  for (std::size_t i = 0; i < points_mm.size(); ++i) numbers[i] = number_of(points_mm[i]);
+}
+
 std::vector<std::uint32_t> first_equal_points(const std::vector<glm::dvec3>& points_mm) {
-  const std::size_t mask = std::bit_ceil(2 * points_mm.size() + 1) - 1;
-  std::vector<std::uint32_t> table(mask + 1, none), first(points_mm.size());
+  std::vector<std::uint32_t> table(table_size(points_mm.size()), none), first(points_mm.size());
   for (std::uint32_t v = 0; v < points_mm.size(); ++v) {
     first[v] = v;
-    // What is no number equals nothing.
-    if (glm::any(glm::isnan(points_mm[v]))) continue;
-    std::size_t slot = hash_of(points_mm[v]) & mask;
-    while (table[slot] != none && points_mm[table[slot]] != points_mm[v]) slot = (slot + 1) & mask;
-    if (table[slot] == none) table[slot] = v;
-    first[v] = table[slot];
+    if (!has_place(points_mm[v])) continue;
+    std::uint32_t& there = table[slot_of(points_mm[v], points_mm, table)];
+    if (there == none) there = v;
+    first[v] = there;
   }
   return first;
 }

@@ -1,13 +1,32 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "brep/mesh/triangles.h"
 
 namespace octotomy::brep {
+
+/// Gives equal points one number, in the order they are met; 0.0 and -0.0 are equal, what is no number equals
+/// nothing. Cost: linear; 32 to 40 bytes for each number.
+class PointNumbers {
+ public:
+  /// `expected` numbers need no room made on the way. Appends the points to a list that outlives this.
+  explicit PointNumbers(std::vector<glm::dvec3>& points_mm, std::size_t expected = 0);
+  std::uint32_t number_of(const glm::dvec3& p_mm);
+  /// The same for some after each other, sooner than one by one: the table need not be waited for.
+  void number(std::span<const glm::dvec3> points_mm, std::span<std::uint32_t> numbers);
+
+ private:
+  void make_room(std::size_t expected);
+
+  std::vector<glm::dvec3>& points_mm_;
+  std::vector<std::uint32_t> table_;  ///< of numbers by place: at most half full
+};
 
 /// For each point the first one that has the same coordinates, itself where it is the first; 0.0 and -0.0 are
 /// equal, what is no number equals nothing. Cost: linear; 12 to 20 bytes a point.
