@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <tbb/parallel_invoke.h>
+#include <type_traits>
 #include <vector>
 
 namespace octotomy::brep {
@@ -55,11 +56,20 @@ void halve(std::vector<Centred>& items, std::uint32_t leaf_size, const Leaf& lea
   const glm::dvec3 extent = high - low;
   const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
   const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end,
-                   [axis](const Centred& a, const Centred& b) {
-                     return a.centre_mm[axis] != b.centre_mm[axis] ? a.centre_mm[axis] < b.centre_mm[axis]
-                                                                   : a.number < b.number;
-                   });
+  const auto part_along = [&]<int axis>(std::integral_constant<int, axis>) {
+    std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end,
+                     [](const Centred& a, const Centred& b) {
+                       return a.centre_mm[axis] != b.centre_mm[axis] ? a.centre_mm[axis] < b.centre_mm[axis]
+                                                                     : a.number < b.number;
+                     });
+  };
+  // The axis is a constant for each comparison, of which there are many.
+  if (axis == 0)
+    part_along(std::integral_constant<int, 0>());
+  else if (axis == 1)
+    part_along(std::integral_constant<int, 1>());
+  else
+    part_along(std::integral_constant<int, 2>());
   const std::uint32_t second = self + 1 + halving_nodes(middle - begin, leaf_size);
   const auto first_half = [&] { halve(items, leaf_size, leaf, inner, self + 1, begin, middle); };
   const auto second_half = [&] { halve(items, leaf_size, leaf, inner, second, middle, end); };

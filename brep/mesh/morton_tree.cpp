@@ -9,6 +9,7 @@
 #include <numeric>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 #include <utility>
 
@@ -55,6 +56,14 @@ void sort_by_digits(std::vector<Keyed>& keyed) {
   }
 }
 
+/// Calls body(i) for 0 .. count - 1, in parallel.
+template <typename Body>
+void for_each_number(std::size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
 std::vector<std::uint32_t> all_of(const Triangles& surface) {
   std::vector<std::uint32_t> faces(surface.faces.size());
   std::iota(faces.begin(), faces.end(), 0u);
@@ -77,86 +86,103 @@ MortonOrder morton_order(const std::vector<glm::dvec3>& points_mm) {
   MortonOrder order{std::vector<std::uint32_t>(points_mm.size()),
                     std::vector<std::uint64_t>(points_mm.size())};
   if (points_mm.empty()) return order;
-  glm::dvec3 low = points_mm.front(), high = low;
-  for (const glm::dvec3& p : points_mm) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
+  using Bounds = std::pair<glm::dvec3, glm::dvec3>;
+  const auto [low, high] = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, points_mm.size(), 4096),
+      Bounds(points_mm.front(), points_mm.front()),
+      [&](const auto& range, Bounds bounds) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+          bounds = {glm::min(bounds.first, points_mm[i]), glm::max(bounds.second, points_mm[i])};
+        return bounds;
+      },
+      [](const Bounds& a, const Bounds& b) {
+        return Bounds(glm::min(a.first, b.first), glm::max(a.second, b.second));
+      });
   // Halves, as the whole extent of the largest doubles is none.
   const glm::dvec3 half = glm::max(0.5 * high - 0.5 * low, glm::dvec3(std::numeric_limits<double>::min()));
   std::vector<Keyed> keyed(points_mm.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keyed.size(), 4096), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const glm::dvec3 share = glm::min((0.5 * points_mm[i] - 0.5 * low) / half, glm::dvec3(1.0));
-      const glm::dvec3 cell = share * static_cast<double>((1u << cell_bits) - 1);
-      keyed[i] = {spread(static_cast<std::uint64_t>(cell.x)) |
-                      spread(static_cast<std::uint64_t>(cell.y)) << 1 |
-                      spread(static_cast<std::uint64_t>(cell.z)) << 2,
-                  static_cast<std::uint32_t>(i)};
-    }
+  for_each_number(keyed.size(), [&, low = low](std::size_t i) {
+    const glm::dvec3 share = glm::min((0.5 * points_mm[i] - 0.5 * low) / half, glm::dvec3(1.0));
+    const glm::dvec3 cell = share * static_cast<double>((1u << cell_bits) - 1);
+    keyed[i] = {spread(static_cast<std::uint64_t>(cell.x)) | spread(static_cast<std::uint64_t>(cell.y)) << 1 |
+                    spread(static_cast<std::uint64_t>(cell.z)) << 2,
+                static_cast<std::uint32_t>(i)};
   });
   sort_by_digits(keyed);
-  for (std::size_t i = 0; i < keyed.size(); ++i) {
+  for_each_number(keyed.size(), [&](std::size_t i) {
     order.cells[i] = keyed[i].first;
     order.numbers[i] = keyed[i].second;
-  }
+  });
   return order;
 }
 
 MortonTree::MortonTree(const Triangles& surface) : MortonTree(surface, all_of(surface)) {}
 
 MortonTree::MortonTree(const Triangles& surface, const std::vector<std::uint32_t>& faces) {
-  const auto count = static_cast<std::uint32_t>(faces.size());
-  std::vector<glm::dvec3> centres_mm(count);
-  std::vector<OuterBox> boxes(count);
-  const auto in_parallel = [&](const auto& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-    });
+  const auto corners_of = [&](std::uint32_t face) -> std::array<glm::dvec3, 3> {
+    const auto& [a, b, c] = surface.faces[face];
+    return {surface.points_mm[a], surface.points_mm[b], surface.points_mm[c]};
   };
-  in_parallel([&](std::size_t i) {
-    const auto& [a, b, c] = surface.faces[faces[i]];
-    const glm::dvec3 &p = surface.points_mm[a], &q = surface.points_mm[b], &r = surface.points_mm[c];
+  std::vector<glm::dvec3> centres_mm(faces.size());
+  for_each_number(faces.size(), [&](std::size_t i) {
+    const auto [p, q, r] = corners_of(faces[i]);
     centres_mm[i] = 0.5 * glm::min(p, glm::min(q, r)) + 0.5 * glm::max(p, glm::max(q, r));
-    for (const glm::dvec3& corner : {p, q, r}) boxes[i].add(corner);
   });
   const MortonOrder order = morton_order(centres_mm);
   centres_mm = {};
-  faces_.resize(count);
-  boxes_.resize(count);
-  in_parallel([&](std::size_t i) {
+  faces_.resize(faces.size());
+  boxes_.resize(faces.size());
+  for_each_number(faces.size(), [&](std::size_t i) {
     faces_[i] = faces[order.numbers[i]];
-    boxes_[i] = boxes[order.numbers[i]];
+    for (const glm::dvec3& corner : corners_of(faces_[i])) boxes_[i].add(corner);
   });
-  // A dozen tasks: joining two runs' nodes copies them.
-  if (count > 0) nodes_ = nodes_of(order, 0, count, std::max(count / 12, std::uint32_t{1} << 14));
+  if (!faces.empty()) build(order);
 }
 
-std::vector<MortonTree::Node> MortonTree::nodes_of(const MortonOrder& order, std::uint32_t begin,
-                                                   std::uint32_t end, std::uint32_t task_size) const {
-  std::vector<Node> nodes;
-  if (end - begin <= task_size) {
-    nodes.reserve(end - begin);
-    append(order, begin, end, nodes);
-    return nodes;
-  }
-  const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
-  std::vector<Node> beyond;
-  tbb::parallel_invoke([&] { nodes = nodes_of(order, begin, middle, task_size); },
-                       [&] { beyond = nodes_of(order, middle, end, task_size); });
-  const auto second = static_cast<std::uint32_t>(nodes.size() + 1);
-  Node node{nodes.front().box, begin, end, second};
-  node.box.add(beyond.front().box);
-  // Children are numbered from the first node of the run.
-  const auto shift = [](std::vector<Node>& of, std::uint32_t by) {
-    for (Node& inner : of)
-      if (!inner.is_leaf()) inner.second += by;
+void MortonTree::build(const MortonOrder& order) {
+  const auto count = static_cast<std::uint32_t>(faces_.size());
+  const std::uint32_t task_size = std::max(count / 12, std::uint32_t{1} << 14);
+  // The tree's upper nodes, each before its children, over runs that are built in parallel.
+  struct Upper {
+    std::uint32_t begin, end, second;  ///< the second child among these; 0 for a run
   };
-  shift(nodes, 1);
-  shift(beyond, second);
-  nodes.insert(nodes.begin(), node);
-  nodes.insert(nodes.end(), beyond.begin(), beyond.end());
-  return nodes;
+  std::vector<Upper> upper;
+  const auto part = [&](const auto& self, std::uint32_t begin, std::uint32_t end) -> void {
+    const std::size_t own = upper.size();
+    upper.push_back({begin, end, 0});
+    if (end - begin <= task_size) return;
+    const auto middle = static_cast<std::uint32_t>(order.split(begin, end));
+    self(self, begin, middle);
+    upper[own].second = static_cast<std::uint32_t>(upper.size());
+    self(self, middle, end);
+  };
+  part(part, 0, count);
+
+  std::vector<std::vector<Node>> runs(upper.size());
+  tbb::parallel_for(std::size_t{0}, upper.size(), [&](std::size_t u) {
+    if (upper[u].second != 0) return;
+    runs[u].reserve(upper[u].end - upper[u].begin);
+    append(order, upper[u].begin, upper[u].end, runs[u]);
+  });
+  std::vector<std::uint32_t> first(upper.size() + 1, 0);  // node of each
+  for (std::size_t u = 0; u < upper.size(); ++u)
+    first[u + 1] = first[u] + (upper[u].second != 0 ? 1 : static_cast<std::uint32_t>(runs[u].size()));
+  nodes_.reserve(first.back());
+  for (std::size_t u = 0; u < upper.size(); ++u)
+    if (upper[u].second != 0)
+      nodes_.push_back({{}, upper[u].begin, upper[u].end, first[upper[u].second]});
+    else
+      nodes_.insert(nodes_.end(), runs[u].begin(), runs[u].end());
+  tbb::parallel_for(std::size_t{0}, upper.size(), [&](std::size_t u) {
+    if (upper[u].second == 0)
+      for (std::uint32_t n = first[u]; n < first[u + 1]; ++n)
+        if (!nodes_[n].is_leaf()) nodes_[n].second += first[u];
+  });
+  for (std::size_t u = upper.size(); u-- > 0;)
+    if (upper[u].second != 0) {
+      Node& node = nodes_[first[u]];
+      for (const std::uint32_t child : {first[u] + 1, node.second}) node.box.add(nodes_[child].box);
+    }
 }
 
 void MortonTree::append(const MortonOrder& order, std::uint32_t begin, std::uint32_t end,

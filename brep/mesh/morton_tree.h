@@ -34,8 +34,9 @@ struct OuterBox {
     high = glm::max(high, other.high);
   }
   bool overlaps(const OuterBox& other) const {
-    return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
-           low.z <= other.high.z && other.low.z <= high.z;
+    // One branch: six would often be foretold wrongly.
+    return ((low.x <= other.high.x) & (other.low.x <= high.x) & (low.y <= other.high.y) &
+            (other.low.y <= high.y) & (low.z <= other.high.z) & (other.low.z <= high.z)) != 0;
   }
   /// Of two points of the boxes that are nearest.
   double squared_distance(const OuterBox& other) const {
@@ -113,10 +114,9 @@ class MortonTree {
     std::uint32_t count() const { return end - begin; }
     bool is_leaf() const { return second == 0; }
   };
-  /// The nodes of a run, its own first, from which children are numbered. Runs of more than `task_size` are
-  /// parted among threads.
-  std::vector<Node> nodes_of(const MortonOrder& order, std::uint32_t begin, std::uint32_t end,
-                             std::uint32_t task_size) const;
+  /// Lays nodes over the faces and their boxes, which stand in the order.
+  void build(const MortonOrder& order);
+  /// Appends the nodes of a run, its own first; children are numbered as the list is.
   void append(const MortonOrder& order, std::uint32_t begin, std::uint32_t end,
               std::vector<Node>& nodes) const;
 
