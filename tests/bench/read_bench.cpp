@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <OpenMesh/Core/IO/MeshIO.hh>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <unistd.h>
 
+#include "brep/io/read_mesh.h"
+#include "brep/io/write_mesh.h"
+#include "brep/mesh/mesh.h"
+#include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
 #ifdef OCTOTOMY_HAS_ITK
 #include "tests/bench/itk_peer.h"
 #endif
+#include "tests/bench/subjects.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/tree/grey_octree.h"
@@ -14,17 +21,25 @@
 namespace octotomy::bench {
 namespace {
 
-// An uncompressed series of 512 x 512 x 300, written once and removed at the end.
-class Series {
- public:
-  static const std::filesystem::path& folder() {
-    static const Series series;
-    return series.folder_;
-  }
+/// The folder of what is read; removed at the end.
+const std::filesystem::path& workspace() {
+  struct Folder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("octotomy-bench-" + std::to_string(::getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
+}
 
- private:
-  Series()
-      : folder_(std::filesystem::temp_directory_path() / ("octotomy-bench-" + std::to_string(::getpid()))) {
+/// An uncompressed series of 512 x 512 x 300, written once.
+const std::filesystem::path& series() {
+  static const std::filesystem::path folder = [] {
+    std::filesystem::path made = workspace() / "series";
     voxel::Scene scene;
     scene.lattice = voxel::axis_aligned_lattice({512, 512, 300}, {0.5, 0.5, 0.75}, {-128, -128, -100});
     voxel::Int16Samples samples(scene.lattice.sample_count());
@@ -36,19 +51,26 @@ class Series {
     scene.samples = std::move(samples);
     scene.meaning = voxel::Meaning::Hounsfield;
     scene.modality = "CT";
-    voxel::write_dicom_series(scene, folder_);
-  }
-  ~Series() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
+    voxel::write_dicom_series(scene, made);
+    return made;
+  }();
+  return folder;
+}
 
-  std::filesystem::path folder_;
-};
+/// The phantom's bone as binary STL, about 500,000 triangles of which each has its own three points.
+const std::filesystem::path& stl() {
+  static const std::filesystem::path path = [] {
+    std::filesystem::path made = workspace() / "bone.stl";
+    brep::write_mesh(convert::isosurface(grey_skull(256), 300.0, std::numeric_limits<double>::infinity()),
+                     made);
+    return made;
+  }();
+  return path;
+}
 
 // From a folder to a grey octree, all audits made.
 void run_ours(benchmark::State& state) {
-  const std::filesystem::path& folder = Series::folder();
+  const std::filesystem::path& folder = series();
   for (auto _ : state) {
     const voxel::Scene scene = voxel::read_scene(folder);
     const voxel::Universe universe{9, scene.lattice.lps_from_voxel};
@@ -58,14 +80,32 @@ void run_ours(benchmark::State& state) {
 
 #ifdef OCTOTOMY_HAS_ITK
 void run_itk(benchmark::State& state) {
-  const std::filesystem::path& folder = Series::folder();
+  const std::filesystem::path& folder = series();
   for (auto _ : state) benchmark::DoNotOptimize(read_series_by_itk(folder));
 }
 #endif
 
+void run_stl(benchmark::State& state) {
+  const std::filesystem::path& path = stl();
+  std::size_t triangles = 0;
+  for (auto _ : state) triangles = brep::read_triangles(path).faces.size();
+  state.counters["triangles"] = static_cast<double>(triangles);
+}
+
+void run_stl_by_openmesh(benchmark::State& state) {
+  const std::filesystem::path& path = stl();
+  for (auto _ : state) {
+    brep::Mesh mesh;
+    if (!OpenMesh::IO::read_mesh(mesh, path.string())) state.SkipWithError("OpenMesh does not read it");
+    benchmark::DoNotOptimize(mesh.n_faces());
+  }
+}
+
 }  // namespace
 
 void register_read() {
+  add("read/surface/stl/500k", run_stl);
+  add("peer/openmesh/read/surface/stl/500k", run_stl_by_openmesh);
   add("read/series_to_grey_octree/512x512x300", run_ours);
 #ifdef OCTOTOMY_HAS_ITK
   add("peer/itk/read/series_to_grey_octree/512x512x300", run_itk);

@@ -34,6 +34,7 @@
 #include "verify/head_phantom.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
+#include "voxel/tree/build.h"
 #include "voxel/tree/grey_octree.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX asks for it
@@ -263,6 +264,24 @@ Verb mirror() {
           }};
 }
 
+/// A surface's health.
+Verb info() {
+  const Path bone = bones().first, stl = workspace() / "bone.stl";
+  brep::write_mesh(brep::read_triangles(bone), stl);
+  return {{"info", stl.string()},
+          [stl] { benchmark::DoNotOptimize(brep::health(brep::read_triangles(stl)).faces); }};
+}
+
+Verb measure() {
+  const Path scan = fine_head({1024, 1024, 648});
+  return {{"measure", scan.string(), "--window", "300:"}, [scan] {
+            const voxel::Scene scene = voxel::read_scene(scan, {});
+            const voxel::Universe universe{10, scene.lattice.lps_from_voxel};
+            benchmark::DoNotOptimize(voxel::octree_of_window(universe, scene, 300.0, beyond).voxel_count());
+            benchmark::DoNotOptimize(convert::isosurface(scene, 300.0, beyond).faces.size());
+          }};
+}
+
 Verb mesh() {
   const Path scan = fine_head({1024, 1024, 648});
   return {{"mesh", scan.string(), "--window", "300:", "-o", (workspace() / "mesh.stl").string()}, [scan] {
@@ -285,6 +304,8 @@ void register_verbs() {
   add_verb("verb/compare/500k", compare);
   add_verb("verb/mirror/500k", mirror);
   add_verb("verb/mesh/1024", mesh);
+  add_verb("verb/measure/1024", measure);
+  add_verb("verb/info/500k", info);
 }
 
 }  // namespace octotomy::bench
