@@ -57,7 +57,9 @@ std::vector<Probe> probes_of(const ShelledSurface& surface, const std::vector<st
     if (shell[f] == f) probes.push_back({.place = {.shell = f}});
     Probe& probe = probes[number[f]];
     for (const std::uint32_t v : triangles.faces[f]) probe.add(triangles.points_mm[v], touching[v] != 0);
-    const auto point = [&](std::size_t k) { return triangles.points_mm[triangles.faces[f][k]]; };
+    const auto point = [&, &triangles = triangles](std::size_t k) {
+      return triangles.points_mm[triangles.faces[f][k]];
+    };
     // About the shell's first point, which keeps digits far from the origin.
     const glm::dvec3 origin = triangles.points_mm[triangles.faces[shell[f]][0]];
     probe.place.volume_mm3 +=

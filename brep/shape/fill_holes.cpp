@@ -14,7 +14,6 @@
 #include <array>
 #include <iterator>
 #include <queue>
-#include <ranges>
 #include <tuple>
 
 #include "brep/mesh/mesh_point.h"
@@ -125,7 +124,8 @@ Patch patch_of(Surface& surface, Halfedge border, std::size_t sides) {
     const std::size_t left = sides - patch.size();
     if (left <= most && search(surface, corners.border(), left, patch)) return patch;
   }
-  for (const auto f : patch | std::views::reverse) CGAL::Euler::remove_face(surface.halfedge(f), surface);
+  for (auto f = patch.rbegin(); f != patch.rend(); ++f)
+    CGAL::Euler::remove_face(surface.halfedge(*f), surface);
   return {};
 }
 
