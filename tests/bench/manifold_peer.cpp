@@ -6,7 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <unistd.h>
+
+#include "tests/bench/workspace.h"
 
 namespace octotomy::bench {
 namespace {
@@ -36,8 +37,7 @@ fs::path manifold_folder() {
 }
 
 ManifoldAnswer manifold_boolean(const brep::Triangles& a, const brep::Triangles& b, bool is_union) {
-  const fs::path operands =
-      fs::temp_directory_path() / ("octotomy-manifold-" + std::to_string(::getpid()) + ".bin");
+  const fs::path operands = workspace() / "operands.bin";
   {
     std::ofstream out(operands, std::ios::binary);
     append(out, a);

@@ -2,39 +2,20 @@
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
-#include <unistd.h>
 
 #include "brep/io/read_mesh.h"
-#include "brep/io/write_mesh.h"
 #include "brep/mesh/mesh.h"
-#include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
 #ifdef OCTOTOMY_HAS_ITK
 #include "tests/bench/itk_peer.h"
 #endif
-#include "tests/bench/subjects.h"
+#include "tests/bench/workspace.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/scan/write_scene.h"
 #include "voxel/tree/grey_octree.h"
 
 namespace octotomy::bench {
 namespace {
-
-/// The folder of what is read; removed at the end.
-const std::filesystem::path& workspace() {
-  struct Folder {
-    std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("octotomy-bench-" + std::to_string(::getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder folder;
-  return folder.path;
-}
 
 /// An uncompressed series of 512 x 512 x 300, written once.
 const std::filesystem::path& series() {
@@ -57,17 +38,6 @@ const std::filesystem::path& series() {
   return folder;
 }
 
-/// The phantom's bone as binary STL, about 500,000 triangles of which each has its own three points.
-const std::filesystem::path& stl() {
-  static const std::filesystem::path path = [] {
-    std::filesystem::path made = workspace() / "bone.stl";
-    brep::write_mesh(convert::isosurface(grey_skull(256), 300.0, std::numeric_limits<double>::infinity()),
-                     made);
-    return made;
-  }();
-  return path;
-}
-
 // From a folder to a grey octree, all audits made.
 void run_ours(benchmark::State& state) {
   const std::filesystem::path& folder = series();
@@ -86,14 +56,14 @@ void run_itk(benchmark::State& state) {
 #endif
 
 void run_stl(benchmark::State& state) {
-  const std::filesystem::path& path = stl();
+  const std::filesystem::path path = bone_file(".stl");
   std::size_t triangles = 0;
   for (auto _ : state) triangles = brep::read_triangles(path).faces.size();
   state.counters["triangles"] = static_cast<double>(triangles);
 }
 
 void run_stl_by_openmesh(benchmark::State& state) {
-  const std::filesystem::path& path = stl();
+  const std::filesystem::path path = bone_file(".stl");
   for (auto _ : state) {
     brep::Mesh mesh;
     if (!OpenMesh::IO::read_mesh(mesh, path.string())) state.SkipWithError("OpenMesh does not read it");

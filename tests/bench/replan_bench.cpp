@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <unistd.h>
 
 #include "planner/plan/evaluate.h"
 #include "planner/plan/object_cache.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/subjects.h"
+#include "tests/bench/workspace.h"
 #include "voxel/scan/write_scene.h"
 
 namespace octotomy::bench {
@@ -40,8 +40,7 @@ std::string plan_text(int side, double up_mm) {
 }
 
 void last_motion(benchmark::State& state, int side) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("octotomy-replan-" + std::to_string(::getpid()));
+  const std::filesystem::path folder = workspace() / "replan";
   std::filesystem::create_directories(folder);
   voxel::write_scene(head(side), folder / "head.nrrd");
   planner::ObjectCache cache;
@@ -57,8 +56,6 @@ void last_motion(benchmark::State& state, int side) {
     benchmark::DoNotOptimize(made.object("last").voxel.octree);
     state.counters["side"] = made.universe.side();
   }
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
 }
 
 }  // namespace

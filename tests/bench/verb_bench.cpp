@@ -31,6 +31,7 @@
 #include "convert/surface/isosurface.h"
 #include "tests/bench/benchmarks.h"
 #include "tests/bench/subjects.h"
+#include "tests/bench/workspace.h"
 #include "verify/head_phantom.h"
 #include "voxel/scan/read_scene.h"
 #include "voxel/solid/combine.h"
@@ -43,20 +44,6 @@ namespace octotomy::bench {
 namespace {
 
 using Path = std::filesystem::path;
-
-/// The folder of what verbs read and write; removed at the end.
-const Path& workspace() {
-  struct Folder {
-    Path path = std::filesystem::temp_directory_path() / ("octotomy-verbs-" + std::to_string(::getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
-  };
-  static const Folder folder;
-  return folder.path;
-}
 
 Path program() {
   return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "octotomy";
@@ -231,12 +218,11 @@ Verb run_plan() {
           }};
 }
 
-/// The phantom's bone, about 500,000 triangles, and itself reflected.
+/// The phantom's bone and itself reflected.
 std::pair<Path, Path> bones() {
-  const std::pair paths(workspace() / "bone.ply", workspace() / "reflected.ply");
+  const std::pair paths(bone_file(".ply"), workspace() / "reflected.ply");
   if (std::filesystem::exists(paths.second)) return paths;
-  brep::Triangles bone = convert::isosurface(grey_skull(256), 300.0, beyond);
-  brep::write_mesh(bone, paths.first);
+  brep::Triangles bone = brep::read_triangles(paths.first);
   for (glm::dvec3& p : bone.points_mm) p.x = -p.x;
   for (auto& face : bone.faces) std::swap(face[0], face[1]);
   brep::write_mesh(bone, paths.second);
@@ -255,7 +241,7 @@ Verb compare() {
 
 /// A surface read, known to be a solid, reflected and written.
 Verb mirror() {
-  const Path bone = bones().first;
+  const Path bone = bone_file(".ply");
   return {{"mirror", bone.string(), "-o", (workspace() / "mirrored.ply").string()}, [bone] {
             brep::Triangles surface = brep::read_triangles(bone);
             benchmark::DoNotOptimize(brep::health(surface).faces);
@@ -266,8 +252,7 @@ Verb mirror() {
 
 /// A surface's health.
 Verb info() {
-  const Path bone = bones().first, stl = workspace() / "bone.stl";
-  brep::write_mesh(brep::read_triangles(bone), stl);
+  const Path stl = bone_file(".stl");
   return {{"info", stl.string()},
           [stl] { benchmark::DoNotOptimize(brep::health(brep::read_triangles(stl)).faces); }};
 }
