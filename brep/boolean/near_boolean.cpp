@@ -53,11 +53,10 @@ std::pair<EdgePlace, Edge> placed(const Triangles& triangles, const Edge& edge) 
 
 /// A solid and its triangles as they are to be cut: its own, or others of the same surface.
 struct Operand {
-  Operand(const Solid& of, const Linked& as) : solid(of), linked(as), triangles(as.triangles) {}
-
   const Solid& solid;
   const Linked& linked;
-  const Triangles& triangles;
+
+  const Triangles& triangles() const { return linked.triangles; }
 };
 
 /// What keeps a Boolean from being made near the cut only.
@@ -104,8 +103,8 @@ void visit_leaving(const Linked& linked, std::uint32_t first, const Visit& visit
 /// Marks the triangles that meet, and all about points where these would be two fans: corefinement takes
 /// points for different ones where a surface has two at one place.
 void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting, Side& side) {
-  side.near.assign(operand.triangles.faces.size(), 0);
-  side.touching.assign(operand.triangles.points_mm.size(), 0);
+  side.near.assign(operand.triangles().faces.size(), 0);
+  side.touching.assign(operand.triangles().points_mm.size(), 0);
   std::vector<std::uint32_t> unseen;  // sides, which stand for the points that they leave
   const auto mark = [&](std::uint32_t f) {
     assert(f < side.near.size());
@@ -131,9 +130,9 @@ void mark_near(const Operand& operand, const std::vector<std::uint32_t>& meeting
 /// Joins the far triangles into parts wherever they share a point: the other surface cuts none of them, so
 /// each part is wholly inside or outside.
 void find_parts(const Operand& operand, Side& side) {
-  const auto& faces = operand.triangles.faces;
-  DisjointSets parts(operand.triangles.points_mm.size());
-  side.part.assign(operand.triangles.points_mm.size(), none);
+  const auto& faces = operand.triangles().faces;
+  DisjointSets parts(operand.triangles().points_mm.size());
+  side.part.assign(operand.triangles().points_mm.size(), none);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (side.near[f]) continue;
     parts.join(faces[f][0], faces[f][1]);
@@ -169,7 +168,7 @@ void find_border(const Operand& operand, Side& side) {
       const std::uint32_t from = operand.linked.from(s), to = operand.linked.to(s);
       assert(side.part[from] != none && side.part[from] == side.part[to]);
       side.border[edge_of(from, to)] = side.part[from];
-      const auto [place, edge] = placed(operand.triangles, {from, to});
+      const auto [place, edge] = placed(operand.triangles(), {from, to});
       if (!side.border_edges.try_emplace(place, edge).second)
         throw Obstacle("sheets of an operand touch along a border");
     }
@@ -182,14 +181,14 @@ void measure_parts(const Operand& operand, const glm::dvec3& tip, Side& side) {
   side.widest.assign(side.first.size(), 0);
   for (std::size_t f = 0; f < side.near.size(); ++f) {
     if (side.near[f]) continue;
-    const auto& face = operand.triangles.faces[f];
+    const auto& face = operand.triangles().faces[f];
     const std::uint32_t part = side.part_of(face);
     assert(part < side.volumes_mm3.size());
-    const double term = cone_mm3(operand.triangles, face, tip), sum = side.volumes_mm3[part] + term;
+    const double term = cone_mm3(operand.triangles(), face, tip), sum = side.volumes_mm3[part] + term;
     lost[part] += std::abs(side.volumes_mm3[part]) >= std::abs(term) ? (side.volumes_mm3[part] - sum) + term
                                                                      : (term - sum) + side.volumes_mm3[part];
     side.volumes_mm3[part] = sum;
-    const double mm2 = shadow_mm2(corners(operand.triangles, f));
+    const double mm2 = shadow_mm2(corners(operand.triangles(), f));
     if (mm2 > widest_mm2[part]) {
       widest_mm2[part] = mm2;
       side.widest[part] = static_cast<std::uint32_t>(f);
@@ -206,13 +205,13 @@ struct Patch {
 
 Patch patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) {
   Triangles patch;
-  std::vector<std::uint32_t> number(operand.triangles.points_mm.size(), none), points;
+  std::vector<std::uint32_t> number(operand.triangles().points_mm.size(), none), points;
   for (const std::uint32_t f : faces) {
-    std::array<std::uint32_t, 3> face = operand.triangles.faces[f];
+    std::array<std::uint32_t, 3> face = operand.triangles().faces[f];
     for (std::uint32_t& v : face) {
       if (number[v] == none) {
         number[v] = static_cast<std::uint32_t>(patch.points_mm.size());
-        patch.points_mm.push_back(operand.triangles.points_mm[v]);
+        patch.points_mm.push_back(operand.triangles().points_mm[v]);
         points.push_back(v);
       }
       v = number[v];
@@ -225,7 +224,7 @@ Patch patch_of(const Operand& operand, const std::vector<std::uint32_t>& faces) 
 /// Takes the near triangles that hang together with the points for far ones: they touch the other surface,
 /// and it does not cut them.
 void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& points, Side& side) {
-  std::vector<std::uint8_t> is_among(operand.triangles.points_mm.size(), 0);
+  std::vector<std::uint8_t> is_among(operand.triangles().points_mm.size(), 0);
   for (const std::uint32_t v : points) is_among[v] = 1;
   std::vector<std::uint32_t> flood;
   const auto take = [&](std::uint32_t f) {
@@ -234,13 +233,13 @@ void take_as_far(const Operand& operand, const std::vector<std::uint32_t>& point
     flood.push_back(f);
   };
   for (const std::uint32_t f : side.near_faces) {
-    const auto& face = operand.triangles.faces[f];
+    const auto& face = operand.triangles().faces[f];
     if (is_among[face[0]] || is_among[face[1]] || is_among[face[2]]) take(f);
   }
   while (!flood.empty()) {
     const std::uint32_t f = flood.back();
     flood.pop_back();
-    for (const std::uint32_t v : operand.triangles.faces[f]) side.touching[v] = 1;
+    for (const std::uint32_t v : operand.triangles().faces[f]) side.touching[v] = 1;
     for (std::uint32_t s = 3 * f; s < 3 * f + 3; ++s) take(operand.linked.opposite[s] / 3);
   }
   std::erase_if(side.near_faces, [&](std::uint32_t f) { return !side.near[f]; });
@@ -304,12 +303,12 @@ void place_parts(const std::set<Edge>& edges, bool inside_where_there, Side& sid
 /// A ray from each part; it decides where no border did.
 void confirm_parts(const Operand& operand, const Operand& other, Side& side) {
   std::vector<glm::dvec3> probes;
-  for (const std::uint32_t v : side.first) probes.push_back(operand.triangles.points_mm[v]);
+  for (const std::uint32_t v : side.first) probes.push_back(operand.triangles().points_mm[v]);
   std::vector<std::uint8_t> inside;
   if (probes.size() >= probes_worth_a_tree)
     inside = other.solid.tree().inside(probes);
   else
-    for (const glm::dvec3& probe : probes) inside.push_back(is_inside(probe, other.triangles));
+    for (const glm::dvec3& probe : probes) inside.push_back(is_inside(probe, other.triangles()));
   for (std::size_t part = 0; part < inside.size(); ++part) {
     if (side.known[part] && inside[part] != side.inside[part])
       throw Obstacle("a ray and the borders of a part disagree about its place");
@@ -324,14 +323,14 @@ class Sewing {
   void add_far(const Operand& operand, const Side& side, std::size_t result, bool of_a) {
     const bool inside = takes_inside(result, of_a), turned = turns_round(result, of_a);
     std::vector<std::uint32_t>& numbers = of_a ? number_a_ : number_b_;
-    numbers.assign(operand.triangles.points_mm.size(), none);
+    numbers.assign(operand.triangles().points_mm.size(), none);
     for (std::uint32_t v = 0; v < numbers.size(); ++v) {
       if (side.part[v] == none || (side.inside[side.part[v]] != 0) != inside) continue;
       numbers[v] = static_cast<std::uint32_t>(sewn_.points_mm.size());
-      sewn_.points_mm.push_back(operand.triangles.points_mm[v]);
+      sewn_.points_mm.push_back(operand.triangles().points_mm[v]);
     }
     for (std::uint32_t f = 0; f < side.near.size(); ++f) {
-      const auto& face = operand.triangles.faces[f];
+      const auto& face = operand.triangles().faces[f];
       if (side.near[f] || numbers[face[0]] == none) continue;
       assert(numbers[face[1]] != none && numbers[face[2]] != none);
       const std::size_t second = turned ? 2 : 1;
@@ -376,11 +375,11 @@ double volume_of(const Triangles& near, const glm::dvec3& tip, std::size_t resul
 /// The near triangles of both, apart.
 std::array<Side, 2> sides_of(const Operand& a, const Operand& b) {
   std::array<Side, 2> sides;
-  const IntersectingTriangles meeting = intersecting_triangles(a.triangles, b.triangles);
+  const IntersectingTriangles meeting = intersecting_triangles(a.triangles(), b.triangles());
   mark_near(a, meeting.of_a, sides[0]);
   mark_near(b, meeting.of_b, sides[1]);
   const std::size_t near = sides[0].near_faces.size() + sides[1].near_faces.size();
-  if (2 * near > a.triangles.faces.size() + b.triangles.faces.size())
+  if (2 * near > a.triangles().faces.size() + b.triangles().faces.size())
     throw Obstacle("more than half of the triangles are near the cut");
   return sides;
 }
@@ -433,12 +432,12 @@ void sew(const Operand& a, const Operand& b, const Wanted& wanted, const std::st
   confirm_parts(a, b, sides[0]);
   confirm_parts(b, a, sides[1]);
 
-  const glm::dvec3 tip = a.triangles.points_mm.empty() ? glm::dvec3(0.0) : a.triangles.points_mm.front();
+  const glm::dvec3 tip = a.triangles().points_mm.empty() ? glm::dvec3(0.0) : a.triangles().points_mm.front();
   measure_parts(a, tip, sides[0]);
   measure_parts(b, tip, sides[1]);
   for (std::size_t s = 0; s < 2; ++s)
     for (const std::uint32_t f : sides[s].widest)
-      answer.widest.push_back(corners(s == 0 ? a.triangles : b.triangles, f));
+      answer.widest.push_back(corners(s == 0 ? a.triangles() : b.triangles(), f));
   for (std::size_t r = 0; r < seams.size(); ++r) {
     if (!seams[r] && wanted[r]) throw Obstacle("a result would not be manifold");
     if (!seams[r]) continue;

@@ -15,10 +15,12 @@ namespace octotomy::brep {
 /// nothing. Cost: linear; 32 to 40 bytes for each number.
 class PointNumbers {
  public:
-  /// `expected` numbers need no room made on the way. Appends the points to a list that outlives this.
+  /// Appends each new point to a list. `expected` points need no room made on the way. Preconditions: the
+  /// list is empty, outlives this and is not changed otherwise.
   explicit PointNumbers(std::vector<glm::dvec3>& points_mm, std::size_t expected = 0);
   std::uint32_t number_of(const glm::dvec3& p_mm);
-  /// The same for some after each other, sooner than one by one: the table need not be waited for.
+  /// The same for several points, in their order; faster than one by one, as their places in the table are
+  /// fetched ahead. Precondition: as many numbers as points.
   void number(std::span<const glm::dvec3> points_mm, std::span<std::uint32_t> numbers);
 
  private:

@@ -63,7 +63,7 @@ void halve(std::vector<Centred>& items, std::uint32_t leaf_size, const Leaf& lea
                                                                      : a.number < b.number;
                      });
   };
-  // The axis is a constant for each comparison, of which there are many.
+  // A constant axis spares each comparison the choice.
   if (axis == 0)
     part_along(std::integral_constant<int, 0>());
   else if (axis == 1)

@@ -34,7 +34,7 @@ struct OuterBox {
     high = glm::max(high, other.high);
   }
   bool overlaps(const OuterBox& other) const {
-    // One branch: six would often be foretold wrongly.
+    // One branch: the processor would often predict six wrongly.
     return ((low.x <= other.high.x) & (other.low.x <= high.x) & (low.y <= other.high.y) &
             (other.low.y <= high.y) & (low.z <= other.high.z) & (other.low.z <= high.z)) != 0;
   }

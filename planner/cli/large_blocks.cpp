@@ -22,8 +22,8 @@ constexpr std::size_t least_aligned = 8 * huge_page;
 constexpr std::size_t least_advised = huge_page / 8;
 
 #if defined(__linux__)
-/// Asks for huge pages wherever a block lies. What else lies on its first and last page gets them, too, as
-/// the heap's blocks change places. Advice only: a system that ignores it gives small pages.
+/// Asks for huge pages for a block that may begin and end anywhere. Other blocks on its first and last huge
+/// page get them, too. Advice only: a system that ignores it gives small pages.
 void advise_huge_pages(void* memory, std::size_t bytes) {
   const auto begin = reinterpret_cast<std::uintptr_t>(memory) / huge_page * huge_page,
              end = (reinterpret_cast<std::uintptr_t>(memory) + bytes + huge_page - 1) / huge_page * huge_page;
