@@ -186,31 +186,50 @@ class ParallelRays::Square {
 
   /// Offers the batch's rays their voxels, front to back, until each has ended or left the leaf.
   void offer() {
-    while (batch_.count > 0) {
-      const RayBatch::Rays all = all_children >> (64 - batch_.count);
-      const RayBatch::Rays passing = find_passages(rays_.rays_, rays_.mirror_, voxels_, batch_);
-      // The table's other voxels are dropped first, so that full vectors of rays are offered.
-      if (passing != all) {
-        move_on(~passing, 0);
-        continue;
-      }
-      const RayBatch::Rays ended = accept_(batch_);
-      move_on(~ended, ended);
+    for (drop_missed(); batch_.count > 0; drop_missed()) move_on(0, accept_(batch_));
+  }
+
+  /// Moves rays on to the first of their voxels that they do pass, and drops those that pass none, so that
+  /// full vectors of rays are offered.
+  void drop_missed() {
+    for (int done = 0; done < batch_.count;) {
+      const RayBatch::Rays passing = find_passages(rays_.rays_, rays_.mirror_, voxels_, done, batch_);
+      done = bring_forward(passing, done);
+      move_on(done, 0);
     }
   }
 
-  /// Moves rays on to the next voxel that each may pass, and drops those that have none or ended.
-  void move_on(RayBatch::Rays moving, RayBatch::Rays ended) {
-    const int count = std::exchange(batch_.count, 0);
-    for (int i = 0; i < count; ++i) {
+  /// Exchanges rays from number `first` on so that those that pass come first. Returns the number of the
+  /// first that does not.
+  int bring_forward(RayBatch::Rays passing, int first) {
+    const int end = first + std::popcount(passing);
+    if (end == batch_.count) return end;
+    const RayBatch::Rays behind = RayBatch::from(end);
+    RayBatch::Rays free = ~passing & ~behind & RayBatch::from(first);
+    for (RayBatch::Rays rest = passing & behind; rest != 0; rest &= rest - 1, free &= free - 1) {
+      const auto ray = static_cast<std::size_t>(std::countr_zero(rest));
+      const auto place = static_cast<std::size_t>(std::countr_zero(free));
+      const std::int32_t x = batch_.x[place], y = batch_.y[place];
+      batch_.put(ray, place);
+      batch_.x[ray] = x;
+      batch_.y[ray] = y;
+      std::swap(voxels_[ray], voxels_[place]);
+    }
+    return end;
+  }
+
+  /// Moves rays from number `first` on to the next voxel that each may pass, and drops those that have none
+  /// or ended.
+  void move_on(int first, RayBatch::Rays ended) {
+    const int count = std::exchange(batch_.count, first);
+    for (int i = first; i < count; ++i) {
       const auto ray = static_cast<std::size_t>(i);
       const glm::ivec2 pixel = glm::ivec2(batch_.x[ray], batch_.y[ray]) - first_px_;
-      std::uint64_t voxels = voxels_[ray];
       if (((ended >> i) & 1) != 0) {
         open_[static_cast<std::size_t>(pixel.y)] &= ~(std::uint64_t{1} << pixel.x);
         continue;
       }
-      if (((moving >> i) & 1) != 0) voxels &= voxels - 1;
+      const std::uint64_t voxels = voxels_[ray] & (voxels_[ray] - 1);
       if (voxels != 0) add(pixel, voxels);
     }
   }

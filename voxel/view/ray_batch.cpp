@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/view/ray_batch.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -15,6 +16,7 @@ namespace {
 
 constexpr int lanes = 4;
 using Double = double __attribute__((vector_size(8 * lanes)));
+using Long = std::int64_t __attribute__((vector_size(8 * lanes)));
 using Int = std::int32_t __attribute__((vector_size(4 * lanes)));
 
 [[gnu::always_inline]] inline Int load(const std::int32_t* from) {
@@ -39,10 +41,13 @@ struct Axis {
   bool flipped, still;
 };
 
-/// The passages of a batch's rays through the voxels of the leaf with the given numbers.
-OCTOTOMY_VECTOR_CLONES void pass(const Axis* axes, const std::int32_t* voxels, RayBatch& batch,
-                                 std::int32_t* passes) {
-  for (int from = 0; from < batch.count; from += lanes) {
+/// The passages of a batch's rays, from a vector's first ray on, through the voxels of the leaf with the
+/// given numbers. Returns the rays that pass; those beyond the batch mean nothing.
+OCTOTOMY_VECTOR_CLONES RayBatch::Rays pass(const Axis* axes, const std::int32_t* voxels, int first,
+                                           RayBatch& batch) {
+  const Long ray{1, 2, 4, 8};
+  Long passing{};
+  for (int from = first; from < batch.count; from += lanes) {
     const Double across = doubles(load(batch.x.data() + from)) + 0.5;
     const Double down = doubles(load(batch.y.data() + from)) + 0.5;
     const Int voxel = load(voxels + from);
@@ -68,30 +73,32 @@ OCTOTOMY_VECTOR_CLONES void pass(const Axis* axes, const std::int32_t* voxels, R
       enter_mm = enter > enter_mm ? enter : enter_mm;
       leave_mm = leave < leave_mm ? leave : leave_mm;
     }
-    const auto meets = (enter_mm < leave_mm) & (misses == 0.0);
+    const Long meets = (enter_mm < leave_mm) & (misses == 0.0);
+    passing |= meets & (ray << from);
     store(meets ? enter_mm : Double{}, batch.enter_mm.data() + from);
     store(meets ? leave_mm : Double{}, batch.leave_mm.data() + from);
     store(__builtin_convertvector(through, Int), batch.entered_through.data() + from);
-    store(__builtin_convertvector(meets ? Double{} + 1.0 : Double{}, Int), passes + from);
   }
+  return static_cast<RayBatch::Rays>((passing[0] | passing[1]) | (passing[2] | passing[3]));
 }
 
 }  // namespace
 
 RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
-                             const RayBatch::ByRay<std::uint64_t>& voxels, RayBatch& batch) {
+                             const RayBatch::ByRay<std::uint64_t>& voxels, int first, RayBatch& batch) {
   Axis axes[3];
   for (int axis = 0; axis < 3; ++axis)
     axes[axis] = {rays.first[axis],          rays.per_px_x[axis],      rays.per_px_y[axis],
                   double(mirror.side),       double(batch.leaf[axis]), mirror.mm_per_voxel[axis],
                   mirror.flipped[axis] != 0, mirror.still[axis]};
-  const auto count = static_cast<std::size_t>(batch.count);
-  RayBatch::ByRay<std::int32_t> first{}, passes;
-  for (std::size_t ray = 0; ray < count; ++ray) first[ray] = std::countr_zero(voxels[ray]);
-  pass(axes, first.data(), batch, passes.data());
-  RayBatch::Rays passing = 0;
-  for (std::size_t ray = 0; ray < count; ++ray) passing |= static_cast<RayBatch::Rays>(passes[ray]) << ray;
-  return passing;
+  // Rays of the same vector before the first find again what they have.
+  const int aligned = first - first % lanes;
+  RayBatch::ByRay<std::int32_t> numbers;
+  for (int ray = aligned; ray < batch.count; ++ray)
+    numbers[static_cast<std::size_t>(ray)] = std::countr_zero(voxels[static_cast<std::size_t>(ray)]);
+  // The last vector's other rays pass some voxel of the leaf.
+  std::fill_n(numbers.begin() + batch.count, std::min(lanes, RayBatch::most - batch.count), 0);
+  return pass(axes, numbers.data(), aligned, batch) & RayBatch::all(batch.count) & RayBatch::from(first);
 }
 
 }  // namespace octotomy::voxel

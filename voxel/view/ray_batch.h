@@ -32,11 +32,22 @@ struct RayBatch {
 
   /// Bit i of a set of rays stands for ray i.
   using Rays = std::uint64_t;
+  /// The rays of a batch of `count`. Precondition: at least one.
+  static Rays all(int count) { return ~Rays{0} >> (most - count); }
+  /// The rays from number `first` on. Precondition: less than `most`.
+  static Rays from(int first) { return ~Rays{0} << first; }
+
+  /// Puts one ray and its passage in the place of another.
+  void put(std::size_t ray, std::size_t place) {
+    for (auto* by_ray : {&x, &y, &at[0], &at[1], &at[2], &entered_through}) (*by_ray)[place] = (*by_ray)[ray];
+    for (auto* by_ray : {&start[0], &start[1], &start[2], &enter_mm, &leave_mm})
+      (*by_ray)[place] = (*by_ray)[ray];
+  }
 };
 
-/// Finds the passages of a batch's rays through the first of the voxels of the leaf that each may pass, one
-/// bit a voxel, bit for bit as passage_of(). Returns the rays that do pass it.
+/// Finds the passages of a batch's rays, those from number `first` on, through the first of the voxels of the
+/// leaf that each may pass, one bit a voxel, bit for bit as passage_of(). Returns the rays that do pass it.
 RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
-                             const RayBatch::ByRay<std::uint64_t>& voxels, RayBatch& batch);
+                             const RayBatch::ByRay<std::uint64_t>& voxels, int first, RayBatch& batch);
 
 }  // namespace octotomy::voxel
