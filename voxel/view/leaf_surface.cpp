@@ -9,7 +9,7 @@
 #include "voxel/space/vector_clones.h"
 
 // The search of ray_surface.cpp on vectors of rays:
-// 1 copy the samples about the leaf in pairs; 2 interpolate them at the entries; 3 take the voxel's face
+// 1 copy the samples about the leaf in fours; 2 interpolate them at the entries; 3 take the voxel's face
 // where the object was cut; 4 probe along the other rays until their sample crosses the threshold; 5
 // interpolate the crossing. Every ray takes the steps of all; those that it does not need have no effect.
 
@@ -57,7 +57,7 @@ template <typename Whole, typename Half>
 }
 [[gnu::always_inline]] inline bool any(const Int& mask) {
   using Longs = std::int64_t __attribute__((vector_size(4 * lanes)));
-  const auto longs = load<Longs>(&mask);
+  const auto longs = reinterpret_cast<Longs>(mask);
   return ((longs[0] | longs[1]) | (longs[2] | longs[3])) != 0;
 }
 
@@ -70,10 +70,10 @@ struct Way {
 
 /// The samples about a leaf.
 struct Leaf {
-  const std::int32_t* pairs = nullptr;
-  Int first[3];                   ///< voxel of the first pair
-  Int low_cell[3], high_cell[3];  ///< that pairs are there for
-  std::int32_t corner = 0;        ///< number of the pair of the leaf's first voxel in the mirrored frame
+  const std::uint64_t* fours = nullptr;
+  Int first[3];                   ///< voxel of the first four
+  Int low_cell[3], high_cell[3];  ///< that fours are there for
+  std::int32_t corner = 0;        ///< number of the leaf's first voxel in the mirrored frame
   std::int32_t stride[3];         ///< from there to the next voxel along an axis
 };
 
@@ -83,37 +83,31 @@ struct StillSamples {
   glm::dmat4 still_from_voxel{1.0};
 };
 
-/// One vector of rays.
-struct Lanes {
-  const double* start[3];
-  const double* enter_mm;
-  const double* leave_mm;
-  const std::int32_t* at[3];  ///< place of the passed voxel in the leaf
-  const std::int32_t* through;
-  float* depth_mm;
-  std::int32_t* kind;
-};
-constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray finds
-
 /// Positions of rays, counted from a voxel near their entry as in RaySamples.
 struct Origins {
   Float p[3];
   Int first[3];
 };
 
-/// Pairs by their numbers.
-[[gnu::always_inline]] inline Int pairs_at(const std::int32_t* __restrict pairs, const Int& numbers) {
-  alignas(64) std::int32_t number[lanes], pair[lanes];
-  store(numbers, number);
-  for (int i = 0; i < lanes; ++i) pair[i] = pairs[number[i]];
-  return load<Int>(pair);
-}
-/// The samples of pairs.
-[[gnu::always_inline]] inline Float left_of(const Int& pair) {
-  return __builtin_convertvector((pair << 16) >> 16, Float);
-}
-[[gnu::always_inline]] inline Float right_of(const Int& pair) {
-  return __builtin_convertvector(pair >> 16, Float);
+/// Two samples that are neighbours along x, of each ray.
+struct Pairs {
+  Int pairs;
+  [[gnu::always_inline]] Float left() const { return __builtin_convertvector((pairs << 16) >> 16, Float); }
+  [[gnu::always_inline]] Float right() const { return __builtin_convertvector(pairs >> 16, Float); }
+};
+struct Fours {
+  Pairs near, far;  ///< along y
+};
+/// Fours by their numbers.
+[[gnu::always_inline]] inline Fours fours_at(const std::uint64_t* __restrict fours, const Int& numbers) {
+  using Long4 = std::uint64_t __attribute__((vector_size(4 * lanes)));
+  alignas(64) std::uint32_t at[lanes];
+  store(numbers, at);
+  // In this order both shuffles stay within halves of vectors.
+  const auto low = reinterpret_cast<Int>(Long4{fours[at[0]], fours[at[1]], fours[at[4]], fours[at[5]]});
+  const auto high = reinterpret_cast<Int>(Long4{fours[at[2]], fours[at[3]], fours[at[6]], fours[at[7]]});
+  return {{__builtin_shufflevector(low, high, 0, 2, 8, 10, 4, 6, 12, 14)},
+          {__builtin_shufflevector(low, high, 1, 3, 9, 11, 5, 7, 13, 15)}};
 }
 
 /// Interpolates from the eight samples about positions, numbered x + 2y + 4z, as RaySamples does.
@@ -148,10 +142,12 @@ struct Origins {
   }
   static_assert(row == 1 << 3);
   Float corners[8];
-  for (int i = 0; i < 4; ++i) {
-    const Int pair = pairs_at(leaf.pairs + row * (i & 1) + layer * (i >> 1), at);
-    corners[2 * i] = left_of(pair);
-    corners[2 * i + 1] = right_of(pair);
+  for (int z = 0; z < 2; ++z) {
+    const Fours four = fours_at(leaf.fours + layer * z, at);
+    corners[4 * z] = four.near.left();
+    corners[4 * z + 1] = four.near.right();
+    corners[4 * z + 2] = four.far.left();
+    corners[4 * z + 3] = four.far.right();
   }
   return mixed(corners, t);
 }
@@ -186,14 +182,14 @@ struct Origins {
   return mixed(corners, t);
 }
 
-/// Positions near the entries.
-[[gnu::always_inline]] inline Origins origins_of(const Way& way, const Lanes& rays,
+/// Positions near the entries of the rays from number `from` on.
+[[gnu::always_inline]] inline Origins origins_of(const Way& way, const RayBatch& batch, int from,
                                                  const Double4 start[3][2]) {
   Origins origins;
   for (int axis = 0; axis < 3; ++axis) {
     Double4 first[2], p[2];
     for (int half = 0; half < 2; ++half) {
-      p[half] = start[axis][half] + load<Double4>(rays.enter_mm + 4 * half) * way.per_mm[axis];
+      p[half] = start[axis][half] + load<Double4>(batch.enter_mm.data() + from + 4 * half) * way.per_mm[axis];
       // The floor: down by one where the conversion went up.
       const Double4 whole = __builtin_convertvector(__builtin_convertvector(p[half], Int4), Double4);
       constexpr double reach = 8.0;
@@ -206,40 +202,106 @@ struct Origins {
   return origins;
 }
 
-/// Steps 4 and 5 for one vector of rays. Those that are not `sought` see their voxel's face.
+/// The search along one vector of rays.
+struct Search {
+  Origins origins;
+  Int outside;            ///< at the entry
+  Int faces;              ///< that see their voxel's face
+  Int crossed;            ///< with a crossing between the last two probes, of which the entry is the first
+  Float near_mm, far_mm;  ///< from the entry to these two
+  Float near_value, far_value;  ///< there
+};
+
+/// Steps 2 and 3 for the rays of a leaf from number `from` on.
+[[gnu::always_inline]] inline void enter(const Way& way, const Leaf& leaf, const RayBatch& batch, int from,
+                                         Search& search) {
+  Double4 start[3][2];
+  for (int axis = 0; axis < 3; ++axis)
+    for (int half = 0; half < 2; ++half)
+      start[axis][half] = load<Double4>(batch.start[std::size_t(axis)].data() + from + 4 * half);
+  search.origins = origins_of(way, batch, from, start);
+  const Float entry = interpolate(way, leaf, search.origins, Float{});
+  const auto through = load<Int>(batch.entered_through.data() + from);
+  Int number = Int{} + leaf.corner, step_back{};
+  for (int axis = 0; axis < 3; ++axis) {
+    number += load<Int>(batch.at[std::size_t(axis)].data() + from) * leaf.stride[axis];
+    step_back |= (through == axis) & leaf.stride[axis];
+  }
+  const Float voxel = fours_at(leaf.fours, number).near.left();
+  const Float before = fours_at(leaf.fours, number - step_back).near.left();
+  search.outside = entry < way.threshold;
+  search.faces = (voxel < way.threshold) | ((before >= way.threshold) & ~search.outside);
+  search.near_value = entry;
+}
+
+/// Step 2 for the rays of a moved object.
+[[gnu::always_inline]] inline void enter(const Way& way, const StillSamples& samples, const RayBatch& batch,
+                                         int from, Search& search) {
+  const glm::dmat4& still = samples.still_from_voxel;
+  Double4 start[3][2];
+  for (int axis = 0; axis < 3; ++axis)
+    for (int half = 0; half < 2; ++half) {
+      Double4 p[3];
+      for (int of = 0; of < 3; ++of)
+        p[of] = load<Double4>(batch.start[std::size_t(of)].data() + from + 4 * half);
+      // In the order of GLM's product.
+      start[axis][half] =
+          (still[0][axis] * p[0] + still[1][axis] * p[1]) + (still[2][axis] * p[2] + still[3][axis]);
+    }
+  search.origins = origins_of(way, batch, from, start);
+  search.near_value = interpolate(way, samples, search.origins, Float{});
+  search.outside = search.near_value < way.threshold;
+  search.faces = Int{};
+}
+
+/// Step 4: from outside, forward over the voxel in two steps; from inside, back over two voxels in four.
 template <typename Samples>
-[[gnu::always_inline]] inline void find_crossings(const Way& way, const Samples& samples, const Lanes& rays,
-                                                  const Origins& origins, const Float& entry,
-                                                  const Int& sought) {
-  const Double4 enter_mm[2] = {load<Double4>(rays.enter_mm), load<Double4>(rays.enter_mm + 4)};
-  const Double4 leave_mm[2] = {load<Double4>(rays.leave_mm), load<Double4>(rays.leave_mm + 4)};
-  const Float way_mm = floats(leave_mm[0] - enter_mm[0], leave_mm[1] - enter_mm[1]);
-  const float threshold = way.threshold;
-  const Int outside = entry < threshold;
-  Int open = sought, faces = ~open, crossed{};
-  // From outside, forward over the voxel in two steps; from inside, back over two voxels in four.
-  Float near_mm{}, near_value = entry, far_mm{}, far_value = entry;
+[[gnu::always_inline]] inline void probe(const Way& way, const Samples& samples, const RayBatch& batch,
+                                         int from, Search& search) {
+  const auto along = [&](int half) __attribute__((always_inline)) {
+    const int at = from + 4 * half;
+    return load<Double4>(batch.leave_mm.data() + at) - load<Double4>(batch.enter_mm.data() + at);
+  };
+  const Float way_mm = floats(along(0), along(1));
+  const Int outside = search.outside;
+  Int open = ~search.faces, crossed{};
+  Float near_mm{}, far_mm{}, near_value = search.near_value, far_value = near_value;
   for (int step = 1; any(open) && step <= 4; ++step) {
     const Float probe_mm =
         outside ? way_mm * (step == 1 ? 0.5f : 1.0f) : Float{} - static_cast<float>(step) * way.half_voxel_mm;
-    const Float value = interpolate(way, samples, origins, probe_mm);
+    const Float value = interpolate(way, samples, search.origins, probe_mm);
     near_mm = open ? far_mm : near_mm;
     near_value = open ? far_value : near_value;
     far_mm = open ? probe_mm : far_mm;
     far_value = open ? value : far_value;
-    const Int crosses = open & ((value < threshold) ^ outside);
+    const Int crosses = open & ((value < way.threshold) ^ outside);
     crossed |= crosses;
     open &= ~crosses;
     if (step >= 2) open &= ~outside;
   }
-  faces |= open;
-  Float below_mm = outside ? near_mm : far_mm, below_value = outside ? near_value : far_value;
-  Float above_mm = outside ? far_mm : near_mm, above_value = outside ? far_value : near_value;
+  search.crossed = crossed;
+  search.faces |= open;
+  search.near_mm = near_mm;
+  search.far_mm = far_mm;
+  search.near_value = near_value;
+  search.far_value = far_value;
+}
+
+/// Step 5. Gives back how far behind its entry each ray meets the surface.
+template <typename Samples>
+[[gnu::always_inline]] inline Float crossing_mm(const Way& way, const Samples& samples,
+                                                const Search& search) {
+  const float threshold = way.threshold;
+  const Int& outside = search.outside;
+  Float below_mm = outside ? search.near_mm : search.far_mm;
+  Float below_value = outside ? search.near_value : search.far_value;
+  Float above_mm = outside ? search.far_mm : search.near_mm;
+  Float above_value = outside ? search.far_value : search.near_value;
   // A ray without a crossing stays at its entry.
-  const Float middle_mm =
-      crossed ? below_mm + (above_mm - below_mm) * (threshold - below_value) / (above_value - below_value)
-              : Float{};
-  const Float middle = interpolate(way, samples, origins, middle_mm);
+  const Float middle_mm = search.crossed ? below_mm + (above_mm - below_mm) * (threshold - below_value) /
+                                                          (above_value - below_value)
+                                         : Float{};
+  const Float middle = interpolate(way, samples, search.origins, middle_mm);
   const Int under = middle < threshold;
   below_mm = under ? middle_mm : below_mm;
   below_value = under ? middle : below_value;
@@ -248,49 +310,39 @@ template <typename Samples>
   const Float again_mm =
       below_mm + (above_mm - below_mm) * (threshold - below_value) / (above_value - below_value);
   const Float crossing_mm = above_value > below_value ? again_mm : middle_mm;
-  const Float shift = crossed ? crossing_mm : Float{};
-  const Float4 low = __builtin_shufflevector(shift, shift, 0, 1, 2, 3);
-  const Float4 high = __builtin_shufflevector(shift, shift, 4, 5, 6, 7);
-  store(floats(enter_mm[0] + __builtin_convertvector(low, Double4),
-               enter_mm[1] + __builtin_convertvector(high, Double4)),
-        rays.depth_mm);
-  store((crossed & (Int{} + smooth)) | (faces & (Int{} + face)), rays.kind);
+  return search.crossed ? crossing_mm : Float{};
 }
 
-/// Steps 2 to 5 for one vector of rays.
-OCTOTOMY_VECTOR_CLONES void find_vector(const Way& way, const Leaf& leaf, const Lanes& rays) {
-  Double4 start[3][2];
-  for (int axis = 0; axis < 3; ++axis)
-    for (int half = 0; half < 2; ++half) start[axis][half] = load<Double4>(rays.start[axis] + 4 * half);
-  const Origins origins = origins_of(way, rays, start);
-  const Float entry = interpolate(way, leaf, origins, Float{});
-  const auto through = load<Int>(rays.through);
-  Int number = Int{} + leaf.corner, step_back{};
-  for (int axis = 0; axis < 3; ++axis) {
-    number += load<Int>(rays.at[axis]) * leaf.stride[axis];
-    step_back |= (through == axis) & leaf.stride[axis];
+constexpr std::int32_t nothing = 0, smooth = 1, face = 2;  // what a ray finds
+
+/// Steps 2 to 5 for a batch, each for all vectors of rays before the next, so that the processor need not
+/// wait for one vector to begin with another.
+template <typename Samples>
+[[gnu::always_inline]] inline void find_surface(const Way& way, const Samples& samples, const RayBatch& batch,
+                                                float* depth_mm, std::int32_t* kind) {
+  Search searches[RayBatch::most / lanes];
+  for (int i = 0; i * lanes < batch.count; ++i) enter(way, samples, batch, i * lanes, searches[i]);
+  for (int i = 0; i * lanes < batch.count; ++i) probe(way, samples, batch, i * lanes, searches[i]);
+  for (int i = 0; i * lanes < batch.count; ++i) {
+    const int from = i * lanes;
+    const Float shift = crossing_mm(way, samples, searches[i]);
+    const auto depth = [&](const Float4& half_of_shift, int half) __attribute__((always_inline)) {
+      return load<Double4>(batch.enter_mm.data() + from + 4 * half) +
+             __builtin_convertvector(half_of_shift, Double4);
+    };
+    store(floats(depth(__builtin_shufflevector(shift, shift, 0, 1, 2, 3), 0),
+                 depth(__builtin_shufflevector(shift, shift, 4, 5, 6, 7), 1)),
+          depth_mm + from);
+    store((searches[i].crossed & (Int{} + smooth)) | (searches[i].faces & (Int{} + face)), kind + from);
   }
-  const Float voxel = left_of(pairs_at(leaf.pairs, number));
-  const Float before = left_of(pairs_at(leaf.pairs, number - step_back));
-  const Int outside = entry < way.threshold;
-  find_crossings(way, leaf, rays, origins, entry,
-                 ~((voxel < way.threshold) | ((before >= way.threshold) & ~outside)));
 }
-
-/// Steps 2, 4 and 5 for one vector of rays of a moved object.
-OCTOTOMY_VECTOR_CLONES void find_moved(const Way& way, const StillSamples& samples, const Lanes& rays) {
-  const glm::dmat4& still = samples.still_from_voxel;
-  Double4 start[3][2];
-  for (int axis = 0; axis < 3; ++axis)
-    for (int half = 0; half < 2; ++half) {
-      Double4 p[3];
-      for (int from = 0; from < 3; ++from) p[from] = load<Double4>(rays.start[from] + 4 * half);
-      // In the order of GLM's product.
-      start[axis][half] =
-          (still[0][axis] * p[0] + still[1][axis] * p[1]) + (still[2][axis] * p[2] + still[3][axis]);
-    }
-  const Origins origins = origins_of(way, rays, start);
-  find_crossings(way, samples, rays, origins, interpolate(way, samples, origins, Float{}), ~Int{});
+OCTOTOMY_VECTOR_CLONES void find_in_leaf(const Way& way, const Leaf& leaf, const RayBatch& batch,
+                                         float* depth_mm, std::int32_t* kind) {
+  find_surface(way, leaf, batch, depth_mm, kind);
+}
+OCTOTOMY_VECTOR_CLONES void find_moved(const Way& way, const StillSamples& samples, const RayBatch& batch,
+                                       float* depth_mm, std::int32_t* kind) {
+  find_surface(way, samples, batch, depth_mm, kind);
 }
 
 /// Four samples of a leaf's row.
@@ -308,22 +360,52 @@ int in_front(double share) {
   return std::min(row - 5, static_cast<int>(std::ceil(0.5 + 2.0 * std::abs(share) + margin)));
 }
 
-/// Pairs each of a row's samples, lowest first, with the next. The last, which has none, gets itself.
-void pair_samples(std::uint64_t first, std::uint64_t last, std::int32_t* pairs) {
+/// The samples of a row of `row` voxels, lowest first, and the next of each along x. The last, which has
+/// none, gets itself.
+struct RowOfPairs {
   using Short8 = std::int16_t __attribute__((vector_size(16)));
-  using Long2 = std::uint64_t __attribute__((vector_size(16)));
-  // Not through memory, where two writes of eight bytes delay a read of sixteen.
-  const auto low = reinterpret_cast<Short8>(Long2{first, last});
-  const Short8 high = __builtin_shufflevector(low, low, 1, 2, 3, 4, 5, 6, 7, 7);
-  store(__builtin_shufflevector(low, high, 0, 8, 1, 9, 2, 10, 3, 11), pairs);
-  store(__builtin_shufflevector(low, high, 4, 12, 5, 13, 6, 14, 7, 15), pairs + 4);
+  Short8 low, high;  ///< four pairs each
+
+  RowOfPairs(std::uint64_t first, std::uint64_t last) {
+    using Long2 = std::uint64_t __attribute__((vector_size(16)));
+    // Not through memory, where two writes of eight bytes delay a read of sixteen.
+    const auto left = reinterpret_cast<Short8>(Long2{first, last});
+    const Short8 right = __builtin_shufflevector(left, left, 1, 2, 3, 4, 5, 6, 7, 7);
+    low = __builtin_shufflevector(left, right, 0, 8, 1, 9, 2, 10, 3, 11);
+    high = __builtin_shufflevector(left, right, 4, 12, 5, 13, 6, 14, 7, 15);
+  }
+};
+
+/// Writes the fours of two rows that are neighbours along y.
+void write_fours(const RowOfPairs& near, const RowOfPairs& far, std::uint64_t* fours) {
+  for (const auto& [of_near, of_far] : {std::pair(near.low, far.low), std::pair(near.high, far.high)}) {
+    store(__builtin_shufflevector(of_near, of_far, 0, 1, 8, 9, 2, 3, 10, 11), fours);
+    store(__builtin_shufflevector(of_near, of_far, 4, 5, 12, 13, 6, 7, 14, 15), fours + 2);
+    fours += 4;
+  }
 }
 
-/// Pairs the samples of the rows from `from` up to, not including, `until` along y and z of a cube of `row`
-/// voxels a side. The cube's first voxel lies one to three behind a leaf's first along each axis.
-/// Precondition: the three leaves along each axis lie within the universe.
-void pair_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& from,
-                 const glm::ivec3& until, std::int32_t* pairs) {
+/// Writes the fours of a cube of `row` voxels a side, those from `from` up to, not including, `until` along y
+/// and z, with the rows of samples that `row_at` gives for y and z. In the last rows the next along y, which
+/// is not there, is the row itself.
+template <typename RowAt>
+void write_cube(const glm::ivec3& from, const glm::ivec3& until, const RowAt& row_at, std::uint64_t* fours) {
+  for (int z = from.z; z < until.z; ++z) {
+    std::uint64_t* const to = fours + layer * z;
+    RowOfPairs near = row_at(from.y, z);
+    for (int y = from.y + 1; y < until.y; ++y) {
+      const RowOfPairs far = row_at(y, z);
+      write_fours(near, far, to + row * (y - 1));
+      near = far;
+    }
+    write_fours(near, near, to + row * (until.y - 1));
+  }
+}
+
+/// Writes the fours of a cube, as write_cube(). Its first voxel lies one to three behind a leaf's first along
+/// each axis. Precondition: the three leaves along each axis lie within the universe.
+void write_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ivec3& from,
+                  const glm::ivec3& until, std::uint64_t* fours) {
   const glm::ivec3 first_brick = first >> 4;
   std::array<const GreyBrick*, 8> bricks;
   for (int i = 0; i < 8; ++i) {
@@ -343,15 +425,15 @@ void pair_leaves(const GreyOctree& grey, const glm::ivec3& first, const glm::ive
             bricks[static_cast<std::size_t>(brick.x + 2 * brick.y + 4 * brick.z)]->samples[number].data();
       }
   const int low = 16 * skipped.x, high = 64 - low;
-  for (int z = from.z; z < until.z; ++z)
-    for (int y = from.y; y < until.y; ++y) {
-      const int in_y = y + skipped.y, in_z = z + skipped.z;
-      const std::int16_t* const* const leaf =
-          &leaves[static_cast<std::size_t>(3 * (in_y >> 2) + 9 * (in_z >> 2))];
-      const std::uint64_t middle = row_of(leaf[1], in_y, in_z);
-      pair_samples((row_of(leaf[0], in_y, in_z) >> low) | (middle << high),
-                   (middle >> low) | (row_of(leaf[2], in_y, in_z) << high), pairs + row * y + layer * z);
-    }
+  const auto row_at = [&](int y, int z) {
+    const int in_y = y + skipped.y, in_z = z + skipped.z;
+    const std::int16_t* const* const leaf =
+        &leaves[static_cast<std::size_t>(3 * (in_y >> 2) + 9 * (in_z >> 2))];
+    const std::uint64_t middle = row_of(leaf[1], in_y, in_z);
+    return RowOfPairs((row_of(leaf[0], in_y, in_z) >> low) | (middle << high),
+                      (middle >> low) | (row_of(leaf[2], in_y, in_z) << high));
+  };
+  write_cube(from, until, row_at, fours);
 }
 
 }  // namespace
@@ -378,42 +460,31 @@ void LeafSurface::go_to(const glm::ivec3& leaf) {
   const glm::ivec3 end = first_ + side;
   if (glm::all(glm::greaterThanEqual(first_, glm::ivec3(0))) &&
       glm::all(glm::lessThanEqual(end, glm::ivec3(universe_side_)))) {
-    pair_leaves(grey_, first_, from_, until_, pairs_.data());
+    write_leaves(grey_, first_, from_, until_, fours_.data());
     return;
   }
-  for (int z = from_.z; z < until_.z; ++z)
-    for (int y = from_.y; y < until_.y; ++y) {
-      std::array<std::int16_t, side> samples;
-      for (int x = 0; x < side; ++x) {
-        const glm::ivec3 at = first_ + glm::ivec3(x, y, z);
-        const bool inside =
-            std::min({at.x, at.y, at.z}) >= 0 && std::max({at.x, at.y, at.z}) < universe_side_;
-        samples[static_cast<std::size_t>(x)] = inside ? grey_.sample(at) : beyond;
-      }
-      pair_samples(load<std::uint64_t>(samples.data()), load<std::uint64_t>(samples.data() + 4),
-                   pairs_.data() + row * y + layer * z);
+  const auto row_at = [&](int y, int z) {
+    std::array<std::int16_t, side> samples;
+    for (int x = 0; x < side; ++x) {
+      const glm::ivec3 at = first_ + glm::ivec3(x, y, z);
+      const bool inside = std::min({at.x, at.y, at.z}) >= 0 && std::max({at.x, at.y, at.z}) < universe_side_;
+      samples[static_cast<std::size_t>(x)] = inside ? grey_.sample(at) : beyond;
     }
+    return RowOfPairs(load<std::uint64_t>(samples.data()), load<std::uint64_t>(samples.data() + 4));
+  };
+  write_cube(from_, until_, row_at, fours_.data());
 }
 
 void LeafSurface::find(const RayBatch& batch, Found& found) {
   const Way way{{per_mm_.x, per_mm_.y, per_mm_.z}, half_voxel_mm_, threshold_};
   alignas(64) RayBatch::ByRay<std::int32_t> kind;
-  const auto lanes_from = [&](int i) {
-    return Lanes{{batch.start[0].data() + i, batch.start[1].data() + i, batch.start[2].data() + i},
-                 batch.enter_mm.data() + i,
-                 batch.leave_mm.data() + i,
-                 {batch.at[0].data() + i, batch.at[1].data() + i, batch.at[2].data() + i},
-                 batch.entered_through.data() + i,
-                 found.depth_mm.data() + i,
-                 kind.data() + i};
-  };
   if (still_from_voxel_) {
     const StillSamples samples{&grey_, *still_from_voxel_};
-    for (int i = 0; i < batch.count; i += lanes) find_moved(way, samples, lanes_from(i));
+    find_moved(way, samples, batch, found.depth_mm.data(), kind.data());
   } else {
     if (batch.leaf != leaf_) go_to(batch.leaf);
     Leaf leaf;
-    leaf.pairs = pairs_.data();
+    leaf.fours = fours_.data();
     for (int axis = 0; axis < 3; ++axis) {
       leaf.first[axis] = Int{} + first_[axis];
       leaf.low_cell[axis] = Int{} + std::max(first_[axis] + from_[axis], 0);
@@ -424,7 +495,7 @@ void LeafSurface::find(const RayBatch& batch, Found& found) {
     const glm::ivec3 corner = native_ - first_ + 3 * mirror_.flipped;
     leaf.corner = corner.x + row * corner.y + layer * corner.z;
     for (int axis = 0; axis < 3; ++axis) leaf.stride[axis] = stride[axis];
-    for (int i = 0; i < batch.count; i += lanes) find_vector(way, leaf, lanes_from(i));
+    find_in_leaf(way, leaf, batch, found.depth_mm.data(), kind.data());
   }
   found.lit = found.stepped = 0;
   for (int i = 0; i < batch.count; ++i) {

@@ -49,9 +49,9 @@ class LeafSurface {
   glm::ivec3 native_{0};              ///< the leaf's first voxel
   glm::ivec3 first_{0};               ///< the voxel of the first sample
   glm::ivec3 from_{0}, until_{side};  ///< the samples that these rays need, counted from `first_`
-  /// By x + 8y + 64z from `first_`: a voxel's sample in the lower half, that of the next along x in the
-  /// upper.
-  alignas(64) std::array<std::int32_t, side * side * side> pairs_;
+  /// By x + 8y + 64z from `first_`: the samples of a voxel, of the next along x, and of those two's next
+  /// along y, 16 bits each from the lowest.
+  alignas(64) std::array<std::uint64_t, side * side * side> fours_;
 };
 
 }  // namespace octotomy::voxel
