@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
 #include <limits>
 #include <optional>
@@ -62,21 +63,11 @@ struct RayCast::Prepared {
     return surfaces[i]->seen(ray, frame, passage);
   }
 
-  /// Updates `nearest` by the surface of object `i` that `find` finds near a voxel. False if there is none
-  /// and the ray continues.
-  template <typename Find>
-  static bool take(std::size_t i, double enter_mm, double reach_mm, const Find& find, Seen& nearest) {
-    if (nearest.lit() && enter_mm > nearest.depth_mm + reach_mm) return true;
-    std::optional<Seen> seen = find();
-    if (!seen) return false;
-    seen->object = static_cast<std::int16_t>(i);
-    if (seen->depth_mm < nearest.depth_mm) nearest = *seen;
-    return true;
-  }
-
   /// Pixels of a square, row by row.
   using Square = std::array<Seen, std::size_t{ParallelRays::square_px} * ParallelRays::square_px>;
   void cast_square(std::size_t i, const glm::ivec2& first, const glm::ivec2& last, Square& square) const;
+  RayBatch::Rays take(std::size_t i, const RayBatch& batch, const LeafSurface::Found& found,
+                      const glm::ivec2& first, Square& square) const;
 };
 
 RayCast::RayCast(const std::vector<DrawnObject>& objects, const ImagePlane& plane) {
@@ -95,45 +86,52 @@ RayCast::RayCast(const std::vector<DrawnObject>& objects, const ImagePlane& plan
   prepared_ = std::move(prepared);
 }
 
+/// Updates a square by the surfaces of object `i` that were found near the voxels of a batch. Returns the
+/// rays that end there: at a surface, or behind the nearest one by more than the reach.
+RayBatch::Rays RayCast::Prepared::take(std::size_t i, const RayBatch& batch, const LeafSurface::Found& found,
+                                       const glm::ivec2& first, Square& square) const {
+  const auto pixel_of = [&](int ray) -> Seen& {
+    const auto number = static_cast<std::size_t>(ray);
+    return square[pixel_index(glm::ivec2(ParallelRays::square_px), batch.x[number] - first.x,
+                              batch.y[number] - first.y)];
+  };
+  RayBatch::Rays behind = 0;
+  if (i > 0) {
+    const double reach = reach_mm(objects[i], rays.per_mm);
+    for (int ray = 0; ray < batch.count; ++ray) {
+      const Seen& nearest = pixel_of(ray);
+      const bool is_behind =
+          nearest.lit() && batch.enter_mm[static_cast<std::size_t>(ray)] > nearest.depth_mm + reach;
+      behind |= RayBatch::Rays{is_behind} << ray;
+    }
+  }
+  for (RayBatch::Rays rest = found.lit & ~behind; rest != 0; rest &= rest - 1) {
+    const int ray = std::countr_zero(rest);
+    const float depth_mm = found.depth_mm[static_cast<std::size_t>(ray)];
+    Seen& nearest = pixel_of(ray);
+    if (depth_mm < nearest.depth_mm)
+      nearest = {depth_mm, static_cast<std::int16_t>(i), ((found.stepped >> ray) & 1) != 0};
+  }
+  return found.lit | behind;
+}
+
 /// Casts the rays of a square of pixels through object `i`. Each ends in the object's nearest surface.
 void RayCast::Prepared::cast_square(std::size_t i, const glm::ivec2& first, const glm::ivec2& last,
                                     Square& square) const {
   const DrawnObject& object = objects[i];
-  const double reach = reach_mm(object, rays.per_mm);
-  const auto pixel_of = [&](const RayBatch& batch, std::size_t ray) -> Seen& {
-    return square[pixel_index(glm::ivec2(ParallelRays::square_px), batch.x[ray] - first.x,
-                              batch.y[ray] - first.y)];
-  };
+  LeafSurface::Found found;
   if (!object.grey) {
     bundles[i].cast(first, last, [&](const RayBatch& batch) {
-      RayBatch::Rays ended = 0;
-      for (int number = 0; number < batch.count; ++number) {
-        const auto ray = static_cast<std::size_t>(number);
-        const auto find = [&] {
-          return std::optional(Seen{static_cast<float>(batch.enter_mm[ray]), 0, true});
-        };
-        const bool ends = take(i, batch.enter_mm[ray], reach, find, pixel_of(batch, ray));
-        ended |= RayBatch::Rays{ends} << number;
-      }
-      return ended;
+      std::copy_n(batch.enter_mm.begin(), batch.count, found.depth_mm.begin());
+      found.lit = found.stepped = RayBatch::all(batch.count);
+      return take(i, batch, found, first, square);
     });
     return;
   }
   LeafSurface surface(object, rays.per_mm, mirror);
-  LeafSurface::Found found;
   const auto take_all = [&](const RayBatch& batch) {
     surface.find(batch, found);
-    RayBatch::Rays ended = 0;
-    for (int number = 0; number < batch.count; ++number) {
-      const auto ray = static_cast<std::size_t>(number);
-      const auto find = [&]() -> std::optional<Seen> {
-        if (((found.lit >> number) & 1) == 0) return std::nullopt;
-        return Seen{found.depth_mm[ray], 0, ((found.stepped >> number) & 1) != 0};
-      };
-      const bool ends = take(i, batch.enter_mm[ray], reach, find, pixel_of(batch, ray));
-      ended |= RayBatch::Rays{ends} << number;
-    }
-    return ended;
+    return take(i, batch, found, first, square);
   };
   if (object.moved_from_still) return bundles[i].cast(first, last, take_all);
   bundles[i].cast(first, last, take_all, [&](const glm::ivec3& leaf) { prefetch_leaf(*object.grey, leaf); });
@@ -158,8 +156,12 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
     const double until_mm = std::min(far_mm, static_cast<double>(nearest.depth_mm)) + reach_mm;
     Walk(object.octree.root(), object.octree.root_height(), frame)
         .run(mirrored, near_mm, until_mm, [&](const Passage& passage) {
-          const auto find = [&] { return the.surface_near(i, ray, frame, passage); };
-          return the.take(i, passage.enter_mm, reach_mm, find, nearest);
+          if (nearest.lit() && passage.enter_mm > nearest.depth_mm + reach_mm) return true;
+          std::optional<Seen> seen = the.surface_near(i, ray, frame, passage);
+          if (!seen) return false;
+          seen->object = static_cast<std::int16_t>(i);
+          if (seen->depth_mm < nearest.depth_mm) nearest = *seen;
+          return true;
         });
   }
   return nearest;
