@@ -85,12 +85,17 @@ DepthPlane depth_plane(const DepthImage& image, const Scenery& scenery) {
   tbb::parallel_for(-margin, image.size_px.y + margin, [&](int y) {
     float* const row = found.row(y);
     std::fill_n(row - margin, found.width, beyond_mm);
+    glm::ivec2 lit(0);
     if (y >= 0 && y < image.size_px.y) {
       const auto number = static_cast<std::size_t>(y);
-      facts[number] = copy_row(image, y, row, plane.lit[number]);
+      facts[number] = copy_row(image, y, row, lit);
+      plane.lit[number] = lit;
     }
-    for (Plane* const other : {&between, &plane.depth})
-      std::fill_n(other->row(y) - margin, found.width, beyond_mm);
+    // Smoothing writes the lit part.
+    for (Plane* const other : {&between, &plane.depth}) {
+      std::fill(other->row(y) - margin, other->row(y) + lit.x, beyond_mm);
+      std::fill(other->row(y) + lit.y, other->row(y) - margin + other->width, beyond_mm);
+    }
   });
   bool any_stepped = false;
   for (const RowFacts& row : facts) {
