@@ -7,8 +7,10 @@
 
 namespace octotomy::tests {
 
+inline constexpr int zlib_window = MAX_WBITS, gzip_window = MAX_WBITS + 16;
+
 /// Bytes as zlib deflates them: `window_bits` are -MAX_WBITS for a raw stream, MAX_WBITS for one of zlib,
-/// MAX_WBITS + 16 for one of gzip.
+/// `gzip_window` for one of gzip.
 inline std::string deflated(const std::string& bytes, int window_bits) {
   z_stream stream{};
   EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY), Z_OK);

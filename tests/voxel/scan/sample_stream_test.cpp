@@ -15,9 +15,7 @@ namespace octotomy::voxel {
 namespace {
 
 namespace fs = std::filesystem;
-using tests::deflated;
-
-constexpr int gzip_window = MAX_WBITS + 16, zlib_window = MAX_WBITS;
+using tests::deflated, tests::gzip_window, tests::zlib_window;
 
 /// Bytes of which some repeat and some do not: stored, fixed and dynamic blocks.
 std::string mixed_bytes(std::size_t count, unsigned seed) {
