@@ -135,6 +135,7 @@ std::vector<ShellPlace> shell_places(const ShelledSurface& surface, const Morton
   const std::vector<std::uint32_t> number = number_shells(surface.shell);
   const std::vector<Probe> probes = probes_of(surface, number);
   std::vector<ShellPlace> places;
+  places.reserve(probes.size());
   for (const Probe& probe : probes) places.push_back(probe.place);
   if (places.size() < 2) return places;
   assert(tree != nullptr);

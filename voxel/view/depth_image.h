@@ -26,7 +26,7 @@ struct Seen {
 /// needs no constructor, because a Seen is an aggregate that may be copied bytewise.
 struct PixelAllocator : LargeAllocator<Seen> {
   template <typename Other>
-  struct rebind {
+  struct rebind {  // NOLINT(readability-identifier-naming): allocators are asked for the name
     using other = PixelAllocator;
   };
   using LargeAllocator<Seen>::construct;
