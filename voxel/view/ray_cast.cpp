@@ -63,6 +63,14 @@ struct RayCast::Prepared {
     return surfaces[i]->seen(ray, frame, passage);
   }
 
+  /// Whether a voxel lies behind the nearest surface by more than its own surface can lie in front of it.
+  static bool is_behind(double enter_mm, double reach_mm, const Seen& nearest) {
+    return nearest.lit() && enter_mm > nearest.depth_mm + reach_mm;
+  }
+  static void take_nearer(const Seen& seen, Seen& nearest) {
+    if (seen.depth_mm < nearest.depth_mm) nearest = seen;
+  }
+
   /// Pixels of a square, row by row.
   using Square = std::array<Seen, std::size_t{ParallelRays::square_px} * ParallelRays::square_px>;
   void cast_square(std::size_t i, const glm::ivec2& first, const glm::ivec2& last, Square& square) const;
@@ -99,18 +107,15 @@ RayBatch::Rays RayCast::Prepared::take(std::size_t i, const RayBatch& batch, con
   if (i > 0) {
     const double reach = reach_mm(objects[i], rays.per_mm);
     for (int ray = 0; ray < batch.count; ++ray) {
-      const Seen& nearest = pixel_of(ray);
-      const bool is_behind =
-          nearest.lit() && batch.enter_mm[static_cast<std::size_t>(ray)] > nearest.depth_mm + reach;
-      behind |= RayBatch::Rays{is_behind} << ray;
+      const double enter_mm = batch.enter_mm[static_cast<std::size_t>(ray)];
+      behind |= RayBatch::Rays{is_behind(enter_mm, reach, pixel_of(ray))} << ray;
     }
   }
   for (RayBatch::Rays rest = found.lit & ~behind; rest != 0; rest &= rest - 1) {
     const int ray = std::countr_zero(rest);
-    const float depth_mm = found.depth_mm[static_cast<std::size_t>(ray)];
-    Seen& nearest = pixel_of(ray);
-    if (depth_mm < nearest.depth_mm)
-      nearest = {depth_mm, static_cast<std::int16_t>(i), ((found.stepped >> ray) & 1) != 0};
+    take_nearer({found.depth_mm[static_cast<std::size_t>(ray)], static_cast<std::int16_t>(i),
+                 ((found.stepped >> ray) & 1) != 0},
+                pixel_of(ray));
   }
   return found.lit | behind;
 }
@@ -156,11 +161,11 @@ Seen RayCast::seen(const glm::dvec2& p_px, double near_mm, double far_mm) const 
     const double until_mm = std::min(far_mm, static_cast<double>(nearest.depth_mm)) + reach_mm;
     Walk(object.octree.root(), object.octree.root_height(), frame)
         .run(mirrored, near_mm, until_mm, [&](const Passage& passage) {
-          if (nearest.lit() && passage.enter_mm > nearest.depth_mm + reach_mm) return true;
+          if (the.is_behind(passage.enter_mm, reach_mm, nearest)) return true;
           std::optional<Seen> seen = the.surface_near(i, ray, frame, passage);
           if (!seen) return false;
           seen->object = static_cast<std::int16_t>(i);
-          if (seen->depth_mm < nearest.depth_mm) nearest = *seen;
+          the.take_nearer(*seen, nearest);
           return true;
         });
   }
