@@ -95,8 +95,9 @@ struct Pairs {
   [[gnu::always_inline]] Float left() const { return __builtin_convertvector((pairs << 16) >> 16, Float); }
   [[gnu::always_inline]] Float right() const { return __builtin_convertvector(pairs >> 16, Float); }
 };
+/// Two pairs that are neighbours along y, of each ray.
 struct Fours {
-  Pairs near, far;  ///< along y
+  Pairs near, far;
 };
 /// Fours by their numbers.
 [[gnu::always_inline]] inline Fours fours_at(const std::uint64_t* __restrict fours, const Int& numbers) {
@@ -218,13 +219,13 @@ struct Search {
   Double4 start[3][2];
   for (int axis = 0; axis < 3; ++axis)
     for (int half = 0; half < 2; ++half)
-      start[axis][half] = load<Double4>(batch.start[std::size_t(axis)].data() + from + 4 * half);
+      start[axis][half] = load<Double4>(batch.start[static_cast<std::size_t>(axis)].data() + from + 4 * half);
   search.origins = origins_of(way, batch, from, start);
   const Float entry = interpolate(way, leaf, search.origins, Float{});
   const auto through = load<Int>(batch.entered_through.data() + from);
   Int number = Int{} + leaf.corner, step_back{};
   for (int axis = 0; axis < 3; ++axis) {
-    number += load<Int>(batch.at[std::size_t(axis)].data() + from) * leaf.stride[axis];
+    number += load<Int>(batch.at[static_cast<std::size_t>(axis)].data() + from) * leaf.stride[axis];
     step_back |= (through == axis) & leaf.stride[axis];
   }
   const Float voxel = fours_at(leaf.fours, number).near.left();
@@ -243,7 +244,7 @@ struct Search {
     for (int half = 0; half < 2; ++half) {
       Double4 p[3];
       for (int of = 0; of < 3; ++of)
-        p[of] = load<Double4>(batch.start[std::size_t(of)].data() + from + 4 * half);
+        p[of] = load<Double4>(batch.start[static_cast<std::size_t>(of)].data() + from + 4 * half);
       // In the order of GLM's product.
       start[axis][half] =
           (still[0][axis] * p[0] + still[1][axis] * p[1]) + (still[2][axis] * p[2] + still[3][axis]);

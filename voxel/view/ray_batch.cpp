@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstring>
 #include <limits>
 
@@ -86,6 +87,7 @@ OCTOTOMY_VECTOR_CLONES RayBatch::Rays pass(const Axis* axes, const std::int32_t*
 
 RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
                              const RayBatch::ByRay<std::uint64_t>& voxels, int first, RayBatch& batch) {
+  assert(0 <= first && first < batch.count);
   Axis axes[3];
   for (int axis = 0; axis < 3; ++axis)
     axes[axis] = {rays.first[axis],          rays.per_px_x[axis],      rays.per_px_y[axis],

@@ -46,7 +46,8 @@ struct RayBatch {
 };
 
 /// Finds the passages of a batch's rays, those from number `first` on, through the first of the voxels of the
-/// leaf that each may pass, one bit a voxel, bit for bit as passage_of(). Returns the rays that do pass it.
+/// leaf that each may pass, one bit a voxel, bit for bit as passage_of(). Returns those of them that do pass
+/// it. Precondition: `first` is a ray of the batch.
 RayBatch::Rays find_passages(const VoxelRays& rays, const Mirror& mirror,
                              const RayBatch::ByRay<std::uint64_t>& voxels, int first, RayBatch& batch);
 
