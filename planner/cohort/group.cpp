@@ -138,6 +138,7 @@ std::string wide_table(const std::vector<std::string>& labels, const CohortTable
 }
 
 Json merge_group(const std::vector<Subject>& subjects, const fs::path& out, const GroupOptions& options) {
+  need_result_folder(out / "group");
   ResultFolder folder(out / "group");
   fs::create_directories(folder.path() / "plots");
   std::ofstream rows_file(folder.path() / "measurements.csv", std::ios::binary);

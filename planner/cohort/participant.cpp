@@ -219,7 +219,9 @@ SubjectRecord run_participant(const Plan& plan, const Subject& subject, const fs
     earlier.was_kept = true;
     return earlier;
   }
-  ResultFolder folder(out / subject.folder(), needed_names(plan, options));
+  const fs::path place = out / subject.folder();
+  need_result_folder(place, needed_names(plan, options));
+  ResultFolder folder(place);
   if (record.reason.empty())
     record.reason = reason_of([&] { answer(plan, subject, options, folder.path()); });
   record.state = record.reason.empty() ? SubjectRecord::State::Done : SubjectRecord::State::Failed;

@@ -233,7 +233,7 @@ Json write_result_files(Result& result, const std::filesystem::path& folder, con
 }
 
 Json write_result(Result& result, const std::filesystem::path& folder, const ExportOptions& options) {
-  ResultFolder output(folder, result_names(result.plan));
+  ResultFolder output(folder);
   const bool again = !result.exported.empty();
   Json json = write_result_files(result, output.path(), options);
   if (again) output.copy_rest();

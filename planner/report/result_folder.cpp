@@ -367,13 +367,10 @@ bool is_of_result(const fs::path& file) {
   }
 }
 
-ResultFolder::ResultFolder(const fs::path& folder, const std::vector<fs::path>& names)
-    : final_(plain_place_of(folder)) {
-  if (!fs::is_directory(final_.parent_path())) need_place(final_, folder, names);
+ResultFolder::ResultFolder(const fs::path& folder) : final_(plain_place_of(folder)) {
   fs::create_directories(final_.parent_path());
   const PlaceLock held(final_.parent_path());
   discard_leftovers(final_);
-  need_place(final_, folder, names);
   staged_ = std::make_unique<voxel::UnfinishedFolder>(final_.parent_path(), hidden_prefix(final_).string());
   take_usual_mode(path());
 }

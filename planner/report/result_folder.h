@@ -42,9 +42,10 @@ ResultList result_list(const std::filesystem::path& folder);
 /// permissions.
 class ResultFolder {
  public:
-  /// Throws as need_result_folder(). Removes what a killed run left beside the folder.
-  explicit ResultFolder(const std::filesystem::path& folder,
-                        const std::vector<std::filesystem::path>& names = {});
+  /// Precondition: need_result_folder() had nothing against the folder before the work. What came in the way
+  /// since is publish()'s to tell, when the result can be kept. Removes what a killed run left beside the
+  /// folder. Throws voxel::Error (Input, Resource) if it cannot write there.
+  explicit ResultFolder(const std::filesystem::path& folder);
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;
 

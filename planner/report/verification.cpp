@@ -295,7 +295,7 @@ std::string verification_html(const Verification& verification) {
 }
 
 void write_verification(const Verification& verification, const std::filesystem::path& folder) {
-  ResultFolder result(folder, {"report.html", "result.json"});
+  ResultFolder result(folder);
   write_text(result.path() / "report.html", verification_html(verification));
   write_text(result.path() / "result.json", json_text(verification.answer, 2) + "\n");
   result.publish();
