@@ -263,7 +263,7 @@ void visit_parted_pairs(const Triangles& triangles, const Parted& parted, const 
 
 SelfIntersections self_intersections(const IntersectionSearch& search) {
   assert(search.degenerate.size() == search.triangles.faces.size());
-  tbb::enumerable_thread_specific<FirstPairs> found(search.most_first);
+  tbb::enumerable_thread_specific<FirstPairs> found(FirstPairs{search.most_first});
   const MeetsElsewhere meets_elsewhere(search.triangles);
   const auto test = [&](std::uint32_t f, std::uint32_t g) {
     if (search.degenerate[f] != 0 || search.degenerate[g] != 0) return;
