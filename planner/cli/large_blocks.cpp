@@ -25,9 +25,9 @@ constexpr std::size_t least_advised = huge_page / 8;
 /// Asks for huge pages for a block that may begin and end anywhere. Other blocks on its first and last huge
 /// page get them, too. Advice only: a system that ignores it gives small pages.
 void advise_huge_pages(void* memory, std::size_t bytes) {
-  const auto begin = reinterpret_cast<std::uintptr_t>(memory) / huge_page * huge_page,
-             end = (reinterpret_cast<std::uintptr_t>(memory) + bytes + huge_page - 1) / huge_page * huge_page;
-  static_cast<void>(::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
+  const std::uintptr_t before = reinterpret_cast<std::uintptr_t>(memory) % huge_page;
+  const std::size_t advised = (before + bytes + huge_page - 1) / huge_page * huge_page;
+  static_cast<void>(::madvise(static_cast<char*>(memory) - before, advised, MADV_HUGEPAGE));
 }
 #endif
 

@@ -135,6 +135,7 @@ FileAnswer write_labels(const FileBench& bench, const Voxelise& asked, const std
                         std::vector<std::string>& findings) {
   const voxel::Universe universe = universe_of(asked, subjects, bench.timings);
   std::vector<voxel::Octree> octrees;
+  octrees.reserve(subjects.size());
   for (const Subject& subject : subjects)
     octrees.push_back(std::get<voxel::Octree>(voxelised(bench, asked, subject, universe)));
   const voxel::Lattice lattice = !asked.like ? lattice_of(universe, box_of(subjects)) : universe.lattice();

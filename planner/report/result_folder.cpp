@@ -128,7 +128,7 @@ dev_t device_of(const fs::path& path) {
 /// The list of the earlier result in `folder`; empty for an empty folder. `named` is the user's name for it.
 ResultList need_earlier_result(const fs::path& folder, const fs::path& named) {
   if (fs::is_empty(folder)) return {};
-  const ResultList list = result_list(folder);
+  ResultList list = result_list(folder);
   if (list.empty())
     refuse(named.string() + ": holds files but no list of an earlier result (" + list_name +
            "), so they may be yours: choose another -o, or move them");

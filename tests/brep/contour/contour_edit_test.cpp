@@ -127,8 +127,9 @@ struct Edited {
 Edited edited_at_random(const Contour& contour, std::mt19937& random) {
   const std::size_t points = contour.points_mm.size(), at = random() % points,
                     before = (at + points - 1) % points;
-  const glm::dvec2 p = contour.points_mm[at] +
-                       glm::dvec2(static_cast<int>(random() % 9) - 4, static_cast<int>(random() % 9) - 4);
+  // One after the other: compilers differ in the order of a call's arguments.
+  const int up = static_cast<int>(random() % 9) - 4, right = static_cast<int>(random() % 9) - 4;
+  const glm::dvec2 p = contour.points_mm[at] + glm::dvec2(right, up);
   switch (random() % 4) {
     case 0:
       return {point_moved(contour, at, p), {before, at}};
