@@ -160,10 +160,12 @@ TEST(WindingNumber, AFarVertexAndTheLargestUniverseLeaveTheVoxelsOfASmallOne) {
 }
 
 TEST(WindingNumber, ReportsWhatIsDoneUpToAll) {
+  // On one thread, as what others do while the caller does nothing is not reported.
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   std::vector<double> reported;
   voxelise_by_winding_number(unit_universe(6), ball({31.2, 30.7, 33.1}, 25.0, 2),
                              {{}, [&](double fraction) { reported.push_back(fraction); }});
-  ASSERT_GT(reported.size(), 2U);
+  ASSERT_GT(reported.size(), 16U) << "not every slab";
   EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
   EXPECT_EQ(reported.back(), 1.0);
 }
