@@ -83,9 +83,9 @@ nlohmann::ordered_json write_result_files(Result& result, const std::filesystem:
 /// Writes a result's folder whole or not at all: its exports, views/*.png, tables/*.csv, report.html,
 /// credibility.html and .json, and result.json.
 /// Fills `result.exported` and `result.measurements`; returns what result.json holds. A result that was
-/// written to the folder before keeps the exports that lie there. Precondition: as
-/// ResultFolder. Throws as it and the writers do, and Stopped where the stop token is set while an export is
-/// filled or written.
+/// written to the folder before keeps the exports that lie there.
+/// Precondition: as of ResultFolder. Throws as ResultFolder and the writers do, and Stopped if the stop token
+/// is set while an export is filled or written.
 nlohmann::ordered_json write_result(Result& result, const std::filesystem::path& folder,
                                     const ExportOptions& options = {});
 

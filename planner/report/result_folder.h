@@ -42,9 +42,10 @@ ResultList result_list(const std::filesystem::path& folder);
 /// permissions.
 class ResultFolder {
  public:
-  /// Precondition: need_result_folder() had nothing against the folder before the work. What came in the way
-  /// since is publish()'s to tell, when the result can be kept. Removes what a killed run left beside the
-  /// folder. Throws voxel::Error (Input, Resource) if it cannot write there.
+  /// Makes the hidden folder and removes those that killed runs left. Precondition: need_result_folder()
+  /// accepted the folder before the work. Does not check the folder again: publish() does, and keeps the
+  /// result if the check fails. Throws voxel::Error (Input, Resource) if the hidden folder cannot be made,
+  /// and std::filesystem::filesystem_error if the folder above cannot.
   explicit ResultFolder(const std::filesystem::path& folder);
   ResultFolder(const ResultFolder&) = delete;
   ResultFolder& operator=(const ResultFolder&) = delete;

@@ -26,7 +26,8 @@ struct Verification {
 /// worst, the suite's own tables, and what was not covered.
 std::string verification_html(const Verification& verification);
 
-/// Writes a folder with report.html and result.json, whole or not at all. Throws as ResultFolder.
+/// Writes a folder with report.html and result.json, whole or not at all. Precondition and errors: as of
+/// ResultFolder.
 void write_verification(const Verification& verification, const std::filesystem::path& folder);
 
 }  // namespace octotomy::planner

@@ -160,7 +160,7 @@ TEST(WindingNumber, AFarVertexAndTheLargestUniverseLeaveTheVoxelsOfASmallOne) {
 }
 
 TEST(WindingNumber, ReportsWhatIsDoneUpToAll) {
-  // On one thread, as what others do while the caller does nothing is not reported.
+  // Only the calling thread reports. Alone, it does all slabs.
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   std::vector<double> reported;
   voxelise_by_winding_number(unit_universe(6), ball({31.2, 30.7, 33.1}, 25.0, 2),

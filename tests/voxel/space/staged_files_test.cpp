@@ -270,7 +270,7 @@ TEST(UnfinishedFolder, AnEndingWhileAFolderIsRemovedLeavesNoneOfIt) {
         has_begun = true;
         delete one;
       });
-      removal.detach();  // it may wait for ever
+      removal.detach();  // remove_unfinished() never unlocks
       while (!has_begun) std::this_thread::yield();
       remove_unfinished();
       ::_exit(0);
