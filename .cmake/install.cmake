@@ -76,6 +76,6 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liboctotomy-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libglm-dev, libtbb-dev, libzstd-dev, zlib1g-dev, libisal-dev, libopenmesh-dev, libcgal-dev, libeigen3-dev, libinsighttoolkit5-dev, nlohmann-json3-dev, libssl-dev")
+    "libglm-dev, libtbb-dev, libzstd-dev, zlib1g-dev, libisal-dev, libexpat1-dev, liblz4-dev, libopenmesh-dev, libcgal-dev, libeigen3-dev, libinsighttoolkit5-dev, nlohmann-json3-dev, libssl-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "octotomy (= ${PROJECT_VERSION})")
 include(CPack)

@@ -16,14 +16,6 @@ bool is_space(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-std::uint32_t checked_corner(const Triangles& triangles, long long corner) {
-  if (corner < 0 || corner >= static_cast<long long>(triangles.points_mm.size()))
-    throw Error(ErrorCode::Input, "triangle " + std::to_string(triangles.faces.size()) + " refers to point " +
-                                      std::to_string(corner) + " of " +
-                                      std::to_string(triangles.points_mm.size()));
-  return static_cast<std::uint32_t>(corner);
-}
-
 }  // namespace
 
 void MeshScanner::fail(const std::string& why) const {
@@ -56,6 +48,23 @@ std::string_view MeshScanner::word(bool within_line) {
   const std::size_t begin = at_;
   while (at_ < bytes_.size() && !is_space(bytes_[at_])) ++at_;
   return bytes_.substr(begin, at_ - begin);
+}
+
+std::string lower_case(std::string_view text) {
+  std::string made(text);
+  for (char& c : made) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return made;
+}
+
+void refuse_file(const std::string& why) {
+  throw Error(ErrorCode::Input, why);
+}
+
+bool starts_in_any_case(std::string_view text, std::string_view lower) {
+  return text.size() >= lower.size() &&
+         std::equal(lower.begin(), lower.end(), text.begin(), [](char a, char b) {
+           return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
+         });
 }
 
 double number_of(std::string_view word) {
@@ -111,31 +120,16 @@ std::size_t MeshScanner::count(std::size_t bytes_each) {
   return bounded(integer(), bytes_each);
 }
 
+std::string_view MeshScanner::bytes(std::size_t byte_count) {
+  const std::size_t begin = at_;
+  skip(byte_count);
+  return bytes_.substr(begin, byte_count);
+}
+
 void MeshScanner::skip(std::size_t byte_count) {
   if (byte_count > rest()) fail("the file ends too early");
   at_ += byte_count;
   assert(at_ <= bytes_.size());
-}
-
-void add_fan(Triangles& triangles, std::span<const long long> corners) {
-  if (corners.size() < 3)
-    throw Error(ErrorCode::Input, "a polygon of " + std::to_string(corners.size()) +
-                                      " corners after triangle " + std::to_string(triangles.faces.size()));
-  for (std::size_t i = 2; i < corners.size(); ++i)
-    triangles.faces.push_back({checked_corner(triangles, corners[0]),
-                               checked_corner(triangles, corners[i - 1]),
-                               checked_corner(triangles, corners[i])});
-}
-
-void add_strip(Triangles& triangles, const std::vector<long long>& corners) {
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    std::array<std::uint32_t, 3> face{checked_corner(triangles, corners[i - 2]),
-                                      checked_corner(triangles, corners[i - 1]),
-                                      checked_corner(triangles, corners[i])};
-    if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) continue;
-    if (i % 2 == 1) std::swap(face[0], face[1]);
-    triangles.faces.push_back(face);
-  }
 }
 
 }  // namespace octotomy::brep

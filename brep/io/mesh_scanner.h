@@ -5,12 +5,10 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "brep/mesh/triangles.h"
+#include "brep/io/mesh_statements.h"
 
 namespace octotomy::brep {
 
@@ -48,6 +46,7 @@ class MeshScanner {
     return value;
   }
   void skip(std::size_t byte_count);
+  std::string_view bytes(std::size_t byte_count);
 
   [[noreturn]] void fail(const std::string& why) const;
 
@@ -62,14 +61,24 @@ class MeshScanner {
 double number_of(std::string_view word);
 long long integer_of(std::string_view word);
 
-/// Adds a polygon as a fan; throws Error (Input) if it has too few corners or a corner is no point.
-void add_fan(Triangles& triangles, std::span<const long long> corners);
-/// Adds a strip of triangles; ones that repeat a point only turn the strip and are left out.
-void add_strip(Triangles& triangles, const std::vector<long long>& corners);
+/// With ASCII letters in lower case.
+std::string lower_case(std::string_view text);
 
-/// The formats that fill a source of their own. All throw Error (Input) without the path.
-Triangles read_ply(std::string_view bytes);
-Triangles read_vtk(std::string_view bytes);
-Triangles read_vtp(std::string_view bytes);
+/// Throws Error (Input).
+[[noreturn]] void refuse_file(const std::string& why);
+
+/// Whether a text begins with another one in lower case, its own letters in any case.
+bool starts_in_any_case(std::string_view text, std::string_view lower);
+
+/// The formats. All throw Error (Input) without the path. Coordinates stay in the file's frame and unit.
+MeshContent read_stl(std::string_view bytes);
+MeshContent read_obj(std::string_view bytes);
+MeshContent read_off(std::string_view bytes);
+MeshContent read_ply(std::string_view bytes);
+MeshContent read_vtk(std::string_view bytes);
+/// .vtp and .vtu
+MeshContent read_vtk_xml(std::string_view bytes);
+MeshContent read_glb(std::string_view bytes);
+MeshContent read_3mf(std::string_view bytes);
 
 }  // namespace octotomy::brep

@@ -2,167 +2,40 @@
 #include "brep/io/read_mesh.h"
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
-#include <string>
 
+#include "brep/io/mesh_bytes.h"
 #include "brep/io/mesh_scanner.h"
-#include "brep/mesh/equal_points.h"
 #include "brep/mesh/error.h"
 #include "brep/mesh/short_text.h"
 
 namespace octotomy::brep {
 namespace {
 
-constexpr std::size_t stl_header_bytes = 84, stl_triangle_bytes = 50;
+struct Format {
+  std::string_view extension;
+  MeshContent (*read)(std::string_view bytes);
+  bool is_text;  ///< or may be
+};
+constexpr std::array<Format, 9> formats{{{".stl", read_stl, true},
+                                         {".ply", read_ply, true},
+                                         {".obj", read_obj, true},
+                                         {".off", read_off, true},
+                                         {".vtk", read_vtk, true},
+                                         {".vtp", read_vtk_xml, true},
+                                         {".vtu", read_vtk_xml, true},
+                                         {".glb", read_glb, false},
+                                         {".3mf", read_3mf, false}}};
 
-Triangles read_binary_stl(std::string_view bytes) {
-  MeshScanner scanner(bytes);
-  scanner.skip(80);
-  const std::size_t count =
-      scanner.bounded(scanner.binary<std::uint32_t>(std::endian::little), stl_triangle_bytes);
-  Triangles triangles;
-  triangles.faces.reserve(count);
-  PointNumbers numbers(triangles.points_mm, count / 2);  // as a closed surface has
-  constexpr std::size_t most_at_once = 64;
-  std::array<glm::dvec3, 3 * most_at_once> corners;
-  std::array<std::uint32_t, 3 * most_at_once> points;
-  for (std::size_t begin = 0; begin < count; begin += most_at_once) {
-    const std::size_t end = std::min(begin + most_at_once, count);
-    for (std::size_t i = begin; i < end; ++i) {
-      scanner.skip(12);
-      for (std::size_t k = 0; k < 3; ++k) {
-        glm::dvec3& p = corners[3 * (i - begin) + k];
-        for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.binary<float>(std::endian::little);
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-          scanner.fail("triangle " + std::to_string(i) + " has a point that is not finite");
-      }
-      scanner.skip(2);
-    }
-    const std::size_t met = 3 * (end - begin);
-    numbers.number({corners.data(), met}, {points.data(), met});
-    for (std::size_t k = 0; k < met; k += 3)
-      triangles.faces.push_back({points[k], points[k + 1], points[k + 2]});
-  }
-  return triangles;
-}
-
-Triangles read_ascii_stl(std::string_view bytes) {
-  MeshScanner scanner(bytes);
-  scanner.line();
-  Triangles triangles;
-  PointNumbers numbers(triangles.points_mm);
-  std::vector<std::uint32_t> corners;
-  bool ended = false;
-  for (std::string_view word = scanner.word(); !word.empty(); word = scanner.word()) {
-    if (word == "vertex") {
-      glm::dvec3 p;
-      for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
-      corners.push_back(numbers.number_of(p));
-    } else if (word == "endloop") {
-      if (corners.size() != 3)
-        scanner.fail("a facet of " + std::to_string(corners.size()) + " vertices; STL has triangles only");
-      triangles.faces.push_back({corners[0], corners[1], corners[2]});
-      corners.clear();
-    } else if (word == "solid" || word == "endsolid") {
-      ended = word == "endsolid";
-      scanner.line();
-    } else if (word == "facet") {
-      scanner.line();
-    } else if (word != "outer" && word != "loop" && word != "endfacet") {
-      scanner.fail("'" + std::string(word.substr(0, 40)) + "' is no word of STL");
-    }
-  }
-  if (!ended) scanner.fail("the file ends without 'endsolid': it is cut short");
-  return triangles;
-}
-
-/// The size decides, as binary files that start with "solid" are common.
-Triangles read_stl(std::string_view bytes) {
-  if (bytes.size() >= stl_header_bytes) {
-    MeshScanner scanner(bytes);
-    scanner.skip(80);
-    const std::uint64_t count = scanner.binary<std::uint32_t>(std::endian::little);
-    if (stl_header_bytes + count * stl_triangle_bytes == bytes.size()) return read_binary_stl(bytes);
-  }
-  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
-  if (start != std::string_view::npos && bytes.substr(start).starts_with("solid"))
-    return read_ascii_stl(bytes.substr(start));
-  if (bytes.size() < stl_header_bytes) throw Error(ErrorCode::Input, "too short for an STL file");
-  return read_binary_stl(bytes);
-}
-
-Triangles read_obj(std::string_view bytes) {
-  MeshScanner scanner(bytes);
-  scanner.comments_start_with_hash();
-  Triangles triangles;
-  std::vector<long long> corners;
-  while (!scanner.at_end()) {
-    const std::string_view key = scanner.word();
-    if (key == "v") {
-      glm::dvec3 p;
-      for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
-      triangles.points_mm.push_back(p);
-    } else if (key == "f") {
-      corners.clear();
-      for (std::string_view word = scanner.word(true); !word.empty(); word = scanner.word(true)) {
-        if (word == "\\") {
-          scanner.line();
-          continue;
-        }
-        // Negative numbers count back from the last point read.
-        const long long given = integer_of(word.substr(0, word.find('/')));
-        if (given == 0) scanner.fail("a face refers to point 0; OBJ counts from 1");
-        corners.push_back(given > 0 ? given - 1 : given + static_cast<long long>(triangles.points_mm.size()));
-      }
-      try {
-        add_fan(triangles, corners);
-      } catch (const std::runtime_error& e) {
-        scanner.fail(e.what());
-      }
-    }
-    scanner.line();
-  }
-  return triangles;
-}
-
-Triangles read_off(std::string_view bytes) {
-  MeshScanner scanner(bytes);
-  scanner.comments_start_with_hash();
-  // Prefixes tell of colours (C), normals (N), textures (ST) behind each point; 4 and n change the dimension.
-  const std::string_view magic = scanner.word();
-  if (!magic.ends_with("OFF") || magic.find_first_of("4n") != std::string_view::npos)
-    scanner.fail("an OFF file of points in space starts with OFF, COFF, NOFF or STOFF");
-  const long long point_count = scanner.integer(), face_count = scanner.integer();
-  scanner.line();  // the number of edges, which nobody keeps right
-  Triangles triangles;
-  // The least row of a point is "0 0 0", of a face "1 0", each with the end of its line.
-  const std::size_t points = scanner.bounded(point_count, 5);
-  triangles.points_mm.reserve(points);
-  for (std::size_t i = 0; i < points; ++i) {
-    glm::dvec3 p;
-    for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
-    triangles.points_mm.push_back(p);
-    scanner.line();
-  }
-  const std::size_t faces = scanner.bounded(face_count, 3);
-  std::vector<long long> corners;
-  for (std::size_t i = 0; i < faces; ++i) {
-    const std::size_t corner_count = scanner.count(1);
-    corners.clear();
-    for (std::size_t k = 0; k < corner_count; ++k) corners.push_back(scanner.integer());
-    try {
-      add_fan(triangles, corners);
-    } catch (const std::runtime_error& e) {
-      scanner.fail(e.what());
-    }
-    scanner.line();
-  }
-  return triangles;
+const Format* format_of(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  const auto found = std::find_if(formats.begin(), formats.end(),
+                                  [&](const Format& format) { return format.extension == extension; });
+  return found == formats.end() ? nullptr : &*found;
 }
 
 std::string bytes_of(const std::filesystem::path& path) {
@@ -179,47 +52,96 @@ std::string bytes_of(const std::filesystem::path& path) {
   return bytes;
 }
 
+/// Without a byte-order mark. Lines of old Macs, which end in a lone carriage return, end in a line feed.
+std::string_view plain_text(std::string& bytes) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
+  if ((bytes.starts_with("\xff\xfe") && bytes.substr(3, 1) == std::string(1, '\0')) ||
+      (bytes.starts_with("\xfe\xff") && bytes.substr(2, 1) == std::string(1, '\0')))
+    throw Error(ErrorCode::Input, "is text in UTF-16: save it as plain text (UTF-8)");
+  if (bytes.find('\n') == std::string::npos && bytes.find('\0') == std::string::npos)
+    std::replace(bytes.begin(), bytes.end(), '\r', '\n');
+  return std::string_view(bytes).substr(bytes.starts_with(mark) ? mark.size() : 0);
+}
+
 /// Sums of a thousand products of sixteen coordinates are finite up to it. The longest products known are of
 /// six: the oriented box compares fractions of areas by squares of sides (CGAL, Area_less_rectangle_2).
 const double largest_coordinate_mm =
     std::pow(std::numeric_limits<double>::max() / 1e3, 1.0 / 16.0);  // 1.2e19
 
-Triangles within_reach(Triangles triangles) {
+void need_reach(const Triangles& triangles) {
   for (std::size_t i = 0; i < triangles.points_mm.size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
-      if (const double x = triangles.points_mm[i][axis]; std::abs(x) > largest_coordinate_mm)
+      if (const double x = triangles.points_mm[i][axis]; !(std::abs(x) <= largest_coordinate_mm))
         throw Error(ErrorCode::Input, "point " + std::to_string(i) + " has a coordinate of " + short_text(x) +
                                           " mm, beyond the largest, " + short_text(largest_coordinate_mm) +
                                           " mm: is the file damaged, or its unit another one?");
-  return triangles;
 }
 
-Triangles read_any(const std::string& bytes, const std::string& extension) {
-  if (extension == ".stl") return read_stl(bytes);
-  if (extension == ".ply") return read_ply(bytes);
-  if (extension == ".obj") return read_obj(bytes);
-  if (extension == ".off") return read_off(bytes);
-  return extension == ".vtk" ? read_vtk(bytes) : read_vtp(bytes);
+void turn_to_lps(Triangles& triangles, const std::string& frame, double scale) {
+  if (frame == "LPS" && scale == 1.0) return;
+  const glm::dmat3 lps = lps_from(frame);
+  // With 0 added, which takes the sign off a zero.
+  for (glm::dvec3& p : triangles.points_mm) p = lps * (p * scale) + 0.0;
+  if (glm::determinant(lps) < 0.0)
+    for (auto& face : triangles.faces) std::swap(face[1], face[2]);
+}
+
+/// What a size alone tells: nothing in or about a patient is smaller than a millimetre or longer than three
+/// metres.
+MeshFinding size_finding(const MeshFile& file) {
+  const glm::dvec3 side = file.extent().high_mm - file.extent().low_mm;
+  const double longest = std::max({side.x, side.y, side.z});
+  const bool is_odd = !file.triangles.points_mm.empty() && (longest < 1.0 || longest > 3000.0);
+  return {"size", is_odd ? MeshVerdict::Warn : MeshVerdict::Pass,
+          short_text(side.x) + " x " + short_text(side.y) + " x " + short_text(side.z) + " mm" +
+              (is_odd ? ": is its unit another one? Give it by --unit um, cm, m or inch" : "")};
+}
+
+MeshFile read_bytes(std::string bytes, const Format& format, const MeshReadOptions& options) {
+  if (bytes.empty()) throw Error(ErrorCode::Input, "the file is empty");
+  MeshContent content = format.read(format.is_text ? plain_text(bytes) : std::string_view(bytes));
+  MeshStatements::Resolved resolved = content.says.resolved(options.frame, options.unit);
+  MeshFile made{std::move(content.triangles), std::move(resolved.audit)};
+  turn_to_lps(made.triangles, resolved.frame, resolved.unit.mm / content.scale);
+  need_reach(made.triangles);
+  made.audit.push_back(size_finding(made));
+  for (MeshFinding& finding : content.polygons.findings(resolved.unit.mm / content.scale))
+    made.audit.push_back(std::move(finding));
+  return made;
 }
 
 }  // namespace
 
-Triangles read_triangles(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+const char* const mesh_formats_read = ".stl, .ply, .obj, .off, .vtk, .vtp, .vtu, .glb or .3mf";
+
+bool is_mesh_file(const std::filesystem::path& path) {
+  return format_of(path) != nullptr;
+}
+
+Extent MeshFile::extent() const {
+  if (triangles.points_mm.empty()) return {};
+  Extent extent{triangles.points_mm.front(), triangles.points_mm.front()};
+  for (const glm::dvec3& p : triangles.points_mm) {
+    extent.low_mm = glm::min(extent.low_mm, p);
+    extent.high_mm = glm::max(extent.high_mm, p);
+  }
+  return extent;
+}
+
+MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& options) {
   try {
-    if (extension != ".stl" && extension != ".ply" && extension != ".obj" && extension != ".off" &&
-        extension != ".vtk" && extension != ".vtp")
-      throw Error(
-          ErrorCode::Input,
-          "'" + extension + "' is no mesh format that is read; use .stl, .ply, .obj, .off, .vtk or .vtp");
-    const std::string bytes = bytes_of(path);
-    if (bytes.empty()) throw Error(ErrorCode::Input, "the file is empty");
-    return within_reach(read_any(bytes, extension));
+    const Format* format = format_of(path);
+    if (format == nullptr)
+      throw Error(ErrorCode::Input,
+                  "'" + lower_extension(path) + "' is no mesh format that is read; use " + mesh_formats_read);
+    return read_bytes(bytes_of(path), *format, options);
   } catch (const std::runtime_error& e) {
     throw Error(ErrorCode::Input, path.string() + ": " + e.what());
   }
+}
+
+Triangles read_triangles(const std::filesystem::path& path, const MeshReadOptions& options) {
+  return read_mesh(path, options).triangles;
 }
 
 }  // namespace octotomy::brep

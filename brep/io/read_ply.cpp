@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // PLY as its makers describe it (Turk, The PLY polygon file format, 1994): elements in the header's order,
-// each with scalar and list properties. Only x, y, z of "vertex" and the corner list of "face" are kept.
+// each with scalar and list properties. Only x, y, z of "vertex" and the corner lists of
+// "face" and "tristrips" are kept.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -62,7 +63,7 @@ std::size_t byte_count(Scalar type) {
   throw std::logic_error("a PLY type without size");
 }
 
-Header read_header(MeshScanner& scanner) {
+Header read_header(MeshScanner& scanner, MeshStatements& says) {
   Header header;
   if (scanner.word() != "ply") scanner.fail("a PLY file starts with 'ply'");
   bool has_format = false;
@@ -101,7 +102,11 @@ Header read_header(MeshScanner& scanner) {
     } else if (key != "comment" && key != "obj_info") {
       scanner.fail("'" + std::string(key.substr(0, 40)) + "' is no key that PLY knows");
     }
-    scanner.line();
+    const std::string_view rest = scanner.line();
+    if (key == "comment" || key == "obj_info") {
+      says.read_text(rest, "a comment");
+      says.add_writer(rest);
+    }
   }
   scanner.fail("the header does not end");
 }
@@ -164,70 +169,93 @@ void read_rows(MeshScanner& scanner, const Header& header, const Element& elemen
   }
 }
 
+/// The numbers of lists, one list after the other.
+struct Lists {
+  std::vector<long long> corners;
+  std::vector<std::size_t> ends;
+
+  template <typename Take>
+  void for_each(const Take& take) const {
+    std::size_t begin = 0;
+    for (const std::size_t end : ends) {
+      take(std::span(corners).subspan(begin, end - begin));
+      begin = end;
+    }
+  }
+};
+
+void read_vertices(MeshScanner& scanner, const Header& header, const Element& element, Triangles& triangles) {
+  int coordinates = 0;
+  std::vector<int> axis_of;
+  for (const Property& p : element.properties) {
+    const bool is_place = !p.list_count && (p.name == "x" || p.name == "y" || p.name == "z");
+    axis_of.push_back(is_place ? p.name[0] - 'x' : -1);
+    coordinates += is_place ? 1 : 0;
+  }
+  if (coordinates != 3) scanner.fail("the vertices have no x, y and z");
+  glm::dvec3 point(0.0);
+  read_rows(
+      scanner, header, element,
+      [&](std::size_t p, const std::vector<double>& values) {
+        if (axis_of[p] >= 0) point[axis_of[p]] = values[0];
+      },
+      [&] {
+        if (!(std::abs(point.x) < INFINITY && std::abs(point.y) < INFINITY && std::abs(point.z) < INFINITY))
+          scanner.fail("point " + std::to_string(triangles.points_mm.size()) + " is not finite");
+        triangles.points_mm.push_back(point);
+      });
+}
+
+/// Lists of points' numbers; with strips -1 ends one strip and begins the next.
+void read_lists(MeshScanner& scanner, const Header& header, const Element& element, bool with_strips,
+                Lists& lists) {
+  std::vector<bool> is_list;
+  for (const Property& p : element.properties)
+    is_list.push_back(p.list_count && (p.name == "vertex_indices" || p.name == "vertex_index"));
+  read_rows(
+      scanner, header, element,
+      [&](std::size_t p, const std::vector<double>& values) {
+        if (!is_list[p]) return;
+        for (const double value : values) {
+          if (with_strips && value == -1.0) {
+            lists.ends.push_back(lists.corners.size());
+            continue;
+          }
+          if (!(value >= 0.0 && value < 4294967296.0)) scanner.fail("a corner that is no point's number");
+          lists.corners.push_back(static_cast<long long>(value));
+        }
+        lists.ends.push_back(lists.corners.size());
+      },
+      [] {});
+}
+
 }  // namespace
 
-Triangles read_ply(std::string_view bytes) {
+MeshContent read_ply(std::string_view bytes) {
+  MeshContent made;
   MeshScanner scanner(bytes);
-  const Header header = read_header(scanner);
-  Triangles triangles;
-  std::vector<long long> corners;        // of all polygons, one after the other
-  std::vector<std::size_t> polygon_end;  // in them
+  const Header header = read_header(scanner, made.says);
+  Lists polygons, strips;
   bool has_points = false;
   for (const Element& element : header.elements) {
-    const auto are_named = [&](std::string_view name) {
-      std::vector<bool> named;
-      for (const Property& p : element.properties) named.push_back(p.name == name);
-      return named;
-    };
     if (element.name == "vertex") {
       has_points = true;
-      int coordinates = 0;
-      for (const Property& p : element.properties)
-        if (!p.list_count && (p.name == "x" || p.name == "y" || p.name == "z")) ++coordinates;
-      if (coordinates != 3) scanner.fail("the vertices have no x, y and z");
-      const std::vector<bool> x = are_named("x"), y = are_named("y"), z = are_named("z");
-      glm::dvec3 point(0.0);
-      read_rows(
-          scanner, header, element,
-          [&](std::size_t p, const std::vector<double>& values) {
-            if (x[p]) point.x = values[0];
-            if (y[p]) point.y = values[0];
-            if (z[p]) point.z = values[0];
-          },
-          [&] { triangles.points_mm.push_back(point); });
+      read_vertices(scanner, header, element, made.triangles);
     } else if (element.name == "face") {
-      std::vector<bool> lists;
-      for (const Property& p : element.properties)
-        lists.push_back(p.list_count && (p.name == "vertex_indices" || p.name == "vertex_index"));
-      read_rows(
-          scanner, header, element,
-          [&](std::size_t p, const std::vector<double>& values) {
-            if (!lists[p]) return;
-            for (const double value : values) {
-              if (!(value >= 0.0 && value < 4294967296.0)) scanner.fail("a corner that is no point's number");
-              corners.push_back(static_cast<long long>(value));
-            }
-            polygon_end.push_back(corners.size());
-          },
-          [] {});
+      read_lists(scanner, header, element, false, polygons);
     } else if (element.name == "tristrips") {
-      scanner.fail("triangle strips are not read; export plain faces");
+      read_lists(scanner, header, element, true, strips);
     } else {
       read_rows(
           scanner, header, element, [](std::size_t, const std::vector<double>&) {}, [] {});
     }
   }
   if (!has_points) scanner.fail("the file has no vertices");
-  triangles.faces.reserve(polygon_end.size());
-  std::size_t begin = 0;
-  for (const std::size_t end : polygon_end) {
-    add_fan(triangles, std::span(corners).subspan(begin, end - begin));
-    begin = end;
-  }
-  for (const glm::dvec3& p : triangles.points_mm)
-    if (!(std::abs(p.x) < INFINITY && std::abs(p.y) < INFINITY && std::abs(p.z) < INFINITY))
-      throw Error(ErrorCode::Input, "a point is not finite");
-  return triangles;
+  made.triangles.faces.reserve(polygons.ends.size());
+  PolygonSplitter splitter(made.triangles, made.polygons);
+  polygons.for_each([&](std::span<const long long> corners) { splitter.add(corners); });
+  strips.for_each([&](std::span<const long long> corners) { splitter.add_strip(corners); });
+  return made;
 }
 
 }  // namespace octotomy::brep

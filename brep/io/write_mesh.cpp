@@ -56,7 +56,7 @@ struct Sink {
 
 void write_stl(const Triangles& triangles, Sink& sink) {
   std::string& bytes = sink.bytes;
-  bytes = "octotomy, binary STL, LPS millimetres";
+  bytes = "octotomy, binary STL, LPS millimetres, SPACE=LPS";
   bytes.resize(80, ' ');
   append_little(bytes, static_cast<std::uint32_t>(triangles.faces.size()));
   for (const auto& face : triangles.faces) {
@@ -75,7 +75,9 @@ void write_stl(const Triangles& triangles, Sink& sink) {
 
 void write_ply(const Triangles& triangles, const VertexData& data, Sink& sink) {
   std::string& bytes = sink.bytes;
-  bytes = "ply\nformat binary_little_endian 1.0\ncomment octotomy, LPS millimetres\nelement vertex ";
+  bytes =
+      "ply\nformat binary_little_endian 1.0\ncomment octotomy, LPS millimetres\ncomment SPACE=LPS\nelement "
+      "vertex ";
   append_text(bytes, triangles.points_mm.size());
   bytes += "\nproperty double x\nproperty double y\nproperty double z";
   if (!data.colours.empty()) bytes += "\nproperty uchar red\nproperty uchar green\nproperty uchar blue";
@@ -99,7 +101,7 @@ void write_ply(const Triangles& triangles, const VertexData& data, Sink& sink) {
 
 void write_obj(const Triangles& triangles, Sink& sink) {
   std::string& bytes = sink.bytes;
-  bytes = "# octotomy, LPS millimetres\n";
+  bytes = "# octotomy, LPS millimetres\n# SPACE=LPS\n";
   for (const glm::dvec3& p : triangles.points_mm) {
     bytes += "v ";
     append_point(bytes, p);

@@ -35,7 +35,7 @@ std::string word_of(std::string name) {
 }
 
 std::string obj_of(const PartedSurface& parted) {
-  std::string text = "# octotomy, LPS millimetres\n";
+  std::string text = "# octotomy, LPS millimetres\n# SPACE=LPS\n";
   std::array<char, 40> buffer{};
   const auto append = [&](auto value) {
     text += ' ';

@@ -25,9 +25,14 @@ class Appended {
   std::string bytes_;
 };
 
-/// The letters' codes, each name ended by 0, as VTK keeps texts.
+/// The frame, as 3D Slicer reads it, and what the parts are called: letters' codes, each text ended by 0, as
+/// VTK keeps them.
 std::string field_data(const CellData& cells) {
-  if (cells.part_numbers.empty()) return {};
+  const std::string frame =
+      "<FieldData>\n<DataArray type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">76 80 83 "
+      "0"
+      "</DataArray>\n";
+  if (cells.part_numbers.empty()) return frame + "</FieldData>\n";
   const std::string count = "NumberOfTuples=\"" + std::to_string(cells.part_numbers.size()) + "\"";
   std::string numbers, letters;
   for (const int number : cells.part_numbers) numbers += std::to_string(number) + " ";
@@ -35,9 +40,9 @@ std::string field_data(const CellData& cells) {
     for (const char letter : name) letters += std::to_string(static_cast<unsigned char>(letter)) + " ";
     letters += "0 ";
   }
-  return "<FieldData>\n<DataArray type=\"Int32\" Name=\"part_numbers\" " + count + " format=\"ascii\">" +
-         numbers + "</DataArray>\n<DataArray type=\"String\" Name=\"part_names\" " + count +
-         " format=\"ascii\">" + letters + "</DataArray>\n</FieldData>\n";
+  return frame + "<DataArray type=\"Int32\" Name=\"part_numbers\" " + count + " format=\"ascii\">" + numbers +
+         "</DataArray>\n<DataArray type=\"String\" Name=\"part_names\" " + count + " format=\"ascii\">" +
+         letters + "</DataArray>\n</FieldData>\n";
 }
 
 std::string cell_data(const CellData& cells, Appended& appended) {

@@ -8,6 +8,7 @@
 #include <regex>
 #include <utility>
 
+#include "tests/brep/io/zip_bytes.h"
 #include "tests/file_bytes.h"
 #include "tests/fuzz/mutation.h"
 #include "tests/fuzz/sound_bytes.h"
@@ -99,7 +100,7 @@ class SoundFiles {
     write("small.plan.json", plan);
     make({"contours", at("head.nrrd"), "--window", "300:", "-o", at("bone.json")});
     make({"phantom", "sphere", "--voxel", "10", "--voxels", "8", "--radius", "1.6", "-o", at("ball.octree")});
-    for (const char* name : {"ball.stl", "ball.ply", "ball.obj", "ball.off", "ball.vtp"})
+    for (const char* name : {"ball.stl", "ball.ply", "ball.obj", "ball.off", "ball.vtp", "ball.glb"})
       make({"mesh", at("ball.octree"), "-o", at(name)});
     const auto picture = [&](const char* view, const char* name) {
       make(
@@ -302,7 +303,7 @@ class Kinds {
   }
 
   void add_meshes() {
-    const auto mesh = [&](const std::string& name, const std::string& file, std::string sound) {
+    const auto mesh = [&](const std::string& name, const std::string& file, std::string sound) -> FileKind& {
       FileKind& kind = add(name, file, std::move(sound));
       kind.verbs = {
           {"measure", "MUTANT"},
@@ -328,14 +329,21 @@ class Kinds {
       kind.slow_verbs = {{"boolean", at("box.stl"), "intersection", "MUTANT", "--mend", "-o", "OUT.stl"},
                          {"offset", "MUTANT", "--by", "20", "--mend", "-o", "OUT.stl"},
                          {"tet", "MUTANT", "--mend", "-o", "OUT.vtu"}};
+      return kind;
     };
-    for (const char* kind : {"stl", "ply", "obj", "off", "vtp"})
+    for (const char* kind : {"stl", "ply", "obj", "off", "vtp", "glb"})
       mesh(kind, std::string("ball.") + kind, sound_.bytes(std::string("ball.") + kind));
     mesh("vtk", "box.vtk", vtk());
     mesh("vtk_binary", "box.vtk", vtk_binary());
     mesh("vtp_text", "box.vtp", vtp_text());
     mesh("stl_text", "box.stl", stl_text());
     mesh("ply_text", "box.ply", ply_text());
+    mesh("vtk_grid", "box.vtk", vtk_grid());
+    mesh("vtu_text", "box.vtu", vtu_text());
+    mesh("obj_polygons", "box.obj", obj_polygons());
+    const auto archive = [](const std::string& xml) { return zipped({{"3D/3dmodel.model", xml}}, true); };
+    mesh("3mf", "box.3mf", archive(model_3mf()));
+    mesh("3mf_model", "box.3mf", model_3mf()).finish = archive;
     add("frd", "face.frd", frd(), {"warp", at("box.stl"), "--result", "MUTANT", "-o", "OUT.stl"});
   }
 

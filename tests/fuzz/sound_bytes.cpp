@@ -41,6 +41,45 @@ std::string vtk() {
          "0 0 0  30 0 0  0 30 0  0 0 30\nPOLYGONS 4 16\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 }
 
+std::string vtk_grid() {
+  return "# vtk DataFile Version 5.1\nSPACE=RAS\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 2\n"
+         "SPACE 1 1 string\nRAS\n\nn 2 1 int\n1 2\nMETADATA\nINFORMATION 0\n\nPOINTS 8 double\n"
+         "0 0 0 30 0 0 30 30 0 0 30 0 0 0 30 30 0 30 30 30 30 0 30 30\nCELLS 2 8\nOFFSETS vtktypeint64\n0 8\n"
+         "CONNECTIVITY vtktypeint64\n0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n";
+}
+
+std::string vtu_text() {
+  const auto array = [](const std::string& head, const std::string& numbers) {
+    return "<DataArray " + head + " format=\"ascii\">" + numbers + "</DataArray>\n";
+  };
+  return "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>\n<FieldData>"
+         "<Array type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">82 65 83 0</Array>"
+         "</FieldData><Piece NumberOfPoints=\"8\" NumberOfCells=\"1\">\n<Points>" +
+         array("type=\"Float32\" NumberOfComponents=\"3\"",
+               "0 0 0 30 0 0 30 30 0 0 30 0 0 0 30 30 0 30 30 30 30 0 30 30") +
+         "</Points><Cells>" + array("type=\"Int32\" Name=\"connectivity\"", "0 1 2 3 4 5 6 7") +
+         array("type=\"Int32\" Name=\"offsets\"", "8") + array("type=\"UInt8\" Name=\"types\"", "12") +
+         "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+std::string obj_polygons() {
+  return "# File units = mm\nv 20 0 0\nv 20 5 0\nv 5 5 0\nv 5 20 0\nv 0 20 0\nv 0 0 0\nv 20 0 10\nv 20 5 10\n"
+         "v 5 5 10\nv 5 20 10\nv 0 20 10\nv 0 0 10\nf 1 6 5 4 3 2\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\n"
+         "f 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf -7 -12 -6 -1\n";
+}
+
+std::string model_3mf() {
+  return "<model unit=\"centimeter\"><resources><object id=\"1\"><mesh><vertices><vertex x=\"0\" y=\"0\" "
+         "z=\"0\"/><vertex x=\"3\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"3\" z=\"0\"/><vertex x=\"0\" y=\"0\" "
+         "z=\"3\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" "
+         "v3=\"3\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" "
+         "v3=\"2\"/></triangles></mesh></object><object id=\"2\"><components><component "
+         "objectid=\"1\"/><component "
+         "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 9 0 "
+         "0\"/></components></object></resources><build><item "
+         "objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 2\"/></build></model>";
+}
+
 std::string vtk_binary() {
   std::string bytes = "# vtk DataFile Version 3.0\ntetrahedron\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n";
   const auto put_big = [&](std::uint32_t word) {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// VTK's XML polydata ("VTK XML file formats", The VTK User's Guide): numbers as text, as base64 within their
-// element, or appended at the end, raw or base64; plain or in blocks of zlib. An array starts with a header:
-// its length, or of blocks their count, size, last size and compressed sizes. The XML is scanned for the few
-// elements that matter rather than parsed: raw appended data are no XML.
+// VTK's XML polydata and unstructured grids ("VTK XML file formats", The VTK User's Guide): numbers as text,
+// as base64 within their element, or appended at the end, raw or base64; plain or in blocks of zlib or LZ4.
+// An array starts with a header: its length, or of blocks their count, size, last size and compressed sizes.
+// The XML is scanned for the few elements that matter rather than parsed: raw appended data are no XML.
 #include <cmath>
+#include <lz4.h>
 #include <map>
 #include <stdexcept>
 #include <zlib.h>
 
+#include "brep/io/base64.h"
 #include "brep/io/mesh_scanner.h"
+#include "brep/io/vtk_cells.h"
 #include "brep/mesh/error.h"
 
 namespace octotomy::brep {
@@ -46,35 +49,23 @@ XmlElement element_of(std::string_view tag, std::string_view content) {
   return element;
 }
 
-std::string from_base64(std::string_view text, std::size_t most) {
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    int value = -1;
-    if (c >= 'A' && c <= 'Z') value = c - 'A';
-    if (c >= 'a' && c <= 'z') value = c - 'a' + 26;
-    if (c >= '0' && c <= '9') value = c - '0' + 52;
-    if (c == '+') value = 62;
-    if (c == '/') value = 63;
-    if (value < 0 || bytes.size() >= most) break;
-    bits = bits << 6 | static_cast<std::uint32_t>(value);
-    if (++count % 4 != 1) bytes += static_cast<char>(bits >> (count % 4 == 2 ? 4 : count % 4 == 3 ? 2 : 0));
-  }
-  return bytes;
-}
-
 /// Characters of base64 that stand for so many bytes, padding included.
 std::size_t base64_length(std::size_t bytes) {
   return (bytes + 2) / 3 * 4;
 }
 
-class VtpReader {
- public:
-  explicit VtpReader(std::string_view bytes) : bytes_(bytes) {}
+enum class Packing { None, Zlib, Lz4 };
 
-  Triangles run() {
+class XmlReader {
+ public:
+  explicit XmlReader(std::string_view bytes) : bytes_(bytes) {}
+
+  MeshContent run() {
     for (std::size_t at = bytes_.find('<'); at != bytes_.npos;) {
+      if (bytes_.substr(at).starts_with("<!--")) {
+        at = bytes_.find('<', take_comment(at));
+        continue;
+      }
       const std::size_t end = bytes_.find('>', at), next = end == bytes_.npos ? end : bytes_.find('<', end);
       if (end == bytes_.npos) throw Error(ErrorCode::Input, "a tag does not end");
       const XmlElement element =
@@ -89,61 +80,115 @@ class VtpReader {
       take(element);
       at = next;
     }
-    if (!is_polydata_) throw Error(ErrorCode::Input, "the data set is not PolyData; export a surface");
+    if (!is_polydata_ && !is_grid_)
+      throw Error(ErrorCode::Input,
+                  "the data set is neither PolyData nor UnstructuredGrid; export a surface");
+    for (const XmlElement& field : fields_) take_field(field);
     for (const Piece& piece : pieces_) add(piece);
-    return std::move(triangles_);
+    // Of grids in several pieces all cells at once, as faces between two pieces are no surface.
+    if (is_grid_) add_grid_surface(grid_, types_, made_);
+    return std::move(made_);
   }
 
  private:
   struct Piece {
     XmlElement points;
-    std::map<std::string_view, XmlElement> polys, strips;
+    std::map<std::string_view, XmlElement> polys, strips, cells;
   };
 
+  /// Its text is looked through; the end of the comment.
+  std::size_t take_comment(std::size_t at) {
+    const std::size_t end = bytes_.find("-->", at);
+    if (end == bytes_.npos) throw Error(ErrorCode::Input, "a comment does not end");
+    const std::string_view text = bytes_.substr(at + 4, end - at - 4);
+    made_.says.read_text(text, "a comment");
+    made_.says.add_writer(text);
+    return end;
+  }
+
+  void take_file(const XmlElement& element) {
+    is_polydata_ = element.get("type") == "PolyData";
+    is_grid_ = element.get("type") == "UnstructuredGrid";
+    order_ =
+        element.get("byte_order", "LittleEndian") == "BigEndian" ? std::endian::big : std::endian::little;
+    wide_header_ = element.get("header_type", "UInt32") == "UInt64";
+    const std::string_view compressor = element.get("compressor");
+    if (compressor == "vtkZLibDataCompressor")
+      packing_ = Packing::Zlib;
+    else if (compressor == "vtkLZ4DataCompressor")
+      packing_ = Packing::Lz4;
+    else if (!compressor.empty())
+      throw Error(ErrorCode::Input, "data compressed by " + std::string(compressor.substr(0, 40)) +
+                                        " are not read; write them with zlib, LZ4 or plain");
+  }
+
   void take(const XmlElement& element) {
-    if (element.name == "VTKFile") {
-      is_polydata_ = element.get("type") == "PolyData";
-      order_ =
-          element.get("byte_order", "LittleEndian") == "BigEndian" ? std::endian::big : std::endian::little;
-      wide_header_ = element.get("header_type", "UInt32") == "UInt64";
-      const std::string_view compressor = element.get("compressor");
-      is_compressed_ = !compressor.empty();
-      if (is_compressed_ && compressor != "vtkZLibDataCompressor")
-        throw Error(ErrorCode::Input, "data compressed by " + std::string(compressor.substr(0, 40)) +
-                                          " are not read; write them with zlib or plain");
-    }
+    if (element.name == "VTKFile") take_file(element);
     if (element.name == "Piece") pieces_.emplace_back();
-    if (element.name == "/DataArray") return;
-    if (element.name != "DataArray") {
+    // What describes an array stands within it.
+    for (const char* passed :
+         {"/DataArray", "/Array", "InformationKey", "/InformationKey", "Value", "/Value"})
+      if (element.name == passed) return;
+    if (element.name != "DataArray" && element.name != "Array") {
       section_ = element.name;
       return;
     }
+    if (section_ == "FieldData") fields_.push_back(element);
     if (pieces_.empty()) return;
     if (section_ == "Points") pieces_.back().points = element;
     if (section_ == "Polys") pieces_.back().polys[element.get("Name")] = element;
     if (section_ == "Strips") pieces_.back().strips[element.get("Name")] = element;
+    if (section_ == "Cells") pieces_.back().cells[element.get("Name")] = element;
+  }
+
+  /// SPACE names the frame; a string's letters are numbers, as text or as bytes, and 0 ends it.
+  void take_field(const XmlElement& field) {
+    const std::string_view name = field.get("Name");
+    const bool is_frame = name == "SPACE", is_unit = name == "UNIT" || name == "UNITS";
+    if ((!is_frame && !is_unit) || field.get("type") != "String") return;
+    std::string text;
+    if (field.get("format", "ascii") == "ascii") {
+      for (const long long letter : numbers_of<long long>(field)) text += static_cast<char>(letter);
+    } else {
+      text = data_of(field);
+    }
+    text = text.substr(0, std::min<std::size_t>(text.find('\0'), 40));
+    if (is_frame)
+      made_.says.add_frame(text, "SPACE=" + text + " in the field");
+    else
+      made_.says.add_unit(text, "unit " + text + " in the field");
   }
 
   void add(const Piece& piece) {
     if (piece.points.name.empty()) return;
+    Triangles& triangles = made_.triangles;
     const std::vector<double> numbers = numbers_of<double>(piece.points);
     if (numbers.size() % 3 != 0)
       throw Error(ErrorCode::Input, "points have " + std::to_string(numbers.size()) + " numbers");
-    const auto first = static_cast<long long>(triangles_.points_mm.size());
+    const auto first = static_cast<long long>(triangles.points_mm.size());
     for (std::size_t i = 0; i < numbers.size(); i += 3) {
       if (!std::isfinite(numbers[i]) || !std::isfinite(numbers[i + 1]) || !std::isfinite(numbers[i + 2]))
         throw Error(ErrorCode::Input, "point " + std::to_string(i / 3) + " is not finite");
-      triangles_.points_mm.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+      triangles.points_mm.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
     }
-    for (const auto& corners : cells_of(piece.polys, first)) add_fan(triangles_, corners);
-    for (const auto& corners : cells_of(piece.strips, first)) add_strip(triangles_, corners);
+    if (is_grid_) return add_cells(piece, first);
+    PolygonSplitter splitter(triangles, made_.polygons);
+    for (const auto& corners : cells_of(piece.polys, first)) splitter.add(corners);
+    for (const auto& corners : cells_of(piece.strips, first)) splitter.add_strip(corners);
   }
 
-  std::vector<std::vector<long long>> cells_of(const std::map<std::string_view, XmlElement>& arrays,
-                                               long long first) {
+  void add_cells(const Piece& piece, long long first) {
+    CellCorners cells = cells_of(piece.cells, first);
+    std::move(cells.begin(), cells.end(), std::back_inserter(grid_));
+    if (!piece.cells.contains("types")) return;
+    const std::vector<long long> types = numbers_of<long long>(piece.cells.at("types"));
+    types_.insert(types_.end(), types.begin(), types.end());
+  }
+
+  CellCorners cells_of(const std::map<std::string_view, XmlElement>& arrays, long long first) {
     if (!arrays.contains("connectivity") || !arrays.contains("offsets")) return {};
     const std::vector<long long> list = numbers_of<long long>(arrays.at("connectivity"));
-    std::vector<std::vector<long long>> cells;
+    CellCorners cells;
     long long begin = 0;
     for (const long long end : numbers_of<long long>(arrays.at("offsets"))) {
       if (end < begin || end > static_cast<long long>(list.size()))
@@ -183,6 +228,14 @@ class VtpReader {
       read(float{});
     else if (type == "Float64")
       read(double{});
+    else if (type == "Int8")
+      read(std::int8_t{});
+    else if (type == "UInt8")
+      read(std::uint8_t{});
+    else if (type == "Int16")
+      read(std::int16_t{});
+    else if (type == "UInt16")
+      read(std::uint16_t{});
     else if (type == "Int32")
       read(std::int32_t{});
     else if (type == "UInt32")
@@ -221,7 +274,7 @@ class VtpReader {
     const auto head = [&](std::size_t count) {
       return raw ? std::string(source.substr(0, count)) : from_base64(source, count);
     };
-    if (!is_compressed_) {
+    if (packing_ == Packing::None) {
       const std::size_t length = header_number(head(header_bytes()), 0);
       const std::size_t most = source.size();
       if (length > most) throw Error(ErrorCode::Input, "the file ends too early");
@@ -244,32 +297,47 @@ class VtpReader {
     for (std::size_t b = 0; b < blocks; ++b) {
       const std::size_t length = header_number(header, 3 + b);
       const std::size_t wanted = b + 1 == blocks && last > 0 ? last : size;
-      // zlib packs no more than 1032 bytes into one.
-      if (at > packed.size() || length > packed.size() - at || wanted / 1032 > length)
+      // zlib packs no more than 1032 bytes into one, LZ4 no more than 255.
+      if (at > packed.size() || length > packed.size() - at ||
+          wanted / (packing_ == Packing::Zlib ? 1032 : 255) > length)
         throw Error(ErrorCode::Input, "a compressed block is longer than the file");
-      std::string block(wanted, '\0');
-      uLongf got = wanted;
-      if (uncompress(reinterpret_cast<Bytef*>(block.data()), &got,
-                     reinterpret_cast<const Bytef*>(packed.data() + at), length) != Z_OK ||
-          got != wanted)
-        throw Error(ErrorCode::Input, "a compressed block is damaged");
-      bytes += block;
+      bytes += unpacked(std::string_view(packed).substr(at, length), wanted);
       at += length;
     }
     return bytes;
   }
 
+  std::string unpacked(std::string_view packed, std::size_t wanted) const {
+    std::string block(wanted, '\0');
+    bool is_whole = false;
+    if (packing_ == Packing::Zlib) {
+      uLongf got = wanted;
+      is_whole = uncompress(reinterpret_cast<Bytef*>(block.data()), &got,
+                            reinterpret_cast<const Bytef*>(packed.data()), packed.size()) == Z_OK &&
+                 got == wanted;
+    } else if (packed.size() <= LZ4_MAX_INPUT_SIZE && wanted <= LZ4_MAX_INPUT_SIZE) {
+      is_whole = LZ4_decompress_safe(packed.data(), block.data(), static_cast<int>(packed.size()),
+                                     static_cast<int>(wanted)) == static_cast<int>(wanted);
+    }
+    if (!is_whole) throw Error(ErrorCode::Input, "a compressed block is damaged");
+    return block;
+  }
+
   std::string_view bytes_, appended_, section_;
-  bool is_polydata_ = false, wide_header_ = false, is_compressed_ = false, appended_is_raw_ = false;
+  bool is_polydata_ = false, is_grid_ = false, wide_header_ = false, appended_is_raw_ = false;
+  Packing packing_ = Packing::None;
   std::endian order_ = std::endian::little;
+  std::vector<XmlElement> fields_;
   std::vector<Piece> pieces_;
-  Triangles triangles_;
+  CellCorners grid_;
+  std::vector<long long> types_;
+  MeshContent made_;
 };
 
 }  // namespace
 
-Triangles read_vtp(std::string_view bytes) {
-  return VtpReader(bytes).run();
+MeshContent read_vtk_xml(std::string_view bytes) {
+  return XmlReader(bytes).run();
 }
 
 }  // namespace octotomy::brep

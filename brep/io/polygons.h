@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "brep/io/mesh_audit.h"
+#include "brep/mesh/triangles.h"
+
+// Polygons of mesh files as triangles.
+namespace octotomy::brep {
+
+/// What became of polygons with more than three corners. `first_` is the number of the first one in the
+/// file, triangles counted, from 0.
+struct PolygonCounts {
+  std::size_t faces = 0;         ///< polygons and triangles
+  std::size_t polygons = 0;      ///< of them, with more than three corners
+  std::size_t bent = 0;          ///< not planar to the file's precision
+  std::size_t crossing = 0;      ///< cross themselves, so that no triangles fill them
+  std::size_t repeating = 0;     ///< with a corner twice in a row
+  std::size_t without_area = 0;  ///< all corners on a line, or fewer than three left
+  std::size_t first_bent = 0, first_crossing = 0, first_without_area = 0;
+  double most_bent = 0.0;  ///< largest distance of a corner from its polygon's plane, file's unit
+
+  /// The audit's lines about them; `unit_mm` is the file's unit.
+  std::vector<MeshFinding> findings(double unit_mm) const;
+};
+
+/// Appends polygons to triangles. No points are added and each side of a polygon is a side of one of its
+/// triangles, so that neighbours stay joined; corners in the middle of a straight side stay, too.
+class PolygonSplitter {
+ public:
+  /// Both outlive this.
+  PolygonSplitter(Triangles& triangles, PolygonCounts& counts) : triangles_(triangles), counts_(counts) {}
+
+  /// Appends a polygon, which winds as its triangles do:
+  /// 1 Three corners are a triangle, whatever it is.
+  /// 2 Where every triangle of the fan from the first corner faces the same way, the fan fills the polygon.
+  /// 3 Else ears are cut off, the roundest first, in the projection along the polygon's main axis (Meisters,
+  ///   Polygons have ears, 1975), by exact predicates: concave polygons, and those with a hole that a double
+  ///   side joins to the outline.
+  /// 4 A polygon that crosses itself, or has no area, is the fan of 2 and counted.
+  /// Throws Error (Input) if there are too few corners or a corner is no point. Cost: n log n for outlines as
+  /// they occur, n^2 at worst.
+  void add(std::span<const long long> corners);
+  /// Appends a strip of triangles; ones that repeat a point only turn the strip and are left out.
+  void add_strip(std::span<const long long> corners);
+
+ private:
+  void add_fan(const std::vector<std::uint32_t>& corners);
+  void note_bent(const std::vector<std::uint32_t>& corners, const glm::dvec3& normal);
+
+  Triangles& triangles_;
+  PolygonCounts& counts_;
+};
+
+}  // namespace octotomy::brep

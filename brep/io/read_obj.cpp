@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Wavefront's OBJ and Geomview's OFF, as text.
+#include <stdexcept>
+
+#include "brep/io/mesh_scanner.h"
+#include "brep/mesh/error.h"
+
+namespace octotomy::brep {
+namespace {
+
+/// Comments at the beginning of a file, where programs say what they are and in what unit they wrote.
+void read_comments(std::string_view bytes, MeshStatements& says) {
+  MeshScanner scanner(bytes.substr(0, 10000));
+  while (!scanner.at_end()) {
+    const std::string_view line = scanner.line();
+    const std::size_t begin = line.find_first_not_of(" \t");
+    if (begin == std::string_view::npos || line[begin] != '#') continue;
+    const std::string_view comment =
+        line.substr(std::min(line.find_first_not_of("# \t", begin), line.size()));
+    says.read_text(comment, "a comment");
+    says.add_writer(comment);
+  }
+}
+
+/// `add` with the line that a refusal is about.
+template <typename Add>
+void on_line(const MeshScanner& scanner, const Add& add) {
+  try {
+    add();
+  } catch (const std::runtime_error& e) {
+    scanner.fail(e.what());
+  }
+}
+
+glm::dvec3 point(MeshScanner& scanner) {
+  glm::dvec3 p;
+  for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.number();
+  return p;
+}
+
+MeshContent read_binary_off(MeshScanner scanner) {
+  MeshContent made;
+  const auto count = [&](std::size_t bytes_each) {
+    return scanner.bounded(scanner.binary<std::int32_t>(std::endian::big), bytes_each);
+  };
+  const std::size_t points = count(12), faces = count(8);
+  scanner.skip(4);
+  for (std::size_t i = 0; i < points; ++i) {
+    glm::dvec3 p;
+    for (int axis = 0; axis < 3; ++axis) p[axis] = scanner.binary<float>(std::endian::big);
+    made.triangles.points_mm.push_back(p);
+  }
+  PolygonSplitter polygons(made.triangles, made.polygons);
+  std::vector<long long> corners;
+  for (std::size_t i = 0; i < faces; ++i) {
+    corners.resize(count(4));
+    for (long long& corner : corners) corner = scanner.binary<std::int32_t>(std::endian::big);
+    on_line(scanner, [&] { polygons.add(corners); });
+    scanner.skip(4 * count(4));  // colours
+  }
+  return made;
+}
+
+}  // namespace
+
+MeshContent read_obj(std::string_view bytes) {
+  MeshContent made;
+  read_comments(bytes, made.says);
+  MeshScanner scanner(bytes);
+  scanner.comments_start_with_hash();
+  Triangles& triangles = made.triangles;
+  PolygonSplitter polygons(triangles, made.polygons);
+  std::vector<long long> corners;
+  while (!scanner.at_end()) {
+    const std::string_view key = scanner.word();
+    if (key == "v") {
+      triangles.points_mm.push_back(point(scanner));
+    } else if (key == "f") {
+      corners.clear();
+      for (std::string_view word = scanner.word(true); !word.empty(); word = scanner.word(true)) {
+        if (word == "\\") {
+          scanner.line();
+          continue;
+        }
+        // Negative numbers count back from the last point read.
+        const long long given = integer_of(word.substr(0, word.find('/')));
+        if (given == 0) scanner.fail("a face refers to point 0; OBJ counts from 1");
+        corners.push_back(given > 0 ? given - 1 : given + static_cast<long long>(triangles.points_mm.size()));
+      }
+      on_line(scanner, [&] { polygons.add(corners); });
+    }
+    scanner.line();
+  }
+  return made;
+}
+
+MeshContent read_off(std::string_view bytes) {
+  MeshScanner scanner(bytes);
+  scanner.comments_start_with_hash();
+  // Prefixes tell of colours (C), normals (N), textures (ST) behind each point; 4 and n change the dimension.
+  const std::string_view magic = scanner.word();
+  if (!magic.ends_with("OFF") || magic.find_first_of("4n") != std::string_view::npos)
+    scanner.fail("an OFF file of points in space starts with OFF, COFF, NOFF or STOFF");
+  if (MeshScanner ahead = scanner; ahead.word(true) == "BINARY") {
+    if (magic != "OFF")
+      scanner.fail("a binary OFF file with colours or normals is not read: write it as text");
+    ahead.line();
+    return read_binary_off(ahead);
+  }
+  MeshContent made;
+  read_comments(bytes, made.says);
+  const long long point_count = scanner.integer(), face_count = scanner.integer();
+  scanner.line();  // the number of edges, which nobody keeps right
+  Triangles& triangles = made.triangles;
+  // The least row of a point is "0 0 0", of a face "1 0", each with the end of its line.
+  const std::size_t points = scanner.bounded(point_count, 5);
+  triangles.points_mm.reserve(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    triangles.points_mm.push_back(point(scanner));
+    scanner.line();
+  }
+  const std::size_t faces = scanner.bounded(face_count, 3);
+  PolygonSplitter polygons(triangles, made.polygons);
+  std::vector<long long> corners;
+  for (std::size_t i = 0; i < faces; ++i) {
+    corners.resize(scanner.count(1));
+    for (long long& corner : corners) corner = scanner.integer();
+    on_line(scanner, [&] { polygons.add(corners); });
+    scanner.line();
+  }
+  return made;
+}
+
+}  // namespace octotomy::brep
