@@ -10,8 +10,8 @@
 #include "planner/table/number_format.h"
 #include "planner/verb/octree_out.h"
 #include "planner/verb/scan_in.h"
-#include "voxel/scan/volume_header.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -19,9 +19,9 @@
 #include "voxel/filter/label_map.h"
 #include "voxel/filter/slice_contour.h"
 #include "voxel/filter/tissue.h"
-#include "voxel/scan/volume_header.h"
 #include "voxel/scan/write_dicom_seg.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner::cli {
 namespace {

@@ -14,11 +14,11 @@
 #include "planner/table/json_file.h"
 #include "planner/table/operation.h"
 #include "planner/table/plan_universe.h"
-#include "voxel/scan/volume_header.h"
 #include "voxel/solid/combine.h"
 #include "voxel/solid/expression.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/regular_file.h"
+#include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner {
 namespace {

@@ -15,8 +15,8 @@
 #include "planner/table/number_format.h"
 #include "planner/table/operation.h"
 #include "voxel/filter/label_map.h"
-#include "voxel/scan/volume_header.h"
 #include "voxel/scan/write_scene.h"
+#include "voxel/volume/volume_header.h"
 
 namespace octotomy::planner {
 namespace {

@@ -204,6 +204,8 @@ class Evaluator {
                                 {"voxel_mm", plan_.voxel_mm.value_or(0.0)}};
     for (const voxel::SliceRange& range : source.read.slices)
       says["slices"].push_back({range.first, range.last});
+    if (source.read.frame) says["frame"] = source.read.frame->name;
+    if (source.read.unit) says["unit"] = source.read.unit->name;
     if (source.read.spacing_mm)
       for (int axis = 0; axis < 3; ++axis) says["spacing_mm"].push_back((*source.read.spacing_mm)[axis]);
     if (const auto& raw = source.read.raw)

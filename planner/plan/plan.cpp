@@ -57,12 +57,25 @@ std::vector<voxel::SliceRange> slices_of(const Keys& scan) {
   }
 }
 
+/// What `parse` makes of a key's text, if the scan has it.
+template <typename Value>
+std::optional<Value> parsed(const Keys& scan, const char* key, Value (*parse)(const std::string&)) {
+  if (scan.find(key) == nullptr) return std::nullopt;
+  try {
+    return parse(scan.text(key));
+  } catch (const std::invalid_argument& error) {
+    refuse(scan.at(key), error.what());
+  }
+}
+
 /// How a scan is read: its series, and what images and raw files do not say of themselves.
 voxel::ReadOptions read_options_of(const Keys& scan) {
   voxel::ReadOptions read;
   if (scan.find("series") != nullptr) read.series = scan.text("series");
   if (scan.find("slices") != nullptr) read.slices = slices_of(scan);
   if (scan.find("spacing_mm") != nullptr) read.spacing_mm = scan.point("spacing_mm");
+  read.frame = parsed(scan, "frame", voxel::parse_frame);
+  read.unit = parsed(scan, "unit", voxel::parse_unit);
   if (const SortedJson* value = scan.find("raw")) {
     const Keys keys(*value, scan.at("raw"), {"dims", "type", "big_endian", "offset"});
     voxel::RawLayout raw;
@@ -90,7 +103,8 @@ std::map<std::string, ScanSource> scans_of(const Keys& top) {
     refuse("scans", "must name at least one scan, as {\"ct\": {\"path\": \"head.nrrd\"}}");
   std::map<std::string, ScanSource> scans;
   for (const auto& [name, entry] : value.items()) {
-    const Keys keys(entry, "scans, " + name, {"path", "sha256", "series", "slices", "spacing_mm", "raw"});
+    const Keys keys(entry, "scans, " + name,
+                    {"path", "sha256", "series", "slices", "frame", "unit", "spacing_mm", "raw"});
     ScanSource source{keys.text("path"), std::nullopt, read_options_of(keys)};
     if (keys.find("sha256") != nullptr) {
       source.sha256 = keys.text("sha256");
@@ -235,6 +249,8 @@ Json plan_schema() {
                     {"sha256", {{"type", {"string", "null"}}, {"pattern", "^[0-9a-fA-F]{64}$"}}},
                     {"series", {{"type", "string"}}},
                     {"slices", {{"type", "string"}}},
+                    {"frame", {{"type", "string"}}},
+                    {"unit", {{"type", "string"}}},
                     {"spacing_mm", vector},
                     {"raw", raw}}},
                   {"required", {"path"}},

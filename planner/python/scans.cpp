@@ -77,9 +77,13 @@ py::array shown_samples(const py::object& self) {
 }
 
 std::shared_ptr<Scene> read_scan(const std::filesystem::path& path, const std::string& series,
-                                 const std::optional<Numbers>& spacing_mm) {
+                                 const std::optional<Numbers>& spacing_mm,
+                                 const std::optional<std::string>& frame,
+                                 const std::optional<std::string>& unit) {
   voxel::ReadOptions options;
   options.series = series;
+  if (frame) options.frame = voxel::parse_frame(*frame);
+  if (unit) options.unit = voxel::parse_unit(*unit);
   if (spacing_mm) options.spacing_mm = vector_of(*spacing_mm, "spacing_mm");
   return without_lock([&](const std::stop_token& stop) {
     options.progress.stop = stop;
@@ -144,7 +148,7 @@ void add_scans(py::module_& module) {
           py::arg("path"), "Writes .nrrd, .nii, .nii.gz or .mha as the name ends.");
 
   module.def("read_scan", &read_scan, py::arg("path"), py::arg("series") = "",
-             py::arg("spacing_mm") = py::none(),
+             py::arg("spacing_mm") = py::none(), py::arg("frame") = py::none(), py::arg("unit") = py::none(),
              "Reads a scan: DICOM folder or file, NIfTI, NRRD, MetaImage, images. `series` chooses a DICOM "
              "series by number, UID or part of its description.");
 }

@@ -22,6 +22,8 @@ Json scan_entry(const std::filesystem::path& scan, const voxel::ReadOptions& rea
   Json entry{{"path", voxel::absolute_of(scan).string()}};
   if (!read.series.empty()) entry["series"] = read.series;
   if (!read.slices.empty()) entry["slices"] = voxel::to_string(read.slices);
+  if (read.frame) entry["frame"] = read.frame->name;
+  if (read.unit) entry["unit"] = read.unit->name;
   if (read.spacing_mm) entry["spacing_mm"] = to_json(*read.spacing_mm);
   if (read.raw)
     entry["raw"] = {{"dims", {read.raw->dims.x, read.raw->dims.y, read.raw->dims.z}},

@@ -26,6 +26,17 @@ std::vector<voxel::SliceRange> slices_of(const std::string& text) {
   }
 }
 
+/// What `parse` makes of an option's text, if it is given.
+template <typename Value>
+std::optional<Value> parsed(const char* option, const std::string& text, Value (*parse)(const std::string&)) {
+  if (text.empty()) return std::nullopt;
+  try {
+    return parse(text);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError(option, error.what());
+  }
+}
+
 voxel::RawLayout layout_of(const ScanIn& in) {
   voxel::RawLayout layout;
   char rest = 0;
@@ -56,6 +67,14 @@ void add_scan_options(CLI::App& verb, ScanIn& in, const std::string& heading) {
                   "FROM:TO of the DICOM series' images to keep, 1 the lowest along their normal, for example "
                   "1:40 or 1:40,45:60")
       ->group(heading);
+  verb.add_option(
+          "--frame", in.frame,
+          "RAS, LPS, LAS, ...: the patient's directions along the axes of a volume file's coordinates, "
+          "whatever it states; also of images and raw files. DICOM states its own")
+      ->group(heading);
+  verb.add_option("--unit", in.unit,
+                  "mm, cm, m, um or inch: the unit of a volume file's lengths, whatever it states")
+      ->group(heading);
   verb.add_option("--spacing", in.spacing, "X,Y,Z in mm, of images and raw files, which do not say it")
       ->group(heading);
   verb.add_option("--raw", in.raw, "XxYxZ TYPE: the file is raw samples, for example 512x512x300 int16")
@@ -79,6 +98,8 @@ voxel::ReadOptions read_options(const Program& program, const ScanIn& in) {
   options.series = in.series;
   if (!in.slices.empty()) options.slices = slices_of(in.slices);
   if (!in.spacing.empty()) options.spacing_mm = spacing_of(in.spacing);
+  options.frame = parsed("--frame", in.frame, voxel::parse_frame);
+  options.unit = parsed("--unit", in.unit, voxel::parse_unit);
   if (!in.raw.empty()) options.raw = layout_of(in);
   if (in.raw.empty() && (in.big_endian || in.offset != 0))
     throw CLI::ValidationError("--offset", "--offset and --big-endian are of raw files: give --raw too");

@@ -94,7 +94,8 @@ export function read_nifti(bytes: Uint8Array): Volume {
   const dims = checked(Array.from({length: Math.max(0, axes)}, (_, i) => int16(42 + 2 * i)), axes);
   const type = nifti_types[int16(70)];
   if (type === undefined) throw new Error(`its samples are of type ${int16(70)}, which is no real number`);
-  // The sform, else the qform, else spacings alone. RAS becomes LPS.
+  // The sform, else the qform, else spacings alone, which name no frame: as Analyze's then, left, front, head and
+  // centred. RAS becomes LPS.
   let rows: number[][];
   const remarks: string[] = [];
   if (int16(254) > 0)
@@ -102,16 +103,21 @@ export function read_nifti(bytes: Uint8Array): Volume {
   else {
     const spacing = [1, 2, 3].map(axis => Math.abs(float(76 + 4 * axis)) || 1);
     const by_quaternion = int16(252) > 0;
-    if (!by_quaternion) remarks.push("the file does not say how the patient lies: axes are taken as right, front, head");
-    const turn = by_quaternion ? rotation_of_quaternion(float(256), float(260), float(264)) : [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    if (!by_quaternion) remarks.push("the file does not say how the patient lies: axes are taken as left, front, head");
+    const turn = by_quaternion ? rotation_of_quaternion(float(256), float(260), float(264)) : [[-1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    const centre = [0, 1, 2].map(axis => (axis === 0 ? 0.5 : -0.5) * (dims[axis] - 1) * spacing[axis]);
     const handed = by_quaternion && float(76) < 0 ? -1 : 1;
     rows = [0, 1, 2].map(row => [...[0, 1, 2].map(column => turn[row][column] * spacing[column] * (column === 2 ? handed : 1)),
-                                 by_quaternion ? float(268 + 4 * row) : 0]);
+                                 by_quaternion ? float(268 + 4 * row) : centre[row]]);
   }
-  const unit = {1: 1000, 3: 0.001}[bytes[123] & 7] ?? 1;
+  const unit = {1: 1000, 2: 1, 3: 0.001}[bytes[123] & 7];
+  if (unit === undefined) remarks.push("the file states no unit of length: millimetres are assumed");
   const lps_from_voxel = [0, 1, 2, 3].flatMap(
-      column => [...[0, 1, 2].map(row => rows[row][column] * (row < 2 ? -1 : 1) * unit), column === 3 ? 1 : 0]);
-  const slope = float(112) || 1, intercept = Number.isFinite(float(116)) && float(112) !== 0 ? float(116) : 0;
+      column => [...[0, 1, 2].map(row => rows[row][column] * (row < 2 ? -1 : 1) * (unit ?? 1)), column === 3 ? 1 : 0]);
+  // A slope of zero, or one that is no number, means that nothing is scaled.
+  const is_scaled = Number.isFinite(float(112)) && float(112) !== 0;
+  const slope = is_scaled ? float(112) : 1, intercept = is_scaled ? float(116) : 0;
+  if (!Number.isFinite(intercept)) throw new Error("its intercept is no finite number, though its slope is one");
   const count = dims[0] * dims[1] * dims[2];
   const stored = numbers(bytes, Math.max(352, float(108)), count, type, little);
   return {dims, lps_from_voxel, samples: to_int16(stored, slope, intercept, remarks), remarks};
@@ -126,6 +132,21 @@ const nrrd_types: Record<string, NumberType> = {
   "uint": "uint32", "unsigned int": "uint32", "uint32": "uint32", "uint32_t": "uint32",
   "float": "float", "double": "double"
 };
+
+const millimetres: Record<string, number> = {
+  "mm": 1, "millimeter": 1, "cm": 10, "centimeter": 10, "m": 1000, "meter": 1000,
+  "um": 0.001, "\u00b5m": 0.001, "\u03bcm": 0.001, "micron": 0.001, "micrometer": 0.001, "in": 25.4, "inch": 25.4
+};
+
+/// Millimetres in the units of a NRRD's axes; none where it states none.
+function units_of(text: string|undefined): number[]|undefined {
+  return text === undefined ? undefined : [...text.matchAll(/"([^"]*)"/g)].map(([, word]) => {
+    const name = word.trim().toLowerCase().replace(/metre/, "meter").replace(/(.{3})s$/, "$1");
+    const mm = millimetres[name];
+    if (mm === undefined) throw new Error(`its unit '${word}' is no known unit of length`);
+    return mm;
+  });
+}
 
 /// "(1,0,0) (0,1,0)" as rows of numbers.
 function vectors(text: string): number[][] {
@@ -163,7 +184,9 @@ export async function read_nrrd(bytes: Uint8Array): Promise<Volume> {
   const origin = fields["space origin"] ? vectors(fields["space origin"])[0] : [0, 0, 0];
   if (axes.length !== 3 || [...axes, origin].some(axis => axis.length !== 3 || !axis.every(Number.isFinite)))
     throw new Error("its space directions are not three directions of three numbers");
-  const signed = (axis: number[]) => axis.map((value, i) => value * (signs?.[i] ?? 1));
+  const units = units_of(fields[fields["space directions"] ? "space units" : "units"]);
+  if (units === undefined) remarks.push("the file states no unit of length: millimetres are assumed");
+  const signed = (axis: number[]) => axis.map((value, i) => value * (signs?.[i] ?? 1) * (units?.[i] ?? 1));
   const lps_from_voxel = [...axes.flatMap(axis => [...signed(axis), 0]), ...signed(origin), 1];
   const encoding = (fields["encoding"] ?? "").toLowerCase();
   if (!["raw", "gzip", "gz"].includes(encoding)) throw new Error(`its encoding '${encoding}' is not read here`);

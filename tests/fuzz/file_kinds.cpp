@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <regex>
 #include <utility>
@@ -68,6 +69,57 @@ constexpr const char* chin =
 std::string codestream(const std::string& dicom) {
   const std::size_t begin = dicom.find("\xff\x4f\xff\x51");
   return dicom.substr(begin, dicom.rfind("\xff\xd9") + 2 - begin);
+}
+
+/// 20 x 20 x 20 numbers of 16 bits.
+std::string ramp_bytes() {
+  std::string ramp;
+  for (std::uint32_t i = 0; i < 20 * 20 * 20; ++i) ramp += DicomBytes::number(i % 1000, 2);
+  return ramp;
+}
+
+std::string ramp_text() {
+  std::string text;
+  for (int i = 0; i < 20 * 20 * 20; ++i) text += std::to_string(i % 1000) + (i % 20 == 19 ? "\n" : " ");
+  return text;
+}
+
+/// A NRRD that states what others leave out.
+std::string nrrd_text() {
+  return "NRRD0005\n# text\ntype: double\ndimension: 4\nspace: right-anterior-superior\nsizes: 1 20 20 20\n"
+         "space directions: none (1,0,0) (0,1,0) (0.1,0,1.5)\nspace origin: (-10,-9.5,3e1)\n"
+         "space units: \"mm\" \"mm\" \"mm\"\nkinds: list domain domain domain\nold min: -1\nencoding: ascii\n"
+         "sample units: \"HU\"\nkey:=value\n\n" +
+         ramp_text();
+}
+
+std::string nrrd_list() {
+  return "NRRD0004\ntype: short\ndimension: 3\nsizes: 20 20 40\nspacings: 1 1 0.5\naxis mins: 0 0 -5\n"
+         "centers: node cell node\nunits: \"cm\" \"cm\" \"cm\"\nendian: little\nencoding: raw\nbyte skip: 0\n"
+         "data file: part%d.raw 5 7 2\n";
+}
+
+std::string meta_text() {
+  return "ObjectType = Image\nNDims = 3\nBinaryData = False\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\n"
+         "Offset = 10 20.5 -3e1\nCenterOfRotation = 0 0 0\nAnatomicalOrientation = ARI\nElementSpacing = 1 1 "
+         "2\n"
+         "DistanceUnits = mm\nModality = MET_MOD_CT\nDimSize = 20 20 20\nElementToIntensityFunctionSlope = "
+         "2\n"
+         "ElementToIntensityFunctionOffset = -1024\nElementType = MET_SHORT\nElementDataFile = LOCAL\n" +
+         ramp_text();
+}
+
+/// The two files of a NIfTI pair out of one file.
+std::string nifti_pair_header(const std::string& whole) {
+  std::string header = whole.substr(0, 348) + std::string(4, '\0');
+  header.replace(108, 4, std::string(4, '\0'));  // the offset of the samples, in the other file
+  header.replace(344, 4, std::string("ni1\0", 4));
+  return header;
+}
+std::string nifti_samples(const std::string& whole) {
+  float offset = 0.0f;
+  std::memcpy(&offset, whole.data() + 108, sizeof offset);
+  return whole.substr(static_cast<std::size_t>(offset));
 }
 
 /// What the sound files are made with, and lie in.
@@ -181,13 +233,20 @@ class Kinds {
     scan("nifti_bomb", "head.nii.gz", sound_.bytes("head.nii")).finish =
         [bomb = gzip_bomb()](const std::string& bytes) { return packed(bytes) + bomb; };
     scan("nifti2", "head.nii", nifti2());
+    // The two files of a pair, one of which is damaged.
+    const std::string pair = nifti_pair_header(sound_.bytes("head.nii"));
+    sound_.write("pair.img", nifti_samples(sound_.bytes("head.nii")));
+    scan("nifti_pair", "pair.hdr", pair).beside = {at("pair.img")};
     scan("nrrd", "head.nrrd", sound_.bytes("head.nrrd"));
     scan("nrrd_header", "head.nhdr", sound_.bytes("head.nhdr")).beside = {at("head.raw.gz")};
+    scan("nrrd_text", "text.nrrd", nrrd_text());
+    scan("nrrd_list", "list.nhdr", nrrd_list()).beside = {at("part5.raw"), at("part7.raw")};
+    sound_.write("part5.raw", ramp_bytes());
+    sound_.write("part7.raw", ramp_bytes());
+    scan("metaimage_text", "text.mha", meta_text());
     scan("metaimage", "head.mha", sound_.bytes("head.mha"));
     scan("metaimage_header", "head.mhd", sound_.bytes("head.mhd")).beside = {at("head.zraw")};
-    std::string ramp;
-    for (std::uint32_t i = 0; i < 20 * 20 * 20; ++i) ramp += DicomBytes::number(i % 1000, 2);
-    scan("raw", "head.raw", ramp, {"--raw", "20x20x20", "int16", "--spacing", "1,1,1"});
+    scan("raw", "head.raw", ramp_bytes(), {"--raw", "20x20x20", "int16", "--spacing", "1,1,1"});
   }
 
   /// A scan of two slices in a folder, of which one is the mutant.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Any bytes are a NIfTI, NRRD or MetaImage header or are refused with std::runtime_error in one line; no
-// header claims more samples than its data can hold. The first byte of an input says which format the rest
-// is.
+// Any bytes are a NIfTI, NRRD or MetaImage or are refused with std::runtime_error in one line; no header
+// claims more samples than its data can hold. The first byte of an input says which format the rest is.
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -11,7 +10,8 @@
 #include <string>
 #include <unistd.h>
 
-#include "voxel/scan/volume_header.h"
+#include "voxel/scan/read_volume.h"
+#include "voxel/volume/volume_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace fs = std::filesystem;
@@ -21,12 +21,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     VolumeFormat format;
     const char* extension;
   };
-  constexpr std::array<Kind, 6> kinds{{{VolumeFormat::Nifti, ".nii"},
+  constexpr std::array<Kind, 7> kinds{{{VolumeFormat::Nifti, ".nii"},
                                        {VolumeFormat::Nifti, ".nii.gz"},
                                        {VolumeFormat::Nrrd, ".nrrd"},
                                        {VolumeFormat::Nrrd, ".nhdr"},
                                        {VolumeFormat::Meta, ".mha"},
-                                       {VolumeFormat::Meta, ".mhd"}}};
+                                       {VolumeFormat::Meta, ".mhd"},
+                                       {VolumeFormat::Nifti, ".hdr"}}};
   const Kind kind = kinds[data[0] % kinds.size()];
   // A folder of its own: a detached header is answered with what lies beside it.
   static const fs::path folder = [] {
@@ -37,8 +38,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fs::path path = folder / ("header" + std::string(kind.extension));
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(data) + 1, static_cast<std::streamsize>(size - 1));
+  if (kind.extension == std::string(".hdr"))
+    std::ofstream(folder / "header.img", std::ios::binary) << std::string(4096, '\1');
   try {
-    octotomy::voxel::read_volume_header(path, kind.format);
+    const octotomy::voxel::VolumeHeader header = octotomy::voxel::read_volume_header(path, kind.format);
+    // Packed samples may be a thousand times the file.
+    const glm::dvec3 dims(header.geometry.dims);
+    if (dims.x * dims.y * dims.z <= 1e6) octotomy::voxel::read_volume(path, kind.format);
   } catch (const std::runtime_error& error) {
     if (std::string(error.what()).find('\n') != std::string::npos) std::abort();
   }

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cctype>
 
-#include "voxel/scan/audit.h"
 #include "voxel/scan/image_file.h"
 #include "voxel/scan/read_raw.h"
 #include "voxel/space/file_text.h"
@@ -126,8 +125,7 @@ Scene read_image_stack(const fs::path& path, const ReadOptions& options) {
   }
   Scene scene;
   scene.source = path.string();
-  scene.lattice = lattice_without_frame(path, dims, options);
-  scene.audit.push_back(frame_finding(false));
+  place_without_frame(path, dims, options, scene);
   scene.audit.push_back({"slice_order", Verdict::Warn,
                          std::to_string(dims.z) + " slices of " + std::to_string(files.size()) +
                              " files in the order of the numbers in their names, from " +

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/read_raw.h"
 
+#include <algorithm>
+#include <cassert>
 #include <fstream>
 #include <limits>
 
-#include "voxel/scan/audit.h"
+#include "voxel/scan/air_level.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/memory_need.h"
+#include "voxel/volume/stated_geometry.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -24,14 +27,21 @@ std::string bytes_of_part(const fs::path& path, std::uint64_t offset, std::uint6
 
 }  // namespace
 
-Lattice lattice_without_frame(const fs::path& path, const glm::ivec3& dims, const ReadOptions& options) {
+void place_without_frame(const fs::path& path, const glm::ivec3& dims, const ReadOptions& options,
+                         Scene& scene) {
+  if (options.unit) refuse(path, "its spacing is --spacing, in mm: leave --unit out");
   if (!options.spacing_mm) refuse(path, "does not state its spacing: give --spacing X,Y,Z in mm");
   const glm::dvec3 spacing_mm = *options.spacing_mm;
   for (int axis = 0; axis < 3; ++axis)
     if (!(spacing_mm[axis] >= 1e-4 && spacing_mm[axis] <= 1e3))
       refuse(path,
              "a spacing of " + std::to_string(spacing_mm[axis]) + " mm is out of range; give 0.0001 to 1000");
-  return axis_aligned_lattice(dims, spacing_mm, -0.5 * glm::dvec3(dims - 1) * spacing_mm);
+  StatedGeometry geometry;
+  geometry.dims = dims;
+  for (int axis = 0; axis < 3; ++axis) geometry.file_from_voxel[axis][axis] = spacing_mm[axis];
+  geometry.file_from_voxel[3] = glm::dvec4(-0.5 * glm::dvec3(dims - 1) * spacing_mm, 1.0);
+  geometry.unit_says = "mm (--spacing)";
+  scene.lattice = placed(geometry, options.frame, {}, scene.audit);
 }
 
 Scene read_raw(const fs::path& path, const ReadOptions& options) {
@@ -56,10 +66,18 @@ Scene read_raw(const fs::path& path, const ReadOptions& options) {
   need_memory(path, bytes / bytes_of(layout.type), 2 * bytes_of(layout.type));
   Scene scene;
   scene.source = path.string();
-  scene.lattice = lattice_without_frame(path, layout.dims, options);
-  scene.audit.push_back(frame_finding(false));
+  place_without_frame(path, layout.dims, options, scene);
   take_bytes(bytes_of_part(path, layout.offset, bytes), {layout.type, layout.big_endian}, scene);
   return scene;
+}
+
+void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene& scene) {
+  assert(bytes.size() == scene.lattice.sample_count() * bytes_of(stored.type));
+  take_stored(stored, scene,
+              [&](char* memory, std::size_t count) { std::copy_n(bytes.data(), count, memory); });
+  const AirLevel air = air_level_of_unnamed(scene);
+  scene.meaning = air.meaning;
+  scene.audit.push_back(air.finding);
 }
 
 }  // namespace octotomy::voxel

@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <span>
+
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::voxel {
 
-/// Reads a file of samples without a header in the options' layout and spacing. Its axes are assumed to point
-/// to the patient's left, back and head, centred on the origin; the audit says so. Throws Error, Input, if
+/// Reads a file of samples without a header in the options' layout and spacing. Its axes point
+/// along the options' frame or are assumed to point to the patient's left, back and head, centred on the
+/// origin; the audit says so. Throws Error, Input, if
 /// the layout is unusable, no spacing is given, or the file's size is not the layout's.
 Scene read_raw(const std::filesystem::path& path, const ReadOptions& options);
 
-/// The lattice of a file without a patient frame: the options' spacing, axes along LPS, centred on the
-/// origin. Throws Error, Input, naming the path if the options have no spacing or one that is not positive.
-Lattice lattice_without_frame(const std::filesystem::path& path, const glm::ivec3& dims,
-                              const ReadOptions& options);
+/// Places a scene whose file has no patient frame: the options' spacing, axes along the options' frame or
+/// else LPS, centred on the origin; the audit says so. Throws Error, Input, naming the path if the options
+/// have no spacing or one that is not positive.
+void place_without_frame(const std::filesystem::path& path, const glm::ivec3& dims,
+                         const ReadOptions& options, Scene& scene);
+
+/// Takes the samples of a file that does not state its modality, as take_stored() does. Their meaning is
+/// judged by their air (air_level.h) and stated in the audit. Precondition: the bytes are those of the
+/// lattice's samples. Throws as take_stored().
+void take_bytes(std::span<const char> bytes, const StoredSamples& stored, Scene& scene);
 
 }  // namespace octotomy::voxel

@@ -9,15 +9,23 @@
 #include "voxel/scan/read_dicom.h"
 #include "voxel/scan/read_dicom_seg.h"
 #include "voxel/scan/read_image_stack.h"
-#include "voxel/scan/read_nifti2.h"
 #include "voxel/scan/read_raw.h"
-#include "voxel/scan/scene_itk.h"
+#include "voxel/scan/read_volume.h"
 #include "voxel/space/regular_file.h"
 
 namespace octotomy::voxel {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// DICOM states its frame and its unit.
+void need_no_override(const fs::path& path, const ReadOptions& options) {
+  if (options.frame || options.unit)
+    throw std::invalid_argument(
+        path.string() +
+        ": DICOM states its patient frame (LPS) and its unit of length (mm): leave --frame "
+        "and --unit out");
+}
 
 Scene read_any(const fs::path& path, const ReadOptions& options) {
   std::error_code error;
@@ -28,15 +36,20 @@ Scene read_any(const fs::path& path, const ReadOptions& options) {
   if (!is_folder) {
     if (!image_files(path).empty()) return read_image_stack(path, options);
     if (!fs::exists(status)) refuse(path, "no such file or folder");
-    const std::optional<VolumeFormat> format = volume_format(path);
-    if (!format) return is_dicom_seg(path) ? read_dicom_seg(path) : read_dicom(path, options);
-    if (format == VolumeFormat::Nifti && is_nifti2(path)) return read_nifti2(path);
-    return read_volume_file(path, *format, options.slices_final);
+    if (const std::optional<VolumeFormat> format = readable_volume_format(path))
+      return read_volume(path, *format, options);
+    need_no_override(path, options);
+    return is_dicom_seg(path) ? read_dicom_seg(path) : read_dicom(path, options);
   }
   // A folder of images may hold DICOM as well. DICOM comes first because it holds positions.
-  if (image_files(path).empty()) return read_dicom(path, options);
-  try {
+  if (image_files(path).empty()) {
+    need_no_override(path, options);
     return read_dicom(path, options);
+  }
+  try {
+    Scene scene = read_dicom(path, options);
+    need_no_override(path, options);
+    return scene;
   } catch (const Error& refusal) {
     if (refusal.code() != ErrorCode::Input) throw;
     return read_image_stack(path, options);

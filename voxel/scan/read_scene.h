@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "voxel/scan/stored_samples.h"
 #include "voxel/space/progress.h"
 #include "voxel/space/scene.h"
+#include "voxel/volume/frame_words.h"
+#include "voxel/volume/stored_samples.h"
 
 namespace octotomy::voxel {
 
@@ -37,6 +38,12 @@ struct ReadOptions {
   /// Along x, y, z, for files that do not state it: image stacks and raw files.
   std::optional<glm::dvec3> spacing_mm;
   std::optional<RawLayout> raw;  ///< set: the path is a raw file
+  /// Of a volume file, an image stack or a raw file: the patient's directions along which the axes of its
+  /// coordinates grow, whatever the file states. DICOM states its own; read_scene() refuses another.
+  std::optional<PatientFrame> frame = {};
+  /// Of a volume file: the unit of its spacing and positions, whatever the file states. Refused as `frame`,
+  /// and for image stacks and raw files, whose spacing is in mm.
+  std::optional<LengthUnit> unit = {};
   Progress progress;
   /// Called on the reading thread with growing counts, for work on the first slices beside the reading; may
   /// be empty. The last call has all slices, or none if reading fails: work on the scene must be over when it
@@ -51,13 +58,14 @@ std::vector<SliceRange> parse_slices(const std::string& text);
 /// The text that parse_slices() reads back.
 std::string to_string(const std::vector<SliceRange>& slices);
 
-/// Reads a scan: a folder or a file of DICOM; NIfTI, NRRD or MetaImage; a stack of images (a TIFF of several
-/// pages, a folder of images, or a pattern with * and ? in its last part); a raw file. Applies the file's
-/// rescale and holds the values as int16 if all are integers in its range, otherwise as float. Geometry is in
-/// LPS millimetres for any frame of the file. The scene's audit lists every check and every doubt: missing or
-/// repeated slices, uneven spacing, gantry tilt, absent rescale, stray files. Throws Error, Input, with path
-/// and reason if nothing sound can be read; Error, Resource; Stopped. Memory: the samples once, and one slice
-/// or the decoder's own copy; twice if slices are resampled; bounded by a multiple of the file's size.
+/// Reads a scan: a folder or a file of DICOM; NIfTI (.nii, or .hdr beside .img), NRRD or MetaImage; a stack
+/// of images (a TIFF of several pages, a folder of images, or a pattern with * and ? in its last part); a raw
+/// file. Applies the file's rescale and holds the values as int16 if all are integers in its range, otherwise
+/// as float. Geometry is in LPS millimetres for any frame of the file. The scene's audit lists every check
+/// and every doubt: missing or repeated slices, uneven spacing, gantry tilt, absent rescale, stray files.
+/// Throws Error, Input, with path and reason if nothing sound can be read; Error, Resource; Stopped. Memory:
+/// the samples once, and one slice or the decoder's own copy; twice if slices are resampled; bounded by a
+/// multiple of the file's size.
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// A DICOM series found in a folder, or one of several stacks in it.

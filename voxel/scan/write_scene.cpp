@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "voxel/scan/write_scene.h"
 
-#include "voxel/scan/scene_itk.h"
-#include "voxel/scan/volume_header.h"
 #include "voxel/space/disk_need.h"
 #include "voxel/space/file_text.h"
 #include "voxel/space/staged_files.h"
+#include "voxel/volume/volume_header.h"
+#include "voxel/volume/write_volume.h"
 
 namespace octotomy::voxel {
 namespace {
@@ -14,7 +14,7 @@ std::uint64_t bytes_of_sample(const Scene& scene) {
   return std::visit([](const auto& samples) { return sizeof(samples[0]); }, scene.samples);
 }
 
-/// The file that ITK puts packed samples into; none where they stand in the header's own file.
+/// The file that holds packed samples; none where they stand in the header's own file.
 std::optional<std::filesystem::path> data_file_beside(std::filesystem::path header) {
   const std::string extension = extension_of(header);
   if (extension == ".nhdr") return header.replace_extension(".raw.gz");
@@ -46,15 +46,16 @@ std::uint64_t least_file_bytes(const Lattice& lattice, std::uint64_t sample_byte
                                const std::filesystem::path& path) {
   const std::optional<VolumeFormat> format = volume_format(path);
   const std::uint64_t bytes = lattice.sample_count() * (format ? sample_bytes : sizeof(std::int16_t));
-  // ITK writes NIfTI unpacked before it is packed.
-  return format && *format != VolumeFormat::Nifti ? bytes / deflate_ratio : bytes;
+  return format && extension_of(path) != ".nii" ? bytes / deflate_ratio : bytes;
 }
 
 std::optional<std::filesystem::path> own_data_file(const std::filesystem::path& path) {
   if (!data_file_beside(path)) return std::nullopt;
   try {
     if (!std::filesystem::is_regular_file(path)) return std::nullopt;
-    const std::filesystem::path named = read_volume_header(path, *volume_format(path)).data_file;
+    const VolumeHeader header = read_volume_header(path, *volume_format(path));
+    if (header.samples.files.size() != 1) return std::nullopt;
+    const std::filesystem::path& named = header.samples.files.front();
     const std::filesystem::path own = std::filesystem::absolute(path).parent_path() / named.filename();
     std::error_code is_none;
     if (has_own_name(named, path) && std::filesystem::equivalent(named, own, is_none)) return own;
@@ -91,7 +92,7 @@ void write_scene(const Scene& scene, const std::filesystem::path& path) {
   StagedFiles staging(path.parent_path());
   const std::filesystem::path staged = staging.folder() / staged_scene_name(path);
   try {
-    write_volume_file(scene, staged, *format);
+    write_volume(scene, staged, *format);
   } catch (const Error& error) {
     std::string reason = error.what();  // begins with the temporary name
     if (reason.starts_with(staged.string())) reason.erase(0, staged.string().size());

@@ -12,13 +12,14 @@
 namespace octotomy::voxel {
 
 /// Writes a scene in the format of the extension: .nrrd, .nhdr, .nii, .nii.gz, .mha, .mhd. The samples' type,
-/// their meaning and the modality survive a round trip. Geometry is kept in double precision; NIfTI files,
-/// single precision by themselves, keep it in an extension that other readers skip. Written beside and
-/// renamed into place, so that a failure leaves an older file intact. The samples of .nhdr and .mhd go into a
-/// data file beside the header under a name that was free, so that an older header never reads them; those of
-/// the older header are removed last. Throws Error, Input or Resource, with path and reason, before a byte is
-/// written where the disk cannot take it; as need_own_data_file(); std::invalid_argument for NIfTI and
-/// MetaImage, which cannot store them, if the lattice's axes are not perpendicular.
+/// their meaning and the modality survive a round trip; frame and unit of length are stated. Geometry is kept
+/// in double precision; NIfTI files, single precision by themselves, keep it in an extension that other
+/// readers skip. Written beside and renamed into place, so that a failure leaves an older file intact. The
+/// samples of .nhdr and .mhd go into a data file beside the header under a name that was free, so that an
+/// older header never reads them; those of the older header are removed last. Throws Error, Input or
+/// Resource, with path and reason, before a byte is written where the disk cannot take it; as
+/// need_own_data_file(); std::invalid_argument for MetaImage, whose readers take none, if the lattice's axes
+/// are not perpendicular.
 void write_scene(const Scene& scene, const std::filesystem::path& path);
 
 /// Of .nhdr and .mhd, whose samples go into a data file beside them: throws Error (Input) where a file of
@@ -35,7 +36,7 @@ std::optional<std::filesystem::path> own_data_file(const std::filesystem::path& 
 std::filesystem::path staged_scene_name(const std::filesystem::path& path);
 
 /// Bytes that write_scene(), or for a path of another extension write_dicom_series(), takes of the disk at
-/// least while it writes samples of this size: what NIfTI has unpacked, and the rest as packed as it can be.
+/// least while it writes samples of this size: what .nii has, and the rest as packed as it can be.
 /// For need_disk(), before the samples are made.
 std::uint64_t least_file_bytes(const Lattice& lattice, std::uint64_t sample_bytes,
                                const std::filesystem::path& path);

@@ -52,6 +52,30 @@ TEST_F(CommandLine, TheManualAndTheCompletionsNameEveryVerbAndItsOptions) {
   expect_refused(run("--manual fish"), "fish");
 }
 
+TEST_F(CommandLine, FrameAndUnitOfAVolumeFileAreThoseThatTheUserNames) {
+  const SortedJson stated = SortedJson::parse(run("info " + at("ball.nrrd") + " --json").out);
+  const CommandAnswer answer = run("info " + at("ball.nrrd") + " --frame RAS --unit cm --json");
+  ASSERT_EQ(answer.status, 0) << answer.errors;
+  const SortedJson named = SortedJson::parse(answer.out);
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column < 4; ++column) {
+      const double before = stated["lps_from_voxel"][row][column],
+                   after = named["lps_from_voxel"][row][column];
+      EXPECT_NEAR(after, (row < 2 ? -10.0 : 10.0) * before, 1e-9) << row << ", " << column;
+    }
+  int warnings = 0;
+  for (const SortedJson& line : named["audit"]) {
+    const bool is_option = line["check"] == "orientation" || line["check"] == "length_unit";
+    warnings += is_option && line["verdict"] == "WARN";
+  }
+  EXPECT_EQ(warnings, 2) << named["audit"];
+  expect_refused(run("info " + at("ball.nrrd") + " --frame up"), "RAS");
+  expect_refused(run("info " + at("ball.nrrd") + " --unit pixel"), "inch");
+  ASSERT_EQ(run("convert " + at("ball.nrrd") + " --dicom -o " + at("ball_dicom")).status, 0);
+  expect_refused(run("info " + at("ball_dicom") + " --frame RAS"), "leave --frame");
+  expect_refused(run("info " + at("ball_dicom") + " --unit mm"), "leave --frame and --unit out");
+}
+
 TEST_F(CommandLine, WrongUsageIsStatusTwoAndOneLine) {
   expect_refused(run(""), "subcommand is required");
   expect_refused(run("lok " + at("ball.nrrd")), "lok");

@@ -91,6 +91,22 @@ TEST(Plan, AScanSaysItsSeriesAndWhatItsFileDoesNot) {
   expect_says(refusal(plan), {"ofset", "did you mean 'offset'"});
 }
 
+TEST(Plan, AScanKeepsTheFrameAndUnitThatItsFileStatesWrongly) {
+  SortedJson plan = le_fort_i();
+  plan["scans"]["ct"] = {{"path", "head.nrrd"}, {"frame", "right-anterior-superior"}, {"unit", "um"}};
+  const ScanSource source = parse_plan(plan.dump(), "/plans").scans.at("ct");
+  ASSERT_TRUE(source.read.frame);
+  EXPECT_EQ(source.read.frame->name, "RAS");
+  EXPECT_EQ(source.read.frame->lps_from_frame[1], glm::dvec3(0, -1, 0));
+  ASSERT_TRUE(source.read.unit);
+  EXPECT_EQ(source.read.unit->mm, 1e-3);
+  plan["scans"]["ct"]["frame"] = "RAL";
+  expect_says(refusal(plan), {"scans, ct, frame", "'RAL'", "RAS"});
+  plan["scans"]["ct"]["frame"] = "LAS";
+  plan["scans"]["ct"]["unit"] = "pixel";
+  expect_says(refusal(plan), {"scans, ct, unit", "'pixel'", "inch"});
+}
+
 TEST(Plan, AnUnknownKeyIsRefusedWithTheStepAndTheNearestKnownOne) {
   SortedJson plan = le_fort_i();
   step(plan, "advanced")["translate"] = {0, -6, 2};

@@ -19,12 +19,6 @@
 #include "voxel/scan/dicom_file.h"
 #include "voxel/scan/write_scene.h"
 
-/// The NRRD library behind ITK leaks the header when it refuses a file, which tests here ask for on purpose.
-extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier): LSan's name
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
-  return "leak:libITKNrrdIO";
-}
-
 namespace octotomy::voxel {
 namespace {
 
@@ -550,7 +544,7 @@ TEST(ReadVolumeFile, MutatedHeadersAreReadOrRefusedButNeverCrash) {
   EXPECT_GT(read_count, 30);
 }
 
-TEST(ReadVolumeFile, RefusesAHeaderThatNiftiLibraryNeverReturnsFrom) {
+TEST(ReadVolumeFile, RefusesANiftiOfPositionsThatNoScannerReaches) {
   const ScratchFolder folder;
   const fs::path path = folder / "scan.nii";
   write_scene(linear_scene(oblique_lattice()), path);
@@ -560,12 +554,12 @@ TEST(ReadVolumeFile, RefusesAHeaderThatNiftiLibraryNeverReturnsFrom) {
   EXPECT_NE(reason_of(path).find("damaged: affine"), std::string::npos) << reason_of(path);
 }
 
-TEST(ReadVolumeFile, RefusesAHeaderThatMetaIoOverflowsOn) {
+TEST(ReadVolumeFile, RefusesAMetaImageLineWithoutAValue) {
   const ScratchFolder folder;
   const fs::path path = folder / "scan.mha";
   write_scene(linear_scene(oblique_lattice()), path);
   exchange(path, "TransformMatrix = ", "TransformMatrix 8 ");
-  EXPECT_NE(reason_of(path).find("a line is not a short"), std::string::npos) << reason_of(path);
+  EXPECT_NE(reason_of(path).find("a line is not 'Key = Value'"), std::string::npos) << reason_of(path);
 }
 
 template <typename Predicate>

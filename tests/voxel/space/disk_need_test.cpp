@@ -89,11 +89,10 @@ TEST(NeedDisk, WritersAskBeforeTheirFirstByte) {
   const Scene small = scene_of(32), large = scene_of(100);  // 2 MB
   EXPECT_NE(refusal([&] { write_scene(large, disk / "large.nii"); }).find("at least 2 MB"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { write_scene(large, disk / "large.nii.gz"); }).find("at least 2 MB"),
-            std::string::npos);
   EXPECT_NE(refusal([&] { write_dicom_series(large, disk / "large"); }).find("at least 2 MB"),
             std::string::npos);
-  EXPECT_EQ(refusal([&] { write_scene(large, disk / "large.nrrd"); }), "") << "zeros are packed";
+  for (const char* name : {"large.nrrd", "large.nii.gz"})
+    EXPECT_EQ(refusal([&] { write_scene(large, disk / name); }), "") << "zeros are packed";
   EXPECT_EQ(refusal([&] { write_scene(small, disk / "small.nii"); }), "");
 }
 

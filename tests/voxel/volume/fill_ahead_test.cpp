@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/fill_ahead.h"
+#include "voxel/volume/fill_ahead.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>

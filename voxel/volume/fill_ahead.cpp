@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #define TBB_PREVIEW_ISOLATED_TASK_GROUP 1
-#include "voxel/scan/fill_ahead.h"
+#include "voxel/volume/fill_ahead.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "voxel/scan/sample_stream.h"
+#include "voxel/volume/sample_stream.h"
 
 #include <fstream>
 #include <gtest/gtest.h>

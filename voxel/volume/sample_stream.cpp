@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Inflates by ISA-L: 1.6 to 1.9 times as fast as zlib on a packed CT.
-#include "voxel/scan/sample_stream.h"
+#include "voxel/volume/sample_stream.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "voxel/space/scene.h"
+#include "voxel/volume/frame_words.h"
+
+namespace octotomy::voxel {
+
+/// Where a volume file's header puts its samples, in the file's own axes and unit.
+struct StatedGeometry {
+  glm::ivec3 dims{1};
+  glm::dmat4 file_from_voxel{1.0};
+  std::optional<PatientFrame> frame = {};     ///< of the file's axes, if it names them
+  PatientFrame assumed_frame = {};            ///< for a file that does not
+  std::string frame_says = {};                ///< the words of the file, "space right-anterior-superior"
+  std::optional<std::string> unit_says = {};  ///< the file's words; none if it states no unit of length
+  glm::dvec3 mm_per_unit{1.0};                ///< along the file's axes
+};
+
+/// The lattice in LPS millimetres. Adds one line on the frame and one on the unit to the audit: what the file
+/// states, and what was taken. `frame` and `unit`, if given, are taken instead (--frame, --unit). A guess,
+/// and an option that contradicts the file, is a warning.
+Lattice placed(const StatedGeometry& stated, const std::optional<PatientFrame>& frame,
+               const std::optional<LengthUnit>& unit, std::vector<Finding>& audit);
+
+}  // namespace octotomy::voxel
