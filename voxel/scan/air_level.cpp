@@ -125,7 +125,7 @@ AirLevel air_level_of_unnamed(const Scene& scene) {
   const Counts counts = count(scene);
   if (is_seen(counts.air, counts) && counts.air >= 2 * counts.above)
     return {Meaning::Hounsfield,
-            {"air_level", Verdict::Pass,
+            {"air_level", Verdict::Warn,
              "the file names no unit; " + percent(counts.air, counts) +
                  " of the samples peak within 100 of -1000, as air does: taken as Hounsfield units"}};
   return {Meaning::Raw,

@@ -30,11 +30,12 @@ class HeaderLines {
  public:
   HeaderLines(const fs::path& path, VolumeFormat format)
       : path_(path), format_(format), head_(header_bytes_of(path)) {
-    // Of a header that is too long, the end is not seen.
-    const bool is_whole = head_.size() < most_header_bytes;
+    // Of a header that is too long neither the end nor all of its last line is seen.
+    is_whole_ = head_.size() < most_header_bytes;
+    if (!is_whole_) head_.resize(head_.rfind('\n') + 1);
     const bool is_known = format == VolumeFormat::Nrrd
                               ? head_.starts_with("NRRD00")
-                              : head_.find(is_whole ? "ElementDataFile" : "DimSize") != std::string::npos;
+                              : head_.find(is_whole_ ? "ElementDataFile" : "DimSize") != std::string::npos;
     if (!is_known)
       refuse(path, std::string("is not a ") + name_of(format) +
                        " file, though its extension says so; rename it to its real format");
@@ -44,13 +45,16 @@ class HeaderLines {
     if (format_ == VolumeFormat::Nrrd) next_line();  // the magic
     while (at_ < head_.size()) {
       const std::string line = next_line();
-      if (line.empty() && format_ == VolumeFormat::Nrrd) break;
+      ends_ = line.empty() && format_ == VolumeFormat::Nrrd;
+      if (ends_) break;
       if (line.empty() || line.front() == '#') continue;
       format_ == VolumeFormat::Nrrd ? take_nrrd(line) : take_meta(line);
-      if (is_list_) list_files();
-      if (ends_) break;
+      if (ends_ && !is_list_) break;
+      if (!is_list_) continue;
+      list_files();  // to the end of the file
+      ends_ = false;
     }
-    if (at_ >= head_.size() && head_.size() == most_header_bytes)
+    if (!ends_ && !is_whole_)
       refuse(path_, std::string("its ") + name_of(format_) + " header is longer than " +
                         std::to_string(most_header_bytes >> 20) +
                         " MB: save the volume without its additional fields");
@@ -110,7 +114,7 @@ class HeaderLines {
   VolumeFormat format_;
   std::string head_;
   std::size_t at_ = 0;
-  bool is_list_ = false, ends_ = false;
+  bool is_whole_ = true, is_list_ = false, ends_ = false;
   TextHeader header_;
 };
 

@@ -74,7 +74,7 @@ def read_nrrd(path):
             fields[key.replace(" ", "").lower()] = value.strip()
     sizes = [int(word) for word in fields["sizes"].split()]
     vectors = re.findall(r"none|\([^)]*\)", fields.get("spacedirections", ""))
-    axes = [axis for axis in range(len(sizes)) if not vectors or vectors[axis] != "none"]
+    axes = [axis for axis in range(len(sizes)) if not vectors or vectors[axis] != "none"][:3]
     matrix = numpy.eye(4)
     numbers = lambda text: [float(word) for word in text.strip("()").split(",")][:3]
     units = re.findall('"([^"]*)"', fields.get("spaceunits" if vectors else "units", ""))

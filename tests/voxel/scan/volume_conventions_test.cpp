@@ -13,61 +13,20 @@
 
 #include "tests/file_bytes.h"
 #include "tests/voxel/linear_scene.h"
+#include "tests/voxel/scan/volume_bytes.h"
 #include "tests/voxel/scratch_folder.h"
 #include "voxel/scan/read_scene.h"
 
 namespace octotomy::voxel {
 namespace {
 
+using tests::meta;
+using tests::meta_place;
+using tests::nifti;
+using tests::nrrd;
+using tests::nrrd_in;
+using tests::ramp;
 using tests::write_bytes;
-
-/// 24 bytes from 0 to 23: 2 x 3 x 4 samples.
-std::string ramp() {
-  std::string bytes;
-  for (char value = 0; value < 24; ++value) bytes += value;
-  return bytes;
-}
-
-std::string nrrd(const std::string& fields, const std::string& samples = ramp()) {
-  const auto field = [&](const char* name, const char* otherwise) {
-    return ("\n" + fields).find(std::string("\n") + name) == std::string::npos ? std::string(otherwise) : "";
-  };
-  return "NRRD0005\ndimension: 3\nsizes: 2 3 4\n" + fields + field("type:", "type: uchar\n") +
-         field("encoding:", "encoding: raw\n") + "\n" + samples;
-}
-/// With directions (2,0,0) (0,3,0) (0,0,4) and the origin (10,20,30).
-std::string nrrd_in(const std::string& space) {
-  return nrrd(space + "space directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n");
-}
-
-std::string meta(const std::string& fields, const std::string& samples = ramp()) {
-  const std::string type = fields.find("ElementType") == std::string::npos ? "ElementType = MET_UCHAR\n" : "";
-  return "ObjectType = Image\nNDims = 3\nDimSize = 2 3 4\n" + fields + type + "ElementDataFile = LOCAL\n" +
-         samples;
-}
-const std::string meta_place =
-    "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 10 20 30\nElementSpacing = 2 3 4\n";
-
-/// A NIfTI-1 of 24 bytes with the spacing 2, 3, 4 mm and the origin (10, 20, 30) in both forms, as changed.
-std::string nifti(const std::function<void(nifti_1_header&)>& change, const std::string& samples = ramp()) {
-  nifti_1_header header{};
-  header.sizeof_hdr = 348;
-  const short dims[8] = {3, 2, 3, 4, 1, 1, 1, 1};
-  const float spacing[8] = {1, 2, 3, 4, 1, 1, 1, 1};
-  std::copy_n(dims, 8, header.dim);
-  std::copy_n(spacing, 8, header.pixdim);
-  header.datatype = DT_UINT8;
-  header.bitpix = 8;
-  header.vox_offset = 352;
-  header.xyzt_units = NIFTI_UNITS_MM;
-  header.qform_code = header.sform_code = 1;
-  header.qoffset_x = 10, header.qoffset_y = 20, header.qoffset_z = 30;
-  header.srow_x[0] = 2, header.srow_y[1] = 3, header.srow_z[2] = 4;
-  header.srow_x[3] = 10, header.srow_y[3] = 20, header.srow_z[3] = 30;
-  std::memcpy(header.magic, "n+1", 4);
-  change(header);
-  return std::string(reinterpret_cast<const char*>(&header), sizeof header) + std::string(4, '\0') + samples;
-}
 
 struct Row {
   std::string statement;
@@ -83,6 +42,12 @@ struct Row {
 
 constexpr Range as_stored{0.0, 23.0};
 const glm::dvec3 lps_first(10, 20, 30), lps_last(12, 26, 42), ras_first(-10, -20, 30), ras_last(-12, -26, 42);
+
+std::string shorts(std::int16_t value, int count) {
+  std::string bytes;
+  for (int i = 0; i < count; ++i) bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  return bytes;
+}
 
 std::vector<Row> nifti_rows() {
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -195,6 +160,32 @@ std::vector<Row> nifti_rows() {
        Verdict::Warn},
       {"no offset of the samples", name, nifti([](auto& h) { h.vox_offset = 0; }), ras_first, ras_last,
        as_stored, "offset", Verdict::Warn},
+      {"no unit of values, air at -1000",
+       name,
+       nifti(
+           [](auto& h) {
+             h.datatype = DT_INT16;
+             h.bitpix = 16;
+           },
+           shorts(-1000, 16) + shorts(300, 8)),
+       ras_first,
+       ras_last,
+       {-1000, 300},
+       "air_level",
+       Verdict::Warn},
+      {"no unit of values, no air",
+       name,
+       nifti(
+           [](auto& h) {
+             h.datatype = DT_INT16;
+             h.bitpix = 16;
+           },
+           shorts(100, 16) + shorts(300, 8)),
+       ras_first,
+       ras_last,
+       {100, 300},
+       "air_level",
+       Verdict::Pass},
       {"one byte behind the samples", name, nifti([](auto&) {}, ramp() + "x"), ras_first, ras_last, as_stored,
        "samples", Verdict::Warn},
   };
@@ -529,94 +520,6 @@ TEST(VolumeConventions, HoldForWhatNrrdStates) {
 
 TEST(VolumeConventions, HoldForWhatMetaImageStates) {
   expect_rows("MetaImage", meta_rows());
-}
-
-std::string reason(const std::filesystem::path& path, const ReadOptions& options = {}) {
-  try {
-    read_scene(path, options);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "read";
-}
-
-TEST(VolumeConventions, RefuseWhatIsNoScanAndSayWhat) {
-  const tests::ScratchFolder folder;
-  const std::string lps = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (0,0,0)\n";
-  for (const auto& [name, bytes, words] :
-       {std::tuple{"a.nii", nifti([](auto& h) {
-                     h.dim[0] = 4;
-                     h.dim[3] = 2;
-                     h.dim[4] = 2;
-                   }),
-                   "more than three axes (2 x 3 x 2 x 2)"},
-        {"a.nii", nifti([](auto& h) {
-           h.datatype = DT_RGB24;
-           h.bitpix = 24;
-         }),
-         "colours"},
-        {"a.nii", nifti([](auto& h) {
-           h.scl_slope = 1;
-           h.scl_inter = std::numeric_limits<float>::infinity();
-         }),
-         "intercept"},
-        {"a.nii", nifti([](auto& h) { std::memcpy(h.magic, "ni1", 4); }), "magic"},
-        {"a.nrrd", nrrd(lps + "encoding: bzip2\n"), "bzip2"},
-        {"a.nrrd", nrrd(lps + "type: block\n"), "block"},
-        {"a.nrrd",
-         "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color domain domain "
-         "domain\nencoding: raw\n\n" +
-             ramp(),
-         "one value a sample"},
-        {"a.mha", meta(meta_place + "ElementNumberOfChannels = 3\n"), "3 values per sample"},
-        {"a.mha", meta("TransformMatrix = 1 0 0 0 1 0 0\n"), "9 numbers"}}) {
-    write_bytes(folder / name, bytes);
-    EXPECT_NE(reason(folder / name).find(words), std::string::npos)
-        << reason(folder / name) << "\nlacks: " << words;
-  }
-  write_bytes(folder / "alone.hdr", nifti([](auto&) {}));
-  EXPECT_NE(reason(folder / "alone.hdr").find("the other one is missing"), std::string::npos)
-      << reason(folder / "alone.hdr");
-}
-
-TEST(VolumeConventions, ANiftiPairIsReadByEitherName) {
-  const tests::ScratchFolder folder;
-  write_bytes(folder / "a.hdr", nifti(
-                                    [](auto& h) {
-                                      std::memcpy(h.magic, "ni1", 4);
-                                      h.vox_offset = 0;
-                                    },
-                                    ""));
-  write_bytes(folder / "a.img", ramp());
-  for (const char* name : {"a.hdr", "a.img"}) {
-    const Scene scene = read_scene(folder / name);
-    expect_near(scene.lattice.lps_mm({0, 0, 0}), ras_first);
-    EXPECT_EQ(range(scene).high, 23.0) << name;
-  }
-}
-
-TEST(VolumeConventions, FilesOfAListAndOfAPatternAreReadInTheirOrder) {
-  const tests::ScratchFolder folder;
-  const std::string samples = ramp();
-  for (std::size_t i = 0; i < 4; ++i)
-    write_bytes(folder / ("part" + std::to_string(9 - i) + ".raw"), "x" + samples.substr(6 * i, 6));
-  const std::string names = "part9.raw\npart8.raw\npart7.raw\npart6.raw\n";
-  const std::string nrrd_head =
-      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nbyte skip: 1\ndata file: ";
-  const std::string meta_head =
-      "NDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\nHeaderSize = 1\nElementDataFile = ";
-  for (const auto& [name, bytes] : {std::pair{"list.nhdr", nrrd_head + "LIST\n" + names},
-                                    {"pattern.nhdr", nrrd_head + "part%d.raw 9 6 -1\n"},
-                                    {"list.mhd", meta_head + "LIST\n" + names},
-                                    {"pattern.mhd", meta_head + "part%d.raw 9 6 -1\n"}}) {
-    write_bytes(folder / name, bytes);
-    const Scene scene = read_scene(folder / name);
-    const auto& read = std::get<Int16Samples>(scene.samples);
-    EXPECT_TRUE(std::equal(read.begin(), read.end(), samples.begin(), samples.end())) << name;
-  }
-  write_bytes(folder / "hostile.nhdr", nrrd_head + "part%s%n.raw 9 6 -1\n");
-  EXPECT_NE(reason(folder / "hostile.nhdr").find("one %d"), std::string::npos)
-      << reason(folder / "hostile.nhdr");
 }
 
 }  // namespace

@@ -97,6 +97,16 @@ TEST_F(VolumeHeaderTest, AHeaderOfMoreThanFourMegabytesIsRefused) {
     EXPECT_NE(refusal(name, bytes).find("4 MB"), std::string::npos) << refusal(name, bytes).substr(0, 300);
 }
 
+TEST_F(VolumeHeaderTest, AShortHeaderBeforeManySamplesWithoutALineEndIsRead) {
+  const std::string samples(std::size_t{8} << 20, '\0');
+  std::string header = nrrd(0) + "\n";
+  header.replace(header.find("2 2 2"), 5, "128 128 256");
+  EXPECT_EQ(header_of("zeros.nrrd", header + samples).samples.file_at, header.size());
+  std::string lines = meta(0, "LOCAL");
+  lines.replace(lines.find("2 2 2"), 5, "128 128 256");
+  EXPECT_EQ(header_of("zeros.mha", lines + samples).samples.file_at, lines.size());
+}
+
 TEST_F(VolumeHeaderTest, ExtensionsOfOthersArePassedOver) {
   for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{100000}}) {
     EXPECT_EQ(header_of("most.nii", nifti(count)).samples.byte_skip, 352 + 16 * count);

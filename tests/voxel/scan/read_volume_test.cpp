@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "voxel/scan/read_volume.h"
+
+#include <cstring>
+#include <gtest/gtest.h>
+#include <limits>
+#include <tuple>
+
+#include "tests/file_bytes.h"
+#include "tests/voxel/scan/volume_bytes.h"
+#include "tests/voxel/scratch_folder.h"
+
+namespace octotomy::voxel {
+namespace {
+
+using tests::meta;
+using tests::meta_place;
+using tests::nifti;
+using tests::nrrd;
+using tests::ramp;
+using tests::write_bytes;
+
+std::string reason_to_refuse(const std::filesystem::path& path, const ReadOptions& options = {}) {
+  try {
+    read_scene(path, options);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+TEST(ReadVolume, RefusesWhatIsNoScanAndSaysWhat) {
+  const tests::ScratchFolder folder;
+  const std::string lps = "space: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (0,0,0)\n";
+  for (const auto& [name, bytes, words] :
+       {std::tuple{"a.nii", nifti([](auto& h) {
+                     h.dim[0] = 4;
+                     h.dim[3] = 2;
+                     h.dim[4] = 2;
+                   }),
+                   "more than three axes (2 x 3 x 2 x 2)"},
+        {"a.nii", nifti([](auto& h) {
+           h.datatype = DT_RGB24;
+           h.bitpix = 24;
+         }),
+         "colours"},
+        {"a.nii", nifti([](auto& h) {
+           h.scl_slope = 1;
+           h.scl_inter = std::numeric_limits<float>::infinity();
+         }),
+         "intercept"},
+        {"a.nii", nifti([](auto& h) { std::memcpy(h.magic, "ni1", 4); }), "magic"},
+        {"a.nrrd", nrrd(lps + "encoding: bzip2\n"), "bzip2"},
+        {"a.nrrd", nrrd(lps + "type: block\n"), "block"},
+        {"a.nrrd",
+         "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 3 2 2 2\nkinds: RGB-color domain domain "
+         "domain\nencoding: raw\n\n" +
+             ramp(),
+         "one value a sample"},
+        {"a.mha", meta(meta_place + "ElementNumberOfChannels = 3\n"), "3 values per sample"},
+        {"a.mha", meta("TransformMatrix = 1 0 0 0 1 0 0\n"), "9 numbers"}}) {
+    write_bytes(folder / name, bytes);
+    EXPECT_NE(reason_to_refuse(folder / name).find(words), std::string::npos)
+        << reason_to_refuse(folder / name) << "\nlacks: " << words;
+  }
+  write_bytes(folder / "alone.hdr", nifti([](auto&) {}));
+  EXPECT_NE(reason_to_refuse(folder / "alone.hdr").find("the other one is missing"), std::string::npos)
+      << reason_to_refuse(folder / "alone.hdr");
+}
+
+TEST(ReadVolume, ANiftiPairIsReadByEitherName) {
+  const tests::ScratchFolder folder;
+  write_bytes(folder / "a.hdr", nifti(
+                                    [](auto& h) {
+                                      std::memcpy(h.magic, "ni1", 4);
+                                      h.vox_offset = 0;
+                                    },
+                                    ""));
+  write_bytes(folder / "a.img", ramp());
+  for (const char* name : {"a.hdr", "a.img"}) {
+    const Scene scene = read_scene(folder / name);
+    EXPECT_EQ(scene.lattice.lps_mm({0, 0, 0}), glm::dvec3(-10, -20, 30)) << name;
+    EXPECT_EQ(range(scene).high, 23.0) << name;
+  }
+}
+
+TEST(ReadVolume, FilesOfAListAndOfAPatternAreReadInTheirOrder) {
+  const tests::ScratchFolder folder;
+  const std::string samples = ramp();
+  for (std::size_t i = 0; i < 4; ++i)
+    write_bytes(folder / ("part" + std::to_string(9 - i) + ".raw"), "x" + samples.substr(6 * i, 6));
+  const std::string names = "part9.raw\npart8.raw\npart7.raw\npart6.raw\n";
+  const std::string nrrd_head =
+      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nbyte skip: 1\ndata file: ";
+  const std::string meta_head =
+      "NDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\nHeaderSize = 1\nElementDataFile = ";
+  for (const auto& [name, bytes] : {std::pair{"list.nhdr", nrrd_head + "LIST\n" + names},
+                                    {"pattern.nhdr", nrrd_head + "part%d.raw 9 6 -1\n"},
+                                    {"list.mhd", meta_head + "LIST\n" + names},
+                                    {"pattern.mhd", meta_head + "part%d.raw 9 6 -1\n"}}) {
+    write_bytes(folder / name, bytes);
+    const Scene scene = read_scene(folder / name);
+    const auto& read = std::get<Int16Samples>(scene.samples);
+    EXPECT_TRUE(std::equal(read.begin(), read.end(), samples.begin(), samples.end())) << name;
+  }
+  write_bytes(folder / "hostile.nhdr", nrrd_head + "part%s%n.raw 9 6 -1\n");
+  EXPECT_NE(reason_to_refuse(folder / "hostile.nhdr").find("one %d"), std::string::npos)
+      << reason_to_refuse(folder / "hostile.nhdr");
+}
+
+}  // namespace
+}  // namespace octotomy::voxel
